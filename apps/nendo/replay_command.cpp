@@ -100,10 +100,10 @@ void compare_shapes(recording::TakeReader& reader, flow::DeformLoop& loop, Repla
   done.farthest = std::max(done.farthest, *distance);
 }
 
-Result<Replayed> replay_once(const Options& options, const deform::Mesh& model) {
+Result<Replayed> replay_once(const Options& options, const takes::RecordedModel& model) {
   auto reader = recording::TakeReader::open(options.file);
   if (!reader) return reader.error();
-  auto replay = recording::LoopReplay::make(reader->setup(), model);
+  auto replay = recording::LoopReplay::make(reader->setup(), model.mesh);
   if (!replay) return Error{replay.error().code, options.file + ": " + replay.error().message};
   constexpr double no_end_s = 1e8;
   const HostTime last = host_time(reader->setup(), options.to_s.value_or(no_end_s));
@@ -126,12 +126,7 @@ Result<Replayed> replay_once(const Options& options, const deform::Mesh& model) 
   done.elapsed_s = to_seconds(HostClock::now() - start);
   done.shape = (*replay)->loop().final_mesh();
   const auto& ending = reader->ending();
-  // A model that was subdivided begins with the vertices of the file's.
-  const recording::ShapeSum& recorded = reader->setup().loop->mesh_sum;
-  const auto of_file =
-      std::min<Eigen::Index>(model.vertices.cols(), static_cast<Eigen::Index>(recorded.vertices));
-  const bool of_this_model = recording::sum_of(model.vertices.leftCols(of_file)) == recorded;
-  if (done.to_the_end && done.exact && of_this_model && ending && ending->shape)
+  if (done.to_the_end && done.exact && model.is_recorded && ending && ending->shape)
     done.same_shape = *ending->shape == recording::sum_of(done.shape.vertices);
   return done;
 }
@@ -181,7 +176,10 @@ int replay(const Options& options) {
   const auto reader = recording::TakeReader::open(options.file);
   if (!reader) return cli::report(reader.error());
   if (const auto fine = check_from(options); !fine) return cli::report(fine.error());
-  auto model = takes::recorded_model(options.file, reader->setup(), options.mesh);
+  if (!reader->setup().loop)
+    return cli::report(
+        {Errc::bad_input, options.file + ": " + std::string(recording::without_loop)});
+  const auto model = takes::find_recorded_model(*reader->setup().loop, options.mesh);
   if (!model) return cli::report(model.error());
   const std::string simd(deform::simd_names().front());
   if (reader->setup().loop->simd != simd) {

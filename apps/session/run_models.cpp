@@ -13,6 +13,8 @@ constexpr std::chrono::milliseconds look_interval(500);
 /// Fewer are not worth another version of the model: the larger of these.
 constexpr std::size_t least_unfit = 24;
 constexpr double least_unfit_fraction = 0.004; ///< of the vertices
+/// In the middle of a stroke, which ends by it: as many times as many.
+constexpr double in_a_stroke = 5.0;
 
 std::uint64_t newest_stamp(const deform::BlockShape& shape) {
   std::uint64_t newest = 0;
@@ -52,6 +54,9 @@ std::optional<std::string> RunModels::follow(bool may_begin) {
     }
     if (made.is_wanted) finer_ = *std::move(made.finer);
   }
+  // Another version would forget what can be redone, and nobody has asked for it.
+  if (is_by_itself_ && stage_ == Stage::none && loop.frames().front().redo_steps > 0)
+    finer_.reset();
   if (finer_ && stage_ == Stage::none && may_begin && loop.hold_still())
     stage_ = Stage::holding_still;
   if (asked_ && !finer_ && !making_.valid() && !is_handing_over()) return begin();
@@ -65,18 +70,20 @@ void RunModels::look() {
   const flow::Frame& frame = loop.frames().front();
   const flow::ModelVersion& model = loop.newest_model();
   const HostTime now = HostClock::now();
-  if (now - looked_at_ < look_interval || frame.model != model.number) return;
+  if (now - looked_at_ < look_interval || frame.model != model.number || frame.redo_steps > 0)
+    return;
   looked_at_ = now;
-  const std::uint64_t stamp = newest_stamp(frame.shape);
-  if (std::exchange(looked_stamp_, stamp) == stamp) return;
+  const std::pair look{newest_stamp(frame.shape), frame.steps.in_hand};
+  if (std::exchange(last_look_, look) == look) return;
   made_ = {0, flow::ModelSource::refined, refine_to_};
   is_by_itself_ = true;
-  making_ = std::async(std::launch::async, [&model, how = made_, shape = frame.shape] {
+  const double fraction = least_unfit_fraction * (frame.steps.in_hand ? in_a_stroke : 1.0);
+  const auto least = std::max(
+      least_unfit,
+      static_cast<std::size_t>(fraction * static_cast<double>(model.layout().vertex_count())));
+  making_ = std::async(std::launch::async, [&model, least, how = made_, shape = frame.shape] {
     Made made{flow::FinerModel::repeated(model, how)};
     if (!made.finer) return made;
-    const auto vertices = static_cast<double>(model.layout().vertex_count());
-    const std::size_t least =
-        std::max(least_unfit, static_cast<std::size_t>(least_unfit_fraction * vertices));
     made.is_wanted = made.finer->count_unfit(shape) >= least;
     return made;
   });

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "session/place_loop.hpp"
@@ -53,10 +54,10 @@ private:
   const PlacedLoop& placed_;
   const std::vector<Sink*>& sinks_;
   std::uint32_t refine_to_;
-  HostTime looked_at_{};                   ///< whether the model needs refining
-  std::uint64_t looked_stamp_ = 0;         ///< the newest in the shape then
-  bool is_by_itself_ = false;              ///< what is being made
-  std::optional<flow::ChangeModel> asked_; ///< without its number
+  HostTime looked_at_{};                       ///< whether the model needs refining
+  std::pair<std::uint64_t, bool> last_look_{}; ///< the newest stamp in the shape, in a stroke
+  bool is_by_itself_ = false;                  ///< what is being made
+  std::optional<flow::ChangeModel> asked_;     ///< without its number
   std::future<Made> making_;
   flow::ChangeModel made_;                ///< what making_ and finer_ are
   std::optional<flow::FinerModel> finer_; ///< made, and not the loop's yet

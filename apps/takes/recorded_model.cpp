@@ -9,37 +9,44 @@
 namespace nendo::takes {
 namespace {
 
-Result<deform::Mesh> model_of_file(const recording::LoopSetup& loop, const std::string& named) {
+Result<RecordedModel> model_of_file(const recording::LoopSetup& loop, const std::string& named) {
   auto model = deform::read_mesh(named.empty() ? loop.mesh : named);
   if (!model) {
     if (!named.empty()) return model.error();
     return Error{Errc::bad_input, printable(model.error().message) +
                                       "; that is the model that was recorded, name it with --mesh"};
   }
-  if (recording::sum_of(model->vertices) == loop.mesh_sum) return model;
+  if (recording::sum_of(model->vertices) == loop.mesh_sum) return RecordedModel{*std::move(model)};
   if (named.empty()) {
     return Error{Errc::bad_input, printable(loop.mesh) +
                                       ": is not as it was when it was recorded; name the model of "
                                       "then with --mesh, or another"};
   }
   cli::note(named + ": another model than was recorded; its shape will be another, too");
-  return model;
+  return RecordedModel{*std::move(model), false};
 }
 
 } // namespace
 
-Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop, const std::string& named) {
+Result<RecordedModel> find_recorded_model(const recording::LoopSetup& loop,
+                                          const std::string& named) {
   auto model = model_of_file(loop, named);
+  if (!model) return model;
   for (const auto& origin : loop.origins) {
-    if (!model) break;
-    auto made = flow::made_again(*model, *origin);
+    auto made = flow::made_again(model->mesh, *origin);
     if (!made)
       return Error{Errc::bad_input, printable(named.empty() ? loop.mesh : named) + ": " +
                                         made.error().message +
                                         "; name the model of then with --mesh"};
-    model = *std::move(made);
+    model->mesh = *std::move(made);
   }
   return model;
+}
+
+Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop, const std::string& named) {
+  auto model = find_recorded_model(loop, named);
+  if (!model) return model.error();
+  return std::move(model->mesh);
 }
 
 Result<deform::Mesh> recorded_model(const std::string& file, const recording::Setup& setup,

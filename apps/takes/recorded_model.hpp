@@ -7,9 +7,17 @@
 
 namespace nendo::takes {
 
-/// Reads the model from the file `named`, or from the recorded file name if `named` is empty.
-/// Prints a note on standard error if it is not the recorded model. Errors: those of
-/// deform::read_mesh(); bad_input if the recorded file has changed.
+struct RecordedModel {
+  deform::Mesh mesh;
+  bool is_recorded = true; ///< it is made of the file as it was then
+};
+/// Reads the model from the file `named`, or from the recorded file name if `named` is empty, and
+/// subdivides and refines it as it was before the recording began. Prints a note on standard error
+/// if it is not the recorded model. Errors: those of deform::read_mesh(); bad_input if the recorded
+/// file has changed, or the named one cannot be refined so.
+Result<RecordedModel> find_recorded_model(const recording::LoopSetup& loop,
+                                          const std::string& named = {});
+/// Returns its mesh.
 Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop,
                                     const std::string& named = {});
 /// Does the same for the recording in `file`. Error: also bad_input if no loop was recorded.

@@ -195,9 +195,10 @@ std::uint64_t replay(const std::filesystem::path& file) {
   auto take = recording::TakeReader::open(file);
   REQUIRE(take);
   REQUIRE(take->setup().loop);
-  const auto model = recorded_model(*take->setup().loop);
+  const auto model = find_recorded_model(*take->setup().loop);
   REQUIRE(model);
-  auto again = recording::LoopReplay::make(take->setup(), *model);
+  CHECK(model->is_recorded);
+  auto again = recording::LoopReplay::make(take->setup(), model->mesh);
   REQUIRE(again);
   while (const auto entry = take->next())
     (*again)->feed(*entry);
@@ -486,6 +487,20 @@ TEST_SUITE("run_session") {
     CHECK(asker.prepared.size() > 0);
     REQUIRE(outcome.recordings.size() == 1);
     CHECK(replay(outcome.recordings[0].file) >= 0);
+  }
+
+  TEST_CASE("what was undone is not forgotten because the model refines itself") {
+    Run run;
+    run.options.refine_to = 5000;
+    Asker asker(Changes{{flow::Request::let_go},
+                        {flow::Request::undo},
+                        {flow::Request::redo},
+                        {flow::Request::undo},
+                        {flow::Request::redo}});
+    asker.least_ticks = 80;
+    const auto outcome = run.follow({&asker});
+    CHECK(outcome.stats.undos == 2);
+    CHECK(outcome.stats.redos == 2);
   }
 
   TEST_CASE("a mark is in the recording, and without one the reason is told") {

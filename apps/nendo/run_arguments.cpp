@@ -1,0 +1,265 @@
+#include "nendo/run_arguments.hpp"
+
+#include <ctime>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <spdlog/fmt/fmt.h>
+
+#include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/mesh_file.hpp>
+#include <nendo/flow/tick_grid.hpp>
+#include <nendo/puppet/puppet.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/output_place.hpp"
+#include "cli/quantities.hpp"
+#include "nendo/puppet_file.hpp"
+#include "takes/recorded_model.hpp"
+
+namespace nendo::app::run_command {
+namespace {
+
+std::string dated_name() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char name[64];
+  std::strftime(name, sizeof name, "nendo-%Y%m%d-%H%M%S.obj", &local);
+  return name;
+}
+
+/// One that is there is written over only if it is the one that was opened.
+Result<void> check_out_puppet(const RunArguments& options) {
+  if (options.out_puppet.empty()) return {};
+  if (!options.view.window) return Error{Errc::usage, "--out-puppet is the window's; add --view"};
+  std::error_code ignored;
+  const bool is_opened =
+      std::filesystem::equivalent(options.out_puppet, options.run.puppet_file, ignored);
+  if (!is_opened && !options.force && std::filesystem::exists(options.out_puppet, ignored))
+    return Error{Errc::usage,
+                 "--out-puppet " + options.out_puppet + ": exists; --force replaces it"};
+  return cli::check_place("--out-puppet", options.out_puppet, {".toml"});
+}
+
+Result<void> check_outputs(const RunArguments& options) {
+  const session::RunOptions& run = options.run;
+  const session::ViewOptions& view = options.view;
+  if (!view.window && (view.frames > 0 || view.contact || !view.screenshot.empty()))
+    return Error{Errc::usage, "--frames, --screenshot and --contact are the window's; add --view"};
+  if (auto fine = cli::check_place("--out", run.out, {".obj", ".ply"}); !fine) return fine;
+  const std::string& model = run.over ? run.over->take.setup.loop->mesh : run.mesh;
+  if (auto fine = cli::check_spares(model, "--out", run.out, options.force); !fine) return fine;
+  if (auto fine = cli::check_place("--picture", run.picture, {".png"}); !fine) return fine;
+  if (auto fine = cli::check_place("--record", run.recording.file); !fine) return fine;
+  if (auto fine = check_out_puppet(options); !fine) return fine;
+  if (auto fine = cli::check_place("--screenshot", view.screenshot, {".png"}); !fine) return fine;
+  return cli::check_distinct({{"--out", run.out},
+                              {"--picture", run.picture},
+                              {"--record", run.recording.file},
+                              {"--out-puppet", options.out_puppet},
+                              {"--screenshot", view.screenshot}});
+}
+
+/// A file, or the name of a shipped puppet. Its model stands beside it.
+Result<void> read_puppet(RunArguments& options) {
+  session::RunOptions& run = options.run;
+  std::error_code ignored;
+  if (options.view.window) {
+    const bool is_opened =
+        std::filesystem::equivalent(options.out_puppet, run.puppet_file, ignored);
+    run.out_puppet = {options.out_puppet, options.force || is_opened};
+  }
+  const bool is_named =
+      !run.puppet_file.empty() && std::filesystem::exists(run.puppet_file, ignored);
+  if (options.view.window && !run.puppet_file.empty() && !run.mesh.empty() && !is_named &&
+      run.puppet_file.ends_with(".toml")) { // one that is to be made
+    if (run.out_puppet.file.empty()) run.out_puppet.file = run.puppet_file;
+    run.loop.held = false;
+    return {};
+  }
+  if (is_named && options.view.window && options.out_puppet.empty())
+    run.out_puppet = {run.puppet_file, true};
+  if (run.puppet_file.empty()) return {};
+  auto file = open_puppet(run.puppet_file);
+  if (!file) return file.error();
+  run.puppet_file = file->path;
+  run.puppet = std::move(file->puppet);
+  if (run.mesh.empty()) run.mesh = file->model;
+  return {};
+}
+
+/// Reads the file of masks, if one is named.
+Result<void> read_masks(session::RunOptions& run) {
+  const char* const option = !run.mask_file.empty() ? "--mask" : "--symmetry";
+  if ((!run.mask_file.empty() || run.symmetric) && !run.puppet_file.empty())
+    return Error{Errc::usage, std::string(option) + ": is of fingertips, and with --puppet hands "
+                                                    "play one; put [[masks]] and mirror into its "
+                                                    "file"};
+  if (run.mask_file.empty()) return {};
+  auto masks = puppet::read_puppet(run.mask_file);
+  if (!masks) return masks.error();
+  if (masks->is_played())
+    return Error{Errc::bad_input, run.mask_file +
+                                      ": has points and functions, so it is a puppet; open it with "
+                                      "--puppet, or leave only its [[masks]]"};
+  run.masks = *std::move(masks);
+  return {};
+}
+
+/// Reads the take to play over, if one is named. Its model and its settings are the run's.
+Result<void> read_take(RunArguments& options) {
+  session::RunOptions& run = options.run;
+  if (!options.overdub.take.empty() && !options.decided_by_take.empty())
+    return Error{Errc::usage, options.decided_by_take + ": the recording of --over decides that; "
+                                                        "leave it out"};
+  auto over = session::read_overdub(options.overdub);
+  if (!over) return over.error();
+  run.over = *std::move(over);
+  auto live = session::live_part(options.overdub, run);
+  if (!live) return live.error();
+  run.live = *std::move(live);
+  return {};
+}
+
+/// What acts on fingertips, or on a puppet's points, has nothing to do with whole hands.
+Result<void> check_clay(const session::RunOptions& run) {
+  if (run.loop.sculptor.mode != flow::Mode::clay) return {};
+  const auto refuse = [](const char* option, const char* why) {
+    return Error{Errc::usage,
+                 std::string("--mode clay and ") + option + ": " + why + "; give one of them"};
+  };
+  if (!run.puppet_file.empty())
+    return refuse("--puppet", "whole hands press clay, and a puppet has points");
+  if (!run.mask_file.empty()) return refuse("--mask", "a mask does not hold clay");
+  if (run.symmetric) return refuse("--symmetry", "only fingertips have images");
+  if (run.loop.sculptor.hold == flow::Hold::hand)
+    return refuse("--hold hand", "clay is pressed, and hands hold it only by closing on it");
+  if (run.loop.sculptor.deformer.csrbf.keep_volume > 0.0)
+    return refuse("--keep-volume", "clay keeps its volume by itself");
+  return {};
+}
+
+Result<void> set_size(RunArguments& options) {
+  session::RunOptions& run = options.run;
+  if (run.loop.sculptor.mode == flow::Mode::clay) run.model_size_m = session::clay_size_m;
+  if (options.size.empty()) return {};
+  const auto size_m = cli::metres_of(options.size);
+  constexpr double least_m = 0.01;
+  constexpr double most_m = 10.0;
+  if (!size_m || !(*size_m >= least_m && *size_m <= most_m))
+    return Error{Errc::usage, "--size " + options.size + ": use " + std::string(cli::length_words) +
+                                  ", from 1cm to 10m"};
+  run.model_size_m = *size_m;
+  return {};
+}
+
+Result<void> check_refinable(const deform::Mesh& model, const RunArguments& options) {
+  if (options.run.refine_to == 0) return {};
+  const auto closed = deform::check_closed_manifold(model);
+  if (closed) return {};
+  return Error{Errc::bad_input, "--refine: " + options.run.mesh + ": " +
+                                    deform::describe(closed, model) +
+                                    "; only closed models can be refined, so mend it first"};
+}
+
+} // namespace
+
+Result<void> check(RunArguments& options) {
+  auto& run = options.run;
+  const auto mode = flow::mode_named(options.mode);
+  if (!mode && !options.mode.empty())
+    return Error{Errc::usage, "--mode " + options.mode + ": unknown; use type1, type2 or clay"};
+  run.loop.sculptor.mode = mode.value_or(flow::Mode::type1);
+  if (auto fine = options.brush.parse(options.mode, run.loop.sculptor); !fine) return fine;
+  if (auto fine = set_size(options); !fine) return fine;
+  const auto action = flow::switch_action_named(options.switch_action);
+  if (!action) {
+    return Error{Errc::usage, "--switch " + options.switch_action +
+                                  ": unknown; use none, grab, commit, toggle or keep"};
+  }
+  run.loop.switch_action = *action;
+  run.refine_to = options.refine_to.value_or(0);
+  if (options.refine_to && !(run.refine_to >= 4 && run.refine_to <= flow::Refine{}.most_vertices))
+    return Error{Errc::usage, fmt::format("--refine {}: use 4 to {} vertices", run.refine_to,
+                                          flow::Refine{}.most_vertices)};
+  const auto filter = options.filter.parse();
+  if (!filter) return filter.error();
+  run.filter = *filter;
+  const auto csrbf = options.kernel.parse();
+  if (!csrbf) return csrbf.error();
+  run.loop.sculptor.deformer.csrbf = *csrbf;
+  if (options.injective && csrbf->keep_volume > 0.0)
+    return Error{Errc::usage, std::string(session::keep_volume_or_injective)};
+  const auto hold = flow::hold_named(options.hold);
+  if (!hold) return Error{Errc::usage, "--hold " + options.hold + ": unknown; use tips or hand"};
+  run.loop.sculptor.hold = *hold;
+  if (auto fine = check_clay(run); !fine) return fine;
+  if (*hold == flow::Hold::hand && run.loop.sculptor.mode == flow::Mode::type2)
+    return Error{Errc::usage,
+                 "--hold hand: type 2 follows the ways of fingertips; use --mode type1"};
+  if (*hold == flow::Hold::hand && csrbf->keep_volume > 0.0)
+    return Error{Errc::usage, "--hold hand and --keep-volume: 90 points with matrices take longer "
+                              "than a tick has; give one of them"};
+  if (options.injective && options.not_injective)
+    return Error{Errc::usage, "--injective and --no-injective: give one of them"};
+  if (!(run.loop.rate_hz >= flow::TickGrid::least_rate_hz &&
+        run.loop.rate_hz <= flow::TickGrid::most_rate_hz)) {
+    return Error{Errc::usage, "--rate: use 1 to 10000 ticks a second"};
+  }
+  if (auto fine = options.loop.parse(run.loop, run.realtime); !fine) return fine;
+  if (!std::isfinite(run.duration_s) || run.duration_s < 0.0 || run.duration_s > 1e7) {
+    return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
+  }
+  if (!(run.undo_memory_mb.value_or(0.0) >= 0.0 && run.undo_memory_mb.value_or(0.0) <= 1e6))
+    return Error{Errc::usage, "--undo-memory: use a number of megabytes up to 1000000"};
+  const auto supports = session::parse_radius(options.radius);
+  if (!supports) return supports.error();
+  run.supports = *supports;
+  if (auto fine = run.length.check(); !fine) return fine;
+  if (auto fine = check(run.calibration); !fine) return fine;
+  if (run.out.empty()) run.out = dated_name();
+  if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
+  if (auto fine = read_puppet(options); !fine) return fine;
+  if (run.puppet && *hold == flow::Hold::hand)
+    return Error{Errc::usage, "--hold hand: a puppet's own points move it; leave it out"};
+  if (run.puppet && csrbf->keep_volume > 0.0 && run.puppet->distance != puppet::Distance::air &&
+      run.loop.sculptor.mode == flow::Mode::type1)
+    return Error{Errc::usage, "--keep-volume: " + run.puppet_file +
+                                  " measures its distances along the surface, where no kernel is "
+                                  "known that keeps the volume; use --mode type2, or distance = "
+                                  "\"air\" in it"};
+  if (auto fine = read_masks(run); !fine) return fine;
+  if (auto fine = read_take(options); !fine) return fine;
+  if (run.mesh.empty() && !run.over)
+    run.mesh =
+        cli::shipped_model(run.loop.sculptor.mode == flow::Mode::clay ? "clay.ply" : "moai.obj")
+            .string();
+  if (options.view.window && run.out_puppet.file.empty() && !run.over)
+    run.out_puppet.file =
+        std::filesystem::path(run.mesh).filename().replace_extension(".puppet.toml").string();
+  return check_outputs(options);
+}
+
+Result<deform::Mesh> read_model(RunArguments& options) {
+  session::RunOptions& run = options.run;
+  if (!run.over) {
+    auto model = deform::read_mesh(run.mesh);
+    if (!model) return model;
+    if (auto fine = check_refinable(*model, options); !fine) return fine.error();
+    return model;
+  }
+  const recording::LoopSetup& loop = *run.over->take.setup.loop;
+  auto model = takes::find_recorded_model(loop, run.mesh);
+  if (!model) return model.error();
+  if (!model->is_recorded)
+    return Error{Errc::bad_input, run.mesh + ": is not the model of " + run.over->file +
+                                      "; a layer is played over the model that was recorded"};
+  if (run.mesh.empty()) run.mesh = loop.mesh;
+  if (auto fine = session::take_over_settings(model->mesh, run); !fine) return fine.error();
+  if (auto fine = check_refinable(model->mesh, options); !fine) return fine.error();
+  return std::move(model->mesh);
+}
+
+} // namespace nendo::app::run_command

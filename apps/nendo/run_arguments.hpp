@@ -1,0 +1,50 @@
+#pragma once
+// What `nendo run` and `nendo view` are told by their arguments.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+#include <nendo/deform/mesh.hpp>
+
+#include "session/live_view.hpp"
+#include "session/loop_options.hpp"
+#include "session/overdub.hpp"
+
+namespace nendo::app::run_command {
+
+struct RunArguments {
+  session::RunOptions run;
+  std::string radius;
+  std::string mode; ///< empty: type1, or type2 with a brush
+  std::string hold = "tips";
+  std::string size; ///< of the model on the stage; empty: as the mode has it
+  std::string switch_action = "none";
+  session::FilterArguments filter;
+  session::KernelArguments kernel;
+  session::BrushArguments brush;
+  session::LoopArguments loop;
+  session::ViewOptions view;
+  session::OverdubArguments overdub;
+  std::string decided_by_take; ///< the first option of the command line that a take decides
+  std::vector<std::string> publish;
+  std::string web; ///< [ADDR:]PORT; empty: none
+  bool injective = false;
+  bool not_injective = false;
+  std::optional<std::uint32_t> refine_to;
+  std::string out_puppet;
+  bool force = false; ///< --out may be the model, and --out-puppet may be there
+};
+
+/// Checks them, completes `run`, and reads the puppet, the masks and the take that they name.
+/// Errors: usage, and those of the files.
+Result<void> check(RunArguments& arguments);
+
+/// Reads the model, or that of the take to play over, which must be as it was recorded. Errors:
+/// those of deform::read_mesh(), takes::find_recorded_model() and session::take_over_settings();
+/// bad_input if it is another model, or cannot be refined as asked.
+Result<deform::Mesh> read_model(RunArguments& arguments);
+
+} // namespace nendo::app::run_command
