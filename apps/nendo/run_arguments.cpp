@@ -132,7 +132,6 @@ Result<void> check_clay(const session::RunOptions& run) {
   };
   if (!run.puppet_file.empty())
     return refuse("--puppet", "whole hands press clay, and a puppet has points");
-  if (!run.mask_file.empty()) return refuse("--mask", "a mask does not hold clay");
   if (run.symmetric) return refuse("--symmetry", "only fingertips have images");
   if (run.loop.sculptor.hold == flow::Hold::hand)
     return refuse("--hold hand", "clay is pressed, and hands hold it only by closing on it");

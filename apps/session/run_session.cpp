@@ -139,7 +139,7 @@ private:
     const bool awaits = frame.awaited.has_value(); // by an undo or a redo
     if (fresh && awaits && !settings_) tell(models_.go_to(*frame.awaited));
     if (settings_ && !loop.is_changing() && !loop.change_settings(*std::exchange(settings_, {})))
-      report("settings that nothing can be done with; the run goes on as it was (masks, symmetry "
+      report("settings that nothing can be done with; the run goes on as it was (symmetry "
              "and puppets do not act on clay, a puppet whose distances go along the surface cannot "
              "keep the volume in type 1, and one of more than " +
              std::to_string(deform::CsrbfSolver::lean_size) + " points has no type 2)");

@@ -15,15 +15,15 @@ namespace nendo::deform {
 namespace {
 
 // Of Mesh::detail.
-constexpr double long_edge = 1.5;
-constexpr double short_edge = 0.5;
-constexpr double thin_face = 1e-3;
+constexpr double longest_of_detail = 1.5;
+constexpr double shortest_of_detail = 0.5;
+constexpr double least_height = 1e-3;
 /// No collapse turns a face by more than 25 degrees: sharp edges stay sharp.
 constexpr double least_cosine = 0.9;
 /// Where no edge has changed its length by more, nobody has been, and the triangles are left alone,
 /// however uneven they are.
 constexpr double least_change = 0.3;
-constexpr int most_rounds = 8;
+constexpr int most_refining_rounds = 8;
 /// Where an operation made a self-intersection, nothing is done the next time.
 constexpr int most_attempts = 6;
 
@@ -128,9 +128,9 @@ struct Refiner::Parts {
   }
   RefineLimits limits(double unit, const RefinementLimits& asked) const {
     RefineLimits limits;
-    limits.longest = long_edge * target / unit;
-    limits.shortest = short_edge * target / unit;
-    limits.thin = thin_face * limits.longest;
+    limits.longest = longest_of_detail * target / unit;
+    limits.shortest = shortest_of_detail * target / unit;
+    limits.thin = least_height * limits.longest;
     limits.least_cosine = least_cosine;
     limits.budget = asked.budget;
     limits.most_points = asked.most_vertices;
@@ -177,7 +177,7 @@ Attempt attempt(LiveSurface live, RefineZone zone, RefineLimits limits, bool onl
   Attempt made;
   live.note_in(&made.operations);
   limits.only_splits = only_splits;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < most_refining_rounds; ++round) {
     const RefineCounts done = refine(live, zone, limits);
     limits.budget -= done.splits + done.collapses;
     if (done.splits + done.collapses + done.flips == 0) break;

@@ -77,7 +77,8 @@ void MaskedStep::end(BoundedShape& shape) const noexcept {
     if (shape.shape.stamp(part.block) == stamps_[at]) continue;
     VertexBlock& block = shape.shape.data()[part.block];
     hold_block(part, kept_[at], block);
-    if (part.is_still) shape.shape.set_stamp(part.block, stamps_[at]);
+    // Somebody may have read what the step made.
+    shape.shape.set_stamp(part.block, part.is_still ? stamps_[at] : BlockShape::new_stamp());
     shape.bounds[part.block] = bounds_of(block);
   }
 }

@@ -9,6 +9,7 @@
 
 #include <doctest/doctest.h>
 
+#include <nendo/deform/cut.hpp>
 #include <nendo/deform/triangles.hpp>
 
 #include "reference/icosphere.hpp"
@@ -31,15 +32,6 @@ namespace {
 /// A fingertip that points down, with its lowest place in the origin; millimetres.
 Parts finger() {
   return {cone({0, 0, 8}, {0, 0, 40}, 8.0, 9.0)};
-}
-
-double volume_of(const Mesh& mesh) {
-  double sum = 0.0;
-  for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
-    sum += mesh.vertices.col(corners[0])
-               .dot(mesh.vertices.col(corners[1]).cross(mesh.vertices.col(corners[2])));
-  });
-  return sum / 6.0;
 }
 
 double mean_edge(const Mesh& mesh) {

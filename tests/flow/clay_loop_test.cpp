@@ -60,6 +60,10 @@ public:
       go(part * step / steps, 1);
     go(0.0, 60);
   }
+  std::shared_ptr<const puppet::Rig> rig_of(const char* text) const {
+    return std::make_shared<const puppet::Rig>(*puppet::parse_puppet(text, "a test's"),
+                                               test_.model);
+  }
   void ask(Request request) { test_.commands.try_push(request); }
   void change_to(Mode mode) {
     LoopSettings settings = test_.loop->settings();
@@ -230,24 +234,31 @@ TEST_SUITE("clay_loop") {
     CHECK(one.shape() == other.shape());
   }
 
-  TEST_CASE("masks and symmetry are refused in clay, and clay where they are") {
-    for (const char* const text : {"version = 1\n[[masks]]\nat = [0, 1, 0]\nradius = 1.2\n",
-                                   "version = 1\nmirror = \"x\"\n"}) {
-      CAPTURE(text);
-      LoopUnderTest test(Mode::type1, {.puppet = text});
-      LoopSettings settings = test.loop->settings();
-      settings.mode = Mode::clay;
-      CHECK_FALSE(test.loop->change_settings(settings));
-      Presses presses;
-      auto rig = std::make_shared<const puppet::Rig>(*puppet::parse_puppet(text, "a test's masks"),
-                                                     presses.test().model);
-      CHECK_FALSE(can_press(rig.get()));
-      const auto refused = presses.test().loop->change_puppet(rig);
-      REQUIRE_FALSE(refused);
-      CHECK(refused.error().message.find("do not act on clay") != std::string::npos);
-      presses.press();
-      CHECK(farthest(presses.shape(), presses.test().model.vertices) > 0.02);
-    }
+  TEST_CASE("symmetry is refused in clay, and clay where it is") {
+    const char* const text = "version = 1\nmirror = \"x\"\n";
+    LoopUnderTest test(Mode::type1, {.puppet = text});
+    LoopSettings settings = test.loop->settings();
+    settings.mode = Mode::clay;
+    CHECK_FALSE(test.loop->change_settings(settings));
+    Presses presses;
+    const auto refused = presses.test().loop->change_puppet(presses.rig_of(text));
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message.find("do not act on clay") != std::string::npos);
+    presses.press();
+    CHECK(farthest(presses.shape(), presses.test().model.vertices) > 0.02);
+  }
+
+  TEST_CASE("masks come and go while hands press, and what they hold keeps its bits") {
+    Presses presses;
+    const deform::Points& model = presses.test().model.vertices;
+    REQUIRE(presses.test().loop->change_puppet(
+        presses.rig_of("version = 1\n[[masks]]\nat = [0, 0, 0]\nradius = 9\n")));
+    presses.press();
+    CHECK(farthest(presses.shape(), model) == 0.0); // all of it is held
+    REQUIRE(presses.test().loop->change_puppet(
+        presses.rig_of("version = 1\n[[masks]]\nat = [0, 9, 0]\nradius = 0.1\n")));
+    presses.press();
+    CHECK(farthest(presses.shape(), model) > 0.02);
   }
 
   TEST_CASE("a puppet's points do not press") {
@@ -256,9 +267,7 @@ TEST_SUITE("clay_loop") {
     settings.mode = Mode::clay;
     CHECK_FALSE(test.loop->change_settings(settings));
     Presses presses;
-    auto rig = std::make_shared<const puppet::Rig>(
-        *puppet::parse_puppet(test::ball_puppet, "a test's puppet"), presses.test().model);
-    const auto refused = presses.test().loop->change_puppet(rig);
+    const auto refused = presses.test().loop->change_puppet(presses.rig_of(test::ball_puppet));
     REQUIRE_FALSE(refused);
     CHECK(refused.error().message.find("type 1") != std::string::npos);
   }

@@ -30,10 +30,10 @@ using nlohmann::json;
 
 namespace {
 
-deform::Mesh shipped_moai() {
+deform::Mesh shipped(const char* model) {
   const auto program = std::filesystem::path(NENDO_PROGRAM);
   const auto mesh =
-      deform::read_mesh(program.parent_path().parent_path() / "share/nendo/models/moai.obj");
+      deform::read_mesh(program.parent_path().parent_path() / "share/nendo/models" / model);
   REQUIRE(mesh);
   return *mesh;
 }
@@ -47,7 +47,7 @@ TEST_SUITE("run") {
     const auto right = folder.path() / "right";
     const EmulatedGlove left_glove(left, "left", "22");
     const EmulatedGlove right_glove(right, "right", "18");
-    const deform::Mesh before = shipped_moai();
+    const deform::Mesh before = shipped("moai.obj");
     for (const std::string mode : {"type1", "type2"}) {
       const auto out = folder.path() / (mode + ".obj");
       const auto done = nendo::test::nendo(
@@ -189,12 +189,33 @@ TEST_SUITE("run") {
     CHECK(nendo::test::contents(at("again.ply")) == nendo::test::contents(at("cake.ply")));
   }
 
-  TEST_CASE("what acts on fingertips is refused in clay, in one line that names it") {
+  TEST_CASE("a mask holds clay, bit for bit, in the run and in its replay") {
     const TemporaryFolder folder;
-    const std::string mask = (folder.path() / "nose.toml").string();
-    std::ofstream(mask) << "version = 1\n[[masks]]\nat = [0, 1, 0]\nradius = 1\n";
-    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--mask", mask},
-                                                  {"--symmetry"},
+    const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+    std::ofstream(at("side.toml"))
+        << "version = 1\n[[masks]]\nat = [0, 0, 0.0375]\nradius = 0.04\n";
+    const auto run = nendo::test::nendo(
+        {"run", "--mode", "clay", "--mask", at("side.toml"), "--left", "sim:press", "--right",
+         "sim:press", "--duration", "3s", "--record", at("take.nendo"), "--out", at("cake.ply")});
+    REQUIRE(run.exit_code == 0);
+    const deform::Mesh ball = shipped("clay.ply");
+    const auto cake = deform::read_mesh(at("cake.ply"));
+    REQUIRE(cake);
+    const Eigen::Vector3d middle(0.0, 0.0, 0.0375);
+    int held = 0;
+    for (Eigen::Index vertex = 0; vertex < ball.vertices.cols(); ++vertex) {
+      if ((ball.vertices.col(vertex) - middle).norm() > 0.019) continue; // half of the radius
+      ++held;
+      CHECK(cake->vertices.col(vertex) == ball.vertices.col(vertex));
+    }
+    CHECK(held > 100);
+    REQUIRE(nendo::test::nendo({"replay", at("take.nendo"), "--no-clock", "--out", at("again.ply")})
+                .exit_code == 0);
+    CHECK(nendo::test::contents(at("again.ply")) == nendo::test::contents(at("cake.ply")));
+  }
+
+  TEST_CASE("what acts on fingertips is refused in clay, in one line that names it") {
+    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--symmetry"},
                                                   {"--hold", "hand"},
                                                   {"--keep-volume", "0.5"},
                                                   {"--puppet", "face"}}) {

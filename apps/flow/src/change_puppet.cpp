@@ -124,7 +124,7 @@ Result<void> DeformLoop::change_puppet(std::shared_ptr<const puppet::Rig> rig) {
   assert(rig != nullptr);
   if (asked_.settings.mode == Mode::clay && !can_press(rig.get()))
     return Error{Errc::bad_input,
-                 "masks, symmetry and puppets do not act on clay; choose type 1 or 2 first"};
+                 "symmetry and puppets do not act on clay; choose type 1 or 2 first"};
   puppets_.push_back(std::move(rig));
   auto changed = change_puppet(next_puppet() - 1);
   if (!changed) puppets_.pop_back();

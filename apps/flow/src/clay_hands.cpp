@@ -13,12 +13,13 @@ namespace {
 constexpr double mm_a_metre = 1000.0;
 
 deform::ClayOptions clay_options(const HandBodies& bodies, double radius_m,
-                                 const deform::EvaluationOptions& evaluation) {
+                                 const deform::DeformerOptions& deformer) {
   deform::ClayOptions options;
   options.units_a_mm = bodies.units_per_metre() / mm_a_metre;
   options.radius_mm = mm_a_metre * std::max(radius_m, ClayHands::least_radius_m);
   options.still_bodies = HandBodies::tables;
-  options.evaluation = evaluation;
+  options.evaluation = deformer.evaluation;
+  options.mask = deformer.mask;
   return options;
 }
 
@@ -47,10 +48,10 @@ ClayModel::ClayModel(const deform::Mesh& mesh)
 
 ClayHands::ClayHands(deform::SculptedShape& shape, std::shared_ptr<const ClayModel> model,
                      std::shared_ptr<const HandBodies> bodies, double radius_m,
-                     const deform::EvaluationOptions& evaluation)
+                     const deform::DeformerOptions& options)
     : model_(std::move(model)), bodies_(std::move(bodies)),
       clay_(shape, model_->corners, bodies_->count() + HandBodies::tables,
-            hand::HandBody::part_count, clay_options(*bodies_, radius_m, evaluation)) {}
+            hand::HandBody::part_count, clay_options(*bodies_, radius_m, options)) {}
 
 deform::FieldStatus ClayHands::press(bool ends) {
   is_moved_ = false;

@@ -31,9 +31,7 @@ std::optional<double> mirror_of(const puppet::Rig* rig) noexcept {
 }
 
 bool can_press(const puppet::Rig* rig) noexcept {
-  if (rig == nullptr) return true;
-  const puppet::Puppet& puppet = rig->puppet();
-  return !is_played(rig) && !mirror_of(rig) && puppet.masks.empty() && !puppet.inverted;
+  return !is_played(rig) && !mirror_of(rig);
 }
 
 Result<void> check_points(const puppet::Rig* rig, Mode mode) {

@@ -65,8 +65,7 @@ Deformer make(SculptedShape& shape, Eigen::Index control_points, const SculptorO
   if (options.mode == Mode::clay && options.bodies && options.clay) {
     const auto radii = radii_on_stage(options.deformer.supports, options.bodies->units_per_metre());
     return ClayHands(shape, options.clay, options.bodies,
-                     std::accumulate(radii.begin(), radii.end(), 0.0) / fingers,
-                     options.deformer.evaluation);
+                     std::accumulate(radii.begin(), radii.end(), 0.0) / fingers, options.deformer);
   }
   if (options.mode == Mode::type2)
     return Type2Deformer(shape, control_points, options.piece_length,

@@ -35,6 +35,7 @@ constexpr double apart_in_cells = 0.6;
 constexpr int most_sub_step_passes = 40;
 constexpr double most_sub_steps = 1e6;  // of a call; so a way of kilometres has larger ones
 constexpr double volume_is_kept = 1e-5; // relative
+constexpr float least_free = 0.5F;      // weight of a mask
 
 /// A part of the way from one pose of a body's part to another.
 ContactPart between(const ContactPart& a, const ContactPart& b, double share) noexcept {
@@ -86,7 +87,7 @@ ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32
       pull_(bodies * Grip::most_held),
       field_(
           room_for(most_centres(bodies, options), options.radius_mm * options.units_a_mm, layout_)),
-      evaluator_(layout_, most_centres(bodies, options), options.evaluation),
+      evaluator_(layout_, most_centres(bodies, options), options.evaluation), masked_(options.mask),
       volume_(layout_, options.keeps_volume ? triangles : std::span<const std::uint32_t>{}),
       pressed_(from_.size()), around_(BoxGate::shut()) {
   contacts_.reserve(static_cast<std::size_t>(options.most_constraints));
@@ -197,6 +198,7 @@ void ClayDeformer::Work::drag(std::size_t part) noexcept {
 void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart> parts,
                                ClayReport& report) noexcept {
   status_ = FieldStatus::ok;
+  masked_.begin(shape.shape);
   contacts_.clear();
   search_.distances() = 0;
   pack(parts, target_);
@@ -235,6 +237,7 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
   }
   report.behind_mm = (1.0 - gone) * way / mm_;
   from_ = gone < 1.0 ? is_ : target_;
+  masked_.end(shape);
   give_back(shape, report.passes > 0, report);
   report.distances = search_.distances();
   report.status = status_;
@@ -291,14 +294,18 @@ ClayDeformer::Work::Found ClayDeformer::Work::find(const BoundedShape& shape, bo
 void ClayDeformer::Work::offer(const BoundedShape& shape, std::size_t body, std::size_t block,
                                const NearestLanes& nearest, double& deepest) noexcept {
   const auto margin = static_cast<float>(margin_mm * mm_);
-  float least = nearest.distance[0];
-  for (const float distance : nearest.distance)
-    least = distance < least ? distance : least;
+  const float* const held = held_in(block);
+  float least = margin;
+  for (std::size_t lane = 0; lane < block_size; ++lane) {
+    const bool counts = held == nullptr || held[lane] >= least_free;
+    least = counts && nearest.distance[lane] < least ? nearest.distance[lane] : least;
+  }
   if (!(least < margin)) return;
   deepest = std::max(deepest, -static_cast<double>(least));
   chosen_.find_cells(shape.shape[block]);
   for (std::size_t lane = 0; lane < block_size; ++lane) {
     if (!(nearest.distance[lane] < margin)) continue;
+    if (held != nullptr && held[lane] < least_free) continue;
     const auto part = static_cast<std::uint32_t>(nearest.part[lane]);
     const double depth = -static_cast<double>(nearest.distance[lane]);
     pressed_[part] = std::max(pressed_[part], static_cast<float>(depth));
@@ -391,10 +398,11 @@ void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
   for (std::size_t body = 0; body < search_.bodies(); ++body)
     search_.each_near(shape, body, 0.0, [&](std::size_t block, const NearestLanes& nearest) {
       if (*std::min_element(nearest.distance.begin(), nearest.distance.end()) >= 0.0F) return;
+      const float* const held = held_in(block);
       VertexBlock& content = shape.shape.data()[block];
       for (std::size_t lane = 0; lane < block_size; ++lane) {
         const double depth = -static_cast<double>(nearest.distance[lane]);
-        if (!(depth > 0.0)) continue;
+        if (!(depth > 0.0) || (held != nullptr && held[lane] < least_free)) continue;
         const Vector3d at =
             Eigen::Vector3f(content.x[lane], content.y[lane], content.z[lane]).cast<double>();
         const Vector3d out = at + std::min(depth, most) * normal_at(at, nearest, lane);
@@ -412,18 +420,25 @@ void ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
                                    ClayReport& report) noexcept {
   if (!volume_.is_closed() || !(std::abs(whole_volume_) > 0.0)) return;
   if (!is_pressed && !is_settling_) return;
-  double change = volume_.volume(shape) - whole_volume_;
+  const double before = volume_.volume(shape) - whole_volume_;
+  double change = before;
   const double kept = volume_is_kept * std::abs(whole_volume_);
   if (is_pressed || std::abs(change) > kept) {
     const double near = std::max(radius_, free_mm * mm_);
     const GiveBack how{near, most_swell * near, swells_all_ ? nullptr : &around_,
                        swell_reach * near};
+    masked_.begin(shape.shape);
     const double given = volume_.give_back(shape, search_, -change, how);
     report.is_moved = report.is_moved || given != 0.0;
     swells_all_ = std::abs(given) < 0.999 * std::abs(change);
     change += given;
+    if (masked_.mask() != nullptr) {
+      masked_.end(shape);
+      change = volume_.volume(shape) - whole_volume_;
+    }
   }
-  is_settling_ = std::abs(change) > kept;
+  // Where a mask holds nearly all, nothing may be left that can give way.
+  is_settling_ = std::abs(change) > kept && (is_pressed || std::abs(change) < std::abs(before));
   volume_now_ = whole_volume_ + change;
   report.volume_change = change / whole_volume_;
 }

@@ -15,6 +15,7 @@
 #include "clay/press_problem.hpp"
 #include "clay/rigid_fit.hpp"
 #include "clay/volume_keeper.hpp"
+#include "masked_step.hpp"
 
 namespace nendo::deform {
 
@@ -74,6 +75,10 @@ private:
   bool displace(BoundedShape& shape, Eigen::Index count) noexcept;
   void list_contacts() noexcept;
   void push_straight(BoundedShape& shape) noexcept;
+  /// The weights of the block's vertices in the mask; null: all are free.
+  const float* held_in(std::size_t block) const noexcept {
+    return masked_.mask() == nullptr ? nullptr : masked_.mask()->of_block(block);
+  }
   void give_back(BoundedShape& shape, bool is_pressed, ClayReport& report) noexcept;
 
   const BlockLayout& layout_;
@@ -100,6 +105,7 @@ private:
   CsrbfField field_;
   Eigen::Index used_ = 0; ///< columns of the field
   BlockEvaluator evaluator_;
+  MaskedStep masked_;
   VolumeKeeper volume_;
   double whole_volume_ = 0.0;
   double volume_now_ = 0.0;

@@ -13,6 +13,7 @@
 #include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/sculpted_shape.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
+#include <nendo/deform/vertex_mask.hpp>
 
 namespace nendo::deform {
 
@@ -35,6 +36,9 @@ struct ClayOptions {
   /// waits for the next call. What has begun is always finished.
   int most_passes = 48;
   EvaluationOptions evaluation{};
+  /// Vertices of weight 0 do not move, bit for bit. Bodies pass through what moves by less than
+  /// half.
+  std::shared_ptr<const VertexMask> mask{};
 };
 
 /// A place where a body touches the surface; model units.

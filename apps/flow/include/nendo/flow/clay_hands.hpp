@@ -53,7 +53,7 @@ public:
   /// counts as that, because palms crease the surface otherwise. `shape` must outlive this.
   ClayHands(deform::SculptedShape& shape, std::shared_ptr<const ClayModel> model,
             std::shared_ptr<const HandBodies> bodies, double radius_m,
-            const deform::EvaluationOptions& evaluation);
+            const deform::DeformerOptions& options);
   static constexpr double least_radius_m = 0.020;
 
   deform::FieldStatus begin() { return clay_.begin(bodies_->parts()); }
