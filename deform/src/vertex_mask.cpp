@@ -77,8 +77,7 @@ void MaskedStep::end(BoundedShape& shape) const noexcept {
     if (shape.shape.stamp(part.block) == stamps_[at]) continue;
     VertexBlock& block = shape.shape.data()[part.block];
     hold_block(part, kept_[at], block);
-    // Somebody may have read what the step made.
-    shape.shape.set_stamp(part.block, part.is_still ? stamps_[at] : BlockShape::new_stamp());
+    if (part.is_still) shape.shape.set_stamp(part.block, stamps_[at]);
     shape.bounds[part.block] = bounds_of(block);
   }
 }

@@ -31,7 +31,7 @@ double weight_at(const Vector3d& place) {
 
 struct MaskedBall {
   Mesh mesh = reference::icosphere(4, radius_mm);
-  SculptedShape shape{mesh.vertices, {}};
+  SculptedShape shape{mesh.vertices, DeformerOptions{.undo_bytes = 8 << 20}};
   Eigen::VectorXd weights;
   std::unique_ptr<ClayDeformer> clay;
 
@@ -109,6 +109,34 @@ TEST_SUITE("clay_mask") {
     }
     CHECK(ball.clay->contacts().size() > 0);
     CHECK(ball.now().vertices.row(0).minCoeff() > -radius_mm);
+  }
+
+  TEST_CASE("strokes at a mask are undone and done again to the last bit") {
+    MaskedBall ball;
+    std::vector<Points> shapes{ball.now().vertices};
+    for (const double up : {1.0, -1.0, 0.6}) {
+      const Vector3d side = Vector3d(-0.1, up, 0.3).normalized();
+      Parts parts = finger_from(side);
+      REQUIRE(is_solved(ball.clay->begin(parts)));
+      for (int call = 0; call < 8; ++call)
+        ball.clay->press_to(parts = test::moved(parts, Vector3d(-side)));
+      for (int call = 0; call < 30; ++call)
+        ball.clay->press_to(parts = test::moved(parts, Vector3d(2.0 * side)));
+      ball.clay->release(true);
+      shapes.push_back(ball.now().vertices);
+      CHECK(shapes.back() != shapes[shapes.size() - 2]);
+    }
+    const Parts away = finger_from(Vector3d(0.0, 5.0, 0.0));
+    for (int round = 0; round < 2; ++round) {
+      for (std::size_t at = shapes.size() - 1; at-- > 0;) {
+        REQUIRE(is_solved(ball.clay->undo(away)));
+        CHECK(ball.now().vertices == shapes[at]);
+      }
+      for (std::size_t at = 1; at < shapes.size(); ++at) {
+        REQUIRE(is_solved(ball.clay->redo(away)));
+        CHECK(ball.now().vertices == shapes[at]);
+      }
+    }
   }
 
   TEST_CASE("pressing at a mask does not allocate or lock") {

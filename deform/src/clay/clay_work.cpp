@@ -434,6 +434,8 @@ void ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
     change += given;
     if (masked_.mask() != nullptr) {
       masked_.end(shape);
+      for (const VertexMask::Part& part : masked_.mask()->parts())
+        volume_.read_again(part.block);
       change = volume_.volume(shape) - whole_volume_;
     }
   }

@@ -39,6 +39,10 @@ public:
   /// The next volume() then measures all anew. Between, only what has changed is measured, and the
   /// directions in which the shape swells are, to rounding, those of the calls before.
   void forget() noexcept;
+  /// Somebody has changed that block, and its stamp has stayed.
+  void read_again(std::size_t block) noexcept {
+    if (is_closed_) stamps_[block] = 0;
+  }
   /// Moves what is free along its normals, so that the volume grows by `missing`, or by what
   /// GiveBack::most permits. Call volume() first. Returns how much it grew, to second order. Does
   /// not allocate.
