@@ -228,7 +228,8 @@ std::string in_words(const Timeline& timeline, const Event& event) {
            (count > 0 && masks->puppet().inverted ? ", inverted" : "") +
            (flow::mirror_of(masks) ? ", symmetric" : "");
   }
-  if (std::holds_alternative<flow::Refine>(event.command)) return "refine";
+  if (const auto* refine = std::get_if<flow::Refine>(&event.command))
+    return "refine up to " + std::to_string(refine->most_vertices) + " vertices";
   return std::holds_alternative<flow::Subdivide>(event.command) ? "subdivide" : "mark";
 }
 

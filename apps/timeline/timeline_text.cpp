@@ -169,6 +169,8 @@ std::string event_text(const Timeline& timeline, const Event& event) {
     return "masks = " + std::to_string(change->number);
   if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&command))
     return "symmetric = " + word(symmetry->on);
+  if (const auto* refine = std::get_if<flow::Refine>(&command))
+    return "refine = " + std::to_string(refine->most_vertices);
   return "request = " + toml_string(in_words(timeline, event));
 }
 

@@ -228,19 +228,12 @@ void read_masks(TomlReader& reader, const toml::table& root, Timeline& timeline)
 flow::Command read_request(TomlReader& reader, const toml::table& event) {
   const auto name = event["request"].value<std::string_view>();
   if (name == "subdivide") return flow::Subdivide{};
-  if (name == "refine") {
-    flow::Refine refine;
-    if (event.contains("most_vertices"))
-      refine.most_vertices = static_cast<std::uint32_t>(
-          reader.count(event, "most_vertices", std::numeric_limits<std::uint32_t>::max()));
-    return refine;
-  }
   if (name == "mark") return flow::Mark{};
   return reader.named(event, "request", flow::request_named);
 }
 
 flow::Command read_command(TomlReader& reader, const toml::table& event, const puppet::Rig* rig) {
-  if (event.size() > (event.contains("most_vertices") ? 3U : 2U))
+  if (event.size() > 2)
     reader.complain(event, "an event has a time and one thing that happens; make two events of it");
   if (event.contains("settings")) return flow::ChangeSettings{read_settings(reader, event)};
   if (event.contains("clutch")) return read_clutch(reader, event);
@@ -249,6 +242,9 @@ flow::Command read_command(TomlReader& reader, const toml::table& event, const p
     return flow::ChangePuppet{
         static_cast<std::uint32_t>(reader.count(event, "masks", most_events))};
   if (event.contains("symmetric")) return flow::SetSymmetry{reader.truth(event, "symmetric")};
+  if (event.contains("refine"))
+    return flow::Refine{static_cast<std::uint32_t>(
+        reader.count(event, "refine", std::numeric_limits<std::uint32_t>::max()))};
   return read_request(reader, event);
 }
 
@@ -259,7 +255,7 @@ void read_events(TomlReader& reader, const toml::table& root, Timeline& timeline
     const toml::table* const event = reader.as_table(node, "an event");
     if (event == nullptr || reader.error()) return;
     reader.allow_only(*event, {"time_s", "request", "settings", "clutch", "role", "symmetric",
-                               "masks", "most_vertices"});
+                               "masks", "refine"});
     Event read;
     read.time_s = reader.number(*event, "time_s");
     read.command = read_command(reader, *event, timeline.rig.get());

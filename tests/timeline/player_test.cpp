@@ -180,16 +180,18 @@ TEST_SUITE("player") {
         const flow::Frame& frame = taken.live.test.frame_after_tick(tick++);
         if (frame.awaited) live.loop->change_to(*frame.awaited);
       };
-      const auto subdivide = [&](int bent) {
-        flow::FinerModel finer(live.loop->newest_model());
+      const auto change_model = [&](const flow::ChangeModel& change, int bent) {
+        auto finer = flow::FinerModel::repeated(live.loop->newest_model(), change);
+        REQUIRE(finer);
         REQUIRE(live.loop->hold_still());
         next(bent);
-        live.loop->change_model(finer);
+        REQUIRE(live.loop->change_model(*finer));
         next(bent);
       };
+      const flow::ChangeModel subdivided{0, flow::ModelSource::subdivided};
       for (int bent = 0; bent < 12; ++bent)
         next(bent);
-      subdivide(12);
+      change_model(subdivided, 12);
       for (int bent = 12; bent < 24; ++bent)
         next(bent);
       for (const auto request :
@@ -198,7 +200,7 @@ TEST_SUITE("player") {
         for (int at = 0; at < 3; ++at)
           next(24);
       }
-      subdivide(24);
+      change_model(subdivided, 24);
       for (int bent = 24; bent > 6; --bent)
         next(bent);
       const deform::Mesh wanted = live.loop->final_mesh();
@@ -215,6 +217,48 @@ TEST_SUITE("player") {
       REQUIRE(player->final_shape().cols() == wanted.vertices.cols());
       CHECK(farthest(player->final_shape(), wanted.vertices) <
             (mode == Mode::type1 ? 1e-5 : 0.02)); // the way is cut elsewhere
+    }
+  }
+
+  TEST_CASE("a model that is refined is refined in the timeline, too, up to as many vertices") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      CAPTURE(name_of(mode));
+      Taken taken(mode);
+      auto& live = taken.live.test;
+      const HostTime begin = HostClock::now();
+      std::uint64_t tick = 0;
+      const auto next = [&](int bent) {
+        live.bend(bent, begin + tick * std::chrono::milliseconds(11));
+        taken.live.test.frame_after_tick(tick++);
+      };
+      const auto most = static_cast<std::uint32_t>(live.model.vertices.cols());
+      for (int bent = 0; bent < 130; ++bent)
+        next(bent);
+      auto finer = flow::FinerModel::repeated(live.loop->newest_model(),
+                                              {0, flow::ModelSource::refined, most});
+      REQUIRE(finer);
+      REQUIRE(live.loop->hold_still());
+      next(130);
+      auto unbounded = flow::FinerModel::repeated(
+          live.loop->newest_model(), {0, flow::ModelSource::refined, flow::Refine{}.most_vertices});
+      REQUIRE(unbounded);
+      CHECK(unbounded->finish(9, {})->layout().vertex_count() > most);
+      REQUIRE(live.loop->change_model(*finer));
+      for (int bent = 130; bent > 120; --bent)
+        next(bent);
+      const deform::Mesh wanted = live.loop->final_mesh();
+      CHECK(wanted.vertices.cols() <= most);
+      const MadeTimeline made = taken.made(none);
+      const auto text = timeline_text(made.timeline);
+      REQUIRE(text);
+      CHECK(text->find("refine = " + std::to_string(most)) != std::string::npos);
+      const auto read = parse_timeline(*text, "test");
+      REQUIRE(read);
+      const auto player = playing(*read, live.model);
+      while (player->next()) {
+      }
+      REQUIRE(player->final_shape().cols() == wanted.vertices.cols());
+      CHECK(farthest(player->final_shape(), wanted.vertices) < (mode == Mode::type1 ? 1e-5 : 0.02));
     }
   }
 
