@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <numbers>
 #include <random>
 #include <string>
 #include <string_view>
@@ -26,6 +25,7 @@
 #include "evidence/intersection_count.hpp"
 #include "reference/icosphere.hpp"
 #include "support/contact_parts.hpp"
+#include "support/triangle_angles.hpp"
 
 namespace {
 
@@ -150,31 +150,16 @@ private:
   int calls_ = 0;
 };
 
-/// Of all triangles' least angles, in degrees, and of all edges, mm: low and high ones.
-struct Triangles {
-  double angle_p5 = 0.0, edge_p1 = 0.0, edge_p99 = 0.0;
-};
-
-Triangles triangles_of(const deform::Mesh& mesh) {
-  std::vector<double> angles, edges;
+/// The lengths of all edges, mm, the shortest first, those of two triangles twice.
+std::vector<double> edges_of(const deform::Mesh& mesh) {
+  std::vector<double> edges;
   deform::for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
-    double least = 180.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vector3d at = mesh.vertices.col(corners[k]);
-      const Vector3d a = mesh.vertices.col(corners[(k + 1) % 3]) - at;
-      const Vector3d b = mesh.vertices.col(corners[(k + 2) % 3]) - at;
-      least = std::min(least, std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / std::numbers::pi);
-      edges.push_back(a.norm());
-    }
-    angles.push_back(least);
+    for (std::size_t k = 0; k < 3; ++k)
+      edges.push_back(
+          (mesh.vertices.col(corners[k]) - mesh.vertices.col(corners[(k + 1) % 3])).norm());
   });
-  const auto quantile = [](std::vector<double>& values, double part) {
-    const auto at =
-        values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-  };
-  return {quantile(angles, 0.05), quantile(edges, 0.01), quantile(edges, 0.99)};
+  std::sort(edges.begin(), edges.end());
+  return edges;
 }
 
 const std::vector<std::pair<const char*, Parts>>& bodies() {
@@ -225,10 +210,12 @@ bool strokes_on_one_ball(int strokes, int level) {
         if (first == 0 && trial.outcome().pairs > 0) first = at;
       }
       const deform::Mesh mesh = trial.shown();
-      const Triangles of = triangles_of(mesh);
+      const std::vector<double> angles = test::least_angles(mesh);
+      const std::vector<double> edges = edges_of(mesh);
       std::printf("| %s | %s | %d | %s | %zu | %td | %.1f | %.2f, %.2f | %.3f |\n", body.first,
                   refines ? "yes" : "no", strokes, first > 0 ? std::to_string(first).c_str() : "-",
-                  trial.outcome().pairs, mesh.vertices.cols(), of.angle_p5, of.edge_p1, of.edge_p99,
+                  trial.outcome().pairs, mesh.vertices.cols(), angles[angles.size() / 20],
+                  edges[edges.size() / 100], edges[edges.size() - edges.size() / 100 - 1],
                   100.0 * trial.outcome().last_volume);
       std::fflush(stdout);
       is_any = is_any || (refines && first > 0);

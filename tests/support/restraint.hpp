@@ -4,23 +4,15 @@
 
 #include <cstdint>
 
-// Sanitizers replace malloc and the mutexes themselves. GCC tells about them by these names, and
-// Clang by __has_feature.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define NENDO_COUNTS_RESTRAINT 0
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define NENDO_COUNTS_RESTRAINT 0
-#endif
-#endif
-#ifndef NENDO_COUNTS_RESTRAINT
-#define NENDO_COUNTS_RESTRAINT 1
-#endif
+#include "support/sanitizers.hpp"
+
+// Sanitizers replace malloc and the mutexes themselves.
+#define NENDO_COUNTS_RESTRAINT (!NENDO_WATCHES_MEMORY && !NENDO_WATCHES_THREADS)
 
 namespace nendo::test {
 
 /// It is false in sanitizer builds, where all counts stay 0.
-inline constexpr bool restraint_is_counted = NENDO_COUNTS_RESTRAINT != 0;
+inline constexpr bool restraint_is_counted = NENDO_COUNTS_RESTRAINT;
 
 struct RestraintCounts {
   std::uint64_t allocations = 0; ///< malloc and its family, which operator new ends in

@@ -4,17 +4,7 @@
 #include <algorithm>
 
 #include "support/restraint.hpp"
-
-#if defined(__SANITIZE_THREAD__)
-#define NENDO_WATCHES_THREADS 1
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define NENDO_WATCHES_THREADS 1
-#endif
-#endif
-#ifndef NENDO_WATCHES_THREADS
-#define NENDO_WATCHES_THREADS 0
-#endif
+#include "support/sanitizers.hpp"
 
 namespace nendo::test {
 
