@@ -7,8 +7,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/deform/refinement.hpp>
 #include <nendo/flow/tick_grid.hpp>
 #include <nendo/puppet/puppet.hpp>
 
@@ -156,10 +156,9 @@ Result<void> set_size(RunArguments& options) {
 
 Result<void> check_refinable(const deform::Mesh& model, const RunArguments& options) {
   if (options.run.refine_to == 0) return {};
-  const auto closed = deform::check_closed_manifold(model);
-  if (closed) return {};
-  return Error{Errc::bad_input, "--refine: " + options.run.mesh + ": " +
-                                    deform::describe(closed, model) +
+  const auto fine = deform::Refiner::check(model);
+  if (fine) return {};
+  return Error{Errc::bad_input, "--refine: " + options.run.mesh + ": " + fine.error().message +
                                     "; only closed models can be refined, so mend it first"};
 }
 

@@ -82,7 +82,7 @@ void RunModels::look() {
       least_unfit,
       static_cast<std::size_t>(fraction * static_cast<double>(model.layout().vertex_count())));
   making_ = std::async(std::launch::async, [&model, least, how = made_, shape = frame.shape] {
-    Made made{flow::FinerModel::repeated(model, how)};
+    Made made{flow::FinerModel::make(model, how)};
     if (!made.finer) return made;
     made.is_wanted = made.finer->count_unfit(shape) >= least;
     return made;
@@ -93,9 +93,8 @@ std::optional<std::string> RunModels::begin() {
   made_ = *std::exchange(asked_, {});
   is_by_itself_ = false;
   const flow::ModelVersion& model = placed_.loop->newest_model();
-  making_ = std::async(std::launch::async, [&model, how = made_] {
-    return Made{flow::FinerModel::repeated(model, how)};
-  });
+  making_ = std::async(std::launch::async,
+                       [&model, how = made_] { return Made{flow::FinerModel::make(model, how)}; });
   return std::nullopt;
 }
 
@@ -109,17 +108,11 @@ std::optional<std::string> RunModels::hand_over() {
     if (!is_by_itself_) asked_ = made_; // of the model that there is now
     return std::nullopt;
   }
-  Result<void> prepared;
-  bool was_made = false;
-  const bool takes = loop.change_model(*finer, [&](const auto& version) {
-    was_made = true;
-    prepared = prepare(version);
-    return static_cast<bool>(prepared);
-  });
-  if (is_by_itself_ && takes) return std::nullopt; // many times a minute: the report has it
-  if (!was_made && is_by_itself_) return std::nullopt;
-  if (!was_made) return "there is nothing to refine; the model stays as it is";
-  if (!takes) return prepared.error().message + "; the model stays as it is";
+  const auto taken =
+      loop.change_model(*finer, [this](const auto& version) { return prepare(version); });
+  // What nobody has asked for happens many times a minute.
+  if (is_by_itself_ && (taken || finer->found_nothing())) return std::nullopt;
+  if (!taken) return taken.error().message + "; the model stays as it is";
   return "the model has " + std::to_string(loop.newest_model().layout().vertex_count()) +
          " vertices now";
 }

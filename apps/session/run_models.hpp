@@ -20,11 +20,8 @@ public:
   RunModels(const PlacedLoop& placed, const std::vector<Sink*>& sinks, std::uint32_t refine_to)
       : placed_(placed), sinks_(sinks), refine_to_(refine_to) {}
 
-  /// Asks for the present model, subdivided, or refined for the shape that it will have then.
-  void subdivide() noexcept { asked_ = flow::ChangeModel{0, flow::ModelSource::subdivided}; }
-  void refine(const flow::Refine& limits) noexcept {
-    asked_ = flow::ChangeModel{0, flow::ModelSource::refined, limits.most_vertices};
-  }
+  /// Asks for another model, made of the present one: flow::model_asked_by().
+  void ask(const flow::ChangeModel& change) noexcept { asked_ = change; }
   /// Goes back, or on, to settings and a version that are kept: flow::Frame::awaited. Returns a
   /// message for people if that cannot be.
   std::optional<std::string> go_to(const flow::Awaited& awaited);

@@ -246,8 +246,7 @@ private:
     if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
       settings_ = change->settings; // only the newest count
     if (const auto* recording = std::get_if<flow::SetRecording>(&command)) record_ = recording->on;
-    if (std::holds_alternative<flow::Subdivide>(command)) models_.subdivide();
-    if (const auto* refine = std::get_if<flow::Refine>(&command)) models_.refine(*refine);
+    if (const auto change = flow::model_asked_by(command)) models_.ask(*change);
     if (std::holds_alternative<flow::Mark>(command)) mark();
     if (std::holds_alternative<flow::Punch>(command)) punch();
     if (std::holds_alternative<flow::SetMask>(command)) mask_edits_.push_back(command);

@@ -36,8 +36,7 @@ public:
   bool has_one_model() const override {
     const auto& events = player_->timeline().events;
     return std::none_of(events.begin(), events.end(), [](const timeline::Event& event) {
-      return std::holds_alternative<flow::Subdivide>(event.command) ||
-             std::holds_alternative<flow::Refine>(event.command);
+      return flow::model_asked_by(event.command).has_value();
     });
   }
   std::optional<PlayedPuppet> puppet() const override {

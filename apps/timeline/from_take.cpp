@@ -147,10 +147,7 @@ public:
   /// The model is made of the shape of the tick in which the loop began to hold still.
   void hear(const flow::ChangeModel& change) {
     is_still_ = false;
-    if (change.source == flow::ModelSource::subdivided)
-      timeline_.events.push_back({still_at_s_, flow::Subdivide{}});
-    if (change.source == flow::ModelSource::refined)
-      timeline_.events.push_back({still_at_s_, flow::Refine{change.most_vertices}});
+    if (change.is_new()) timeline_.events.push_back({still_at_s_, flow::asking_for(change)});
   }
 
   /// Returns false if a timeline has no such settings.

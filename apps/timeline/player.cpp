@@ -193,10 +193,7 @@ void Player::ask(const Event& event) {
   if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
     settings_due_ = change->settings; // of several in a frame the last counts, as in the loop
   if (const auto* change = std::get_if<flow::ChangePuppet>(&command)) masks_due_ = change->number;
-  if (std::holds_alternative<flow::Subdivide>(command))
-    model_due_ = {0, flow::ModelSource::subdivided};
-  if (const auto* refine = std::get_if<flow::Refine>(&command))
-    model_due_ = {0, flow::ModelSource::refined, refine->most_vertices};
+  if (const auto change = flow::model_asked_by(command)) model_due_ = change;
   const auto* request = std::get_if<flow::Request>(&command);
   // A puppet's hands take hold of its functions.
   if (request != nullptr && !(puppet_ && *request == flow::Request::take_hold))
@@ -272,7 +269,7 @@ bool Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
 void Player::make_model(const flow::ChangeModel& change) {
   shaping_.hold_still(tips_, frame_, stats_);
   const auto number = static_cast<std::uint32_t>(versions_.size());
-  auto finer = flow::FinerModel::repeated(shaping_.model(), change);
+  auto finer = flow::FinerModel::make(shaping_.model(), change);
   if (auto made = finer ? finer->finish(number, undo_room()) : nullptr) {
     versions_.push_back(std::move(made));
     if (change_to({shaping_.settings(), number, shaping_.puppet()}, true)) return;

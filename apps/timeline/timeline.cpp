@@ -101,8 +101,7 @@ std::string complaint_about(const Event& event, const puppet::Rig* rig, std::siz
            "keep_volume within 0 and 1";
   const bool is_known = std::holds_alternative<flow::Request>(command) ||
                         std::holds_alternative<flow::ChangeSettings>(command) ||
-                        std::holds_alternative<flow::Subdivide>(command) ||
-                        std::holds_alternative<flow::Refine>(command) ||
+                        flow::model_asked_by(command) ||
                         std::holds_alternative<flow::Mark>(command) || flow::is_for_puppet(command);
   if (const auto* change = std::get_if<flow::ChangePuppet>(&command))
     return change->number < std::max<std::size_t>(masks, 1) ? "" : "there are no such masks";

@@ -43,15 +43,16 @@ std::vector<VertexDetail> present_detail(const LiveSurface& surface) {
   return means;
 }
 
-/// The surface of one mesh, and its lists of materials and names.
-std::pair<TriangleSurface, Appearance> surface_of(const Mesh& mesh) {
+/// The surface of one mesh before the hands, and its lists of materials and names.
+std::pair<LiveSurface, Appearance> surface_of(const Mesh& mesh) {
   const Mesh* const one = &mesh;
   SharedSurfaces shared = surfaces_of({&one, 1});
-  TriangleSurface surface = std::move(shared.surfaces[0]);
+  TriangleSurface& surface = shared.surfaces[0];
   surface.rest = surface.points;
   surface.detail = mesh.detail;
-  if (surface.detail.empty()) surface.detail = present_detail(LiveSurface(surface));
-  return {std::move(surface), std::move(shared.look)};
+  LiveSurface live(std::move(surface));
+  if (mesh.detail.empty()) live.set_detail(present_detail(live));
+  return {std::move(live), std::move(shared.look)};
 }
 
 /// The mesh before the hands.
@@ -60,14 +61,6 @@ Mesh mesh_at_rest(TriangleSurface surface, const Appearance& look) {
   Mesh mesh = mesh_of(surface, look);
   mesh.detail = std::move(surface.detail);
   return mesh;
-}
-
-Result<void> check_closed(const Mesh& mesh) {
-  if (!mesh.vertices.allFinite())
-    return Error{Errc::bad_input, "has a coordinate that is not finite"};
-  if (const ManifoldCheck check = check_closed_manifold(mesh); !check)
-    return Error{Errc::bad_input, describe(check, mesh)};
-  return {};
 }
 
 /// The vertices that bound the box: where they stay, the layout's numbers mean the same.
@@ -86,25 +79,17 @@ std::vector<char> bounding(const Points& vertices) {
 
 struct Refiner::Parts {
   Appearance look;
-  LiveSurface surface; ///< of the mesh before the hands
-  std::vector<SpacePoint> rest;
-  std::vector<VertexDetail> detail;
-  std::vector<char> bounds;
-  double target = 1.0; ///< the limits' measure; Mesh::detail says what part or multiple of it
+  LiveSurface surface;      ///< of the mesh before the hands
+  std::vector<char> bounds; ///< of each point whether the bounding box needs it
+  double target = 1.0;      ///< the limits' measure; Mesh::detail says what part or multiple of it
 
-  /// The points in the numbers of blocks.
-  std::vector<SpacePoint> places(const BlockShape& shape, const BlockLayout& layout) const {
-    std::vector<SpacePoint> points(surface.point_count());
-    for (std::size_t at = 0; at < points.size(); ++at) {
-      const Eigen::Vector3d place = vertex_at(shape, at).cast<double>();
-      points[layout.order()[at]] = {place[0], place[1], place[2]};
-    }
-    return points;
-  }
-  LiveSurface shaped(const std::vector<SpacePoint>& points) const {
+  /// The surface as the shape has it, in the numbers of blocks.
+  LiveSurface shaped(const BlockShape& shape, const BlockLayout& layout) const {
     LiveSurface live = surface;
-    for (std::uint32_t point = 0; point < points.size(); ++point)
-      live.move(point, points[point]);
+    for (std::size_t at = 0; at < layout.order().size(); ++at) {
+      const Eigen::Vector3d place = vertex_at(shape, at).cast<double>();
+      live.move(layout.order()[at], {place[0], place[1], place[2]});
+    }
     return live;
   }
   /// What the shape stretches or presses, and may be worked at.
@@ -114,14 +99,15 @@ struct Refiner::Parts {
     zone.hold.assign(live.point_count(), 2);
     for (std::uint32_t point = 0; point < live.point_count(); ++point) {
       if (!live.has_point(point)) continue;
-      bool is_changed = detail[point].is_refined;
+      const VertexDetail& detail = surface.detail()[point];
+      bool is_changed = detail.is_refined;
       live.visit_edges(point, [&](std::uint32_t edge) {
-        const double before = distance_between(rest[point], rest[live.to(edge)]);
+        const double before = surface.edge_length(edge);
         is_changed =
             is_changed || std::abs(unit * live.edge_length(edge) - before) > least_change * before;
       });
       if (!is_changed) continue;
-      zone.coarseness[point] = static_cast<float>(static_cast<double>(detail[point].edge) / target);
+      zone.coarseness[point] = static_cast<float>(static_cast<double>(detail.edge) / target);
       zone.hold[point] = bounds[point] ? 2 : 0;
     }
     return zone;
@@ -143,25 +129,31 @@ Refiner::Refiner(Refiner&&) noexcept = default;
 Refiner& Refiner::operator=(Refiner&&) noexcept = default;
 Refiner::~Refiner() = default;
 
+Result<void> Refiner::check(const Mesh& mesh) {
+  if (!mesh.vertices.allFinite())
+    return Error{Errc::bad_input, "has a coordinate that is not finite"};
+  if (const ManifoldCheck check = check_closed_manifold(mesh); !check)
+    return Error{Errc::bad_input, describe(check, mesh)};
+  return {};
+}
+
 Result<Refiner> Refiner::make(const Mesh& mesh) {
-  if (const auto closed = check_closed(mesh); !closed) return closed.error();
+  if (const auto fine = check(mesh); !fine) return fine.error();
   auto [surface, look] = surface_of(mesh);
-  std::vector<SpacePoint> rest = surface.rest;
-  std::vector<VertexDetail> detail = surface.detail;
-  double sum = 0.0;
-  for (const VertexDetail& of : detail)
-    sum += static_cast<double>(of.edge);
   auto parts =
-      std::make_unique<Parts>(Parts{std::move(look), LiveSurface(std::move(surface)),
-                                    std::move(rest), std::move(detail), bounding(mesh.vertices)});
-  parts->target = sum / static_cast<double>(parts->detail.size());
+      std::make_unique<Parts>(Parts{std::move(look), std::move(surface), bounding(mesh.vertices)});
+  double sum = 0.0;
+  for (const VertexDetail& of : parts->surface.detail())
+    sum += static_cast<double>(of.edge);
+  parts->target = sum / static_cast<double>(parts->surface.point_count());
   return Refiner(std::move(parts));
 }
 
-std::size_t Refiner::count_unfit(const BlockShape& shape, const BlockLayout& layout) const {
-  const LiveSurface live = parts_->shaped(parts_->places(shape, layout));
-  const RefineZone zone = parts_->zone_of(live, layout.unit());
-  return unfit_edges(live, zone, parts_->limits(layout.unit(), {}));
+std::size_t Refiner::count_unfit(const BlockShape& shape, const BlockLayout& layout,
+                                 const RefinementLimits& limits) const {
+  const LiveSurface live = parts_->shaped(shape, layout);
+  return unfit_edges(live, parts_->zone_of(live, layout.unit()),
+                     parts_->limits(layout.unit(), limits));
 }
 
 namespace {
@@ -251,7 +243,7 @@ bool leave_alone(const Attempt& made, const LiveSurface& live, RefineZone& zone)
 
 Refinement Refiner::refine(const BlockShape& shape, const BlockLayout& layout,
                            const RefinementLimits& asked) const {
-  const LiveSurface live = parts_->shaped(parts_->places(shape, layout));
+  const LiveSurface live = parts_->shaped(shape, layout);
   RefineZone zone = parts_->zone_of(live, layout.unit());
   const RefineLimits limits = parts_->limits(layout.unit(), asked);
   Attempt made;
@@ -272,9 +264,8 @@ Refinement Refiner::refine(const BlockShape& shape, const BlockLayout& layout,
 }
 
 Result<Mesh> refined(const Mesh& mesh, std::span<const EdgeOperation> operations) {
-  if (const auto closed = check_closed(mesh); !closed) return closed.error();
-  auto [surface, look] = surface_of(mesh);
-  LiveSurface live(std::move(surface));
+  if (const auto fine = Refiner::check(mesh); !fine) return fine.error();
+  auto [live, look] = surface_of(mesh);
   for (const EdgeOperation& operation : operations)
     if (!live.repeat(operation))
       return Error{Errc::bad_input, "cannot be refined as it was when it was recorded"};

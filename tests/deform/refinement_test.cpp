@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numbers>
 #include <random>
 #include <utility>
 
@@ -13,10 +11,11 @@
 #include <nendo/deform/mesh_file.hpp>
 
 #include "join/mesh_surface.hpp"
-#include "join/self_intersections.hpp"
 #include "reference/icosphere.hpp"
+#include "support/cut_laws.hpp"
 #include "support/placed_meshes.hpp"
 #include "support/test_meshes.hpp"
+#include "support/triangle_angles.hpp"
 
 namespace refinement_test {
 
@@ -64,50 +63,21 @@ struct Shaped {
     REQUIRE(refiner);
     return refiner->refine(shape, layout, limits);
   }
-  std::size_t unfit() const {
+  std::size_t unfit(const RefinementLimits& limits = {}) const {
     const auto refiner = Refiner::make(mesh);
     REQUIRE(refiner);
-    return refiner->count_unfit(shape, layout);
+    return refiner->count_unfit(shape, layout, limits);
   }
 };
 
-/// In degrees, the fifth percentile of the triangles' least angles.
-double least_angles(const Mesh& mesh, const Points& places) {
-  std::vector<double> least;
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    double angle = 180.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto corner = [&](std::size_t at) -> Vector3d {
-        return places.col(mesh.face_corners[3 * face + at % 3]);
-      };
-      const Vector3d a = corner(k + 1) - corner(k);
-      const Vector3d b = corner(k + 2) - corner(k);
-      angle = std::min(angle, std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / std::numbers::pi);
-    }
-    least.push_back(angle);
-  }
-  std::sort(least.begin(), least.end());
-  return least[least.size() / 20];
+Mesh at_places(Mesh mesh, const Points& places) {
+  mesh.vertices = places;
+  return mesh;
 }
 
-long euler_of(const Mesh& mesh) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
-  for (std::size_t face = 0; face < mesh.face_count(); ++face)
-    for (std::uint32_t at = mesh.face_starts[face]; at < mesh.face_starts[face + 1]; ++at) {
-      const std::uint32_t next =
-          at + 1 < mesh.face_starts[face + 1] ? at + 1 : mesh.face_starts[face];
-      ++edges[std::minmax(mesh.face_corners[at], mesh.face_corners[next])];
-    }
-  return mesh.vertices.cols() - static_cast<long>(edges.size()) +
-         static_cast<long>(mesh.face_count());
-}
-
+/// Whether any triangles of the mesh meet, if its vertices are there.
 bool meets_itself(const Mesh& mesh, const Points& places) {
-  Mesh moved = mesh;
-  moved.vertices = places;
-  const Mesh* const one = &moved;
-  const TriangleSurface surface = surfaces_of({&one, 1}).surfaces[0];
-  return !self_intersections(surface.points, surface.faces, 1).empty();
+  return nendo::test::count_meetings(at_places(mesh, places)) > 0;
 }
 
 void check_repeats(const Shaped& before, const Refinement& made) {
@@ -129,11 +99,12 @@ TEST_SUITE("refinement") {
     CHECK(unfit > 100);
     const Refinement made = before.refine();
     CHECK(check_closed_manifold(made.mesh));
-    CHECK(euler_of(made.mesh) == 2);
+    CHECK(nendo::test::euler_number(made.mesh) == 2);
     CHECK(made.mesh.vertices.cols() > before.mesh.vertices.cols() + 100);
     const Points places = places_of(made);
     CHECK_FALSE(meets_itself(made.mesh, places));
-    CHECK(least_angles(made.mesh, places) > 20.0);
+    const auto angles = nendo::test::least_angles(at_places(made.mesh, places));
+    CHECK(angles[angles.size() / 20] > 20.0);
     const Shaped after(made.mesh, places);
     CHECK(after.unfit() < unfit / 10);
     // The far side: the same places, in the same order.
@@ -282,6 +253,9 @@ TEST_SUITE("refinement") {
     const std::size_t most = static_cast<std::size_t>(before.mesh.vertices.cols()) + 50;
     const Refinement bounded = before.refine({.most_vertices = most});
     CHECK(static_cast<std::size_t>(bounded.mesh.vertices.cols()) <= most);
+    // What is too long does not count where nothing can be done about it.
+    const auto present = static_cast<std::size_t>(before.mesh.vertices.cols());
+    CHECK(before.unfit({.most_vertices = present}) < before.unfit() / 10);
     Shaped now = before;
     for (int round = 0; round < 100 && now.unfit() > 20; ++round) {
       const Refinement made = now.refine({.budget = 50});
@@ -317,7 +291,7 @@ TEST_SUITE("refinement") {
       if (!made) continue;
       ++done;
       CHECK(check_closed_manifold(*made));
-      CHECK(euler_of(*made) == 2);
+      CHECK(nendo::test::euler_number(*made) == 2);
     }
     CHECK(done > 100);
   }

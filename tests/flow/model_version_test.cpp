@@ -128,10 +128,11 @@ TEST_SUITE("model_version") {
       const deform::Points still = run.bent(10);
       std::uint32_t seen = 0;
       if (refused)
-        CHECK_FALSE(run.loop().change_model(finer, [&](const ModelVersion& version) {
-          seen = version.number;
-          return false;
-        }));
+        CHECK_FALSE(
+            run.loop().change_model(finer, [&](const ModelVersion& version) -> Result<void> {
+              seen = version.number;
+              return Error{Errc::failed, "not wanted"};
+            }));
       else
         run.loop().keep_model();
       CHECK(seen == (refused ? 1 : 0));

@@ -32,7 +32,7 @@ private:
   void begin(const flow::ModelVersion& model) {
     late_ = random_() % 8;
     if (random_() % 2 == 0) {
-      if (auto refined = flow::FinerModel::refined(model, {}))
+      if (auto refined = flow::FinerModel::make(model, *flow::model_asked_by(flow::Refine{})))
         finer_ = std::make_unique<flow::FinerModel>(*std::move(refined));
     } else if (model.layout().vertex_count() < most_vertices_) {
       finer_ = std::make_unique<flow::FinerModel>(model);

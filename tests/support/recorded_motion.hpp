@@ -40,7 +40,7 @@ struct RecordedMotion {
       if (tick == motion.subdivide_at_tick) loop.hold_still();
       if (loop.is_still()) {
         flow::FinerModel finer(loop.newest_model());
-        loop.change_model(finer);
+        REQUIRE(loop.change_model(finer));
       }
       loop.tick(tick, woke, woke);
       played.test.loop->frames().update();

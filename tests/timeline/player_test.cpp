@@ -181,7 +181,7 @@ TEST_SUITE("player") {
         if (frame.awaited) live.loop->change_to(*frame.awaited);
       };
       const auto change_model = [&](const flow::ChangeModel& change, int bent) {
-        auto finer = flow::FinerModel::repeated(live.loop->newest_model(), change);
+        auto finer = flow::FinerModel::make(live.loop->newest_model(), change);
         REQUIRE(finer);
         REQUIRE(live.loop->hold_still());
         next(bent);
@@ -234,12 +234,12 @@ TEST_SUITE("player") {
       const auto most = static_cast<std::uint32_t>(live.model.vertices.cols());
       for (int bent = 0; bent < 130; ++bent)
         next(bent);
-      auto finer = flow::FinerModel::repeated(live.loop->newest_model(),
-                                              {0, flow::ModelSource::refined, most});
+      auto finer =
+          flow::FinerModel::make(live.loop->newest_model(), {0, flow::ModelSource::refined, most});
       REQUIRE(finer);
       REQUIRE(live.loop->hold_still());
       next(130);
-      auto unbounded = flow::FinerModel::repeated(
+      auto unbounded = flow::FinerModel::make(
           live.loop->newest_model(), {0, flow::ModelSource::refined, flow::Refine{}.most_vertices});
       REQUIRE(unbounded);
       CHECK(unbounded->finish(9, {})->layout().vertex_count() > most);

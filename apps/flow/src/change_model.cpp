@@ -26,20 +26,27 @@ ModelVersion* DeformLoop::version_numbered(std::uint32_t number) const noexcept 
   return nullptr;
 }
 
-bool DeformLoop::change_model(FinerModel& finer,
-                              const std::function<bool(const ModelVersion&)>& accepts) {
+Result<void>
+DeformLoop::change_model(FinerModel& finer,
+                         const std::function<Result<void>(const ModelVersion&)>& accepts) {
   assert(is_still() && finer.is_of(*asked_model_));
   auto made = finer.finish(last_number_ + 1, undo_room());
-  // A puppet's points may lie too near to each other on another version.
-  if (!made || !set_model(asked_.options, *made) || (accepts && !accepts(*made))) {
-    static_cast<void>(set_model(asked_.options, *asked_model_));
+  SculptorOptions sculptor = asked_.options;
+  const auto check = [&]() -> Result<void> {
+    if (!made) return Error{Errc::bad_input, "there is nothing to refine"};
+    // A puppet's points may lie too near to each other on another version.
+    if (auto fits = set_model(sculptor, *made); !fits) return fits;
+    return accepts ? accepts(*made) : Result<void>();
+  };
+  if (auto fine = check(); !fine) {
     keep_model();
-    return false;
+    return fine;
   }
+  asked_.options = std::move(sculptor);
   ++last_number_;
   versions_.push_back(std::move(made));
   offer_model(*versions_.back(), finer.change_to(*versions_.back()));
-  return true;
+  return {};
 }
 
 void DeformLoop::keep_model() {

@@ -25,6 +25,11 @@ deform::DeformerOptions with_undo(std::size_t bytes, deform::UndoMemory* memory)
   return options;
 }
 
+Result<void> check_subdividable(const deform::Mesh& mesh) {
+  if (mesh.face_corners.size() <= FinerModel::most_corners) return {};
+  return Error{Errc::bad_input, "is too large to be subdivided"};
+}
+
 } // namespace
 
 ModelVersion::ModelVersion(std::uint32_t version, deform::Mesh model, deform::BlockLayout layout,
@@ -38,13 +43,8 @@ deform::BlockShape room_for_shape(const ModelVersion& version) {
 
 Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& origin) {
   if (origin.source == ModelSource::refined) return deform::refined(before, origin.refining);
-  if (before.face_corners.size() > FinerModel::most_corners)
-    return Error{Errc::bad_input, "is too large to be subdivided as often as was recorded"};
+  if (auto fine = check_subdividable(before); !fine) return fine.error();
   return deform::subdivide(before).mesh;
-}
-
-bool can_be_subdivided(const ModelVersion& from) noexcept {
-  return from.mesh.face_corners.size() <= FinerModel::most_corners;
 }
 
 FinerModel::FinerModel(const ModelVersion& from)
@@ -54,16 +54,14 @@ FinerModel::FinerModel(const ModelVersion& from)
         return Subdividing{std::move(subdivision), std::move(layout)};
       }()) {}
 
-Result<FinerModel> FinerModel::refined(const ModelVersion& from, const Refine& limits) {
-  auto refiner = deform::Refiner::make(from.mesh);
-  if (!refiner) return refiner.error();
-  return FinerModel(from, Refining{*std::move(refiner), limits});
-}
-
-Result<FinerModel> FinerModel::repeated(const ModelVersion& from, const ChangeModel& change) {
-  if (change.source == ModelSource::refined) return refined(from, {change.most_vertices});
-  if (can_be_subdivided(from)) return FinerModel(from);
-  return Error{Errc::bad_input, "is too large to be subdivided again"};
+Result<FinerModel> FinerModel::make(const ModelVersion& from, const ChangeModel& change) {
+  if (change.source == ModelSource::refined) {
+    auto refiner = deform::Refiner::make(from.mesh);
+    if (!refiner) return refiner.error();
+    return FinerModel(from, Refining{*std::move(refiner), {.most_vertices = change.most_vertices}});
+  }
+  if (auto fine = check_subdividable(from.mesh); !fine) return fine.error();
+  return FinerModel(from);
 }
 
 std::unique_ptr<ModelVersion> FinerModel::finish(std::uint32_t number, const UndoRoom& undo) {
@@ -77,9 +75,9 @@ std::unique_ptr<ModelVersion> FinerModel::finish(std::uint32_t number, const Und
     return made;
   }
   const Refining& refining = std::get<Refining>(making_);
-  deform::Refinement refinement = refining.refiner.refine(
-      shape, from_->layout(), {.most_vertices = refining.limits.most_vertices});
-  if (refinement.operations.empty()) return nullptr;
+  deform::Refinement refinement = refining.refiner.refine(shape, from_->layout(), refining.limits);
+  found_nothing_ = refinement.operations.empty();
+  if (found_nothing_) return nullptr;
   deform::BlockLayout layout(refinement.mesh.vertices);
   const deform::BlockShape first = deform::shape_in_blocks(refinement.shape, layout);
   auto made = std::make_unique<ModelVersion>(number, std::move(refinement.mesh), std::move(layout),
@@ -92,12 +90,13 @@ std::unique_ptr<ModelVersion> FinerModel::finish(std::uint32_t number, const Und
 ChangeModel FinerModel::change_to(const ModelVersion& version) const noexcept {
   const auto* const refining = std::get_if<Refining>(&making_);
   return {version.number, version.origin->source,
-          refining != nullptr ? refining->limits.most_vertices : 0};
+          refining != nullptr ? static_cast<std::uint32_t>(refining->limits.most_vertices) : 0};
 }
 
 std::size_t FinerModel::count_unfit(const deform::BlockShape& shape) const {
   const auto* const refining = std::get_if<Refining>(&making_);
-  return refining == nullptr ? 0 : refining->refiner.count_unfit(shape, from_->layout());
+  if (refining == nullptr) return 0;
+  return refining->refiner.count_unfit(shape, from_->layout(), refining->limits);
 }
 
 } // namespace nendo::flow

@@ -40,9 +40,7 @@ private:
     put(flow::Command(flow::ChangeSettings{settings}));
   }
   void add_one(const flow::ChangeModel& change) {
-    if (change.source == flow::ModelSource::subdivided) put(flow::Command(flow::Subdivide{}));
-    if (change.source == flow::ModelSource::refined)
-      put(flow::Command(flow::Refine{change.most_vertices}));
+    if (change.is_new()) put(flow::asking_for(change));
   }
   void add_one(const flow::HoldStill&) {}
   void add_one(const PuppetChange& change) {

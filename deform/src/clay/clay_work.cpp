@@ -60,6 +60,11 @@ Vector3d normal_at(const Vector3d& place, const NearestLanes& nearest, std::size
   return length > 0.0 ? Vector3d(way / length) : Vector3d::UnitZ();
 }
 
+/// By the weights of a mask; null: all are.
+bool is_free(const float* weights, std::size_t lane) noexcept {
+  return weights == nullptr || weights[lane] >= least_free;
+}
+
 int most_centres(std::size_t bodies, const ClayOptions& options) noexcept {
   return std::max(options.most_constraints, static_cast<int>(bodies * Grip::most_held));
 }
@@ -294,20 +299,18 @@ ClayDeformer::Work::Found ClayDeformer::Work::find(const BoundedShape& shape, bo
 void ClayDeformer::Work::offer(const BoundedShape& shape, std::size_t body, std::size_t block,
                                const NearestLanes& nearest, double& deepest) noexcept {
   const auto margin = static_cast<float>(margin_mm * mm_);
-  const float* const held = held_in(block);
-  float least = margin;
-  for (std::size_t lane = 0; lane < block_size; ++lane) {
-    const bool counts = held == nullptr || held[lane] >= least_free;
-    least = counts && nearest.distance[lane] < least ? nearest.distance[lane] : least;
-  }
+  const float* const weights = weights_of(block);
+  float least = nearest.distance[0];
+  for (const float distance : nearest.distance)
+    least = distance < least ? distance : least;
   if (!(least < margin)) return;
-  deepest = std::max(deepest, -static_cast<double>(least));
   chosen_.find_cells(shape.shape[block]);
   for (std::size_t lane = 0; lane < block_size; ++lane) {
     if (!(nearest.distance[lane] < margin)) continue;
-    if (held != nullptr && held[lane] < least_free) continue;
+    if (!is_free(weights, lane)) continue;
     const auto part = static_cast<std::uint32_t>(nearest.part[lane]);
     const double depth = -static_cast<double>(nearest.distance[lane]);
+    deepest = std::max(deepest, depth);
     pressed_[part] = std::max(pressed_[part], static_cast<float>(depth));
     ContactPoint* const point = chosen_.offer(lane, part, depth);
     if (point == nullptr) continue;
@@ -398,11 +401,11 @@ void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
   for (std::size_t body = 0; body < search_.bodies(); ++body)
     search_.each_near(shape, body, 0.0, [&](std::size_t block, const NearestLanes& nearest) {
       if (*std::min_element(nearest.distance.begin(), nearest.distance.end()) >= 0.0F) return;
-      const float* const held = held_in(block);
+      const float* const weights = weights_of(block);
       VertexBlock& content = shape.shape.data()[block];
       for (std::size_t lane = 0; lane < block_size; ++lane) {
         const double depth = -static_cast<double>(nearest.distance[lane]);
-        if (!(depth > 0.0) || (held != nullptr && held[lane] < least_free)) continue;
+        if (!(depth > 0.0) || !is_free(weights, lane)) continue;
         const Vector3d at =
             Eigen::Vector3f(content.x[lane], content.y[lane], content.z[lane]).cast<double>();
         const Vector3d out = at + std::min(depth, most) * normal_at(at, nearest, lane);

@@ -76,7 +76,7 @@ private:
   void list_contacts() noexcept;
   void push_straight(BoundedShape& shape) noexcept;
   /// The weights of the block's vertices in the mask; null: all are free.
-  const float* held_in(std::size_t block) const noexcept {
+  const float* weights_of(std::size_t block) const noexcept {
     return masked_.mask() == nullptr ? nullptr : masked_.mask()->of_block(block);
   }
   void give_back(BoundedShape& shape, bool is_pressed, ClayReport& report) noexcept;

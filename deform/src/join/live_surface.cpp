@@ -48,6 +48,10 @@ LiveSurface::LiveSurface(TriangleSurface surface)
     edge_at_[from(edge)] = edge;
 }
 
+void LiveSurface::set_detail(std::vector<VertexDetail> detail) {
+  surface_.detail = std::move(detail);
+}
+
 std::uint32_t LiveSurface::edge_between(std::uint32_t one, std::uint32_t other) const {
   std::uint32_t found = no_entry;
   visit_edges(one, [&](std::uint32_t edge) {
@@ -294,17 +298,16 @@ bool LiveSurface::repeat(const EdgeOperation& operation) {
     return false;
   const std::uint32_t edge = edge_between(operation.from, operation.to);
   if (edge == no_entry) return false;
-  using Kind = EdgeOperation::Kind;
-  if (operation.kind == Kind::collapse && !can_collapse(edge)) return false;
-  if (operation.kind == Kind::flip && !can_flip(edge)) return false;
   switch (operation.kind) {
-  case Kind::split:
+  case EdgeOperation::Kind::split:
     split(edge);
     return true;
-  case Kind::collapse:
+  case EdgeOperation::Kind::collapse:
+    if (!can_collapse(edge)) return false;
     collapse_now(edge);
     return true;
-  case Kind::flip:
+  case EdgeOperation::Kind::flip:
+    if (!can_flip(edge)) return false;
     flip_now(edge);
     return true;
   }

@@ -41,6 +41,9 @@ public:
   std::size_t point_count() const noexcept { return surface_.points.size(); }
   const SpacePoint& point(std::uint32_t number) const noexcept { return surface_.points[number]; }
   void move(std::uint32_t number, const SpacePoint& to) noexcept { surface_.points[number] = to; }
+  /// What refining must know of each point; none at all, if it was not given.
+  const std::vector<VertexDetail>& detail() const noexcept { return surface_.detail; }
+  void set_detail(std::vector<VertexDetail> detail);
   bool has_point(std::uint32_t number) const noexcept { return edge_at_[number] != no_entry; }
   bool has_face(std::uint32_t face) const noexcept { return !gone_[face]; }
   std::size_t face_count() const noexcept { return surface_.faces.size(); }

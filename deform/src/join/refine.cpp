@@ -29,8 +29,7 @@ double coarseness_between(const RefineZone& zone, std::uint32_t a, std::uint32_t
 template <class Visit>
 void visit_zone(const LiveSurface& surface, const RefineZone& zone, const Visit& visit) {
   for (std::uint32_t point = 0; point < surface.point_count(); ++point) {
-    if (!is_near(zone, point) || !surface.has_point(point)) continue;
-    if (!is_active(zone, point)) continue;
+    if (!is_near(zone, point) || !is_active(zone, point) || !surface.has_point(point)) continue;
     surface.visit_edges(point, [&](std::uint32_t edge) {
       const std::uint32_t other = surface.to(edge);
       if (is_near(zone, other) && is_active(zone, other) && other < point)
@@ -167,8 +166,9 @@ std::size_t unfit_edges(const LiveSurface& surface, const RefineZone& zone,
                         const RefineLimits& limits) {
   std::size_t count = 0;
   visit_zone(surface, zone, [&](double length, std::uint32_t from, std::uint32_t to) {
+    const bool is_long = length > limits.longest && surface.point_count() < limits.most_points;
     const bool is_short = length < limits.shortest && !is_fixed(zone, from, to);
-    count += length > limits.longest || is_short ? 1u : 0u;
+    count += is_long || is_short ? 1u : 0u;
   });
   return count;
 }

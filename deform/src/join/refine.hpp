@@ -47,7 +47,7 @@ struct RefineZone {
   std::vector<char> active{};
 };
 
-/// Returns how many edges in the zone are too long or too short.
+/// Returns how many edges in the zone are too long or too short, and may be worked at.
 std::size_t unfit_edges(const LiveSurface& surface, const RefineZone& zone,
                         const RefineLimits& limits);
 

@@ -48,15 +48,19 @@ struct Refinement {
 /// the mesh's bounding box be. The same bits for the same bits.
 class Refiner {
 public:
-  /// Makes ready what needs only the mesh. bad_input, without the mesh's
-  /// name: it is not closed and two-manifold (closed_manifold.hpp). Allocates.
+  /// bad_input, without the mesh's name, if it is not finite, closed and two-manifold
+  /// (closed_manifold.hpp). Allocates.
+  static Result<void> check(const Mesh& mesh);
+  /// Makes ready what needs only the mesh. Error: that of check(). Allocates.
   static Result<Refiner> make(const Mesh& mesh);
   Refiner(Refiner&&) noexcept;
   Refiner& operator=(Refiner&&) noexcept;
   ~Refiner();
 
-  /// Returns how many edges of that shape of the mesh are too long or too short. Allocates.
-  std::size_t count_unfit(const BlockShape& shape, const BlockLayout& layout) const;
+  /// Returns how many edges of that shape of the mesh are too short, or too long, if there is room
+  /// for more vertices. Allocates.
+  std::size_t count_unfit(const BlockShape& shape, const BlockLayout& layout,
+                          const RefinementLimits& limits) const;
   /// Allocates.
   Refinement refine(const BlockShape& shape, const BlockLayout& layout,
                     const RefinementLimits& limits) const;

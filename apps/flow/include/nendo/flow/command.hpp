@@ -143,6 +143,19 @@ using Command =
                  Punch, ChangePuppet, SavePuppet, SetMask, Refine>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
+/// Returns what the command asks to be made of the model, without a number; nothing if it does not.
+constexpr std::optional<ChangeModel> model_asked_by(const Command& command) noexcept {
+  if (std::holds_alternative<Subdivide>(command)) return ChangeModel{0, ModelSource::subdivided};
+  if (const auto* refine = std::get_if<Refine>(&command))
+    return ChangeModel{0, ModelSource::refined, refine->most_vertices};
+  return std::nullopt;
+}
+/// Returns the command that asks for such a change, which is_new().
+constexpr Command asking_for(const ChangeModel& change) noexcept {
+  if (change.source == ModelSource::refined) return Refine{change.most_vertices};
+  return Subdivide{};
+}
+
 /// One thread pushes commands, and one thread takes them.
 using CommandRing = SpscRing<Command>;
 

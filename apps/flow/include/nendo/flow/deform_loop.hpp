@@ -210,13 +210,13 @@ public:
   /// Tells whether the loop has done so, and waits for a model.
   bool is_still();
   /// Finishes the model, which must be made of newest_model(), and hands it to the loop, which must
-  /// be still and goes on with it. `accepts` is called with the new version before the loop has it;
-  /// if it returns false, or there is nothing to refine, or a puppet cannot be put on it, the loop
-  /// goes on with the model that it has, and this function returns false.
+  /// be still and goes on with it. `accepts` is called with the new version before the loop has it.
   /// Settings that are asked for meanwhile come with it. Later, versions to which no undo or redo
-  /// leads any more are freed. Allocates.
-  bool change_model(FinerModel& finer,
-                    const std::function<bool(const ModelVersion&)>& accepts = {});
+  /// leads any more are freed. With an error the loop goes on with the model that it has: that of
+  /// `accepts`, or bad_input if there is nothing to refine (FinerModel::found_nothing()), or the
+  /// points of a puppet cannot be solved for on that version. Allocates.
+  Result<void> change_model(FinerModel& finer,
+                            const std::function<Result<void>(const ModelVersion&)>& accepts = {});
   /// Lets a loop that holds still go on with the model that it has.
   void keep_model();
   /// Returns the version that the loop has or was asked last to go on with.

@@ -64,22 +64,22 @@ class FinerModel {
 public:
   /// Subdivides. Any thread may call it while the loop goes on. Allocates.
   explicit FinerModel(const ModelVersion& from);
-  /// Makes ready to refine, likewise. Error: bad_input, without the model's name.
-  static Result<FinerModel> refined(const ModelVersion& from, const Refine& limits);
-  /// Does what the recorded change did, likewise; its source is not `kept`.
-  static Result<FinerModel> repeated(const ModelVersion& from, const ChangeModel& change);
+  /// Subdivides, or makes ready to refine, likewise: what the change, which is_new(), says. Error:
+  /// bad_input, without the model's name.
+  static Result<FinerModel> make(const ModelVersion& from, const ChangeModel& change);
 
   bool is_of(const ModelVersion& version) const noexcept { return &version == from_; }
-  /// Makes the version, with the shape that `from` has now: the loop must hold still. Null if there
-  /// is nothing to refine. May be called once. Allocates.
+  /// Makes the version, with the shape that `from` has now: the loop must hold still. Null if
+  /// nothing is left to refine. May be called once. Allocates.
   std::unique_ptr<ModelVersion> finish(std::uint32_t number, const UndoRoom& undo);
+  bool found_nothing() const noexcept { return found_nothing_; } ///< finish() did
   /// Returns the change to that version.
   ChangeModel change_to(const ModelVersion& version) const noexcept;
-  /// Of one that refines: returns how many edges of that shape of `from` are too long or too short.
-  /// Any thread. Allocates.
+  /// Of one that refines: deform::Refiner::count_unfit() of that shape of `from`. Any thread.
+  /// Allocates.
   std::size_t count_unfit(const deform::BlockShape& shape) const;
 
-  /// The corners of faces of the largest model that can be subdivided.
+  /// The corners of faces of the largest model that can be subdivided: 16 times, a triangle can.
   static constexpr std::size_t most_corners = std::size_t{6} << 20;
 
 private:
@@ -89,16 +89,14 @@ private:
   };
   struct Refining {
     deform::Refiner refiner;
-    Refine limits;
+    deform::RefinementLimits limits;
   };
   FinerModel(const ModelVersion& from, Refining refining)
       : from_(&from), making_(std::move(refining)) {}
 
   const ModelVersion* from_;
   std::variant<Subdividing, Refining> making_;
+  bool found_nothing_ = false;
 };
-
-/// Tells whether the model is not too large to be subdivided: 16 times, a triangle would be.
-bool can_be_subdivided(const ModelVersion& from) noexcept;
 
 } // namespace nendo::flow
