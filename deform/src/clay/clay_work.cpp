@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "usable.hpp"
@@ -58,11 +59,6 @@ Vector3d normal_at(const Vector3d& place, const NearestLanes& nearest, std::size
   const Vector3d way = place - centre;
   const double length = way.norm();
   return length > 0.0 ? Vector3d(way / length) : Vector3d::UnitZ();
-}
-
-/// By the weights of a mask; null: all are.
-bool is_free(const float* weights, std::size_t lane) noexcept {
-  return weights == nullptr || weights[lane] >= least_free;
 }
 
 int most_centres(std::size_t bodies, const ClayOptions& options) noexcept {
@@ -277,6 +273,18 @@ double ClayDeformer::Work::press_out(BoundedShape& shape, double enough,
   }
 }
 
+/// What a mask holds by more than half is far away from all bodies.
+const NearestLanes& ClayDeformer::Work::free_lanes(std::size_t block,
+                                                   const NearestLanes& all) noexcept {
+  const float* const weights =
+      masked_.mask() == nullptr ? nullptr : masked_.mask()->of_block(block);
+  if (weights == nullptr) return all;
+  free_lanes_ = all;
+  for (std::size_t lane = 0; lane < block_size; ++lane)
+    if (weights[lane] < least_free) free_lanes_.distance[lane] = std::numeric_limits<float>::max();
+  return free_lanes_;
+}
+
 std::span<const ContactPoint> ClayDeformer::Work::choose() noexcept {
   return chosen_.choose(apart_in_cells * radius_ / cells_a_radius);
 }
@@ -286,7 +294,8 @@ ClayDeformer::Work::Found ClayDeformer::Work::find(const BoundedShape& shape, bo
   chosen_.clear(radius_ / cells_a_radius);
   for (std::size_t body = 0; body < search_.bodies(); ++body) {
     search_.each_near(shape, body, margin_mm * mm_,
-                      [&](std::size_t block, const NearestLanes& nearest) {
+                      [&](std::size_t block, const NearestLanes& all) {
+                        const NearestLanes& nearest = free_lanes(block, all);
                         if (loads) loads_[body].press(block, nearest);
                         offer(shape, body, block, nearest, found.deepest);
                       });
@@ -299,18 +308,16 @@ ClayDeformer::Work::Found ClayDeformer::Work::find(const BoundedShape& shape, bo
 void ClayDeformer::Work::offer(const BoundedShape& shape, std::size_t body, std::size_t block,
                                const NearestLanes& nearest, double& deepest) noexcept {
   const auto margin = static_cast<float>(margin_mm * mm_);
-  const float* const weights = weights_of(block);
   float least = nearest.distance[0];
   for (const float distance : nearest.distance)
     least = distance < least ? distance : least;
   if (!(least < margin)) return;
+  deepest = std::max(deepest, -static_cast<double>(least));
   chosen_.find_cells(shape.shape[block]);
   for (std::size_t lane = 0; lane < block_size; ++lane) {
     if (!(nearest.distance[lane] < margin)) continue;
-    if (!is_free(weights, lane)) continue;
     const auto part = static_cast<std::uint32_t>(nearest.part[lane]);
     const double depth = -static_cast<double>(nearest.distance[lane]);
-    deepest = std::max(deepest, depth);
     pressed_[part] = std::max(pressed_[part], static_cast<float>(depth));
     ContactPoint* const point = chosen_.offer(lane, part, depth);
     if (point == nullptr) continue;
@@ -399,13 +406,13 @@ void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
   const double most = most_straight_mm * mm_;
   const std::uint64_t stamp = BlockShape::new_stamp();
   for (std::size_t body = 0; body < search_.bodies(); ++body)
-    search_.each_near(shape, body, 0.0, [&](std::size_t block, const NearestLanes& nearest) {
+    search_.each_near(shape, body, 0.0, [&](std::size_t block, const NearestLanes& all) {
+      const NearestLanes& nearest = free_lanes(block, all);
       if (*std::min_element(nearest.distance.begin(), nearest.distance.end()) >= 0.0F) return;
-      const float* const weights = weights_of(block);
       VertexBlock& content = shape.shape.data()[block];
       for (std::size_t lane = 0; lane < block_size; ++lane) {
         const double depth = -static_cast<double>(nearest.distance[lane]);
-        if (!(depth > 0.0) || !is_free(weights, lane)) continue;
+        if (!(depth > 0.0)) continue;
         const Vector3d at =
             Eigen::Vector3f(content.x[lane], content.y[lane], content.z[lane]).cast<double>();
         const Vector3d out = at + std::min(depth, most) * normal_at(at, nearest, lane);

@@ -75,10 +75,7 @@ private:
   bool displace(BoundedShape& shape, Eigen::Index count) noexcept;
   void list_contacts() noexcept;
   void push_straight(BoundedShape& shape) noexcept;
-  /// The weights of the block's vertices in the mask; null: all are free.
-  const float* weights_of(std::size_t block) const noexcept {
-    return masked_.mask() == nullptr ? nullptr : masked_.mask()->of_block(block);
-  }
+  const NearestLanes& free_lanes(std::size_t block, const NearestLanes& all) noexcept;
   void give_back(BoundedShape& shape, bool is_pressed, ClayReport& report) noexcept;
 
   const BlockLayout& layout_;
@@ -106,6 +103,7 @@ private:
   Eigen::Index used_ = 0; ///< columns of the field
   BlockEvaluator evaluator_;
   MaskedStep masked_;
+  NearestLanes free_lanes_; ///< room for the function of that name
   VolumeKeeper volume_;
   double whole_volume_ = 0.0;
   double volume_now_ = 0.0;
