@@ -2,24 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <fstream>
-#include <optional>
-#include <thread>
 #include <utility>
 
 #include <doctest/doctest.h>
 
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/puppet/puppet_edit.hpp>
-#include <nendo/recording/loop_replay.hpp>
 #include <nendo/recording/take_tools.hpp>
 
-#include "session/open_hands.hpp"
+#include "session/asking_run.hpp"
 #include "support/flow_fixtures.hpp"
-#include "support/temporary_folder.hpp"
-#include "support/test_meshes.hpp"
-#include "takes/recorded_model.hpp"
 
 namespace run_session_test {
 
@@ -27,80 +20,9 @@ using namespace nendo;
 using namespace nendo::gloves;
 using namespace nendo::session;
 using namespace nendo::takes;
+using namespace nendo::session::asking;
 
 namespace {
-
-/// Sees to the pace itself.
-class PacingObserver : public Observer {
-public:
-  bool sets_pace() const noexcept override { return true; }
-
-protected:
-  static void wait() { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }
-};
-
-/// What is asked for at the same time, one after another.
-using Changes = std::vector<std::vector<flow::Command>>;
-
-/// Asks for one change after another when the run has gone on for some frames, and then for its
-/// end. It is shown each frame in the tick.
-class Asker final : public Sink, public Observer {
-public:
-  explicit Asker(Changes wanted) : changes(std::move(wanted)) {}
-
-  Result<void> begin(const LoopStart&) override { return {}; }
-  Result<void> prepare(const flow::ModelVersion& version) override {
-    if (refuses) return Error{Errc::failed, "no other model here"};
-    prepared.push_back(version.number);
-    return {};
-  }
-  Result<void> settle() override {
-    ++settled;
-    return {};
-  }
-  void loop_begins(const LoopStart&) override { ++begun; }
-  void show(const flow::Frame& frame) noexcept override {
-    if (frame.ticks_run != ticks_ + 1) ++leaps; // another loop, or a tick that nobody was shown
-    ticks_ = frame.ticks_run;
-  }
-  void update(const RunStatus& status, flow::CommandRing& commands) override {
-    if (settings.empty() || settings.back() != status.frame.settings)
-      settings.push_back(status.frame.settings);
-    if (recorded.empty() || recorded.back() != status.recording)
-      recorded.push_back(status.recording);
-    wrist = status.frame.hands[0].T_stage_wrist.translation();
-    CHECK(status.model.number == status.frame.model);
-    status.model.layout().unpack(status.frame.shape, shape);
-    if (ticks_ < asked_at_ + least_ticks) return;
-    asked_at_ = ticks_;
-    if (asked == changes.size()) content_ = true;
-    if (content_) return;
-    for (const auto& command : changes[asked])
-      commands.try_push(command);
-    ++asked;
-  }
-  void report(const std::string& message) override { reports.push_back(message); }
-  bool is_content() const { return content_; }
-
-  Changes changes;
-  std::uint64_t least_ticks = 30; ///< between two changes, and before the end
-  std::size_t asked = 0;
-  int begun = 0;
-  std::atomic<int> leaps{0};
-  std::vector<flow::LoopSettings> settings; ///< one after another
-  std::vector<bool> recorded;               ///< to a file or not, one after another
-  Eigen::Vector3d wrist;                    ///< the latest, of the left hand
-  deform::Points shape;                     ///< the latest
-  std::vector<std::string> reports;
-  bool refuses = false;                ///< other models
-  std::vector<std::uint32_t> prepared; ///< versions
-  int settled = 0;
-
-private:
-  std::atomic<std::uint64_t> ticks_{0};
-  std::uint64_t asked_at_ = 0;
-  bool content_ = false;
-};
 
 /// Asks for the shape to be saved, and ends the run at once.
 class Saver final : public PacingObserver {
@@ -118,95 +40,6 @@ public:
 private:
   int frames_ = 0;
 };
-
-/// Ends a run when all have what they asked for.
-class Ender final : public PacingObserver {
-public:
-  explicit Ender(std::vector<const Asker*> askers) : askers_(std::move(askers)) {}
-  void update(const RunStatus&, flow::CommandRing& commands) override {
-    wait();
-    if (std::all_of(askers_.begin(), askers_.end(),
-                    [](const Asker* asker) { return asker->is_content(); }))
-      commands.try_push(flow::EndRun{});
-  }
-
-private:
-  std::vector<const Asker*> askers_;
-};
-
-struct Run {
-  test::TemporaryFolder folder;
-  deform::Mesh mesh = test::sphere(24, 48, 1.0);
-  RunOptions options;
-  EventCount event_count;
-
-  Run() {
-    options.left = options.right = "sim:sculpt";
-    options.mesh = (folder.path() / "ball.obj").string();
-    REQUIRE(deform::write_mesh(options.mesh, mesh));
-    options.out = (folder.path() / "out.ply").string();
-    REQUIRE(options.recording.check(options.out, flow::SwitchAction::none));
-  }
-  RunOutcome follow(std::vector<Asker*> askers) {
-    auto opened = open_hands(options, mesh, event_count);
-    REQUIRE(opened);
-    Ender ender({askers.begin(), askers.end()});
-    RunParticipants participants{
-        [](const auto&, double) {}, {askers.begin(), askers.end()}, {askers.begin(), askers.end()}};
-    participants.observers.push_back(&ender);
-    auto outcome = run_session(options, opened->hands, mesh, participants);
-    REQUIRE(outcome);
-    return *std::move(outcome);
-  }
-  /// Opens the left hand for a run over `take`, of which the left index finger is played anew, and
-  /// which is recorded to `file`.
-  Result<RunHands> open_over(const std::string& take, const std::string& file) {
-    const OverdubArguments arguments{take, "left.index", "", ""};
-    auto over = read_overdub(arguments);
-    REQUIRE(over);
-    options.over = *over;
-    options.right.clear();
-    const auto live = live_part(arguments, options);
-    REQUIRE(live);
-    options.live = *live;
-    REQUIRE(take_over_settings(mesh, options));
-    options.recording = {};
-    options.recording.file = file;
-    REQUIRE(options.recording.check(options.out, flow::SwitchAction::none));
-    auto opened = open_hands(options, mesh, event_count);
-    REQUIRE(opened);
-    return opened;
-  }
-};
-
-constexpr flow::Command reset = flow::Request::reset;
-constexpr flow::Command record(bool on) {
-  return flow::SetRecording{on};
-}
-constexpr flow::Command change(const flow::LoopSettings& settings) {
-  return flow::ChangeSettings{settings};
-}
-
-constexpr flow::LoopSettings other_settings{
-    flow::Mode::type2, deform::Wendland::c4, true, {0.1, 0.11, 0.12, 0.13, 0.14}};
-
-/// Replays a recording, which tells its last shape itself. Returns how often its settings changed.
-std::uint64_t replay(const std::filesystem::path& file) {
-  auto take = recording::TakeReader::open(file);
-  REQUIRE(take);
-  REQUIRE(take->setup().loop);
-  const auto model = find_recorded_model(*take->setup().loop);
-  REQUIRE(model);
-  CHECK(model->is_recorded);
-  auto again = recording::LoopReplay::make(take->setup(), model->mesh);
-  REQUIRE(again);
-  while (const auto entry = take->next())
-    (*again)->feed(*entry);
-  CHECK((*again)->is_exact());
-  REQUIRE(take->ending());
-  CHECK(take->ending()->shape == recording::sum_of((*again)->loop().final_shape()));
-  return (*again)->loop().stats().changes;
-}
 
 /// Watches as a window or as a browser does, until it has seen enough.
 class Onlooker final : public PacingObserver {
@@ -417,92 +250,6 @@ TEST_SUITE("run_session") {
     CHECK((written->vertices - run.mesh.vertices).cwiseAbs().maxCoeff() > 1e-3);
   }
 
-  TEST_CASE("the model becomes finer while the loop runs, and undo and redo go back and forth") {
-    Run run;
-    run.options.recording.file = (run.folder.path() / "take.nendo").string();
-    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
-    Asker asker(Changes{{flow::Request::let_go},
-                        {flow::Subdivide{}},
-                        {flow::SaveShape{}, change(other_settings)},
-                        {flow::Request::undo, flow::Request::undo},
-                        {flow::Request::redo, flow::Request::redo},
-                        {record(false), flow::Request::grab},
-                        {record(true), flow::Subdivide{}}});
-    asker.least_ticks = 60;
-    const auto outcome = run.follow({&asker});
-    CHECK(asker.leaps == 0);
-    CHECK(asker.prepared == std::vector<std::uint32_t>{1, 0, 1, 2});
-    CHECK(asker.settled == 4);
-    const auto written = deform::read_mesh(run.options.out);
-    REQUIRE(written);
-    CHECK(written->face_count() == 16 * run.mesh.face_count());
-    const auto saved = deform::read_mesh(run.folder.path() / "out-1.ply");
-    REQUIRE(saved);
-    CHECK(saved->face_count() == 4 * run.mesh.face_count());
-    CHECK(outcome.recordings.size() == 2);
-    for (const auto& recording : outcome.recordings)
-      CHECK(replay(recording.file) >= 0);
-  }
-
-  TEST_CASE("the model is refined while the loop runs, undone and redone, and the takes replay") {
-    Run run;
-    run.options.recording.file = (run.folder.path() / "take.nendo").string();
-    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
-    Asker asker(Changes{{flow::Request::let_go},
-                        {flow::Refine{}},
-                        {flow::SaveShape{}},
-                        {flow::Request::undo},
-                        {flow::Request::redo},
-                        {record(false), flow::Request::grab},
-                        {record(true), flow::Refine{}}});
-    asker.least_ticks = 60;
-    const auto outcome = run.follow({&asker});
-    CHECK(asker.leaps == 0);
-    REQUIRE(asker.prepared.size() >= 3);
-    CHECK(asker.prepared[0] == 1);
-    CHECK(asker.prepared[1] == 0);
-    CHECK(asker.prepared[2] == 1);
-    const auto saved = deform::read_mesh(run.folder.path() / "out-1.ply");
-    REQUIRE(saved);
-    CHECK(saved->face_count() != run.mesh.face_count());
-    CHECK(outcome.recordings.size() == 2);
-    for (const auto& recording : outcome.recordings)
-      CHECK(replay(recording.file) >= 0);
-  }
-
-  TEST_CASE("the model is refined by itself where hands stretch it, and never beyond the bound") {
-    Run run;
-    const auto most = static_cast<std::uint32_t>(run.mesh.vertices.cols()) + 60;
-    run.options.refine_to = most;
-    run.options.recording.file = (run.folder.path() / "take.nendo").string();
-    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
-    // Nobody asks for it.
-    Asker asker(Changes{{flow::Request::commit}, {flow::Request::commit}, {flow::Request::commit}});
-    asker.least_ticks = 120;
-    const auto outcome = run.follow({&asker});
-    const auto written = deform::read_mesh(run.options.out);
-    REQUIRE(written);
-    CHECK(written->face_count() != run.mesh.face_count());
-    CHECK(written->vertices.cols() <= most);
-    CHECK(asker.prepared.size() > 0);
-    REQUIRE(outcome.recordings.size() == 1);
-    CHECK(replay(outcome.recordings[0].file) >= 0);
-  }
-
-  TEST_CASE("what was undone is not forgotten because the model refines itself") {
-    Run run;
-    run.options.refine_to = 5000;
-    Asker asker(Changes{{flow::Request::let_go},
-                        {flow::Request::undo},
-                        {flow::Request::redo},
-                        {flow::Request::undo},
-                        {flow::Request::redo}});
-    asker.least_ticks = 80;
-    const auto outcome = run.follow({&asker});
-    CHECK(outcome.stats.undos == 2);
-    CHECK(outcome.stats.redos == 2);
-  }
-
   TEST_CASE("a mark is in the recording, and without one the reason is told") {
     Run run;
     Asker asker(Changes{{flow::Mark{}}, {record(true)}, {flow::Mark{}}, {flow::Mark{}}});
@@ -518,17 +265,6 @@ TEST_SUITE("run_session") {
     const auto summary = recording::summarise(outcome.recordings[0].file);
     REQUIRE(summary);
     CHECK(summary->marks.size() == 2);
-  }
-
-  TEST_CASE("a model that a sink cannot take is not taken, and the reason is told") {
-    Run run;
-    Asker asker(Changes{{flow::Subdivide{}}});
-    asker.refuses = true;
-    asker.least_ticks = 60;
-    run.follow({&asker});
-    REQUIRE(asker.reports.size() == 1);
-    CHECK(asker.reports[0] == "no other model here; the model stays as it is");
-    CHECK(deform::read_mesh(run.options.out)->face_count() == run.mesh.face_count());
   }
 
   TEST_CASE(

@@ -1,0 +1,112 @@
+#include "session/run_models.hpp"
+
+#include <doctest/doctest.h>
+
+#include "session/asking_run.hpp"
+
+namespace run_models_test {
+
+using namespace nendo;
+using namespace nendo::session;
+using namespace nendo::session::asking;
+
+TEST_SUITE("run_models") {
+  TEST_CASE("the model becomes finer while the loop runs, and undo and redo go back and forth") {
+    Run run;
+    run.options.recording.file = (run.folder.path() / "take.nendo").string();
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    Asker asker(Changes{{flow::Request::let_go},
+                        {flow::Subdivide{}},
+                        {flow::SaveShape{}, change(other_settings)},
+                        {flow::Request::undo, flow::Request::undo},
+                        {flow::Request::redo, flow::Request::redo},
+                        {record(false), flow::Request::grab},
+                        {record(true), flow::Subdivide{}}});
+    asker.least_ticks = 60;
+    const auto outcome = run.follow({&asker});
+    CHECK(asker.leaps == 0);
+    CHECK(asker.prepared == std::vector<std::uint32_t>{1, 0, 1, 2});
+    CHECK(asker.settled == 4);
+    const auto written = deform::read_mesh(run.options.out);
+    REQUIRE(written);
+    CHECK(written->face_count() == 16 * run.mesh.face_count());
+    const auto saved = deform::read_mesh(run.folder.path() / "out-1.ply");
+    REQUIRE(saved);
+    CHECK(saved->face_count() == 4 * run.mesh.face_count());
+    CHECK(outcome.recordings.size() == 2);
+    for (const auto& recording : outcome.recordings)
+      CHECK(replay(recording.file) >= 0);
+  }
+
+  TEST_CASE("the model is refined while the loop runs, undone and redone, and the takes replay") {
+    Run run;
+    run.options.recording.file = (run.folder.path() / "take.nendo").string();
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    Asker asker(Changes{{flow::Request::let_go},
+                        {flow::Refine{}},
+                        {flow::SaveShape{}},
+                        {flow::Request::undo},
+                        {flow::Request::redo},
+                        {record(false), flow::Request::grab},
+                        {record(true), flow::Refine{}}});
+    asker.least_ticks = 60;
+    const auto outcome = run.follow({&asker});
+    CHECK(asker.leaps == 0);
+    REQUIRE(asker.prepared.size() >= 3);
+    CHECK(asker.prepared[0] == 1);
+    CHECK(asker.prepared[1] == 0);
+    CHECK(asker.prepared[2] == 1);
+    const auto saved = deform::read_mesh(run.folder.path() / "out-1.ply");
+    REQUIRE(saved);
+    CHECK(saved->face_count() != run.mesh.face_count());
+    CHECK(outcome.recordings.size() == 2);
+    for (const auto& recording : outcome.recordings)
+      CHECK(replay(recording.file) >= 0);
+  }
+
+  TEST_CASE("the model is refined by itself where hands stretch it, and never beyond the bound") {
+    Run run;
+    const auto most = static_cast<std::uint32_t>(run.mesh.vertices.cols()) + 60;
+    run.options.refine_to = most;
+    run.options.recording.file = (run.folder.path() / "take.nendo").string();
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    // Nobody asks for it.
+    Asker asker(Changes{{flow::Request::commit}, {flow::Request::commit}, {flow::Request::commit}});
+    asker.least_ticks = 120;
+    const auto outcome = run.follow({&asker});
+    const auto written = deform::read_mesh(run.options.out);
+    REQUIRE(written);
+    CHECK(written->face_count() != run.mesh.face_count());
+    CHECK(written->vertices.cols() <= most);
+    CHECK(asker.prepared.size() > 0);
+    REQUIRE(outcome.recordings.size() == 1);
+    CHECK(replay(outcome.recordings[0].file) >= 0);
+  }
+
+  TEST_CASE("what was undone is not forgotten because the model refines itself") {
+    Run run;
+    run.options.refine_to = 5000;
+    Asker asker(Changes{{flow::Request::let_go},
+                        {flow::Request::undo},
+                        {flow::Request::redo},
+                        {flow::Request::undo},
+                        {flow::Request::redo}});
+    asker.least_ticks = 80;
+    const auto outcome = run.follow({&asker});
+    CHECK(outcome.stats.undos == 2);
+    CHECK(outcome.stats.redos == 2);
+  }
+
+  TEST_CASE("a model that a sink cannot take is not taken, and the reason is told") {
+    Run run;
+    Asker asker(Changes{{flow::Subdivide{}}});
+    asker.refuses = true;
+    asker.least_ticks = 60;
+    run.follow({&asker});
+    REQUIRE(asker.reports.size() == 1);
+    CHECK(asker.reports[0] == "no other model here; the model stays as it is");
+    CHECK(deform::read_mesh(run.options.out)->face_count() == run.mesh.face_count());
+  }
+}
+
+} // namespace run_models_test
