@@ -23,6 +23,7 @@ struct Options {
   std::string thing;
   std::string save;
   std::string simd;
+  std::string only;
   bool short_form = false;
   bool json = false;
 };
@@ -119,6 +120,7 @@ int bench_clay(const Options& options) {
                 "", "vertices", "constr", "most", "passes", "dist k", "mean", "p99", "left",
                 "inside", "volume", "at end", "behind");
   for (const Row& row : rows_of(options.short_form)) {
+    if (std::string(row.name).find(options.only) == std::string::npos) continue;
     const ClayTrial trial = row.is_plain ? measure_plain_clay(row.trial) : measure_clay(row.trial);
     options.json ? print_json(row, trial) : print_text(row, trial);
   }
@@ -136,6 +138,7 @@ void add(cli::Command& bench) {
   command.add_option("--save", options->save, "Where to write what --make made: .obj or .ply");
   command.add_option("--simd", options->simd,
                      "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
+  command.add_option("--only", options->only, "Only rows whose names contain this");
   command.add_flag("--short", options->short_form, "A small ball only");
   command.add_flag("--json", options->json, "One JSON object a line");
   command.on_chosen([options] { return bench_clay(*options); });

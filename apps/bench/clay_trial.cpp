@@ -8,6 +8,7 @@
 #include <nendo/deform/triangles.hpp>
 
 #include "bench/clay_scene.hpp"
+#include "bench/deform_frames.hpp"
 #include "bench/plain_clay.hpp"
 #include "reference/icosphere.hpp"
 
@@ -53,9 +54,9 @@ ClayTrial run_scene(const ClayTrialOptions& options, Mesh mesh, ClayScene& scene
   std::vector<double> times_us, left_mm, inside_mm;
   for (int tick = 1; tick <= scene.ticks(); ++tick) {
     const auto parts = scene.at(tick);
-    const auto begin = std::chrono::steady_clock::now();
+    const auto begin = ThreadClock::now();
     const deform::ClayReport report = press(parts);
-    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+    const std::chrono::duration<double, std::micro> took = ThreadClock::now() - begin;
     trial.worst_behind_mm = std::max(trial.worst_behind_mm, report.behind_mm);
     trial.most_held = std::max(trial.most_held, report.held);
     if (report.passes == 0) continue;

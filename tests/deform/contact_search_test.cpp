@@ -1,14 +1,19 @@
 #include "clay/contact_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <random>
+#include <set>
+#include <tuple>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include "clay/contact_points.hpp"
 #include "support/contact_parts.hpp"
+#include "support/rounds.hpp"
 #include "support/test_meshes.hpp"
 
 namespace contact_search_test {
@@ -38,8 +43,8 @@ TEST_SUITE("contact_search") {
     std::mt19937 random(31);
     const BlockLayout layout(random_points(random, 1000, 1.0));
     const BoundedShape shape(layout.pack());
-    constexpr double margin = 0.1;
     for (int trial = 0; trial < 8; ++trial) {
+      const double margin = trial < 4 ? 0.1 : 0.6;
       std::vector<ContactPart> parts;
       for (int part = 0; part < 6; ++part) {
         parts.push_back(random_contact_part(random));
@@ -96,6 +101,48 @@ TEST_SUITE("contact_search") {
     CHECK(search.distances() == 0);
   }
 
+  TEST_CASE("of a block, the nearest vertex of each cell and part is listed") {
+    std::mt19937 random(34);
+    std::uniform_real_distribution<float> coordinate(-1.0F, 1.0F);
+    for (int round = 0; round < nendo::test::rounds(200); ++round) {
+      VertexBlock block{};
+      NearestLanes nearest{};
+      for (std::size_t lane = 0; lane < block_size; ++lane) {
+        block.x[lane] = coordinate(random);
+        block.y[lane] = coordinate(random);
+        block.z[lane] = coordinate(random);
+        // Coarse ones, so that some are equal.
+        nearest.distance[lane] = 0.25F * std::round(4.0F * coordinate(random));
+        nearest.part[lane] = static_cast<float>(random() % 3);
+      }
+      ContactPoints points(64);
+      points.clear(0.7);
+      const SpaceCells cells = points.cells();
+      const auto cell = [&](float x) { return static_cast<int>(x * cells.a_length + cells.shift); };
+      using Key = std::tuple<int, int, int, float>;
+      std::map<Key, std::size_t> expected;
+      for (std::size_t lane = 0; lane < block_size; ++lane) {
+        if (!(nearest.distance[lane] < 0.5F)) continue;
+        const Key key{cell(block.x[lane]), cell(block.y[lane]), cell(block.z[lane]),
+                      nearest.part[lane]};
+        const auto kept = expected.emplace(key, lane).first;
+        if (nearest.distance[lane] < nearest.distance[kept->second]) kept->second = lane;
+      }
+      std::array<std::uint8_t, block_size> lanes{};
+      const std::size_t count = nearest_of_cells(block, nearest, 0.5F, cells, lanes);
+      std::set<std::size_t> listed;
+      for (std::size_t at = 0; at < count; ++at) {
+        listed.insert(lanes[at]);
+        if (at > 0) CHECK(nearest.distance[lanes[at]] >= nearest.distance[lanes[at - 1]]);
+      }
+      std::set<std::size_t> wanted;
+      for (const auto& [key, lane] : expected)
+        wanted.insert(lane);
+      CHECK(count == wanted.size());
+      CHECK(listed == wanted);
+    }
+  }
+
   TEST_CASE("points are chosen by depth, without crowds, in whatever order they come") {
     std::mt19937 random(33);
     std::vector<ContactPoint> offered;
@@ -106,15 +153,11 @@ TEST_SUITE("contact_search") {
     const auto chosen_of = [&](std::size_t most) {
       ContactPoints points(most);
       points.clear(0.5);
-      VertexBlock block{};
-      for (const ContactPoint& point : offered) {
-        block.x[7] = static_cast<float>(point.at.x());
-        block.y[7] = static_cast<float>(point.at.y());
-        block.z[7] = static_cast<float>(point.at.z());
-        points.find_cells(block);
-        if (ContactPoint* const kept = points.offer(7, point.part, point.depth); kept != nullptr)
+      for (const ContactPoint& point : offered)
+        if (ContactPoint* const kept =
+                points.offer(point.at.cast<float>(), point.part, point.depth);
+            kept != nullptr)
           *kept = point;
-      }
       std::vector<std::uint32_t> places;
       const auto chosen = points.choose(0.3);
       for (std::size_t i = 0; i < chosen.size(); ++i) {

@@ -234,6 +234,27 @@ TEST_SUITE("press_problem") {
     }
   }
 
+  TEST_CASE("two hands that are far apart are no steeper than the steeper one") {
+    std::mt19937 random(27);
+    PressProblem problem(60);
+    const auto bound_of = [&](std::span<const ContactPoint> points) {
+      problem.assign(points, 1.0);
+      problem.solve_pressure(0.0);
+      return problem.lipschitz_bound();
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+      auto points = random_contacts(random, 30, 2.0);
+      const double alone = bound_of(points);
+      auto others = random_contacts(random, 30, 2.0);
+      const double other = bound_of(others);
+      for (ContactPoint& point : others)
+        point.at[axis] += 7.0; // farther than two radii from all of the first
+      points.insert(points.end(), others.begin(), others.end());
+      std::shuffle(points.begin(), points.end(), random);
+      CHECK(bound_of(points) == doctest::Approx(std::max(alone, other)).epsilon(1e-6));
+    }
+  }
+
   TEST_CASE("solving does not allocate") {
     std::mt19937 random(26);
     const auto points = random_contacts(random, 100, 2.0);

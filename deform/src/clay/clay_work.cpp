@@ -225,7 +225,7 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
       gone = static_cast<double>(step) / steps;
       place_at(gone);
       const int before = report.passes;
-      left = sub_step(shape, (step == steps ? skin_mm : between_mm) * mm_, report);
+      left = sub_step(shape, step == steps, report);
       used += std::max(1, report.passes - before);
       ++report.sub_steps;
     }
@@ -244,9 +244,11 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
   report.status = status_;
 }
 
-/// Returns how deep the surface still is, which may be `enough`.
-double ClayDeformer::Work::sub_step(BoundedShape& shape, double enough,
+/// Returns how deep the surface still is. Before the last one, a pass whose whole field was applied
+/// is not looked at: what it leaves is met in the next one, and is less than a body's next step.
+double ClayDeformer::Work::sub_step(BoundedShape& shape, bool is_last,
                                     ClayReport& report) noexcept {
+  const double enough = (is_last ? skin_mm : between_mm) * mm_;
   rigid_.setIdentity();
   Found found = find(shape, true);
   const bool is_touched = found.deepest > 0.0 || found.is_loaded;
@@ -260,7 +262,8 @@ double ClayDeformer::Work::sub_step(BoundedShape& shape, double enough,
   }
   const bool slides = found.is_loaded && is_dragging_;
   if (found.deepest <= enough && !slides) return found.deepest;
-  return push(shape, slides, report) ? press_out(shape, enough, report) : found.deepest;
+  if (!push(shape, slides, report)) return found.deepest;
+  return is_last || !is_whole_ ? press_out(shape, enough, report) : enough;
 }
 
 /// Pushes until nothing is deeper than `enough`. Returns how deep the surface still is.
@@ -307,25 +310,26 @@ ClayDeformer::Work::Found ClayDeformer::Work::find(const BoundedShape& shape, bo
 
 void ClayDeformer::Work::offer(const BoundedShape& shape, std::size_t body, std::size_t block,
                                const NearestLanes& nearest, double& deepest) noexcept {
-  const auto margin = static_cast<float>(margin_mm * mm_);
-  float least = nearest.distance[0];
-  for (const float distance : nearest.distance)
-    least = distance < least ? distance : least;
-  if (!(least < margin)) return;
-  deepest = std::max(deepest, -static_cast<double>(least));
-  chosen_.find_cells(shape.shape[block]);
-  for (std::size_t lane = 0; lane < block_size; ++lane) {
-    if (!(nearest.distance[lane] < margin)) continue;
+  std::array<std::uint8_t, block_size> lanes;
+  const std::size_t count = nearest_of_cells(
+      shape.shape[block], nearest, static_cast<float>(margin_mm * mm_), chosen_.cells(), lanes);
+  for (std::size_t at = 0; at < count; ++at) {
+    const std::size_t lane = lanes[at];
     const auto part = static_cast<std::uint32_t>(nearest.part[lane]);
     const double depth = -static_cast<double>(nearest.distance[lane]);
+    deepest = std::max(deepest, depth);
     pressed_[part] = std::max(pressed_[part], static_cast<float>(depth));
-    ContactPoint* const point = chosen_.offer(lane, part, depth);
-    if (point == nullptr) continue;
     const std::size_t place = block * block_size + lane;
-    const Vector3d at = vertex_at(shape.shape, place).cast<double>();
+    const Eigen::Vector3f vertex = vertex_at(shape.shape, place);
+    ContactPoint* const point = chosen_.offer(vertex, part, depth);
+    if (point == nullptr) continue;
     const Eigen::Vector3f centre(nearest.x[lane], nearest.y[lane], nearest.z[lane]);
-    *point = {static_cast<std::uint32_t>(place), static_cast<std::uint32_t>(body), part, depth, at,
-              at - centre.cast<double>()};
+    *point = {static_cast<std::uint32_t>(place),
+              static_cast<std::uint32_t>(body),
+              part,
+              depth,
+              vertex.cast<double>(),
+              vertex.cast<double>() - centre.cast<double>()};
   }
 }
 
@@ -367,7 +371,8 @@ void ClayDeformer::Work::slide(std::span<const ContactPoint> points) noexcept {
 bool ClayDeformer::Work::apply(BoundedShape& shape, std::span<const ContactPoint> points) noexcept {
   const double bound = problem_.lipschitz_bound();
   if (!(bound > 0.0)) return false;
-  const double part = std::min(1.0, most_bound / bound) * layout_.unit();
+  is_whole_ = bound <= most_bound;
+  const double part = (is_whole_ ? 1.0 : most_bound / bound) * layout_.unit();
   const auto count = static_cast<Eigen::Index>(points.size());
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);

@@ -57,7 +57,7 @@ private:
   bool is_way_free(const BoundedShape& shape) noexcept;
   void place_at(double share) noexcept;
   void drag(std::size_t part) noexcept;
-  double sub_step(BoundedShape& shape, double enough, ClayReport& report) noexcept;
+  double sub_step(BoundedShape& shape, bool is_last, ClayReport& report) noexcept;
   double press_out(BoundedShape& shape, double enough, ClayReport& report) noexcept;
   void carry(BoundedShape& shape, ClayReport& report) noexcept;
   void pull(BoundedShape& shape, ClayReport& report) noexcept;
@@ -87,8 +87,9 @@ private:
   std::vector<ContactPart> from_, target_; ///< of a call
   std::vector<ContactPart> is_;            ///< of a sub-step
   std::vector<ContactPart> skins_;         ///< frames that lag behind the bones'
-  bool is_dragging_ = false;               ///< some skin has moved
-  std::vector<Eigen::Isometry3d> ways_;    ///< of each part's surface in a sub-step
+  bool is_whole_ = true;                ///< the last pass' field was applied, and not a part of it
+  bool is_dragging_ = false;            ///< some skin has moved
+  std::vector<Eigen::Isometry3d> ways_; ///< of each part's surface in a sub-step
   std::vector<BoxGate> boxes_;
   ContactSearch search_;
   ContactPoints chosen_;

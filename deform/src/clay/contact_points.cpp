@@ -38,45 +38,31 @@ ContactPoints::ContactPoints(std::size_t most)
 }
 
 void ContactPoints::clear(double cell) noexcept {
-  per_cell_ = static_cast<float>(1.0 / cell);
+  constexpr auto half = static_cast<float>(cells_a_side / 2);
+  cells_ = {static_cast<float>(1.0 / cell), half, 2.0F * half - 1.0F};
   points_.clear();
-  is_last_known_ = false;
   if (++round_ != 0) return;
   std::fill(slots_.begin(), slots_.end(), Slot{});
   round_ = 1;
 }
 
-void ContactPoints::find_cells(const VertexBlock& block) noexcept {
-  constexpr auto half = static_cast<float>(cells_a_side / 2);
-  const std::array<const float*, 3> coordinates{block.x.data(), block.y.data(), block.z.data()};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t lane = 0; lane < block_size; ++lane) {
-      float cell = coordinates[axis][lane] * per_cell_ + half;
-      cell = cell < 0.0F ? 0.0F : cell;
-      cell = cell > 2.0F * half - 1.0F ? 2.0F * half - 1.0F : cell;
-      cells_[axis][lane] = static_cast<std::int32_t>(cell);
-    }
-}
-
-ContactPoint* ContactPoints::offer(std::size_t lane, std::uint32_t part, double depth) noexcept {
+ContactPoint* ContactPoints::offer(const Eigen::Vector3f& at, std::uint32_t part,
+                                   double depth) noexcept {
   std::uint64_t key = part;
-  for (const auto& cells : cells_)
-    key = key << 18 | static_cast<std::uint64_t>(cells[lane]);
-  if (!is_last_known_ || key != last_key_) {
-    const std::size_t mask = slots_.size() - 1; // a power of two
-    std::size_t at = hash_of(key) & mask;
-    while (slots_[at].round == round_ && slots_[at].key != key)
-      at = (at + 1) & mask;
-    if (slots_[at].round != round_) {
-      if (points_.size() == points_.capacity()) return nullptr;
-      slots_[at] = {key, round_, static_cast<std::uint32_t>(points_.size())};
-      points_.emplace_back().depth = -std::numeric_limits<double>::infinity();
-    }
-    last_key_ = key;
-    last_slot_ = at;
-    is_last_known_ = true;
+  for (const float coordinate : at) {
+    const float cell = coordinate * cells_.a_length + cells_.shift;
+    key = key << 18 | static_cast<std::uint64_t>(std::clamp(cell, 0.0F, cells_.most));
   }
-  ContactPoint& kept = points_[slots_[last_slot_].point];
+  const std::size_t mask = slots_.size() - 1; // a power of two
+  std::size_t slot = hash_of(key) & mask;
+  while (slots_[slot].round == round_ && slots_[slot].key != key)
+    slot = (slot + 1) & mask;
+  if (slots_[slot].round != round_) {
+    if (points_.size() == points_.capacity()) return nullptr;
+    slots_[slot] = {key, round_, static_cast<std::uint32_t>(points_.size())};
+    points_.emplace_back().depth = -std::numeric_limits<double>::infinity();
+  }
+  ContactPoint& kept = points_[slots_[slot].point];
   return depth > kept.depth ? &kept : nullptr;
 }
 

@@ -2,7 +2,6 @@
 // Chooses the places at which a body pushes: the deepest vertex of each cell of space, one a part,
 // and of those only such as do not crowd.
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include <nendo/deform/vertex_blocks.hpp>
+#include "simd/contact_kernels.hpp"
 
 namespace nendo::deform {
 
@@ -31,13 +30,13 @@ public:
 
   /// Begins a choice with cells of this size.
   void clear(double cell) noexcept;
-  /// Finds the cells of a block's vertices, for offer().
-  void find_cells(const VertexBlock& block) noexcept;
-  /// Offers a vertex of that block. If it is the deepest yet of its cell and part, returns the
-  /// point that the caller sets to it, with a normal of any length; otherwise null. The first of
-  /// those that are equally deep stays. When the table is full, vertices of new cells are left out;
-  /// the next pass meets them.
-  ContactPoint* offer(std::size_t lane, std::uint32_t part, double depth) noexcept;
+  /// Returns the cells, for nearest_of_cells().
+  const SpaceCells& cells() const noexcept { return cells_; }
+  /// Offers a vertex. If it is the deepest yet of its cell and part, returns the point that the
+  /// caller sets to it, with a normal of any length; otherwise null. The first of those that are
+  /// equally deep stays. When the table is full, vertices of new cells are left out; the next pass
+  /// meets them.
+  ContactPoint* offer(const Eigen::Vector3f& at, std::uint32_t part, double depth) noexcept;
   /// Returns the deepest, none nearer than `apart` to a deeper one that pushes into nearly the same
   /// direction; at most as many as there is room for.
   std::span<const ContactPoint> choose(double apart) noexcept;
@@ -55,12 +54,8 @@ private:
   bool is_crowded(const ContactPoint& point, std::size_t chosen, float squared) const noexcept;
   void note_chosen(const ContactPoint& point, std::size_t at) noexcept;
 
-  float per_cell_ = 1.0F;
+  SpaceCells cells_{};
   std::uint32_t round_ = 0;
-  std::array<std::array<std::int32_t, block_size>, 3> cells_{}; ///< of a block, an array an axis
-  std::uint64_t last_key_ = 0;
-  std::size_t last_slot_ = 0;
-  bool is_last_known_ = false;
   Chosen chosen_;
   std::vector<Slot> slots_;          ///< an open hash table
   std::vector<ContactPoint> points_; ///< one a cell

@@ -44,7 +44,7 @@ void BoxGate::extend(const BoxGate& other) noexcept {
 ContactSearch::ContactSearch(std::size_t bodies, std::size_t parts_a_body)
     : bodies_(bodies), parts_a_body_(parts_a_body), parts_(bodies * parts_a_body),
       is_out_(parts_.size(), 0), body_boxes_(bodies, BoxGate::shut()), list_(parts_a_body),
-      from_parts_(parts_a_body * block_size) {
+      seen_(parts_a_body), excess_(parts_a_body * block_size) {
   cones_.reserve(3 * parts_.size());
   planes_.reserve(parts_.size());
 }
@@ -134,43 +134,34 @@ void ContactSearch::add_box(const BlockBounds& bounds, std::uint32_t block) noex
   halves.x[at] = -0.5F * (sides[0] + sides[4]);
   halves.y[at] = -0.5F * (sides[1] + sides[5]);
   halves.z[at] = -0.5F * (sides[2] + sides[6]);
-  boxes_.radii[at] = std::sqrt(halves.x[at] * halves.x[at] + halves.y[at] * halves.y[at] +
-                               halves.z[at] * halves.z[at]);
 }
 
-/// If one part is at d from a box' middle, it is at most d + r from what is in the box. Parts that
-/// are farther than that from all of the box are nowhere in it the nearest.
 void ContactSearch::measure_boxes(std::size_t body, float margin) noexcept {
-  for (std::size_t at = boxes_.count; at < block_size; ++at)
-    boxes_.lanes.middles.x[at] = boxes_.lanes.middles.y[at] = boxes_.lanes.middles.z[at] = 0.0F;
-  boxes_.reaches.fill(std::numeric_limits<float>::infinity());
-  boxes_.nearest = boxes_.reaches;
-  std::array<float, block_size> distances{};
+  for (VertexBlock* const lanes : {&boxes_.lanes.middles, &boxes_.lanes.halves})
+    for (std::size_t at = boxes_.count; at < block_size; ++at)
+      lanes->x[at] = lanes->y[at] = lanes->z[at] = 0.0F;
+  boxes_.nearest.distance.fill(std::numeric_limits<float>::max());
+  boxes_.nearest.to_centre.fill(1.0F);
+  boxes_.least_excess.fill(std::numeric_limits<float>::max());
+  const auto first = static_cast<std::uint32_t>(body * parts_a_body_);
+  for (std::uint32_t part = 0; part < parts_a_body_; ++part)
+    if (is_out_[first + part] == 0)
+      part_from_boxes(boxes_.lanes, arrays(), first + part, seen_[part], boxes_.nearest);
   for (std::size_t part = 0; part < parts_a_body_; ++part) {
-    const auto number = static_cast<std::uint32_t>(body * parts_a_body_ + part);
-    float* const least = from_parts_.data() + part * block_size;
-    if (is_out_[number] != 0) {
-      std::fill_n(least, block_size, std::numeric_limits<float>::infinity());
-      continue;
-    }
-    part_from_boxes(boxes_.lanes, arrays(), number, distances.data(), least);
-    for (std::size_t at = 0; at < block_size; ++at) {
-      boxes_.reaches[at] = distances[at] < boxes_.reaches[at] ? distances[at] : boxes_.reaches[at];
-      boxes_.nearest[at] = least[at] < boxes_.nearest[at] ? least[at] : boxes_.nearest[at];
-    }
+    float* const excess = excess_.data() + part * block_size;
+    if (is_out_[first + part] == 0)
+      excess_in_boxes(boxes_.lanes, seen_[part], boxes_.nearest, margin, excess,
+                      boxes_.least_excess);
+    else
+      std::fill_n(excess, block_size, std::numeric_limits<float>::max());
   }
   distances_ += parts_a_body_ * boxes_.count;
-  constexpr float rounding = 1e-5F; // of these distances
-  for (std::size_t at = 0; at < boxes_.count; ++at) {
-    const float reach = std::min(boxes_.reaches[at] + boxes_.radii[at], margin);
-    boxes_.reaches[at] = reach + rounding * (1.0F + std::abs(reach) + boxes_.radii[at]);
-  }
 }
 
 std::size_t ContactSearch::list_parts(std::size_t body, std::size_t box) noexcept {
   std::size_t count = 0;
   for (std::size_t part = 0; part < parts_a_body_; ++part)
-    if (from_parts_[part * block_size + box] <= boxes_.reaches[box])
+    if (excess_[part * block_size + box] <= 0.0F)
       list_[count++] = static_cast<std::uint32_t>(body * parts_a_body_ + part);
   return count;
 }

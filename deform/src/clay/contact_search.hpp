@@ -60,9 +60,8 @@ private:
     std::size_t count = 0;
     std::array<std::uint32_t, block_size> blocks{};
     BoxLanes lanes;
-    std::array<float, block_size> radii{};
-    std::array<float, block_size> reaches{}; ///< a part that is farther is not the nearest
-    std::array<float, block_size> nearest{}; ///< what no part falls short of
+    NearestFromBoxes nearest;
+    std::array<float, block_size> least_excess{};
   };
 
   void add_cone(const ContactPart& part, std::size_t first, std::size_t second) noexcept;
@@ -85,7 +84,8 @@ private:
   std::size_t distances_ = 0;
   NearestLanes nearest_{};
   Boxes boxes_;
-  std::vector<float> from_parts_; ///< for each part of a body, what 64 boxes do not fall short of
+  std::vector<PartFromBoxes> seen_; ///< each part of a body, from 64 boxes
+  std::vector<float> excess_;       ///< of 64 boxes, for each part of a body
 };
 
 template <class Visit>
@@ -106,9 +106,8 @@ void ContactSearch::visit_boxes(const BoundedShape& shape, std::size_t body, flo
                                 const Visit& visit) {
   measure_boxes(body, margin);
   for (std::size_t box = 0; box < boxes_.count; ++box) {
-    if (boxes_.nearest[box] > boxes_.reaches[box]) continue;
+    if (boxes_.least_excess[box] > 0.0F) continue;
     const std::size_t count = list_parts(body, box);
-    if (count == 0) continue;
     const std::size_t block = boxes_.blocks[box];
     nearest_in_block(shape.shape[block], arrays(), list_.data(), count, nearest_);
     distances_ += count * block_size;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "clay/field_bound.hpp"
 
@@ -129,18 +130,37 @@ Vector3d PressProblem::coefficient(std::size_t i) const noexcept {
           l_[i] * normals_[2][i] + t_[2][i]};
 }
 
-/// The sums of psi_ij c_j are made in the room of left_.
+/// Where no function of the one side reaches one of the other: an axis, and a coordinate between.
+PressProblem::Gap PressProblem::widest_gap() noexcept {
+  Gap widest{0, std::numeric_limits<double>::infinity(), 2.0 * radius_};
+  double* const sorted = left_[0].get();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < count_; ++i)
+      if (!coefficient(i).isZero(0.0)) sorted[count++] = places_[axis][i];
+    std::sort(sorted, sorted + count);
+    for (std::size_t i = 1; i < count; ++i)
+      if (const double width = sorted[i] - sorted[i - 1]; width >= widest.width)
+        widest = {axis, 0.5 * (sorted[i] + sorted[i - 1]), width};
+  }
+  return widest;
+}
+
+/// The sums of psi_ij c_j are made in the room of left_. Two hands on a model are often farther
+/// apart than their functions reach; nowhere do both add to the slope then.
 double PressProblem::lipschitz_bound() noexcept {
+  const Gap gap = widest_gap();
   for (auto& numbers : left_)
     std::fill_n(numbers.get(), stride_, 0.0);
   for (std::size_t i = 0; i < count_; ++i)
     if (const Vector3d one = coefficient(i); !one.isZero(0.0))
       add_row(arrays(), psi_row(i), {one.x(), one.y(), one.z()},
               {left_[0].get(), left_[1].get(), left_[2].get()});
-  Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
+  std::array<Eigen::Matrix3d, 2> grams{Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero()};
   for (std::size_t i = 0; i < count_; ++i)
-    gram += coefficient(i) * Eigen::RowVector3d(left_[0][i], left_[1][i], left_[2][i]);
-  return bound_of_gram(gram, radius_);
+    grams[places_[gap.axis][i] < gap.middle ? 0 : 1] +=
+        coefficient(i) * Eigen::RowVector3d(left_[0][i], left_[1][i], left_[2][i]);
+  return std::max(bound_of_gram(grams[0], radius_), bound_of_gram(grams[1], radius_));
 }
 
 } // namespace nendo::deform

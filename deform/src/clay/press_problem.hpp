@@ -54,7 +54,14 @@ public:
 private:
   using Three = std::array<VectorArray<double>, 3>; ///< an array an axis
 
+  struct Gap {
+    std::size_t axis;
+    double middle; ///< infinite if there is none
+    double width;
+  };
+
   PressArrays arrays() const noexcept;
+  Gap widest_gap() noexcept;
   const double* psi_row(std::size_t i) const noexcept { return psi_.get() + i * stride_; }
   bool sweep_friction(std::span<const Friction> frictions, double coefficient,
                       double least) noexcept;

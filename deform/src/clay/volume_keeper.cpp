@@ -1,37 +1,45 @@
 #include "clay/volume_keeper.hpp"
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <utility>
 
 namespace nendo::deform {
 
-using Eigen::Vector4f;
-
 namespace {
 
-/// Of a step to the mean of the neighbours, for each edge that a vertex is moved by.
-constexpr float fairness = 2.0F;
-constexpr float most_fairing = 0.3F;
-constexpr float least_square = 1e-30F; // instead of a division by 0
+constexpr std::size_t calls_a_direction = 4;
 
-/// Eigen's cross product of vectors of four waits for memory, and takes thrice as long.
+/// Four coordinates in a register: one load takes a neighbour, where three would wait for three
+/// cache lines.
 using Four = float __attribute__((vector_size(16)));
-Four four(const Vector4f& vector) noexcept {
-  Four result;
-  std::memcpy(&result, vector.data(), sizeof(result));
-  return result;
+
+void gather(const std::array<float, 4>* points, const std::uint32_t* places,
+            VertexBlock& to) noexcept {
+  const auto load = [&](std::size_t lane) {
+    Four four;
+    std::memcpy(&four, points[places[lane]].data(), sizeof(four));
+    return four;
+  };
+  for (std::size_t lane = 0; lane < block_size; lane += 4) {
+    const Four a = load(lane), b = load(lane + 1), c = load(lane + 2), d = load(lane + 3);
+    const Four xy = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+    const Four xy2 = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+    const Four z = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+    const Four z2 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    const Four all_x = __builtin_shufflevector(xy, xy2, 0, 1, 4, 5);
+    const Four all_y = __builtin_shufflevector(xy, xy2, 2, 3, 6, 7);
+    const Four all_z = __builtin_shufflevector(z, z2, 0, 1, 4, 5);
+    std::memcpy(to.x.data() + lane, &all_x, sizeof(Four));
+    std::memcpy(to.y.data() + lane, &all_y, sizeof(Four));
+    std::memcpy(to.z.data() + lane, &all_z, sizeof(Four));
+  }
 }
-Vector4f vector(const Four& numbers) noexcept {
-  Vector4f result;
-  std::memcpy(result.data(), &numbers, sizeof(numbers));
-  return result;
-}
-/// y, z, x, w. A cross product is turned(a * turned(b) - turned(a) * b).
-Four turned(const Four& numbers) noexcept {
-  return __builtin_shufflevector(numbers, numbers, 1, 2, 0, 3);
+
+void scatter(const VertexBlock& from, std::array<float, 4>* to) noexcept {
+  for (std::size_t lane = 0; lane < block_size; ++lane)
+    to[lane] = {from.x[lane], from.y[lane], from.z[lane], 0.0F};
 }
 
 float smooth_step(float t) noexcept {
@@ -39,42 +47,52 @@ float smooth_step(float t) noexcept {
   return s * s * (3.0F - 2.0F * s);
 }
 
-bool is_closed_surface(std::span<const std::uint32_t> corners) {
-  using Edge = std::pair<std::uint32_t, std::uint32_t>;
-  std::vector<Edge> ahead, back;
-  for (std::size_t at = 0; at + 2 < corners.size(); at += 3)
-    for (std::size_t k = 0; k < 3; ++k) {
-      ahead.emplace_back(corners[at + k], corners[at + (k + 1) % 3]);
-      back.emplace_back(corners[at + (k + 1) % 3], corners[at + k]);
-    }
-  std::sort(ahead.begin(), ahead.end());
-  std::sort(back.begin(), back.end());
-  return !ahead.empty() && ahead == back &&
-         std::adjacent_find(ahead.begin(), ahead.end()) == ahead.end();
+/// Each edge is run along once in each direction.
+bool is_closed_surface(std::span<const std::uint32_t> corners, std::size_t vertices) {
+  const auto edges = [&](bool ahead) {
+    return rows_by_key<std::uint32_t>(vertices, [&](const auto& visit) {
+      for (std::size_t at = 0; at < corners.size(); ++at) {
+        const std::uint32_t next = corners[at % 3 == 2 ? at - 2 : at + 1];
+        ahead ? visit(corners[at], next) : visit(next, corners[at]);
+      }
+    });
+  };
+  auto ahead = edges(true);
+  auto back = edges(false);
+  for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
+    std::sort(ahead[vertex].begin(), ahead[vertex].end());
+    std::sort(back[vertex].begin(), back[vertex].end());
+    if (!std::equal(ahead[vertex].begin(), ahead[vertex].end(), back[vertex].begin(),
+                    back[vertex].end()) ||
+        std::adjacent_find(ahead[vertex].begin(), ahead[vertex].end()) != ahead[vertex].end())
+      return false;
+  }
+  return !corners.empty() && corners.size() % 3 == 0;
 }
 
 } // namespace
 
 VolumeKeeper::VolumeKeeper(const BlockLayout& layout, std::span<const std::uint32_t> triangles)
-    : vertices_(layout.vertex_count()), is_closed_(is_closed_surface(triangles)) {
+    : vertices_(layout.vertex_count()), is_closed_(is_closed_surface(triangles, vertices_)) {
   if (!is_closed_) return;
-  build_fans(layout, triangles);
   const std::size_t blocks = layout.block_count();
-  build_neighbours(blocks);
+  const Fans fans = fans_of(layout, triangles);
+  build_rings(fans, blocks);
+  build_neighbours(fans, blocks);
   stamps_.assign(blocks, 0);
   volumes_.assign(blocks, 0.0);
   is_free_.assign(blocks, 0);
-  for (auto* vectors : {&points_, &normals_, &directions_, &fairing_})
-    vectors->assign(vertices_, Vector4f::Zero());
-  rates_.assign(vertices_, 0.0F);
-  curvatures_.assign(vertices_, 0.0F);
+  points_.assign(blocks * block_size, {});
+  normals_.assign(blocks * block_size, {});
+  measured_.assign(blocks, RingBlock{});
   weights_.assign(blocks * block_size, 0.0F);
 }
 
 /// Orders the neighbours of each vertex as they are met when one goes round it, counter-clockwise.
 /// Where several fans meet, each begins and ends with the same neighbour, so that the products of
 /// neighbours in a row are still those of the triangles: what leads from fan to fan cancels out.
-void VolumeKeeper::build_fans(const BlockLayout& layout, std::span<const std::uint32_t> corners) {
+VolumeKeeper::Fans VolumeKeeper::fans_of(const BlockLayout& layout,
+                                         std::span<const std::uint32_t> corners) const {
   using Edge = std::pair<std::uint32_t, std::uint32_t>;
   const std::vector<std::uint32_t> places = layout.places();
   auto edges = rows_by_key<Edge>(vertices_, [&](const auto& visit) {
@@ -84,14 +102,15 @@ void VolumeKeeper::build_fans(const BlockLayout& layout, std::span<const std::ui
             Edge{places[corners[first + (at + 1) % 3]], places[corners[first + (at + 2) % 3]]});
     }
   });
-  fans_.starts.assign(1, 0);
+  Fans fans;
+  fans.starts.assign(1, 0);
   for (std::size_t place = 0; place < vertices_; ++place) {
     const std::span<Edge> around = edges[place];
     std::size_t fan = 0; // its first edge
     for (std::size_t at = 0; at < around.size(); ++at) {
-      fans_.items.push_back(around[at].first);
+      fans.items.push_back(around[at].first);
       if (around[at].second == around[fan].first) { // round
-        if (fan > 0 || at + 1 < around.size()) fans_.items.push_back(around[fan].first);
+        if (fan > 0 || at + 1 < around.size()) fans.items.push_back(around[fan].first);
         fan = at + 1;
         continue;
       }
@@ -101,17 +120,57 @@ void VolumeKeeper::build_fans(const BlockLayout& layout, std::span<const std::ui
       if (next != around.end())
         std::iter_swap(around.begin() + static_cast<std::ptrdiff_t>(at) + 1, next);
     }
-    fans_.starts.push_back(static_cast<std::uint32_t>(fans_.items.size()));
+    fans.starts.push_back(static_cast<std::uint32_t>(fans.items.size()));
   }
+  return fans;
 }
 
-void VolumeKeeper::build_neighbours(std::size_t blocks) {
+void VolumeKeeper::build_rings(const Fans& fans, std::size_t blocks) {
+  ring_counts_.assign(blocks * block_size, 0.0F);
+  first_rings_.assign(1, 0);
+  for (std::size_t block = 0; block < blocks; ++block) {
+    std::size_t most = 0;
+    for (std::size_t place = block * block_size; place < end_of(block); ++place) {
+      most = std::max(most, fans[place].size());
+      ring_counts_[place] = static_cast<float>(fans[place].size());
+    }
+    for (std::size_t at = 0; at < most; ++at)
+      for (std::size_t place = block * block_size; place < (block + 1) * block_size; ++place) {
+        const auto fan = place < vertices_ ? fans[place] : std::span<const std::uint32_t>{};
+        const auto itself = static_cast<std::uint32_t>(std::min(place, vertices_ - 1));
+        ring_neighbours_.push_back(fan.empty() ? itself : fan[std::min(at, fan.size() - 1)]);
+      }
+    first_rings_.push_back(ring_neighbours_.size());
+    around_points_.resize(std::max(around_points_.size(), most));
+  }
+  around_normals_.resize(around_points_.size());
+}
+
+/// The neighbours are brought together one by one: many processors' gathering loads take longer.
+double VolumeKeeper::measure(const BoundedShape& shape, std::size_t block, bool turns) noexcept {
+  const std::uint32_t* const from = ring_neighbours_.data() + first_rings_[block];
+  const std::size_t most = (first_rings_[block + 1] - first_rings_[block]) / block_size;
+  for (std::size_t at = 0; at < most; ++at) {
+    gather(points_.data(), from + at * block_size, around_points_[at]);
+    if (turns) gather(normals_.data(), from + at * block_size, around_normals_[at]);
+  }
+  VertexBlock normals;
+  const double volume = measure_rings(shape.shape[block],
+                                      {{around_points_.data(), most},
+                                       {around_normals_.data(), turns ? most : 0},
+                                       ring_counts_.data() + block * block_size},
+                                      normals, measured_[block]);
+  scatter(normals, normals_.data() + block * block_size);
+  return volume;
+}
+
+void VolumeKeeper::build_neighbours(const Fans& fans, std::size_t blocks) {
   neighbours_.starts.assign(1, 0);
   std::vector<std::uint32_t> of_block;
   for (std::size_t block = 0; block < blocks; ++block) {
     of_block.assign(1, static_cast<std::uint32_t>(block));
     for (std::size_t place = block * block_size; place < end_of(block); ++place)
-      for (const std::uint32_t other : fans_[place])
+      for (const std::uint32_t other : fans[place])
         of_block.push_back(static_cast<std::uint32_t>(other / block_size));
     std::sort(of_block.begin(), of_block.end());
     of_block.erase(std::unique(of_block.begin(), of_block.end()), of_block.end());
@@ -127,69 +186,18 @@ bool VolumeKeeper::has_changed(const BoundedShape& shape, std::size_t block) con
   });
 }
 
-void VolumeKeeper::read(const BoundedShape& shape, std::size_t block) noexcept {
-  const VertexBlock& content = shape.shape[block];
-  const std::size_t first = block * block_size;
-  for (std::size_t place = first; place < end_of(block); ++place)
-    points_[place] = {content.x[place - first], content.y[place - first], content.z[place - first],
-                      0.0F};
-}
-
-/// The volume's derivative by a vertex is a sixth of the sum of its triangles' cross products, and
-/// the sum of vertices times derivatives is three times the volume. The direction is that of the
-/// derivatives of the vertex and of its neighbours, because those of single vertices are rough;
-/// some of the neighbours' may be those of the call before. Where neighbours lie on a circle with a
-/// radius of h, their middle is H h^2 / 2 below the vertex, H being the mean curvature; and the
-/// area of a surface that moves by f along its normals grows with 2 H f.
-double VolumeKeeper::measure(std::size_t place) noexcept {
-  const Vector4f at = points_[place];
-  const auto fan = fans_[place];
-  if (fan.empty()) return 0.0;
-  const Four here = four(at);
-  Four crosses{};
-  Four all_normals{};
-  Four all_ways{};
-  Four all_squares{};
-  Four before = four(points_[fan.back()]) - here;
-  for (const std::uint32_t other : fan) {
-    const Four way = four(points_[other]) - here;
-    crosses += before * turned(way) - turned(before) * way;
-    all_normals += four(normals_[other]);
-    all_ways += way;
-    all_squares += way * way;
-    before = way;
-  }
-  const Vector4f normal = vector(turned(crosses)) / 6.0F;
-  Vector4f around = vector(all_normals);
-  const Vector4f ways = vector(all_ways);
-  const Vector4f squares = vector(all_squares);
-  normals_[place] = normal;
-  around += normal;
-  const auto count = static_cast<float>(fan.size());
-  const float per_square = count / std::max(squares.sum(), least_square);
-  const Vector4f direction = around / std::sqrt(std::max(around.squaredNorm(), least_square));
-  const float height = ways.dot(direction) / count;
-  directions_[place] = direction;
-  fairing_[place] = ways / count - height * direction;
-  fairing_[place][3] = std::sqrt(per_square);
-  rates_[place] = direction.dot(normal);
-  curvatures_[place] = -2.0F * height * per_square;
-  return static_cast<double>(at.dot(normal));
-}
-
-void VolumeKeeper::measure_block(std::size_t block) noexcept {
-  double sum = 0.0;
-  for (std::size_t place = block * block_size; place < end_of(block); ++place)
-    sum += measure(place);
-  volumes_[block] = sum / 3.0;
-}
-
+/// In which directions a shape swells need not be known to the last call: a block's are found anew
+/// in one of some calls.
 double VolumeKeeper::volume(const BoundedShape& shape) noexcept {
+  ++calls_;
   for (std::size_t block = 0; block < volumes_.size(); ++block)
-    if (stamps_[block] != shape.shape.stamp(block)) read(shape, block);
+    if (stamps_[block] != shape.shape.stamp(block))
+      scatter(shape.shape[block], points_.data() + block * block_size);
   double sum = 0.0;
   for (std::size_t block = 0; block < volumes_.size(); ++block) {
-    if (has_changed(shape, block)) measure_block(block);
+    if (has_changed(shape, block))
+      volumes_[block] =
+          measure(shape, block, stamps_[block] == 0 || (block + calls_) % calls_a_direction == 0);
     sum += volumes_[block];
   }
   for (std::size_t block = 0; block < volumes_.size(); ++block)
@@ -199,7 +207,8 @@ double VolumeKeeper::volume(const BoundedShape& shape) noexcept {
 
 void VolumeKeeper::forget() noexcept {
   std::fill(stamps_.begin(), stamps_.end(), 0);
-  std::fill(normals_.begin(), normals_.end(), Vector4f::Zero());
+  std::fill(normals_.begin(), normals_.end(), std::array<float, 4>{});
+  calls_ = 0;
 }
 
 /// By the distance from the box along the farthest axis.
@@ -248,18 +257,10 @@ void VolumeKeeper::sum_rates() noexcept {
   rate_ = bend_ = 0.0;
   for (std::size_t block = 0; block < volumes_.size(); ++block) {
     if (is_free_[block] == 0) continue;
-    float rate = 0.0F;
-    float bend = 0.0F;
-    float largest = 0.0F;
-    for (std::size_t place = block * block_size; place < end_of(block); ++place) {
-      const float weight = weights_[place];
-      rate += weight * rates_[place];
-      bend += weight * weight * curvatures_[place] * rates_[place];
-      largest = std::max(largest, weight);
-    }
-    rate_ += static_cast<double>(rate);
-    bend_ += static_cast<double>(bend);
-    is_free_[block] = largest > 0.0F ? 1 : 0;
+    const SwellRates rates = swell_rates(measured_[block], weights_.data() + block * block_size);
+    rate_ += rates.rate;
+    bend_ += rates.bend;
+    is_free_[block] = rates.is_free ? 1 : 0;
   }
 }
 
@@ -280,17 +281,8 @@ void VolumeKeeper::move(BoundedShape& shape, float far) noexcept {
   for (std::size_t block = 0; block < volumes_.size(); ++block) {
     if (is_free_[block] == 0) continue;
     VertexBlock& content = shape.shape.data()[block];
-    const std::size_t first = block * block_size;
-    const std::size_t used = end_of(block) - first;
-    for (std::size_t lane = 0; lane < used; ++lane) {
-      const Vector4f& fairing = fairing_[first + lane];
-      const float fair = std::min(most_fairing, fairness * std::abs(far) * fairing[3]);
-      const Vector4f by =
-          weights_[first + lane] * (far * directions_[first + lane] + fair * fairing);
-      content.x[lane] += by[0];
-      content.y[lane] += by[1];
-      content.z[lane] += by[2];
-    }
+    const std::size_t used = end_of(block) - block * block_size;
+    swell_block(measured_[block], weights_.data() + block * block_size, far, content);
     for (std::size_t lane = used; lane < block_size; ++lane) { // the padding repeats the last one
       content.x[lane] = content.x[used - 1];
       content.y[lane] = content.y[used - 1];

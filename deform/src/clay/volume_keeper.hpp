@@ -3,18 +3,18 @@
 // block knows its part of the volume, which is computed anew only where vertices have moved.
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include <nendo/deform/vertex_blocks.hpp>
 
 #include "block_evaluator.hpp"
 #include "clay/contact_search.hpp"
 #include "rows_by_key.hpp"
+#include "simd/ring_kernels.hpp"
 
 namespace nendo::deform {
 
@@ -50,15 +50,15 @@ public:
                    const GiveBack& how) noexcept;
 
 private:
-  void build_fans(const BlockLayout& layout, std::span<const std::uint32_t> corners);
-  void build_neighbours(std::size_t blocks);
+  using Fans = RowsByKey<std::uint32_t>; ///< of each place: its neighbours in their order
+  Fans fans_of(const BlockLayout& layout, std::span<const std::uint32_t> corners) const;
+  void build_rings(const Fans& fans, std::size_t blocks);
+  void build_neighbours(const Fans& fans, std::size_t blocks);
+  double measure(const BoundedShape& shape, std::size_t block, bool turns) noexcept;
   std::size_t end_of(std::size_t block) const noexcept {
     return std::min(vertices_, (block + 1) * block_size);
   }
   bool has_changed(const BoundedShape& shape, std::size_t block) const noexcept;
-  void read(const BoundedShape& shape, std::size_t block) noexcept;
-  double measure(std::size_t place) noexcept;
-  void measure_block(std::size_t block) noexcept;
   void weigh(const BoundedShape& shape, ContactSearch& search, const GiveBack& how) noexcept;
   void weigh_around(const BoundedShape& shape, std::size_t block, const GiveBack& how) noexcept;
   void sum_rates() noexcept;
@@ -67,19 +67,19 @@ private:
 
   std::size_t vertices_;
   bool is_closed_ = false;
-  RowsByKey<std::uint32_t> fans_;       ///< of each place: its neighbours in their order
+  std::vector<std::size_t> first_rings_;       ///< of each block, in the next, and of none
+  std::vector<std::uint32_t> ring_neighbours_; ///< places, as BlockRings has them
+  std::vector<float> ring_counts_;
   RowsByKey<std::uint32_t> neighbours_; ///< of each block, with itself
   std::vector<std::uint64_t> stamps_;   ///< of the blocks when they were measured
   std::vector<double> volumes_;         ///< one a block
   std::vector<std::uint8_t> is_free_;   ///< one a block: some weight is not 0
-  // One a place, with a fourth number, so that one load takes a whole neighbour.
-  std::vector<Eigen::Vector4f> points_;
-  std::vector<Eigen::Vector4f> normals_; ///< the volume's derivative by each vertex
-  std::vector<Eigen::Vector4f> directions_;
-  std::vector<Eigen::Vector4f> fairing_; ///< the way to the neighbours' middle; an inverse edge
-  std::vector<float> rates_;             ///< by which the volume grows with each one's distance
-  std::vector<float> curvatures_;        ///< mean ones
+  std::vector<std::array<float, 4>> points_;
+  std::vector<std::array<float, 4>> normals_; ///< the volume's derivative by each vertex
+  std::vector<RingBlock> measured_;
   std::vector<float> weights_;
+  std::vector<VertexBlock> around_points_, around_normals_; ///< of one block's rings
+  std::size_t calls_ = 0;                                   ///< of volume(), since forget()
   double rate_ = 0.0; ///< by which the volume grows with the distance
   double bend_ = 0.0; ///< and with its square
 };

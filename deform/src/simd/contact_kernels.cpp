@@ -1,5 +1,8 @@
 #include "simd/contact_kernels.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/contact_kernels.cpp"
 #include "simd/targets.hpp"
@@ -67,9 +70,17 @@ HWY_INLINE void visit_cone(ContactTag d, const ConeEntry& cone, const Vectors3<C
   take_if_nearer(hn::Sub(hn::Sqrt(squared_norm(left)), radius), left, place, part, best);
 }
 
-/// Returns whether all places are nearest to the triangle's inside. Its edges are then no nearer.
-HWY_INLINE bool visit_plane(ContactTag d, const PlaneEntry& plane, const Vectors3<ContactV>& place,
-                            ContactV part, NearestVectors& best) {
+/// For each place the part of a triangle's distance that its inside tells, and whether an edge may
+/// be nearer: those edges beyond which the best place of the whole plane lies. The distance is
+/// convex in the plane, so that from the nearest place of the triangle the way to the best one
+/// leaves it.
+struct BesidePlane {
+  bool first, second, third; ///< some place lies beyond the edge that is opposite to that corner
+};
+
+HWY_INLINE BesidePlane visit_plane(ContactTag d, const PlaneEntry& plane,
+                                   const Vectors3<ContactV>& place, ContactV part,
+                                   NearestVectors& best) {
   const ContactV zero = hn::Zero(d);
   const Vectors3<ContactV> from = relative_to(d, plane, place);
   const ContactV height = product(d, from, plane.normal);
@@ -86,19 +97,29 @@ HWY_INLINE bool visit_plane(ContactTag d, const PlaneEntry& plane, const Vectors
   const ContactV second = product(d, foot, plane.second);
   const ContactV third = hn::Sub(hn::Set(d, 1.0F), hn::Add(first, second));
   const auto inside = hn::Ge(hn::Min(hn::Min(first, second), third), zero);
+  const BesidePlane beside{!hn::AllTrue(d, hn::Ge(first, zero)),
+                           !hn::AllTrue(d, hn::Ge(second, zero)),
+                           !hn::AllTrue(d, hn::Ge(third, zero))};
+  if (hn::AllFalse(d, inside)) return beside;
   const ContactV radius = hn::Add(hn::Set(d, plane.radius), product(d, foot, plane.slope));
   const ContactV distance = hn::Sub(hn::Sqrt(squared_norm(left)), radius);
   take_if_nearer(hn::IfThenElse(inside, distance, hn::Inf(d)), left, place, part, best);
-  return hn::AllTrue(d, inside);
+  return beside;
 }
 
+/// The edges of a triangle are the cones from its corners 0 to 1, 1 to 2, and 2 to 0.
 HWY_INLINE void visit_part(ContactTag d, const PartArrays& arrays, const PartEntry& entry,
                            const Vectors3<ContactV>& place, ContactV part, NearestVectors& best) {
-  if (entry.plane != no_plane &&
-      visit_plane(d, arrays.planes[entry.plane], place, part, best)) // all before its inside
+  const ConeEntry* const cones = arrays.cones + entry.first_cone;
+  if (entry.plane == no_plane) {
+    for (std::uint32_t cone = 0; cone < entry.cone_count; ++cone)
+      visit_cone(d, cones[cone], place, part, best);
     return;
-  for (std::uint32_t cone = 0; cone < entry.cone_count; ++cone)
-    visit_cone(d, arrays.cones[entry.first_cone + cone], place, part, best);
+  }
+  const BesidePlane beside = visit_plane(d, arrays.planes[entry.plane], place, part, best);
+  if (beside.second) visit_cone(d, cones[0], place, part, best);
+  if (beside.third) visit_cone(d, cones[1], place, part, best);
+  if (beside.first) visit_cone(d, cones[2], place, part, best);
 }
 
 void nearest_lanes(const VertexBlock& block, const PartArrays& arrays, const std::uint32_t* list,
@@ -121,7 +142,7 @@ void nearest_lanes(const VertexBlock& block, const PartArrays& arrays, const std
 }
 
 void part_lanes(const BoxLanes& boxes, const PartArrays& arrays, std::uint32_t part,
-                float* distances, float* least) {
+                PartFromBoxes& seen, NearestFromBoxes& nearest) {
   const ContactTag d;
   for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
     const Vectors3<ContactV> place = load_vectors(d, boxes.middles, lane);
@@ -131,11 +152,99 @@ void part_lanes(const BoxLanes& boxes, const PartArrays& arrays, std::uint32_t p
     const Vectors3<ContactV> way{hn::Sub(place.x, best.centre.x), hn::Sub(place.y, best.centre.y),
                                  hn::Sub(place.z, best.centre.z)};
     const ContactV length = hn::Max(hn::Sqrt(squared_norm(way)), hn::Set(d, 1e-30F));
+    const ContactV inverse = hn::Div(hn::Set(d, 1.0F), length);
+    const Vectors3<ContactV> away{hn::Mul(way.x, inverse), hn::Mul(way.y, inverse),
+                                  hn::Mul(way.z, inverse)};
     const ContactV falls =
-        hn::MulAdd(hn::Abs(way.x), half.x,
-                   hn::MulAdd(hn::Abs(way.y), half.y, hn::Mul(hn::Abs(way.z), half.z)));
-    hn::StoreU(best.distance, d, distances + lane);
-    hn::StoreU(hn::Sub(best.distance, hn::Div(falls, length)), d, least + lane);
+        hn::MulAdd(hn::Abs(away.x), half.x,
+                   hn::MulAdd(hn::Abs(away.y), half.y, hn::Mul(hn::Abs(away.z), half.z)));
+    const auto nearer = hn::Lt(best.distance, hn::Load(d, nearest.distance.data() + lane));
+    const auto set = [&](ContactV value, std::array<float, block_size>& of_part,
+                         std::array<float, block_size>& of_nearest) HWY_ATTR {
+      hn::Store(value, d, of_part.data() + lane);
+      hn::Store(hn::IfThenElse(nearer, value, hn::Load(d, of_nearest.data() + lane)), d,
+                of_nearest.data() + lane);
+    };
+    set(best.distance, seen.distance, nearest.distance);
+    set(away.x, seen.x, nearest.x);
+    set(away.y, seen.y, nearest.y);
+    set(away.z, seen.z, nearest.z);
+    set(length, seen.least, nearest.to_centre);
+    hn::Store(hn::Sub(best.distance, falls), d, seen.least.data() + lane);
+  }
+}
+
+void excess_lanes(const BoxLanes& boxes, const PartFromBoxes& seen, const NearestFromBoxes& nearest,
+                  float margin, float* excess, float* least) {
+  const ContactTag d;
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const auto of = [&](const std::array<float, block_size>& numbers)
+                        HWY_ATTR { return hn::Load(d, numbers.data() + lane); };
+    const Vectors3<ContactV> half = load_vectors(d, boxes.halves, lane);
+    const ContactV turns =
+        hn::MulAdd(hn::Abs(hn::Sub(of(seen.x), of(nearest.x))), half.x,
+                   hn::MulAdd(hn::Abs(hn::Sub(of(seen.y), of(nearest.y))), half.y,
+                              hn::Mul(hn::Abs(hn::Sub(of(seen.z), of(nearest.z))), half.z)));
+    const ContactV squared = squared_norm(half);
+    const ContactV bends = hn::Div(hn::Mul(hn::Set(d, 0.5F), squared), of(nearest.to_centre));
+    const ContactV farther = hn::Sub(of(seen.distance), of(nearest.distance));
+    const ContactV beyond = hn::Sub(of(seen.least), hn::Set(d, margin));
+    const ContactV size = hn::Add(hn::Abs(of(nearest.distance)), hn::Sqrt(squared));
+    const ContactV rounding = hn::MulAdd(hn::Set(d, 1e-5F), size, hn::Set(d, 1e-5F));
+    const ContactV more = hn::Max(hn::Sub(farther, hn::Add(turns, bends)), beyond);
+    const ContactV here = hn::Sub(more, rounding);
+    hn::StoreU(here, d, excess + lane);
+    hn::StoreU(hn::Min(here, hn::LoadU(d, least + lane)), d, least + lane);
+  }
+}
+
+/// A number for each cell: ten bits of each coordinate's.
+HWY_INLINE hn::Vec<hn::RebindToSigned<ContactTag>>
+cell_keys(ContactTag d, const VertexBlock& block, std::size_t lane, const SpaceCells& cells) {
+  const hn::RebindToSigned<ContactTag> di;
+  const auto cell_of = [&](ContactV coordinate) HWY_ATTR {
+    const ContactV cell =
+        hn::MulAdd(coordinate, hn::Set(d, cells.a_length), hn::Set(d, cells.shift));
+    const ContactV inside = hn::Min(hn::Max(cell, hn::Zero(d)), hn::Set(d, cells.most));
+    return hn::And(hn::ConvertTo(di, inside), hn::Set(di, 1023));
+  };
+  const Vectors3<ContactV> place = load_vectors(d, block, lane);
+  return hn::Or(cell_of(place.x),
+                hn::Or(hn::ShiftLeft<10>(cell_of(place.y)), hn::ShiftLeft<20>(cell_of(place.z))));
+}
+
+std::size_t nearest_lane_of_cells(const VertexBlock& block, const NearestLanes& nearest,
+                                  float margin, const SpaceCells& cells,
+                                  std::array<std::uint8_t, block_size>& lanes) {
+  const ContactTag d;
+  const hn::RebindToSigned<ContactTag> di;
+  constexpr float none = std::numeric_limits<float>::max();
+  alignas(64) std::array<float, block_size> left;
+  alignas(64) std::array<std::int32_t, block_size> keys;
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const ContactV distance = hn::Load(d, nearest.distance.data() + lane);
+    const auto is_near = hn::Lt(distance, hn::Set(d, margin));
+    hn::Store(hn::IfThenElse(is_near, distance, hn::Set(d, none)), d, left.data() + lane);
+    hn::Store(cell_keys(d, block, lane, cells), di, keys.data() + lane);
+  }
+  for (std::size_t count = 0;; ++count) {
+    ContactV least = hn::Load(d, left.data());
+    for (std::size_t lane = hn::Lanes(d); lane < block_size; lane += hn::Lanes(d))
+      least = hn::Min(least, hn::Load(d, left.data() + lane));
+    const float nearest_left = hn::GetLane(hn::MinOfLanes(d, least));
+    if (!(nearest_left < none)) return count;
+    const auto first =
+        static_cast<std::size_t>(std::find(left.begin(), left.end(), nearest_left) - left.begin());
+    lanes[count] = static_cast<std::uint8_t>(first);
+    const auto key = hn::Set(di, keys[first]);
+    const ContactV part = hn::Set(d, nearest.part[first]);
+    for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+      const auto same_cell = hn::RebindMask(d, hn::Eq(hn::Load(di, keys.data() + lane), key));
+      const auto same_part = hn::Eq(hn::Load(d, nearest.part.data() + lane), part);
+      hn::Store(hn::IfThenElse(hn::And(same_cell, same_part), hn::Set(d, none),
+                               hn::Load(d, left.data() + lane)),
+                d, left.data() + lane);
+    }
   }
 }
 
@@ -151,6 +260,8 @@ namespace nendo::deform {
 
 HWY_EXPORT(nearest_lanes);
 HWY_EXPORT(part_lanes);
+HWY_EXPORT(excess_lanes);
+HWY_EXPORT(nearest_lane_of_cells);
 HWY_EXPORT(bounds_by_vectors);
 
 void nearest_in_block(const VertexBlock& block, const PartArrays& arrays, const std::uint32_t* list,
@@ -159,8 +270,20 @@ void nearest_in_block(const VertexBlock& block, const PartArrays& arrays, const 
 }
 
 void part_from_boxes(const BoxLanes& boxes, const PartArrays& arrays, std::uint32_t part,
-                     float* distances, float* least) noexcept {
-  HWY_DYNAMIC_DISPATCH(part_lanes)(boxes, arrays, part, distances, least);
+                     PartFromBoxes& seen, NearestFromBoxes& nearest) noexcept {
+  HWY_DYNAMIC_DISPATCH(part_lanes)(boxes, arrays, part, seen, nearest);
+}
+
+void excess_in_boxes(const BoxLanes& boxes, const PartFromBoxes& seen,
+                     const NearestFromBoxes& nearest, float margin, float* excess,
+                     std::array<float, block_size>& least) noexcept {
+  HWY_DYNAMIC_DISPATCH(excess_lanes)(boxes, seen, nearest, margin, excess, least.data());
+}
+
+std::size_t nearest_of_cells(const VertexBlock& block, const NearestLanes& nearest, float margin,
+                             const SpaceCells& cells,
+                             std::array<std::uint8_t, block_size>& lanes) noexcept {
+  return HWY_DYNAMIC_DISPATCH(nearest_lane_of_cells)(block, nearest, margin, cells, lanes);
 }
 
 BlockBounds fast_bounds_of(const VertexBlock& block) noexcept {

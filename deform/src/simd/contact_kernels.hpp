@@ -55,16 +55,45 @@ struct alignas(64) NearestLanes {
 void nearest_in_block(const VertexBlock& block, const PartArrays& arrays, const std::uint32_t* list,
                       std::size_t count, NearestLanes& nearest) noexcept;
 
+/// Cells of space: a coordinate's cell is what is whole of coordinate * a_length + shift, from 0 to
+/// `most`.
+struct SpaceCells {
+  float a_length, shift, most;
+};
+/// Of the vertices nearer than `margin`, lists the nearest of each cell and part, the nearest
+/// first, and of those that are equally near the first. Cells 1024 apart are taken for one. Returns
+/// how many there are.
+std::size_t nearest_of_cells(const VertexBlock& block, const NearestLanes& nearest, float margin,
+                             const SpaceCells& cells,
+                             std::array<std::uint8_t, block_size>& lanes) noexcept;
+
 /// Boxes by their middles and half sides.
 struct BoxLanes {
   VertexBlock middles{}, halves{};
 };
 
-/// For each box and the part: how far the box' middle is from it, and a distance that no place of
-/// the box falls short of. A part is convex, and so is its distance, which is therefore nowhere
-/// less than the tangent at the middle.
+/// A part seen from the middles of boxes: how far they are, and the direction away from it there.
+struct alignas(64) PartFromBoxes {
+  std::array<float, block_size> distance, x, y, z;
+  /// What no place of a box falls short of. A part is convex, and so is its distance, which is
+  /// therefore nowhere less than the tangent at the middle.
+  std::array<float, block_size> least;
+};
+/// The part that is the nearest to each middle, and how far the centre of its nearest ball is.
+struct alignas(64) NearestFromBoxes {
+  std::array<float, block_size> distance, x, y, z, to_centre;
+};
+
+/// Sets `seen`, and makes the part the nearest where it is nearer than `nearest`.
 void part_from_boxes(const BoxLanes& boxes, const PartArrays& arrays, std::uint32_t part,
-                     float* distances, float* least) noexcept;
+                     PartFromBoxes& seen, NearestFromBoxes& nearest) noexcept;
+/// Sets `excess` to at most 0 where the part may be within `margin` of a place of the box and
+/// nearer to one than the nearest part is. A place is at most as far from that as from the ball
+/// that is the nearest to the middle; so how much farther the part is can be bounded by the two
+/// directions.
+void excess_in_boxes(const BoxLanes& boxes, const PartFromBoxes& seen,
+                     const NearestFromBoxes& nearest, float margin, float* excess,
+                     std::array<float, block_size>& least) noexcept;
 
 /// As bounds_of(), but faster.
 BlockBounds fast_bounds_of(const VertexBlock& block) noexcept;

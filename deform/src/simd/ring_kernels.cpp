@@ -1,0 +1,181 @@
+#include "simd/ring_kernels.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/ring_kernels.cpp"
+#include "simd/targets.hpp"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "simd/kernels-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace nendo::deform::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using RingTag = hn::CappedTag<float, block_size>;
+using RingV = hn::Vec<RingTag>;
+using Ring3 = Vectors3<RingV>;
+
+constexpr float least_square = 1e-30F; // instead of a division by 0
+
+HWY_INLINE RingV ring_product(const Ring3& a, const Ring3& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+HWY_INLINE Ring3 difference(const Ring3& a, const Ring3& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Ring3 scaled(const Ring3& a, RingV by) {
+  return {hn::Mul(a.x, by), hn::Mul(a.y, by), hn::Mul(a.z, by)};
+}
+HWY_INLINE void add_cross(const Ring3& a, const Ring3& b, Ring3& to) {
+  to.x = hn::Add(to.x, hn::NegMulAdd(a.z, b.y, hn::Mul(a.y, b.z)));
+  to.y = hn::Add(to.y, hn::NegMulAdd(a.x, b.z, hn::Mul(a.z, b.x)));
+  to.z = hn::Add(to.z, hn::NegMulAdd(a.y, b.x, hn::Mul(a.x, b.y)));
+}
+
+HWY_INLINE Ring3 masked(hn::Mask<RingTag> mask, const Ring3& a) {
+  return {hn::IfThenElseZero(mask, a.x), hn::IfThenElseZero(mask, a.y),
+          hn::IfThenElseZero(mask, a.z)};
+}
+
+/// Sums over the ring around each vertex, of ways from it.
+struct RingSums {
+  Ring3 crosses, ways;
+  RingV squares;
+};
+
+HWY_INLINE RingSums sum_ring(RingTag d, const BlockRings& rings, std::size_t lane,
+                             const Ring3& here) {
+  const RingV zero = hn::Zero(d);
+  const RingV count = hn::LoadU(d, rings.counts + lane);
+  RingSums sums{{zero, zero, zero}, {zero, zero, zero}, zero};
+  Ring3 before = difference(load_vectors(d, rings.points.back(), lane), here);
+  for (std::size_t at = 0; at < rings.points.size(); ++at) {
+    const Ring3 way = difference(load_vectors(d, rings.points[at], lane), here);
+    const auto is_one = hn::Lt(hn::Set(d, static_cast<float>(at)), count);
+    add_cross(before, way, sums.crosses);
+    sums.ways = sum_of(sums.ways, masked(is_one, way));
+    sums.squares = hn::Add(sums.squares, hn::IfThenElseZero(is_one, ring_product(way, way)));
+    before = way;
+  }
+  return sums;
+}
+
+/// The direction of a vertex' and its neighbours' normals together: those of single vertices are
+/// rough.
+HWY_INLINE Ring3 smooth_direction(RingTag d, const BlockRings& rings, std::size_t lane,
+                                  const Ring3& normal) {
+  const RingV count = hn::LoadU(d, rings.counts + lane);
+  Ring3 sum = normal;
+  for (std::size_t at = 0; at < rings.normals.size(); ++at)
+    sum = sum_of(sum, masked(hn::Lt(hn::Set(d, static_cast<float>(at)), count),
+                             load_vectors(d, rings.normals[at], lane)));
+  const RingV squared = hn::Max(ring_product(sum, sum), hn::Set(d, least_square));
+  return scaled(sum, hn::Div(hn::Set(d, 1.0F), hn::Sqrt(squared)));
+}
+
+/// The volume's derivative by a vertex is a sixth of the sum of its triangles' cross products, and
+/// the sum of vertices times derivatives is three times the volume. Where neighbours lie on a
+/// circle with a radius of h, their middle is H h^2 / 2 below the vertex, H being the mean
+/// curvature; and the area of a surface that moves by f along its normals grows with 2 H f.
+HWY_INLINE RingV measure_lanes(RingTag d, const VertexBlock& block, const BlockRings& rings,
+                               std::size_t lane, VertexBlock& normals, RingBlock& measured) {
+  const RingV one = hn::Set(d, 1.0F);
+  const Ring3 here = load_vectors(d, block, lane);
+  const RingSums sums = sum_ring(d, rings, lane, here);
+  const Ring3 normal = scaled(sums.crosses, hn::Set(d, 1.0F / 6.0F));
+  store_vectors(d, normal, normals, lane);
+  if (!rings.normals.empty())
+    store_vectors(d, smooth_direction(d, rings, lane, normal), measured.direction, lane);
+  const Ring3 direction = load_vectors(d, measured.direction, lane);
+  const RingV count = hn::LoadU(d, rings.counts + lane);
+  const RingV per_square = hn::Div(count, hn::Max(sums.squares, hn::Set(d, least_square)));
+  const Ring3 middle = scaled(sums.ways, hn::Div(one, hn::Max(count, one)));
+  const RingV height = ring_product(middle, direction);
+  const RingV rate = ring_product(direction, normal);
+  const RingV curvature = hn::Mul(hn::Set(d, -2.0F), hn::Mul(height, per_square));
+  store_vectors(d, difference(middle, scaled(direction, height)), measured.fairing, lane);
+  hn::Store(hn::Sqrt(per_square), d, measured.per_edge.data() + lane);
+  hn::Store(rate, d, measured.rate.data() + lane);
+  hn::Store(hn::Mul(curvature, rate), d, measured.bend.data() + lane);
+  return ring_product(here, normal);
+}
+
+/// In eight sums, so that each is not waited for.
+double double_sum(const std::array<float, block_size>& numbers) {
+  std::array<double, 8> sums{};
+  for (std::size_t lane = 0; lane < block_size; lane += sums.size())
+    for (std::size_t at = 0; at < sums.size(); ++at)
+      sums[at] += static_cast<double>(numbers[lane + at]);
+  return ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]));
+}
+
+double measure_all_lanes(const VertexBlock& block, const BlockRings& rings, VertexBlock& normals,
+                         RingBlock& measured) {
+  const RingTag d;
+  alignas(64) std::array<float, block_size> products{};
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d))
+    hn::Store(measure_lanes(d, block, rings, lane, normals, measured), d, products.data() + lane);
+  return double_sum(products) / 3.0;
+}
+
+SwellRates swell_rates_of_lanes(const RingBlock& measured, const float* weights) {
+  const RingTag d;
+  alignas(64) std::array<float, block_size> rates{}, bends{};
+  RingV largest = hn::Zero(d);
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const RingV weight = hn::LoadU(d, weights + lane);
+    const RingV rate = hn::Mul(weight, hn::Load(d, measured.rate.data() + lane));
+    const RingV bend = hn::Mul(weight, hn::Load(d, measured.bend.data() + lane));
+    hn::Store(rate, d, rates.data() + lane);
+    hn::Store(hn::Mul(weight, bend), d, bends.data() + lane);
+    largest = hn::Max(largest, weight);
+  }
+  return {double_sum(rates), double_sum(bends), hn::GetLane(hn::MaxOfLanes(d, largest)) > 0.0F};
+}
+
+void swell_lanes(const RingBlock& measured, const float* weights, float far, VertexBlock& block) {
+  const RingTag d;
+  // Of a step to the middle of the ring, for each edge that a vertex is moved by.
+  const RingV fairness = hn::Set(d, 2.0F * (far < 0.0F ? -far : far));
+  const RingV most_fairing = hn::Set(d, 0.3F);
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const RingV weight = hn::LoadU(d, weights + lane);
+    const RingV fair =
+        hn::Mul(weight, hn::Min(most_fairing,
+                                hn::Mul(fairness, hn::Load(d, measured.per_edge.data() + lane))));
+    const Ring3 by =
+        sum_of(scaled(load_vectors(d, measured.direction, lane), hn::Mul(weight, hn::Set(d, far))),
+               scaled(load_vectors(d, measured.fairing, lane), fair));
+    store_vectors(d, sum_of(load_vectors(d, block, lane), by), block, lane);
+  }
+}
+
+} // namespace nendo::deform::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace nendo::deform {
+
+HWY_EXPORT(measure_all_lanes);
+HWY_EXPORT(swell_rates_of_lanes);
+HWY_EXPORT(swell_lanes);
+
+double measure_rings(const VertexBlock& block, const BlockRings& rings, VertexBlock& normals,
+                     RingBlock& measured) noexcept {
+  if (rings.points.empty()) return 0.0; // of vertices in no triangle
+  return HWY_DYNAMIC_DISPATCH(measure_all_lanes)(block, rings, normals, measured);
+}
+
+SwellRates swell_rates(const RingBlock& measured, const float* weights) noexcept {
+  return HWY_DYNAMIC_DISPATCH(swell_rates_of_lanes)(measured, weights);
+}
+
+void swell_block(const RingBlock& measured, const float* weights, float far,
+                 VertexBlock& block) noexcept {
+  HWY_DYNAMIC_DISPATCH(swell_lanes)(measured, weights, far, block);
+}
+
+} // namespace nendo::deform
+#endif
