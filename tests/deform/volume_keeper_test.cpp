@@ -11,6 +11,7 @@
 
 #include "reference/icosphere.hpp"
 #include "support/contact_parts.hpp"
+#include "support/self_intersections.hpp"
 #include "support/test_meshes.hpp"
 
 namespace volume_keeper_test {
@@ -101,6 +102,30 @@ TEST_SUITE("volume_keeper") {
     layout.unpack(shape.shape, after);
     CHECK((after - now).colwise().norm().maxCoeff() < 1.0 + 0.3 * 2.0);
     CHECK((after.row(2).minCoeff()) == doctest::Approx(now.row(2).minCoeff() - 1.0).epsilon(0.02));
+  }
+
+  TEST_CASE("walls of a crease do not cross while the ball swells by half an edge and more") {
+    Mesh ball = nendo::reference::icosphere(5, 30.0);
+    for (Eigen::Index at = 0; at < ball.vertices.cols(); ++at)
+      if (auto place = ball.vertices.col(at); place.z() > 0.0)
+        place *= 1.0 - place.z() / 100.0 * std::max(0.0, 1.0 - std::abs(place.x()) / 9.0);
+    REQUIRE(nendo::test::count_self_intersections(ball) == 0);
+    const BlockLayout layout(ball.vertices);
+    BoundedShape shape(layout.pack());
+    VolumeKeeper keeper(layout, corners_of_triangles(ball));
+    const double mm = 1.0 / layout.unit();
+    ContactSearch search(1, 1);
+    search.set_parts(std::vector<ContactPart>{
+        nendo::test::cone(Vector3d(0, 0, 380) * mm, Vector3d(0, 0, 400) * mm, mm, mm)});
+    const double whole = keeper.volume(shape);
+    Mesh now = ball;
+    for (int call = 1; call <= 5; ++call) { // 0.3 mm each
+      const double missing = (1.0 + 0.03 * call) * whole - keeper.volume(shape);
+      keeper.give_back(shape, search, missing, {10 * mm, 5 * mm, nullptr, 25 * mm});
+      layout.unpack(shape.shape, now.vertices);
+      CHECK(nendo::test::count_self_intersections(now) == 0);
+    }
+    CHECK(keeper.volume(shape) / whole == doctest::Approx(1.15).epsilon(1e-3));
   }
 }
 

@@ -10,6 +10,9 @@ namespace nendo::deform {
 namespace {
 
 constexpr std::size_t calls_a_direction = 4;
+constexpr int first_rounds = 4;
+/// Of a step to the middle of the ring, for each edge that a vertex is moved by.
+constexpr double fairness = 2.0;
 
 /// Four coordinates in a register: one load takes a neighbour, where three would wait for three
 /// cache lines.
@@ -83,7 +86,7 @@ VolumeKeeper::VolumeKeeper(const BlockLayout& layout, std::span<const std::uint3
   volumes_.assign(blocks, 0.0);
   is_free_.assign(blocks, 0);
   points_.assign(blocks * block_size, {});
-  normals_.assign(blocks * block_size, {});
+  directions_.assign(blocks * block_size, {});
   measured_.assign(blocks, RingBlock{});
   weights_.assign(blocks * block_size, 0.0F);
 }
@@ -143,7 +146,7 @@ void VolumeKeeper::build_rings(const Fans& fans, std::size_t blocks) {
     first_rings_.push_back(ring_neighbours_.size());
     around_points_.resize(std::max(around_points_.size(), most));
   }
-  around_normals_.resize(around_points_.size());
+  around_directions_.resize(around_points_.size());
 }
 
 /// The neighbours are brought together one by one: many processors' gathering loads take longer.
@@ -152,15 +155,14 @@ double VolumeKeeper::measure(const BoundedShape& shape, std::size_t block, bool 
   const std::size_t most = (first_rings_[block + 1] - first_rings_[block]) / block_size;
   for (std::size_t at = 0; at < most; ++at) {
     gather(points_.data(), from + at * block_size, around_points_[at]);
-    if (turns) gather(normals_.data(), from + at * block_size, around_normals_[at]);
+    if (turns) gather(directions_.data(), from + at * block_size, around_directions_[at]);
   }
-  VertexBlock normals;
   const double volume = measure_rings(shape.shape[block],
                                       {{around_points_.data(), most},
-                                       {around_normals_.data(), turns ? most : 0},
+                                       {around_directions_.data(), turns ? most : 0},
                                        ring_counts_.data() + block * block_size},
-                                      normals, measured_[block]);
-  scatter(normals, normals_.data() + block * block_size);
+                                      measured_[block]);
+  if (turns) scatter(measured_[block].direction, directions_.data() + block * block_size);
   return volume;
 }
 
@@ -187,17 +189,19 @@ bool VolumeKeeper::has_changed(const BoundedShape& shape, std::size_t block) con
 }
 
 /// In which directions a shape swells need not be known to the last call: a block's are found anew
-/// in one of some calls.
+/// in one of some calls. The first call, which knows none, goes round some times.
 double VolumeKeeper::volume(const BoundedShape& shape) noexcept {
-  ++calls_;
   for (std::size_t block = 0; block < volumes_.size(); ++block)
     if (stamps_[block] != shape.shape.stamp(block))
       scatter(shape.shape[block], points_.data() + block * block_size);
+  for (int round = 0; calls_ == 0 && round < first_rounds; ++round)
+    for (std::size_t block = 0; block < volumes_.size(); ++block)
+      measure(shape, block, true);
+  ++calls_;
   double sum = 0.0;
   for (std::size_t block = 0; block < volumes_.size(); ++block) {
     if (has_changed(shape, block))
-      volumes_[block] =
-          measure(shape, block, stamps_[block] == 0 || (block + calls_) % calls_a_direction == 0);
+      volumes_[block] = measure(shape, block, (block + calls_) % calls_a_direction == 0);
     sum += volumes_[block];
   }
   for (std::size_t block = 0; block < volumes_.size(); ++block)
@@ -207,7 +211,7 @@ double VolumeKeeper::volume(const BoundedShape& shape) noexcept {
 
 void VolumeKeeper::forget() noexcept {
   std::fill(stamps_.begin(), stamps_.end(), 0);
-  std::fill(normals_.begin(), normals_.end(), std::array<float, 4>{});
+  std::fill(directions_.begin(), directions_.end(), std::array<float, 4>{});
   calls_ = 0;
 }
 
@@ -275,14 +279,17 @@ double VolumeKeeper::distance_for(double missing, double most) const noexcept {
 }
 
 /// Besides, each vertex goes a part of the way to the middle of its neighbours, which keeps
-/// triangles fair where much swells.
-void VolumeKeeper::move(BoundedShape& shape, float far) noexcept {
+/// triangles fair where much swells, and fills creases. Returns by how much that makes the volume
+/// grow.
+double VolumeKeeper::move(BoundedShape& shape, float far, float fairs) noexcept {
+  double grown = 0.0;
   const std::uint64_t stamp = BlockShape::new_stamp();
   for (std::size_t block = 0; block < volumes_.size(); ++block) {
     if (is_free_[block] == 0) continue;
     VertexBlock& content = shape.shape.data()[block];
     const std::size_t used = end_of(block) - block * block_size;
-    swell_block(measured_[block], weights_.data() + block * block_size, far, content);
+    grown +=
+        swell_block(measured_[block], weights_.data() + block * block_size, far, fairs, content);
     for (std::size_t lane = used; lane < block_size; ++lane) { // the padding repeats the last one
       content.x[lane] = content.x[used - 1];
       content.y[lane] = content.y[used - 1];
@@ -291,6 +298,7 @@ void VolumeKeeper::move(BoundedShape& shape, float far) noexcept {
     shape.shape.set_stamp(block, stamp);
     shape.bounds[block] = fast_bounds_of(content);
   }
+  return grown;
 }
 
 double VolumeKeeper::give_back(BoundedShape& shape, ContactSearch& search, double missing,
@@ -299,9 +307,12 @@ double VolumeKeeper::give_back(BoundedShape& shape, ContactSearch& search, doubl
   sum_rates();
   if (!(rate_ > 0.0)) return 0.0;
   const double far = distance_for(missing, how.most);
-  move(shape, static_cast<float>(far));
-  shape.extent += how.most;
-  return (rate_ + bend_ * far) * far;
+  const double by_fairing =
+      move(shape, static_cast<float>(far), static_cast<float>(fairness * std::abs(far)));
+  const double rest = std::clamp(-by_fairing / rate_, -how.most, how.most);
+  move(shape, static_cast<float>(rest), 0.0F);
+  shape.extent += 2.0 * how.most;
+  return (rate_ + bend_ * far) * far + by_fairing + rate_ * rest;
 }
 
 } // namespace nendo::deform

@@ -63,7 +63,7 @@ private:
   void weigh_around(const BoundedShape& shape, std::size_t block, const GiveBack& how) noexcept;
   void sum_rates() noexcept;
   double distance_for(double missing, double most) const noexcept;
-  void move(BoundedShape& shape, float far) noexcept;
+  double move(BoundedShape& shape, float far, float fairness) noexcept;
 
   std::size_t vertices_;
   bool is_closed_ = false;
@@ -75,11 +75,11 @@ private:
   std::vector<double> volumes_;         ///< one a block
   std::vector<std::uint8_t> is_free_;   ///< one a block: some weight is not 0
   std::vector<std::array<float, 4>> points_;
-  std::vector<std::array<float, 4>> normals_; ///< the volume's derivative by each vertex
+  std::vector<std::array<float, 4>> directions_;
   std::vector<RingBlock> measured_;
   std::vector<float> weights_;
-  std::vector<VertexBlock> around_points_, around_normals_; ///< of one block's rings
-  std::size_t calls_ = 0;                                   ///< of volume(), since forget()
+  std::vector<VertexBlock> around_points_, around_directions_; ///< of one block's rings
+  std::size_t calls_ = 0;                                      ///< of volume(), since forget()
   double rate_ = 0.0; ///< by which the volume grows with the distance
   double bend_ = 0.0; ///< and with its square
 };

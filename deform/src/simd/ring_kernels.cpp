@@ -18,6 +18,7 @@ using RingV = hn::Vec<RingTag>;
 using Ring3 = Vectors3<RingV>;
 
 constexpr float least_square = 1e-30F; // instead of a division by 0
+constexpr float own_share = 0.2F;      // of a vertex' own normal in its direction
 
 HWY_INLINE RingV ring_product(const Ring3& a, const Ring3& b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
@@ -62,16 +63,22 @@ HWY_INLINE RingSums sum_ring(RingTag d, const BlockRings& rings, std::size_t lan
   return sums;
 }
 
-/// The direction of a vertex' and its neighbours' normals together: those of single vertices are
-/// rough.
+/// The mean of the neighbours' directions, and a little of the vertex' own normal. Over some rounds
+/// it is that of the normals for some edges around. In a crease, vertices on both sides then swell
+/// into nearly the same direction; along their own normals they would cross.
 HWY_INLINE Ring3 smooth_direction(RingTag d, const BlockRings& rings, std::size_t lane,
                                   const Ring3& normal) {
+  const RingV zero = hn::Zero(d);
+  const RingV least = hn::Set(d, least_square);
   const RingV count = hn::LoadU(d, rings.counts + lane);
-  Ring3 sum = normal;
-  for (std::size_t at = 0; at < rings.normals.size(); ++at)
+  Ring3 sum{zero, zero, zero};
+  for (std::size_t at = 0; at < rings.directions.size(); ++at)
     sum = sum_of(sum, masked(hn::Lt(hn::Set(d, static_cast<float>(at)), count),
-                             load_vectors(d, rings.normals[at], lane)));
-  const RingV squared = hn::Max(ring_product(sum, sum), hn::Set(d, least_square));
+                             load_vectors(d, rings.directions[at], lane)));
+  const RingV length = hn::Sqrt(hn::Max(ring_product(normal, normal), least));
+  const RingV own = hn::Mul(hn::Set(d, own_share), hn::Max(count, hn::Set(d, 1.0F)));
+  sum = sum_of(sum, scaled(normal, hn::Div(own, length)));
+  const RingV squared = hn::Max(ring_product(sum, sum), least);
   return scaled(sum, hn::Div(hn::Set(d, 1.0F), hn::Sqrt(squared)));
 }
 
@@ -80,13 +87,12 @@ HWY_INLINE Ring3 smooth_direction(RingTag d, const BlockRings& rings, std::size_
 /// circle with a radius of h, their middle is H h^2 / 2 below the vertex, H being the mean
 /// curvature; and the area of a surface that moves by f along its normals grows with 2 H f.
 HWY_INLINE RingV measure_lanes(RingTag d, const VertexBlock& block, const BlockRings& rings,
-                               std::size_t lane, VertexBlock& normals, RingBlock& measured) {
+                               std::size_t lane, RingBlock& measured) {
   const RingV one = hn::Set(d, 1.0F);
   const Ring3 here = load_vectors(d, block, lane);
   const RingSums sums = sum_ring(d, rings, lane, here);
   const Ring3 normal = scaled(sums.crosses, hn::Set(d, 1.0F / 6.0F));
-  store_vectors(d, normal, normals, lane);
-  if (!rings.normals.empty())
+  if (!rings.directions.empty())
     store_vectors(d, smooth_direction(d, rings, lane, normal), measured.direction, lane);
   const Ring3 direction = load_vectors(d, measured.direction, lane);
   const RingV count = hn::LoadU(d, rings.counts + lane);
@@ -95,7 +101,9 @@ HWY_INLINE RingV measure_lanes(RingTag d, const VertexBlock& block, const BlockR
   const RingV height = ring_product(middle, direction);
   const RingV rate = ring_product(direction, normal);
   const RingV curvature = hn::Mul(hn::Set(d, -2.0F), hn::Mul(height, per_square));
-  store_vectors(d, difference(middle, scaled(direction, height)), measured.fairing, lane);
+  // Where the middle is outside, all the way to it: that fills creases.
+  const Ring3 inwards = scaled(direction, hn::Min(height, hn::Zero(d)));
+  store_vectors(d, difference(middle, inwards), measured.fairing, lane);
   hn::Store(hn::Sqrt(per_square), d, measured.per_edge.data() + lane);
   hn::Store(rate, d, measured.rate.data() + lane);
   hn::Store(hn::Mul(curvature, rate), d, measured.bend.data() + lane);
@@ -111,12 +119,11 @@ double double_sum(const std::array<float, block_size>& numbers) {
   return ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]));
 }
 
-double measure_all_lanes(const VertexBlock& block, const BlockRings& rings, VertexBlock& normals,
-                         RingBlock& measured) {
+double measure_all_lanes(const VertexBlock& block, const BlockRings& rings, RingBlock& measured) {
   const RingTag d;
   alignas(64) std::array<float, block_size> products{};
   for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d))
-    hn::Store(measure_lanes(d, block, rings, lane, normals, measured), d, products.data() + lane);
+    hn::Store(measure_lanes(d, block, rings, lane, measured), d, products.data() + lane);
   return double_sum(products) / 3.0;
 }
 
@@ -135,21 +142,26 @@ SwellRates swell_rates_of_lanes(const RingBlock& measured, const float* weights)
   return {double_sum(rates), double_sum(bends), hn::GetLane(hn::MaxOfLanes(d, largest)) > 0.0F};
 }
 
-void swell_lanes(const RingBlock& measured, const float* weights, float far, VertexBlock& block) {
+double swell_lanes(const RingBlock& measured, const float* weights, float far, float fairness,
+                   VertexBlock& block) {
   const RingTag d;
-  // Of a step to the middle of the ring, for each edge that a vertex is moved by.
-  const RingV fairness = hn::Set(d, 2.0F * (far < 0.0F ? -far : far));
   const RingV most_fairing = hn::Set(d, 0.3F);
+  alignas(64) std::array<float, block_size> grown{};
   for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
     const RingV weight = hn::LoadU(d, weights + lane);
+    const RingV per_edge = hn::Load(d, measured.per_edge.data() + lane);
     const RingV fair =
-        hn::Mul(weight, hn::Min(most_fairing,
-                                hn::Mul(fairness, hn::Load(d, measured.per_edge.data() + lane))));
+        hn::Mul(weight, hn::Min(most_fairing, hn::Mul(hn::Set(d, fairness), per_edge)));
+    const Ring3 direction = load_vectors(d, measured.direction, lane);
+    const Ring3 fairing = load_vectors(d, measured.fairing, lane);
     const Ring3 by =
-        sum_of(scaled(load_vectors(d, measured.direction, lane), hn::Mul(weight, hn::Set(d, far))),
-               scaled(load_vectors(d, measured.fairing, lane), fair));
+        sum_of(scaled(direction, hn::Mul(weight, hn::Set(d, far))), scaled(fairing, fair));
     store_vectors(d, sum_of(load_vectors(d, block, lane), by), block, lane);
+    const RingV rate = hn::Load(d, measured.rate.data() + lane);
+    hn::Store(hn::Mul(hn::Mul(fair, ring_product(fairing, direction)), rate), d,
+              grown.data() + lane);
   }
+  return double_sum(grown);
 }
 
 } // namespace nendo::deform::HWY_NAMESPACE
@@ -162,19 +174,19 @@ HWY_EXPORT(measure_all_lanes);
 HWY_EXPORT(swell_rates_of_lanes);
 HWY_EXPORT(swell_lanes);
 
-double measure_rings(const VertexBlock& block, const BlockRings& rings, VertexBlock& normals,
+double measure_rings(const VertexBlock& block, const BlockRings& rings,
                      RingBlock& measured) noexcept {
   if (rings.points.empty()) return 0.0; // of vertices in no triangle
-  return HWY_DYNAMIC_DISPATCH(measure_all_lanes)(block, rings, normals, measured);
+  return HWY_DYNAMIC_DISPATCH(measure_all_lanes)(block, rings, measured);
 }
 
 SwellRates swell_rates(const RingBlock& measured, const float* weights) noexcept {
   return HWY_DYNAMIC_DISPATCH(swell_rates_of_lanes)(measured, weights);
 }
 
-void swell_block(const RingBlock& measured, const float* weights, float far,
-                 VertexBlock& block) noexcept {
-  HWY_DYNAMIC_DISPATCH(swell_lanes)(measured, weights, far, block);
+double swell_block(const RingBlock& measured, const float* weights, float far, float fairness,
+                   VertexBlock& block) noexcept {
+  return HWY_DYNAMIC_DISPATCH(swell_lanes)(measured, weights, far, fairness, block);
 }
 
 } // namespace nendo::deform

@@ -13,12 +13,12 @@ namespace nendo::deform {
 /// block of them has the first neighbour of each vertex, the next one the second, and so on. A
 /// vertex that has fewer than the others repeats its last one.
 struct BlockRings {
-  std::span<const VertexBlock> points, normals; ///< of the neighbours; normals or nothing
-  const float* counts;                          ///< of each vertex' neighbours
+  std::span<const VertexBlock> points, directions; ///< of the neighbours; directions or nothing
+  const float* counts;                             ///< of each vertex' neighbours
 };
 
-/// Of each vertex of a block. Where the weight is w, a shape that swells by f moves the vertex by
-/// w (f direction + min(0.3, 2 |f| per_edge) fairing).
+/// Of each vertex of a block. Where the weight is w, a shape that swells by `far` moves the vertex
+/// by w (far direction + min(0.3, fairness per_edge) fairing).
 struct alignas(64) RingBlock {
   VertexBlock direction;                  ///< of length 1, smoothed
   VertexBlock fairing;                    ///< the way to the middle of the ring, sideways
@@ -27,10 +27,9 @@ struct alignas(64) RingBlock {
   std::array<float, block_size> bend;     ///< and with its square
 };
 
-/// Measures a block, and sets `normals`, which are the volume's derivatives by its vertices.
-/// Without the normals of neighbours, the directions are those that `measured` has. Returns the
-/// block's part of the volume.
-double measure_rings(const VertexBlock& block, const BlockRings& rings, VertexBlock& normals,
+/// Measures a block, and returns its part of the volume. Without the directions of neighbours, its
+/// own are those that `measured` has.
+double measure_rings(const VertexBlock& block, const BlockRings& rings,
                      RingBlock& measured) noexcept;
 
 /// By how much the volume grows with the distance and with its square.
@@ -39,8 +38,9 @@ struct SwellRates {
   bool is_free; ///< some weight is not 0
 };
 SwellRates swell_rates(const RingBlock& measured, const float* weights) noexcept;
-/// Moves the vertices of a block.
-void swell_block(const RingBlock& measured, const float* weights, float far,
-                 VertexBlock& block) noexcept;
+/// Moves the vertices of a block. Returns by how much fairing makes the volume grow, to first
+/// order.
+double swell_block(const RingBlock& measured, const float* weights, float far, float fairness,
+                   VertexBlock& block) noexcept;
 
 } // namespace nendo::deform
