@@ -132,7 +132,6 @@ Result<void> check_clay(const session::RunOptions& run) {
   };
   if (!run.puppet_file.empty())
     return refuse("--puppet", "whole hands press clay, and a puppet has points");
-  if (run.symmetric) return refuse("--symmetry", "only fingertips have images");
   if (run.loop.sculptor.hold == flow::Hold::hand)
     return refuse("--hold hand", "clay is pressed, and hands hold it only by closing on it");
   if (run.loop.sculptor.deformer.csrbf.keep_volume > 0.0)

@@ -161,7 +161,8 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
                      "While the hands shape it, the model gets more triangles where it is "
                      "stretched, and fewer where it is crowded, up to so many vertices");
   command.add_flag("--symmetry", run_options.symmetric,
-                   "Fingertips shape both sides of the model's plane of symmetry, or of x = 0");
+                   "Fingertips, or hands in clay, shape both sides of the model's plane of "
+                   "symmetry, or of x = 0");
   gloves::add_calibration_options(command, run_options.calibration);
   gloves::add_hand_length(command, run_options.length);
   session::add_kernel_options(command, options.kernel);

@@ -85,7 +85,7 @@ Result<void> complete(Timeline& timeline, const deform::Mesh& model) {
 Eigen::Index points_at_first(const Timeline& timeline) {
   const puppet::Rig* const rig = timeline.rig ? timeline.rig.get() : timeline.masks_numbered(0);
   flow::SculptorOptions sculptor = timeline.sculptor;
-  sculptor.are_mirrored = flow::mirror_of(rig).has_value();
+  sculptor.mirror = flow::mirror_of(rig);
   return flow::control_points_of(rig, sculptor, static_cast<Eigen::Index>(timeline.hands.size()));
 }
 

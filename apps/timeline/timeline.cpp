@@ -283,7 +283,7 @@ std::string complaint_about(const Timeline& timeline) {
     return wrong;
   if (timeline.sculptor.mode == flow::Mode::clay &&
       !flow::can_press(timeline.rig ? timeline.rig.get() : timeline.masks_numbered(0)))
-    return "symmetry and puppets do not act on clay; use mode type1 or type2";
+    return "puppets do not act on clay; use mode type1 or type2";
   if (auto wrong = complaint_about(timeline.rig.get(), timeline.rig_state); !wrong.empty())
     return wrong;
   if (timeline.rig && !timeline.masks.empty()) return "a puppet's masks are in its own text";

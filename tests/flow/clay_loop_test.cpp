@@ -40,6 +40,7 @@ public:
   const Frame& go(double part, int ticks) {
     for (int tick = 0; tick < ticks; ++tick) {
       for (const Side side : {Side::left, Side::right}) {
+        if (left_rests && side == Side::left) continue;
         Eigen::Isometry3d wrist = beside_[Placement::index_of(side)];
         wrist.translation().x() += (side == Side::left ? 1.0 : -1.0) * 0.06 * part;
         test_.commands.try_push(WristMove::to(side, wrist));
@@ -73,6 +74,8 @@ public:
   const Frame& frame() { return test_.loop->frames().front(); }
   Points shape() { return test_.vertices_of(frame()); }
 
+  bool left_rests = false; ///< where it begins
+
 private:
   LoopUnderTest test_;
   std::array<Eigen::Isometry3d, 2> beside_;
@@ -82,6 +85,18 @@ private:
 
 double farthest(const Points& a, const Points& b) {
   return (a - b).colwise().norm().maxCoeff();
+}
+
+/// How far the shape of a model that is symmetric about x = 0 is from its own image.
+double asymmetry(const Points& model, const Points& shape) {
+  const Eigen::Vector3d mirrored(-1.0, 1.0, 1.0);
+  double worst = 0.0;
+  for (Eigen::Index at = 0; at < model.cols(); ++at) {
+    Eigen::Index other = 0;
+    (model.colwise() - mirrored.cwiseProduct(model.col(at))).colwise().norm().minCoeff(&other);
+    worst = std::max(worst, (shape.col(other) - mirrored.cwiseProduct(shape.col(at))).norm());
+  }
+  return worst;
 }
 
 } // namespace
@@ -234,18 +249,37 @@ TEST_SUITE("clay_loop") {
     CHECK(one.shape() == other.shape());
   }
 
-  TEST_CASE("symmetry is refused in clay, and clay where it is") {
-    const char* const text = "version = 1\nmirror = \"x\"\n";
-    LoopUnderTest test(Mode::type1, {.puppet = text});
+  TEST_CASE("with symmetry one hand presses both sides, and without it its own") {
+    Presses presses;
+    presses.left_rests = true;
+    const Points& model = presses.test().model.vertices;
+    presses.press();
+    const double alone = asymmetry(model, presses.shape());
+    CHECK(alone > 0.02);
+    presses.ask(Request::reset);
+    presses.go(0.0, 2);
+    REQUIRE(presses.test().loop->change_puppet(presses.rig_of("version = 1\nmirror = \"x\"\n")));
+    presses.press();
+    CHECK(presses.frame().symmetric);
+    CHECK(farthest(presses.shape(), model) > 0.02);
+    CHECK(asymmetry(model, presses.shape()) < 0.01 * alone);
+    const Points pressed = presses.shape();
+    presses.ask(Request::undo);
+    presses.go(0.0, 2);
+    CHECK(presses.shape() == model);
+    presses.ask(Request::redo);
+    presses.go(0.0, 2);
+    CHECK(presses.shape() == pressed);
+    REQUIRE(presses.test().loop->change_puppet(presses.rig_of("version = 1\n")));
+    presses.go(0.0, 2);
+    CHECK_FALSE(presses.frame().symmetric);
+  }
+
+  TEST_CASE("clay begins with symmetry as well") {
+    LoopUnderTest test(Mode::type1, {.puppet = "version = 1\nmirror = \"x\"\n"});
     LoopSettings settings = test.loop->settings();
     settings.mode = Mode::clay;
-    CHECK_FALSE(test.loop->change_settings(settings));
-    Presses presses;
-    const auto refused = presses.test().loop->change_puppet(presses.rig_of(text));
-    REQUIRE_FALSE(refused);
-    CHECK(refused.error().message.find("do not act on clay") != std::string::npos);
-    presses.press();
-    CHECK(farthest(presses.shape(), presses.test().model.vertices) > 0.02);
+    CHECK(test.loop->change_settings(settings));
   }
 
   TEST_CASE("masks come and go while hands press, and what they hold keeps its bits") {

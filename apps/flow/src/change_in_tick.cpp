@@ -19,7 +19,7 @@ void DeformLoop::take_change() noexcept {
   if (log != nullptr) {
     if (taken_->holds_still) log->command(HoldStill{});
     if (taken_->model) log->command(*taken_->model);
-    // Whoever does the same in this order is refused neither: masks are not for clay.
+    // Whoever does the same in this order is refused neither: puppets are not for clay.
     const bool becomes_clay = taken_->settings && taken_->settings->mode == Mode::clay;
     if (taken_->settings && !becomes_clay) log->command(ChangeSettings{*taken_->settings});
     if (taken_->rig) log->command(ChangePuppet{taken_->rig->number});

@@ -23,6 +23,21 @@ deform::ClayOptions clay_options(const HandBodies& bodies, double radius_m,
   return options;
 }
 
+/// In the plane x = at. The frame's motion is that of the image, and no reflection.
+deform::ContactPart image_of(const deform::ContactPart& part, double at) noexcept {
+  deform::ContactPart image = part;
+  for (Eigen::Vector3d& corner : image.corners)
+    corner.x() = 2.0 * at - corner.x();
+  const Eigen::Vector3d mirrored(-1.0, 1.0, 1.0);
+  image.frame.linear() = mirrored.asDiagonal() * part.frame.linear() * mirrored.asDiagonal();
+  image.frame.translation().x() = 2.0 * at - part.frame.translation().x();
+  return image;
+}
+
+std::size_t bodies_of(const HandBodies& bodies, bool are_mirrored) noexcept {
+  return (are_mirrored ? 2 : 1) * bodies.count() + HandBodies::tables;
+}
+
 } // namespace
 
 float strength_of(const deform::ClayContact& contact) noexcept {
@@ -48,17 +63,30 @@ ClayModel::ClayModel(const deform::Mesh& mesh)
 
 ClayHands::ClayHands(deform::SculptedShape& shape, std::shared_ptr<const ClayModel> model,
                      std::shared_ptr<const HandBodies> bodies, double radius_m,
-                     const deform::DeformerOptions& options)
-    : model_(std::move(model)), bodies_(std::move(bodies)),
-      clay_(shape, model_->corners, bodies_->count() + HandBodies::tables,
+                     const deform::DeformerOptions& options, std::optional<double> mirror)
+    : model_(std::move(model)), bodies_(std::move(bodies)), mirror_(mirror),
+      with_images_(mirror ? bodies_of(*bodies_, true) * hand::HandBody::part_count : 0),
+      clay_(shape, model_->corners, bodies_of(*bodies_, mirror.has_value()),
             hand::HandBody::part_count, clay_options(*bodies_, radius_m, options)) {}
+
+std::span<const deform::ContactPart> ClayHands::parts() noexcept {
+  const auto own = bodies_->parts();
+  if (!mirror_) return own;
+  const auto hands = own.first(bodies_->count() * hand::HandBody::part_count);
+  auto to = std::copy(hands.begin(), hands.end(), with_images_.begin());
+  to = std::transform(hands.begin(), hands.end(), to,
+                      [&](const auto& part) { return image_of(part, *mirror_); });
+  const auto table = own.subspan(hands.size());
+  std::copy(table.begin(), table.end(), to);
+  return with_images_;
+}
 
 deform::FieldStatus ClayHands::press(bool ends) {
   is_moved_ = false;
   presses_ = true;
   constexpr int most_calls = 64; // so that a tick ends, however far a hand has jumped
   for (int call = 0; call < most_calls; ++call) {
-    const deform::ClayReport& report = clay_.press_to(bodies_->parts());
+    const deform::ClayReport& report = clay_.press_to(parts());
     is_moved_ = is_moved_ || report.is_moved;
     if (!ends || !is_solved(report.status) || report.behind_mm <= 0.0) break;
   }

@@ -65,7 +65,7 @@ SculptorSetup first_setup(const LoopOptions& options, const HandInput& hand,
 /// Of all hands. Symmetry adds their images.
 Eigen::Index points_at_first(const LoopOptions& options, std::size_t hands) {
   SculptorOptions sculptor = options.sculptor;
-  sculptor.are_mirrored = mirror_of(options.rig.get()).has_value();
+  sculptor.mirror = mirror_of(options.rig.get());
   return control_points_of(options.rig.get(), sculptor, static_cast<Eigen::Index>(hands));
 }
 

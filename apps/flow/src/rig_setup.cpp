@@ -17,7 +17,7 @@ bool is_played(const puppet::Rig* rig) noexcept {
 Eigen::Index control_points_of(const puppet::Rig* rig, const SculptorOptions& sculptor,
                                Eigen::Index hands) noexcept {
   if (is_played(rig)) return rig->starts().cols();
-  return (sculptor.are_mirrored ? 2 : 1) * sculptor.points_of_hand() * hands;
+  return (sculptor.mirror ? 2 : 1) * sculptor.points_of_hand() * hands;
 }
 
 Eigen::Index supported_points(const puppet::Rig* rig, Eigen::Index hands) noexcept {
@@ -31,7 +31,7 @@ std::optional<double> mirror_of(const puppet::Rig* rig) noexcept {
 }
 
 bool can_press(const puppet::Rig* rig) noexcept {
-  return !is_played(rig) && !mirror_of(rig);
+  return !is_played(rig);
 }
 
 Result<void> check_points(const puppet::Rig* rig, Mode mode) {
@@ -58,15 +58,15 @@ void mirror_half(double at, Points& points) noexcept {
 
 void set_masks(const puppet::Rig* rig, const deform::Mesh& model, const deform::BlockLayout& layout,
                SculptorOptions& sculptor) {
-  sculptor.are_mirrored = mirror_of(rig).has_value();
+  sculptor.mirror = mirror_of(rig);
   sculptor.deformer.mask =
       rig == nullptr ? nullptr : puppet::vertex_mask(rig->puppet(), layout, model.vertices);
 }
 
 SculptorSetup with_control_points(SculptorSetup first, deform::Supports supports,
                                   const puppet::Rig* masks, Eigen::Index hands) {
-  first.options.are_mirrored = mirror_of(masks).has_value();
-  if (first.options.are_mirrored) supports = of_both_sides(std::move(supports), 5 * hands);
+  first.options.mirror = mirror_of(masks);
+  if (first.options.mirror) supports = of_both_sides(std::move(supports), 5 * hands);
   first.options.piece_length = first.settings.piece_fraction * deform::least_radius(supports);
   first.options.deformer.supports = std::move(supports);
   first.options.surface.reset();

@@ -56,7 +56,7 @@ deform::DeformerOptions brushed(const SculptorOptions& options, Eigen::Index con
   for (Eigen::Index point = 0; point < control_points; ++point)
     brushes.of_points.push_back(options.brushes[static_cast<std::size_t>(point % fingers)]);
   brushes.strength = options.brush_strength;
-  brushes.are_mirrored = options.are_mirrored;
+  brushes.are_mirrored = options.mirror.has_value();
   brushes.rings = options.rings;
   return deformer;
 }
@@ -65,7 +65,8 @@ Deformer make(SculptedShape& shape, Eigen::Index control_points, const SculptorO
   if (options.mode == Mode::clay && options.bodies && options.clay) {
     const auto radii = radii_on_stage(options.deformer.supports, options.bodies->units_per_metre());
     return ClayHands(shape, options.clay, options.bodies,
-                     std::accumulate(radii.begin(), radii.end(), 0.0) / fingers, options.deformer);
+                     std::accumulate(radii.begin(), radii.end(), 0.0) / fingers, options.deformer,
+                     options.mirror);
   }
   if (options.mode == Mode::type2)
     return Type2Deformer(shape, control_points, options.piece_length,
@@ -156,8 +157,8 @@ bool SculptorOptions::needs_rings() const noexcept {
 }
 
 Eigen::Index SculptorOptions::points_of_hand() const noexcept {
-  const bool all_over = hold == Hold::hand && mode == Mode::type1 &&
-                        deformer.csrbf.keep_volume <= 0.0 && !are_mirrored;
+  const bool all_over =
+      hold == Hold::hand && mode == Mode::type1 && deformer.csrbf.keep_volume <= 0.0 && !mirror;
   return all_over ? static_cast<Eigen::Index>(hand::held_point_count) : fingers;
 }
 

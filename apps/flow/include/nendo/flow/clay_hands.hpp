@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -51,19 +52,20 @@ class ClayHands {
 public:
   /// `radius_m` tells how far clay gives way about a hand, on the stage; less than least_radius_m
   /// counts as that, because palms crease the surface otherwise. `shape` must outlive this.
+  /// With a `mirror`, the x of a plane in model units, the hands' mirror images press as well.
   ClayHands(deform::SculptedShape& shape, std::shared_ptr<const ClayModel> model,
             std::shared_ptr<const HandBodies> bodies, double radius_m,
-            const deform::DeformerOptions& options);
+            const deform::DeformerOptions& options, std::optional<double> mirror);
   static constexpr double least_radius_m = 0.020;
 
-  deform::FieldStatus begin() { return clay_.begin(bodies_->parts()); }
-  deform::FieldStatus grab(const deform::Points&) { return clay_.grab(bodies_->parts()); }
+  deform::FieldStatus begin() { return clay_.begin(parts()); }
+  deform::FieldStatus grab(const deform::Points&) { return clay_.grab(parts()); }
   /// Presses the surface out of where the bodies are now. With `ends`, all of their way is made.
   deform::FieldStatus press(bool ends);
   void release(bool is_step) noexcept;
-  deform::FieldStatus reset(const deform::Points&) { return clay_.reset(bodies_->parts()); }
-  deform::FieldStatus undo(const deform::Points&) { return clay_.undo(bodies_->parts()); }
-  deform::FieldStatus redo(const deform::Points&) { return clay_.redo(bodies_->parts()); }
+  deform::FieldStatus reset(const deform::Points&) { return clay_.reset(parts()); }
+  deform::FieldStatus undo(const deform::Points&) { return clay_.undo(parts()); }
+  deform::FieldStatus redo(const deform::Points&) { return clay_.redo(parts()); }
   std::size_t undo_steps() const noexcept { return clay_.undo_steps(); }
   std::size_t redo_steps() const noexcept { return clay_.redo_steps(); }
   std::size_t forgotten_steps() const noexcept { return clay_.forgotten_steps(); }
@@ -79,8 +81,13 @@ public:
   std::span<const deform::ClayContact> contacts() const noexcept { return clay_.contacts(); }
 
 private:
+  /// Of the hands, of their images, and of the table.
+  std::span<const deform::ContactPart> parts() noexcept;
+
   std::shared_ptr<const ClayModel> model_;
   std::shared_ptr<const HandBodies> bodies_;
+  std::optional<double> mirror_;
+  std::vector<deform::ContactPart> with_images_;
   deform::ClayDeformer clay_;
   deform::FieldSequence fields_;
   bool is_moved_ = false;

@@ -25,8 +25,7 @@ Eigen::Index supported_points(const puppet::Rig* rig, Eigen::Index hands) noexce
 /// Returns the x of the plane, in model units, of whose both sides the fingertips shape; nothing:
 /// of none.
 std::optional<double> mirror_of(const puppet::Rig* rig) noexcept;
-/// Tells whether hands with that puppet, which may be null, can press clay: it has no points and
-/// no symmetry.
+/// Tells whether hands with that puppet, which may be null, can press clay: it has no points.
 bool can_press(const puppet::Rig* rig) noexcept;
 /// Tells whether a tick can solve for that puppet's points without allocating. Error, bad_input:
 /// there are more than deform::CsrbfSolver::lean_size. In type 1 with distances along the surface

@@ -41,8 +41,9 @@ struct SculptorOptions {
   /// Of each finger of each hand, thumb to little finger, in type 2; a puppet's points pull.
   std::array<deform::Brush, 5> brushes{};
   double brush_strength = deform::usual_brush_strength;
-  /// The second half of the control points are the mirror images of the first.
-  bool are_mirrored = false;
+  /// The x of a plane, in model units: the second half of the control points are the mirror images
+  /// of the first, and so are hands that press clay.
+  std::optional<double> mirror{};
   /// Of the model; needed by some brushes (needs_rings()).
   std::shared_ptr<const deform::VertexRings> rings{};
   /// If set, type1 measures distances along the surface. Type2 does not: it moves its centres with
