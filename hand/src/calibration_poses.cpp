@@ -14,8 +14,7 @@ struct Asked {
   double angle_deg;
   double deviation_deg;
 };
-constexpr Asked straight{0, 3};
-constexpr Asked about_straight{0, 5};
+constexpr Asked straight{0, 5};
 constexpr Asked mcp_bent{87, 6};
 constexpr Asked pip_bent{98, 6};
 constexpr Asked dip_bent{65, 8};
@@ -51,14 +50,14 @@ public:
   }
   /// Palm and first phalanx on a table, the others pressed against its side.
   constexpr Described& over_edge(std::size_t number) {
-    finger(number, about_straight, {90, 4}, about_straight);
+    finger(number, straight, {90, 4}, straight);
     pose_.assumed[static_cast<std::size_t>(Sensor::index_pip) + 4 * number].by_feel = false;
     return *this;
   }
   /// The first `extended` fingers straight, the others as in a fist, but less surely.
   constexpr Described& counting(std::size_t extended) {
     for (std::size_t number = 0; number < 4; ++number) {
-      number < extended ? finger(number, about_straight, about_straight, about_straight)
+      number < extended ? finger(number, straight, straight, straight)
                         : finger(number, {85, 8}, {97, 7}, {60, 12});
     }
     return *this;
@@ -119,12 +118,12 @@ constexpr std::array<CalibrationPose, pose_count> poses{{
         .thumb({75, 8}, {45, 8})
         .thumb_bends({0, 8}, {0, 8}),
     Described("thumb_across", "Fingers straight; touch the base of the little finger.")
-        .fingers(about_straight, about_straight, about_straight)
+        .fingers(straight, straight, straight)
         .touching({Joint::little_proximal, 0.006}),
     flat_fingers("thumb_bent", "Fingers straight; bend both joints of the thumb.")
         .thumb_bends({50, 7}, {72, 8}),
     Described("table_top", "Keep the fingers straight and closed, bent at the knuckles only.")
-        .fingers(mcp_bent, about_straight, about_straight)
+        .fingers(mcp_bent, straight, straight)
         .closed({0, 3})
         .arch({0, 6}),
     Described("hook", "Make a hook: knuckles straight, fingers bent.")

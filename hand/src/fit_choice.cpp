@@ -81,10 +81,14 @@ void choose_by_held_out_poses(CalibrationFit& fit, std::span<const PoseReading> 
   std::array<Cost, groups> costs{};
   for (std::size_t fold = 0; fold < folds; ++fold) {
     std::vector<PoseReading> kept = two, held_out;
-    for (std::size_t n = 0; n < readings.size(); ++n) {
-      const bool is_quick = readings[n].pose == PoseId::flat || readings[n].pose == PoseId::fist;
-      // Neighbours in the order of takes are alike: they go to different folds.
-      if (!is_quick) (n % folds == fold ? held_out : kept).push_back(readings[n]);
+    std::array<std::size_t, pose_count> takes{};
+    for (const PoseReading& reading : readings) {
+      const bool is_quick = reading.pose == PoseId::flat || reading.pose == PoseId::fist;
+      // Poses that follow each other, and takes of one pose, are alike: they go to different folds,
+      // whatever the order of the readings.
+      const auto pose = static_cast<std::size_t>(reading.pose);
+      const std::size_t into = (pose + takes[pose]++) % folds;
+      if (!is_quick) (into == fold ? held_out : kept).push_back(reading);
     }
     const FitProblem problem(kept, side, sensors, options);
     Unknowns at = solution.at;

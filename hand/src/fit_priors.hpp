@@ -10,9 +10,11 @@
 
 namespace nendo::hand {
 
-// How uncertain the default is. Published gains and offsets differ by half of this between gloves
-// and wearers, so that one or two poses outweigh it.
-inline constexpr double gain_deviation = 0.5; ///< of the gain's logarithm: its sign is known
+// How uncertain the default is. Published gains differ by as much between gloves and wearers. Gaps
+// between fingers need it: the poses that spread them are few and loosely held, and a wider prior
+// made their errors greater by a fifth. Published offsets differ by half of theirs, so that one or
+// two poses outweigh it.
+inline constexpr double gain_deviation = 0.25; ///< of the gain's logarithm: its sign is known
 inline constexpr double offset_deviation_of_range = 40.0 / 255.0;
 // Thumb sensors mix strongly; published slope matrices have ratios up to 0.9.
 inline constexpr double thumb_mix_deviation = 0.5;
@@ -27,20 +29,25 @@ inline constexpr double palm_depth_deviation_m = 0.003;
 // of it when the length is known. Bones vary by 7 to 14 % between people of all sizes (A. Buryanov,
 // V. Kotiuk, Int. J. Morphol. 28, 2010), of which the size takes its part. The carpometacarpal
 // axes of the thumb differ by 5 to 10 degrees between specimens (W. P. Cooney and others, 1981; A.
-// Hollister and others, 1992). All but ANSUR's are quoted from memory.
+// Hollister and others, 1992). Models of the thumb differ more than specimens of one study do,
+// above all in how a thumb turns about itself as it opposes: axes that are square and fixed turn it
+// twice as far as those of hand_shape.hpp. The deviations of its turn cover both, for a touch that
+// is believed as if the thumb were better known pulls roll and abduction off. All but ANSUR's are
+// quoted from memory.
 inline constexpr double length_deviation = 0.06; ///< of its logarithm
 inline constexpr double breadth_deviation = 0.05;
 constexpr double shape_deviation(ShapeTerm term) noexcept {
   if (term <= ShapeTerm::little_distal) return 0.06;
-  if (term <= ShapeTerm::thumb_base_z) return 0.004;
+  if (term <= ShapeTerm::thumb_base_z) return 0.006;
+  if (term >= ShapeTerm::thumb_pronation_by_roll) return 0.5;
   constexpr double degree = 0.017453292519943295;
-  if (term == ShapeTerm::thumb_pronation) return 10.0 * degree;
-  return 7.0 * degree;
+  if (term == ShapeTerm::thumb_pronation) return 20.0 * degree;
+  return (term < ShapeTerm::index_tilt ? 10.0 : 7.0) * degree;
 }
 
 // Even the right terms leave something of a hand: what its form cannot tell, in each coordinate of
 // a touch.
-inline constexpr double form_deviation_m = 0.0035;
+inline constexpr double form_deviation_m = 0.0045;
 
 // How far sensors slip between wearings before anything is known of a wearing: the vendor's figure
 // of repeatability is 3 degrees. These are the least and the most that a touch-up believes.
@@ -56,6 +63,10 @@ inline constexpr double unusual = 3.0;
 // poses of the joint. The square of this part is about a third, so the habit is a third of the
 // variance. The poses alone could not tell a habit from a gain.
 inline constexpr double habit_part = 0.6;
+
+// A PIP joint that is asked to be straight cannot go much beyond that, so that it is off to one
+// side: half of a normal scatter of 3 to 5 degrees stops at two degrees of hyperextension.
+inline constexpr double straight_pip_rad = 0.014;
 
 // In a pose the joint's angle differs from the angle that was asked for, and the counts follow the
 // joint. A line should therefore be fitted to counts over asked angles. With residuals in radians,

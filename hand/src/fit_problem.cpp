@@ -20,6 +20,14 @@ std::size_t slot_of(Sensor sensor) {
   return static_cast<std::size_t>(sensor);
 }
 
+/// The angle that comes out where this one is asked for.
+AssumedAngle as_it_comes_out(AssumedAngle assumed, std::size_t slot) {
+  const bool is_pip =
+      slot >= slot_of(Sensor::index_pip) && slot % 4 == 1 && slot < slot_of(Sensor::palm_arch);
+  if (is_pip && assumed.angle_rad == 0.0) assumed.angle_rad = straight_pip_rad;
+  return assumed;
+}
+
 /// Of finger and thumb joints.
 bool is_flexion(std::size_t slot) {
   const RangeEnds& ends = range_ends_of[slot];
@@ -50,7 +58,7 @@ FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorM
       // Without couplings, a fist says nothing of the gaps between fingers.
       const bool speaks = full_ || is_flexion(slot) || reading.pose == PoseId::flat;
       if (sensors_.has(static_cast<Sensor>(slot)) && pose.assumed[slot].known() && speaks)
-        assumptions.push_back({slot, pose.assumed[slot]});
+        assumptions.push_back({slot, as_it_comes_out(pose.assumed[slot], slot)});
     }
     const Eigen::Index touch = height_ + static_cast<Eigen::Index>(assumptions.size());
     const bool touches = full_ && pose.touch && usable(*pose.touch);

@@ -29,12 +29,6 @@ inline constexpr double thumb_pronation_rad = from_degrees(47);
 inline constexpr double pronation_by_roll = -0.41;
 inline constexpr double pronation_by_abduction = -0.27;
 
-/// Returns the thumb's rotation about its own axis, in radians, where that is `at_zero` at zero
-/// angles. At 90 degrees its flexion runs across the palm.
-constexpr double thumb_pronation(double at_zero, double roll_rad, double abduction_rad) noexcept {
-  return at_zero + pronation_by_roll * roll_rad + pronation_by_abduction * abduction_rad;
-}
-
 // How much of the palm's arch moves each metacarpal, from index to little finger. The little
 // finger's metacarpal moves most, the ring finger's about half as much; those of index and middle
 // finger are fixed to the carpus.

@@ -65,7 +65,9 @@ TEST_SUITE("calibration_fit") {
       CHECK(off < before);
       before = off;
     }
-    CHECK(before < 2.5 * rad);
+    // A habit is 0.6 of what wearers are off by, 6 degrees where fingers are spread; the default's
+    // pull may be taken for one.
+    CHECK(before < 4.0 * rad);
   }
 
   TEST_CASE("two poses give the flexion sensors' lines, and leave the rest at the default") {

@@ -102,6 +102,25 @@ TEST_SUITE("wearer_shape") {
               .norm() < 1e-15);
   }
 
+  TEST_CASE("a thumb that turns more as it opposes is, in each pose, one that is turned more") {
+    for (const double roll_rad : {-0.2, 0.0, 0.7, 1.3}) {
+      for (const double abduction_rad : {0.0, 0.8}) {
+        JointAngles angles;
+        angles.thumb_roll_rad = roll_rad;
+        angles.thumb_abduction_rad = abduction_rad;
+        angles.thumb_mcp_flexion_rad = 0.6;
+        HandSize changing, constant;
+        changing.shape[ShapeTerm::thumb_pronation_by_roll] = -0.3;
+        changing.shape[ShapeTerm::thumb_pronation_by_abduction] = 0.2;
+        constant.shape[ShapeTerm::thumb_pronation] = -0.3 * roll_rad + 0.2 * abduction_rad;
+        const auto at = [&](const HandSize& size) {
+          return HandSkeleton(Side::right, size).pose(angles, Isometry3d::Identity());
+        };
+        CHECK(at(changing)[Joint::thumb_tip].isApprox(at(constant)[Joint::thumb_tip], 1e-12));
+      }
+    }
+  }
+
   TEST_CASE("touches of another hand teach its shape, and pull angles less than a hand taken for "
             "granted would") {
     // A longer thumb, that stands elsewhere: its pinches do not fit an average hand.

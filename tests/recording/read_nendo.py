@@ -62,6 +62,8 @@ def hand(b):
             h["layer"]["below"] = b.take("23d")
     if b.take("B"):
         h["shape"], h["swapped_shape"] = b.take("26d"), b.take("26d")
+        later = b.take("2d"), b.take("2d")
+        h["shape"], h["swapped_shape"] = h["shape"] + later[0], h["swapped_shape"] + later[1]
     return h
 
 
@@ -170,7 +172,7 @@ def shape(b):
 
 def main():
     data = open(sys.argv[1], "rb").read()
-    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 8, crc32c(data[:12])), "header"
+    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 9, crc32c(data[:12])), "header"
     at = 16
     number = 0
     readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "ORIG": origin, "REST": rest, "PUPP": puppet, "PUPV": puppet_version, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}

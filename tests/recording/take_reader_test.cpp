@@ -293,6 +293,31 @@ TEST_SUITE("take_reader") {
     CHECK(setup.hands.size() == 2);
   }
 
+  TEST_CASE("a hand of format 1.8, whose shape had two terms less, is read with zeros for them") {
+    auto source = test::setup_of(test::LoopUnderTest(Mode::type1));
+    for (flow::HandInput& hand : source.hands)
+      for (const Side side : {Side::left, Side::right})
+        hand.wearer.of(side).size.shape.terms.fill(0.02);
+    std::uint32_t chunks = 0;
+    const auto bytes = setup_bytes(source, chunks);
+    auto reader = driver::ChunkReader::of(bytes, "test");
+    REQUIRE(reader);
+    Setup setup;
+    while (const auto chunk = reader->next()) {
+      if (chunk->type != driver::chunk_type("HAND")) continue;
+      const std::span whole(chunk->payload);
+      constexpr std::size_t later_bytes = 2 * 2 * 8;
+      Setup cut = setup;
+      CHECK_FALSE(read_setup_chunk(chunk->type, whole.first(whole.size() - 8), cut));
+      REQUIRE(read_setup_chunk(chunk->type, whole.first(whole.size() - later_bytes), setup));
+      const auto& terms = setup.hands.back().wearer.of(Side::left).size.shape.terms;
+      CHECK(terms[25] == 0.02);
+      CHECK(terms[26] == 0.0);
+      CHECK(terms[27] == 0.0);
+    }
+    CHECK(setup.hands.size() == 2);
+  }
+
   TEST_CASE("a loop of format 1.4 undoes pulls by the rule of its time") {
     std::uint32_t chunks = 0;
     const auto bytes = setup_bytes(test::setup_of(test::LoopUnderTest(Mode::type1)), chunks);

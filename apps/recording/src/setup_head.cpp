@@ -1,5 +1,7 @@
 #include "setup_parts.hpp"
 
+#include <utility>
+
 #include <nendo/driver/sample_record.hpp>
 
 namespace nendo::recording {
@@ -79,8 +81,12 @@ void read_size(CheckedReader& checked, hand::HandSize& size) {
   size.breadth_m = checked.number(least_hand_m, most_hand_m);
 }
 
-void read_shape(CheckedReader& checked, hand::WearerShape& shape) {
-  for (std::size_t k = 0; k < hand::shape_terms; ++k) {
+/// Shapes had so many terms before format 1.9; those behind them follow both hands' first ones.
+constexpr std::size_t early_terms = 26;
+
+void read_shape(CheckedReader& checked, std::size_t begin, std::size_t end,
+                hand::WearerShape& shape) {
+  for (std::size_t k = begin; k < end; ++k) {
     const double most = hand::most_of(static_cast<hand::ShapeTerm>(k));
     shape.terms[k] = checked.number(-most, most);
   }
@@ -157,9 +163,11 @@ void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& ha
   const bool average = own.size.shape.is_average() && other.size.shape.is_average();
   writer.u8(static_cast<std::uint8_t>(!average));
   if (average) return;
-  for (const hand::HandSize* size : {&own.size, &other.size})
-    for (const double term : size->shape.terms)
-      writer.f64_le(term);
+  for (const auto& [begin, end] :
+       {std::pair{std::size_t{0}, early_terms}, std::pair{early_terms, hand::shape_terms}})
+    for (const hand::HandSize* size : {&own.size, &other.size})
+      for (std::size_t k = begin; k < end; ++k)
+        writer.f64_le(size->shape.terms[k]);
 }
 
 bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
@@ -184,8 +192,12 @@ bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
   if (reader.remaining() > 0 && reader.u8() != 0) // formats before 1.6 end before it
     read_layer(reader, checked, hand.layer.emplace());
   if (reader.remaining() > 0 && reader.u8() != 0) { // formats before 1.7 end before it
-    read_shape(checked, own.size.shape);
-    read_shape(checked, other.size.shape);
+    read_shape(checked, 0, early_terms, own.size.shape);
+    read_shape(checked, 0, early_terms, other.size.shape);
+    if (reader.remaining() > 0) { // formats before 1.9 end before them
+      read_shape(checked, early_terms, hand::shape_terms, own.size.shape);
+      read_shape(checked, early_terms, hand::shape_terms, other.size.shape);
+    }
   }
   if (!checked.fine()) return false;
   hand.wearer.of(hand.first.side) = own;

@@ -58,6 +58,8 @@ public:
     bool thumb_is_tilted;       ///< false: `thumb` is the identity
     double thumb_rest_rad;      ///< the angle between thumb and index finger at zero angles
     double thumb_pronation_rad; ///< how the thumb is turned about itself at zero angles
+    /// How that changes for each radian of roll, and of abduction.
+    double thumb_pronation_by_roll, thumb_pronation_by_abduction;
     std::array<double, 4> knuckle_tilts_rad; ///< turns of the fingers about themselves
   };
   const Axes& axes() const noexcept { return axes_; }

@@ -38,18 +38,41 @@ enum class ShapeTerm : std::uint8_t {
   middle_tilt,     ///< if the bent finger goes towards the ulna
   ring_tilt,
   little_tilt,
+  thumb_pronation_by_roll,      ///< how much more the thumb turns about itself for each radian of
+  thumb_pronation_by_abduction, ///< roll, or of abduction
 };
 
-inline constexpr std::size_t shape_terms = 26;
+inline constexpr std::size_t shape_terms = 28;
 
 inline constexpr std::array<std::string_view, shape_terms> shape_term_names{
-    "thumb_metacarpal",   "thumb_proximal",      "thumb_distal",      "index_proximal",
-    "index_intermediate", "index_distal",        "middle_proximal",   "middle_intermediate",
-    "middle_distal",      "ring_proximal",       "ring_intermediate", "ring_distal",
-    "little_proximal",    "little_intermediate", "little_distal",     "thumb_base_x",
-    "thumb_base_y",       "thumb_base_z",        "thumb_rest",        "thumb_tilt_x",
-    "thumb_tilt_y",       "thumb_pronation",     "index_tilt",        "middle_tilt",
-    "ring_tilt",          "little_tilt",
+    "thumb_metacarpal",
+    "thumb_proximal",
+    "thumb_distal",
+    "index_proximal",
+    "index_intermediate",
+    "index_distal",
+    "middle_proximal",
+    "middle_intermediate",
+    "middle_distal",
+    "ring_proximal",
+    "ring_intermediate",
+    "ring_distal",
+    "little_proximal",
+    "little_intermediate",
+    "little_distal",
+    "thumb_base_x",
+    "thumb_base_y",
+    "thumb_base_z",
+    "thumb_rest",
+    "thumb_tilt_x",
+    "thumb_tilt_y",
+    "thumb_pronation",
+    "index_tilt",
+    "middle_tilt",
+    "ring_tilt",
+    "little_tilt",
+    "thumb_pronation_by_roll",
+    "thumb_pronation_by_abduction",
 };
 
 constexpr std::string_view name_of(ShapeTerm term) noexcept {
