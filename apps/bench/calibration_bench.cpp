@@ -27,6 +27,7 @@ struct Options {
   bool json = false;
   bool markdown = false;
   std::string judge;
+  bool floor = false;
 };
 
 struct Figures {
@@ -127,8 +128,10 @@ void print_text(const TrialErrors& errors, std::uint64_t refused, const Options&
 }
 
 int bench_calibration(const Options& options) {
+  if (options.floor && options.judge.empty())
+    return cli::report({Errc::usage, "--floor needs --judge FILE, of nendo bench wearers"});
   if (!options.judge.empty())
-    return judge_bench::judge_file(options.judge, {options.json, options.markdown});
+    return judge_bench::judge_file(options.judge, {options.json, options.markdown, options.floor});
   if (options.wearers == 0 || options.wearers > 10'000)
     return cli::report({Errc::usage, "--wearers: from 1 to 10000"});
   cli::install_stop_signals();
@@ -157,6 +160,9 @@ void add(cli::Command& bench) {
   command.add_option("--seed", options->seed, "The first wearer's; 1 to 60 were used for tuning");
   command.add_flag("--json", options->json, "One JSON object");
   command.add_flag("--markdown", options->markdown, "A table in Markdown");
+  command.add_flag("--floor", options->floor,
+                   "With --judge FILE of nendo bench wearers: also the floor, of an estimator that "
+                   "is told the true hand and the form of the errors");
   command.add_option("--judge", options->judge,
                      "Judges by the wearers of this file instead, as nendo bench wearers writes "
                      "them");

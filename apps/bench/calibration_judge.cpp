@@ -14,6 +14,8 @@
 #include <nendo/hand/range_capture.hpp>
 #include <nendo/hand/skeleton.hpp>
 
+#include "bench/stranger_floor.hpp"
+
 namespace nendo::bench {
 namespace {
 
@@ -58,24 +60,58 @@ double pads_apart_mm(const hand::HandPose& pose, const JudgedWearer& wearer, int
   return 1e3 * (pad(0) - pad(static_cast<std::size_t>(touching))).norm();
 }
 
-GroupErrors errors_of(const JudgedWearer& wearer, const JudgedSession& session,
-                      const hand::Calibration& calibration, const hand::HandSkeleton& skeleton) {
+/// What is made of a moment.
+struct Told {
+  JointAngles angles;
+  double apart_mm; ///< the pads that touch
+};
+
+template <class Tell>
+GroupErrors errors_of(const JudgedWearer& wearer, const JudgedSession& session, Tell&& tell) {
   GroupErrors errors;
   const hand::AngleSources sources = hand::angle_sources(wearer.sensors);
   for (const JudgedMoment& moment : session.motion) {
-    const GloveSample sample = judged_sample(moment.counts, wearer);
-    const JointAngles told = hand::joint_angles(sample, calibration);
+    const Told told = tell(moment);
     for (std::size_t n = 0; n < hand::angle_count; ++n) {
       const auto group = group_of(n);
       if (!group || sources[n] == hand::AngleSource::zero) continue;
-      const double error = to_degrees(told[hand::angle_at(n)]) - moment.angles_deg[n];
+      const double error = to_degrees(told.angles[hand::angle_at(n)]) - moment.angles_deg[n];
       errors[*group].push_back(static_cast<float>(std::abs(error)));
     }
-    if (moment.touching == 0) continue;
-    const auto pose = skeleton.pose(told, Eigen::Isometry3d::Identity());
-    errors.back().push_back(static_cast<float>(pads_apart_mm(pose, wearer, moment.touching)));
+    if (moment.touching != 0) errors.back().push_back(static_cast<float>(told.apart_mm));
   }
   return errors;
+}
+
+GroupErrors errors_of(const JudgedWearer& wearer, const JudgedSession& session,
+                      const hand::Calibration& calibration, const hand::HandSkeleton& skeleton) {
+  return errors_of(wearer, session, [&](const JudgedMoment& moment) {
+    const JointAngles angles =
+        hand::joint_angles(judged_sample(moment.counts, wearer), calibration);
+    if (moment.touching == 0) return Told{angles, 0.0};
+    const auto pose = skeleton.pose(angles, Eigen::Isometry3d::Identity());
+    return Told{angles, pads_apart_mm(pose, wearer, moment.touching)};
+  });
+}
+
+/// The angles of joints whose sensors' angles are known: lines that read them, in place of counts.
+JointAngles joints_at(const hand::SensorAngles& angles_rad, const JudgedWearer& wearer) {
+  hand::Calibration passing;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    passing.sensors[slot] = {1.0, -angles_rad[slot]};
+  return hand::joint_angles(judged_sample({}, wearer), passing);
+}
+
+GroupErrors errors_of_floor(const JudgedWearer& wearer, const StrangerHand& hand) {
+  StrangerFloor floor(wearer, hand);
+  return errors_of(wearer, wearer.fresh, [&](const JudgedMoment& moment) {
+    hand::SensorAngles angles = floor.angles_rad(moment.counts);
+    const JointAngles joints = joints_at(angles, wearer);
+    for (std::size_t f = 0; f < joints.fingers.size(); ++f)
+      angles[4 * f + 6] = joints.fingers[f].dip_flexion_rad; // by rule, where there is no sensor
+    if (moment.touching == 0) return Told{joints, 0.0};
+    return Told{joints, 1e3 * floor.pads_apart_m(angles, moment.touching)};
+  });
 }
 
 /// What each sensor's line would read of the truth: gaps between fingers, not directions.
@@ -176,7 +212,7 @@ double p95(std::vector<float> values) {
 
 } // namespace
 
-void judge(const JudgedWearer& wearer, Verdict& verdict) {
+void judge(const JudgedWearer& wearer, Verdict& verdict, const StrangerHand* hand) {
   ++verdict.wearers;
   std::vector<hand::PoseReading> two;
   for (const hand::PoseId id : hand::quick_poses()) {
@@ -204,7 +240,9 @@ void judge(const JudgedWearer& wearer, Verdict& verdict) {
       errors_of(wearer, wearer.fresh, quick->calibration, average),
       errors_of(wearer, wearer.fresh, best_lines(wearer), own),
       errors_of(wearer, wearer.again, full->calibration, own),
+      {},
       {}};
+  if (hand != nullptr) errors.back() = errors_of_floor(wearer, *hand);
   if (!wearer.again.takes.empty()) {
     hand::FitOptions again;
     again.mode = hand::FitMode::touch_up;
@@ -216,10 +254,13 @@ void judge(const JudgedWearer& wearer, Verdict& verdict) {
       verdict.refused.push_back(wearer.name + ", touch-up: " + touched_up.error().message);
       return;
     }
-    errors.back() = errors_of(wearer, wearer.again, touched_up->calibration, own);
+    errors[4] = errors_of(wearer, wearer.again, touched_up->calibration, own);
   }
   for (std::size_t group = 0; group < judged_groups.size(); ++group) {
-    if (p95(errors[0][group]) > p95(errors[1][group]) + 0.3) ++verdict.worse[group];
+    constexpr double tolerance = 0.3;
+    const double two_pose = p95(errors[1][group]) + tolerance;
+    if (p95(errors[0][group]) > two_pose) ++verdict.worse[group];
+    if (p95(errors.back()[group]) > two_pose) ++verdict.floor_worse[group];
     for (std::size_t method = 0; method < errors.size(); ++method) {
       auto& all = verdict.errors[method][group];
       all.insert(all.end(), errors[method][group].begin(), errors[method][group].end());

@@ -10,6 +10,7 @@
 #include <nendo/base/result.hpp>
 
 #include "bench/judged_wearer.hpp"
+#include "bench/stranger_hand.hpp"
 
 namespace nendo::bench {
 
@@ -19,9 +20,10 @@ enum class Judged : std::uint8_t {
   lines,      ///< the best line of each sensor, by the true angles of the motion itself: a bound
   worn_again, ///< the full calibration, after the glove was put on again
   touched_up, ///< that, touched up
+  floor,      ///< what StrangerFloor reaches on the captures of full
 };
-inline constexpr std::array<std::string_view, 5> judged_names{"full", "two_pose", "best lines",
-                                                              "worn again", "touched up"};
+inline constexpr std::array<std::string_view, 6> judged_names{
+    "full", "two_pose", "best lines", "worn again", "touched up", "floor"};
 
 /// The last row are the distances of pads that touch, in millimetres; the others are degrees.
 inline constexpr std::array<std::string_view, 9> judged_groups{
@@ -36,12 +38,14 @@ struct Verdict {
   /// By group: how many wearers' 95th percentile is greater than that of the two-pose fit, by more
   /// than 0.3 degrees.
   std::array<int, judged_groups.size()> worse{};
+  std::array<int, judged_groups.size()> floor_worse{}; ///< the same of the floor
   int wearers = 0;
   std::vector<std::string> refused; ///< names, and why
   std::vector<double> fit_ms;
 };
 
-/// Adds a wearer's errors.
-void judge(const JudgedWearer& wearer, Verdict& verdict);
+/// Adds a wearer's errors. The floor is judged, too, if the wearer is a stranger whose true hand is
+/// given; this takes a second.
+void judge(const JudgedWearer& wearer, Verdict& verdict, const StrangerHand* hand = nullptr);
 
 } // namespace nendo::bench

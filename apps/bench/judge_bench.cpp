@@ -3,6 +3,8 @@
 #include "bench/judge_bench.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -32,6 +34,26 @@ constexpr std::array<std::array<double, 2>, judged_groups.size()> goals{{{2.0, 5
                                                                          {2.0, 6.0},
                                                                          {3.0, 8.0}}};
 
+/// The true hand of a stranger, who is known by the name. Error: bad_input, of others.
+Result<StrangerHand> true_hand(const JudgedWearer& wearer) {
+  std::uint64_t seed = 0;
+  const std::string_view name = wearer.name;
+  constexpr std::string_view before = "stranger ";
+  const char* const end = name.data() + name.size();
+  const bool numbered = name.starts_with(before) &&
+                        std::from_chars(name.data() + before.size(), end, seed).ptr == end;
+  const Error other{Errc::bad_input,
+                    wearer.name + ": not of nendo bench wearers, so that its true hand is unknown; "
+                                  "leave out --floor"};
+  if (!numbered) return other;
+  StrangerHand hand = hand_of_stranger(seed);
+  constexpr double rounded_m = 1e-5; // in the file
+  for (std::size_t digit = 0; digit < wearer.pads.size(); ++digit)
+    if (!(std::abs(hand.pads()[digit].depth - wearer.pads[digit].depth_m) < rounded_m))
+      return other;
+  return hand;
+}
+
 template <class Number>
 double percentile(std::vector<Number> values, double part) {
   if (values.empty()) return 0.0;
@@ -40,17 +62,25 @@ double percentile(std::vector<Number> values, double part) {
   return static_cast<double>(values[static_cast<std::size_t>(at)]);
 }
 
+bool has_floor(const Verdict& verdict) {
+  return !verdict.errors.back().front().empty();
+}
+std::size_t columns_of(const Verdict& verdict) {
+  return judged_names.size() - (has_floor(verdict) ? 0 : 1);
+}
+
 void print_judged_json(const Verdict& verdict) {
   nlohmann::ordered_json groups;
   for (std::size_t group = 0; group < judged_groups.size(); ++group) {
     auto& row = groups[std::string(judged_groups[group])];
-    for (std::size_t method = 0; method < judged_names.size(); ++method) {
+    for (std::size_t method = 0; method < columns_of(verdict); ++method) {
       const auto& errors = verdict.errors[method][group];
       row[std::string(judged_names[method])] = {{"median", percentile(errors, 0.5)},
                                                 {"p95", percentile(errors, 0.95)}};
     }
     row["goal"] = {{"median", goals[group][0]}, {"p95", goals[group][1]}};
     row["worse_than_two_pose"] = verdict.worse[group];
+    if (has_floor(verdict)) row["floor_worse_than_two_pose"] = verdict.floor_worse[group];
   }
   std::cout << nlohmann::ordered_json{{"wearers", verdict.wearers},
                                       {"refused", verdict.refused},
@@ -65,22 +95,27 @@ void print_judged_table(const Verdict& verdict, bool markdown) {
   const char* between = markdown ? " | " : "  ";
   const char* end = markdown ? " |" : "";
   std::printf("%s%-16s", bar, "group");
-  for (const std::string_view name : judged_names)
-    std::printf("%s%13s", between, std::string(name).c_str());
-  std::printf("%s%13s%sworse than two_pose%s\n", between, "goal for full", between, end);
-  if (markdown) std::printf("|---|---:|---:|---:|---:|---:|---:|---:|\n");
+  const std::size_t columns = columns_of(verdict);
+  for (std::size_t method = 0; method < columns; ++method)
+    std::printf("%s%13s", between, std::string(judged_names[method]).c_str());
+  std::printf("%s%13s%sworse than two_pose%s%s\n", between, "goal for full", between,
+              has_floor(verdict) ? " (floor)" : "", end);
+  if (markdown)
+    std::printf("|---|---:|---:|---:|---:|---:|---:|---:|%s\n", has_floor(verdict) ? "---:|" : "");
   for (std::size_t group = 0; group < judged_groups.size(); ++group) {
     std::printf("%s%-16s", bar, std::string(judged_groups[group]).c_str());
     char cell[48];
-    for (std::size_t method = 0; method < judged_names.size(); ++method) {
+    for (std::size_t method = 0; method < columns; ++method) {
       const auto& errors = verdict.errors[method][group];
       std::snprintf(cell, sizeof cell, "%.2f / %.1f", percentile(errors, 0.5),
                     percentile(errors, 0.95));
       std::printf("%s%13s", between, cell);
     }
     std::snprintf(cell, sizeof cell, "%.1f / %.1f", goals[group][0], goals[group][1]);
-    std::printf("%s%13s%s%12d of %d%s\n", between, cell, between, verdict.worse[group],
-                verdict.wearers, end);
+    std::printf("%s%13s%s%12d of %d", between, cell, between, verdict.worse[group],
+                verdict.wearers);
+    if (has_floor(verdict)) std::printf(" (%d)", verdict.floor_worse[group]);
+    std::printf("%s\n", end);
   }
 }
 
@@ -97,7 +132,13 @@ int judge_file(const std::string& path, const Output& output) {
     const auto wearer = wearers->next();
     if (!wearer) return cli::report(wearer.error());
     if (!*wearer) break;
-    judge(**wearer, verdict);
+    if (output.floor) {
+      const auto hand = true_hand(**wearer);
+      if (!hand) return cli::report(hand.error());
+      judge(**wearer, verdict, &*hand);
+    } else {
+      judge(**wearer, verdict);
+    }
   }
   if (verdict.wearers == 0) return cli::report({Errc::bad_input, path + ": no wearers"});
   if (output.json) {

@@ -14,6 +14,7 @@
 #include <nendo/hand/calibration_poses.hpp>
 
 #include "bench/stranger_hand.hpp"
+#include "bench/stranger_kind.hpp"
 
 namespace nendo::bench {
 namespace stranger_parts {
@@ -29,54 +30,26 @@ constexpr std::size_t slot(Sensor sensor) {
   return static_cast<std::size_t>(sensor);
 }
 
-/// The ends of a joint's range and a relaxed hand's angle, degrees; thousandths of a radian a count
-/// and the count at 0.
-struct Joint {
-  double low, high, relaxed, gain, offset;
-};
-constexpr Joint mcp{-12, 91, 28, 12.8, 70}, pip{-2, 106, 38, 13.2, 64}, dip{-3, 74, 14, 13.0, 62};
-constexpr Joint gap{-3, 24, 6, 9.0, 110};
-constexpr std::array<Joint, sensor_slots> joints{{{-6, 84, 30, 11.5, 98},
-                                                  {-8, 57, 14, 13.0, 106},
-                                                  {-10, 78, 18, 13.0, 92},
-                                                  {-4, 56, 22, 11.5, 108},
-                                                  mcp,
-                                                  pip,
-                                                  dip,
-                                                  {},
-                                                  mcp,
-                                                  pip,
-                                                  dip,
-                                                  gap,
-                                                  mcp,
-                                                  pip,
-                                                  dip,
-                                                  gap,
-                                                  mcp,
-                                                  pip,
-                                                  dip,
-                                                  gap,
-                                                  {-2, 25, 6, 9.0, 90},
-                                                  {-66, 74, 4, 13.5, 126},
-                                                  {-30, 20, 0, 12.5, 124},
-                                                  {}}};
-
 struct Reads { ///< a sensor reads a part of another joint's angle
   Sensor of, by;
   double part;
 };
 
+std::mt19937_64 random_of(std::uint64_t seed) {
+  return std::mt19937_64(seed * 2654435761U + 99);
+}
+
 class Stranger {
 public:
   Stranger(std::uint64_t seed, const StrangerErrors& errors)
-      : random_(seed * 2654435761U + 99), errors_(errors), hand_(random_) {
+      : random_(random_of(seed)), errors_(errors), hand_(random_) {
     for (std::size_t n = 0; n < sensor_slots; ++n) {
-      const Joint& joint = joints[n];
+      const StrangerJoint& joint = stranger_joints[n];
       if (joint.gain == 0.0) continue;
       const double range = joint.high - joint.low;
-      low_[n] = from_degrees(joint.low + normal(0.0, 0.03 * range));
-      high_[n] = from_degrees(joint.high + normal(0.0, 0.06 * range));
-      habit_[n] = errors.scatter * from_degrees(normal(0.0, 2.5));
+      low_[n] = from_degrees(joint.low + normal(0.0, StrangerSpread::low * range));
+      high_[n] = from_degrees(joint.high + normal(0.0, StrangerSpread::high * range));
+      habit_[n] = errors.scatter * from_degrees(normal(0.0, StrangerSpread::habit_deg));
     }
     draw_sensors();
   }
@@ -109,33 +82,26 @@ private:
   }
 
   void draw_sensors() {
-    const auto reads = [&](Sensor of, Sensor by, double part) { reads_.push_back({of, by, part}); };
-    reads(Sensor::thumb_roll, Sensor::thumb_abduction, normal(-0.1, 0.2));
-    reads(Sensor::thumb_abduction, Sensor::thumb_roll, normal(0.1, 0.15));
-    constexpr std::array gaps{Sensor::index_middle_abduction, Sensor::middle_ring_abduction,
-                              Sensor::ring_pinky_abduction};
-    for (std::size_t k = 0; k < gaps.size(); ++k) {
-      const auto finger = static_cast<Sensor>(slot(Sensor::index_mcp) + 4 * k);
-      reads(gaps[k], finger, normal(0.08, 0.08));
-      reads(gaps[k], static_cast<Sensor>(slot(finger) + 4), normal(0.08, 0.08));
+    for (const StrangerRead& read : stranger_reads()) {
+      const double part = normal(read.mean, read.spread);
+      reads_.push_back({read.of, read.by, read.is_cross_talk ? errors_.cross_talk * part : part});
     }
-    for (std::size_t n = slot(Sensor::index_mcp); n < slot(Sensor::palm_arch); ++n)
-      if (joints[n].gain != 0.0 && n % 4 != 3)
-        reads(static_cast<Sensor>(n), Sensor::wrist_pitch,
-              errors_.cross_talk * normal(0.0, n % 4 == 0 ? 0.035 : 0.015));
-    reads(Sensor::thumb_roll, Sensor::thumb_mcp, errors_.cross_talk * normal(0.0, 0.05));
     for (std::size_t n = 0; n < sensor_slots; ++n) {
-      if (joints[n].gain == 0.0) continue;
-      bow_[n] = errors_.curvature * uniform(-0.035, 0.035) * (high_[n] - low_[n]);
-      lag_[n] = errors_.hysteresis * from_degrees(uniform(0.3, 1.5));
+      if (stranger_joints[n].gain == 0.0) continue;
+      bow_[n] = errors_.curvature * uniform(-StrangerSpread::bow, StrangerSpread::bow) *
+                (high_[n] - low_[n]);
+      lag_[n] = errors_.hysteresis *
+                from_degrees(uniform(StrangerSpread::least_lag_deg, StrangerSpread::most_lag_deg));
       creep_[n] = errors_.creep * uniform(0.0, 0.03);
-      gain_[n] = 1e-3 * joints[n].gain * std::exp(normal(0.0, 0.13));
+      gain_[n] = 1e-3 * stranger_joints[n].gain * std::exp(normal(0.0, StrangerSpread::log_gain));
       // Whoever sets a glove's gain sees to it that no count is at its end.
       const double widest = 1.35 * (high_[n] - low_[n]);
       gain_[n] = std::max(gain_[n], widest / 225.0);
       const double below = (std::max(0.0, -low_[n]) + 0.12 * (high_[n] - low_[n])) / gain_[n];
       const double above = 1.15 * high_[n] / gain_[n];
-      offset_[n] = std::clamp(joints[n].offset + normal(0.0, 14.0), 8.0 + below, 247.0 - above);
+      offset_[n] =
+          std::clamp(stranger_joints[n].offset + normal(0.0, StrangerSpread::offset_counts),
+                     8.0 + below, 247.0 - above);
     }
   }
 
@@ -145,7 +111,7 @@ private:
       pulled[slot(r.of)] += r.part * angles[slot(r.by)];
     CountRow row{};
     for (std::size_t n = 0; n < sensor_slots; ++n) {
-      if (joints[n].gain == 0.0 || !sensors_.has(static_cast<Sensor>(n))) continue;
+      if (stranger_joints[n].gain == 0.0 || !sensors_.has(static_cast<Sensor>(n))) continue;
       const double part = (angles[n] - low_[n]) / (high_[n] - low_[n]);
       const double bent = pulled[n] + bow_[n] * 4.0 * part * (1.0 - part);
       lagging_[n] = std::clamp(lagging_[n], bent - lag_[n], bent + lag_[n]);
@@ -165,8 +131,9 @@ private:
   SensorAngles relaxed() {
     SensorAngles angles{};
     for (std::size_t n = 0; n < sensor_slots; ++n)
-      if (joints[n].gain != 0.0)
-        angles[n] = clamped(n, from_degrees(normal(joints[n].relaxed, 8.0)));
+      if (stranger_joints[n].gain != 0.0)
+        angles[n] = clamped(
+            n, from_degrees(normal(stranger_joints[n].relaxed, StrangerSpread::relaxed_deg)));
     return angles;
   }
   double clamped(std::size_t n, double angle) const { return std::clamp(angle, low_[n], high_[n]); }
@@ -204,20 +171,13 @@ private:
     }
   }
 
-  /// The joints that bring the thumb to a pad, or to the palm (digit 0).
-  static std::vector<std::size_t> movers(std::size_t digit) {
-    std::vector<std::size_t> chosen{0, 1, 2, 3};
-    for (std::size_t k = 0; digit > 0 && k < 3; ++k)
-      chosen.push_back(4 * digit + k);
-    return chosen;
-  }
   Eigen::Vector3d apart(std::size_t digit, const SensorAngles& angles) const {
     return hand_.pad(0, angles) -
            (digit == 0 ? hand_.palm_at_little_finger(angles) : hand_.pad(digit, angles));
   }
   /// How far apart they stay; the angles go the shortest way from where they are.
   double touch(std::size_t digit, const Eigen::Vector3d& slip_m, SensorAngles& angles) const {
-    const auto chosen = movers(digit);
+    const auto chosen = touching_slots(digit);
     Eigen::Matrix<double, 3, Eigen::Dynamic> slopes(3, static_cast<Eigen::Index>(chosen.size()));
     for (int turn = 0; turn < 60; ++turn) {
       const Eigen::Vector3d off = apart(digit, angles) - slip_m;
@@ -239,20 +199,17 @@ private:
     return (apart(digit, angles) - slip_m).norm();
   }
   bool make_touch(std::size_t digit, double slip_deviation_m, SensorAngles& angles) {
-    constexpr double liked_deg[5][7] = {{62, 40, 40, 12, 0, 0, 0},
-                                        {55, 20, 20, 32, 45, 48, 22},
-                                        {62, 22, 25, 32, 48, 48, 22},
-                                        {70, 32, 25, 32, 52, 50, 22},
-                                        {74, 40, 25, 32, 55, 48, 22}};
     const Eigen::Vector3d slip_m{normal(0.0, slip_deviation_m), normal(0.0, slip_deviation_m),
                                  normal(0.0, slip_deviation_m)};
     SensorAngles best = angles;
     double least = 1.0;
     for (int attempt = 0; attempt < 12 && least > 0.0008; ++attempt) {
       SensorAngles tried = angles;
-      const auto chosen = movers(digit);
+      const auto chosen = touching_slots(digit);
       for (std::size_t k = 0; k < chosen.size(); ++k)
-        tried[chosen[k]] = clamped(chosen[k], from_degrees(normal(liked_deg[digit][k], 9.0)));
+        tried[chosen[k]] =
+            clamped(chosen[k],
+                    from_degrees(normal(stranger_touch_deg[digit][k], StrangerSpread::touch_deg)));
       const double left = touch(digit, slip_m, tried);
       if (left < least) {
         least = left;
@@ -261,12 +218,6 @@ private:
     }
     angles = best;
     return least < 0.0015;
-  }
-
-  static std::size_t digit_of(hand::Joint joint) {
-    for (std::size_t digit = 1; digit < 5; ++digit)
-      if (joint == hand::fingertips[digit]) return digit;
-    return 0;
   }
 
   SensorAngles perform(PoseId id) {
@@ -279,12 +230,14 @@ private:
       // Fingers that lie side by side hold each other.
       const bool side_by_side =
           n >= slot(Sensor::index_middle_abduction) && n % 4 == 3 && asked < from_degrees(5);
-      const double off = errors_.scatter * from_degrees(normal(0.0, side_by_side ? 1.5 : 5.0));
+      const double off =
+          errors_.scatter * from_degrees(normal(0.0, side_by_side ? StrangerSpread::side_by_side_deg
+                                                                  : StrangerSpread::scatter_deg));
       angles[n] = std::clamp(asked + habit + off, low_[n] - 0.03, high_[n] + 0.03);
     }
     const bool flat_finger = id == PoseId::pinch_index_flat;
     if (pose.touch) {
-      make_touch(digit_of(pose.touch->with), pose.touch->deviation_m > 0.003 ? 0.003 : 0.001,
+      make_touch(touching_digit(pose.touch->with), pose.touch->deviation_m > 0.003 ? 0.003 : 0.001,
                  angles);
       if (flat_finger) { // from the ring to flat pads, as far as the hand allows
         angles[slot(Sensor::index_pip)] = clamped(5, from_degrees(18 + normal(0.0, 6.0)));
@@ -352,7 +305,7 @@ private:
       SensorAngles grasp = relaxed();
       const double closed = uniform(0.3, 0.95);
       for (std::size_t k = slot(Sensor::index_mcp); k < slot(Sensor::palm_arch); ++k)
-        if (joints[k].gain != 0.0 && k % 4 != 3)
+        if (stranger_joints[k].gain != 0.0 && k % 4 != 3)
           grasp[k] = clamped(k, high_[k] * (closed + normal(0.0, 0.08)));
       grasp[0] = clamped(0, from_degrees(normal(50, 12)));
       grasp[3] = clamped(3, from_degrees(normal(35, 8)));
@@ -392,6 +345,11 @@ private:
 
 JudgedWearer make_stranger(std::uint64_t seed, SensorMask sensors, const StrangerErrors& errors) {
   return stranger_parts::Stranger(seed, errors).make(seed, sensors);
+}
+
+StrangerHand hand_of_stranger(std::uint64_t seed) {
+  std::mt19937_64 random = stranger_parts::random_of(seed);
+  return StrangerHand(random);
 }
 
 } // namespace nendo::bench

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "bench/judged_wearer.hpp"
+#include "bench/stranger_hand.hpp"
 
 namespace nendo::bench {
 
@@ -22,5 +23,8 @@ struct StrangerErrors {
 /// Makes one wearer, the same for the same seed: captures, a minute of motion, and the same after
 /// the glove has been put on again.
 JudgedWearer make_stranger(std::uint64_t seed, SensorMask sensors, const StrangerErrors& errors);
+
+/// Returns the hand of the wearer that make_stranger() makes of the same seed.
+StrangerHand hand_of_stranger(std::uint64_t seed);
 
 } // namespace nendo::bench

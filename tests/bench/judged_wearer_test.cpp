@@ -9,6 +9,7 @@
 
 #include "bench/calibration_judge.hpp"
 #include "bench/stranger.hpp"
+#include "bench/stranger_floor.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace judged_wearer_test {
@@ -78,6 +79,39 @@ TEST_SUITE("judged_wearer") {
     CHECK(verdict.refused.empty());
     for (const auto& errors : verdict.errors[0])
       CHECK_FALSE(errors.empty());
+    for (const auto& errors : verdict.errors.back()) // nobody was told a true hand
+      CHECK(errors.empty());
+  }
+
+  TEST_CASE("the floor closes pinches of the hand that it is told, and not of another one") {
+    double own_mm = 0.0, other_mm = 0.0, touching = 0.0;
+    for (std::uint64_t seed = 9004; seed < 9007; ++seed) {
+      const JudgedWearer wearer = make_stranger(seed, sensors_22, {});
+      const StrangerHand own_hand = hand_of_stranger(seed),
+                         other_hand = hand_of_stranger(seed + 10);
+      StrangerFloor own(wearer, own_hand), other(wearer, other_hand);
+      for (const JudgedMoment& moment : wearer.fresh.motion) {
+        const auto own_angles = own.angles_rad(moment.counts);
+        const auto other_angles = other.angles_rad(moment.counts);
+        if (moment.touching == 0) continue;
+        own_mm += 1e3 * own.pads_apart_m(own_angles, moment.touching);
+        // The true hand at the angles that the other one led to.
+        other_mm += 1e3 * own.pads_apart_m(other_angles, moment.touching);
+        touching += 1.0;
+      }
+    }
+    REQUIRE(touching > 30.0);
+    CHECK(own_mm / touching < 6.0); // the true pads touch; slips and scatter leave some millimetres
+    CHECK(own_mm < 0.7 * other_mm);
+  }
+
+  TEST_CASE("the floor is told of: a verdict with a true hand has its errors in every group") {
+    Verdict verdict;
+    const StrangerHand hand = hand_of_stranger(9010);
+    judge(make_stranger(9010, sensors_18, {}), verdict, &hand);
+    REQUIRE(verdict.refused.empty());
+    for (std::size_t group = 0; group < judged_groups.size(); ++group)
+      CHECK(verdict.errors.back()[group].size() == verdict.errors[0][group].size());
   }
 }
 
