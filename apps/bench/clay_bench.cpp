@@ -4,6 +4,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -91,18 +92,24 @@ std::vector<Row> rows_of(bool short_form) {
 
 /// Makes one thing, and writes it.
 int make_thing(const Options& options) {
-  const std::map<std::string, KneadedThing> things{
-      {"cake", KneadedThing::cake}, {"bowl", KneadedThing::bowl}, {"nose", KneadedThing::nose}};
+  const std::map<std::string, KneadedThing> things{{"cake", KneadedThing::cake},
+                                                   {"bowl", KneadedThing::bowl},
+                                                   {"nose", KneadedThing::nose},
+                                                   {"sausage", KneadedThing::sausage}};
   const auto thing = things.find(options.thing);
   if (thing == things.end())
-    return cli::report({Errc::usage, "--make " + options.thing +
-                                         ": there is no such thing; use cake, bowl or nose"});
+    return cli::report(
+        {Errc::usage,
+         "--make " + options.thing + ": there is no such thing; use cake, bowl, nose or sausage"});
   const KneadedClay made = knead(thing->second, options.short_form ? 4 : 6);
+  const Eigen::Vector3d size =
+      made.shape.vertices.rowwise().maxCoeff() - made.shape.vertices.rowwise().minCoeff();
   std::printf("%s: %zu vertices; %.2f ms a tick, p99 %.2f; left p99 %.4f mm; volume %% worst %.4f, "
-              "at the end %.4f; places held %zu\n",
+              "at the end %.4f; places held %zu; turned %.0f degrees; %.0f x %.0f x %.0f mm\n",
               options.thing.c_str(), static_cast<std::size_t>(made.shape.vertices.cols()),
               made.mean_us / 1e3, made.p99_us / 1e3, made.penetration_p99_mm,
-              100.0 * made.worst_volume, 100.0 * made.last_volume, made.most_held);
+              100.0 * made.worst_volume, 100.0 * made.last_volume, made.most_held,
+              made.turned_rad * 180.0 / std::numbers::pi, size.x(), size.y(), size.z());
   if (options.save.empty()) return 0;
   const auto written = deform::write_mesh(options.save, made.shape);
   return written ? 0 : cli::report(written.error());
@@ -134,7 +141,7 @@ void add(cli::Command& bench) {
   cli::Command command =
       bench.add_command("clay", "Pressing clay with whole hands, beside a plain program");
   command.add_option("--make", options->thing,
-                     "Knead a ball into a thing instead: cake, bowl or nose");
+                     "Knead a ball into a thing instead: cake, bowl, nose or sausage");
   command.add_option("--save", options->save, "Where to write what --make made: .obj or .ply");
   command.add_option("--simd", options->simd,
                      "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");

@@ -38,6 +38,7 @@ struct Plan {
 Plan plan_of(KneadedThing thing) {
   if (thing == KneadedThing::cake) return {25.0, 18.0, 10.7};
   if (thing == KneadedThing::bowl) return {32.0, 18.0, 10.6};
+  if (thing == KneadedThing::sausage) return {22.0, 18.0, 11.4};
   return {34.0, 18.0, 3.4};
 }
 
@@ -192,11 +193,33 @@ void ClayKneading::pose_nose(double time) {
   put_away(1);
 }
 
+/// Two palms whose fingers lead to opposite sides rub it between them, there and back, and come
+/// nearer.
+void ClayKneading::pose_sausage(double time) {
+  constexpr double closed_s = 0.5;
+  constexpr double rub_s = 0.8; // there and back
+  constexpr double end_s = 10.7;
+  constexpr double aside_mm = 26.0;
+  constexpr double last_gap_mm = 26.0;
+  constexpr double middle_mm = 58.0; // of the palm, from the wrist
+  const double rubs = std::clamp((time - closed_s) / rub_s, 0.0, (end_s - closed_s) / rub_s);
+  const double aside = aside_mm * std::sin(2.0 * std::numbers::pi * rubs);
+  const double first_gap = 2.0 * ball_radius_mm() - 3.0;
+  const double gap = first_gap + 40.0 * (1.0 - ease(time, 0.0, closed_s)) -
+                     (first_gap - last_gap_mm) * std::clamp((time - closed_s) / 9.0, 0.0, 1.0) +
+                     60.0 * ease(time, end_s, end_s + 0.5);
+  for (const double side : {1.0, -1.0})
+    place_hand(side > 0.0 ? 0 : 1, flat_hand(),
+               wrist_of(side * Vector3d::UnitX(), side * Vector3d::UnitZ(),
+                        seen_ + side * Vector3d(aside - middle_mm, 0.0, 0.5 * gap + palm_skin_mm)));
+}
+
 std::span<const deform::ContactPart> ClayKneading::at(int tick) {
   const double time = tick / rate_hz;
   if (thing_ == KneadedThing::cake) pose_cake(time);
   if (thing_ == KneadedThing::bowl) pose_bowl(time);
   if (thing_ == KneadedThing::nose) pose_nose(time);
+  if (thing_ == KneadedThing::sausage) pose_sausage(time);
   return parts_;
 }
 
@@ -205,8 +228,9 @@ KneadedClay knead(KneadedThing thing, int level) {
   KneadedClay result;
   result.shape = reference::icosphere(level, hands.ball_radius_mm());
   deform::SculptedShape shape(result.shape.vertices, {});
-  deform::ClayDeformer clay(shape, deform::corners_of_triangles(result.shape), ClayKneading::bodies,
-                            HandBody::part_count, {.radius_mm = hands.softness_mm()});
+  deform::ClayDeformer clay(
+      shape, deform::corners_of_triangles(result.shape), ClayKneading::bodies, HandBody::part_count,
+      {.radius_mm = hands.softness_mm(), .lies_on_table = hands.lies_on_table()});
   clay.begin(hands.at(0));
   const double whole = clay_volume(result.shape);
   std::vector<double> left_mm, times_us;
@@ -216,7 +240,9 @@ KneadedClay knead(KneadedThing thing, int level) {
     const deform::ClayReport& report = clay.press_to(parts);
     const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
     result.most_held = std::max(result.most_held, report.held);
+    result.turned_rad += report.turned_rad;
     shape.layout().unpack(clay.shape(), result.shape.vertices);
+    hands.see(result.shape.vertices.rowwise().mean());
     result.last_volume = clay_volume(result.shape) / whole - 1.0;
     result.worst_volume = std::max(result.worst_volume, std::abs(result.last_volume));
     if (report.passes == 0) continue;

@@ -1,5 +1,5 @@
 #pragma once
-// Scripted hands that make things of a ball of clay: a flat cake, a bowl and a nose.
+// Scripted hands that make things of a ball of clay: a flat cake, a bowl, a nose and a sausage.
 
 #include <cstddef>
 #include <span>
@@ -14,7 +14,7 @@
 
 namespace nendo::bench {
 
-enum class KneadedThing { cake, bowl, nose };
+enum class KneadedThing { cake, bowl, nose, sausage };
 
 /// Lengths are in millimetres, and the ball is about the origin.
 class ClayKneading {
@@ -28,6 +28,10 @@ public:
   /// How soft the clay is: ClayOptions::radius_mm.
   double softness_mm() const noexcept;
   int ticks() const noexcept;
+  /// Otherwise the hands carry and turn it.
+  bool lies_on_table() const noexcept { return thing_ != KneadedThing::sausage; }
+  /// Tells where the middle of the clay is; the hands that roll it stay about it.
+  void see(const Eigen::Vector3d& middle) { seen_ += 0.1 * (0.7 * middle - seen_); }
   /// Returns the parts of both bodies in that tick: of two hands, or of a hand and a table.
   std::span<const deform::ContactPart> at(int tick);
 
@@ -39,10 +43,12 @@ private:
   void pose_cake(double time_s);
   void pose_bowl(double time_s);
   void pose_nose(double time_s);
+  void pose_sausage(double time_s);
 
   KneadedThing thing_;
   hand::HandSkeleton skeleton_;
   hand::HandBody body_;
+  Eigen::Vector3d seen_ = Eigen::Vector3d::Zero();
   hand::JointAngles pinch_; ///< the last one, with which the next begins
   std::vector<deform::ContactPart> parts_;
 };
@@ -54,6 +60,7 @@ struct KneadedClay {
   double penetration_p99_mm = 0.0;
   double mean_us = 0.0, p99_us = 0.0;
   std::size_t most_held = 0;
+  double turned_rad = 0.0; ///< as a whole, there and back
 };
 
 /// Makes a thing of a ball of that level (reference/icosphere.hpp).

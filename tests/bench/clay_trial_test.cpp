@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <doctest/doctest.h>
 
@@ -40,11 +41,12 @@ TEST_SUITE("clay_trial") {
     CHECK(nendo::test::count_self_intersections(trial.shape) == 0);
   }
 
-  TEST_CASE("hands make a flat cake, a bowl and a nose of a ball") {
+  TEST_CASE("hands make a flat cake, a bowl, a nose and a sausage of a ball") {
     const auto size_of = [](const KneadedClay& clay) -> Eigen::Vector3d {
       return clay.shape.vertices.rowwise().maxCoeff() - clay.shape.vertices.rowwise().minCoeff();
     };
-    for (const KneadedThing thing : {KneadedThing::cake, KneadedThing::bowl, KneadedThing::nose}) {
+    for (const KneadedThing thing :
+         {KneadedThing::cake, KneadedThing::bowl, KneadedThing::nose, KneadedThing::sausage}) {
       const double before = 2.0 * ClayKneading(thing).ball_radius_mm();
       const KneadedClay clay = knead(thing, 4);
       CHECK(clay.shape.vertices.allFinite());
@@ -62,6 +64,10 @@ TEST_SUITE("clay_trial") {
         for (const auto vertex : clay.shape.vertices.colwise())
           if (vertex.head<2>().norm() < 0.2 * before) highest = std::max(highest, vertex.z());
         CHECK(highest < clay.shape.vertices.row(2).maxCoeff() - 0.4 * before);
+      } else if (thing == KneadedThing::sausage) {
+        CHECK(clay.turned_rad > std::numbers::pi);
+        CHECK(size.y() > 2.0 * std::max(size.x(), size.z()));
+        CHECK(std::abs(size.x() / size.z() - 1.0) < 0.2);
       } else {
         CHECK(clay.most_held > 4);
         CHECK(size.x() > before + 15.0);

@@ -215,8 +215,7 @@ TEST_SUITE("run") {
   }
 
   TEST_CASE("what acts on fingertips is refused in clay, in one line that names it") {
-    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--symmetry"},
-                                                  {"--hold", "hand"},
+    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--hold", "hand"},
                                                   {"--keep-volume", "0.5"},
                                                   {"--puppet", "face"}}) {
       CAPTURE(wrong.front());
