@@ -10,7 +10,10 @@ namespace nendo::deform {
 namespace {
 
 constexpr std::size_t calls_a_direction = 4;
+// Of the directions, in the first call; one for a model so large that they would take several
+// ticks.
 constexpr int first_rounds = 4;
+constexpr std::size_t most_blocks_for_all_rounds = 1024;
 /// Of a step to the middle of the ring, for each edge that a vertex is moved by.
 constexpr double fairness = 2.0;
 
@@ -194,7 +197,8 @@ double VolumeKeeper::volume(const BoundedShape& shape) noexcept {
   for (std::size_t block = 0; block < volumes_.size(); ++block)
     if (stamps_[block] != shape.shape.stamp(block))
       scatter(shape.shape[block], points_.data() + block * block_size);
-  for (int round = 0; calls_ == 0 && round < first_rounds; ++round)
+  const int rounds = volumes_.size() <= most_blocks_for_all_rounds ? first_rounds : 1;
+  for (int round = 0; calls_ == 0 && round < rounds; ++round)
     for (std::size_t block = 0; block < volumes_.size(); ++block)
       measure(shape, block, true);
   ++calls_;
