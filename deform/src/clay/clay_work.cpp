@@ -262,8 +262,9 @@ double ClayDeformer::Work::sub_step(BoundedShape& shape, bool is_last,
   }
   const bool slides = found.is_loaded && is_dragging_;
   if (found.deepest <= enough && !slides) return found.deepest;
-  if (!push(shape, slides, report)) return found.deepest;
-  return is_last || !is_whole_ ? press_out(shape, enough, report) : enough;
+  const Applied applied = push(shape, slides, report);
+  if (applied == Applied::nothing) return found.deepest;
+  return is_last || applied == Applied::part ? press_out(shape, enough, report) : enough;
 }
 
 /// Pushes until nothing is deeper than `enough`. Returns how deep the surface still is.
@@ -271,7 +272,8 @@ double ClayDeformer::Work::press_out(BoundedShape& shape, double enough,
                                      ClayReport& report) noexcept {
   for (int pass = 1;; ++pass) {
     const double deepest = find(shape, false).deepest;
-    if (deepest <= enough || pass == most_sub_step_passes || !push(shape, false, report))
+    if (deepest <= enough || pass == most_sub_step_passes ||
+        push(shape, false, report) == Applied::nothing)
       return deepest;
   }
 }
@@ -333,13 +335,15 @@ void ClayDeformer::Work::offer(const BoundedShape& shape, std::size_t body, std:
   }
 }
 
-/// One field. Returns false if nothing has to move any more, or nothing can.
-bool ClayDeformer::Work::push(BoundedShape& shape, bool slides, ClayReport& report) noexcept {
+/// One field; nothing of it if nothing has to move any more, or nothing can.
+ClayDeformer::Work::Applied ClayDeformer::Work::push(BoundedShape& shape, bool slides,
+                                                     ClayReport& report) noexcept {
   const auto points = choose();
   problem_.assign(points, radius_);
   problem_.solve_pressure(0.5 * skin_mm * mm_);
   if (slides) slide(points);
-  if (!apply(shape, points)) return false;
+  const Applied applied = apply(shape, points);
+  if (applied == Applied::nothing) return applied;
   ++report.passes;
   report.most_constraints = std::max(report.most_constraints, static_cast<int>(points.size()));
   report.touching = 0;
@@ -348,7 +352,7 @@ bool ClayDeformer::Work::push(BoundedShape& shape, bool slides, ClayReport& repo
     ++report.touching;
     around_.extend(BoxGate::of({{points[at].at, points[at].at}, {0.0, 0.0}, 2}));
   }
-  return true;
+  return applied;
 }
 
 /// What the skin of a place's part has done in this sub-step, less what the model did as a whole,
@@ -368,11 +372,12 @@ void ClayDeformer::Work::slide(std::span<const ContactPoint> points) noexcept {
 }
 
 /// The whole field, or the part of it that does not fold; the next pass does the rest.
-bool ClayDeformer::Work::apply(BoundedShape& shape, std::span<const ContactPoint> points) noexcept {
+ClayDeformer::Work::Applied
+ClayDeformer::Work::apply(BoundedShape& shape, std::span<const ContactPoint> points) noexcept {
   const double bound = problem_.lipschitz_bound();
-  if (!(bound > 0.0)) return false;
-  is_whole_ = bound <= most_bound;
-  const double part = (is_whole_ ? 1.0 : most_bound / bound) * layout_.unit();
+  if (!(bound > 0.0)) return Applied::nothing;
+  const bool is_whole = bound <= most_bound;
+  const double part = (is_whole ? 1.0 : most_bound / bound) * layout_.unit();
   const auto count = static_cast<Eigen::Index>(points.size());
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -380,7 +385,8 @@ bool ClayDeformer::Work::apply(BoundedShape& shape, std::span<const ContactPoint
     field_.coefficients.col(i) = part * problem_.coefficient(at);
   }
   field_.radii.head(count).setConstant(layout_.rounded_radius(radius_ * layout_.unit()));
-  return displace(shape, count);
+  if (!displace(shape, count)) return Applied::nothing;
+  return is_whole ? Applied::whole : Applied::part;
 }
 
 /// By the first columns of the field.

@@ -46,6 +46,8 @@ private:
   static constexpr double load_mm = 0.5;    ///< clay springs back by that
   static constexpr double most_bound = 0.9; ///< of a field that does not fold
 
+  /// What was applied of a pass' field: only a part of it if all would fold.
+  enum class Applied : std::uint8_t { nothing, part, whole };
   struct Found {
     double deepest = 0.0;
     bool is_loaded = false;
@@ -68,10 +70,10 @@ private:
   Found find(const BoundedShape& shape, bool loads) noexcept;
   void offer(const BoundedShape& shape, std::size_t body, std::size_t block,
              const NearestLanes& nearest, double& deepest) noexcept;
-  bool push(BoundedShape& shape, bool slides, ClayReport& report) noexcept;
+  Applied push(BoundedShape& shape, bool slides, ClayReport& report) noexcept;
   std::span<const ContactPoint> choose() noexcept;
   void slide(std::span<const ContactPoint> points) noexcept;
-  bool apply(BoundedShape& shape, std::span<const ContactPoint> points) noexcept;
+  Applied apply(BoundedShape& shape, std::span<const ContactPoint> points) noexcept;
   bool displace(BoundedShape& shape, Eigen::Index count) noexcept;
   void list_contacts() noexcept;
   void push_straight(BoundedShape& shape) noexcept;
@@ -87,9 +89,8 @@ private:
   std::vector<ContactPart> from_, target_; ///< of a call
   std::vector<ContactPart> is_;            ///< of a sub-step
   std::vector<ContactPart> skins_;         ///< frames that lag behind the bones'
-  bool is_whole_ = true;                ///< the last pass' field was applied, and not a part of it
-  bool is_dragging_ = false;            ///< some skin has moved
-  std::vector<Eigen::Isometry3d> ways_; ///< of each part's surface in a sub-step
+  bool is_dragging_ = false;               ///< some skin has moved
+  std::vector<Eigen::Isometry3d> ways_;    ///< of each part's surface in a sub-step
   std::vector<BoxGate> boxes_;
   ContactSearch search_;
   ContactPoints chosen_;

@@ -285,15 +285,23 @@ double VolumeKeeper::distance_for(double missing, double most) const noexcept {
 /// Besides, each vertex goes a part of the way to the middle of its neighbours, which keeps
 /// triangles fair where much swells, and fills creases. Returns by how much that makes the volume
 /// grow.
-double VolumeKeeper::move(BoundedShape& shape, float far, float fairs) noexcept {
+double VolumeKeeper::swell(BoundedShape& shape, double far, double fairs) noexcept {
   double grown = 0.0;
+  for (std::size_t block = 0; block < volumes_.size(); ++block)
+    if (is_free_[block] != 0)
+      grown += swell_block(measured_[block], weights_.data() + block * block_size,
+                           static_cast<float>(far), static_cast<float>(fairs),
+                           shape.shape.data()[block]);
+  return grown;
+}
+
+/// After all steps of the blocks that swell.
+void VolumeKeeper::finish_blocks(BoundedShape& shape) noexcept {
   const std::uint64_t stamp = BlockShape::new_stamp();
   for (std::size_t block = 0; block < volumes_.size(); ++block) {
     if (is_free_[block] == 0) continue;
     VertexBlock& content = shape.shape.data()[block];
     const std::size_t used = end_of(block) - block * block_size;
-    grown +=
-        swell_block(measured_[block], weights_.data() + block * block_size, far, fairs, content);
     for (std::size_t lane = used; lane < block_size; ++lane) { // the padding repeats the last one
       content.x[lane] = content.x[used - 1];
       content.y[lane] = content.y[used - 1];
@@ -302,7 +310,6 @@ double VolumeKeeper::move(BoundedShape& shape, float far, float fairs) noexcept 
     shape.shape.set_stamp(block, stamp);
     shape.bounds[block] = fast_bounds_of(content);
   }
-  return grown;
 }
 
 double VolumeKeeper::give_back(BoundedShape& shape, ContactSearch& search, double missing,
@@ -311,10 +318,10 @@ double VolumeKeeper::give_back(BoundedShape& shape, ContactSearch& search, doubl
   sum_rates();
   if (!(rate_ > 0.0)) return 0.0;
   const double far = distance_for(missing, how.most);
-  const double by_fairing =
-      move(shape, static_cast<float>(far), static_cast<float>(fairness * std::abs(far)));
+  const double by_fairing = swell(shape, far, fairness * std::abs(far));
   const double rest = std::clamp(-by_fairing / rate_, -how.most, how.most);
-  move(shape, static_cast<float>(rest), 0.0F);
+  if (rest != 0.0) swell(shape, rest, 0.0);
+  finish_blocks(shape);
   shape.extent += 2.0 * how.most;
   return (rate_ + bend_ * far) * far + by_fairing + rate_ * rest;
 }

@@ -63,7 +63,8 @@ private:
   void weigh_around(const BoundedShape& shape, std::size_t block, const GiveBack& how) noexcept;
   void sum_rates() noexcept;
   double distance_for(double missing, double most) const noexcept;
-  double move(BoundedShape& shape, float far, float fairness) noexcept;
+  double swell(BoundedShape& shape, double far, double fairness) noexcept;
+  void finish_blocks(BoundedShape& shape) noexcept;
 
   std::size_t vertices_;
   bool is_closed_ = false;

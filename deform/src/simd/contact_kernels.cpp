@@ -30,10 +30,6 @@ HWY_INLINE ContactV product(ContactTag d, const Vectors3<ContactV>& a,
                     hn::MulAdd(a.y, hn::Set(d, b[1]), hn::Mul(a.z, hn::Set(d, b[2]))));
 }
 
-HWY_INLINE ContactV squared_norm(const Vectors3<ContactV>& a) {
-  return hn::MulAdd(a.x, a.x, hn::MulAdd(a.y, a.y, hn::Mul(a.z, a.z)));
-}
-
 template <class Entry>
 HWY_INLINE Vectors3<ContactV> relative_to(ContactTag d, const Entry& entry,
                                           const Vectors3<ContactV>& place) {
@@ -58,8 +54,8 @@ HWY_INLINE void visit_cone(ContactTag d, const ConeEntry& cone, const Vectors3<C
   const ContactV zero = hn::Zero(d);
   const Vectors3<ContactV> from = relative_to(d, cone, place);
   const ContactV along = hn::Mul(product(d, from, cone.way), hn::Set(d, cone.inverse_squared));
-  const ContactV across_squared =
-      hn::NegMulAdd(hn::Mul(along, along), hn::Set(d, cone.squared_length), squared_norm(from));
+  const ContactV across_squared = hn::NegMulAdd(
+      hn::Mul(along, along), hn::Set(d, cone.squared_length), dot_product(from, from));
   const ContactV across = hn::Sqrt(hn::Max(across_squared, zero));
   ContactV share = hn::MulAdd(across, hn::Set(d, cone.tilt), along);
   share = hn::Min(hn::Max(share, zero), hn::Set(d, 1.0F));
@@ -67,7 +63,7 @@ HWY_INLINE void visit_cone(ContactTag d, const ConeEntry& cone, const Vectors3<C
                                 hn::NegMulAdd(share, hn::Set(d, cone.way[1]), from.y),
                                 hn::NegMulAdd(share, hn::Set(d, cone.way[2]), from.z)};
   const ContactV radius = hn::MulAdd(share, hn::Set(d, cone.growth), hn::Set(d, cone.radius));
-  take_if_nearer(hn::Sub(hn::Sqrt(squared_norm(left)), radius), left, place, part, best);
+  take_if_nearer(hn::Sub(hn::Sqrt(dot_product(left, left)), radius), left, place, part, best);
 }
 
 /// For each place the part of a triangle's distance that its inside tells, and whether an edge may
@@ -91,8 +87,7 @@ HWY_INLINE BesidePlane visit_plane(ContactTag d, const PlaneEntry& plane,
                          hn::Mul(height, hn::Set(d, plane.normal[axis])));
   };
   const Vectors3<ContactV> left{left_along(0), left_along(1), left_along(2)};
-  const Vectors3<ContactV> foot{hn::Sub(from.x, left.x), hn::Sub(from.y, left.y),
-                                hn::Sub(from.z, left.z)};
+  const Vectors3<ContactV> foot = difference_of(from, left);
   const ContactV first = product(d, foot, plane.first);
   const ContactV second = product(d, foot, plane.second);
   const ContactV third = hn::Sub(hn::Set(d, 1.0F), hn::Add(first, second));
@@ -102,7 +97,7 @@ HWY_INLINE BesidePlane visit_plane(ContactTag d, const PlaneEntry& plane,
                            !hn::AllTrue(d, hn::Ge(third, zero))};
   if (hn::AllFalse(d, inside)) return beside;
   const ContactV radius = hn::Add(hn::Set(d, plane.radius), product(d, foot, plane.slope));
-  const ContactV distance = hn::Sub(hn::Sqrt(squared_norm(left)), radius);
+  const ContactV distance = hn::Sub(hn::Sqrt(dot_product(left, left)), radius);
   take_if_nearer(hn::IfThenElse(inside, distance, hn::Inf(d)), left, place, part, best);
   return beside;
 }
@@ -149,15 +144,11 @@ void part_lanes(const BoxLanes& boxes, const PartArrays& arrays, std::uint32_t p
     NearestVectors best{hn::Inf(d), hn::Zero(d), place};
     visit_part(d, arrays, arrays.parts[part], place, hn::Zero(d), best);
     const Vectors3<ContactV> half = load_vectors(d, boxes.halves, lane);
-    const Vectors3<ContactV> way{hn::Sub(place.x, best.centre.x), hn::Sub(place.y, best.centre.y),
-                                 hn::Sub(place.z, best.centre.z)};
-    const ContactV length = hn::Max(hn::Sqrt(squared_norm(way)), hn::Set(d, 1e-30F));
+    const Vectors3<ContactV> way = difference_of(place, best.centre);
+    const ContactV length = hn::Max(hn::Sqrt(dot_product(way, way)), hn::Set(d, 1e-30F));
     const ContactV inverse = hn::Div(hn::Set(d, 1.0F), length);
-    const Vectors3<ContactV> away{hn::Mul(way.x, inverse), hn::Mul(way.y, inverse),
-                                  hn::Mul(way.z, inverse)};
-    const ContactV falls =
-        hn::MulAdd(hn::Abs(away.x), half.x,
-                   hn::MulAdd(hn::Abs(away.y), half.y, hn::Mul(hn::Abs(away.z), half.z)));
+    const Vectors3<ContactV> away = scaled(way, inverse);
+    const ContactV falls = spread_of(away, half);
     const auto nearer = hn::Lt(best.distance, hn::Load(d, nearest.distance.data() + lane));
     const auto set = [&](ContactV value, std::array<float, block_size>& of_part,
                          std::array<float, block_size>& of_nearest) HWY_ATTR {
@@ -181,11 +172,10 @@ void excess_lanes(const BoxLanes& boxes, const PartFromBoxes& seen, const Neares
     const auto of = [&](const std::array<float, block_size>& numbers)
                         HWY_ATTR { return hn::Load(d, numbers.data() + lane); };
     const Vectors3<ContactV> half = load_vectors(d, boxes.halves, lane);
-    const ContactV turns =
-        hn::MulAdd(hn::Abs(hn::Sub(of(seen.x), of(nearest.x))), half.x,
-                   hn::MulAdd(hn::Abs(hn::Sub(of(seen.y), of(nearest.y))), half.y,
-                              hn::Mul(hn::Abs(hn::Sub(of(seen.z), of(nearest.z))), half.z)));
-    const ContactV squared = squared_norm(half);
+    const Vectors3<ContactV> seen_away{of(seen.x), of(seen.y), of(seen.z)};
+    const Vectors3<ContactV> nearest_away{of(nearest.x), of(nearest.y), of(nearest.z)};
+    const ContactV turns = spread_of(difference_of(seen_away, nearest_away), half);
+    const ContactV squared = dot_product(half, half);
     const ContactV bends = hn::Div(hn::Mul(hn::Set(d, 0.5F), squared), of(nearest.to_centre));
     const ContactV farther = hn::Sub(of(seen.distance), of(nearest.distance));
     const ContactV beyond = hn::Sub(of(seen.least), hn::Set(d, margin));

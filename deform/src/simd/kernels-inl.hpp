@@ -85,6 +85,24 @@ template <class V>
 HWY_INLINE Vectors3<V> sum_of(const Vectors3<V>& a, const Vectors3<V>& b) {
   return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
 }
+template <class V>
+HWY_INLINE Vectors3<V> difference_of(const Vectors3<V>& a, const Vectors3<V>& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+template <class V>
+HWY_INLINE Vectors3<V> scaled(const Vectors3<V>& a, V by) {
+  return {hn::Mul(a.x, by), hn::Mul(a.y, by), hn::Mul(a.z, by)};
+}
+template <class V>
+HWY_INLINE V dot_product(const Vectors3<V>& a, const Vectors3<V>& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+/// The absolute values of a's coordinates by b's, added up: how much a product with a can change
+/// within half the sides b.
+template <class V>
+HWY_INLINE V spread_of(const Vectors3<V>& a, const Vectors3<V>& b) {
+  return hn::MulAdd(hn::Abs(a.x), b.x, hn::MulAdd(hn::Abs(a.y), b.y, hn::Mul(hn::Abs(a.z), b.z)));
+}
 
 /// Returns psi / kernel_factor for o = 1 - t, which is not negative.
 template <Wendland kernel, class D, class V = hn::Vec<D>>

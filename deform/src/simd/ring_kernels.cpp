@@ -20,15 +20,6 @@ using Ring3 = Vectors3<RingV>;
 constexpr float least_square = 1e-30F; // instead of a division by 0
 constexpr float own_share = 0.2F;      // of a vertex' own normal in its direction
 
-HWY_INLINE RingV ring_product(const Ring3& a, const Ring3& b) {
-  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
-}
-HWY_INLINE Ring3 difference(const Ring3& a, const Ring3& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Ring3 scaled(const Ring3& a, RingV by) {
-  return {hn::Mul(a.x, by), hn::Mul(a.y, by), hn::Mul(a.z, by)};
-}
 HWY_INLINE void add_cross(const Ring3& a, const Ring3& b, Ring3& to) {
   to.x = hn::Add(to.x, hn::NegMulAdd(a.z, b.y, hn::Mul(a.y, b.z)));
   to.y = hn::Add(to.y, hn::NegMulAdd(a.x, b.z, hn::Mul(a.z, b.x)));
@@ -51,13 +42,13 @@ HWY_INLINE RingSums sum_ring(RingTag d, const BlockRings& rings, std::size_t lan
   const RingV zero = hn::Zero(d);
   const RingV count = hn::LoadU(d, rings.counts + lane);
   RingSums sums{{zero, zero, zero}, {zero, zero, zero}, zero};
-  Ring3 before = difference(load_vectors(d, rings.points.back(), lane), here);
+  Ring3 before = difference_of(load_vectors(d, rings.points.back(), lane), here);
   for (std::size_t at = 0; at < rings.points.size(); ++at) {
-    const Ring3 way = difference(load_vectors(d, rings.points[at], lane), here);
+    const Ring3 way = difference_of(load_vectors(d, rings.points[at], lane), here);
     const auto is_one = hn::Lt(hn::Set(d, static_cast<float>(at)), count);
     add_cross(before, way, sums.crosses);
     sums.ways = sum_of(sums.ways, masked(is_one, way));
-    sums.squares = hn::Add(sums.squares, hn::IfThenElseZero(is_one, ring_product(way, way)));
+    sums.squares = hn::Add(sums.squares, hn::IfThenElseZero(is_one, dot_product(way, way)));
     before = way;
   }
   return sums;
@@ -75,10 +66,10 @@ HWY_INLINE Ring3 smooth_direction(RingTag d, const BlockRings& rings, std::size_
   for (std::size_t at = 0; at < rings.directions.size(); ++at)
     sum = sum_of(sum, masked(hn::Lt(hn::Set(d, static_cast<float>(at)), count),
                              load_vectors(d, rings.directions[at], lane)));
-  const RingV length = hn::Sqrt(hn::Max(ring_product(normal, normal), least));
+  const RingV length = hn::Sqrt(hn::Max(dot_product(normal, normal), least));
   const RingV own = hn::Mul(hn::Set(d, own_share), hn::Max(count, hn::Set(d, 1.0F)));
   sum = sum_of(sum, scaled(normal, hn::Div(own, length)));
-  const RingV squared = hn::Max(ring_product(sum, sum), least);
+  const RingV squared = hn::Max(dot_product(sum, sum), least);
   return scaled(sum, hn::Div(hn::Set(d, 1.0F), hn::Sqrt(squared)));
 }
 
@@ -98,16 +89,16 @@ HWY_INLINE RingV measure_lanes(RingTag d, const VertexBlock& block, const BlockR
   const RingV count = hn::LoadU(d, rings.counts + lane);
   const RingV per_square = hn::Div(count, hn::Max(sums.squares, hn::Set(d, least_square)));
   const Ring3 middle = scaled(sums.ways, hn::Div(one, hn::Max(count, one)));
-  const RingV height = ring_product(middle, direction);
-  const RingV rate = ring_product(direction, normal);
+  const RingV height = dot_product(middle, direction);
+  const RingV rate = dot_product(direction, normal);
   const RingV curvature = hn::Mul(hn::Set(d, -2.0F), hn::Mul(height, per_square));
   // Where the middle is outside, all the way to it: that fills creases.
   const Ring3 inwards = scaled(direction, hn::Min(height, hn::Zero(d)));
-  store_vectors(d, difference(middle, inwards), measured.fairing, lane);
+  store_vectors(d, difference_of(middle, inwards), measured.fairing, lane);
   hn::Store(hn::Sqrt(per_square), d, measured.per_edge.data() + lane);
   hn::Store(rate, d, measured.rate.data() + lane);
   hn::Store(hn::Mul(curvature, rate), d, measured.bend.data() + lane);
-  return ring_product(here, normal);
+  return dot_product(here, normal);
 }
 
 /// In eight sums, so that each is not waited for.
@@ -158,7 +149,7 @@ double swell_lanes(const RingBlock& measured, const float* weights, float far, f
         sum_of(scaled(direction, hn::Mul(weight, hn::Set(d, far))), scaled(fairing, fair));
     store_vectors(d, sum_of(load_vectors(d, block, lane), by), block, lane);
     const RingV rate = hn::Load(d, measured.rate.data() + lane);
-    hn::Store(hn::Mul(hn::Mul(fair, ring_product(fairing, direction)), rate), d,
+    hn::Store(hn::Mul(hn::Mul(fair, dot_product(fairing, direction)), rate), d,
               grown.data() + lane);
   }
   return double_sum(grown);
