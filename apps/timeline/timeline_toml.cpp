@@ -129,8 +129,7 @@ std::optional<Side> side_named(std::string_view name) {
 void read_hand_shape(TomlReader& reader, const toml::table& table, hand::WearerShape& shape) {
   const toml::array* const terms = reader.array(table, "shape");
   if (terms == nullptr) return;
-  constexpr std::size_t early_terms = 26; // what earlier programs wrote
-  if (terms->size() != hand::shape_terms && terms->size() != early_terms)
+  if (terms->size() != hand::shape_terms && terms->size() != hand::early_shape_terms)
     return reader.complain(table, "shape must have " + std::to_string(hand::shape_terms) +
                                       " numbers; leave it out for an average hand");
   for (std::size_t k = 0; k < terms->size(); ++k)

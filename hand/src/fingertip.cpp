@@ -37,9 +37,7 @@ FingerChain::FingerChain(const HandSkeleton& skeleton, std::size_t finger) noexc
     : is_thumb_(finger == 0), arch_share_(finger == 0 ? 0.0 : arch_share[finger - 1]),
       base_m_(skeleton.rest_offset(metacarpals[finger])), head_m_(Eigen::Vector3d::Zero()),
       thumb_axes_(skeleton.axes().thumb), thumb_rest_rad_(skeleton.axes().thumb_rest_rad),
-      thumb_pronation_rad_(skeleton.axes().thumb_pronation_rad),
-      pronation_by_roll_(skeleton.axes().thumb_pronation_by_roll),
-      pronation_by_abduction_(skeleton.axes().thumb_pronation_by_abduction), tilt_(0.0, 1.0) {
+      pronation_(skeleton.axes().thumb_pronation), tilt_(0.0, 1.0) {
   if (!is_thumb_) {
     const double tilt_rad = skeleton.axes().knuckle_tilts_rad[finger - 1];
     tilt_ = {std::sin(tilt_rad), std::cos(tilt_rad)};
@@ -74,9 +72,8 @@ Fingertip FingerChain::finger_tip(const FourAngles& angles) const noexcept {
 
 Fingertip FingerChain::thumb_tip(const FourAngles& angles) const noexcept {
   Eigen::Array<double, 6, 1> row;
-  row << angles[0], thumb_rest_rad_ + angles[1],
-      thumb_pronation_rad_ + pronation_by_roll_ * angles[0] + pronation_by_abduction_ * angles[1],
-      angles[2], angles[2] + angles[3], 0.0;
+  row << angles[0], thumb_rest_rad_ + angles[1], pronation_.at(angles[0], angles[1]), angles[2],
+      angles[2] + angles[3], 0.0;
   const auto t = turns(row);
   const Turn roll = t[0];
   const Turn abduction = t[1];
@@ -98,8 +95,8 @@ Fingertip FingerChain::thumb_tip(const FourAngles& angles) const noexcept {
   const double before_roll_x = roll.cos * p.x() + roll.sin * p.y();
   const Eigen::Vector3d by_pronation =
       abducted(from_mcp.down_m * pronation.cos, from_mcp.down_m * pronation.sin, 0.0);
-  tip.by_angle << Eigen::Vector3d(-p.y(), p.x(), 0.0) + pronation_by_roll_ * by_pronation,
-      rolled(p.z(), 0.0, -before_roll_x) + pronation_by_abduction_ * by_pronation,
+  tip.by_angle << Eigen::Vector3d(-p.y(), p.x(), 0.0) + pronation_.by_roll * by_pronation,
+      rolled(p.z(), 0.0, -before_roll_x) + pronation_.by_abduction * by_pronation,
       in_space(from_mcp.by_flexion()), in_space(distal.by_flexion());
   tip.position_m = thumb_axes_ * tip.position_m;
   tip.by_angle = thumb_axes_ * tip.by_angle;

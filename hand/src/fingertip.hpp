@@ -44,7 +44,7 @@ private:
   // knuckle's axis, as sine and cosine.
   Eigen::Matrix3d thumb_axes_;
   double thumb_rest_rad_;
-  double thumb_pronation_rad_, pronation_by_roll_, pronation_by_abduction_;
+  ThumbPronation pronation_;
   Eigen::Vector2d tilt_;
 };
 

@@ -119,8 +119,7 @@ Turns<turn_count> turns_of(const JointAngles& angles, const HandSkeleton::Axes& 
   const double abduction_rad = finite_or_zero(angles.thumb_abduction_rad);
   row[roll_turn] = roll_rad;
   row[thumb_abduction_turn] = axes.thumb_rest_rad + abduction_rad;
-  row[pronation_turn] = axes.thumb_pronation_rad + axes.thumb_pronation_by_roll * roll_rad +
-                        axes.thumb_pronation_by_abduction * abduction_rad;
+  row[pronation_turn] = axes.thumb_pronation.at(roll_rad, abduction_rad);
   row[thumb_mcp_turn] = -angles.thumb_mcp_flexion_rad;
   row[thumb_ip_turn] = -angles.thumb_ip_flexion_rad;
   row[arch_turns] = -arch_share[first_arched] * angles.palm_arch_rad;
@@ -145,10 +144,9 @@ HandSkeleton::Axes axes_of(const WearerShape& shape) {
           ? Matrix3d(AngleAxisd(tilt_x, Vector3d::UnitX()) * AngleAxisd(tilt_y, Vector3d::UnitY()))
           : Matrix3d(Matrix3d::Identity());
   axes.thumb_rest_rad = thumb_rest_abduction_rad + shape[ShapeTerm::thumb_rest];
-  axes.thumb_pronation_rad = thumb_pronation_rad + shape[ShapeTerm::thumb_pronation];
-  axes.thumb_pronation_by_roll = pronation_by_roll + shape[ShapeTerm::thumb_pronation_by_roll];
-  axes.thumb_pronation_by_abduction =
-      pronation_by_abduction + shape[ShapeTerm::thumb_pronation_by_abduction];
+  axes.thumb_pronation = {thumb_pronation_rad + shape[ShapeTerm::thumb_pronation],
+                          pronation_by_roll + shape[ShapeTerm::thumb_pronation_by_roll],
+                          pronation_by_abduction + shape[ShapeTerm::thumb_pronation_by_abduction]};
   for (std::size_t f = 0; f < 4; ++f)
     axes.knuckle_tilts_rad[f] = shape.terms[static_cast<std::size_t>(ShapeTerm::index_tilt) + f];
   return axes;

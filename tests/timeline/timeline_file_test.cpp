@@ -85,6 +85,23 @@ TEST_SUITE("timeline_file") {
     CHECK_FALSE(timeline_text(bad));
   }
 
+  TEST_CASE("shapes of hands that earlier programs wrote are read, with zeros for what they lack") {
+    std::mt19937 random(3);
+    Timeline made = test::random_timeline(random);
+    auto& terms = made.hands[0].size.shape.terms;
+    terms.fill(0.02);
+    terms[26] = 0.125;
+    terms[27] = 0.25;
+    const std::string text = text_of(made);
+    const auto early = parse_timeline(without(text, ", 0.125, 0.25"), "early");
+    REQUIRE(early);
+    const auto& read = early->hands[0].size.shape.terms;
+    CHECK(read[25] == 0.02);
+    CHECK(read[26] == 0.0);
+    CHECK(read[27] == 0.0);
+    CHECK_FALSE(parse_timeline(without(text, ", 0.25"), "between"));
+  }
+
   TEST_CASE("what is wrong is said with its line") {
     std::mt19937 random(3);
     const std::string text = text_of(test::random_timeline(random));

@@ -81,9 +81,7 @@ void read_size(CheckedReader& checked, hand::HandSize& size) {
   size.breadth_m = checked.number(least_hand_m, most_hand_m);
 }
 
-/// Shapes had so many terms before format 1.9; those behind them follow both hands' first ones.
-constexpr std::size_t early_terms = 26;
-
+/// The terms behind the early ones, which format 1.9 brought, follow both hands' early ones.
 void read_shape(CheckedReader& checked, std::size_t begin, std::size_t end,
                 hand::WearerShape& shape) {
   for (std::size_t k = begin; k < end; ++k) {
@@ -163,8 +161,8 @@ void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& ha
   const bool average = own.size.shape.is_average() && other.size.shape.is_average();
   writer.u8(static_cast<std::uint8_t>(!average));
   if (average) return;
-  for (const auto& [begin, end] :
-       {std::pair{std::size_t{0}, early_terms}, std::pair{early_terms, hand::shape_terms}})
+  for (const auto& [begin, end] : {std::pair{std::size_t{0}, hand::early_shape_terms},
+                                   std::pair{hand::early_shape_terms, hand::shape_terms}})
     for (const hand::HandSize* size : {&own.size, &other.size})
       for (std::size_t k = begin; k < end; ++k)
         writer.f64_le(size->shape.terms[k]);
@@ -192,11 +190,11 @@ bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
   if (reader.remaining() > 0 && reader.u8() != 0) // formats before 1.6 end before it
     read_layer(reader, checked, hand.layer.emplace());
   if (reader.remaining() > 0 && reader.u8() != 0) { // formats before 1.7 end before it
-    read_shape(checked, 0, early_terms, own.size.shape);
-    read_shape(checked, 0, early_terms, other.size.shape);
+    read_shape(checked, 0, hand::early_shape_terms, own.size.shape);
+    read_shape(checked, 0, hand::early_shape_terms, other.size.shape);
     if (reader.remaining() > 0) { // formats before 1.9 end before them
-      read_shape(checked, early_terms, hand::shape_terms, own.size.shape);
-      read_shape(checked, early_terms, hand::shape_terms, other.size.shape);
+      read_shape(checked, hand::early_shape_terms, hand::shape_terms, own.size.shape);
+      read_shape(checked, hand::early_shape_terms, hand::shape_terms, other.size.shape);
     }
   }
   if (!checked.fine()) return false;

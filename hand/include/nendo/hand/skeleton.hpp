@@ -38,6 +38,15 @@ struct HandPose {
   Eigen::Matrix<double, 3, 5> fingertip_positions() const noexcept;
 };
 
+/// How the thumb is turned about itself. At 90 degrees its flexion runs across the palm.
+struct ThumbPronation {
+  double at_zero_rad;           ///< at zero angles
+  double by_roll, by_abduction; ///< how that changes for each radian
+  double at(double roll_rad, double abduction_rad) const noexcept {
+    return at_zero_rad + by_roll * roll_rad + by_abduction * abduction_rad;
+  }
+};
+
 class HandSkeleton {
 public:
   explicit HandSkeleton(Side side, const HandSize& size = {});
@@ -54,12 +63,10 @@ public:
 
   /// The axes of the thumb and of the knuckles, in the axes of a right hand.
   struct Axes {
-    Eigen::Matrix3d thumb;      ///< of the axis about which the thumb rolls, in those of the wrist
-    bool thumb_is_tilted;       ///< false: `thumb` is the identity
-    double thumb_rest_rad;      ///< the angle between thumb and index finger at zero angles
-    double thumb_pronation_rad; ///< how the thumb is turned about itself at zero angles
-    /// How that changes for each radian of roll, and of abduction.
-    double thumb_pronation_by_roll, thumb_pronation_by_abduction;
+    Eigen::Matrix3d thumb; ///< of the axis about which the thumb rolls, in those of the wrist
+    bool thumb_is_tilted;  ///< false: `thumb` is the identity
+    double thumb_rest_rad; ///< the angle between thumb and index finger at zero angles
+    ThumbPronation thumb_pronation;
     std::array<double, 4> knuckle_tilts_rad; ///< turns of the fingers about themselves
   };
   const Axes& axes() const noexcept { return axes_; }

@@ -43,6 +43,8 @@ enum class ShapeTerm : std::uint8_t {
 };
 
 inline constexpr std::size_t shape_terms = 28;
+/// Of the shapes that earlier programs wrote.
+inline constexpr std::size_t early_shape_terms = 26;
 
 inline constexpr std::array<std::string_view, shape_terms> shape_term_names{
     "thumb_metacarpal",
