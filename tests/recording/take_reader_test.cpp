@@ -132,6 +132,18 @@ Setup read_back(const std::vector<std::byte>& bytes) {
   return reader->setup();
 }
 
+/// What a setup's chunks of that type hold, in their order.
+std::vector<std::vector<std::byte>> payloads_of(const Setup& setup, driver::ChunkType type) {
+  std::uint32_t chunks = 0;
+  const auto bytes = setup_bytes(setup, chunks);
+  auto reader = driver::ChunkReader::of(bytes, "test");
+  REQUIRE(reader);
+  std::vector<std::vector<std::byte>> payloads;
+  while (const auto chunk = reader->next())
+    if (chunk->type == type) payloads.emplace_back(chunk->payload.begin(), chunk->payload.end());
+  return payloads;
+}
+
 bool is_hold(const json& line, double keep_volume, flow::Hold hold) {
   return line["keep_volume"] == keep_volume && line["hold"] == static_cast<int>(hold);
 }
@@ -270,24 +282,21 @@ TEST_SUITE("take_reader") {
   }
 
   TEST_CASE("a hand of format 1.0, which ends before what was learned, is read") {
-    std::uint32_t chunks = 0;
-    const auto bytes = setup_bytes(test::setup_of(test::LoopUnderTest(Mode::type1)), chunks);
-    auto reader = driver::ChunkReader::of(bytes, "test");
-    REQUIRE(reader);
+    constexpr auto type = driver::chunk_type("HAND");
     Setup setup;
-    while (const auto chunk = reader->next()) {
-      if (chunk->type != driver::chunk_type("HAND")) continue;
-      const std::span whole(chunk->payload);
+    for (const auto& payload :
+         payloads_of(test::setup_of(test::LoopUnderTest(Mode::type1)), type)) {
+      const std::span whole(payload);
       // It ends with three flags: that nothing was learned, that it is no layer (since 1.6), and
       // that hands are average ones (since 1.7).
       const auto reads_without = [&](std::size_t bytes) {
         Setup cut = setup;
-        return read_setup_chunk(chunk->type, whole.first(whole.size() - bytes), cut);
+        return read_setup_chunk(type, whole.first(whole.size() - bytes), cut);
       };
       CHECK_FALSE(reads_without(4));
       CHECK(reads_without(1));
       CHECK(reads_without(2));
-      REQUIRE(read_setup_chunk(chunk->type, whole.first(whole.size() - 3), setup));
+      REQUIRE(read_setup_chunk(type, whole.first(whole.size() - 3), setup));
       CHECK_FALSE(setup.hands.back().wearer.learned.has_value());
     }
     CHECK(setup.hands.size() == 2);
@@ -298,18 +307,14 @@ TEST_SUITE("take_reader") {
     for (flow::HandInput& hand : source.hands)
       for (const Side side : {Side::left, Side::right})
         hand.wearer.of(side).size.shape.terms.fill(0.02);
-    std::uint32_t chunks = 0;
-    const auto bytes = setup_bytes(source, chunks);
-    auto reader = driver::ChunkReader::of(bytes, "test");
-    REQUIRE(reader);
+    constexpr auto type = driver::chunk_type("HAND");
     Setup setup;
-    while (const auto chunk = reader->next()) {
-      if (chunk->type != driver::chunk_type("HAND")) continue;
-      const std::span whole(chunk->payload);
+    for (const auto& payload : payloads_of(source, type)) {
+      const std::span whole(payload);
       constexpr std::size_t later_bytes = 2 * 2 * 8;
       Setup cut = setup;
-      CHECK_FALSE(read_setup_chunk(chunk->type, whole.first(whole.size() - 8), cut));
-      REQUIRE(read_setup_chunk(chunk->type, whole.first(whole.size() - later_bytes), setup));
+      CHECK_FALSE(read_setup_chunk(type, whole.first(whole.size() - 8), cut));
+      REQUIRE(read_setup_chunk(type, whole.first(whole.size() - later_bytes), setup));
       const auto& terms = setup.hands.back().wearer.of(Side::left).size.shape.terms;
       CHECK(terms[25] == 0.02);
       CHECK(terms[26] == 0.0);
@@ -319,21 +324,18 @@ TEST_SUITE("take_reader") {
   }
 
   TEST_CASE("a loop of format 1.4 undoes pulls by the rule of its time") {
-    std::uint32_t chunks = 0;
-    const auto bytes = setup_bytes(test::setup_of(test::LoopUnderTest(Mode::type1)), chunks);
-    auto reader = driver::ChunkReader::of(bytes, "test");
-    REQUIRE(reader);
+    constexpr auto type = driver::chunk_type("LOOP");
     int loops = 0;
-    while (const auto chunk = reader->next()) {
-      if (chunk->type != driver::chunk_type("LOOP")) continue;
-      const std::span whole(chunk->payload);
+    for (const auto& payload :
+         payloads_of(test::setup_of(test::LoopUnderTest(Mode::type1)), type)) {
+      const std::span whole(payload);
       Setup now, then;
-      REQUIRE(read_setup_chunk(chunk->type, whole, now));
+      REQUIRE(read_setup_chunk(type, whole, now));
       CHECK(now.loop->options.pull_is_step);
       // That rule, since 1.6 the brushes, and since 1.7 how much of the volume is kept, what holds,
       // and whether there is a table.
       constexpr std::size_t since = 1 + 13 + 9 + 1;
-      REQUIRE(read_setup_chunk(chunk->type, whole.first(whole.size() - since), then));
+      REQUIRE(read_setup_chunk(type, whole.first(whole.size() - since), then));
       CHECK_FALSE(then.loop->options.pull_is_step);
       CHECK(then.loop->origins.size() == now.loop->origins.size());
       ++loops;
