@@ -254,7 +254,8 @@ void judge(const JudgedWearer& wearer, Verdict& verdict, const StrangerHand* han
       verdict.refused.push_back(wearer.name + ", touch-up: " + touched_up.error().message);
       return;
     }
-    errors[4] = errors_of(wearer, wearer.again, touched_up->calibration, own);
+    errors[static_cast<std::size_t>(Judged::touched_up)] =
+        errors_of(wearer, wearer.again, touched_up->calibration, own);
   }
   for (std::size_t group = 0; group < judged_groups.size(); ++group) {
     constexpr double tolerance = 0.3;

@@ -6,6 +6,8 @@
 #include <memory>
 #include <numbers>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -118,6 +120,12 @@ int make_thing(const Options& options) {
 int bench_clay(const Options& options) {
   if (const auto chosen = choose_simd(options.simd); !chosen) return cli::report(chosen.error());
   if (!options.thing.empty()) return make_thing(options);
+  std::vector<Row> rows = rows_of(options.short_form);
+  std::erase_if(rows, [&](const Row& row) {
+    return std::string_view(row.name).find(options.only) == std::string_view::npos;
+  });
+  if (rows.empty())
+    return cli::report({Errc::usage, "--only " + options.only + ": no row's name contains that"});
   if (!options.json)
     std::printf("two hands press a ball of 120 mm by 25 mm each, scrape it, and leave, at 90 Hz\n"
                 "constraints: mean and most of a pass; distances in thousands; times in ms a tick; "
@@ -126,8 +134,7 @@ int bench_clay(const Options& options) {
                 "%-26s %8s %6s %4s %7s %8s %8s %8s %9s %8s %7s %8s %6s\n",
                 "", "vertices", "constr", "most", "passes", "dist k", "mean", "p99", "left",
                 "inside", "volume", "at end", "behind");
-  for (const Row& row : rows_of(options.short_form)) {
-    if (std::string(row.name).find(options.only) == std::string::npos) continue;
+  for (const Row& row : rows) {
     const ClayTrial trial = row.is_plain ? measure_plain_clay(row.trial) : measure_clay(row.trial);
     options.json ? print_json(row, trial) : print_text(row, trial);
   }

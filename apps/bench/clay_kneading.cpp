@@ -11,6 +11,7 @@
 #include <nendo/hand/inverse_kinematics.hpp>
 
 #include "bench/clay_trial.hpp"
+#include "bench/deform_frames.hpp"
 #include "reference/icosphere.hpp"
 
 namespace nendo::bench {
@@ -236,9 +237,9 @@ KneadedClay knead(KneadedThing thing, int level) {
   std::vector<double> left_mm, times_us;
   for (int tick = 1; tick <= hands.ticks(); ++tick) {
     const auto parts = hands.at(tick);
-    const auto begin = std::chrono::steady_clock::now();
+    const auto begin = ThreadClock::now();
     const deform::ClayReport& report = clay.press_to(parts);
-    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+    const std::chrono::duration<double, std::micro> took = ThreadClock::now() - begin;
     result.most_held = std::max(result.most_held, report.held);
     result.turned_rad += report.turned_rad;
     shape.layout().unpack(clay.shape(), result.shape.vertices);

@@ -58,6 +58,13 @@ double floor_lag_rad(const Eigen::VectorXd& at, std::size_t slot) {
   constexpr double width = StrangerSpread::most_lag_deg - StrangerSpread::least_lag_deg;
   return from_degrees(mean + width / std::sqrt(12.0) * at[floor_unknown(slot, FloorTerm::lag)]);
 }
+/// The line of a sensor that is not bent, at counts to which it rose (1), fell (-1) or neither (0).
+double floor_line_rad(const Eigen::VectorXd& at, std::size_t slot, double counts, double came) {
+  const double offset_counts =
+      stranger_joints[slot].offset +
+      StrangerSpread::offset_counts * at[floor_unknown(slot, FloorTerm::offset)];
+  return floor_gain_rad(at, slot) * (counts - offset_counts) + came * floor_lag_rad(at, slot);
+}
 double floor_bow_rad(const Eigen::VectorXd& at, std::size_t slot) {
   return StrangerSpread::bow / std::sqrt(3.0) * floor_range_rad(slot) *
          at[floor_unknown(slot, FloorTerm::bow)];
@@ -182,14 +189,8 @@ SensorAngles StrangerFloor::angles_of(const Eigen::VectorXd& at, const SensorAng
                                       const SensorAngles& came) const {
   static const std::vector<StrangerRead> reads = stranger_reads();
   SensorAngles bent{};
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    if (!has_joint(slot, sensors_)) continue;
-    const double offset_counts =
-        stranger_joints[slot].offset +
-        StrangerSpread::offset_counts * at[floor_unknown(slot, FloorTerm::offset)];
-    bent[slot] = floor_gain_rad(at, slot) * (counts[slot] - offset_counts) +
-                 came[slot] * floor_lag_rad(at, slot);
-  }
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    if (has_joint(slot, sensors_)) bent[slot] = floor_line_rad(at, slot, counts[slot], came[slot]);
   SensorAngles angles = bent;
   constexpr int turns = 8; // each halves what is left, at least
   for (int turn = 0; turn < turns; ++turn) {
@@ -231,14 +232,7 @@ Eigen::VectorXd StrangerFloor::residuals(const Eigen::VectorXd& at) const {
     rows.insert(rows.end(), {off.x(), off.y(), off.z()});
   }
   for (const End& end : ends_) {
-    SensorAngles counts{}, came{};
-    counts[end.slot] = end.counts;
-    came[end.slot] = end.high ? 1.0 : -1.0;
-    const double offset_counts =
-        stranger_joints[end.slot].offset +
-        StrangerSpread::offset_counts * at[floor_unknown(end.slot, FloorTerm::offset)];
-    const double reached = floor_gain_rad(at, end.slot) * (end.counts - offset_counts) +
-                           came[end.slot] * floor_lag_rad(at, end.slot);
+    const double reached = floor_line_rad(at, end.slot, end.counts, end.high ? 1.0 : -1.0);
     const double there = end.high ? floor_high_rad(at, end.slot) : floor_low_rad(at, end.slot);
     rows.push_back((reached - there) / end.deviation_rad);
   }
