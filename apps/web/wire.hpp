@@ -11,6 +11,7 @@
 
 #include <nendo/deform/material.hpp>
 #include <nendo/flow/frame.hpp>
+#include <nendo/puppet/rig.hpp>
 
 namespace nendo::web {
 
