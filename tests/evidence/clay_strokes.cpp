@@ -24,31 +24,18 @@
 
 #include "evidence/intersection_count.hpp"
 #include "reference/icosphere.hpp"
-#include "support/contact_parts.hpp"
+#include "support/clay_strokes.hpp"
 #include "support/triangle_angles.hpp"
 
 namespace {
 
 using namespace nendo;
-using deform::ContactPart;
-using Eigen::Vector3d;
-using Parts = std::vector<ContactPart>;
+using Parts = test::StrokeParts;
 
-constexpr double ball_mm = 60.0;
+constexpr double ball_mm = test::stroked_ball_mm;
 constexpr double mm_a_m = 1000.0;
 
-Vector3d random_direction(std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  return Vector3d(normal(random), normal(random), normal(random)).normalized();
-}
-
-/// Begins outside of the ball, at the end of +z.
-Parts finger() {
-  return {test::cone({0, 0, 71}, {0, 0, 130}, 8.0, 9.0)};
-}
-Parts rod() {
-  return {test::cone({-50, 0, 74}, {50, 0, 74}, 9.0, 9.0)};
-}
+/// As the others begin.
 Parts whole_hand() {
   const hand::HandSkeleton skeleton(Side::right);
   hand::HandBody body(skeleton);
@@ -86,24 +73,10 @@ public:
         whole_(volume_of(ball_)) {
     take(deform::BlockLayout(ball_.vertices), nullptr);
   }
-  /// At up to 1.5 m/s, 90 Hz: to the ball from any side, into it, on to any side, and away.
-  void stroke(std::mt19937& random, Parts parts) {
-    const Vector3d from = random_direction(random);
-    parts = test::moved(
-        parts, Eigen::Isometry3d(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), from)));
-    std::uniform_real_distribution<double> share(0.2, 1.0);
-    const double speed = 16.7 * share(random);
-    const Vector3d in = -(10.0 + 30.0 * share(random)) * from;
-    const Vector3d aside = 40.0 * share(random) * from.cross(random_direction(random));
-    const Vector3d out = 60.0 * from;
-    clay_->begin(parts);
-    for (const Vector3d& way : {in, aside, out}) {
-      const int calls = std::max(1, static_cast<int>(way.norm() / speed));
-      for (int call = 0; call < calls; ++call)
-        press(parts = test::moved(parts, Vector3d(way / calls)));
-    }
-    for (int wait = 0; wait < 20; ++wait)
-      press(parts);
+  void stroke(std::mt19937& random, const Parts& parts) {
+    test::violent_stroke(
+        random, parts, [this](const Parts& first) { clay_->begin(first); },
+        [this](const Parts& next) { press(next); });
     outcome_.pairs = evidence::self_intersections(shown()).size();
   }
   const Outcome& outcome() const { return outcome_; }
@@ -164,7 +137,7 @@ std::vector<double> edges_of(const deform::Mesh& mesh) {
 
 const std::vector<std::pair<const char*, Parts>>& bodies() {
   static const std::vector<std::pair<const char*, Parts>> all{
-      {"finger", finger()}, {"rod", rod()}, {"hand", whole_hand()}};
+      {"finger", test::stroking_finger()}, {"rod", test::stroking_rod()}, {"hand", whole_hand()}};
   return all;
 }
 

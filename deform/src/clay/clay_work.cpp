@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "usable.hpp"
@@ -79,9 +80,9 @@ ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32
                          std::size_t bodies, std::size_t parts_a_body, const ClayOptions& options)
     : layout_(shape.layout()), options_(options), mm_(options.units_a_mm / layout_.unit()),
       radius_(options.radius_mm * mm_), parts_a_body_(parts_a_body), from_(bodies * parts_a_body),
-      target_(from_), is_(from_), skins_(from_), ways_(from_.size(), Eigen::Isometry3d::Identity()),
-      boxes_(bodies, BoxGate::shut()), search_(bodies, parts_a_body),
-      chosen_(static_cast<std::size_t>(options.most_constraints)),
+      target_(from_), is_(from_), skins_(from_), from_before_(from_), skins_before_(from_),
+      ways_(from_.size(), Eigen::Isometry3d::Identity()), boxes_(bodies, BoxGate::shut()),
+      search_(bodies, parts_a_body), chosen_(static_cast<std::size_t>(options.most_constraints)),
       loads_(bodies, ContactLoad(layout_.block_count(), load_mm * mm_)),
       problem_(static_cast<std::size_t>(options.most_constraints)),
       frictions_(static_cast<std::size_t>(options.most_constraints)),
@@ -90,6 +91,7 @@ ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32
           room_for(most_centres(bodies, options), options.radius_mm * options.units_a_mm, layout_)),
       evaluator_(layout_, most_centres(bodies, options), options.evaluation), masked_(options.mask),
       volume_(layout_, options.keeps_volume ? triangles : std::span<const std::uint32_t>{}),
+      zones_(layout_, volume_.is_closed() ? triangles : std::span<const std::uint32_t>{}),
       pressed_(from_.size()), around_(BoxGate::shut()) {
   contacts_.reserve(static_cast<std::size_t>(options.most_constraints));
   assert(options.still_bodies <= bodies);
@@ -199,6 +201,9 @@ void ClayDeformer::Work::drag(std::size_t part) noexcept {
 void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart> parts,
                                ClayReport& report) noexcept {
   status_ = FieldStatus::ok;
+  if (volume_.is_closed()) zones_.begin(shape);
+  from_before_ = from_;
+  skins_before_ = skins_;
   masked_.begin(shape.shape);
   contacts_.clear();
   search_.distances() = 0;
@@ -239,7 +244,7 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
   report.behind_mm = (1.0 - gone) * way / mm_;
   from_ = gone < 1.0 ? is_ : target_;
   masked_.end(shape);
-  give_back(shape, report.passes > 0, report);
+  if (give_back(shape, report.passes > 0, report)) keep_apart(shape, way, report);
   report.distances = search_.distances();
   report.status = status_;
 }
@@ -437,10 +442,11 @@ void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
   shape.extent += 2.0 * most;
 }
 
-void ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
+/// Returns whether the volume was measured.
+bool ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
                                    ClayReport& report) noexcept {
-  if (!volume_.is_closed() || !(std::abs(whole_volume_) > 0.0)) return;
-  if (!is_pressed && !is_settling_) return;
+  if (!volume_.is_closed() || !(std::abs(whole_volume_) > 0.0)) return false;
+  if (!is_pressed && !is_settling_) return false;
   const double before = volume_.volume(shape) - whole_volume_;
   double change = before;
   const double kept = volume_is_kept * std::abs(whole_volume_);
@@ -464,6 +470,20 @@ void ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
   is_settling_ = std::abs(change) > kept && (is_pressed || std::abs(change) < std::abs(before));
   volume_now_ = whole_volume_ + change;
   report.volume_change = change / whole_volume_;
+  return true;
+}
+
+/// Where faces cannot be kept apart, nothing has happened, and the bodies' way waits: the next call
+/// divides it into more sub-steps.
+void ClayDeformer::Work::keep_apart(BoundedShape& shape, double way, ClayReport& report) noexcept {
+  const std::optional<std::size_t> moved = zones_.keep_apart(shape, volume_, masked_.mask());
+  report.kept_apart = moved.value_or(0);
+  if (moved) return;
+  from_ = from_before_;
+  skins_ = skins_before_;
+  is_settling_ = false;
+  report.behind_mm = way / mm_;
+  report.is_moved = false;
 }
 
 } // namespace nendo::deform

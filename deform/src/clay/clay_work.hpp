@@ -12,6 +12,7 @@
 #include "clay/contact_search.hpp"
 #include "clay/grip.hpp"
 #include "clay/held_field.hpp"
+#include "clay/impact_zones.hpp"
 #include "clay/press_problem.hpp"
 #include "clay/rigid_fit.hpp"
 #include "clay/volume_keeper.hpp"
@@ -78,7 +79,8 @@ private:
   void list_contacts() noexcept;
   void push_straight(BoundedShape& shape) noexcept;
   const NearestLanes& free_lanes(std::size_t block, const NearestLanes& all) noexcept;
-  void give_back(BoundedShape& shape, bool is_pressed, ClayReport& report) noexcept;
+  bool give_back(BoundedShape& shape, bool is_pressed, ClayReport& report) noexcept;
+  void keep_apart(BoundedShape& shape, double way, ClayReport& report) noexcept;
 
   const BlockLayout& layout_;
   ClayOptions options_;
@@ -86,11 +88,12 @@ private:
   double radius_;
   std::size_t parts_a_body_;
   bool holds_ = false;
-  std::vector<ContactPart> from_, target_; ///< of a call
-  std::vector<ContactPart> is_;            ///< of a sub-step
-  std::vector<ContactPart> skins_;         ///< frames that lag behind the bones'
-  bool is_dragging_ = false;               ///< some skin has moved
-  std::vector<Eigen::Isometry3d> ways_;    ///< of each part's surface in a sub-step
+  std::vector<ContactPart> from_, target_;              ///< of a call
+  std::vector<ContactPart> is_;                         ///< of a sub-step
+  std::vector<ContactPart> skins_;                      ///< frames that lag behind the bones'
+  std::vector<ContactPart> from_before_, skins_before_; ///< a call
+  bool is_dragging_ = false;                            ///< some skin has moved
+  std::vector<Eigen::Isometry3d> ways_;                 ///< of each part's surface in a sub-step
   std::vector<BoxGate> boxes_;
   ContactSearch search_;
   ContactPoints chosen_;
@@ -107,6 +110,7 @@ private:
   MaskedStep masked_;
   NearestLanes free_lanes_; ///< room for the function of that name
   VolumeKeeper volume_;
+  ImpactZones zones_;
   double whole_volume_ = 0.0;
   double volume_now_ = 0.0;
   std::vector<float> pressed_; ///< how deep each part came in this call

@@ -17,6 +17,9 @@ constexpr std::size_t most_blocks_for_all_rounds = 1024;
 /// Of a step to the middle of the ring, for each edge that a vertex is moved by.
 constexpr double fairness = 2.0;
 
+/// A block's, about.
+constexpr float edges_across = 8.0F;
+
 /// Four coordinates in a register: one load takes a neighbour, where three would wait for three
 /// cache lines.
 using Four = float __attribute__((vector_size(16)));
@@ -86,7 +89,7 @@ VolumeKeeper::VolumeKeeper(const BlockLayout& layout, std::span<const std::uint3
   build_rings(fans, blocks);
   build_neighbours(fans, blocks);
   stamps_.assign(blocks, 0);
-  volumes_.assign(blocks, 0.0);
+  facts_.assign(blocks, {});
   is_free_.assign(blocks, 0);
   points_.assign(blocks * block_size, {});
   directions_.assign(blocks * block_size, {});
@@ -153,20 +156,19 @@ void VolumeKeeper::build_rings(const Fans& fans, std::size_t blocks) {
 }
 
 /// The neighbours are brought together one by one: many processors' gathering loads take longer.
-double VolumeKeeper::measure(const BoundedShape& shape, std::size_t block, bool turns) noexcept {
+void VolumeKeeper::measure(const BoundedShape& shape, std::size_t block, bool turns) noexcept {
   const std::uint32_t* const from = ring_neighbours_.data() + first_rings_[block];
   const std::size_t most = (first_rings_[block + 1] - first_rings_[block]) / block_size;
   for (std::size_t at = 0; at < most; ++at) {
     gather(points_.data(), from + at * block_size, around_points_[at]);
     if (turns) gather(directions_.data(), from + at * block_size, around_directions_[at]);
   }
-  const double volume = measure_rings(shape.shape[block],
-                                      {{around_points_.data(), most},
-                                       {around_directions_.data(), turns ? most : 0},
-                                       ring_counts_.data() + block * block_size},
-                                      measured_[block]);
+  facts_[block] = measure_rings(shape.shape[block],
+                                {{around_points_.data(), most},
+                                 {around_directions_.data(), turns ? most : 0},
+                                 ring_counts_.data() + block * block_size},
+                                measured_[block]);
   if (turns) scatter(measured_[block].direction, directions_.data() + block * block_size);
-  return volume;
 }
 
 void VolumeKeeper::build_neighbours(const Fans& fans, std::size_t blocks) {
@@ -194,21 +196,20 @@ bool VolumeKeeper::has_changed(const BoundedShape& shape, std::size_t block) con
 /// In which directions a shape swells need not be known to the last call: a block's are found anew
 /// in one of some calls. The first call, which knows none, goes round some times.
 double VolumeKeeper::volume(const BoundedShape& shape) noexcept {
-  for (std::size_t block = 0; block < volumes_.size(); ++block)
+  for (std::size_t block = 0; block < facts_.size(); ++block)
     if (stamps_[block] != shape.shape.stamp(block))
       scatter(shape.shape[block], points_.data() + block * block_size);
-  const int rounds = volumes_.size() <= most_blocks_for_all_rounds ? first_rounds : 1;
+  const int rounds = facts_.size() <= most_blocks_for_all_rounds ? first_rounds : 1;
   for (int round = 0; calls_ == 0 && round < rounds; ++round)
-    for (std::size_t block = 0; block < volumes_.size(); ++block)
+    for (std::size_t block = 0; block < facts_.size(); ++block)
       measure(shape, block, true);
   ++calls_;
   double sum = 0.0;
-  for (std::size_t block = 0; block < volumes_.size(); ++block) {
-    if (has_changed(shape, block))
-      volumes_[block] = measure(shape, block, (block + calls_) % calls_a_direction == 0);
-    sum += volumes_[block];
+  for (std::size_t block = 0; block < facts_.size(); ++block) {
+    if (has_changed(shape, block)) measure(shape, block, (block + calls_) % calls_a_direction == 0);
+    sum += facts_[block].volume;
   }
-  for (std::size_t block = 0; block < volumes_.size(); ++block)
+  for (std::size_t block = 0; block < facts_.size(); ++block)
     stamps_[block] = shape.shape.stamp(block);
   return sum;
 }
@@ -246,7 +247,7 @@ void VolumeKeeper::weigh_around(const BoundedShape& shape, std::size_t block,
 void VolumeKeeper::weigh(const BoundedShape& shape, ContactSearch& search,
                          const GiveBack& how) noexcept {
   const auto reach = static_cast<float>(how.reach);
-  for (std::size_t block = 0; block < volumes_.size(); ++block) {
+  for (std::size_t block = 0; block < facts_.size(); ++block) {
     const bool is_reached = how.around == nullptr || how.around->meets(shape.bounds[block], reach);
     is_free_[block] = is_reached ? 1 : 0;
     if (is_reached) weigh_around(shape, block, how);
@@ -263,7 +264,7 @@ void VolumeKeeper::weigh(const BoundedShape& shape, ContactSearch& search,
 /// How much volume a step along the weighted directions adds.
 void VolumeKeeper::sum_rates() noexcept {
   rate_ = bend_ = 0.0;
-  for (std::size_t block = 0; block < volumes_.size(); ++block) {
+  for (std::size_t block = 0; block < facts_.size(); ++block) {
     if (is_free_[block] == 0) continue;
     const SwellRates rates = swell_rates(measured_[block], weights_.data() + block * block_size);
     rate_ += rates.rate;
@@ -287,18 +288,23 @@ double VolumeKeeper::distance_for(double missing, double most) const noexcept {
 /// grow.
 double VolumeKeeper::swell(BoundedShape& shape, double far, double fairs) noexcept {
   double grown = 0.0;
-  for (std::size_t block = 0; block < volumes_.size(); ++block)
-    if (is_free_[block] != 0)
-      grown += swell_block(measured_[block], weights_.data() + block * block_size,
-                           static_cast<float>(far), static_cast<float>(fairs),
-                           shape.shape.data()[block]);
+  for (std::size_t block = 0; block < facts_.size(); ++block)
+    if (is_free_[block] != 0) {
+      const Swelling swelling = swell_block(measured_[block], weights_.data() + block * block_size,
+                                            static_cast<float>(far), static_cast<float>(fairs),
+                                            shape.shape.data()[block]);
+      grown += swelling.grown;
+      RingFacts& facts = facts_[block];
+      facts.may_turn = facts.may_turn || swelling.spread / edges_across + 2.0F * swelling.aside >
+                                             0.5F * facts.least_height;
+    }
   return grown;
 }
 
 /// After all steps of the blocks that swell.
 void VolumeKeeper::finish_blocks(BoundedShape& shape) noexcept {
   const std::uint64_t stamp = BlockShape::new_stamp();
-  for (std::size_t block = 0; block < volumes_.size(); ++block) {
+  for (std::size_t block = 0; block < facts_.size(); ++block) {
     if (is_free_[block] == 0) continue;
     VertexBlock& content = shape.shape.data()[block];
     const std::size_t used = end_of(block) - block * block_size;

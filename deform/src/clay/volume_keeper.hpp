@@ -49,12 +49,17 @@ public:
   double give_back(BoundedShape& shape, ContactSearch& search, double missing,
                    const GiveBack& how) noexcept;
 
+  /// Of each block, as the last volume() has found it.
+  std::span<const RingFacts> facts() const noexcept { return facts_; }
+  /// Of the vertex at each place, the direction in which it swells.
+  std::span<const std::array<float, 4>> directions() const noexcept { return directions_; }
+
 private:
   using Fans = RowsByKey<std::uint32_t>; ///< of each place: its neighbours in their order
   Fans fans_of(const BlockLayout& layout, std::span<const std::uint32_t> corners) const;
   void build_rings(const Fans& fans, std::size_t blocks);
   void build_neighbours(const Fans& fans, std::size_t blocks);
-  double measure(const BoundedShape& shape, std::size_t block, bool turns) noexcept;
+  void measure(const BoundedShape& shape, std::size_t block, bool turns) noexcept;
   std::size_t end_of(std::size_t block) const noexcept {
     return std::min(vertices_, (block + 1) * block_size);
   }
@@ -73,7 +78,7 @@ private:
   std::vector<float> ring_counts_;
   RowsByKey<std::uint32_t> neighbours_; ///< of each block, with itself
   std::vector<std::uint64_t> stamps_;   ///< of the blocks when they were measured
-  std::vector<double> volumes_;         ///< one a block
+  std::vector<RingFacts> facts_;        ///< one a block
   std::vector<std::uint8_t> is_free_;   ///< one a block: some weight is not 0
   std::vector<std::array<float, 4>> points_;
   std::vector<std::array<float, 4>> directions_;

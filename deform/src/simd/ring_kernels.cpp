@@ -1,5 +1,8 @@
 #include "simd/ring_kernels.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/ring_kernels.cpp"
 #include "simd/targets.hpp"
@@ -18,12 +21,12 @@ using RingV = hn::Vec<RingTag>;
 using Ring3 = Vectors3<RingV>;
 
 constexpr float least_square = 1e-30F; // instead of a division by 0
+constexpr float least_even = 0.3F;     // cosine of the angle between face and direction
 constexpr float own_share = 0.2F;      // of a vertex' own normal in its direction
 
-HWY_INLINE void add_cross(const Ring3& a, const Ring3& b, Ring3& to) {
-  to.x = hn::Add(to.x, hn::NegMulAdd(a.z, b.y, hn::Mul(a.y, b.z)));
-  to.y = hn::Add(to.y, hn::NegMulAdd(a.x, b.z, hn::Mul(a.z, b.x)));
-  to.z = hn::Add(to.z, hn::NegMulAdd(a.y, b.x, hn::Mul(a.x, b.y)));
+HWY_INLINE Ring3 cross_product(const Ring3& a, const Ring3& b) {
+  return {hn::NegMulAdd(a.z, b.y, hn::Mul(a.y, b.z)), hn::NegMulAdd(a.x, b.z, hn::Mul(a.z, b.x)),
+          hn::NegMulAdd(a.y, b.x, hn::Mul(a.x, b.y))};
 }
 
 HWY_INLINE Ring3 masked(hn::Mask<RingTag> mask, const Ring3& a) {
@@ -34,21 +37,32 @@ HWY_INLINE Ring3 masked(hn::Mask<RingTag> mask, const Ring3& a) {
 /// Sums over the ring around each vertex, of ways from it.
 struct RingSums {
   Ring3 crosses, ways;
-  RingV squares;
+  RingV squares, longest; ///< of the ways
+  RingV least;            ///< below 0: some face is not even
+  RingV smallest;         ///< square of a face's cross product
 };
 
 HWY_INLINE RingSums sum_ring(RingTag d, const BlockRings& rings, std::size_t lane,
-                             const Ring3& here) {
+                             const Ring3& here, const Ring3& direction) {
   const RingV zero = hn::Zero(d);
   const RingV count = hn::LoadU(d, rings.counts + lane);
-  RingSums sums{{zero, zero, zero}, {zero, zero, zero}, zero};
+  RingSums sums{{zero, zero, zero}, {zero, zero, zero}, zero, zero, zero, hn::Set(d, 1e30F)};
   Ring3 before = difference_of(load_vectors(d, rings.points.back(), lane), here);
   for (std::size_t at = 0; at < rings.points.size(); ++at) {
     const Ring3 way = difference_of(load_vectors(d, rings.points[at], lane), here);
     const auto is_one = hn::Lt(hn::Set(d, static_cast<float>(at)), count);
-    add_cross(before, way, sums.crosses);
+    const Ring3 cross = cross_product(before, way);
+    sums.crosses = sum_of(sums.crosses, cross);
+    const RingV along = dot_product(cross, direction);
+    const RingV squared = dot_product(cross, cross);
+    const RingV least = hn::Mul(hn::Set(d, least_even * least_even), squared);
+    sums.smallest = hn::Min(sums.smallest, hn::IfThenElse(is_one, squared, sums.smallest));
+    sums.least =
+        hn::Min(sums.least, hn::IfThenElseZero(is_one, hn::MulSub(along, hn::Abs(along), least)));
     sums.ways = sum_of(sums.ways, masked(is_one, way));
-    sums.squares = hn::Add(sums.squares, hn::IfThenElseZero(is_one, dot_product(way, way)));
+    const RingV square = hn::IfThenElseZero(is_one, dot_product(way, way));
+    sums.squares = hn::Add(sums.squares, square);
+    sums.longest = hn::Max(sums.longest, square);
     before = way;
   }
   return sums;
@@ -73,19 +87,27 @@ HWY_INLINE Ring3 smooth_direction(RingTag d, const BlockRings& rings, std::size_
   return scaled(sum, hn::Div(hn::Set(d, 1.0F), hn::Sqrt(squared)));
 }
 
+/// Of all vertices in a lane.
+struct LaneFacts {
+  RingV longest, least, smallest;
+};
+
 /// The volume's derivative by a vertex is a sixth of the sum of its triangles' cross products, and
 /// the sum of vertices times derivatives is three times the volume. Where neighbours lie on a
 /// circle with a radius of h, their middle is H h^2 / 2 below the vertex, H being the mean
 /// curvature; and the area of a surface that moves by f along its normals grows with 2 H f.
 HWY_INLINE RingV measure_lanes(RingTag d, const VertexBlock& block, const BlockRings& rings,
-                               std::size_t lane, RingBlock& measured) {
+                               std::size_t lane, RingBlock& measured, LaneFacts& facts) {
   const RingV one = hn::Set(d, 1.0F);
   const Ring3 here = load_vectors(d, block, lane);
-  const RingSums sums = sum_ring(d, rings, lane, here);
+  const RingSums sums = sum_ring(d, rings, lane, here, load_vectors(d, measured.direction, lane));
   const Ring3 normal = scaled(sums.crosses, hn::Set(d, 1.0F / 6.0F));
   if (!rings.directions.empty())
     store_vectors(d, smooth_direction(d, rings, lane, normal), measured.direction, lane);
   const Ring3 direction = load_vectors(d, measured.direction, lane);
+  facts.longest = hn::Max(facts.longest, sums.longest);
+  facts.least = hn::Min(facts.least, sums.least);
+  facts.smallest = hn::Min(facts.smallest, sums.smallest);
   const RingV count = hn::LoadU(d, rings.counts + lane);
   const RingV per_square = hn::Div(count, hn::Max(sums.squares, hn::Set(d, least_square)));
   const Ring3 middle = scaled(sums.ways, hn::Div(one, hn::Max(count, one)));
@@ -110,12 +132,41 @@ double double_sum(const std::array<float, block_size>& numbers) {
   return ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]));
 }
 
-double measure_all_lanes(const VertexBlock& block, const BlockRings& rings, RingBlock& measured) {
+/// The middle of the directions, and how far they are from it.
+void find_axis(RingTag d, const VertexBlock& directions, RingFacts& facts) {
+  const RingV zero = hn::Zero(d);
+  Ring3 sum{zero, zero, zero};
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d))
+    sum = sum_of(sum, load_vectors(d, directions, lane));
+  facts.axis = {hn::GetLane(hn::SumOfLanes(d, sum.x)), hn::GetLane(hn::SumOfLanes(d, sum.y)),
+                hn::GetLane(hn::SumOfLanes(d, sum.z))};
+  auto& [x, y, z] = facts.axis;
+  const float length = std::sqrt(std::max(x * x + y * y + z * z, least_square));
+  for (float& coordinate : facts.axis)
+    coordinate /= length;
+  const Ring3 axis{hn::Set(d, x), hn::Set(d, y), hn::Set(d, z)};
+  RingV least = hn::Set(d, 1.0F);
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d))
+    least = hn::Min(least, dot_product(axis, load_vectors(d, directions, lane)));
+  facts.least_cosine = hn::GetLane(hn::MinOfLanes(d, least));
+}
+
+RingFacts measure_all_lanes(const VertexBlock& block, const BlockRings& rings,
+                            RingBlock& measured) {
   const RingTag d;
+  const RingV zero = hn::Zero(d);
+  RingFacts facts;
+  find_axis(d, measured.direction, facts); // those that the faces are compared with
+  LaneFacts lanes{zero, zero, hn::Set(d, 1e30F)};
   alignas(64) std::array<float, block_size> products{};
   for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d))
-    hn::Store(measure_lanes(d, block, rings, lane, measured), d, products.data() + lane);
-  return double_sum(products) / 3.0;
+    hn::Store(measure_lanes(d, block, rings, lane, measured, lanes), d, products.data() + lane);
+  facts.volume = double_sum(products) / 3.0;
+  facts.longest_edge = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, lanes.longest)));
+  facts.least_height = std::sqrt(hn::GetLane(hn::MinOfLanes(d, lanes.smallest))) /
+                       std::max(facts.longest_edge, least_square);
+  facts.is_even = !(hn::GetLane(hn::MinOfLanes(d, lanes.least)) < 0.0F);
+  return facts;
 }
 
 SwellRates swell_rates_of_lanes(const RingBlock& measured, const float* weights) {
@@ -133,10 +184,22 @@ SwellRates swell_rates_of_lanes(const RingBlock& measured, const float* weights)
   return {double_sum(rates), double_sum(bends), hn::GetLane(hn::MaxOfLanes(d, largest)) > 0.0F};
 }
 
-double swell_lanes(const RingBlock& measured, const float* weights, float far, float fairness,
-                   VertexBlock& block) {
+/// The largest coordinate by which vectors in a block differ.
+HWY_INLINE float widest_range(RingTag d, const Ring3& low, const Ring3& high) {
+  const RingV widest =
+      hn::Max(hn::Max(hn::Sub(hn::MaxOfLanes(d, high.x), hn::MinOfLanes(d, low.x)),
+                      hn::Sub(hn::MaxOfLanes(d, high.y), hn::MinOfLanes(d, low.y))),
+              hn::Sub(hn::MaxOfLanes(d, high.z), hn::MinOfLanes(d, low.z)));
+  return hn::GetLane(widest);
+}
+
+Swelling swell_lanes(const RingBlock& measured, const float* weights, float far, float fairness,
+                     VertexBlock& block) {
   const RingTag d;
   const RingV most_fairing = hn::Set(d, 0.3F);
+  const RingV huge = hn::Set(d, 1e30F);
+  Ring3 low{huge, huge, huge}, high = scaled(low, hn::Set(d, -1.0F));
+  RingV most_squared = hn::Zero(d);
   alignas(64) std::array<float, block_size> grown{};
   for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
     const RingV weight = hn::LoadU(d, weights + lane);
@@ -145,14 +208,18 @@ double swell_lanes(const RingBlock& measured, const float* weights, float far, f
         hn::Mul(weight, hn::Min(most_fairing, hn::Mul(hn::Set(d, fairness), per_edge)));
     const Ring3 direction = load_vectors(d, measured.direction, lane);
     const Ring3 fairing = load_vectors(d, measured.fairing, lane);
-    const Ring3 by =
-        sum_of(scaled(direction, hn::Mul(weight, hn::Set(d, far))), scaled(fairing, fair));
-    store_vectors(d, sum_of(load_vectors(d, block, lane), by), block, lane);
+    const Ring3 out = scaled(direction, hn::Mul(weight, hn::Set(d, far)));
+    const Ring3 aside = scaled(fairing, fair);
+    store_vectors(d, sum_of(load_vectors(d, block, lane), sum_of(out, aside)), block, lane);
+    low = {hn::Min(low.x, out.x), hn::Min(low.y, out.y), hn::Min(low.z, out.z)};
+    high = {hn::Max(high.x, out.x), hn::Max(high.y, out.y), hn::Max(high.z, out.z)};
+    most_squared = hn::Max(most_squared, dot_product(aside, aside));
     const RingV rate = hn::Load(d, measured.rate.data() + lane);
     hn::Store(hn::Mul(hn::Mul(fair, dot_product(fairing, direction)), rate), d,
               grown.data() + lane);
   }
-  return double_sum(grown);
+  return {double_sum(grown), widest_range(d, low, high),
+          std::sqrt(hn::GetLane(hn::MaxOfLanes(d, most_squared)))};
 }
 
 } // namespace nendo::deform::HWY_NAMESPACE
@@ -165,9 +232,9 @@ HWY_EXPORT(measure_all_lanes);
 HWY_EXPORT(swell_rates_of_lanes);
 HWY_EXPORT(swell_lanes);
 
-double measure_rings(const VertexBlock& block, const BlockRings& rings,
-                     RingBlock& measured) noexcept {
-  if (rings.points.empty()) return 0.0; // of vertices in no triangle
+RingFacts measure_rings(const VertexBlock& block, const BlockRings& rings,
+                        RingBlock& measured) noexcept {
+  if (rings.points.empty()) return {}; // of vertices in no triangle
   return HWY_DYNAMIC_DISPATCH(measure_all_lanes)(block, rings, measured);
 }
 
@@ -175,8 +242,8 @@ SwellRates swell_rates(const RingBlock& measured, const float* weights) noexcept
   return HWY_DYNAMIC_DISPATCH(swell_rates_of_lanes)(measured, weights);
 }
 
-double swell_block(const RingBlock& measured, const float* weights, float far, float fairness,
-                   VertexBlock& block) noexcept {
+Swelling swell_block(const RingBlock& measured, const float* weights, float far, float fairness,
+                     VertexBlock& block) noexcept {
   return HWY_DYNAMIC_DISPATCH(swell_lanes)(measured, weights, far, fairness, block);
 }
 

@@ -27,10 +27,20 @@ struct alignas(64) RingBlock {
   std::array<float, block_size> bend;     ///< and with its square
 };
 
-/// Measures a block, and returns its part of the volume. Without the directions of neighbours, its
-/// own are those that `measured` has.
-double measure_rings(const VertexBlock& block, const BlockRings& rings,
-                     RingBlock& measured) noexcept;
+/// How the faces at a block's vertices lie.
+struct RingFacts {
+  double volume = 0.0;         ///< the block's part
+  std::array<float, 3> axis{}; ///< the middle of the directions, of length 1
+  float least_cosine = 1.0F;   ///< of an angle between the axis and a direction
+  float longest_edge = 0.0F;
+  float least_height = 0.0F; ///< of a face; at most
+  bool is_even = true;       ///< each face looks into the directions of its corners, to 72 degrees
+  bool may_turn = false;     ///< some face may have been turned over by swelling since
+};
+
+/// Measures a block. Without the directions of neighbours, its own are those that `measured` has.
+RingFacts measure_rings(const VertexBlock& block, const BlockRings& rings,
+                        RingBlock& measured) noexcept;
 
 /// By how much the volume grows with the distance and with its square.
 struct SwellRates {
@@ -38,9 +48,13 @@ struct SwellRates {
   bool is_free; ///< some weight is not 0
 };
 SwellRates swell_rates(const RingBlock& measured, const float* weights) noexcept;
-/// Moves the vertices of a block. Returns by how much fairing makes the volume grow, to first
-/// order.
-double swell_block(const RingBlock& measured, const float* weights, float far, float fairness,
-                   VertexBlock& block) noexcept;
+struct Swelling {
+  double grown; ///< by how much fairing makes the volume grow, to first order
+  float spread; ///< by how much the ways along the directions differ in the block
+  float aside;  ///< the longest way of fairing
+};
+/// Moves the vertices of a block.
+Swelling swell_block(const RingBlock& measured, const float* weights, float far, float fairness,
+                     VertexBlock& block) noexcept;
 
 } // namespace nendo::deform

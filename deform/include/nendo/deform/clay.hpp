@@ -61,6 +61,7 @@ struct ClayReport {
   double penetration_mm = 0.0;
   double behind_mm = 0.0;     ///< the way that waits for the next call
   std::size_t held = 0;       ///< places that bodies hold on to
+  std::size_t kept_apart = 0; ///< vertices that moved as one, because their faces would have met
   double carried_mm = 0.0;    ///< the way of the model's middle as a rigid body
   double turned_rad = 0.0;    ///< and its turns, added up
   bool is_moved = false;      ///< something of the shape has changed

@@ -1,0 +1,309 @@
+#include "clay/face_meetings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include "cut/triangle_meeting.hpp"
+
+namespace nendo::deform {
+namespace {
+
+/// Faces of two blocks whose directions are within this angle do not look at each other. For a
+/// surface without wrinkles that could be half a turn; what is missing is room for some.
+constexpr float widest_angle = 2.8F;
+constexpr std::size_t pairs_a_block = 64;
+constexpr std::size_t most_met = 4096;
+constexpr std::size_t most_tests = 50'000; // of two triangles
+
+using ThreePlaces = std::array<Eigen::Vector3f, 3>;
+
+ThreePlaces places_of(const BlockShape& shape, const Corners& corners) noexcept {
+  return {vertex_at(shape, corners[0]), vertex_at(shape, corners[1]), vertex_at(shape, corners[2])};
+}
+
+/// Certainly on one side of the plane of three corners.
+bool is_parted(const ThreePlaces& plane, const ThreePlaces& of) noexcept {
+  const Eigen::Vector3d from = plane[0].cast<double>();
+  const Eigen::Vector3d a = plane[1].cast<double>() - from;
+  const Eigen::Vector3d b = plane[2].cast<double>() - from;
+  const Eigen::Vector3d normal = a.cross(b);
+  const double least = 1e-12 * normal.lpNorm<1>();
+  double low = 1e300, high = -1e300;
+  for (const Eigen::Vector3f& corner : of) {
+    const double height = normal.dot(corner.cast<double>() - from);
+    low = std::min(low, height);
+    high = std::max(high, height);
+  }
+  return low > least || high < -least;
+}
+
+bool may_face(const RingFacts& one, const RingFacts& other) noexcept {
+  const float cosine =
+      one.axis[0] * other.axis[0] + one.axis[1] * other.axis[1] + one.axis[2] * other.axis[2];
+  const auto angle = [](float of) { return std::acos(std::clamp(of, -1.0F, 1.0F)); };
+  return angle(cosine) + angle(one.least_cosine) + angle(other.least_cosine) > widest_angle;
+}
+
+} // namespace
+
+FaceMeetings::FaceMeetings(const BlockLayout& layout, std::span<const std::uint32_t> triangles)
+    : boxed_(layout.block_count()), looked_at_(layout.block_count()),
+      uneven_(layout.vertex_count()), around_(triangles.size() / 3) {
+  const std::size_t blocks = layout.block_count();
+  const std::vector<std::uint32_t> places = layout.places();
+  auto of_block = rows_by_key<Corners>(blocks, [&](const auto& visit) {
+    for (std::size_t at = 0; at + 2 < triangles.size(); at += 3) {
+      const Corners corners{places[triangles[at]], places[triangles[at + 1]],
+                            places[triangles[at + 2]]};
+      visit(block_of(corners), corners);
+    }
+  });
+  corners_ = std::move(of_block.items);
+  first_triangles_ = std::move(of_block.starts);
+  triangles_at_ = rows_by_key<std::uint32_t>(layout.vertex_count(), [&](const auto& visit) {
+    for (std::size_t at = 0; at < corners_.size(); ++at)
+      for (const std::uint32_t corner : corners_[at])
+        visit(corner, static_cast<std::uint32_t>(at));
+  });
+  order_by_x(layout.pack());
+  std::size_t most = 0; // triangles of a block
+  for (std::size_t block = 0; block < blocks; ++block)
+    most = std::max<std::size_t>(most, first_triangles_[block + 1] - first_triangles_[block]);
+  boxes_.resize(blocks);
+  hulls_.resize(blocks);
+  triangle_boxes_.resize(corners_.size());
+  pairs_.reserve(pairs_a_block * blocks);
+  is_folded_.assign(blocks, 0);
+  some_.reserve(most);
+  others_.reserve(most);
+  near_.reserve(blocks);
+  met_.reserve(most_met);
+}
+
+/// Each call then finds them nearly sorted.
+void FaceMeetings::order_by_x(const BlockShape& shape) {
+  order_.resize(shape.block_count());
+  std::iota(order_.begin(), order_.end(), 0U);
+  const auto low = [&](std::uint32_t block) {
+    return *std::min_element(shape[block].x.begin(), shape[block].x.end());
+  };
+  std::sort(order_.begin(), order_.end(),
+            [&](std::uint32_t one, std::uint32_t other) { return low(one) < low(other); });
+}
+
+std::uint32_t FaceMeetings::block_of(const Corners& corners) noexcept {
+  return *std::min_element(corners.begin(), corners.end()) / block_size;
+}
+
+void FaceMeetings::Box::extend(const Box& by) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[axis] = std::min(low[axis], by.low[axis]);
+    high[axis] = std::max(high[axis], by.high[axis]);
+  }
+}
+
+bool FaceMeetings::is_given_up() const noexcept {
+  return is_crowded_ || tests_ > most_tests || met_.size() == most_met;
+}
+
+void FaceMeetings::find(const BoundedShape& shape, const BlockShape& before,
+                        const VolumeKeeper& volume) noexcept {
+  begin(shape, volume);
+  list_pairs(shape.shape, before, volume.facts());
+  std::erase_if(pairs_, [&](const BlockPair& pair) {
+    measure_boxes(shape.shape, pair.first);
+    measure_boxes(shape.shape, pair.second);
+    return !hulls_[pair.first].overlaps(hulls_[pair.second]);
+  });
+  for (const auto& [one, other] : pairs_) {
+    mark_uneven(shape.shape, volume, one);
+    mark_uneven(shape.shape, volume, other);
+  }
+  for (const BlockPair& pair : pairs_)
+    if (!is_given_up()) search(pair, shape.shape, before);
+}
+
+void FaceMeetings::begin(const BoundedShape& shape, const VolumeKeeper& volume) noexcept {
+  tests_ = 0;
+  met_.clear();
+  boxed_.clear();
+  looked_at_.clear();
+  uneven_.clear();
+  const std::span<const RingFacts> facts = volume.facts();
+  for (std::uint32_t block = 0; block < boxes_.size(); ++block) {
+    const auto& sides = shape.bounds[block].sides;
+    const float around = facts[block].longest_edge;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      boxes_[block].low[axis] = sides[axis] - around;
+      boxes_[block].high[axis] = -sides[axis + 4] + around;
+    }
+    is_folded_[block] = facts[block].is_even ? 0 : 1;
+    if (facts[block].may_turn) mark_uneven(shape.shape, volume, block);
+  }
+}
+
+/// Sorts and sweeps along x. The order depends on the shape alone.
+void FaceMeetings::list_pairs(const BlockShape& shape, const BlockShape& before,
+                              std::span<const RingFacts> facts) noexcept {
+  const auto is_before = [&](std::uint32_t one, std::uint32_t other) {
+    const float x = boxes_[one].low[0], other_x = boxes_[other].low[0];
+    return x < other_x || (x == other_x && one < other);
+  };
+  for (std::size_t at = 1; at < order_.size(); ++at) // nearly sorted since the last call
+    for (std::size_t to = at; to > 0 && is_before(order_[to], order_[to - 1]); --to)
+      std::swap(order_[to], order_[to - 1]);
+  const auto has_moved = [&](std::uint32_t block) {
+    return shape.stamp(block) != before.stamp(block);
+  };
+  pairs_.clear();
+  is_crowded_ = false;
+  for (std::size_t at = 0; at < order_.size(); ++at) {
+    const std::uint32_t one = order_[at];
+    const bool moved = has_moved(one);
+    for (std::size_t to = at; to < order_.size(); ++to) {
+      const std::uint32_t other = order_[to];
+      if (boxes_[other].low[0] > boxes_[one].high[0]) break;
+      if (!(moved || has_moved(other)) || !boxes_[one].overlaps(boxes_[other]) ||
+          !(is_folded_[one] != 0 || is_folded_[other] != 0 || may_face(facts[one], facts[other])))
+        continue;
+      is_crowded_ = pairs_.size() == pairs_.capacity();
+      if (is_crowded_) return;
+      pairs_.emplace_back(one, other);
+    }
+  }
+}
+
+/// Where all faces around a vertex look to one side, none of them meet.
+void FaceMeetings::mark_uneven(const BlockShape& shape, const VolumeKeeper& volume,
+                               std::uint32_t block) noexcept {
+  if (!looked_at_.add(block)) return;
+  for (Triangle at = first_triangles_[block]; at < first_triangles_[block + 1]; ++at) {
+    const ThreePlaces places = places_of(shape, corners_[at]);
+    const Eigen::Vector3f normal = (places[1] - places[0]).cross(places[2] - places[0]);
+    for (const std::uint32_t corner : corners_[at]) {
+      const std::array<float, 4>& way = volume.directions()[corner];
+      if (normal.x() * way[0] + normal.y() * way[1] + normal.z() * way[2] > 0.0F) continue;
+      uneven_.add(corner);
+      is_folded_[block] = 1;
+    }
+  }
+}
+
+FaceMeetings::Box FaceMeetings::box_of(const BlockShape& shape, Triangle triangle) const noexcept {
+  const ThreePlaces at = places_of(shape, corners_[triangle]);
+  Box box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto row = static_cast<Eigen::Index>(axis);
+    box.low[axis] = std::min({at[0][row], at[1][row], at[2][row]});
+    box.high[axis] = std::max({at[0][row], at[1][row], at[2][row]});
+  }
+  return box;
+}
+
+/// The boxes of a block's triangles, and the box of them all, once a call.
+void FaceMeetings::measure_boxes(const BlockShape& shape, std::uint32_t block) noexcept {
+  if (!boxed_.add(block)) return;
+  hulls_[block] = {};
+  for (Triangle at = first_triangles_[block]; at < first_triangles_[block + 1]; ++at) {
+    triangle_boxes_[at] = box_of(shape, at);
+    hulls_[block].extend(triangle_boxes_[at]);
+  }
+}
+
+void FaceMeetings::search(BlockPair blocks, const BlockShape& shape,
+                          const BlockShape& before) noexcept {
+  const auto [first, second] = blocks;
+  const auto collect = [&](std::uint32_t block, const Box& near, std::vector<Triangle>& to) {
+    to.clear();
+    for (Triangle at = first_triangles_[block]; at < first_triangles_[block + 1]; ++at)
+      if (triangle_boxes_[at].overlaps(near)) to.push_back(at);
+  };
+  collect(first, hulls_[second], some_);
+  if (some_.empty()) return;
+  collect(second, hulls_[first], others_);
+  const auto is_even_between = [&](Triangle one, Triangle other) {
+    for (const std::uint32_t corner : corners_[one])
+      for (const std::uint32_t of : corners_[other])
+        if (corner == of && !uneven_.has(corner)) return true;
+    return false;
+  };
+  for (const Triangle one : some_)
+    for (const Triangle other : others_)
+      if ((first != second || one < other) &&
+          triangle_boxes_[one].overlaps(triangle_boxes_[other]) && !is_even_between(one, other))
+        test(one, other, shape, before);
+}
+
+/// All of these faces with all others, whatever they look at.
+void FaceMeetings::find_at(std::span<const std::uint32_t> places, const BlockShape& shape,
+                           const BlockShape& before) noexcept {
+  met_.clear();
+  around_.clear();
+  for (const std::uint32_t place : places)
+    for (const Triangle triangle : triangles_at_[place])
+      around_.add(triangle);
+  Box whole;
+  for (const Triangle one : around_.members()) {
+    const std::uint32_t block = block_of(corners_[one]);
+    measure_boxes(shape, block);
+    triangle_boxes_[one] = box_of(shape, one);
+    boxes_[block].extend(triangle_boxes_[one]);
+    whole.extend(triangle_boxes_[one]);
+  }
+  near_.clear();
+  for (std::uint32_t block = 0; block < boxes_.size(); ++block)
+    if (whole.overlaps(boxes_[block])) {
+      measure_boxes(shape, block);
+      near_.push_back(block);
+    }
+  for (const Triangle one : around_.members()) {
+    const Box& box = triangle_boxes_[one];
+    for (const std::uint32_t block : near_) {
+      if (!box.overlaps(boxes_[block])) continue;
+      for (Triangle other = first_triangles_[block]; other < first_triangles_[block + 1]; ++other)
+        if (box.overlaps(triangle_boxes_[other]) && (!around_.has(other) || one < other))
+          test(one, other, shape, before);
+    }
+  }
+}
+
+void FaceMeetings::test(Triangle one, Triangle other, const BlockShape& shape,
+                        const BlockShape& before) noexcept {
+  if (is_given_up()) return;
+  ++tests_;
+  const Corners& a = corners_[one];
+  const Corners& b = corners_[other];
+  if (std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) == a.end()) { // nothing shared
+    const ThreePlaces at = places_of(shape, a);
+    const ThreePlaces of = places_of(shape, b);
+    if (is_parted(at, of) || is_parted(of, at)) return;
+  }
+  if (meet(shape, one, other) && !meet(before, one, other)) met_.emplace_back(one, other);
+}
+
+/// Decided exactly.
+bool FaceMeetings::meet(const BlockShape& shape, Triangle one, Triangle other) const noexcept {
+  std::array<SpacePoint, 6> points{};
+  std::array<std::uint32_t, 6> places{};
+  std::uint32_t count = 0;
+  const auto numbered = [&](const Corners& corners) {
+    Corners numbers{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto* const end = places.cbegin() + count;
+      const auto* const found = std::find(places.cbegin(), end, corners[k]);
+      numbers[k] = static_cast<std::uint32_t>(found - places.cbegin());
+      if (found != end) continue;
+      const Eigen::Vector3d at = vertex_at(shape, corners[k]).cast<double>();
+      points[count] = {at.x(), at.y(), at.z()};
+      places[count++] = corners[k];
+    }
+    return numbers;
+  };
+  const Corners first = numbered(corners_[one]);
+  const Corners second = numbered(corners_[other]);
+  return triangles_meet(points, first, second);
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,90 @@
+#pragma once
+// Finds faces of the clay that have come to meet. Nearly all of them cannot: those of two blocks
+// whose boxes are apart, and those that look to one side (Volino and Magnenat-Thalmann, "Efficient
+// self-collision detection on smoothly discretized surface animations", 1994). What a VolumeKeeper
+// measures tells which blocks' faces do. The rest is tested exactly.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "block_evaluator.hpp"
+#include "clay/marks.hpp"
+#include "clay/volume_keeper.hpp"
+#include "cut/space.hpp"
+#include "rows_by_key.hpp"
+
+namespace nendo::deform {
+
+/// Belongs to one thread. After the constructor nothing allocates.
+class FaceMeetings {
+public:
+  using Triangle = std::uint32_t; ///< in the order of the blocks of their first places
+
+  /// `triangles` are vertices of the mesh.
+  FaceMeetings(const BlockLayout& layout, std::span<const std::uint32_t> triangles);
+
+  /// Finds the pairs that meet in the shape, and did not in `before`. `volume` has measured the
+  /// shape, or one that differs by what has swelled since.
+  void find(const BoundedShape& shape, const BlockShape& before,
+            const VolumeKeeper& volume) noexcept;
+  /// Finds those of the faces at these places, which have moved since find().
+  void find_at(std::span<const std::uint32_t> places, const BlockShape& shape,
+               const BlockShape& before) noexcept;
+  std::span<const std::pair<Triangle, Triangle>> pairs() const noexcept { return met_; }
+  /// Tells whether the search was given up, because clay is crumpled all over.
+  bool is_given_up() const noexcept;
+  const Corners& corners(Triangle triangle) const noexcept { return corners_[triangle]; }
+
+private:
+  using BlockPair = std::pair<std::uint32_t, std::uint32_t>;
+  struct Box {
+    std::array<float, 3> low{1e30F, 1e30F, 1e30F}, high{-1e30F, -1e30F, -1e30F};
+    void extend(const Box& by) noexcept;
+    /// Without branches, which would be foretold badly.
+    bool overlaps(const Box& other) const noexcept {
+      const auto gap = [&](std::size_t axis) {
+        return std::max(low[axis] - other.high[axis], other.low[axis] - high[axis]);
+      };
+      return std::max(gap(0), std::max(gap(1), gap(2))) <= 0.0F;
+    }
+  };
+
+  static std::uint32_t block_of(const Corners& corners) noexcept;
+  void order_by_x(const BlockShape& shape);
+  void begin(const BoundedShape& shape, const VolumeKeeper& volume) noexcept;
+  void list_pairs(const BlockShape& shape, const BlockShape& before,
+                  std::span<const RingFacts> facts) noexcept;
+  void mark_uneven(const BlockShape& shape, const VolumeKeeper& volume,
+                   std::uint32_t block) noexcept;
+  Box box_of(const BlockShape& shape, Triangle triangle) const noexcept;
+  void measure_boxes(const BlockShape& shape, std::uint32_t block) noexcept;
+  void search(BlockPair blocks, const BlockShape& shape, const BlockShape& before) noexcept;
+  void test(Triangle one, Triangle other, const BlockShape& shape,
+            const BlockShape& before) noexcept;
+  bool meet(const BlockShape& shape, Triangle one, Triangle other) const noexcept;
+
+  std::vector<Corners> corners_;               ///< places, of each triangle
+  std::vector<std::uint32_t> first_triangles_; ///< of each block, and of none
+  RowsByKey<std::uint32_t> triangles_at_;      ///< of each place
+  std::vector<std::uint32_t> order_;           ///< blocks, by their lowest x
+  std::vector<Box> boxes_;                     ///< of each block's triangles, and more
+  Marks boxed_;                                ///< blocks of which these are known:
+  std::vector<Box> hulls_, triangle_boxes_;
+  std::vector<BlockPair> pairs_;        ///< of blocks whose faces may meet
+  bool is_crowded_ = false;             ///< there are more
+  std::vector<std::uint8_t> is_folded_; ///< of each block: some face looks away, or nearly
+  Marks looked_at_;                     ///< blocks whose uneven places are known
+  Marks uneven_;                        ///< places where some face looks away
+  std::vector<Triangle> some_, others_; ///< room for search()
+  Marks around_;                        ///< triangles of find_at()
+  std::vector<std::uint32_t> near_;     ///< blocks near these
+  std::size_t tests_ = 0;               ///< since find()
+  std::vector<std::pair<Triangle, Triangle>> met_;
+};
+
+} // namespace nendo::deform
