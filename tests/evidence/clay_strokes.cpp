@@ -191,7 +191,7 @@ bool strokes_on_one_ball(int strokes, int level) {
                   edges[edges.size() / 100], edges[edges.size() - edges.size() / 100 - 1],
                   100.0 * trial.outcome().last_volume);
       std::fflush(stdout);
-      is_any = is_any || (refines && first > 0);
+      is_any = is_any || first > 0;
     }
   return !is_any;
 }

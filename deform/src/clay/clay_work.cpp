@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "usable.hpp"
@@ -23,11 +22,6 @@ constexpr double give_mm = 0.3;      // by which skin gives way sideways before 
 constexpr double loaded_mm = 0.01;   // less does not stick
 constexpr double most_step_mm = 2.0; // of a body in a sub-step
 constexpr double most_straight_mm = 0.2; // a last push, which may fold
-// What is pressed out appears from a body's surface on more and more, and all of it this far away.
-// Nearer, it would close over a hand, and fold when that leaves.
-constexpr double free_mm = 30.0;
-constexpr double most_swell = 1.0 / 3.0; // of that, in a call: then slopes are at most a half
-constexpr double swell_reach = 3.0;      // of that, from the contacts
 
 // The least radius of functions, in radii of the thickest part. Clay that is softer is pressed into
 // layers thinner than any triangle before it gets round a part, and these cross.
@@ -35,9 +29,8 @@ constexpr double least_softness = 1.2;
 constexpr double cells_a_radius = 3.0;
 constexpr double apart_in_cells = 0.6;
 constexpr int most_sub_step_passes = 40;
-constexpr double most_sub_steps = 1e6;  // of a call; so a way of kilometres has larger ones
-constexpr double volume_is_kept = 1e-5; // relative
-constexpr float least_free = 0.5F;      // weight of a mask
+constexpr double most_sub_steps = 1e6; // of a call; so a way of kilometres has larger ones
+constexpr float least_free = 0.5F;     // weight of a mask
 
 /// A part of the way from one pose of a body's part to another.
 ContactPart between(const ContactPart& a, const ContactPart& b, double share) noexcept {
@@ -440,50 +433,6 @@ void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
       shape.bounds[block] = fast_bounds_of(content);
     });
   shape.extent += 2.0 * most;
-}
-
-/// Returns whether the volume was measured.
-bool ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
-                                   ClayReport& report) noexcept {
-  if (!volume_.is_closed() || !(std::abs(whole_volume_) > 0.0)) return false;
-  if (!is_pressed && !is_settling_) return false;
-  const double before = volume_.volume(shape) - whole_volume_;
-  double change = before;
-  const double kept = volume_is_kept * std::abs(whole_volume_);
-  if (is_pressed || std::abs(change) > kept) {
-    const double near = std::max(radius_, free_mm * mm_);
-    const GiveBack how{near, most_swell * near, swells_all_ ? nullptr : &around_,
-                       swell_reach * near};
-    masked_.begin(shape.shape);
-    const double given = volume_.give_back(shape, search_, -change, how);
-    report.is_moved = report.is_moved || given != 0.0;
-    swells_all_ = std::abs(given) < 0.999 * std::abs(change);
-    change += given;
-    if (masked_.mask() != nullptr) {
-      masked_.end(shape);
-      for (const VertexMask::Part& part : masked_.mask()->parts())
-        volume_.read_again(part.block);
-      change = volume_.volume(shape) - whole_volume_;
-    }
-  }
-  // Where a mask holds nearly all, nothing may be left that can give way.
-  is_settling_ = std::abs(change) > kept && (is_pressed || std::abs(change) < std::abs(before));
-  volume_now_ = whole_volume_ + change;
-  report.volume_change = change / whole_volume_;
-  return true;
-}
-
-/// Where faces cannot be kept apart, nothing has happened, and the bodies' way waits: the next call
-/// divides it into more sub-steps.
-void ClayDeformer::Work::keep_apart(BoundedShape& shape, double way, ClayReport& report) noexcept {
-  const std::optional<std::size_t> moved = zones_.keep_apart(shape, volume_, masked_.mask());
-  report.kept_apart = moved.value_or(0);
-  if (moved) return;
-  from_ = from_before_;
-  skins_ = skins_before_;
-  is_settling_ = false;
-  report.behind_mm = way / mm_;
-  report.is_moved = false;
 }
 
 } // namespace nendo::deform

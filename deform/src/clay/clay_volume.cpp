@@ -1,0 +1,66 @@
+// What ends a call of a ClayDeformer: the volume is given back, and faces are kept apart.
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "clay/clay_work.hpp"
+
+namespace nendo::deform {
+
+namespace {
+
+// What is pressed out appears from a body's surface on more and more, and all of it this far away.
+// Nearer, it would close over a hand, and fold when that leaves.
+constexpr double free_mm = 30.0;
+constexpr double most_swell = 1.0 / 3.0; // of that, in a call: then slopes are at most a half
+constexpr double swell_reach = 3.0;      // of that, from the contacts
+constexpr double volume_is_kept = 1e-5;  // relative
+
+} // namespace
+
+/// Returns whether the volume was measured.
+bool ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
+                                   ClayReport& report) noexcept {
+  if (!volume_.is_closed() || !(std::abs(whole_volume_) > 0.0)) return false;
+  if (!is_pressed && !is_settling_) return false;
+  const double before = volume_.volume(shape) - whole_volume_;
+  double change = before;
+  const double kept = volume_is_kept * std::abs(whole_volume_);
+  if (is_pressed || std::abs(change) > kept) {
+    const double near = std::max(radius_, free_mm * mm_);
+    const GiveBack how{near, most_swell * near, swells_all_ ? nullptr : &around_,
+                       swell_reach * near};
+    masked_.begin(shape.shape);
+    const double given = volume_.give_back(shape, search_, -change, how);
+    report.is_moved = report.is_moved || given != 0.0;
+    swells_all_ = std::abs(given) < 0.999 * std::abs(change);
+    change += given;
+    if (masked_.mask() != nullptr) {
+      masked_.end(shape);
+      for (const VertexMask::Part& part : masked_.mask()->parts())
+        volume_.read_again(part.block);
+      change = volume_.volume(shape) - whole_volume_;
+    }
+  }
+  // Where a mask holds nearly all, nothing may be left that can give way.
+  is_settling_ = std::abs(change) > kept && (is_pressed || std::abs(change) < std::abs(before));
+  volume_now_ = whole_volume_ + change;
+  report.volume_change = change / whole_volume_;
+  return true;
+}
+
+/// Where faces cannot be kept apart, nothing has happened, and the bodies' way waits: the next call
+/// divides it into more sub-steps.
+void ClayDeformer::Work::keep_apart(BoundedShape& shape, double way, ClayReport& report) noexcept {
+  const std::optional<std::size_t> moved = zones_.keep_apart(shape, volume_, masked_.mask());
+  report.kept_apart = moved.value_or(0);
+  if (moved) return;
+  from_ = from_before_;
+  skins_ = skins_before_;
+  is_settling_ = false;
+  report.behind_mm = way / mm_;
+  report.is_moved = false;
+}
+
+} // namespace nendo::deform
