@@ -209,11 +209,13 @@ Swelling swell_lanes(const RingBlock& measured, const float* weights, float far,
     const Ring3 direction = load_vectors(d, measured.direction, lane);
     const Ring3 fairing = load_vectors(d, measured.fairing, lane);
     const Ring3 out = scaled(direction, hn::Mul(weight, hn::Set(d, far)));
-    const Ring3 aside = scaled(fairing, fair);
-    store_vectors(d, sum_of(load_vectors(d, block, lane), sum_of(out, aside)), block, lane);
+    const Ring3 by{hn::MulAdd(fairing.x, fair, out.x), hn::MulAdd(fairing.y, fair, out.y),
+                   hn::MulAdd(fairing.z, fair, out.z)};
+    store_vectors(d, sum_of(load_vectors(d, block, lane), by), block, lane);
     low = {hn::Min(low.x, out.x), hn::Min(low.y, out.y), hn::Min(low.z, out.z)};
     high = {hn::Max(high.x, out.x), hn::Max(high.y, out.y), hn::Max(high.z, out.z)};
-    most_squared = hn::Max(most_squared, dot_product(aside, aside));
+    most_squared =
+        hn::Max(most_squared, hn::Mul(hn::Mul(fair, fair), dot_product(fairing, fairing)));
     const RingV rate = hn::Load(d, measured.rate.data() + lane);
     hn::Store(hn::Mul(hn::Mul(fair, dot_product(fairing, direction)), rate), d,
               grown.data() + lane);
