@@ -155,6 +155,31 @@ TEST_SUITE("impact_zones") {
       REQUIRE(vertex_at(ball.shape.shape, place) == vertex_at(before, place));
   }
 
+  TEST_CASE("a call that is taken back has moved nothing, and its way waits") {
+    const StrokeParts body = nendo::test::stroking_rod();
+    const Mesh mesh = nendo::reference::icosphere(5, nendo::test::stroked_ball_mm);
+    SculptedShape shape(mesh.vertices, {});
+    ClayDeformer clay(shape, corners_of_triangles(mesh), 1, body.size(), {.radius_mm = 30.0});
+    std::mt19937 random(2004);
+    int taken_back = 0;
+    for (int stroke = 0; stroke < 20; ++stroke)
+      nendo::test::violent_stroke(
+          random, body, [&](const StrokeParts& parts) { clay.begin(parts); },
+          [&](const StrokeParts& parts) {
+            const BlockShape before = clay.shape();
+            const double volume = clay.volume();
+            const ClayReport report = clay.press_to(parts);
+            if (report.passes == 0 || report.is_moved) return;
+            ++taken_back;
+            CHECK(report.behind_mm > 0.0);
+            CHECK(clay.volume() == volume);
+            CHECK(report.carried_mm == 0.0);
+            for (std::size_t block = 0; block < before.block_count(); ++block)
+              REQUIRE(clay.shape().stamp(block) == before.stamp(block));
+          });
+    CHECK(taken_back > 0);
+  }
+
   TEST_CASE("strokes that tear a ball of clay leave no faces that cross, and allocate nothing") {
     std::size_t kept_apart = 0, allocations = 0;
     for (const StrokeParts& body : {nendo::test::stroking_finger(), nendo::test::stroking_rod()}) {

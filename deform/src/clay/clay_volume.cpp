@@ -1,4 +1,4 @@
-// What ends a call of a ClayDeformer: the volume is given back, and faces are kept apart.
+// What ends a call of a ClayDeformer: the volume is given back, or all is put off.
 
 #include <algorithm>
 #include <cmath>
@@ -50,16 +50,23 @@ bool ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
   return true;
 }
 
+/// Gives the volume back, and returns whether faces could be kept apart then.
+bool ClayDeformer::Work::finish(BoundedShape& shape, ClayReport& report) noexcept {
+  if (!give_back(shape, report.passes > 0, report)) return true;
+  const std::optional<std::size_t> moved = zones_->keep_apart(shape, volume_, masked_.mask());
+  report.kept_apart = moved.value_or(0);
+  return moved.has_value();
+}
+
 /// Where faces cannot be kept apart, nothing has happened, and the bodies' way waits: the next call
 /// divides it into more sub-steps.
-void ClayDeformer::Work::keep_apart(BoundedShape& shape, double way, ClayReport& report) noexcept {
-  const std::optional<std::size_t> moved = zones_.keep_apart(shape, volume_, masked_.mask());
-  report.kept_apart = moved.value_or(0);
-  if (moved) return;
-  from_ = from_before_;
+void ClayDeformer::Work::put_off(double way, double volume, ClayReport& report) noexcept {
   skins_ = skins_before_;
   is_settling_ = false;
+  volume_now_ = volume;
+  report.volume_change = volume / whole_volume_ - 1.0;
   report.behind_mm = way / mm_;
+  report.carried_mm = report.turned_rad = 0.0;
   report.is_moved = false;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "block_edit.hpp"
 #include "usable.hpp"
 
 namespace nendo::deform {
@@ -73,7 +74,7 @@ ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32
                          std::size_t bodies, std::size_t parts_a_body, const ClayOptions& options)
     : layout_(shape.layout()), options_(options), mm_(options.units_a_mm / layout_.unit()),
       radius_(options.radius_mm * mm_), parts_a_body_(parts_a_body), from_(bodies * parts_a_body),
-      target_(from_), is_(from_), skins_(from_), from_before_(from_), skins_before_(from_),
+      target_(from_), is_(from_), skins_(from_), skins_before_(from_),
       ways_(from_.size(), Eigen::Isometry3d::Identity()), boxes_(bodies, BoxGate::shut()),
       search_(bodies, parts_a_body), chosen_(static_cast<std::size_t>(options.most_constraints)),
       loads_(bodies, ContactLoad(layout_.block_count(), load_mm * mm_)),
@@ -84,9 +85,9 @@ ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32
           room_for(most_centres(bodies, options), options.radius_mm * options.units_a_mm, layout_)),
       evaluator_(layout_, most_centres(bodies, options), options.evaluation), masked_(options.mask),
       volume_(layout_, options.keeps_volume ? triangles : std::span<const std::uint32_t>{}),
-      zones_(layout_, volume_.is_closed() ? triangles : std::span<const std::uint32_t>{}),
       pressed_(from_.size()), around_(BoxGate::shut()) {
   contacts_.reserve(static_cast<std::size_t>(options.most_constraints));
+  if (volume_.is_closed()) zones_.emplace(layout_, triangles);
   assert(options.still_bodies <= bodies);
   assert(options.units_a_mm > 0.0 && options.radius_mm > 0.0 && options.most_constraints > 0);
   for (std::size_t body = 0; body < bodies; ++body)
@@ -194,9 +195,9 @@ void ClayDeformer::Work::drag(std::size_t part) noexcept {
 void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart> parts,
                                ClayReport& report) noexcept {
   status_ = FieldStatus::ok;
-  if (volume_.is_closed()) zones_.begin(shape);
-  from_before_ = from_;
+  if (zones_) zones_->begin(shape);
   skins_before_ = skins_;
+  const double volume_before = volume_now_;
   masked_.begin(shape.shape);
   contacts_.clear();
   search_.distances() = 0;
@@ -235,9 +236,12 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
     if (options_.grips) look_for_grips(report);
   }
   report.behind_mm = (1.0 - gone) * way / mm_;
-  from_ = gone < 1.0 ? is_ : target_;
   masked_.end(shape);
-  if (give_back(shape, report.passes > 0, report)) keep_apart(shape, way, report);
+  if (finish(shape, report)) {
+    from_ = gone < 1.0 ? is_ : target_;
+  } else {
+    put_off(way, volume_before, report);
+  }
   report.distances = search_.distances();
   report.status = status_;
 }
@@ -425,9 +429,7 @@ void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
         const Vector3d at =
             Eigen::Vector3f(content.x[lane], content.y[lane], content.z[lane]).cast<double>();
         const Vector3d out = at + std::min(depth, most) * normal_at(at, nearest, lane);
-        content.x[lane] = static_cast<float>(out.x());
-        content.y[lane] = static_cast<float>(out.y());
-        content.z[lane] = static_cast<float>(out.z());
+        set_vertex(content, lane, out.cast<float>());
       }
       shape.shape.set_stamp(block, stamp);
       shape.bounds[block] = fast_bounds_of(content);

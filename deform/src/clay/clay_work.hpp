@@ -1,6 +1,7 @@
 #pragma once
 // What a ClayDeformer works with. All lengths are in the layout's coordinates.
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -80,7 +81,8 @@ private:
   void push_straight(BoundedShape& shape) noexcept;
   const NearestLanes& free_lanes(std::size_t block, const NearestLanes& all) noexcept;
   bool give_back(BoundedShape& shape, bool is_pressed, ClayReport& report) noexcept;
-  void keep_apart(BoundedShape& shape, double way, ClayReport& report) noexcept;
+  bool finish(BoundedShape& shape, ClayReport& report) noexcept;
+  void put_off(double way, double volume, ClayReport& report) noexcept;
 
   const BlockLayout& layout_;
   ClayOptions options_;
@@ -88,12 +90,12 @@ private:
   double radius_;
   std::size_t parts_a_body_;
   bool holds_ = false;
-  std::vector<ContactPart> from_, target_;              ///< of a call
-  std::vector<ContactPart> is_;                         ///< of a sub-step
-  std::vector<ContactPart> skins_;                      ///< frames that lag behind the bones'
-  std::vector<ContactPart> from_before_, skins_before_; ///< a call
-  bool is_dragging_ = false;                            ///< some skin has moved
-  std::vector<Eigen::Isometry3d> ways_;                 ///< of each part's surface in a sub-step
+  std::vector<ContactPart> from_, target_; ///< of a call
+  std::vector<ContactPart> is_;            ///< of a sub-step
+  std::vector<ContactPart> skins_;         ///< frames that lag behind the bones'
+  std::vector<ContactPart> skins_before_;  ///< a call
+  bool is_dragging_ = false;               ///< some skin has moved
+  std::vector<Eigen::Isometry3d> ways_;    ///< of each part's surface in a sub-step
   std::vector<BoxGate> boxes_;
   ContactSearch search_;
   ContactPoints chosen_;
@@ -110,7 +112,7 @@ private:
   MaskedStep masked_;
   NearestLanes free_lanes_; ///< room for the function of that name
   VolumeKeeper volume_;
-  ImpactZones zones_;
+  std::optional<ImpactZones> zones_; ///< where the volume is kept
   double whole_volume_ = 0.0;
   double volume_now_ = 0.0;
   std::vector<float> pressed_; ///< how deep each part came in this call

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 
 #include "cut/triangle_meeting.hpp"
@@ -46,6 +47,21 @@ bool may_face(const RingFacts& one, const RingFacts& other) noexcept {
   return angle(cosine) + angle(one.least_cosine) + angle(other.least_cosine) > widest_angle;
 }
 
+constexpr BlockBounds no_bounds{{1e30F, 1e30F, 1e30F, 0.0F, 1e30F, 1e30F, 1e30F, 0.0F}};
+
+void extend(BlockBounds& box, const BlockBounds& by) noexcept {
+  for (std::size_t side = 0; side < 8; ++side)
+    box.sides[side] = std::min(box.sides[side], by.sides[side]);
+}
+
+/// Without branches, which would be foretold badly.
+bool overlap(const BlockBounds& a, const BlockBounds& b) noexcept {
+  float widest = 0.0F; // gap
+  for (std::size_t side = 0; side < 8; ++side)
+    widest = std::max(widest, a.sides[side] + b.sides[(side + 4) % 8]);
+  return widest <= 0.0F;
+}
+
 } // namespace
 
 FaceMeetings::FaceMeetings(const BlockLayout& layout, std::span<const std::uint32_t> triangles)
@@ -67,7 +83,7 @@ FaceMeetings::FaceMeetings(const BlockLayout& layout, std::span<const std::uint3
       for (const std::uint32_t corner : corners_[at])
         visit(corner, static_cast<std::uint32_t>(at));
   });
-  order_by_x(layout.pack());
+  order_by_x(layout);
   std::size_t most = 0; // triangles of a block
   for (std::size_t block = 0; block < blocks; ++block)
     most = std::max<std::size_t>(most, first_triangles_[block + 1] - first_triangles_[block]);
@@ -83,25 +99,20 @@ FaceMeetings::FaceMeetings(const BlockLayout& layout, std::span<const std::uint3
 }
 
 /// Each call then finds them nearly sorted.
-void FaceMeetings::order_by_x(const BlockShape& shape) {
-  order_.resize(shape.block_count());
+void FaceMeetings::order_by_x(const BlockLayout& layout) {
+  std::vector<double> lows(layout.block_count(), std::numeric_limits<double>::infinity());
+  for (std::size_t place = 0; place < layout.vertex_count(); ++place) {
+    double& low = lows[place / block_size];
+    low = std::min(low, layout.original()(0, layout.order()[place]));
+  }
+  order_.resize(lows.size());
   std::iota(order_.begin(), order_.end(), 0U);
-  const auto low = [&](std::uint32_t block) {
-    return *std::min_element(shape[block].x.begin(), shape[block].x.end());
-  };
   std::sort(order_.begin(), order_.end(),
-            [&](std::uint32_t one, std::uint32_t other) { return low(one) < low(other); });
+            [&](std::uint32_t one, std::uint32_t other) { return lows[one] < lows[other]; });
 }
 
 std::uint32_t FaceMeetings::block_of(const Corners& corners) noexcept {
   return *std::min_element(corners.begin(), corners.end()) / block_size;
-}
-
-void FaceMeetings::Box::extend(const Box& by) noexcept {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    low[axis] = std::min(low[axis], by.low[axis]);
-    high[axis] = std::max(high[axis], by.high[axis]);
-  }
 }
 
 bool FaceMeetings::is_given_up() const noexcept {
@@ -115,7 +126,7 @@ void FaceMeetings::find(const BoundedShape& shape, const BlockShape& before,
   std::erase_if(pairs_, [&](const BlockPair& pair) {
     measure_boxes(shape.shape, pair.first);
     measure_boxes(shape.shape, pair.second);
-    return !hulls_[pair.first].overlaps(hulls_[pair.second]);
+    return !overlap(hulls_[pair.first], hulls_[pair.second]);
   });
   for (const auto& [one, other] : pairs_) {
     mark_uneven(shape.shape, volume, one);
@@ -133,12 +144,9 @@ void FaceMeetings::begin(const BoundedShape& shape, const VolumeKeeper& volume) 
   uneven_.clear();
   const std::span<const RingFacts> facts = volume.facts();
   for (std::uint32_t block = 0; block < boxes_.size(); ++block) {
-    const auto& sides = shape.bounds[block].sides;
-    const float around = facts[block].longest_edge;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      boxes_[block].low[axis] = sides[axis] - around;
-      boxes_[block].high[axis] = -sides[axis + 4] + around;
-    }
+    boxes_[block] = shape.bounds[block];
+    for (const std::size_t side : {0U, 1U, 2U, 4U, 5U, 6U})
+      boxes_[block].sides[side] -= facts[block].longest_edge;
     is_folded_[block] = facts[block].is_even ? 0 : 1;
     if (facts[block].may_turn) mark_uneven(shape.shape, volume, block);
   }
@@ -148,7 +156,7 @@ void FaceMeetings::begin(const BoundedShape& shape, const VolumeKeeper& volume) 
 void FaceMeetings::list_pairs(const BlockShape& shape, const BlockShape& before,
                               std::span<const RingFacts> facts) noexcept {
   const auto is_before = [&](std::uint32_t one, std::uint32_t other) {
-    const float x = boxes_[one].low[0], other_x = boxes_[other].low[0];
+    const float x = boxes_[one].sides[0], other_x = boxes_[other].sides[0];
     return x < other_x || (x == other_x && one < other);
   };
   for (std::size_t at = 1; at < order_.size(); ++at) // nearly sorted since the last call
@@ -164,8 +172,8 @@ void FaceMeetings::list_pairs(const BlockShape& shape, const BlockShape& before,
     const bool moved = has_moved(one);
     for (std::size_t to = at; to < order_.size(); ++to) {
       const std::uint32_t other = order_[to];
-      if (boxes_[other].low[0] > boxes_[one].high[0]) break;
-      if (!(moved || has_moved(other)) || !boxes_[one].overlaps(boxes_[other]) ||
+      if (boxes_[other].sides[0] > -boxes_[one].sides[4]) break;
+      if (!(moved || has_moved(other)) || !overlap(boxes_[one], boxes_[other]) ||
           !(is_folded_[one] != 0 || is_folded_[other] != 0 || may_face(facts[one], facts[other])))
         continue;
       is_crowded_ = pairs_.size() == pairs_.capacity();
@@ -191,13 +199,13 @@ void FaceMeetings::mark_uneven(const BlockShape& shape, const VolumeKeeper& volu
   }
 }
 
-FaceMeetings::Box FaceMeetings::box_of(const BlockShape& shape, Triangle triangle) const noexcept {
+BlockBounds FaceMeetings::box_of(const BlockShape& shape, Triangle triangle) const noexcept {
   const ThreePlaces at = places_of(shape, corners_[triangle]);
-  Box box;
+  BlockBounds box{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto row = static_cast<Eigen::Index>(axis);
-    box.low[axis] = std::min({at[0][row], at[1][row], at[2][row]});
-    box.high[axis] = std::max({at[0][row], at[1][row], at[2][row]});
+    box.sides[axis] = std::min({at[0][row], at[1][row], at[2][row]});
+    box.sides[axis + 4] = -std::max({at[0][row], at[1][row], at[2][row]});
   }
   return box;
 }
@@ -205,20 +213,21 @@ FaceMeetings::Box FaceMeetings::box_of(const BlockShape& shape, Triangle triangl
 /// The boxes of a block's triangles, and the box of them all, once a call.
 void FaceMeetings::measure_boxes(const BlockShape& shape, std::uint32_t block) noexcept {
   if (!boxed_.add(block)) return;
-  hulls_[block] = {};
+  hulls_[block] = no_bounds;
   for (Triangle at = first_triangles_[block]; at < first_triangles_[block + 1]; ++at) {
     triangle_boxes_[at] = box_of(shape, at);
-    hulls_[block].extend(triangle_boxes_[at]);
+    extend(hulls_[block], triangle_boxes_[at]);
   }
 }
 
 void FaceMeetings::search(BlockPair blocks, const BlockShape& shape,
                           const BlockShape& before) noexcept {
   const auto [first, second] = blocks;
-  const auto collect = [&](std::uint32_t block, const Box& near, std::vector<Triangle>& to) {
+  const auto collect = [&](std::uint32_t block, const BlockBounds& near,
+                           std::vector<Triangle>& to) {
     to.clear();
     for (Triangle at = first_triangles_[block]; at < first_triangles_[block + 1]; ++at)
-      if (triangle_boxes_[at].overlaps(near)) to.push_back(at);
+      if (overlap(triangle_boxes_[at], near)) to.push_back(at);
   };
   collect(first, hulls_[second], some_);
   if (some_.empty()) return;
@@ -232,7 +241,7 @@ void FaceMeetings::search(BlockPair blocks, const BlockShape& shape,
   for (const Triangle one : some_)
     for (const Triangle other : others_)
       if ((first != second || one < other) &&
-          triangle_boxes_[one].overlaps(triangle_boxes_[other]) && !is_even_between(one, other))
+          overlap(triangle_boxes_[one], triangle_boxes_[other]) && !is_even_between(one, other))
         test(one, other, shape, before);
 }
 
@@ -244,26 +253,26 @@ void FaceMeetings::find_at(std::span<const std::uint32_t> places, const BlockSha
   for (const std::uint32_t place : places)
     for (const Triangle triangle : triangles_at_[place])
       around_.add(triangle);
-  Box whole;
+  BlockBounds whole = no_bounds;
   for (const Triangle one : around_.members()) {
     const std::uint32_t block = block_of(corners_[one]);
     measure_boxes(shape, block);
     triangle_boxes_[one] = box_of(shape, one);
-    boxes_[block].extend(triangle_boxes_[one]);
-    whole.extend(triangle_boxes_[one]);
+    extend(boxes_[block], triangle_boxes_[one]);
+    extend(whole, triangle_boxes_[one]);
   }
   near_.clear();
   for (std::uint32_t block = 0; block < boxes_.size(); ++block)
-    if (whole.overlaps(boxes_[block])) {
+    if (overlap(whole, boxes_[block])) {
       measure_boxes(shape, block);
       near_.push_back(block);
     }
   for (const Triangle one : around_.members()) {
-    const Box& box = triangle_boxes_[one];
+    const BlockBounds& box = triangle_boxes_[one];
     for (const std::uint32_t block : near_) {
-      if (!box.overlaps(boxes_[block])) continue;
+      if (!overlap(box, boxes_[block])) continue;
       for (Triangle other = first_triangles_[block]; other < first_triangles_[block + 1]; ++other)
-        if (box.overlaps(triangle_boxes_[other]) && (!around_.has(other) || one < other))
+        if (overlap(box, triangle_boxes_[other]) && (!around_.has(other) || one < other))
           test(one, other, shape, before);
     }
   }

@@ -4,9 +4,6 @@
 // self-collision detection on smoothly discretized surface animations", 1994). What a VolumeKeeper
 // measures tells which blocks' faces do. The rest is tested exactly.
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -42,26 +39,15 @@ public:
 
 private:
   using BlockPair = std::pair<std::uint32_t, std::uint32_t>;
-  struct Box {
-    std::array<float, 3> low{1e30F, 1e30F, 1e30F}, high{-1e30F, -1e30F, -1e30F};
-    void extend(const Box& by) noexcept;
-    /// Without branches, which would be foretold badly.
-    bool overlaps(const Box& other) const noexcept {
-      const auto gap = [&](std::size_t axis) {
-        return std::max(low[axis] - other.high[axis], other.low[axis] - high[axis]);
-      };
-      return std::max(gap(0), std::max(gap(1), gap(2))) <= 0.0F;
-    }
-  };
 
   static std::uint32_t block_of(const Corners& corners) noexcept;
-  void order_by_x(const BlockShape& shape);
+  void order_by_x(const BlockLayout& layout);
   void begin(const BoundedShape& shape, const VolumeKeeper& volume) noexcept;
   void list_pairs(const BlockShape& shape, const BlockShape& before,
                   std::span<const RingFacts> facts) noexcept;
   void mark_uneven(const BlockShape& shape, const VolumeKeeper& volume,
                    std::uint32_t block) noexcept;
-  Box box_of(const BlockShape& shape, Triangle triangle) const noexcept;
+  BlockBounds box_of(const BlockShape& shape, Triangle triangle) const noexcept;
   void measure_boxes(const BlockShape& shape, std::uint32_t block) noexcept;
   void search(BlockPair blocks, const BlockShape& shape, const BlockShape& before) noexcept;
   void test(Triangle one, Triangle other, const BlockShape& shape,
@@ -72,9 +58,9 @@ private:
   std::vector<std::uint32_t> first_triangles_; ///< of each block, and of none
   RowsByKey<std::uint32_t> triangles_at_;      ///< of each place
   std::vector<std::uint32_t> order_;           ///< blocks, by their lowest x
-  std::vector<Box> boxes_;                     ///< of each block's triangles, and more
+  std::vector<BlockBounds> boxes_;             ///< of each block's triangles, and more
   Marks boxed_;                                ///< blocks of which these are known:
-  std::vector<Box> hulls_, triangle_boxes_;
+  std::vector<BlockBounds> hulls_, triangle_boxes_;
   std::vector<BlockPair> pairs_;        ///< of blocks whose faces may meet
   bool is_crowded_ = false;             ///< there are more
   std::vector<std::uint8_t> is_folded_; ///< of each block: some face looks away, or nearly

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "block_edit.hpp"
+
 namespace nendo::deform {
 namespace {
 
@@ -14,28 +16,23 @@ constexpr std::size_t most_members = 2048;
 } // namespace
 
 ImpactZones::ImpactZones(const BlockLayout& layout, std::span<const std::uint32_t> triangles)
-    : vertices_(layout.vertex_count()), meetings_(layout, triangles) {
-  if (triangles.empty()) return;
-  before_ = layout.pack();
-  zones_.resize(vertices_);
-  members_ = Marks(vertices_);
-  wanted_.resize(vertices_);
-  ways_.resize(vertices_);
-}
+    : vertices_(layout.vertex_count()), meetings_(layout, triangles), before_(layout.pack()),
+      zones_(vertices_), members_(vertices_), moved_(layout.block_count()), wanted_(vertices_),
+      ways_(vertices_) {}
 
 std::optional<std::size_t> ImpactZones::keep_apart(BoundedShape& shape, const VolumeKeeper& volume,
                                                    const VertexMask* mask) noexcept {
   members_.clear();
-  meetings_.find(shape, before_, volume);
+  meetings_.find(shape, before_.shape, volume);
   for (int round = 0; !meetings_.pairs().empty() || meetings_.is_given_up(); ++round) {
     if (round == most_zone_rounds || members_.members().size() > most_members ||
         meetings_.is_given_up()) {
-      take_back(shape);
+      shape.follow(before_);
       return std::nullopt;
     }
     join_met(shape.shape);
     move(shape.shape, mask, round >= most_zone_rounds - still_zone_rounds);
-    meetings_.find_at(members_.members(), shape.shape, before_);
+    meetings_.find_at(members_.members(), shape.shape, before_.shape);
   }
   finish(shape);
   return members_.members().size();
@@ -74,7 +71,7 @@ void ImpactZones::move(BlockShape& shape, const VertexMask* mask, bool stay) noe
     ways_[place].setZero();
   for (const std::uint32_t place : members_.members()) {
     Eigen::Vector4f& way = ways_[zone_of(place)];
-    way.head<3>() += wanted_[place] - vertex_at(before_, place);
+    way.head<3>() += wanted_[place] - vertex_at(before_.shape, place);
     way[3] += 1.0F;
   }
   for (const std::uint32_t place : members_.members()) {
@@ -84,35 +81,20 @@ void ImpactZones::move(BlockShape& shape, const VertexMask* mask, bool stay) noe
   }
   for (const std::uint32_t place : members_.members()) {
     const Eigen::Vector4f& way = ways_[zone_of(place)];
-    const Eigen::Vector3f to = vertex_at(before_, place) + way.head<3>() / way[3];
-    VertexBlock& block = shape.data()[place / block_size];
-    block.x[place % block_size] = to.x();
-    block.y[place % block_size] = to.y();
-    block.z[place % block_size] = to.z();
+    const Eigen::Vector3f to = vertex_at(before_.shape, place) + way.head<3>() / way[3];
+    set_vertex(shape.data()[place / block_size], place % block_size, to);
   }
 }
 
-void ImpactZones::finish(BoundedShape& shape) const noexcept {
-  for (const std::uint32_t place : members_.members()) {
-    const std::uint32_t block = place / block_size;
+void ImpactZones::finish(BoundedShape& shape) noexcept {
+  moved_.clear();
+  for (const std::uint32_t place : members_.members())
+    moved_.add(place / block_size);
+  for (const std::size_t block : moved_.members()) {
     VertexBlock& content = shape.shape.data()[block];
-    const std::size_t used = std::min(block_size, vertices_ - block * block_size);
-    for (std::size_t lane = used; lane < block_size; ++lane) { // the padding repeats the last one
-      content.x[lane] = content.x[used - 1];
-      content.y[lane] = content.y[used - 1];
-      content.z[lane] = content.z[used - 1];
-    }
+    repeat_last(content, std::min(block_size, vertices_ - block * block_size));
     shape.shape.set_stamp(block, BlockShape::new_stamp());
     shape.bounds[block] = bounds_of(content);
-  }
-}
-
-void ImpactZones::take_back(BoundedShape& shape) const noexcept {
-  for (std::size_t block = 0; block < shape.bounds.size(); ++block) {
-    if (shape.shape.stamp(block) == before_.stamp(block)) continue;
-    shape.shape.data()[block] = before_[block];
-    shape.shape.set_stamp(block, before_.stamp(block));
-    shape.bounds[block] = bounds_of(before_[block]);
   }
 }
 

@@ -24,7 +24,7 @@ public:
   ImpactZones(const BlockLayout& layout, std::span<const std::uint32_t> triangles);
 
   /// The shape before a call.
-  void begin(const BoundedShape& shape) noexcept { before_.follow(shape.shape); }
+  void begin(const BoundedShape& shape) noexcept { before_.follow(shape); }
   /// Lets no faces meet that did not meet at begin(). `volume` has measured the shape, or one that
   /// differs by what has swelled since. Vertices that the mask does not leave free hold their
   /// zones. Returns how many vertices moved as parts of zones; nullopt if the shape is that of
@@ -37,14 +37,14 @@ private:
   void take_in(const BlockShape& shape, std::uint32_t place) noexcept;
   void join_met(const BlockShape& shape) noexcept;
   void move(BlockShape& shape, const VertexMask* mask, bool stay) noexcept;
-  void finish(BoundedShape& shape) const noexcept;
-  void take_back(BoundedShape& shape) const noexcept;
+  void finish(BoundedShape& shape) noexcept;
 
   std::size_t vertices_;
   FaceMeetings meetings_;
-  BlockShape before_;
+  BoundedShape before_;
   std::vector<std::uint32_t> zones_;    ///< of each place: another of its zone, or itself
   Marks members_;                       ///< places, of all zones
+  Marks moved_;                         ///< their blocks
   std::vector<Eigen::Vector3f> wanted_; ///< of each member
   std::vector<Eigen::Vector4f> ways_;   ///< room: sums and counts, at one place of each zone
 };

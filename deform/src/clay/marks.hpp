@@ -10,7 +10,7 @@ namespace nendo::deform {
 /// After the constructor nothing allocates.
 class Marks {
 public:
-  explicit Marks(std::size_t bound = 0) : is_in_(bound, 0) { members_.reserve(bound); }
+  explicit Marks(std::size_t bound) : is_in_(bound, 0) { members_.reserve(bound); }
 
   bool has(std::uint32_t number) const noexcept { return is_in_[number] != 0; }
   /// Returns whether it is new.

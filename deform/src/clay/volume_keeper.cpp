@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "block_edit.hpp"
+
 namespace nendo::deform {
 
 namespace {
@@ -307,12 +309,7 @@ void VolumeKeeper::finish_blocks(BoundedShape& shape) noexcept {
   for (std::size_t block = 0; block < facts_.size(); ++block) {
     if (is_free_[block] == 0) continue;
     VertexBlock& content = shape.shape.data()[block];
-    const std::size_t used = end_of(block) - block * block_size;
-    for (std::size_t lane = used; lane < block_size; ++lane) { // the padding repeats the last one
-      content.x[lane] = content.x[used - 1];
-      content.y[lane] = content.y[used - 1];
-      content.z[lane] = content.z[used - 1];
-    }
+    repeat_last(content, end_of(block) - block * block_size);
     shape.shape.set_stamp(block, stamp);
     shape.bounds[block] = fast_bounds_of(content);
   }
