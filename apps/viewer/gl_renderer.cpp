@@ -62,10 +62,15 @@ Result<std::unique_ptr<GlRenderer>> GlRenderer::make() {
   if (10 * major + minor < 33)
     return Error{Errc::failed, "OpenGL 3.3 is needed, and this is " + std::to_string(major) + "." +
                                    std::to_string(minor)};
-  const auto program = make_program(vertex_shader, fragment_shader);
-  if (!program) return program.error();
   std::unique_ptr<GlRenderer> renderer(new GlRenderer);
-  renderer->program_ = *program;
+  const std::array<std::string, 3> fragment_shaders{white_shader,
+                                                    std::string(light_shader) + ground_shader,
+                                                    std::string(light_shader) + surface_shader};
+  for (std::size_t kind = 0; kind < fragment_shaders.size(); ++kind) {
+    const auto program = make_program(vertex_shader, fragment_shaders[kind].c_str());
+    if (!program) return program.error();
+    renderer->programs_[kind] = *program;
+  }
   glGenVertexArrays(1, &renderer->vertex_array_);
   glGenBuffers(1, &renderer->model_indices_);
   glGenBuffers(3, renderer->model_buffers_.data());
@@ -80,7 +85,8 @@ GlRenderer::~GlRenderer() {
   glDeleteBuffers(3, model_buffers_.data());
   glDeleteBuffers(1, &model_indices_);
   glDeleteVertexArrays(1, &vertex_array_);
-  glDeleteProgram(program_);
+  for (const GLuint program : programs_)
+    glDeleteProgram(program);
 }
 
 void GlRenderer::set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder) {
@@ -167,7 +173,18 @@ void GlRenderer::send_surface(const render::Surface& surface) {
                GL_STREAM_DRAW);
 }
 
-void GlRenderer::use_material(const render::Material& material) const {
+void GlRenderer::use(Fragments fragments) {
+  program_ = programs_[static_cast<std::size_t>(fragments)];
+  glUseProgram(program_);
+}
+
+void GlRenderer::use_material(const render::Material& material) {
+  if (look_.white)
+    use(Fragments::white);
+  else
+    use(material.grid_m > 0.0F ? Fragments::ground : Fragments::surface);
+  set(program_, "facets", look_.facets ? 1 : 0);
+  set(program_, "shadowed", look_.shadowed ? 1 : 0);
   set(program_, "colour", material.colour);
   set(program_, "gloss", material.gloss);
   set(program_, "opacity", material.opacity);
@@ -200,8 +217,6 @@ void GlRenderer::draw_model() const {
 void GlRenderer::draw_surface(const render::Surface& surface, bool model) {
   const std::size_t count = model ? corners_.size() : surface.corners.size();
   if (count == 0) return;
-  use_material(surface.material);
-  set(program_, "from_blocks", model ? 1 : 0);
   if (model) {
     glDisableVertexAttribArray(0);
     glDisableVertexAttribArray(1);
@@ -211,18 +226,22 @@ void GlRenderer::draw_surface(const render::Surface& surface, bool model) {
   }
   const bool veil = surface.material.opacity < 1.0F;
   const auto triangles = [&] {
+    set(program_, "from_blocks", model ? 1 : 0);
     if (model) return draw_model();
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT, nullptr);
   };
   if (!veil) {
+    use_material(surface.material);
     triangles();
     return;
   }
   // Depth first, so that only its nearest layer is mixed in.
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  use(Fragments::white);
   triangles();
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  use_material(surface.material);
   if (surface.material.opaque_before_ground) {
     glStencilFunc(GL_EQUAL, ground_mark, 0xFF);
     triangles();
@@ -233,6 +252,14 @@ void GlRenderer::draw_surface(const render::Surface& surface, bool model) {
   glDisable(GL_BLEND);
   glStencilFunc(GL_ALWAYS, ground_mark, 0xFF);
   glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+}
+
+template <class Sets>
+void GlRenderer::for_each_program(const Sets& sets) {
+  for (const Fragments fragments : {Fragments::white, Fragments::ground, Fragments::surface}) {
+    use(fragments);
+    sets();
+  }
 }
 
 // Makes the map of what the key light does not reach. Returns false if nothing casts a shadow.
@@ -246,8 +273,10 @@ bool GlRenderer::cast_shadows(const render::Scene& beside, const Vector3f& key) 
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(shadow_unit));
   glBindTexture(GL_TEXTURE_2D, 0); // nothing may read what is being drawn
   if (!shadows_.begin(box, key)) return false;
+  look_ = {};
+  look_.white = true;
+  use(Fragments::white);
   set(program_, "clip_of_world", shadows_.map_of_world());
-  set(program_, "flat_white", 1);
   if (whole_) draw_surface(beside.model, true);
   for (const auto* surfaces : {&beside.solids, &beside.veils})
     for (const render::Surface& surface : *surfaces)
@@ -255,12 +284,10 @@ bool GlRenderer::cast_shadows(const render::Scene& beside, const Vector3f& key) 
   shadows_.end();
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(shadow_unit));
   glBindTexture(GL_TEXTURE_2D, shadows_.texture());
-  set(program_, "map_of_world", shadows_.map_of_world());
-  set(program_, "slack", shadows_.slack_m());
   return true;
 }
 
-void GlRenderer::use_model() const {
+void GlRenderer::use_model() {
   set(program_, "scale", scale_);
   set(program_, "offset", offset_);
   set(program_, "block_places", 0);
@@ -282,9 +309,7 @@ void GlRenderer::draw(const render::Scene& beside, const render::Camera& camera,
   glDisable(GL_SCISSOR_TEST);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glBindVertexArray(vertex_array_);
-  glUseProgram(program_);
-  use_model();
-  set(program_, "shadows", shadow_unit);
+  for_each_program([&] { use_model(); });
   const Vector3f key = render::turned(render::key_direction, camera.view.azimuth_deg);
   const bool shadowed = shaded && cast_shadows(beside, key);
   glViewport(0, 0, size.width, size.height);
@@ -292,14 +317,18 @@ void GlRenderer::draw(const render::Scene& beside, const render::Camera& camera,
   if (shaded) glClearColor(0.90F, 0.91F, 0.92F, 1.0F);
   glClearStencil(ground_mark);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
-  set(program_, "clip_of_world",
-      Eigen::Matrix4f(camera.projection(1.0 * size.width / size.height).cast<float>()));
-  set(program_, "eye", Vector3f(camera.eye().cast<float>()));
-  set(program_, "key", key);
-  set(program_, "fill", render::turned(render::fill_direction, camera.view.azimuth_deg));
-  set(program_, "rim", render::turned(render::rim_direction, camera.view.azimuth_deg));
-  set(program_, "height", static_cast<float>(size.height));
-  set(program_, "flat_white", shaded ? 0 : 1);
+  const Eigen::Matrix4f clip = camera.projection(1.0 * size.width / size.height).cast<float>();
+  for_each_program([&] {
+    set(program_, "clip_of_world", clip);
+    set(program_, "map_of_world", shadows_.map_of_world());
+    set(program_, "slack", shadows_.slack_m());
+    set(program_, "shadows", shadow_unit);
+    set(program_, "eye", Vector3f(camera.eye().cast<float>()));
+    set(program_, "key", key);
+    set(program_, "fill", render::turned(render::fill_direction, camera.view.azimuth_deg));
+    set(program_, "rim", render::turned(render::rim_direction, camera.view.azimuth_deg));
+    set(program_, "height", static_cast<float>(size.height));
+  });
   glEnable(GL_STENCIL_TEST);
   glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
   draw_parts(beside, look, shadowed);
@@ -308,13 +337,15 @@ void GlRenderer::draw(const render::Scene& beside, const render::Camera& camera,
 
 void GlRenderer::draw_parts(const render::Scene& beside, Look look, bool shadowed) {
   const bool shaded = look != Look::silhouette;
-  const auto receives = [&](bool yes) { set(program_, "shadowed", yes && shadowed ? 1 : 0); };
+  const auto receives = [&](bool yes) { look_.shadowed = yes && shadowed; };
+  look_ = {};
+  look_.white = !shaded;
   const auto mark = [](GLint as) { glStencilFunc(GL_ALWAYS, as, 0xFF); };
   receives(true);
   mark(solid_mark);
-  set(program_, "facets", look == Look::facets ? 1 : 0);
+  look_.facets = look == Look::facets;
   if (whole_) draw_surface(beside.model, true);
-  set(program_, "facets", 0);
+  look_.facets = false;
   mark(ground_mark);
   if (shaded)
     for (const render::Surface& ground : beside.grounds)

@@ -51,11 +51,20 @@ private:
   void draw_surface(const render::Surface& surface, bool model);
   void draw_parts(const render::Scene& beside, Look look, bool shadowed);
   bool cast_shadows(const render::Scene& beside, const Eigen::Vector3f& key);
-  void use_material(const render::Material& material) const;
-  void use_model() const;
+  /// Whose fragment shader a program has.
+  enum class Fragments : std::size_t { white, ground, surface };
+  void use(Fragments fragments);
+  template <class Sets>
+  void for_each_program(const Sets& sets);
+  void use_material(const render::Material& material);
+  void use_model();
   void draw_model() const;
 
-  unsigned program_ = 0;
+  std::array<unsigned, 3> programs_{}; ///< by Fragments
+  unsigned program_ = 0;               ///< the one that is in use
+  struct {
+    bool white = false, facets = false, shadowed = false;
+  } look_; ///< of the surfaces that are drawn next
   unsigned vertex_array_ = 0;
   unsigned model_indices_ = 0;
   std::array<unsigned, 3> model_buffers_{};  ///< positions, normals and colours, in blocks

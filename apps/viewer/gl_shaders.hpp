@@ -1,9 +1,11 @@
 #pragma once
-// The shaders. They use the same lights as light_maps.cpp, without the sky's shadows.
+// The shaders. They use the same lights as light_maps.cpp, without the sky's shadows. Each kind of
+// fragment has a shader of its own: where there is no graphics card, all branches are computed.
 
 namespace nendo::viewer {
 
 inline constexpr const char* vertex_shader = R"(#version 330
+invariant gl_Position; // the same in all programs, so that depths are equal
 uniform mat4 clip_of_world;
 uniform bool from_blocks;
 uniform samplerBuffer block_places;   // 64 x, 64 y, 64 z, and again
@@ -39,10 +41,17 @@ void main() {
 }
 )";
 
-inline constexpr const char* fragment_shader = R"(#version 330
+/// Of depths and silhouettes.
+inline constexpr const char* white_shader = R"(#version 330
+out vec4 shown;
+void main() { shown = vec4(1.0); }
+)";
+
+/// What the shaders of grounds and of surfaces share.
+inline constexpr const char* light_shader = R"(#version 330
 uniform vec3 eye, colour, key, fill, rim;
 uniform float gloss, opacity, rim_opacity, grid, fade, height;
-uniform bool flat_white, unlit, facets, shadowed;
+uniform bool unlit, facets, shadowed;
 uniform mat4 map_of_world;
 uniform float slack;
 uniform sampler2DShadow shadows;
@@ -58,15 +67,6 @@ vec3 screen(vec3 linear) {
   vec3 soft = mix(linear, 0.8 + (linear - 0.8) / (1.0 + (linear - 0.8) / 0.2), greaterThan(linear, vec3(0.8)));
   return pow(max(soft, 0.0), vec3(1.0 / 2.2));
 }
-vec3 background() {
-  float t = smoothstep(0.0, 1.0, 1.0 - gl_FragCoord.y / height);
-  return mix(vec3(0.86, 0.885, 0.91), vec3(0.70, 0.70, 0.695), t);
-}
-float line(float coordinate) {
-  float width = max(0.0015, fwidth(coordinate));
-  float off = abs(fract(coordinate / grid + 0.5) - 0.5) * grid;
-  return clamp((width - off) / width + 0.5, 0.0, 1.0) * 0.0015 / width;
-}
 // How much of the key light reaches the place. Samples round about make the shadow's edge soft.
 float lit_part(vec3 n) {
   if (!shadowed) return 1.0;
@@ -80,17 +80,32 @@ float lit_part(vec3 n) {
       lit += textureLod(shadows, vec3(on.xy + step * vec2(x, y), min(on.z, 1.0)), 0.0);
   return lit / 4.0;
 }
+)";
+
+/// After light_shader.
+inline constexpr const char* ground_shader = R"(
+vec3 background() {
+  float t = smoothstep(0.0, 1.0, 1.0 - gl_FragCoord.y / height);
+  return mix(vec3(0.86, 0.885, 0.91), vec3(0.70, 0.70, 0.695), t);
+}
+float line(float coordinate) {
+  float width = max(0.0015, fwidth(coordinate));
+  float off = abs(fract(coordinate / grid + 0.5) - 0.5) * grid;
+  return clamp((width - off) / width + 0.5, 0.0, 1.0) * 0.0015 / width;
+}
 void main() {
-  if (flat_white) { shown = vec4(1.0); return; }
+  float near = clamp(1.25 - 1.25 * length(place.xz) / fade, 0.0, 1.0);
+  float drawn = max(line(place.x), line(place.z));
+  float lit = lit_part(vec3(0.0, 1.0, 0.0));
+  float bright = 0.9 * (0.68 + 0.32 * lit) * (1.0 - 0.3 * drawn);
+  shown = vec4(screen(background() * mix(1.0, bright, near)), 1.0);
+}
+)";
+
+/// After light_shader.
+inline constexpr const char* surface_shader = R"(
+void main() {
   vec3 sight = normalize(eye - within);
-  if (grid > 0.0) {
-    float near = clamp(1.25 - 1.25 * length(place.xz) / fade, 0.0, 1.0);
-    float drawn = max(line(place.x), line(place.z));
-    float lit = near > 0.0 ? lit_part(vec3(0.0, 1.0, 0.0)) : 1.0;
-    float bright = 0.9 * (0.68 + 0.32 * lit) * (1.0 - 0.3 * drawn);
-    shown = vec4(screen(background() * mix(1.0, bright, near)), 1.0);
-    return;
-  }
   // A smooth normal may lean away from the eye at an outline. So the triangle's own side counts:
   // turning that normal to the eye would light single pixels from behind.
   vec3 side = cross(dFdx(place), dFdy(place));

@@ -132,9 +132,9 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
 void LiveWindow::Panel::parts(SceneWindow& window) {
   render::SceneParts& shown = window.parts();
   const std::array boxes{
-      std::pair{"hands", &shown.hands},       std::pair{"bones", &shown.bones},
-      std::pair{"vectors", &shown.vectors},   std::pair{"radii", &shown.radii},
-      std::pair{"contacts", &shown.contacts}, std::pair{"facets", &window.facets()}};
+      std::pair{"hands", &shown.hands},      std::pair{"bones", &shown.bones},
+      std::pair{"vectors", &shown.vectors},  std::pair{"radii", &shown.radii},
+      std::pair{"contact", &shown.contacts}, std::pair{"facets", &window.facets()}};
   constexpr std::size_t a_line = 3;
   const float width = ImGui::GetContentRegionAvail().x / a_line;
   for (std::size_t at = 0; at < boxes.size(); ++at) {
@@ -195,7 +195,7 @@ void LiveWindow::Panel::settings() {
     chosen.keep_volume =
         std::clamp(std::round(100.0 * static_cast<double>(clay)) / 100.0, 0.0, 1.0);
   if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("From air to clay: what is pressed in comes out nearby (z). Above 0, "
+    ImGui::SetTooltip("From air to clay: what is pressed in comes out nearby (;). Above 0, "
                       "fingertips hold, and no links keep the surface from folding");
   bool whole_hand = chosen.hold == flow::Hold::hand;
   ImGui::Checkbox("whole hand", &whole_hand);
@@ -205,7 +205,6 @@ void LiveWindow::Panel::settings() {
   ImGui::SameLine();
   ImGui::Checkbox("never folds", &chosen.injective);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("No field folds the surface (i)");
-  ImGui::SameLine();
   bool smooth = chosen.filter.kind == hand::FilterKind::one_euro;
   ImGui::Checkbox("smooth hands", &smooth);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("The one-euro filter");

@@ -48,6 +48,15 @@ render::Size pixels_of(GLFWwindow* window) {
   return {std::max(1, size.width), std::max(1, size.height)};
 }
 
+// Mesa's renderers without a graphics card.
+bool draws_itself() {
+  const auto* text = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  const std::string renderer = text != nullptr ? text : "";
+  for (const char* name : {"llvmpipe", "softpipe", "Software Rasterizer"})
+    if (renderer.find(name) != std::string::npos) return true;
+  return false;
+}
+
 constexpr std::chrono::milliseconds least_period(8); // where no screen sets the pace
 
 QuickInput& quick_of(GLFWwindow* window) {
@@ -95,6 +104,7 @@ Result<std::unique_ptr<SceneWindow>> SceneWindow::open(const std::string& title,
   if (!renderer) return without_window(renderer.error().message, instead);
   window->renderer_ = *std::move(renderer);
   window->target_ = std::make_unique<SmoothTarget>();
+  window->draws_itself_ = draws_itself();
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr; // leaves no file behind
   ImGui::GetStyle().Colors[ImGuiCol_TextDisabled] = {0.68F, 0.70F, 0.72F, 1.0F}; // to be read, too
@@ -242,7 +252,7 @@ void SceneWindow::follow_view_keys() {
 void SceneWindow::end_picture() {
   ImGui::Render();
   quick_->take_back();
-  draw_all();
+  draw_all(!draws_itself_);
   glfwSwapBuffers(window_);
   std::this_thread::sleep_until(begun_ + least_period);
 }
@@ -252,22 +262,24 @@ bool SceneWindow::Shown::is_of(const SceneWindow& window, render::Size wanted) c
          camera == window.camera_ && scene == window.scene_;
 }
 
-// A model that nobody touches is drawn once. Most of the time goes into the scene where there is no
-// graphics card.
-void SceneWindow::draw_scene(render::Size size) {
-  if (target_->keeps() && shown_.is_of(*this, size)) return;
-  target_->begin(size);
+// A model that nobody touches is drawn once. Where there is no graphics card, most of the time goes
+// into the scene: there its edges are smoothed once it rests.
+void SceneWindow::draw_scene(render::Size size, bool finest) {
+  const bool rests = target_->keeps() && shown_.is_of(*this, size);
+  if (rests && shown_.smooth) return;
+  const bool smooth = finest || rests;
+  target_->begin(size, smooth);
   renderer_->draw(scene_, camera_, size,
                   facets_ ? GlRenderer::Look::facets : GlRenderer::Look::shaded);
-  shown_ = {scene_, camera_, size, blocks_sent(), facets_};
+  shown_ = {scene_, camera_, size, blocks_sent(), facets_, smooth};
 }
 
-void SceneWindow::draw_all() {
+void SceneWindow::draw_all(bool finest) {
   const render::Size all = pixels_of(window_);
   const int below = std::clamp(below_, 0, all.height - 1);
   const render::Size size{all.width, all.height - below};
   glClear(GL_COLOR_BUFFER_BIT);
-  draw_scene(size);
+  draw_scene(size, finest);
   target_->end(below);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
@@ -290,7 +302,7 @@ render::Camera SceneWindow::stage_camera() const noexcept {
 }
 
 render::Image SceneWindow::screenshot() {
-  draw_all(); // anew, for what was shown may be gone
+  draw_all(true); // anew, for what was shown may be gone
   return read_pixels(pixels_of(window_));
 }
 

@@ -93,6 +93,7 @@ private:
     render::Size size;
     std::uint64_t blocks_sent = 0;
     bool facets = false;
+    bool smooth = false; ///< at edges; does not count as a change
     /// Tells whether the picture would be the same now. Compares the scene last, as it is largest.
     bool is_of(const SceneWindow& window, render::Size wanted) const;
   };
@@ -101,8 +102,8 @@ private:
   double covered_part() const noexcept;
   void choose_camera(render::View view);
   void put_simulated() const;
-  void draw_all();
-  void draw_scene(render::Size size);
+  void draw_all(bool finest);
+  void draw_scene(render::Size size, bool finest);
 
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<GlRenderer> renderer_;
@@ -118,6 +119,7 @@ private:
   int below_ = 0;
   int left_ = 0;
   bool framed_ = false;
+  bool draws_itself_ = false; ///< there is no graphics card
   bool facets_ = false;
 };
 

@@ -16,15 +16,15 @@ void SmoothTarget::drop() noexcept {
   glDeleteRenderbuffers(1, &colours_);
   glDeleteRenderbuffers(1, &depths_);
   frame_buffer_ = colours_ = depths_ = 0;
-  samples_ = 1;
 }
 
-void SmoothTarget::make(render::Size size) {
+void SmoothTarget::make(render::Size size, bool smooth) {
   drop();
   size_ = size;
+  smooth_ = smooth;
   GLint most = 0;
   glGetIntegerv(GL_MAX_SAMPLES, &most);
-  for (int samples = std::min<int>(most, most_samples); samples > 1; --samples) {
+  for (int samples = smooth ? std::min<int>(most, most_samples) : 0; samples >= 0; --samples) {
     glGenFramebuffers(1, &frame_buffer_);
     glGenRenderbuffers(1, &colours_);
     glGenRenderbuffers(1, &depths_);
@@ -39,16 +39,13 @@ void SmoothTarget::make(render::Size size) {
                               depths_);
     const bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    if (complete) {
-      samples_ = samples;
-      return;
-    }
+    if (complete) return;
     drop();
   }
 }
 
-void SmoothTarget::begin(render::Size size) {
-  if (!(size == size_)) make(size);
+void SmoothTarget::begin(render::Size size, bool smooth) {
+  if (!(size == size_) || smooth != smooth_) make(size, smooth);
   glBindFramebuffer(GL_FRAMEBUFFER, frame_buffer_);
 }
 

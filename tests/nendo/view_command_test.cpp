@@ -13,7 +13,6 @@
 #include <nendo/deform/mesh_file.hpp>
 
 #include "support/eventually.hpp"
-#include "support/give_way.hpp"
 #include "support/memory_screen.hpp"
 #include "support/program.hpp"
 #include "support/restraint.hpp"
@@ -23,8 +22,6 @@
 namespace view_command_test {
 
 using namespace nendo;
-
-#ifdef NENDO_WINDOW
 
 namespace {
 
@@ -103,7 +100,7 @@ struct Maker {
   }
   /// Saves the puppet, and returns how many functions it has; 0: there is no file yet.
   int saved_functions() const {
-    Person::does("key a sleep 1.5");
+    Person::does("key a sleep 0.4");
     const std::string text = test::contents(at("spot.puppet.toml"));
     int count = 0;
     for (auto found = text.find("[functions."); found != std::string::npos;
@@ -137,7 +134,6 @@ TEST_SUITE("view_command") {
   TEST_CASE("a person shapes, changes radius, kernel and mode, shapes on, undoes all of it and "
             "redoes it, "
             "and the recording replays to the same bytes") {
-    test::give_way();
     const test::MemoryScreen screen;
     // Mesa's own memory is not for our sanitizers, in a child either.
     if (!screen.is_there() || !test::restraint_is_counted) return;
@@ -183,7 +179,6 @@ TEST_SUITE("view_command") {
 
   TEST_CASE("a person makes a puppet by clicks and drags, saves it, and the recording replays to "
             "the same bytes") {
-    test::give_way();
     const test::MemoryScreen screen;
     if (!screen.is_there() || !test::restraint_is_counted || !Person::does("version")) return;
     Maker maker;
@@ -216,7 +211,5 @@ TEST_SUITE("view_command") {
     CHECK(test::contents(maker.at("again.ply")) == test::contents(maker.at("clay.ply")));
   }
 }
-
-#endif
 
 } // namespace view_command_test
