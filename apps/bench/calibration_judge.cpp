@@ -11,6 +11,7 @@
 #include <nendo/hand/angle_sources.hpp>
 #include <nendo/hand/calibration_fit.hpp>
 #include <nendo/hand/joint_angles.hpp>
+#include <nendo/hand/pinch_closing.hpp>
 #include <nendo/hand/range_capture.hpp>
 #include <nendo/hand/skeleton.hpp>
 
@@ -84,10 +85,11 @@ GroupErrors errors_of(const JudgedWearer& wearer, const JudgedSession& session, 
 }
 
 GroupErrors errors_of(const JudgedWearer& wearer, const JudgedSession& session,
-                      const hand::Calibration& calibration, const hand::HandSkeleton& skeleton) {
+                      const hand::Calibration& calibration, const hand::HandSkeleton& skeleton,
+                      bool closes_pinches = false) {
   return errors_of(wearer, session, [&](const JudgedMoment& moment) {
-    const JointAngles angles =
-        hand::joint_angles(judged_sample(moment.counts, wearer), calibration);
+    JointAngles angles = hand::joint_angles(judged_sample(moment.counts, wearer), calibration);
+    if (closes_pinches) angles = hand::close_pinches(angles, skeleton, wearer.sensors);
     if (moment.touching == 0) return Told{angles, 0.0};
     const auto pose = skeleton.pose(angles, Eigen::Isometry3d::Identity());
     return Told{angles, pads_apart_mm(pose, wearer, moment.touching)};
@@ -237,6 +239,7 @@ void judge(const JudgedWearer& wearer, Verdict& verdict, const StrangerHand* han
   const hand::HandSkeleton own(wearer.side, full->size), average(wearer.side);
   std::array<GroupErrors, judged_names.size()> errors{
       errors_of(wearer, wearer.fresh, full->calibration, own),
+      errors_of(wearer, wearer.fresh, full->calibration, own, true),
       errors_of(wearer, wearer.fresh, quick->calibration, average),
       errors_of(wearer, wearer.fresh, best_lines(wearer), own),
       errors_of(wearer, wearer.again, full->calibration, own),
@@ -259,7 +262,8 @@ void judge(const JudgedWearer& wearer, Verdict& verdict, const StrangerHand* han
   }
   for (std::size_t group = 0; group < judged_groups.size(); ++group) {
     constexpr double tolerance = 0.3;
-    const double two_pose = p95(errors[1][group]) + tolerance;
+    const double two_pose =
+        p95(errors[static_cast<std::size_t>(Judged::two_pose)][group]) + tolerance;
     if (p95(errors[0][group]) > two_pose) ++verdict.worse[group];
     if (p95(errors.back()[group]) > two_pose) ++verdict.floor_worse[group];
     for (std::size_t method = 0; method < errors.size(); ++method) {

@@ -16,14 +16,15 @@ namespace nendo::bench {
 
 enum class Judged : std::uint8_t {
   full,       ///< the guided takes and the free motion
+  closed,     ///< full, with pinches closed (hand::close_pinches())
   two_pose,   ///< flat and fist
   lines,      ///< the best line of each sensor, by the true angles of the motion itself: a bound
   worn_again, ///< the full calibration, after the glove was put on again
   touched_up, ///< that, touched up
   floor,      ///< what StrangerFloor reaches on the captures of full
 };
-inline constexpr std::array<std::string_view, 6> judged_names{
-    "full", "two_pose", "best lines", "worn again", "touched up", "floor"};
+inline constexpr std::array<std::string_view, 7> judged_names{
+    "full", "closed", "two_pose", "best lines", "worn again", "touched up", "floor"};
 
 /// The last row are the distances of pads that touch, in millimetres; the others are degrees.
 inline constexpr std::array<std::string_view, 9> judged_groups{

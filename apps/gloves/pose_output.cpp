@@ -1,5 +1,6 @@
 #include "gloves/pose_output.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iostream>
@@ -8,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <nendo/hand/angle_deviations.hpp>
 #include <nendo/hand/bvh_file.hpp>
 
 #include "cli/json_line.hpp"
@@ -20,9 +22,21 @@ namespace {
 constexpr std::size_t most_pending_bytes = 1 << 16;
 constexpr std::uint64_t most_pending_frames = 64;
 
-/// Returns the line of a pose without a line end, with the key angles if there are `sensors`.
+/// Of the estimated angles alone.
+nlohmann::ordered_json deviations_json(const hand::JointAngles& angles, SensorMask sensors) {
+  const hand::AngleSources sources = hand::angle_sources(sensors);
+  const hand::AngleDeviations deviations = hand::angle_deviations(angles, sensors);
+  nlohmann::ordered_json by_angle;
+  for (std::size_t at = 0; at < hand::angle_count; ++at)
+    if (hand::is_estimated(sources[at]))
+      by_angle[std::string(hand::angle_names[at])] =
+          std::round(10.0 * to_degrees(deviations[at])) / 10.0;
+  return by_angle;
+}
+
+/// Returns the line of a pose without a line end, with the key angles if it is a glove's first.
 std::string pose_json(HostTime time, Side side, const hand::HandPose& pose,
-                      std::optional<SensorMask> sensors) {
+                      const hand::JointAngles& angles, SensorMask sensors, bool is_first) {
   nlohmann::ordered_json joints = nlohmann::ordered_json::object();
   for (std::size_t at = 0; at < hand::joint_count; ++at) {
     const Eigen::Isometry3d& joint = pose.joints[at];
@@ -37,7 +51,9 @@ std::string pose_json(HostTime time, Side side, const hand::HandPose& pose,
   nlohmann::ordered_json line{{"time_s", to_seconds(time.time_since_epoch())},
                               {"hand", name_of(side)},
                               {"joints", std::move(joints)}};
-  if (sensors) line["angles"] = angle_sources_json(*sensors);
+  if (auto deviations = deviations_json(angles, sensors); !deviations.empty())
+    line["deviations_deg"] = std::move(deviations);
+  if (is_first) line["angles"] = angle_sources_json(sensors);
   return cli::json_text(line);
 }
 
@@ -45,9 +61,9 @@ class JsonLines final : public PoseOutput {
 public:
   std::optional<Side> only_side() const override { return std::nullopt; }
   Result<void> put(HostTime time, Side side, const hand::HandPose& pose,
-                   SensorMask sensors) override {
+                   const hand::JointAngles& angles, SensorMask sensors) override {
     const bool first = gloves_.is_first(side, sensors);
-    lines_ += pose_json(time, side, pose, first ? std::optional(sensors) : std::nullopt);
+    lines_ += pose_json(time, side, pose, angles, sensors, first);
     lines_ += '\n';
     return lines_.size() < most_pending_bytes ? Result<void>() : flush();
   }
@@ -69,7 +85,8 @@ public:
       : file_(std::move(file)), path_(std::move(path)), side_(side) {}
 
   std::optional<Side> only_side() const override { return side_; }
-  Result<void> put(HostTime, Side, const hand::HandPose& pose, SensorMask) override {
+  Result<void> put(HostTime, Side, const hand::HandPose& pose, const hand::JointAngles&,
+                   SensorMask) override {
     if (auto added = file_.add(pose); !added) return added;
     return ++put_ % most_pending_frames != 0 ? Result<void>() : flush();
   }

@@ -89,7 +89,7 @@ private:
     const auto& skeleton = side == Side::left ? left_ : right_;
     const auto angles = hand::joint_angles(sample, calibration_.of(sample.side));
     // A glove does not know where it is: the forearm ends at the origin.
-    state_ = output_.put(time, side, skeleton.pose(angles, Eigen::Isometry3d::Identity()),
+    state_ = output_.put(time, side, skeleton.pose(angles, Eigen::Isometry3d::Identity()), angles,
                          sample.present);
     return state_ && ++written_ != options_.count;
   }

@@ -100,6 +100,9 @@ Result<hand::FilterOptions> FilterArguments::parse() const {
   const auto known = hand::filter_named(kind);
   if (!known) return Error{Errc::usage, "--filter " + kind + ": unknown; use off or one-euro"};
   options.kind = *known;
+  options.close_pinches = pinches == "closed";
+  if (!options.close_pinches && pinches != "measured")
+    return Error{Errc::usage, "--pinches " + pinches + ": unknown; use closed or measured"};
   if (options.kind == hand::FilterKind::off && (min_cutoff_hz || beta)) {
     return Error{Errc::usage, std::string(min_cutoff_hz ? "--filter-min-cutoff" : "--filter-beta") +
                                   ": there is no filter; add --filter one-euro"};
@@ -129,6 +132,9 @@ void add_filter_options(cli::Command& command, FilterArguments& arguments) {
       fmt::format("Hz by which the cutoff rises with each rad/s of a joint's speed; higher is less "
                   "late in motion. Without it, {:g}",
                   usual.beta_hz_per_rad_s));
+  command.add_option("--pinches", arguments.pinches,
+                     "closed: pads of thumb and finger that are nearly together meet, but not in "
+                     "clay; or measured: hands are as the gloves tell, to the millimetre");
 }
 
 Result<deform::CsrbfOptions> KernelArguments::parse() const {

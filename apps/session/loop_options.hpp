@@ -36,11 +36,12 @@ private:
   Result<void> check_threads() const;
 };
 
-/// The options --filter, --filter-min-cutoff and --filter-beta.
+/// The options --filter, --filter-min-cutoff, --filter-beta and --pinches.
 struct FilterArguments {
   std::string kind = "off";
   std::optional<double> min_cutoff_hz; ///< nullopt: hand::FilterOptions' own
   std::optional<double> beta;          ///< Hz for each rad/s; nullopt: hand::FilterOptions' own
+  std::string pinches = "closed";
 
   /// Error: usage, naming what can be used.
   Result<hand::FilterOptions> parse() const;

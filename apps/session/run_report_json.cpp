@@ -176,6 +176,7 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
   line["injective"] = injective_json(options, stats);
   line["clay"] = clay_json(stats, outcome.units_per_metre);
   line["filter"] = filter_json(options.filter, stats);
+  line["pinches"] = options.filter.close_pinches ? "closed" : "measured";
   line["end_to_end_ms"] = percentiles(stats.end_to_end);
   line["wake_latency_ms"] = percentiles(stats.wake_latency);
   line["work_ms"] = percentiles(stats.work);

@@ -209,6 +209,10 @@ void LiveWindow::Panel::settings() {
   ImGui::Checkbox("smooth hands", &smooth);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("The one-euro filter");
   chosen.filter.kind = smooth ? hand::FilterKind::one_euro : hand::FilterKind::off;
+  ImGui::SameLine();
+  ImGui::Checkbox("pinches", &chosen.filter.close_pinches);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("Pads of thumb and finger that are nearly together meet, but not in clay");
   ImGui::Checkbox("one radius for all fingers", &one_radius);
   for (std::size_t finger = 0; finger < (one_radius ? 1 : finger_names.size()); ++finger) {
     auto radius_cm = static_cast<float>(100.0 * chosen.radius_m[finger]);

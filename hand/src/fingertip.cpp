@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <nendo/hand/calibration_poses.hpp>
+
 #include "hand_shape.hpp"
 #include "turns.hpp"
 
@@ -46,6 +48,15 @@ FingerChain::FingerChain(const HandSkeleton& skeleton, std::size_t finger) noexc
   if (!is_thumb_) head_m_ = skeleton.rest_offset(static_cast<Joint>(joint++));
   for (double& bone_m : bones_m_)
     bone_m = -skeleton.rest_offset(static_cast<Joint>(joint++)).z();
+}
+
+// Seen from the last joint, the pad is as a shorter bone's end that is bent a little.
+FingerChain FingerChain::to_pad(const HandSkeleton& skeleton, std::size_t finger) noexcept {
+  FingerChain chain(skeleton, finger);
+  const double ahead_m = chain.bones_m_[2] - pad_behind_tip_m;
+  chain.last_turn_rad_ = std::atan2(pad_depth_m, ahead_m);
+  chain.bones_m_[2] = std::hypot(pad_depth_m, ahead_m);
+  return chain;
 }
 
 Fingertip FingerChain::finger_tip(const FourAngles& angles) const noexcept {
@@ -103,7 +114,9 @@ Fingertip FingerChain::thumb_tip(const FourAngles& angles) const noexcept {
   return tip;
 }
 
-Fingertip FingerChain::tip(const FourAngles& angles, double palm_arch_rad) const noexcept {
+Fingertip FingerChain::tip(const FourAngles& own_angles, double palm_arch_rad) const noexcept {
+  FourAngles angles = own_angles;
+  angles[3] += last_turn_rad_;
   Fingertip tip = is_thumb_ ? thumb_tip(angles) : finger_tip(angles);
   tip.position_m += head_m_;
   if (moves_with_arch()) {

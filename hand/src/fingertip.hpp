@@ -24,6 +24,8 @@ class FingerChain {
 public:
   /// `finger` is 0 for the thumb to 4 for the little finger.
   FingerChain(const HandSkeleton& skeleton, std::size_t finger) noexcept;
+  /// The same, of the finger's pad in place of its tip.
+  static FingerChain to_pad(const HandSkeleton& skeleton, std::size_t finger) noexcept;
 
   /// Returns the tip at these angles, with the palm arched by `palm_arch_rad`. Wait-free.
   Fingertip tip(const FourAngles& angles, double palm_arch_rad) const noexcept;
@@ -40,6 +42,7 @@ private:
   Eigen::Vector3d base_m_; ///< of the metacarpal
   Eigen::Vector3d head_m_; ///< from there to the MCP joint; fingers only
   std::array<double, 3> bones_m_;
+  double last_turn_rad_ = 0.0; ///< by which the last of them is bent at zero angles
   // Of the thumb: the axes in which it rolls, and its angles at zero. Of a finger: the tilt of its
   // knuckle's axis, as sine and cosine.
   Eigen::Matrix3d thumb_axes_;

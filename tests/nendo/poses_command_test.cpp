@@ -103,6 +103,13 @@ TEST_SUITE("poses") {
       CHECK(poses[0]["angles"].size() == 23);
       CHECK_FALSE(poses.at(1).contains("angles"));
       CHECK_FALSE(poses.at(2).contains("angles"));
+      // The middle finger's direction is estimated with either glove.
+      const auto& deviations = poses[1]["deviations_deg"];
+      CHECK(deviations.contains("index_dip_flexion") == (glove == "sim?sensors=18"));
+      for (const auto& [name, deviation] : deviations.items()) {
+        CHECK(info["angles"][name].get<std::string>().starts_with("from_"));
+        CHECK(deviation.get<double>() > 1.0);
+      }
     }
   }
 

@@ -500,6 +500,7 @@ TEST_SUITE("run") {
           Case{{"--filter", "one-euro", "--filter-min-cutoff", "nan"}, 2, "--filter-min-cutoff"},
           Case{{"--filter", "one-euro", "--filter-beta", "-1"}, 2, "--filter-beta"},
           Case{{"--filter", "one-euro", "--filter-beta", "inf"}, 2, "--filter-beta"},
+          Case{{"--pinches", "open"}, 2, "closed or measured"},
           Case{{"--hand-length", "0.19"}, 2, "millimetres"},
           Case{{"--hand-length", "nan"}, 2, "--hand-length"},
           Case{{"--adapt", "--user", "anna"}, 2, "--adapt"},

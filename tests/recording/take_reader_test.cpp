@@ -80,6 +80,7 @@ Setup unusual_setup() {
                                          .switch_action = flow::SwitchAction::toggle,
                                          .gated = false,
                                          .filter = hand::FilterKind::one_euro,
+                                         .close_pinches = true,
                                          .adapt = CountScale{4095, true}});
   auto& input = test.inputs[0];
   auto& [left, right, adapt, learned_before] = input.wearer;
@@ -153,8 +154,8 @@ bool is_settings(const json& line, const flow::LoopSettings& settings) {
   return line["mode"] == static_cast<int>(settings.mode) &&
          line["kernel"] == static_cast<int>(settings.kernel) &&
          line["injective"] == static_cast<int>(settings.injective) &&
-         line["filter"] == static_cast<int>(filter.kind) && line["radii"] == settings.radius_m &&
-         line["piece"] == settings.piece_fraction &&
+         line["filter"] == static_cast<int>(filter.kind) + (filter.close_pinches ? 128 : 0) &&
+         line["radii"] == settings.radius_m && line["piece"] == settings.piece_fraction &&
          is_hold(line, settings.keep_volume, settings.hold) &&
          line["cutoffs"] == std::array{filter.min_cutoff_hz, filter.beta_hz_per_rad_s,
                                        filter.derivative_cutoff_hz};

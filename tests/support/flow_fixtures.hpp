@@ -47,6 +47,7 @@ struct LoopFixture {
   flow::SwitchAction switch_action = flow::SwitchAction::none;
   bool gated = true; ///< samples pass the sensor gate
   hand::FilterKind filter = hand::FilterKind::off;
+  bool close_pinches = false;
   std::optional<CountScale> adapt = std::nullopt;
   flow::InputLog* input_log = nullptr;
   std::optional<deform::InjectiveOptions> injective = std::nullopt;
@@ -92,6 +93,7 @@ flow::LoopSettings any_settings(const flow::LoopSettings& before, Random& random
   if (random() % 6 == 0) settings.piece_fraction = 0.02 + 0.01 * static_cast<double>(random() % 8);
   if (random() % 6 == 0)
     settings.filter.kind = random() % 2 == 0 ? hand::FilterKind::one_euro : hand::FilterKind::off;
+  if (random() % 4 == 0) settings.filter.close_pinches = !settings.filter.close_pinches;
   const double radius_m = 0.1 + 0.01 * static_cast<double>(random() % 20);
   if (random() % 2 == 0) settings.radius_m.fill(radius_m);
   if (random() % 4 == 0) settings.radius_m[random() % 5] = radius_m;
@@ -129,6 +131,7 @@ struct LoopUnderTest {
               .fingertip_positions();
       inputs.push_back({rings.back().get(), side, {}, first, fixture.gated});
       inputs.back().filter.kind = fixture.filter;
+      inputs.back().filter.close_pinches = fixture.close_pinches;
       inputs.back().wearer.adapt = fixture.adapt;
     }
     placement = flow::place_hands(model, tips);

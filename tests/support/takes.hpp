@@ -69,6 +69,7 @@ struct RecordedLoop {
              {.rings_of_ball = 16,
               .switch_action = action,
               .filter = filter,
+              .close_pinches = filter == hand::FilterKind::one_euro,
               .adapt = adapts ? std::optional(CountScale{}) : std::nullopt,
               .input_log = &input_log,
               .injective = injective ? std::optional(deform::InjectiveOptions{}) : std::nullopt,

@@ -37,7 +37,7 @@ void DeformLoop::finish_change(Frame& frame) noexcept {
     shaping_.hold_still(tips_, frame, stats_);
     if (rig_) std::copy(rig_->values().begin(), rig_->values().end(), still_at_.begin());
   }
-  if (taken_->settings) change_filters(taken_->settings->filter);
+  if (taken_->settings) change_filters(*taken_->settings);
   if (taken_->exchanges()) {
     const bool holds_on = shaping_.holds_on(taken_->ready);
     if (taken_->rig) take_rig(*taken_->rig, taken_->ready);
@@ -79,12 +79,13 @@ void DeformLoop::take_rig(ReadyRig& rig, ReadySculptor& ready) noexcept {
 }
 
 /// The angles, and so the fingertips, may jump; the shape does not, since they take hold anew.
-void DeformLoop::change_filters(const hand::FilterOptions& filter) noexcept {
+void DeformLoop::change_filters(const LoopSettings& settings) noexcept {
   for (Hand& hand : hands_) {
-    if (hand.filter.options() == filter) continue;
-    hand.filter = hand::JointFilter(filter);
-    const auto& calibration = hand.calibration.of(hand.latest.side);
-    hand.angles = hand.filter.pass(hand::joint_angles(hand.latest, calibration), hand.time());
+    const bool closes = closes_pinches(settings.filter, settings.mode);
+    if (hand.filter.options() == settings.filter && hand.closes_pinches == closes) continue;
+    if (hand.filter.options() != settings.filter) hand.filter = hand::JointFilter(settings.filter);
+    hand.closes_pinches = closes;
+    hand.pose_by(hand.calibration.of(hand.latest.side));
   }
   place_tips(tips_);
 }

@@ -10,6 +10,7 @@
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/flow/rig_setup.hpp>
 #include <nendo/flow/tips_of_hand.hpp>
+#include <nendo/hand/pinch_closing.hpp>
 
 namespace nendo::flow {
 
@@ -132,6 +133,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
                       {},
                       filter});
     Hand& hand = hands_.back();
+    hand.closes_pinches = closes_pinches(hand.input.filter, first_.settings.mode);
     hand.follow(hand.input.first);
     for (Hand& before : hands_) {
       if (&before == &hand || before.slot != slot) continue;
@@ -161,7 +163,12 @@ DeformLoop::~DeformLoop() = default;
 void DeformLoop::Hand::follow(const GloveSample& sample) noexcept {
   const hand::Calibration& active = calibration.follow(sample);
   latest = input.gated ? gate.pass(sample, active) : sample;
+  pose_by(active);
+}
+
+void DeformLoop::Hand::pose_by(const hand::Calibration& active) noexcept {
   angles = filter.pass(hand::joint_angles(latest, active), time());
+  if (closes_pinches) angles = hand::close_pinches(angles, skeleton(), latest.present);
 }
 
 /// Takes a sample of that input.

@@ -65,7 +65,7 @@ void read_learned(ByteReader& reader, CheckedReader& checked, hand::LearnedRange
 }
 
 void read_filter(CheckedReader& checked, hand::FilterOptions& filter) {
-  filter.kind = checked.one_of(hand::FilterKind::one_euro);
+  checked.filter_kind(filter);
   filter.min_cutoff_hz = bounded_number(checked);
   filter.beta_hz_per_rad_s = bounded_number(checked);
   filter.derivative_cutoff_hz = bounded_number(checked);
@@ -144,7 +144,7 @@ void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& ha
   put_size(writer, own.size);
   driver::put_sample_body(writer, {number, hand.first});
   writer.u8(static_cast<std::uint8_t>(hand.gated));
-  writer.u8(static_cast<std::uint8_t>(hand.filter.kind));
+  put_filter_kind(writer, hand.filter);
   writer.f64_le(hand.filter.min_cutoff_hz);
   writer.f64_le(hand.filter.beta_hz_per_rad_s);
   writer.f64_le(hand.filter.derivative_cutoff_hz);

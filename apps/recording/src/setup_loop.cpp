@@ -185,7 +185,7 @@ void put_settings(ByteWriter& writer, const flow::LoopSettings& settings) {
   writer.u8(static_cast<std::uint8_t>(settings.mode));
   writer.u8(static_cast<std::uint8_t>(settings.kernel));
   writer.u8(static_cast<std::uint8_t>(settings.injective));
-  writer.u8(static_cast<std::uint8_t>(settings.filter.kind));
+  put_filter_kind(writer, settings.filter);
   for (const double radius : settings.radius_m)
     writer.f64_le(radius);
   writer.f64_le(settings.piece_fraction);
@@ -200,7 +200,7 @@ std::optional<flow::LoopSettings> read_settings(ByteReader& reader) {
   settings.mode = checked.one_of(flow::Mode::clay);
   settings.kernel = checked.one_of(deform::Wendland::c6);
   settings.injective = reader.u8() != 0;
-  settings.filter.kind = checked.one_of(hand::FilterKind::one_euro);
+  checked.filter_kind(settings.filter);
   for (double& radius : settings.radius_m)
     radius = reader.f64_le();
   settings.piece_fraction = reader.f64_le();

@@ -24,6 +24,14 @@ constexpr bool is_setup_chunk(driver::ChunkType type) noexcept {
          type == origin_chunk || type == puppet_chunk || type == driver::glove_chunk;
 }
 
+/// Added to a filter's kind where pinches are closed.
+inline constexpr std::uint8_t closes_pinches = 128;
+
+inline void put_filter_kind(ByteWriter& writer, const hand::FilterOptions& filter) {
+  writer.u8(static_cast<std::uint8_t>(static_cast<unsigned>(filter.kind) |
+                                      (filter.close_pinches ? closes_pinches : 0U)));
+}
+
 /// Reads one value after another and remembers whether all of them were usable. After an unusable
 /// count, count() returns 0.
 class CheckedReader {
@@ -52,6 +60,14 @@ public:
     return fine_ ? counted : 0;
   }
   void require(bool fine) { fine_ = fine_ && fine; }
+  /// What put_filter_kind() writes.
+  void filter_kind(hand::FilterOptions& filter) {
+    const unsigned value = reader_->u8();
+    filter.close_pinches = (value & closes_pinches) != 0;
+    const unsigned kind = value & ~unsigned{closes_pinches};
+    require(kind <= static_cast<unsigned>(hand::FilterKind::one_euro));
+    filter.kind = static_cast<hand::FilterKind>(kind);
+  }
   bool fine() const { return fine_ && !reader_->overrun(); }
 
 private:

@@ -29,6 +29,9 @@ struct FilterOptions {
   double min_cutoff_hz = 2.0;
   double beta_hz_per_rad_s = 4.0;
   double derivative_cutoff_hz = 1.0; ///< of the filter of the speed; the authors' value
+  /// Whoever filters closes pinches afterwards (pinch_closing.hpp). JointFilter does not: it knows
+  /// no bones.
+  bool close_pinches = false;
 
   friend bool operator==(const FilterOptions&, const FilterOptions&) = default;
 };

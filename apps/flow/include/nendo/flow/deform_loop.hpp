@@ -253,7 +253,7 @@ private:
   void apply(const Command& command) noexcept;
   void take_change() noexcept;
   void finish_change(Frame& frame) noexcept;
-  void change_filters(const hand::FilterOptions& filter) noexcept;
+  void change_filters(const LoopSettings& settings) noexcept;
   void begin_anew(LogChange& change, Frame& frame) noexcept;
   void give_back_change() noexcept;
   void place_tips(deform::Points& tips) noexcept;
@@ -305,6 +305,8 @@ private:
     HostTime time() const noexcept {
       return latest.has_device_time ? latest.measured : latest.arrival;
     }
+    /// Sets `angles` by `latest` and this calibration.
+    void pose_by(const hand::Calibration& active) noexcept;
     /// Forgets all that came before `latest` but what adaptation has learned.
     void begin_anew() noexcept;
     const hand::HandSkeleton& skeleton() const noexcept {
@@ -319,7 +321,8 @@ private:
     hand::SensorGate gate{};
     hand::JointFilter filter;
     GloveSample latest{};
-    hand::JointAngles angles{}; ///< of `latest`, filtered
+    bool closes_pinches = false; ///< the filter's options say so, and nothing is between the pads
+    hand::JointAngles angles{};  ///< of `latest`, filtered, with pinches closed
     WristSwitchEdge wrist_switch{};
     bool is_lowest = true;  ///< of its side: the hand, and not a layer over it
     bool is_topmost = true; ///< of its side: whose samples are counted

@@ -33,6 +33,11 @@ struct LoopSettings {
   friend bool operator==(const LoopSettings&, const LoopSettings&) = default;
 };
 
+/// Tells whether hands close pinches: not in clay, which may be between their pads.
+constexpr bool closes_pinches(const hand::FilterOptions& filter, Mode mode) noexcept {
+  return filter.close_pinches && mode != Mode::clay;
+}
+
 /// Returns the settings of a sculptor. Where a finger has several radii, the largest is its radius.
 LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOptions& filter,
                          double units_per_metre);
