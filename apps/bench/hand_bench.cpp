@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <nendo/hand/inverse_kinematics.hpp>
+#include <nendo/hand/pinch_closing.hpp>
 
 #include "bench/bench.hpp"
 #include "bench/plain_hand.hpp"
@@ -99,8 +100,33 @@ double median_ns(std::uint64_t count, const Work& work) {
 struct Forward {
   double pose_ns = 0.0; ///< of both hands, 52 joints
   double plain_ns = 0.0;
-  double apart_m = 0.0; ///< the farthest that a joint of one is from that of the other
+  double apart_m = 0.0;  ///< the farthest that a joint of one is from that of the other
+  double open_ns = 0.0;  ///< of hand::close_pinches() for both hands, whose pads are apart
+  double pinch_ns = 0.0; ///< the same where a finger's pad is near the thumb's
 };
+
+/// Some of these hands of which close_pinches() changes something, or does not.
+std::vector<hand::JointAngles> of_pinches(const Hands& hands, bool pinching) {
+  std::vector<hand::JointAngles> some;
+  for (const hand::JointAngles& angles : hands.angles) {
+    const auto closed = hand::close_pinches(angles, hands.right, sensors_22);
+    bool changed = false;
+    for (std::size_t at = 0; at < hand::angle_count; ++at)
+      changed = changed || closed[hand::angle_at(at)] != angles[hand::angle_at(at)];
+    if (changed == pinching) some.push_back(angles);
+  }
+  return some;
+}
+
+double measure_pinches_ns(const Hands& hands, std::uint64_t poses, bool pinching) {
+  const auto some = of_pinches(hands, pinching);
+  if (some.empty()) return 0.0;
+  return median_ns(poses, [&](std::size_t n) {
+    const auto& angles = some[n % some.size()];
+    seen = hand::close_pinches(angles, hands.left, sensors_22).thumb_roll_rad +
+           hand::close_pinches(angles, hands.right, sensors_22).thumb_roll_rad;
+  });
+}
 
 Forward measure_forward(const Hands& hands, std::uint64_t poses) {
   Forward forward;
@@ -125,6 +151,8 @@ Forward measure_forward(const Hands& hands, std::uint64_t poses) {
       }
     }
   }
+  forward.open_ns = measure_pinches_ns(hands, std::max<std::uint64_t>(poses / 10, 1), false);
+  forward.pinch_ns = measure_pinches_ns(hands, std::max<std::uint64_t>(poses / 10, 1), true);
   return forward;
 }
 
@@ -180,6 +208,8 @@ void print_json(const Forward& forward, const Inverse& inverse) {
                                       {"plain_pair_ns", forward.plain_ns},
                                       {"plain_to_pose", forward.plain_ns / forward.pose_ns},
                                       {"apart_m", forward.apart_m},
+                                      {"open_pair_ns", forward.open_ns},
+                                      {"pinching_pair_ns", forward.pinch_ns},
                                       {"solves", inverse.solves},
                                       {"converged", inverse.converged},
                                       {"solves_a_second", inverse.solves_a_second},
@@ -193,6 +223,8 @@ void print_text(const Forward& forward, const Inverse& inverse) {
               "times as long\n",
               forward.pose_ns, forward.plain_ns, forward.plain_ns / forward.pose_ns);
   std::printf("they differ by %.1e m at most\n", forward.apart_m);
+  std::printf("closing pinches of both hands: %.0f ns where pads are apart, %.0f ns in a pinch\n",
+              forward.open_ns, forward.pinch_ns);
   std::printf("a hand from its five fingertips: %.0f a second on one core, %llu of %llu reached\n",
               inverse.solves_a_second, static_cast<unsigned long long>(inverse.converged),
               static_cast<unsigned long long>(inverse.solves));

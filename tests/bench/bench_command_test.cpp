@@ -114,7 +114,9 @@ TEST_SUITE("bench") {
     CHECK(number("median_residual_m") <= number("worst_residual_m"));
     const auto text = nendo::test::nendo({"bench", "hand", "--poses", "1", "--solves", "1"});
     CHECK(text.exit_code == 0);
-    CHECK(lines_of(text.out).size() == 4);
+    CHECK(lines_of(text.out).size() == 5);
+    CHECK(number("open_pair_ns") > 0.0);
+    CHECK(number("pinching_pair_ns") > number("open_pair_ns"));
   }
 
   TEST_CASE("bench solve tells the times and the fill of every order, and of a dense elimination") {
