@@ -1,11 +1,14 @@
 #include "clay/impact_zones.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include <nendo/deform/clay.hpp>
+#include <nendo/deform/cut.hpp>
 #include <nendo/deform/triangles.hpp>
 
 #include "join/self_intersections.hpp"
@@ -178,6 +181,27 @@ TEST_SUITE("impact_zones") {
               REQUIRE(clay.shape().stamp(block) == before.stamp(block));
           });
     CHECK(taken_back > 0);
+  }
+
+  TEST_CASE("the volume that is told is the shape's, where faces were kept apart, too") {
+    const StrokeParts body = nendo::test::stroking_finger();
+    const Mesh mesh = nendo::reference::icosphere(5, nendo::test::stroked_ball_mm);
+    SculptedShape shape(mesh.vertices, {});
+    ClayDeformer clay(shape, corners_of_triangles(mesh), 1, body.size(), {.radius_mm = 30.0});
+    std::mt19937 random(2004);
+    double most_off = 0.0;
+    for (int stroke = 0; stroke < 14; ++stroke)
+      nendo::test::violent_stroke(
+          random, body, [&](const StrokeParts& parts) { clay.begin(parts); },
+          [&](const StrokeParts& parts) {
+            if (clay.press_to(parts).kept_apart == 0) return;
+            Mesh made = mesh;
+            shape.layout().unpack(clay.shape(), made.vertices);
+            const double volume = volume_of(made);
+            most_off = std::max(most_off, std::abs(clay.volume() / volume - 1.0));
+          });
+    CHECK(most_off > 0.0);
+    CHECK(most_off < 2e-6);
   }
 
   TEST_CASE("strokes that tear a ball of clay leave no faces that cross, and allocate nothing") {

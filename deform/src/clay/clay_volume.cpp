@@ -16,6 +16,7 @@ constexpr double free_mm = 30.0;
 constexpr double most_swell = 1.0 / 3.0; // of that, in a call: then slopes are at most a half
 constexpr double swell_reach = 3.0;      // of that, from the contacts
 constexpr double volume_is_kept = 1e-5;  // relative
+constexpr double most_left = 0.9;        // of what was missing before; else it is left
 
 } // namespace
 
@@ -52,9 +53,19 @@ bool ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
 
 /// Gives the volume back, and returns whether faces could be kept apart then.
 bool ClayDeformer::Work::finish(BoundedShape& shape, ClayReport& report) noexcept {
-  if (!give_back(shape, report.passes > 0, report)) return true;
+  const bool is_pressed = report.passes > 0;
+  const double before = std::abs(volume_now_ - whole_volume_);
+  if (!give_back(shape, is_pressed, report)) return true;
   const std::optional<std::size_t> moved = zones_->keep_apart(shape, volume_, masked_.mask());
   report.kept_apart = moved.value_or(0);
+  if (report.kept_apart >
+      0) { // what is given back does not all come out where faces are in its way
+    volume_now_ = volume_.volume(shape);
+    const double change = volume_now_ - whole_volume_;
+    report.volume_change = change / whole_volume_;
+    is_settling_ = std::abs(change) > volume_is_kept * std::abs(whole_volume_) &&
+                   (is_pressed || std::abs(change) < most_left * before);
+  }
   return moved.has_value();
 }
 

@@ -12,8 +12,9 @@ namespace nendo::deform {
 namespace {
 
 /// Faces of two blocks whose directions are within this angle do not look at each other. For a
-/// surface without wrinkles that could be half a turn; what is missing is room for some.
-constexpr float widest_angle = 2.8F;
+/// surface without wrinkles that could be half a turn. At 2.8, wrinkles of a ball that is torn met
+/// unseen; at 2.2, no longer.
+constexpr float widest_angle = 2.0F;
 constexpr std::size_t pairs_a_block = 64;
 constexpr std::size_t most_met = 4096;
 constexpr std::size_t most_tests = 50'000; // of two triangles
@@ -38,6 +39,11 @@ bool is_parted(const ThreePlaces& plane, const ThreePlaces& of) noexcept {
     high = std::max(high, height);
   }
   return low > least || high < -least;
+}
+
+bool looks_away(const ThreePlaces& face, const std::array<float, 4>& way) noexcept {
+  const Eigen::Vector3f normal = (face[1] - face[0]).cross(face[2] - face[0]);
+  return !(normal.x() * way[0] + normal.y() * way[1] + normal.z() * way[2] > 0.0F);
 }
 
 bool may_face(const RingFacts& one, const RingFacts& other) noexcept {
@@ -65,8 +71,8 @@ bool overlap(const BlockBounds& a, const BlockBounds& b) noexcept {
 } // namespace
 
 FaceMeetings::FaceMeetings(const BlockLayout& layout, std::span<const std::uint32_t> triangles)
-    : boxed_(layout.block_count()), looked_at_(layout.block_count()),
-      uneven_(layout.vertex_count()), around_(triangles.size() / 3) {
+    : boxed_(layout.block_count()), uneven_(layout.vertex_count()),
+      gone_round_(layout.vertex_count()), around_(triangles.size() / 3) {
   const std::size_t blocks = layout.block_count();
   const std::vector<std::uint32_t> places = layout.places();
   auto of_block = rows_by_key<Corners>(blocks, [&](const auto& visit) {
@@ -128,10 +134,6 @@ void FaceMeetings::find(const BoundedShape& shape, const BlockShape& before,
     measure_boxes(shape.shape, pair.second);
     return !overlap(hulls_[pair.first], hulls_[pair.second]);
   });
-  for (const auto& [one, other] : pairs_) {
-    mark_uneven(shape.shape, volume, one);
-    mark_uneven(shape.shape, volume, other);
-  }
   for (const BlockPair& pair : pairs_)
     if (!is_given_up()) search(pair, shape.shape, before);
 }
@@ -140,15 +142,16 @@ void FaceMeetings::begin(const BoundedShape& shape, const VolumeKeeper& volume) 
   tests_ = 0;
   met_.clear();
   boxed_.clear();
-  looked_at_.clear();
+  directions_ = volume.directions();
   uneven_.clear();
+  gone_round_.clear();
   const std::span<const RingFacts> facts = volume.facts();
   for (std::uint32_t block = 0; block < boxes_.size(); ++block) {
     boxes_[block] = shape.bounds[block];
     for (const std::size_t side : {0U, 1U, 2U, 4U, 5U, 6U})
       boxes_[block].sides[side] -= facts[block].longest_edge;
     is_folded_[block] = facts[block].is_even ? 0 : 1;
-    if (facts[block].may_turn) mark_uneven(shape.shape, volume, block);
+    if (facts[block].may_turn && has_face_away(shape.shape, block)) is_folded_[block] = 1;
   }
 }
 
@@ -183,20 +186,12 @@ void FaceMeetings::list_pairs(const BlockShape& shape, const BlockShape& before,
   }
 }
 
-/// Where all faces around a vertex look to one side, none of them meet.
-void FaceMeetings::mark_uneven(const BlockShape& shape, const VolumeKeeper& volume,
-                               std::uint32_t block) noexcept {
-  if (!looked_at_.add(block)) return;
-  for (Triangle at = first_triangles_[block]; at < first_triangles_[block + 1]; ++at) {
-    const ThreePlaces places = places_of(shape, corners_[at]);
-    const Eigen::Vector3f normal = (places[1] - places[0]).cross(places[2] - places[0]);
-    for (const std::uint32_t corner : corners_[at]) {
-      const std::array<float, 4>& way = volume.directions()[corner];
-      if (normal.x() * way[0] + normal.y() * way[1] + normal.z() * way[2] > 0.0F) continue;
-      uneven_.add(corner);
-      is_folded_[block] = 1;
-    }
-  }
+/// Tells whether some face of the block looks away from the direction of one of its vertices.
+bool FaceMeetings::has_face_away(const BlockShape& shape, std::uint32_t block) const noexcept {
+  for (Triangle at = first_triangles_[block]; at < first_triangles_[block + 1]; ++at)
+    for (const std::uint32_t corner : corners_[at])
+      if (looks_away(places_of(shape, corners_[at]), directions_[corner])) return true;
+  return false;
 }
 
 BlockBounds FaceMeetings::box_of(const BlockShape& shape, Triangle triangle) const noexcept {
@@ -220,6 +215,18 @@ void FaceMeetings::measure_boxes(const BlockShape& shape, std::uint32_t block) n
   }
 }
 
+/// Where all faces around a vertex look to one side, none of them meet. All: those that belong to
+/// other blocks, too, which nobody may have looked at.
+bool FaceMeetings::is_uneven(const BlockShape& shape, std::uint32_t place) noexcept {
+  if (!gone_round_.add(place) || uneven_.has(place)) return uneven_.has(place);
+  for (const Triangle at : triangles_at_[place])
+    if (looks_away(places_of(shape, corners_[at]), directions_[place])) {
+      uneven_.add(place);
+      return true;
+    }
+  return false;
+}
+
 void FaceMeetings::search(BlockPair blocks, const BlockShape& shape,
                           const BlockShape& before) noexcept {
   const auto [first, second] = blocks;
@@ -235,7 +242,7 @@ void FaceMeetings::search(BlockPair blocks, const BlockShape& shape,
   const auto is_even_between = [&](Triangle one, Triangle other) {
     for (const std::uint32_t corner : corners_[one])
       for (const std::uint32_t of : corners_[other])
-        if (corner == of && !uneven_.has(corner)) return true;
+        if (corner == of && !is_uneven(shape, corner)) return true;
     return false;
   };
   for (const Triangle one : some_)

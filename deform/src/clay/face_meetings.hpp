@@ -45,8 +45,8 @@ private:
   void begin(const BoundedShape& shape, const VolumeKeeper& volume) noexcept;
   void list_pairs(const BlockShape& shape, const BlockShape& before,
                   std::span<const RingFacts> facts) noexcept;
-  void mark_uneven(const BlockShape& shape, const VolumeKeeper& volume,
-                   std::uint32_t block) noexcept;
+  bool has_face_away(const BlockShape& shape, std::uint32_t block) const noexcept;
+  bool is_uneven(const BlockShape& shape, std::uint32_t place) noexcept;
   BlockBounds box_of(const BlockShape& shape, Triangle triangle) const noexcept;
   void measure_boxes(const BlockShape& shape, std::uint32_t block) noexcept;
   void search(BlockPair blocks, const BlockShape& shape, const BlockShape& before) noexcept;
@@ -64,12 +64,13 @@ private:
   std::vector<BlockPair> pairs_;        ///< of blocks whose faces may meet
   bool is_crowded_ = false;             ///< there are more
   std::vector<std::uint8_t> is_folded_; ///< of each block: some face looks away, or nearly
-  Marks looked_at_;                     ///< blocks whose uneven places are known
-  Marks uneven_;                        ///< places where some face looks away
-  std::vector<Triangle> some_, others_; ///< room for search()
-  Marks around_;                        ///< triangles of find_at()
-  std::vector<std::uint32_t> near_;     ///< blocks near these
-  std::size_t tests_ = 0;               ///< since find()
+  std::span<const std::array<float, 4>> directions_; ///< of each place, from find() on
+  Marks uneven_;                                     ///< places where some face looks away
+  Marks gone_round_;                                 ///< places of which that is known
+  std::vector<Triangle> some_, others_;              ///< room for search()
+  Marks around_;                                     ///< triangles of find_at()
+  std::vector<std::uint32_t> near_;                  ///< blocks near these
+  std::size_t tests_ = 0;                            ///< since find()
   std::vector<std::pair<Triangle, Triangle>> met_;
 };
 
