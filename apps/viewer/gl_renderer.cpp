@@ -179,12 +179,12 @@ void GlRenderer::use(Fragments fragments) {
 }
 
 void GlRenderer::use_material(const render::Material& material) {
-  if (look_.white)
+  if (next_.white)
     use(Fragments::white);
   else
     use(material.grid_m > 0.0F ? Fragments::ground : Fragments::surface);
-  set(program_, "facets", look_.facets ? 1 : 0);
-  set(program_, "shadowed", look_.shadowed ? 1 : 0);
+  set(program_, "facets", next_.facets ? 1 : 0);
+  set(program_, "shadowed", next_.shadowed ? 1 : 0);
   set(program_, "colour", material.colour);
   set(program_, "gloss", material.gloss);
   set(program_, "opacity", material.opacity);
@@ -273,8 +273,8 @@ bool GlRenderer::cast_shadows(const render::Scene& beside, const Vector3f& key) 
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(shadow_unit));
   glBindTexture(GL_TEXTURE_2D, 0); // nothing may read what is being drawn
   if (!shadows_.begin(box, key)) return false;
-  look_ = {};
-  look_.white = true;
+  next_ = {};
+  next_.white = true;
   use(Fragments::white);
   set(program_, "clip_of_world", shadows_.map_of_world());
   if (whole_) draw_surface(beside.model, true);
@@ -337,15 +337,15 @@ void GlRenderer::draw(const render::Scene& beside, const render::Camera& camera,
 
 void GlRenderer::draw_parts(const render::Scene& beside, Look look, bool shadowed) {
   const bool shaded = look != Look::silhouette;
-  const auto receives = [&](bool yes) { look_.shadowed = yes && shadowed; };
-  look_ = {};
-  look_.white = !shaded;
+  const auto receives = [&](bool yes) { next_.shadowed = yes && shadowed; };
+  next_ = {};
+  next_.white = !shaded;
   const auto mark = [](GLint as) { glStencilFunc(GL_ALWAYS, as, 0xFF); };
   receives(true);
   mark(solid_mark);
-  look_.facets = look == Look::facets;
+  next_.facets = look == Look::facets;
   if (whole_) draw_surface(beside.model, true);
-  look_.facets = false;
+  next_.facets = false;
   mark(ground_mark);
   if (shaded)
     for (const render::Surface& ground : beside.grounds)

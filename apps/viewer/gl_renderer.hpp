@@ -64,7 +64,7 @@ private:
   unsigned program_ = 0;               ///< the one that is in use
   struct {
     bool white = false, facets = false, shadowed = false;
-  } look_; ///< of the surfaces that are drawn next
+  } next_; ///< of the surfaces that are drawn next
   unsigned vertex_array_ = 0;
   unsigned model_indices_ = 0;
   std::array<unsigned, 3> model_buffers_{};  ///< positions, normals and colours, in blocks

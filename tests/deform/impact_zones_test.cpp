@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -79,6 +80,30 @@ std::size_t meetings_of(const Ball& ball) {
         {places[ball.corners[at]], places[ball.corners[at + 1]], places[ball.corners[at + 2]]});
   return self_intersections(points, faces).size();
 }
+
+/// A ball of clay, and violent strokes of a body on it.
+struct StrokedBall {
+  explicit StrokedBall(StrokeParts of) : body(std::move(of)) {}
+
+  /// Calls `press` with each pose of the body on its way.
+  template <class Press>
+  void stroke(int strokes, const Press& press) {
+    for (int at = 0; at < strokes; ++at)
+      nendo::test::violent_stroke(
+          random, body, [&](const StrokeParts& parts) { clay.begin(parts); }, press);
+  }
+  Mesh shown() const {
+    Mesh made = mesh;
+    shape.layout().unpack(clay.shape(), made.vertices);
+    return made;
+  }
+
+  StrokeParts body;
+  Mesh mesh = nendo::reference::icosphere(5, nendo::test::stroked_ball_mm);
+  SculptedShape shape{mesh.vertices, {}};
+  ClayDeformer clay{shape, corners_of_triangles(mesh), 1, body.size(), {.radius_mm = 30.0}};
+  std::mt19937 random{2004};
+};
 
 } // namespace
 
@@ -159,68 +184,47 @@ TEST_SUITE("impact_zones") {
   }
 
   TEST_CASE("a call that is taken back has moved nothing, and its way waits") {
-    const StrokeParts body = nendo::test::stroking_rod();
-    const Mesh mesh = nendo::reference::icosphere(5, nendo::test::stroked_ball_mm);
-    SculptedShape shape(mesh.vertices, {});
-    ClayDeformer clay(shape, corners_of_triangles(mesh), 1, body.size(), {.radius_mm = 30.0});
-    std::mt19937 random(2004);
+    StrokedBall ball(nendo::test::stroking_rod());
+    const ClayDeformer& clay = ball.clay;
     int taken_back = 0;
-    for (int stroke = 0; stroke < 20; ++stroke)
-      nendo::test::violent_stroke(
-          random, body, [&](const StrokeParts& parts) { clay.begin(parts); },
-          [&](const StrokeParts& parts) {
-            const BlockShape before = clay.shape();
-            const double volume = clay.volume();
-            const ClayReport report = clay.press_to(parts);
-            if (report.passes == 0 || report.is_moved) return;
-            ++taken_back;
-            CHECK(report.behind_mm > 0.0);
-            CHECK(clay.volume() == volume);
-            CHECK(report.carried_mm == 0.0);
-            for (std::size_t block = 0; block < before.block_count(); ++block)
-              REQUIRE(clay.shape().stamp(block) == before.stamp(block));
-          });
+    ball.stroke(20, [&](const StrokeParts& parts) {
+      const BlockShape before = clay.shape();
+      const double volume = clay.volume();
+      const ClayReport report = ball.clay.press_to(parts);
+      if (report.passes == 0 || report.is_moved) return;
+      ++taken_back;
+      CHECK(report.behind_mm > 0.0);
+      CHECK(clay.volume() == volume);
+      CHECK(report.carried_mm == 0.0);
+      for (std::size_t block = 0; block < before.block_count(); ++block)
+        REQUIRE(clay.shape().stamp(block) == before.stamp(block));
+    });
     CHECK(taken_back > 0);
   }
 
   TEST_CASE("the volume that is told is the shape's, where faces were kept apart, too") {
-    const StrokeParts body = nendo::test::stroking_finger();
-    const Mesh mesh = nendo::reference::icosphere(5, nendo::test::stroked_ball_mm);
-    SculptedShape shape(mesh.vertices, {});
-    ClayDeformer clay(shape, corners_of_triangles(mesh), 1, body.size(), {.radius_mm = 30.0});
-    std::mt19937 random(2004);
+    StrokedBall ball(nendo::test::stroking_finger());
     double most_off = 0.0;
-    for (int stroke = 0; stroke < 14; ++stroke)
-      nendo::test::violent_stroke(
-          random, body, [&](const StrokeParts& parts) { clay.begin(parts); },
-          [&](const StrokeParts& parts) {
-            if (clay.press_to(parts).kept_apart == 0) return;
-            Mesh made = mesh;
-            shape.layout().unpack(clay.shape(), made.vertices);
-            const double volume = volume_of(made);
-            most_off = std::max(most_off, std::abs(clay.volume() / volume - 1.0));
-          });
-    CHECK(most_off > 0.0);
+    int kept_apart = 0;
+    ball.stroke(14, [&](const StrokeParts& parts) {
+      if (ball.clay.press_to(parts).kept_apart == 0) return;
+      ++kept_apart;
+      most_off = std::max(most_off, std::abs(ball.clay.volume() / volume_of(ball.shown()) - 1.0));
+    });
+    CHECK(kept_apart > 0);
     CHECK(most_off < 2e-6);
   }
 
   TEST_CASE("strokes that tear a ball of clay leave no faces that cross, and allocate nothing") {
     std::size_t kept_apart = 0, allocations = 0;
     for (const StrokeParts& body : {nendo::test::stroking_finger(), nendo::test::stroking_rod()}) {
-      const Mesh mesh = nendo::reference::icosphere(5, nendo::test::stroked_ball_mm);
-      SculptedShape shape(mesh.vertices, {});
-      ClayDeformer clay(shape, corners_of_triangles(mesh), 1, body.size(), {.radius_mm = 30.0});
-      std::mt19937 random(2004);
-      for (int stroke = 0; stroke < 14; ++stroke)
-        nendo::test::violent_stroke(
-            random, body, [&](const StrokeParts& parts) { clay.begin(parts); },
-            [&](const StrokeParts& parts) {
-              const nendo::test::Restraint restraint;
-              kept_apart += clay.press_to(parts).kept_apart;
-              allocations += restraint.counts().allocations;
-            });
-      Mesh made = mesh;
-      shape.layout().unpack(clay.shape(), made.vertices);
+      StrokedBall ball(body);
+      ball.stroke(14, [&](const StrokeParts& parts) {
+        const nendo::test::Restraint restraint;
+        kept_apart += ball.clay.press_to(parts).kept_apart;
+        allocations += restraint.counts().allocations;
+      });
+      const Mesh made = ball.shown();
       CHECK(made.vertices.allFinite());
       CHECK(nendo::test::count_self_intersections(made) == 0);
     }

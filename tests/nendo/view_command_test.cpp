@@ -112,7 +112,7 @@ struct Maker {
   Pixel place_point(int number, const std::vector<Pixel>& places) const {
     for (const Pixel& place : places) {
       REQUIRE(Person::does(words(place) + "click 1"));
-      for (int wait = 0; wait < 30; ++wait)
+      for (int wait = 0; wait < 90; ++wait)
         if (saved_functions() == number) return place;
     }
     FAIL("no click has made a point");

@@ -25,11 +25,11 @@ constexpr bool is_setup_chunk(driver::ChunkType type) noexcept {
 }
 
 /// Added to a filter's kind where pinches are closed.
-inline constexpr std::uint8_t closes_pinches = 128;
+inline constexpr std::uint8_t pinches_bit = 128;
 
 inline void put_filter_kind(ByteWriter& writer, const hand::FilterOptions& filter) {
   writer.u8(static_cast<std::uint8_t>(static_cast<unsigned>(filter.kind) |
-                                      (filter.close_pinches ? closes_pinches : 0U)));
+                                      (filter.close_pinches ? pinches_bit : 0U)));
 }
 
 /// Reads one value after another and remembers whether all of them were usable. After an unusable
@@ -63,8 +63,8 @@ public:
   /// What put_filter_kind() writes.
   void filter_kind(hand::FilterOptions& filter) {
     const unsigned value = reader_->u8();
-    filter.close_pinches = (value & closes_pinches) != 0;
-    const unsigned kind = value & ~unsigned{closes_pinches};
+    filter.close_pinches = (value & pinches_bit) != 0;
+    const unsigned kind = value & ~unsigned{pinches_bit};
     require(kind <= static_cast<unsigned>(hand::FilterKind::one_euro));
     filter.kind = static_cast<hand::FilterKind>(kind);
   }

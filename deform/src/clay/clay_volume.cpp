@@ -45,10 +45,18 @@ bool ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
     }
   }
   // Where a mask holds nearly all, nothing may be left that can give way.
-  is_settling_ = std::abs(change) > kept && (is_pressed || std::abs(change) < std::abs(before));
+  note_volume(change, is_pressed, std::abs(before), report);
+  return true;
+}
+
+/// Later calls give back what `change` is too much or too little, unless this one has pressed
+/// nothing and left `most` or more.
+void ClayDeformer::Work::note_volume(double change, bool is_pressed, double most,
+                                     ClayReport& report) noexcept {
+  const double off = std::abs(change);
+  is_settling_ = off > volume_is_kept * std::abs(whole_volume_) && (is_pressed || off < most);
   volume_now_ = whole_volume_ + change;
   report.volume_change = change / whole_volume_;
-  return true;
 }
 
 /// Gives the volume back, and returns whether faces could be kept apart then.
@@ -58,14 +66,9 @@ bool ClayDeformer::Work::finish(BoundedShape& shape, ClayReport& report) noexcep
   if (!give_back(shape, is_pressed, report)) return true;
   const std::optional<std::size_t> moved = zones_->keep_apart(shape, volume_, masked_.mask());
   report.kept_apart = moved.value_or(0);
-  if (report.kept_apart >
-      0) { // what is given back does not all come out where faces are in its way
-    volume_now_ = volume_.volume(shape);
-    const double change = volume_now_ - whole_volume_;
-    report.volume_change = change / whole_volume_;
-    is_settling_ = std::abs(change) > volume_is_kept * std::abs(whole_volume_) &&
-                   (is_pressed || std::abs(change) < most_left * before);
-  }
+  // Where faces were in its way, not all has come out that was given back.
+  if (report.kept_apart > 0)
+    note_volume(volume_.volume(shape) - whole_volume_, is_pressed, most_left * before, report);
   return moved.has_value();
 }
 

@@ -41,8 +41,12 @@ bool is_parted(const ThreePlaces& plane, const ThreePlaces& of) noexcept {
   return low > least || high < -least;
 }
 
-bool looks_away(const ThreePlaces& face, const std::array<float, 4>& way) noexcept {
-  const Eigen::Vector3f normal = (face[1] - face[0]).cross(face[2] - face[0]);
+Eigen::Vector3f normal_of(const BlockShape& shape, const Corners& corners) noexcept {
+  const ThreePlaces at = places_of(shape, corners);
+  return (at[1] - at[0]).cross(at[2] - at[0]);
+}
+
+bool looks_away(const Eigen::Vector3f& normal, const std::array<float, 4>& way) noexcept {
   return !(normal.x() * way[0] + normal.y() * way[1] + normal.z() * way[2] > 0.0F);
 }
 
@@ -188,9 +192,11 @@ void FaceMeetings::list_pairs(const BlockShape& shape, const BlockShape& before,
 
 /// Tells whether some face of the block looks away from the direction of one of its vertices.
 bool FaceMeetings::has_face_away(const BlockShape& shape, std::uint32_t block) const noexcept {
-  for (Triangle at = first_triangles_[block]; at < first_triangles_[block + 1]; ++at)
+  for (Triangle at = first_triangles_[block]; at < first_triangles_[block + 1]; ++at) {
+    const Eigen::Vector3f normal = normal_of(shape, corners_[at]);
     for (const std::uint32_t corner : corners_[at])
-      if (looks_away(places_of(shape, corners_[at]), directions_[corner])) return true;
+      if (looks_away(normal, directions_[corner])) return true;
+  }
   return false;
 }
 
@@ -218,9 +224,9 @@ void FaceMeetings::measure_boxes(const BlockShape& shape, std::uint32_t block) n
 /// Where all faces around a vertex look to one side, none of them meet. All: those that belong to
 /// other blocks, too, which nobody may have looked at.
 bool FaceMeetings::is_uneven(const BlockShape& shape, std::uint32_t place) noexcept {
-  if (!gone_round_.add(place) || uneven_.has(place)) return uneven_.has(place);
+  if (!gone_round_.add(place)) return uneven_.has(place);
   for (const Triangle at : triangles_at_[place])
-    if (looks_away(places_of(shape, corners_[at]), directions_[place])) {
+    if (looks_away(normal_of(shape, corners_[at]), directions_[place])) {
       uneven_.add(place);
       return true;
     }
