@@ -12,6 +12,8 @@
 #include <nendo/recording/take_tools.hpp>
 
 #include "setup_parts.hpp"
+#include "support/any_puppet.hpp"
+#include "support/eventually.hpp"
 #include "support/layered_loop.hpp"
 #include "support/takes.hpp"
 
@@ -273,6 +275,46 @@ TEST_SUITE("layered_take") {
       layers += std::holds_alternative<flow::SetLayer>(*entry) ? 1U : 0U;
     CHECK(layers == 1);
     CHECK(reader->strange() == 3);
+  }
+
+  TEST_CASE("what recorders repeat in each chunk is no change in what is played over") {
+    test::RecordedLoop live(Mode::type1, {}, false, false, {}, test::ball_puppet);
+    flow::DeformLoop& loop = *live.test.loop;
+    live.record({.chunk_time = 5ms});
+    flow::LoopSettings other = loop.settings();
+    other.kernel = deform::Wendland::c0;
+    std::mt19937 random(3);
+    std::uint64_t tick = 0;
+    const auto run_until_chunk_with = [&](std::uint64_t entries) {
+      return test::eventually([&] {
+        live.test.frame_after_tick(tick++);
+        std::uint64_t settings = 0, puppets = 0;
+        auto reader = TakeReader::open(live.path);
+        REQUIRE(reader);
+        while (const auto entry = reader->next()) {
+          settings += std::holds_alternative<flow::LoopSettings>(*entry) ? 1U : 0U;
+          puppets += std::holds_alternative<PuppetChange>(*entry) ? 1U : 0U;
+        }
+        return settings >= entries && puppets >= entries;
+      });
+    };
+    REQUIRE(loop.change_settings(other));
+    CHECK(test::eventually([&] {
+      live.test.frame_after_tick(tick++);
+      return !loop.is_changing();
+    }));
+    REQUIRE(live.change_puppet(test::any_puppet(loop.puppet(0), live.test.model, random)));
+    CHECK(run_until_chunk_with(4));
+    REQUIRE(live.end());
+
+    auto input = read_take_input(live.path);
+    REQUIRE(input);
+    input->script->play(input->script->length() + 1s, [](const flow::InputLogEntry&) {});
+    std::vector<flow::Command> given;
+    input->script->for_others().drain([&](const flow::Command& one) { given.push_back(one); });
+    REQUIRE(given.size() == 2);
+    CHECK(std::get<flow::ChangeSettings>(given[0]).settings == other);
+    CHECK(std::get<flow::ChangePuppet>(given[1]).number == 1);
   }
 
   TEST_CASE("a recording without ticks, or of gloves alone, is nothing to play over") {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -36,7 +37,9 @@ private:
     ++samples_[recorded.glove];
     put(flow::TakenSample{recorded.glove, recorded.sample});
   }
+  // Recorders repeat what is in force, also while an undo waits for something else.
   void add_one(const flow::LoopSettings& settings) {
+    if (std::exchange(settings_, settings) == settings) return;
     put(flow::Command(flow::ChangeSettings{settings}));
   }
   void add_one(const flow::ChangeModel& change) {
@@ -44,6 +47,7 @@ private:
   }
   void add_one(const flow::HoldStill&) {}
   void add_one(const PuppetChange& change) {
+    if (std::exchange(puppet_, change.number) == change.number) return;
     if (change.puppet) puppets_[change.number] = change.puppet;
     put(flow::Command(flow::ChangePuppet{change.number}));
   }
@@ -67,6 +71,8 @@ private:
   std::uint64_t ticks_ = 0;
   std::array<std::uint64_t, flow::most_inputs> samples_{};
   bool exact_ = true;
+  std::optional<flow::LoopSettings> settings_; ///< of the last entry
+  std::optional<std::uint32_t> puppet_;        ///< likewise
   decltype(TakeInput::puppets) puppets_;
 };
 
