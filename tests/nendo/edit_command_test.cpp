@@ -65,17 +65,6 @@ double farthest(const std::string& one, const std::string& other) {
   return (mesh->vertices - other_mesh->vertices).colwise().norm().maxCoeff();
 }
 
-/// Whether the program, no longer the test that forked, has a handler for a signal.
-bool catches(pid_t process, int signal) {
-  const std::string folder = "/proc/" + std::to_string(process);
-  std::error_code gone;
-  if (std::filesystem::read_symlink(folder + "/exe", gone).filename() != "nendo") return false;
-  const std::string status = contents(folder + "/status");
-  const auto at = status.find("SigCgt:");
-  return at != std::string::npos &&
-         (std::stoull(status.substr(at + 7), nullptr, 16) >> (signal - 1) & 1U) != 0;
-}
-
 } // namespace
 
 TEST_SUITE("edit_command") {
@@ -222,7 +211,7 @@ TEST_SUITE("edit_command") {
     const std::string played = run.path("played.obj");
     test::write_file(played, "old");
     test::Program playing({"edit", "play", run.timeline, "--out", played});
-    REQUIRE(test::eventually([&] { return catches(playing.id(), SIGINT); }));
+    REQUIRE(playing.comes_to_catch(SIGINT));
     playing.signal(SIGINT);
     const auto done = playing.wait();
     CHECK(done.exit_code == 1);
@@ -306,7 +295,7 @@ TEST_SUITE("edit_command") {
 
     const std::string last = run.path("last.png");
     test::Program looking({"edit", "view", run.timeline, "--screenshot", last});
-    REQUIRE(test::eventually([&] { return catches(looking.id(), SIGTERM); }));
+    REQUIRE(looking.comes_to_catch(SIGTERM));
     looking.signal(SIGTERM);
     CHECK(looking.wait().exit_code == 0);
     CHECK(render::read_png(last));

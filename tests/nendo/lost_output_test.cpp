@@ -135,7 +135,7 @@ std::vector<Arguments> printing_commands(const Workshop& shop) {
       {"recording", "info", at("run.nendo")},
       {"recording", "info", at("run.nendo"), "--json"},
       {"recording", "check", at("run.nendo")},
-      {"recording", "cut", at("run.nendo"), "--to", "0.3", "--out", at("cut.nendo")},
+      {"recording", "cut", at("run.nendo"), "--to", "1m", "--out", at("cut.nendo")},
       {"recording", "repair", at("run.nendo"), "--out", at("mended.nendo")},
       {"replay", at("run.nendo"), "--no-clock"},
       {"replay", at("run.nendo"), "--no-clock", "--json"},

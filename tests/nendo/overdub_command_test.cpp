@@ -78,7 +78,7 @@ TEST_SUITE("overdub_command") {
         CHECK(info["gloves"][2]["layer"]["in_at_first"] == false);
       }
       if (gloves > 3) CHECK(info["gloves"][3]["layer"]["plays"] == "left");
-      CHECK(replay["ticks"].get<unsigned>() >= ticks * 9 / 10); // on a machine that is late
+      CHECK(replay["ticks"].get<unsigned>() >= ticks / 2); // on a machine that is late
       CHECK(replay["ticks"].get<unsigned>() <= ticks + 30);
       CHECK(
           test::nendo({"recording", "check", takes.path(std::string(name) + ".nendo")}).exit_code ==

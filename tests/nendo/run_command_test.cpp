@@ -276,7 +276,8 @@ TEST_SUITE("run") {
       nendo::test::Program run({"run", "--right", "sim", "--duration", "3", "--json", "--out",
                                 (folder.path() / "shape.ply").string()});
       std::signal(SIGHUP, before);
-      std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+      REQUIRE(run.comes_to_catch(SIGINT));
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
       run.signal(SIGHUP);
       const auto done = run.wait();
       CHECK(done.exit_code == 0);
@@ -375,6 +376,7 @@ TEST_SUITE("run") {
     const auto out = folder.path() / "shape.ply";
     nendo::test::Program program(
         {"run", "--right", "sim:wave?seed=4", "--out", out.string(), "--json"});
+    REQUIRE(program.comes_to_catch(SIGINT));
     std::this_thread::sleep_for(std::chrono::milliseconds(2500));
     program.signal(SIGINT);
     const auto done = program.wait();
@@ -392,7 +394,7 @@ TEST_SUITE("run") {
     const auto gone = folder.path() / "gone";
     std::filesystem::create_directory(gone);
     nendo::test::Program program({"run", "--left", "sim", "--out", (gone / name).string()});
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    REQUIRE(program.comes_to_catch(SIGTERM));
     std::filesystem::remove(gone);
     program.signal(SIGTERM);
     const auto done = program.wait();

@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "support/eventually.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_files.hpp"
 
@@ -58,6 +59,10 @@ public:
 
   void signal(int number) const { ::kill(pid_, number); }
   pid_t id() const noexcept { return pid_; }
+  /// Waits until the program has a handler for a signal. Returns false if it has none in time.
+  bool comes_to_catch(int number) const {
+    return eventually([&] { return catches(number); });
+  }
   std::string err_so_far() const { return contents(folder_.path() / "err"); }
 
   Finished wait(std::chrono::seconds patience = std::chrono::seconds(60)) {
@@ -80,6 +85,17 @@ public:
   }
 
 private:
+  /// Whether the program, no longer the test that forked, has a handler for a signal.
+  bool catches(int number) const {
+    const std::string folder = "/proc/" + std::to_string(pid_);
+    std::error_code gone;
+    if (std::filesystem::read_symlink(folder + "/exe", gone).filename() != "nendo") return false;
+    const std::string status = contents(folder + "/status");
+    const auto at = status.find("SigCgt:");
+    return at != std::string::npos &&
+           (std::stoull(status.substr(at + 7), nullptr, 16) >> (number - 1) & 1U) != 0;
+  }
+
   TemporaryFolder folder_;
   std::chrono::steady_clock::time_point started_;
   pid_t pid_ = 0;
