@@ -56,7 +56,7 @@ Result<DemoGlove> emulate(Side side, const Options& demo) {
 
 Result<session::RunOptions> run_options(const Options& options) {
   const auto mode = flow::mode_named(options.mode);
-  if (!mode || *mode == flow::Mode::clay)
+  if (!mode || flow::is_by_hands(*mode))
     return Error{Errc::usage, "--mode " + options.mode +
                                   ": use type1 or type2; `nendo demo clay` has a mode of its own"};
   if (!std::isfinite(options.duration_s) || options.duration_s <= 0.0 ||

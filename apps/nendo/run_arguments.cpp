@@ -124,24 +124,31 @@ Result<void> read_take(RunArguments& options) {
 }
 
 /// What acts on fingertips, or on a puppet's points, has nothing to do with whole hands.
-Result<void> check_clay(const session::RunOptions& run) {
-  if (run.loop.sculptor.mode != flow::Mode::clay) return {};
-  const auto refuse = [](const char* option, const char* why) {
-    return Error{Errc::usage,
-                 std::string("--mode clay and ") + option + ": " + why + "; give one of them"};
+Result<void> check_hands(const session::RunOptions& run) {
+  const flow::Mode mode = run.loop.sculptor.mode;
+  if (!flow::is_by_hands(mode)) return {};
+  const bool is_clay = mode == flow::Mode::clay;
+  const auto refuse = [&](const char* option, const char* why) {
+    return Error{Errc::usage, "--mode " + std::string(flow::name_of(mode)) + " and " + option +
+                                  ": " + why + "; give one of them"};
   };
   if (!run.puppet_file.empty())
-    return refuse("--puppet", "whole hands press clay, and a puppet has points");
+    return refuse("--puppet", is_clay ? "whole hands press clay, and a puppet has points"
+                                      : "whole hands move parts, and a puppet has points");
   if (run.loop.sculptor.hold == flow::Hold::hand)
-    return refuse("--hold hand", "clay is pressed, and hands hold it only by closing on it");
+    return refuse("--hold hand", is_clay
+                                     ? "clay is pressed, and hands hold it only by closing on it"
+                                     : "hands hold a part by closing on it");
   if (run.loop.sculptor.deformer.csrbf.keep_volume > 0.0)
-    return refuse("--keep-volume", "clay keeps its volume by itself");
+    return refuse("--keep-volume",
+                  is_clay ? "clay keeps its volume by itself" : "parts move as they are");
   return {};
 }
 
 Result<void> set_size(RunArguments& options) {
   session::RunOptions& run = options.run;
   if (run.loop.sculptor.mode == flow::Mode::clay) run.model_size_m = session::clay_size_m;
+  if (run.loop.sculptor.mode == flow::Mode::parts) run.model_size_m = session::parts_size_m;
   if (options.size.empty()) return {};
   const auto size_m = cli::metres_of(options.size);
   constexpr double least_m = 0.01;
@@ -167,7 +174,8 @@ Result<void> check(RunArguments& options) {
   auto& run = options.run;
   const auto mode = flow::mode_named(options.mode);
   if (!mode && !options.mode.empty())
-    return Error{Errc::usage, "--mode " + options.mode + ": unknown; use type1, type2 or clay"};
+    return Error{Errc::usage,
+                 "--mode " + options.mode + ": unknown; use " + std::string(flow::mode_names)};
   run.loop.sculptor.mode = mode.value_or(flow::Mode::type1);
   if (auto fine = options.brush.parse(options.mode, run.loop.sculptor); !fine) return fine;
   if (auto fine = set_size(options); !fine) return fine;
@@ -192,7 +200,7 @@ Result<void> check(RunArguments& options) {
   const auto hold = flow::hold_named(options.hold);
   if (!hold) return Error{Errc::usage, "--hold " + options.hold + ": unknown; use tips or hand"};
   run.loop.sculptor.hold = *hold;
-  if (auto fine = check_clay(run); !fine) return fine;
+  if (auto fine = check_hands(run); !fine) return fine;
   if (*hold == flow::Hold::hand && run.loop.sculptor.mode == flow::Mode::type2)
     return Error{Errc::usage,
                  "--hold hand: type 2 follows the ways of fingertips; use --mode type1"};

@@ -144,11 +144,12 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
   command.add_option(
       "--mode", options.mode,
       "type1: the rest shape follows the fingertips; type2: strokes along their paths; clay: whole "
-      "hands press; without it, type1, or type2 with a brush");
+      "hands press; parts: hands that close take parts of the model and move them; without it, "
+      "type1, or type2 with a brush");
   command.add_option(
       "--size", options.size,
       "The model's longest side on the stage, where the hands are, e.g. 20cm; without "
-      "it 80 cm, and with --mode clay 7.5 cm");
+      "it 80 cm, with --mode clay 7.5 cm, and with parts 25 cm");
   command.add_option(
       "--radius", options.radius,
       "Radius of a fingertip's influence, in the mesh's units, without it 0.2 of its longest side; "

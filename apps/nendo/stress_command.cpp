@@ -152,7 +152,7 @@ void add(cli::Command& program) {
   command.add_option("--right", arguments->run.right, "GLOVE on the right hand");
   command.add_option("MODEL,--mesh", arguments->run.mesh,
                      "OBJ, PLY or glTF file; without it, the shipped Moai");
-  command.add_option("--mode", arguments->mode, "type1, type2 or clay");
+  command.add_option("--mode", arguments->mode, std::string(flow::mode_names));
   command.add_option("--changes", arguments->changes_a_minute,
                      "Changes the radius so many times a minute, in every other second, and counts "
                      "the seconds with and without apart");

@@ -10,7 +10,8 @@ void HoldTracker::follow(const flow::Frame& frame) noexcept {
 
 void set_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& scene_frame) {
   const bool is_puppet = frame.function_count > 0; // which fingertips do not touch
-  scene_frame.held = frame.held && !is_puppet && !frame.clay.is_clay; // whose hands hold nothing
+  const bool is_by_hands = frame.clay.is_clay || frame.parts.count > 0; // whose tips hold nothing
+  scene_frame.held = frame.held && !is_puppet && !is_by_hands;
   scene_frame.contacts.clear();
   for (const deform::ClayContact& contact : frame.contacts.all())
     scene_frame.contacts.push_back(

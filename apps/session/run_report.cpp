@@ -34,6 +34,9 @@ std::string progress_line(const flow::Frame& frame, double elapsed_s, double dur
   }
   if (!frame.held) line += "  let go";
   if (frame.chain.held_pairs > 0) line += "  fingertips held apart";
+  for (const std::uint32_t held : frame.parts.held)
+    if (held != deform::no_index)
+      line += fmt::format("  holds part {} of {}", held + 1, frame.parts.count);
   if (frame.clay.touching > 0) line += fmt::format("  touching at {} places", frame.clay.touching);
   return line;
 }

@@ -120,6 +120,13 @@ void print_progress_json(const flow::Frame& frame, double elapsed_s) {
     line["clay"] = {{"touching", frame.clay.touching},
                     {"penetration_mm", frame.clay.penetration_mm},
                     {"volume_part", frame.clay.volume_part()}};
+  if (frame.parts.count > 0) {
+    const auto name = [](std::uint32_t part) {
+      return part == deform::no_index ? ordered_json() : ordered_json(part);
+    };
+    line["parts"] = {{"count", frame.parts.count},
+                     {"held", {name(frame.parts.held[0]), name(frame.parts.held[1])}}};
+  }
   for (const Side side : {Side::left, Side::right}) {
     const auto& hand = frame.hands[flow::Placement::index_of(side)];
     if (!hand.present) continue;

@@ -24,7 +24,8 @@ Result<void> parse_loop(const StressArguments& arguments, session::RunOptions& r
     return usage("--interval: use 100 to 1000000 microseconds");
   run.loop.rate_hz = 1e6 / arguments.interval_us;
   const auto mode = flow::mode_named(arguments.mode);
-  if (!mode) return usage("--mode " + arguments.mode + ": unknown; use type1, type2 or clay");
+  if (!mode)
+    return usage("--mode " + arguments.mode + ": unknown; use " + std::string(flow::mode_names));
   run.loop.sculptor.mode = *mode;
   const auto stages = parse_stages(arguments.stages);
   if (!stages) return stages.error();

@@ -228,7 +228,7 @@ flow::SculptorSetup Player::first_with(std::uint32_t masks) const {
 bool Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
   const puppet::Rig* const rig =
       puppet_ ? timeline_.rig.get() : timeline_.masks_numbered(awaited.puppet);
-  if (awaited.settings.mode == flow::Mode::clay && !flow::can_press(rig)) return false;
+  if (flow::is_by_hands(awaited.settings.mode) && !flow::can_press(rig)) return false;
   flow::ModelVersion& model = *versions_[awaited.model];
   const flow::LoopSettings& before = shaping_.settings();
   const int hands = puppet_ ? 0 : static_cast<int>(hands_.size());

@@ -178,10 +178,15 @@ void LiveWindow::Panel::brushes(flow::LoopSettings& chosen) {
 void LiveWindow::Panel::settings() {
   flow::LoopSettings& chosen = wanted.now;
   int mode = static_cast<int>(chosen.mode);
+  const float half = ImGui::GetContentRegionAvail().x * 0.55F;
   ImGui::RadioButton("type 1: pull", &mode, 0);
-  ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.6F);
+  ImGui::SameLine(half);
   ImGui::RadioButton("clay: press", &mode, 2);
   ImGui::RadioButton("type 2: strokes", &mode, 1);
+  ImGui::SameLine(half);
+  ImGui::RadioButton("parts: move", &mode, 3);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("A hand that closes takes the part under it, until it opens (m)");
   chosen.mode = static_cast<flow::Mode>(mode);
   ImGui::PushItemWidth(-label_width);
   if (ImGui::BeginCombo("kernel", kernel_words(chosen.kernel))) {

@@ -117,7 +117,8 @@ void Server::Work::set_clay(const flow::Frame& frame) {
   {
     const std::scoped_lock lock(mutex_);
     const HostTime now = HostClock::now();
-    if ((!facts_[clay_fact] && !frame.clay.is_clay) || now < next_clay_) return;
+    const bool is_told = frame.clay.is_clay || frame.parts.count > 0;
+    if ((!facts_[clay_fact] && !is_told) || now < next_clay_) return;
     auto message = clay_message(frame);
     if (facts_[clay_fact] && message == *facts_[clay_fact]) return;
     next_clay_ = now + period;

@@ -2,10 +2,12 @@
 
 #include <atomic>
 #include <memory>
+#include <random>
 #include <thread>
 
 #include <doctest/doctest.h>
 
+#include "support/pinching_sample.hpp"
 #include "support/takes.hpp"
 
 namespace loop_replay_test {
@@ -95,6 +97,44 @@ TEST_SUITE("loop_replay") {
         CHECK((test.loop->final_shape() - test.model.vertices).cwiseAbs().maxCoeff() > 1e-3);
       }
     }
+  }
+
+  TEST_CASE("hands that carry parts are replayed bit for bit") {
+    RecordedLoop live(Mode::parts);
+    auto& test = live.test;
+    const Eigen::Vector3d top(0.0, 1.0 / test.placement.units_per_metre, 0.0);
+    const Eigen::Isometry3d at_top = test::wrist_pinching_at(Side::right, top);
+    test.placement.T_stage_wrist[1] = at_top;
+    test.loop =
+        std::make_unique<flow::DeformLoop>(test.model, test.placement, test.inputs, test.options);
+    live.setup = test::setup_of(test);
+    live.record();
+    std::mt19937 random(1);
+    HostTime now = HostClock::now();
+    std::uint64_t held = 0;
+    for (std::uint64_t tick = 0; tick < 600; ++tick) {
+      now += std::chrono::milliseconds(11);
+      const bool closes = tick / 40 % 2 == 1;
+      test.rings[0]->try_push(test::bent_sample(Side::left, 0, now));
+      test.rings[1]->try_push(closes ? test::pinching_sample(Side::right, now)
+                                     : test::bent_sample(Side::right, 0, now));
+      Eigen::Isometry3d wrist = at_top;
+      if (closes) {
+        const auto part = static_cast<double>(tick % 40);
+        wrist.translation().x() += 1e-3 * part;
+        wrist.rotate(Eigen::AngleAxisd(0.01 * part, Eigen::Vector3d::UnitY()));
+      }
+      test.commands.try_push(flow::WristMove::to(Side::right, wrist));
+      if (random() % 40 == 0)
+        test.commands.try_push(flow::requests[random() % flow::requests.size()]);
+      held += test.frame_after_tick(tick).parts.is_held() ? 1U : 0U;
+    }
+    CHECK(held > 100);
+    REQUIRE(live.end());
+    const auto replay = replayed(live.path, test.model);
+    CHECK(replay->is_exact());
+    CHECK(replay->loop().final_shape() == test.loop->final_shape());
+    CHECK((test.loop->final_shape() - test.model.vertices).cwiseAbs().maxCoeff() > 1e-3);
   }
 
   TEST_CASE("a loop that goes on with what one before it has learned is replayed with that") {

@@ -172,7 +172,7 @@ def shape(b):
 
 def main():
     data = open(sys.argv[1], "rb").read()
-    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 10, crc32c(data[:12])), "header"
+    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 11, crc32c(data[:12])), "header"
     at = 16
     number = 0
     readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "ORIG": origin, "REST": rest, "PUPP": puppet, "PUPV": puppet_version, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}

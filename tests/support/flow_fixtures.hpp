@@ -87,7 +87,7 @@ move = { east = [0.0, 0.1, 0.2], south = [0.05, 0.0, 0.0] }
 template <class Random>
 flow::LoopSettings any_settings(const flow::LoopSettings& before, Random& random) {
   flow::LoopSettings settings = before;
-  if (random() % 4 == 0) settings.mode = static_cast<flow::Mode>(random() % 3);
+  if (random() % 4 == 0) settings.mode = static_cast<flow::Mode>(random() % flow::mode_count);
   if (random() % 4 == 0) settings.kernel = static_cast<deform::Wendland>(random() % 4);
   if (random() % 6 == 0) settings.injective = !settings.injective;
   if (random() % 6 == 0) settings.piece_fraction = 0.02 + 0.01 * static_cast<double>(random() % 8);

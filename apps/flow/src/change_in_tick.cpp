@@ -19,11 +19,11 @@ void DeformLoop::take_change() noexcept {
   if (log != nullptr) {
     if (taken_->holds_still) log->command(HoldStill{});
     if (taken_->model) log->command(*taken_->model);
-    // Whoever does the same in this order is refused neither: puppets are not for clay.
-    const bool becomes_clay = taken_->settings && taken_->settings->mode == Mode::clay;
-    if (taken_->settings && !becomes_clay) log->command(ChangeSettings{*taken_->settings});
+    // Whoever does the same in this order is refused neither: puppets are not for whole hands.
+    const bool is_by_hands = taken_->settings && flow::is_by_hands(taken_->settings->mode);
+    if (taken_->settings && !is_by_hands) log->command(ChangeSettings{*taken_->settings});
     if (taken_->rig) log->command(ChangePuppet{taken_->rig->number});
-    if (becomes_clay) log->command(ChangeSettings{*taken_->settings});
+    if (is_by_hands) log->command(ChangeSettings{*taken_->settings});
   }
   if (!taken_->log || !shaping_.is_held()) return;
   // What was recorded leads to a shape that is committed, so that a replay ends with the same one.

@@ -122,8 +122,9 @@ ReadyRig DeformLoop::ready_rig(std::uint32_t number, std::uint32_t before) const
 
 Result<void> DeformLoop::change_puppet(std::shared_ptr<const puppet::Rig> rig) {
   assert(rig != nullptr);
-  if (asked_.settings.mode == Mode::clay && !can_press(rig.get()))
-    return Error{Errc::bad_input, "puppets do not act on clay; choose type 1 or 2 first"};
+  if (is_by_hands(asked_.settings.mode) && !can_press(rig.get()))
+    return Error{Errc::bad_input,
+                 "puppets neither press clay nor move parts; choose type 1 or 2 first"};
   puppets_.push_back(std::move(rig));
   auto changed = change_puppet(next_puppet() - 1);
   if (!changed) puppets_.pop_back();

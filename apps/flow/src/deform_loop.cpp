@@ -339,7 +339,7 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
     }
     write_tips(shown.pose, units_per_metre_, points, column, tips_);
     column += points;
-    if (shaping_.sculptor().mode() == Mode::clay || taken_ != nullptr || stats_.ticks == 0)
+    if (is_by_hands(shaping_.sculptor().mode()) || taken_ != nullptr || stats_.ticks == 0)
       place_body(hand, shown.pose);
   }
   if (rig_) play_rig();

@@ -261,10 +261,10 @@ private:
   Palm palm_;
 };
 
-/// Thumb and index finger close on a side of the model, pull, and open.
-class Pinch final : public KneadPlan {
+/// Thumb and index finger at a side of the model, from above.
+class PinchingFingers {
 public:
-  Pinch(const KneadedModel& model, const hand::HandSkeleton& skeleton) : model_(model) {
+  PinchingFingers(const hand::HandSkeleton& skeleton, double open_gap_m, double closed_gap_m) {
     JointAngles start;
     for (auto& finger : start.fingers)
       finger = {1.2, 0.0, 1.4, 0.9};
@@ -274,18 +274,14 @@ public:
     stage_ = Eigen::AngleAxisd(from_degrees(30.0), Vector3d::UnitZ()).matrix() *
              Eigen::AngleAxisd(from_degrees(-70.0), Vector3d::UnitX()).matrix();
     if (skeleton.side() == Side::left) stage_.row(0) *= -1.0;
-    const double chord = std::sqrt(std::max(0.0, into_m * (2.0 * radius() - into_m)));
-    open_ = pinched(skeleton, start, 2.0 * (std::min(chord, most_chord_m) + clear_m));
-    closed_ = pinched(skeleton, start, closed_m);
+    open_ = pinched(skeleton, start, open_gap_m);
+    closed_ = pinched(skeleton, start, closed_gap_m);
   }
 
-  double length_s() const noexcept override { return 4.8; }
-
-  Pose at(double time_s) const noexcept override {
-    const double closed = ease(time_s, 1.0, 2.0) - ease(time_s, 3.5, 3.9);
-    const double out = away_m * (1.0 - ease(time_s, 0.0, 0.9)) - into_m +
-                       pull_m * ease(time_s, 2.1, 3.3) + 2.0 * away_m * ease(time_s, 3.9, 4.8);
-    Pose pose{open_, wrist_at(model_.middle() + (radius() + out) * stage_.col(0))};
+  Vector3d outwards() const noexcept { return stage_.col(0); }
+  /// With the middle between the tips there, and fingers that are closed by so much, 0 to 1.
+  KneadPlan::Pose at(const Vector3d& tips, double closed) const noexcept {
+    KneadPlan::Pose pose{open_, wrist_at(tips)};
     for (std::size_t k = 0; k < hand::angle_count; ++k) {
       const hand::Angle angle = hand::angle_at(k);
       pose.angles[angle] += closed * (closed_[angle] - open_[angle]);
@@ -294,7 +290,6 @@ public:
   }
 
 private:
-  double radius() const noexcept { return 0.5 * (model_.high.x() - model_.low.x()); }
   Isometry3d wrist_at(const Vector3d& tips) const noexcept {
     Isometry3d wrist = Isometry3d::Identity();
     wrist.linear() = axes_of(stage_ * Vector3d(-std::cos(up_rad), std::sin(up_rad), 0.0),
@@ -312,15 +307,86 @@ private:
   }
 
   static constexpr double up_rad = from_degrees(50.0); ///< of the fingers: both tips reach then
-  static constexpr double clear_m = 0.010;             ///< of the fingertips, before they close
-  static constexpr double closed_m = 0.011;            ///< between them
-  static constexpr double into_m = 0.016;              ///< the model, before they close
-  static constexpr double most_chord_m = 0.027;        ///< no hand opens wider
+
+  JointAngles open_, closed_;
+  Matrix3d stage_; ///< outwards, from the thumb to the index finger, and across; left: mirrored
+};
+
+constexpr double pinch_gap_m = 0.011; ///< between the tips of thumb and index finger
+
+/// Thumb and index finger close on a side of the model, pull, and open.
+class Pinch final : public KneadPlan {
+public:
+  Pinch(const KneadedModel& model, const hand::HandSkeleton& skeleton)
+      : model_(model), fingers_(skeleton, open_gap_m(radius()), pinch_gap_m) {}
+
+  double length_s() const noexcept override { return 4.8; }
+
+  Pose at(double time_s) const noexcept override {
+    const double closed = ease(time_s, 1.0, 2.0) - ease(time_s, 3.5, 3.9);
+    const double out = away_m * (1.0 - ease(time_s, 0.0, 0.9)) - into_m +
+                       pull_m * ease(time_s, 2.1, 3.3) + 2.0 * away_m * ease(time_s, 3.9, 4.8);
+    return fingers_.at(model_.middle() + (radius() + out) * fingers_.outwards(), closed);
+  }
+
+private:
+  static double open_gap_m(double radius_m) noexcept {
+    const double chord = std::sqrt(std::max(0.0, into_m * (2.0 * radius_m - into_m)));
+    return 2.0 * (std::min(chord, most_chord_m) + clear_m);
+  }
+  double radius() const noexcept { return 0.5 * (model_.high.x() - model_.low.x()); }
+
+  static constexpr double clear_m = 0.010;      ///< of the fingertips, before they close
+  static constexpr double into_m = 0.016;       ///< the model, before they close
+  static constexpr double most_chord_m = 0.027; ///< no hand opens wider
   static constexpr double pull_m = 0.032;
 
   KneadedModel model_;
-  JointAngles open_, closed_;
-  Matrix3d stage_; ///< outwards, from the thumb to the index finger, and across; left: mirrored
+  PinchingFingers fingers_;
+};
+
+/// Takes the upper part by the side, lifts it, turns it half-way round, presses it on, and leaves.
+class Carry final : public KneadPlan {
+public:
+  Carry(const KneadedModel& model, const hand::HandSkeleton& skeleton)
+      : model_(model), fingers_(skeleton, open_gap_m, pinch_gap_m) {
+    taken_at_ = model.middle();
+    taken_at_.y() = model.low.y() + KneadedModel::upper * model.height();
+    const double side = fingers_.outwards().x() > 0.0 ? 1.0 : -1.0;
+    taken_at_.x() += side * std::max(0.0, model.upper_radius_m - into_m);
+  }
+
+  double length_s() const noexcept override { return 8.6; }
+
+  Pose at(double time_s) const noexcept override {
+    const double closed = ease(time_s, 1.0, 1.6) - ease(time_s, 7.0, 7.4);
+    const double out = 2.0 * away_m * (1.0 - ease(time_s, 0.0, 0.9) + ease(time_s, 7.4, 8.6));
+    Pose pose = fingers_.at(taken_at_ + out * fingers_.outwards(), closed);
+    pose.T_stage_wrist = motion_at(time_s) * pose.T_stage_wrist;
+    return pose;
+  }
+
+private:
+  /// Of the part: about the vertical line through the model's middle.
+  Isometry3d motion_at(double time_s) const noexcept {
+    const double turned = std::numbers::pi * ease(time_s, 2.8, 5.4);
+    const double lifted = lift * model_.height() * ease(time_s, 1.8, 3.0) -
+                          (lift + press) * model_.height() * ease(time_s, 5.4, 6.8);
+    Isometry3d motion = Isometry3d::Identity();
+    motion.linear() = Eigen::AngleAxisd(turned, Vector3d::UnitY()).matrix();
+    motion.translation() =
+        model_.middle() - motion.linear() * model_.middle() + lifted * Vector3d::UnitY();
+    return motion;
+  }
+
+  static constexpr double open_gap_m = 0.055; ///< wide enough to have let go
+  static constexpr double into_m = 0.012;     ///< the model, from its side
+  static constexpr double lift = 0.5;         ///< of the model's height
+  static constexpr double press = 0.02;       ///< likewise: deeper than it was
+
+  KneadedModel model_;
+  PinchingFingers fingers_;
+  Vector3d taken_at_;
 };
 
 } // namespace
@@ -329,6 +395,7 @@ std::unique_ptr<KneadPlan> plan_of(KneadTask task, const KneadedModel& model,
                                    const hand::HandSkeleton& skeleton) {
   if (task == KneadTask::press) return std::make_unique<Flatten>(model, skeleton);
   if (task == KneadTask::grip) return std::make_unique<Pinch>(model, skeleton);
+  if (task == KneadTask::carry) return std::make_unique<Carry>(model, skeleton);
   if (skeleton.side() == Side::right) return std::make_unique<Thumb>(model, skeleton);
   return std::make_unique<Wall>(model, skeleton);
 }

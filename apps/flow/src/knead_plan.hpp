@@ -9,7 +9,10 @@ namespace nendo::flow {
 
 /// The model on the stage, in metres.
 struct KneadedModel {
-  Eigen::Vector3d low, high; ///< corners of its box
+  static constexpr double upper = 0.85; ///< of its height, where hands take its upper part
+
+  Eigen::Vector3d low, high;  ///< corners of its box
+  double upper_radius_m = 0.0; ///< how far it reaches to its sides there
 
   Eigen::Vector3d middle() const { return 0.5 * (low + high); }
   double height() const { return high.y() - low.y(); }

@@ -12,7 +12,7 @@ namespace nendo::flow {
 namespace {
 
 constexpr double knead_step_s = 1.0 / 60.0;
-constexpr std::array<std::string_view, 3> task_names{"press", "knead", "grip"};
+constexpr std::array<std::string_view, 4> task_names{"press", "knead", "grip", "carry"};
 
 /// Which two keys a time lies between, and how far.
 struct Between {
@@ -25,6 +25,18 @@ Between between(double time_s, double step_s, std::size_t keys) noexcept {
   const double at = time_s > 0.0 && std::isfinite(time_s) ? std::min(time_s / step_s, last) : 0.0;
   const double whole = std::min(std::floor(at), last - 1.0);
   return {static_cast<std::size_t>(whole), at - whole};
+}
+
+/// How far vertices of the upper part are from the vertical line through the box's middle.
+double upper_radius_of(const deform::Mesh& model, const Eigen::Vector3d& low,
+                       const Eigen::Vector3d& high) {
+  const Eigen::Vector3d middle = 0.5 * (low + high);
+  const double height = high.y() - low.y();
+  double farthest = 0.0;
+  for (const auto vertex : model.vertices.colwise())
+    if (std::abs(vertex.y() - low.y() - KneadedModel::upper * height) <= 0.05 * height)
+      farthest = std::max(farthest, std::abs(vertex.x() - middle.x()));
+  return farthest;
 }
 
 } // namespace
@@ -64,7 +76,8 @@ Result<KneadingHand> KneadingHand::make(const deform::Mesh& model,
   if (!(size > 0.0) || !std::isfinite(size))
     return Error{Errc::bad_input, "the model has no size, so hands find nothing to press"};
   const double scale = model_size_m / size;
-  const auto plan = plan_of(task, {scale * low, scale * high}, skeleton);
+  const auto plan = plan_of(
+      task, {scale * low, scale * high, scale * upper_radius_of(model, low, high)}, skeleton);
   const auto count = static_cast<std::size_t>(std::ceil(plan->length_s() / knead_step_s)) + 1;
   auto keys = std::make_shared<std::vector<hand::JointAngles>>();
   std::vector<Eigen::Isometry3d> poses;

@@ -57,7 +57,7 @@ void DeformLoop::make_ready(PreparedChange& change) {
 std::optional<SculptorSetup> DeformLoop::setup_for(const SculptorSetup& before,
                                                    const LoopSettings& settings) const {
   const bool presses = can_press(puppets_[asked_puppet_].get());
-  if (!presses && settings.mode == Mode::clay && settings.mode != asked_.settings.mode)
+  if (!presses && is_by_hands(settings.mode) && settings.mode != asked_.settings.mode)
     return std::nullopt;
   if (settings.mode != asked_.settings.mode &&
       !check_points(puppets_[asked_puppet_].get(), settings.mode))

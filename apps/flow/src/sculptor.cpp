@@ -19,7 +19,8 @@ using deform::Type2Deformer;
 
 namespace {
 
-using Deformer = std::variant<Type1Deformer, Type2Deformer, deform::SurfaceDeformer, ClayHands>;
+using Deformer =
+    std::variant<Type1Deformer, Type2Deformer, deform::SurfaceDeformer, ClayHands, PartHands>;
 
 constexpr Eigen::Index fingers = 5;
 
@@ -68,6 +69,8 @@ Deformer make(SculptedShape& shape, Eigen::Index control_points, const SculptorO
                      std::accumulate(radii.begin(), radii.end(), 0.0) / fingers, options.deformer,
                      options.mirror);
   }
+  if (options.mode == Mode::parts && options.bodies && options.parts)
+    return PartHands(shape, options.parts, options.bodies, options.deformer.mask);
   if (options.mode == Mode::type2)
     return Type2Deformer(shape, control_points, options.piece_length,
                          brushed(options, control_points));
@@ -83,23 +86,30 @@ Deformer make(Points rest, Eigen::Index control_points, const SculptorOptions& o
   return Type1Deformer(std::move(rest), control_points, of_type1(options, control_points));
 }
 
-/// Of type 1, of type 2 or of clay, whose functions have other names.
-template <class Of1, class Of2, class OfClay>
-auto each(Deformer& deformer, const Of1& of_type1, const Of2& of_type2, const OfClay& of_clay) {
+/// Of type 1, of type 2 or of whole hands, whose functions have other names.
+template <class Of1, class Of2, class OfHands>
+auto each(Deformer& deformer, const Of1& of_type1, const Of2& of_type2, const OfHands& of_hands) {
   return std::visit(
       [&](auto& one) {
         if constexpr (std::is_same_v<std::decay_t<decltype(one)>, Type2Deformer>)
           return of_type2(one);
-        else if constexpr (std::is_same_v<std::decay_t<decltype(one)>, ClayHands>)
-          return of_clay(one);
+        else if constexpr (std::is_same_v<std::decay_t<decltype(one)>, ClayHands> ||
+                           std::is_same_v<std::decay_t<decltype(one)>, PartHands>)
+          return of_hands(one);
         else
           return of_type1(one);
       },
       deformer);
 }
 
-FieldStatus press(ClayHands& hands, bool ends, BlockShape& out) {
+FieldStatus follow(ClayHands& hands, const Points&, bool ends, BlockShape& out) {
   const FieldStatus status = hands.press(ends);
+  out.follow(hands.shape());
+  return status;
+}
+
+FieldStatus follow(PartHands& hands, const Points& tips, bool, BlockShape& out) {
+  const FieldStatus status = hands.follow(tips);
   out.follow(hands.shape());
   return status;
 }
@@ -107,13 +117,13 @@ FieldStatus press(ClayHands& hands, bool ends, BlockShape& out) {
 } // namespace
 
 std::string_view name_of(Mode mode) noexcept {
-  return mode == Mode::type1 ? "type1" : mode == Mode::type2 ? "type2" : "clay";
+  constexpr std::array<std::string_view, mode_count> names{"type1", "type2", "clay", "parts"};
+  return names[static_cast<std::size_t>(mode)];
 }
 
 std::optional<Mode> mode_named(std::string_view name) noexcept {
-  if (name == "type1") return Mode::type1;
-  if (name == "type2") return Mode::type2;
-  if (name == "clay") return Mode::clay;
+  for (std::uint8_t mode = 0; mode < mode_count; ++mode)
+    if (name == name_of(static_cast<Mode>(mode))) return static_cast<Mode>(mode);
   return std::nullopt;
 }
 
@@ -171,6 +181,7 @@ Sculptor::Sculptor(SculptedShape& shape, Eigen::Index control_points,
 
 Mode Sculptor::mode() const noexcept {
   if (std::holds_alternative<ClayHands>(deformer_)) return Mode::clay;
+  if (std::holds_alternative<PartHands>(deformer_)) return Mode::parts;
   return std::holds_alternative<Type2Deformer>(deformer_) ? Mode::type2 : Mode::type1;
 }
 
@@ -178,7 +189,7 @@ FieldStatus Sculptor::grab(const Points& tips) noexcept {
   return counted(each(
       deformer_, [&](auto& type1) { return type1.grab(tips); },
       [&](Type2Deformer& type2) { return type2.begin(tips); },
-      [](ClayHands& hands) { return hands.begin(); }));
+      [&](auto& hands) { return hands.begin(tips); }));
 }
 
 FieldStatus Sculptor::update(const Points& tips, BlockShape& out) noexcept {
@@ -189,7 +200,7 @@ FieldStatus Sculptor::update(const Points& tips, BlockShape& out) noexcept {
         out.follow(type2.shape());
         return status;
       },
-      [&](ClayHands& hands) { return press(hands, false, out); });
+      [&](auto& hands) { return follow(hands, tips, false, out); });
 }
 
 FieldStatus Sculptor::finish(const Points& tips, BlockShape& out) noexcept {
@@ -200,14 +211,14 @@ FieldStatus Sculptor::finish(const Points& tips, BlockShape& out) noexcept {
         out.follow(type2.shape());
         return status;
       },
-      [&](ClayHands& hands) { return press(hands, true, out); });
+      [&](auto& hands) { return follow(hands, tips, true, out); });
 }
 
 FieldStatus Sculptor::commit(const Points& tips) noexcept {
   return counted(each(
       deformer_, [&](auto& type1) { return type1.commit(tips); },
       [&](Type2Deformer& type2) { return type2.begin(tips); },
-      [](ClayHands& hands) { return hands.begin(); }));
+      [&](auto& hands) { return hands.begin(tips); }));
 }
 
 FieldStatus Sculptor::grab_on(const Points& tips) noexcept {
@@ -222,7 +233,7 @@ void Sculptor::drop(bool is_step) noexcept {
   each(
       deformer_, [&](auto& type1) { type1.drop(is_step); },
       [&](Type2Deformer& type2) { type2.release(is_step); },
-      [&](ClayHands& hands) { hands.release(is_step); });
+      [&](auto& hands) { hands.release(is_step); });
 }
 
 FieldStatus Sculptor::reset(const Points& tips) noexcept {
@@ -237,7 +248,7 @@ FieldStatus Sculptor::take_back(const Points& tips) noexcept {
   return counted(each(
       deformer_, [&](auto& type1) { return type1.take_back(tips); },
       [&](Type2Deformer& type2) { return type2.undo(tips); },
-      [&](ClayHands& hands) { return hands.undo(tips); }));
+      [&](auto& hands) { return hands.undo(tips); }));
 }
 
 FieldStatus Sculptor::redo(const Points& tips) noexcept {
@@ -259,6 +270,7 @@ std::size_t Sculptor::forgotten_steps() const noexcept {
 const BlockShape& Sculptor::rest() const noexcept {
   if (const auto* type2 = std::get_if<Type2Deformer>(&deformer_)) return type2->shape();
   if (const ClayHands* hands = clay()) return hands->shape();
+  if (const PartHands* hands = parts()) return hands->shape();
   if (const auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->rest();
   return std::get_if<deform::SurfaceDeformer>(&deformer_)->rest();
 }
@@ -279,6 +291,7 @@ bool Sculptor::is_told_by_fields() const noexcept {
   if (const auto* type2 = std::get_if<Type2Deformer>(&deformer_))
     return !type2->is_brushed() && !type2->is_masked();
   if (const ClayHands* hands = clay()) return !hands->is_moved();
+  if (const PartHands* hands = parts()) return !hands->is_moved();
   const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
   return type1 != nullptr && !type1->is_masked();
 }
@@ -306,6 +319,7 @@ bool Sculptor::moves_anything() const noexcept {
   if (const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
     return surface->is_moved();
   if (const ClayHands* hands = clay()) return hands->is_moved();
+  if (const PartHands* hands = parts()) return hands->is_moved();
   if (const auto* type2 = std::get_if<Type2Deformer>(&deformer_); type2 && type2->is_brushed())
     return true;
   const auto all = fields().fields();

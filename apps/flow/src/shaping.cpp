@@ -34,6 +34,11 @@ std::unique_ptr<Sculptor> sculptor_on(ModelVersion& model, Eigen::Index control_
     if (!model.clay) model.clay = std::make_shared<const ClayModel>(model.mesh);
     options.clay = model.clay;
   }
+  if (options.mode == Mode::parts) {
+    if (!model.parts)
+      model.parts = std::make_shared<const deform::ModelParts>(model.mesh, model.layout());
+    options.parts = model.parts;
+  }
   return std::make_unique<Sculptor>(model.shape, control_points, options);
 }
 
@@ -99,7 +104,7 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
   if (!sculptor_->is_told_by_fields()) ++(frame.surface.field == 0 ? jumps_ : leaps_);
   shaped_ = sculptor_->moves_anything() ||
             (shaped_ && sculptor_->mode() != Mode::type1); // type 1 begins at the rest
-  tell_clay(frame);
+  tell_hands(frame);
   follow_clay(frame.clay, stats);
   // What cannot be committed now stays held, and is tried again at the next tick.
   if (commits && is_solved(status) && is_solved(sculptor_->commit(tips))) {
@@ -107,17 +112,20 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
     commit_due_ = false;
     shaped_ = in_step_ = false;
     held_ = hold_wanted_;
-  } else if (has_left_clay()) {
-    end_clay_stroke(tips);
+  } else if (have_hands_left()) {
+    end_stroke_of_hands(tips);
   }
   return status;
 }
 
-void Shaping::tell_clay(Frame& frame) const noexcept {
-  const ClayHands* const hands = sculptor_->clay();
-  frame.clay = hands == nullptr ? ClayState{} : hands->state();
-  frame.contacts.take(hands == nullptr ? std::span<const deform::ClayContact>{}
-                                       : hands->contacts());
+void Shaping::tell_hands(Frame& frame) const noexcept {
+  const ClayHands* const clay = sculptor_->clay();
+  const PartHands* const parts = sculptor_->parts();
+  frame.clay = clay == nullptr ? ClayState{} : clay->state();
+  frame.parts = parts == nullptr ? PartsState{} : parts->state();
+  frame.contacts.take(clay != nullptr    ? clay->contacts()
+                      : parts != nullptr ? parts->contacts()
+                                         : std::span<const deform::ClayContact>{});
 }
 
 void Shaping::follow_clay(const ClayState& clay, LoopStats& stats) noexcept {
@@ -128,13 +136,15 @@ void Shaping::follow_clay(const ClayState& clay, LoopStats& stats) noexcept {
   stats.clay = clay;
 }
 
-/// The hands are away from the clay, which has come to rest: a stroke in clay is a contact.
-bool Shaping::has_left_clay() const noexcept {
-  return sculptor_->mode() == Mode::clay && (shaped_ || in_step_) && touched_at_ &&
-         time_ - *touched_at_ >= left_for;
+/// The hands are away from the clay, which has come to rest: a stroke in clay is a contact. With
+/// parts, one is from when the first hand takes something until none holds anything.
+bool Shaping::have_hands_left() const noexcept {
+  if (!shaped_ && !in_step_) return false;
+  if (const PartHands* const hands = sculptor_->parts()) return !hands->state().is_held();
+  return sculptor_->mode() == Mode::clay && touched_at_ && time_ - *touched_at_ >= left_for;
 }
 
-void Shaping::end_clay_stroke(const Points& tips) noexcept {
+void Shaping::end_stroke_of_hands(const Points& tips) noexcept {
   if (!is_solved(sculptor_->commit(tips))) return;
   ++otherwise_ended_;
   shaped_ = in_step_ = false;
@@ -146,7 +156,7 @@ FieldStatus Shaping::show_rest(Frame& frame) noexcept {
   frame.fields.clear();
   frame.surface.clear();
   frame.chain = {};
-  tell_clay(frame);
+  tell_hands(frame);
   return FieldStatus::ok;
 }
 

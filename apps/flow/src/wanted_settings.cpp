@@ -19,8 +19,9 @@ std::optional<Command> WantedSettings::ask() noexcept {
 }
 
 void WantedSettings::next_mode(bool is_puppet) noexcept {
-  const unsigned modes = is_puppet ? mode_count - 1U : mode_count;
-  now.mode = static_cast<Mode>((static_cast<unsigned>(now.mode) + 1U) % modes);
+  do
+    now.mode = static_cast<Mode>((static_cast<unsigned>(now.mode) + 1U) % mode_count);
+  while (is_puppet && is_by_hands(now.mode));
 }
 
 void WantedSettings::next_volume() noexcept {

@@ -197,7 +197,7 @@ void put_settings(ByteWriter& writer, const flow::LoopSettings& settings) {
 std::optional<flow::LoopSettings> read_settings(ByteReader& reader) {
   CheckedReader checked(reader);
   flow::LoopSettings settings;
-  settings.mode = checked.one_of(flow::Mode::clay);
+  settings.mode = checked.one_of(flow::Mode::parts);
   settings.kernel = checked.one_of(deform::Wendland::c6);
   settings.injective = reader.u8() != 0;
   checked.filter_kind(settings.filter);
@@ -362,7 +362,7 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
   checked.require(silent_after.count() >= 0 && driver::is_usable_time(silent_after));
   options.silent_after = silent_after;
   options.switch_action = checked.one_of(flow::SwitchAction::keep);
-  options.sculptor.mode = checked.one_of(flow::Mode::clay);
+  options.sculptor.mode = checked.one_of(flow::Mode::parts);
   options.sculptor.piece_length = checked.number(least_piece, largest_number);
   read_deformer(reader, checked, options.sculptor.deformer);
   read.simd = reader.text();

@@ -94,7 +94,7 @@ function open(model) {
 
 function takeSettings(settings) {
   panel.setSettings(settings)
-  if (scene) Object.assign(scene, { radii: settings.radii, isClay: settings.mode === 3 })
+  if (scene) Object.assign(scene, { radii: settings.radii, isByHands: settings.mode >= 3 })
 }
 
 function takeClay(clay) {

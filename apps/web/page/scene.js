@@ -166,7 +166,7 @@ class Scene {
   beside(update, holds) {
     const parts = { bones: new Capsules(), arrows: new Capsules(), reaches: new Capsules(), contacts: CONTACTS.map(() => new Capsules()), skins: [] }
     if (!update) return parts
-    if (this.isClay && this.parts.contacts) this.addContacts(parts.contacts)
+    if (this.isByHands && this.parts.contacts) this.addContacts(parts.contacts)
     update.hands.forEach((given, slot) => {
       if (!given) return
       const place = at => minus(at, this.origin)
@@ -177,7 +177,7 @@ class Scene {
       const material = given.silent ? SILENT : SKIN
       parts.skins.push([skin, this.parts.bones ? material : { ...material, opacity: 1 }])
       const starts = holds.starts[slot]
-      if (!update.held || !starts || this.isClay) return // hands in clay hold nothing
+      if (!update.held || !starts || this.isByHands) return // their tips hold nothing
       TIPS.forEach((tip, finger) => {
         const start = place(starts[finger])
         if (this.parts.vectors) arrow(start, hand.joints[tip].place, 0.007, parts.arrows)

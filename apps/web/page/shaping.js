@@ -1,6 +1,6 @@
 // Mode, kernel, radii and filter. What is chosen is asked for at once, once a picture at most.
 const LEAST_RADIUS = 0.01, MOST_RADIUS = 0.4
-const MODES = { 1: 'type1', 2: 'type2', 3: 'clay' }
+const MODES = { 1: 'type1', 2: 'type2', 3: 'clay', 4: 'parts' }
 const FINGERS = ['thumb', 'index', 'middle', 'ring', 'little']
 const PATIENCE = 1000 // ms, for which what was asked for is shown before what is in force
 
@@ -75,9 +75,9 @@ class Shaping {
     if (one && (slider || input.id === 'one-radius')) wanted.radii.fill(wanted.radii[0])
     this.change()
   }
-  // The points of a puppet do not press clay.
+  // The points of a puppet neither press clay nor move parts.
   nextMode(isPuppet) {
-    const modes = isPuppet ? 2 : 3
+    const modes = isPuppet ? 2 : 4
     if (this.wanted) document.querySelector(`[name=mode][value="${this.wanted.mode % modes + 1}"]`).click()
   }
   // Brushes are of type 2.

@@ -58,7 +58,7 @@ public:
             const deform::DeformerOptions& options, std::optional<double> mirror);
   static constexpr double least_radius_m = 0.020;
 
-  deform::FieldStatus begin() { return clay_.begin(parts()); }
+  deform::FieldStatus begin(const deform::Points&) { return clay_.begin(parts()); }
   deform::FieldStatus grab(const deform::Points&) { return clay_.grab(parts()); }
   /// Presses the surface out of where the bodies are now. With `ends`, all of their way is made.
   deform::FieldStatus press(bool ends);

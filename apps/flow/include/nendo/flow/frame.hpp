@@ -16,6 +16,7 @@
 #include <nendo/driver/sample.hpp>
 #include <nendo/flow/clay_hands.hpp>
 #include <nendo/flow/loop_settings.hpp>
+#include <nendo/flow/part_hands.hpp>
 #include <nendo/flow/placement.hpp>
 #include <nendo/flow/step.hpp>
 #include <nendo/hand/skeleton.hpp>
@@ -43,7 +44,7 @@ struct Awaited {
   friend bool operator==(const Awaited&, const Awaited&) = default;
 };
 
-/// The places where hands touch clay.
+/// The places where hands touch clay, or hold parts.
 struct Contacts {
   static constexpr std::size_t most = 128;
 
@@ -97,6 +98,7 @@ struct Frame {
   deform::SurfaceMove surface;
   deform::ChainReport chain; ///< how the shape stayed injective; all 0 if that is not asked for
   ClayState clay{};
+  PartsState parts{};
   Contacts contacts{};
   std::uint32_t model = 0;  ///< the version of the model that `shape` is of
   std::uint32_t puppet = 0; ///< the number of the puppet whose functions made this frame

@@ -1,6 +1,6 @@
 #pragma once
-// Simulated hands that work on clay: their wrists move, and their fingers bend, by a plan for the
-// model that stands before them.
+// Simulated hands that work on clay or carry parts: their wrists move, and their fingers bend, by a
+// plan for the model that stands before them.
 
 #include <memory>
 #include <optional>
@@ -22,6 +22,8 @@ enum class KneadTask : std::uint8_t {
   press, ///< flattens the model on its table with the palm, turned from press to press; by turns
   knead, ///< thumbs it into a bowl; left: holds the wall from outside
   grip,  ///< pinches it with thumb and index finger, and pulls an ear; left: on the other side
+  carry, ///< takes its upper part by the side, lifts it, and presses it on again the other way
+         ///< round
 };
 std::string_view name_of(KneadTask task) noexcept;
 std::optional<KneadTask> knead_task_named(std::string_view name) noexcept;

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include <nendo/deform/part_mover.hpp>
 #include <nendo/deform/refinement.hpp>
 #include <nendo/deform/sculpted_shape.hpp>
 #include <nendo/deform/subdivision.hpp>
@@ -44,7 +45,8 @@ struct ModelVersion {
   const deform::Mesh mesh;    ///< before the hands; a reset goes back to it
   /// Made when a brush first needs them, by the thread that asks for changes; the loop never looks.
   std::shared_ptr<const deform::VertexRings> rings{};
-  std::shared_ptr<const ClayModel> clay{}; ///< likewise, when hands first press it
+  std::shared_ptr<const ClayModel> clay{};           ///< likewise, when hands first press it
+  std::shared_ptr<const deform::ModelParts> parts{}; ///< likewise, when they first move parts of it
   std::shared_ptr<const ModelOrigin> origin = std::make_shared<ModelOrigin>();
 
   // What follows belongs to the loop's thread while the loop has this version, and to the thread

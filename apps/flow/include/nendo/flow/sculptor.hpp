@@ -14,14 +14,21 @@
 #include <nendo/deform/type1.hpp>
 #include <nendo/deform/type2.hpp>
 #include <nendo/flow/clay_hands.hpp>
+#include <nendo/flow/part_hands.hpp>
 
 namespace nendo::flow {
 
 /// With type1, the start points are frozen and the rest shape is deformed anew each tick. With
 /// type2, the fingertips' paths are followed piece by piece. With clay, whole hands press the
-/// surface out of themselves.
-enum class Mode : std::uint8_t { type1, type2, clay };
-inline constexpr std::uint8_t mode_count = 3;
+/// surface out of themselves. With parts, hands take parts of the model and move them.
+enum class Mode : std::uint8_t { type1, type2, clay, parts };
+inline constexpr std::uint8_t mode_count = 4;
+inline constexpr std::string_view mode_names = "type1, type2, clay or parts"; ///< for messages
+
+/// Tells whether whole hands do it. Otherwise points do, which a puppet may have, too.
+constexpr bool is_by_hands(Mode mode) noexcept {
+  return mode == Mode::clay || mode == Mode::parts;
+}
 
 std::string_view name_of(Mode mode) noexcept;
 std::optional<Mode> mode_named(std::string_view name) noexcept;
@@ -49,10 +56,11 @@ struct SculptorOptions {
   /// If set, type1 measures distances along the surface. Type2 does not: it moves its centres with
   /// the surface, where all distances would have to be measured anew at each piece.
   std::shared_ptr<const deform::SurfaceField> surface{};
-  /// The hands that press clay, and the model that is clay. A loop sets them. Without hands, as
-  /// with a puppet, clay is shaped as in type 1.
+  /// The hands that press clay or move parts, and the model that is clay, or its parts. A loop sets
+  /// them. Without hands, as with a puppet, both modes shape as type 1 does.
   std::shared_ptr<const HandBodies> bodies{};
   std::shared_ptr<const ClayModel> clay{};
+  std::shared_ptr<const deform::ModelParts> parts{};
 
   /// Tells whether a brush does something that needs the triangles about each vertex.
   bool needs_rings() const noexcept;
@@ -143,6 +151,8 @@ public:
   deform::ChainReport report() const noexcept;
   /// Returns the hands in clay; null in other modes.
   const ClayHands* clay() const noexcept { return std::get_if<ClayHands>(&deformer_); }
+  /// Returns the hands that move parts; null in other modes.
+  const PartHands* parts() const noexcept { return std::get_if<PartHands>(&deformer_); }
 
 private:
   deform::FieldStatus counted(deform::FieldStatus status) noexcept {
@@ -150,7 +160,8 @@ private:
     return status;
   }
 
-  std::variant<deform::Type1Deformer, deform::Type2Deformer, deform::SurfaceDeformer, ClayHands>
+  std::variant<deform::Type1Deformer, deform::Type2Deformer, deform::SurfaceDeformer, ClayHands,
+               PartHands>
       deformer_;
   Eigen::Index control_points_;
   std::uint64_t holds_ = 0;

@@ -127,10 +127,10 @@ private:
                                      bool completes) noexcept;
   deform::FieldStatus show_rest(Frame& frame) noexcept;
   // In clay, a stroke is a contact: from the first touch until the hands have left.
-  void tell_clay(Frame& frame) const noexcept;
+  void tell_hands(Frame& frame) const noexcept;
   void follow_clay(const ClayState& clay, LoopStats& stats) noexcept;
-  bool has_left_clay() const noexcept;
-  void end_clay_stroke(const deform::Points& tips) noexcept;
+  bool have_hands_left() const noexcept;
+  void end_stroke_of_hands(const deform::Points& tips) noexcept;
   bool is_pulled() const noexcept;
   bool is_in_hand() const noexcept;
   void take_hold_anew(const deform::Points& tips) noexcept;

@@ -1,0 +1,89 @@
+#pragma once
+// Hands that take parts of a model, move, turn and put them down, in the form that a Sculptor has
+// for its ways of deforming.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <nendo/deform/clay.hpp>
+#include <nendo/deform/field_sequence.hpp>
+#include <nendo/deform/injective_chain.hpp>
+#include <nendo/deform/part_mover.hpp>
+#include <nendo/flow/hand_contact.hpp>
+
+namespace nendo::flow {
+
+/// What hands hold in a frame.
+struct PartsState {
+  std::uint32_t count = 0; ///< of parts; 0: the mode is another one
+  /// The part that each hand holds, of the hands that are present, left hand first; none: no_index.
+  std::array<std::uint32_t, 2> held{deform::no_index, deform::no_index};
+
+  bool is_held() const noexcept {
+    return held[0] != deform::no_index || held[1] != deform::no_index;
+  }
+};
+
+/// Its functions do what those of deform::PartMover do, for hands whose fingertips are at `tips`,
+/// five columns a hand, model units. A hand is closed if its thumb has met the index or the middle
+/// finger, until these are farther apart again. A part turns with the palm, and goes with the
+/// middle between thumb and fingers. None but the constructor allocates.
+class PartHands {
+public:
+  static constexpr double closed_m = 0.025; ///< from tip to tip
+  static constexpr double open_m = 0.040;
+  static constexpr double reach_m = 0.040; ///< from between the tips to a vertex
+
+  /// `shape` must outlive this. Parts of which `mask` holds something stay.
+  PartHands(deform::SculptedShape& shape, std::shared_ptr<const deform::ModelParts> parts,
+            std::shared_ptr<const HandBodies> bodies,
+            std::shared_ptr<const deform::VertexMask> mask);
+
+  deform::FieldStatus begin(const deform::Points& tips) { return mover_.begin(grips(tips)); }
+  deform::FieldStatus grab(const deform::Points& tips) { return mover_.grab(grips(tips)); }
+  /// Moves what is held to where the hands are.
+  deform::FieldStatus follow(const deform::Points& tips) noexcept;
+  void release(bool is_step) noexcept;
+  deform::FieldStatus reset(const deform::Points& tips) { return mover_.reset(grips(tips)); }
+  deform::FieldStatus undo(const deform::Points& tips) { return mover_.undo(grips(tips)); }
+  deform::FieldStatus redo(const deform::Points& tips) { return mover_.redo(grips(tips)); }
+  std::size_t undo_steps() const noexcept { return mover_.undo_steps(); }
+  std::size_t redo_steps() const noexcept { return mover_.redo_steps(); }
+  std::size_t forgotten_steps() const noexcept { return mover_.forgotten_steps(); }
+
+  const deform::BlockLayout& layout() const noexcept { return mover_.layout(); }
+  const deform::BlockShape& shape() const noexcept { return mover_.shape(); }
+  /// Always empty: a part moves as a whole, and others stay.
+  const deform::FieldSequence& fields() const noexcept { return fields_; }
+  deform::ChainReport report() const noexcept { return {}; }
+  bool is_moved() const noexcept { return mover_.is_moved(); } ///< by the last follow()
+  PartsState state() const noexcept;
+  /// Returns where hands hold parts, as if these were clay that they touch lightly.
+  std::span<const deform::ClayContact> contacts() const noexcept { return contacts_; }
+
+private:
+  static constexpr std::size_t most_places = 24; ///< of a hand's contacts
+
+  struct Hand {
+    bool is_closed = false;
+    std::uint32_t held = deform::no_index; ///< whose places these are
+    std::vector<std::size_t> places{};     ///< in block order
+  };
+
+  std::span<const deform::PartGrip> grips(const deform::Points& tips) noexcept;
+  void find_places(std::size_t hand) noexcept;
+  void tell_contacts() noexcept;
+
+  std::shared_ptr<const deform::ModelParts> parts_;
+  std::shared_ptr<const HandBodies> bodies_;
+  std::vector<Hand> hands_;
+  std::vector<deform::PartGrip> grips_;
+  std::vector<deform::ClayContact> contacts_;
+  deform::PartMover mover_;
+  deform::FieldSequence fields_;
+};
+
+} // namespace nendo::flow

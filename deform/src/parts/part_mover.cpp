@@ -1,0 +1,270 @@
+#include <nendo/deform/part_mover.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <nendo/deform/vertex_mask.hpp>
+
+#include "block_edit.hpp"
+#include "parts/part_motion.hpp"
+#include "sculpted_parts.hpp"
+
+namespace nendo::deform {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+/// Parts may be put so many units of the layout away: float is precise enough there.
+constexpr double farthest = 1e4;
+
+template <class Visit>
+void each_lane(std::uint64_t lanes, const Visit& visit) {
+  for (; lanes != 0; lanes &= lanes - 1)
+    visit(static_cast<std::size_t>(std::countr_zero(lanes)));
+}
+
+Vector3f vertex_in(const VertexBlock& block, std::size_t lane) noexcept {
+  return {block.x[lane], block.y[lane], block.z[lane]};
+}
+
+float square_from(const BlockBounds& bounds, const Vector3f& point) noexcept {
+  const Eigen::Map<const Vector3f> low(bounds.sides.data()), high(bounds.sides.data() + 4);
+  return (low - point).cwiseMax(point + high).cwiseMax(0.0F).squaredNorm();
+}
+
+std::vector<bool> held_down(const ModelParts& parts, const VertexMask* mask) {
+  std::vector<bool> down(parts.count(), false);
+  if (mask == nullptr) return down;
+  for (std::uint32_t part = 0; part < parts.count(); ++part)
+    for (const ModelParts::Block& block : parts.blocks_of(part))
+      if (const float* weights = mask->of_block(block.number))
+        each_lane(block.lanes,
+                  [&](std::size_t lane) { down[part] = down[part] || weights[lane] < 0.5F; });
+  return down;
+}
+
+} // namespace
+
+class PartMover::Work {
+public:
+  Work(const SculptedShape& shape, std::shared_ptr<const ModelParts> parts,
+       const PartMoverOptions& options)
+      : layout_(shape.layout()), parts_(std::move(parts)),
+        reach_(static_cast<float>(options.reach / layout_.unit())),
+        is_down_(held_down(*parts_, options.mask.get())), hands_(options.hands),
+        base_(layout_.block_count()), held_frames_(options.hands) {}
+
+  bool accepts(std::span<const PartGrip> grips) const noexcept {
+    return grips.size() == hands_.size() &&
+           std::all_of(grips.begin(), grips.end(), [&](const PartGrip& grip) {
+             return grip.frame.matrix().allFinite() &&
+                    (grip.frame.translation() - layout_.origin()).cwiseAbs().maxCoeff() <=
+                        farthest * layout_.unit();
+           });
+  }
+  bool holds() const noexcept { return holds_; }
+  bool is_moved() const noexcept { return is_moved_; }
+  std::uint32_t held_by(std::size_t hand) const noexcept { return hands_[hand].part; }
+
+  void take_hold(const BoundedShape& shape, std::span<const PartGrip> grips) noexcept {
+    holds_ = true;
+    for (const Hand& hand : hands_)
+      if (hand.part != no_index) begin_anew(hand.part, shape.shape, grips);
+  }
+  void release() noexcept {
+    holds_ = is_moved_ = false;
+    std::fill(hands_.begin(), hands_.end(), Hand{});
+  }
+
+  void move(SculptedShape::Parts& shape, std::span<const PartGrip> grips) noexcept {
+    is_moved_ = false;
+    for (std::size_t hand = 0; hand < hands_.size(); ++hand)
+      follow_grip(hand, shape.now, grips);
+    for (std::size_t hand = 0; hand < hands_.size(); ++hand) {
+      const std::uint32_t part = hands_[hand].part;
+      if (part != no_index && first_holder(part) == hand) move_part(part, shape, grips);
+    }
+  }
+
+private:
+  struct Hand {
+    std::uint32_t part = no_index;
+    bool was_closed = false;
+    Isometry3d from = Isometry3d::Identity(); ///< its frame when base_ was as it is
+    Isometry3d last = Isometry3d::Identity(); ///< the part's motion, of the first that holds it
+  };
+
+  std::size_t first_holder(std::uint32_t part) const noexcept {
+    const auto found = std::find_if(hands_.begin(), hands_.end(),
+                                    [&](const Hand& hand) { return hand.part == part; });
+    return static_cast<std::size_t>(found - hands_.begin());
+  }
+
+  void follow_grip(std::size_t number, const BoundedShape& shape,
+                   std::span<const PartGrip> grips) noexcept {
+    Hand& hand = hands_[number];
+    const bool is_closed = grips[number].is_closed;
+    const bool was_closed = std::exchange(hand.was_closed, is_closed);
+    if (is_closed && !was_closed) {
+      hand.part = part_at(shape, grips[number].frame.translation());
+      if (hand.part != no_index) begin_anew(hand.part, shape.shape, grips);
+    } else if (!is_closed && hand.part != no_index) {
+      const std::uint32_t part = std::exchange(hand.part, no_index);
+      begin_anew(part, shape.shape, grips); // for the other hand
+    }
+  }
+
+  /// The part whose vertex is nearest; no_index if it is beyond reach, or held down.
+  std::uint32_t part_at(const BoundedShape& shape, const Vector3d& point) const noexcept {
+    const Vector3f at = ((point - layout_.origin()) / layout_.unit()).cast<float>();
+    float least = std::numeric_limits<float>::infinity();
+    std::uint32_t part = no_index;
+    for (std::size_t block = 0; block < shape.bounds.size(); ++block) {
+      if (square_from(shape.bounds[block], at) >= least) continue;
+      const VertexBlock& content = shape.shape[block];
+      const std::size_t end = std::min(layout_.vertex_count(), (block + 1) * block_size);
+      for (std::size_t place = block * block_size; place < end; ++place) {
+        const float square = (vertex_in(content, place % block_size) - at).squaredNorm();
+        if (square >= least || parts_->at_place(place) == no_index) continue;
+        least = square;
+        part = parts_->at_place(place);
+      }
+    }
+    if (part == no_index || is_down_[part]) return no_index;
+    return least <= reach_ * reach_ || is_in_box(shape.shape, part, at) ? part : no_index;
+  }
+
+  bool is_in_box(const BlockShape& shape, std::uint32_t part, const Vector3f& at) const noexcept {
+    Eigen::AlignedBox3f box;
+    for (const ModelParts::Block& block : parts_->blocks_of(part))
+      each_lane(block.lanes,
+                [&](std::size_t lane) { box.extend(vertex_in(shape[block.number], lane)); });
+    return box.contains(at);
+  }
+
+  /// What holds the part moves it from here.
+  void begin_anew(std::uint32_t part, const BlockShape& shape,
+                  std::span<const PartGrip> grips) noexcept {
+    for (std::size_t hand = 0; hand < hands_.size(); ++hand)
+      if (hands_[hand].part == part) {
+        hands_[hand].from = grips[hand].frame;
+        hands_[hand].last = Isometry3d::Identity();
+      }
+    for (const ModelParts::Block& block : parts_->blocks_of(part))
+      each_lane(block.lanes, [&](std::size_t lane) {
+        set_vertex(base_[block.number], lane, vertex_in(shape[block.number], lane));
+      });
+  }
+
+  void move_part(std::uint32_t part, SculptedShape::Parts& shape,
+                 std::span<const PartGrip> grips) noexcept {
+    std::size_t holders = 0;
+    for (std::size_t hand = 0; hand < hands_.size(); ++hand)
+      if (hands_[hand].part == part)
+        held_frames_[holders++] = {hands_[hand].from, grips[hand].frame};
+    const Isometry3d motion = motion_of({held_frames_.data(), holders});
+    Isometry3d& last = hands_[first_holder(part)].last;
+    if (motion.matrix() == last.matrix()) return;
+    last = motion;
+    write(part, motion, shape.change());
+    is_moved_ = true;
+  }
+
+  /// Into coordinates of the layout: there, x becomes R x + (R o + t - o) / unit.
+  void write(std::uint32_t part, const Isometry3d& motion, BoundedShape& shape) noexcept {
+    const Vector3d& origin = layout_.origin();
+    const Eigen::Matrix3f turn = motion.linear().cast<float>();
+    const Vector3f way = ((motion * origin - origin) / layout_.unit()).cast<float>();
+    const std::uint64_t stamp = BlockShape::new_stamp();
+    for (const ModelParts::Block& block : parts_->blocks_of(part)) {
+      VertexBlock& to = shape.shape.data()[block.number];
+      each_lane(block.lanes, [&](std::size_t lane) {
+        set_vertex(to, lane, turn * vertex_in(base_[block.number], lane) + way);
+      });
+      const std::size_t first = block.number * block_size;
+      repeat_last(to, std::min(layout_.vertex_count() - first, block_size));
+      shape.shape.set_stamp(block.number, stamp);
+      shape.bounds[block.number] = bounds_of(to);
+      for (const float side : shape.bounds[block.number].sides)
+        shape.extent = std::max(shape.extent, std::abs(static_cast<double>(side)));
+    }
+  }
+
+  const BlockLayout& layout_;
+  std::shared_ptr<const ModelParts> parts_;
+  float reach_; ///< in coordinates of the layout
+  std::vector<bool> is_down_;
+  std::vector<Hand> hands_;
+  std::vector<VertexBlock> base_; ///< what is held, as it was when it was taken
+  std::vector<HeldFrame> held_frames_;
+  bool holds_ = false;
+  bool is_moved_ = false;
+};
+
+PartMover::PartMover(SculptedShape& shape, std::shared_ptr<const ModelParts> parts,
+                     const PartMoverOptions& options)
+    : shape_(&shape), work_(std::make_unique<Work>(shape, std::move(parts), options)) {}
+PartMover::~PartMover() = default;
+PartMover::PartMover(PartMover&&) noexcept = default;
+PartMover& PartMover::operator=(PartMover&&) noexcept = default;
+
+FieldStatus PartMover::begin(std::span<const PartGrip> grips) noexcept {
+  if (!work_->accepts(grips)) return FieldStatus::not_finite;
+  shape_->parts().keep();
+  return grab(grips);
+}
+
+FieldStatus PartMover::grab(std::span<const PartGrip> grips) noexcept {
+  if (!work_->accepts(grips)) return FieldStatus::not_finite;
+  work_->take_hold(shape_->parts().now, grips);
+  return FieldStatus::ok;
+}
+
+void PartMover::release(bool is_step) noexcept {
+  if (is_step) shape_->parts().keep();
+  work_->release();
+}
+
+FieldStatus PartMover::move_to(std::span<const PartGrip> grips) noexcept {
+  if (!work_->holds()) return begin(grips);
+  if (!work_->accepts(grips)) return FieldStatus::not_finite;
+  work_->move(shape_->parts(), grips);
+  return FieldStatus::ok;
+}
+
+FieldStatus PartMover::reset(std::span<const PartGrip> grips) noexcept {
+  if (!work_->accepts(grips)) return FieldStatus::not_finite;
+  shape_->parts().reset();
+  return grab(grips);
+}
+
+FieldStatus PartMover::undo(std::span<const PartGrip> grips) noexcept {
+  if (!work_->accepts(grips)) return FieldStatus::not_finite;
+  shape_->parts().keep();
+  shape_->parts().undo();
+  return grab(grips);
+}
+
+FieldStatus PartMover::redo(std::span<const PartGrip> grips) noexcept {
+  if (redo_steps() == 0) return FieldStatus::ok;
+  if (!work_->accepts(grips)) return FieldStatus::not_finite;
+  shape_->parts().redo();
+  return grab(grips);
+}
+
+bool PartMover::is_moved() const noexcept {
+  return work_->is_moved();
+}
+
+std::uint32_t PartMover::held_by(std::size_t hand) const noexcept {
+  return work_->held_by(hand);
+}
+
+} // namespace nendo::deform
