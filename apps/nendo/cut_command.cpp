@@ -103,9 +103,6 @@ Result<void> check(const Options& options) {
   };
   if (options.plane.empty() == options.wire.empty())
     return Error{Errc::usage, "--plane and --wire: give one of them"};
-  if (!has("%d"))
-    return Error{Errc::usage,
-                 "--out " + options.out + ": use a name with %d, which becomes the part's number"};
   if (options.models.size() > 1 && !has("%s"))
     return Error{Errc::usage, "--out " + options.out +
                                   ": of several models, use a name with %s, too, which becomes the "
@@ -137,21 +134,29 @@ Result<CutModel> cut_by(const Mesh& mesh, const AnyBlade& blade, const Options& 
   return cut_model(mesh, std::get<CutWire>(blade), cut);
 }
 
+/// What of a cut model is written: each part, or all of them as one model.
+std::vector<Mesh> meshes_of(const CutModel& cut, const Options& options) {
+  if (options.out.find("%d") != std::string::npos) return separate(cut);
+  return {cut.mesh};
+}
+
 Result<void> write_parts(const std::string& file, const CutModel& cut, const Options& options) {
-  const std::vector<Mesh> parts = separate(cut);
-  for (std::size_t at = 0; at < parts.size(); ++at)
+  const std::vector<Mesh> meshes = meshes_of(cut, options);
+  for (std::size_t at = 0; at < meshes.size(); ++at)
     for (const std::string& model : options.models)
       if (const auto fine =
               cli::check_spares(model, "--out", part_name(options.out, file, at + 1), false);
           !fine)
         return fine;
-  for (std::size_t at = 0; at < parts.size(); ++at) {
+  for (std::size_t at = 0; at < meshes.size(); ++at) {
     const std::string name = part_name(options.out, file, at + 1);
-    if (auto done = write_mesh(name, parts[at]); !done) return done;
-    char sizes[96];
-    std::snprintf(sizes, sizeof sizes, ": %td vertices, %zu faces, volume %.9g\n",
-                  parts[at].vertices.cols(), parts[at].face_count(), volume_of(parts[at]));
+    if (auto done = write_mesh(name, meshes[at]); !done) return done;
+    char sizes[128];
+    std::snprintf(sizes, sizeof sizes, ": %td vertices, %zu faces, volume %.9g",
+                  meshes[at].vertices.cols(), meshes[at].face_count(), volume_of(meshes[at]));
     std::cout << printable(name) << sizes;
+    if (meshes.size() == 1) std::cout << ", in " << cut.parts << " parts";
+    std::cout << '\n';
   }
   return {};
 }
@@ -212,7 +217,7 @@ void add(cli::Command& program) {
   command
       .add_option("--out", options->out,
                   "Where to write the parts, .obj or .ply: %d becomes the part's number, from 1, "
-                  "and %s the model's name")
+                  "and %s the model's name; without %d all parts become one file")
       .required();
   command.add_option("--edge", options->edge,
                      "Length of the cut faces' edges; without it, about that of the faces which "

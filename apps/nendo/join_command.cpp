@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <nendo/deform/cut.hpp>
 #include <nendo/deform/join.hpp>
 #include <nendo/deform/mesh_file.hpp>
 
@@ -26,8 +27,6 @@ struct Options {
 };
 
 Result<void> check(const Options& options) {
-  if (options.parts.size() < 2)
-    return Error{Errc::usage, "PART: name two files at least, because one part alone is whole"};
   if (!(options.seam >= 0.0) || !std::isfinite(options.seam))
     return Error{Errc::usage, "--seam: use a width in the models' units, 0 or more"};
   if (auto fine = cli::check_place("--out", options.out, {".obj", ".ply"}); !fine) return fine;
@@ -43,9 +42,33 @@ std::string short_number(double value) {
   return text;
 }
 
+struct NamedMesh {
+  Mesh mesh;
+  std::string name; ///< for messages
+};
+
+/// Of several files, each is a part. Of one, its parts are.
+Result<std::vector<NamedMesh>> read_parts(const std::vector<std::string>& files) {
+  std::vector<NamedMesh> parts;
+  for (const std::string& file : files) {
+    auto mesh = read_mesh(file);
+    if (!mesh) return mesh.error();
+    parts.push_back({*std::move(mesh), file});
+  }
+  if (parts.size() > 1) return parts;
+  std::vector<Mesh> separated = separate(parts.front().mesh);
+  if (separated.size() < 2)
+    return Error{Errc::usage, files.front() + ": is one part, which is whole; name a second file, "
+                                              "or a file of several parts"};
+  parts.clear();
+  for (Mesh& part : separated)
+    parts.push_back(
+        {std::move(part), files.front() + ", part " + std::to_string(parts.size() + 1)});
+  return parts;
+}
+
 /// Tells what was done, and what is hardly meant.
-void note_step(const Options& options, std::size_t at, const JoinStep& step) {
-  const std::string& name = options.parts[at + 1];
+void note_step(const std::string& name, const Options& options, const JoinStep& step) {
   if (step.swallowed) {
     cli::note(name + ": it and what was joined before do not cross, one lies inside of the other; "
                      "what is inside is gone");
@@ -63,19 +86,15 @@ void note_step(const Options& options, std::size_t at, const JoinStep& step) {
 
 Result<void> join_files(const Options& options) {
   if (const auto fine = check(options); !fine) return fine.error();
-  std::vector<Mesh> meshes;
+  const auto named = read_parts(options.parts);
+  if (!named) return named.error();
   std::vector<JoinPart> parts;
-  meshes.reserve(options.parts.size());
-  for (const std::string& file : options.parts) {
-    auto mesh = read_mesh(file);
-    if (!mesh) return mesh.error();
-    meshes.push_back(std::move(*mesh));
-    parts.push_back({&meshes.back(), file});
-  }
+  for (const NamedMesh& part : *named)
+    parts.push_back({&part.mesh, part.name});
   const auto joined = join(parts, {.seam_width = options.seam});
   if (!joined) return joined.error();
   for (std::size_t at = 0; at < joined->steps.size(); ++at)
-    note_step(options, at, joined->steps[at]);
+    note_step((*named)[at + 1].name, options, joined->steps[at]);
   return write_mesh(options.out, joined->mesh);
 }
 
@@ -84,7 +103,9 @@ Result<void> join_files(const Options& options) {
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command("join", "Joins models that overlap into one, exactly");
-  command.add_option("PART", options->parts, "OBJ, PLY or glTF files, two or more, closed models")
+  command
+      .add_option("PART", options->parts,
+                  "OBJ, PLY or glTF files of closed models; of one file, its parts are joined")
       .required();
   command.add_option("--seam", options->seam,
                      "How far the seam is smeared to each side, in the models' units; 0 leaves it "

@@ -7,6 +7,7 @@
 #include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/cut.hpp>
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/deform/part_mover.hpp>
 
 #include "support/nasty_meshes.hpp"
 #include "support/program.hpp"
@@ -50,6 +51,43 @@ TEST_SUITE("nendo cut") {
     CHECK(volume == doctest::Approx(1.0).epsilon(1e-11));
     CHECK(std::filesystem::exists(place("ring-part2.obj")));
     CHECK(!std::filesystem::exists(place("ring-part3.obj")));
+  }
+
+  TEST_CASE_FIXTURE(Fixture, "without %d all parts become one file, which is joined again") {
+    const std::string cube = save("cube.obj", test::cube_of_cells(4));
+    const auto done = cut({cube, "--plane", "0.3,0.5,0.5,1,0.1,0", "--out", place("parts.obj")});
+    CHECK(done.err == "");
+    REQUIRE(done.exit_code == 0);
+    CHECK(done.out.find(", in 2 parts") != std::string::npos);
+    auto both = deform::read_mesh(place("parts.obj"));
+    REQUIRE(both);
+    CHECK(deform::check_closed_manifold(*both));
+    CHECK(deform::volume_of(*both) == doctest::Approx(1.0).epsilon(1e-9));
+    const auto parts = deform::separate(*both);
+    REQUIRE(parts.size() == 2);
+    Eigen::Index vertices = 0;
+    for (const deform::Mesh& part : parts) {
+      CHECK(deform::check_closed_manifold(part));
+      vertices += part.vertices.cols();
+    }
+    CHECK(vertices == both->vertices.cols());
+    // The larger one is pressed on again a little deeper.
+    const deform::BlockLayout layout(both->vertices);
+    const deform::ModelParts of(*both, layout);
+    const auto places = layout.places();
+    const std::uint32_t larger = deform::volume_of(parts[0]) > 0.5 ? 0 : 1;
+    for (std::size_t vertex = 0; vertex < places.size(); ++vertex)
+      if (of.at_place(places[vertex]) == larger)
+        both->vertices(0, static_cast<Eigen::Index>(vertex)) -= 0.05;
+    save("pressed.obj", *both);
+    const auto joined = test::nendo({"join", place("pressed.obj"), "--out", place("joined.obj")});
+    CHECK(joined.exit_code == 0);
+    CHECK(is_one_line_about(joined.err, "pressed.obj, part 2: "));
+    const auto whole = deform::read_mesh(place("joined.obj"));
+    REQUIRE(whole);
+    CHECK(deform::check_closed_manifold(*whole));
+    CHECK(deform::separate(*whole).size() == 1);
+    CHECK(deform::volume_of(*whole) == doctest::Approx(0.95).epsilon(0.01));
   }
 
   TEST_CASE_FIXTURE(Fixture, "a wire's path from a file cuts, and what stays whole is said") {
@@ -98,7 +136,6 @@ TEST_SUITE("nendo cut") {
     refused({cube, "--plane", "1,2,3", "--out", out}, 2, "--plane 1,2,3: use X,Y,Z,NX,NY,NZ");
     refused({cube, "--plane", "1,2,3,0,0,0", "--out", out}, 2, "a normal that is not zero");
     refused({cube, "--plane", "1,2,3,0,nan,1", "--out", out}, 2, "use X,Y,Z,NX,NY,NZ");
-    refused({cube, "--plane", plane, "--out", place("p.obj")}, 2, "use a name with %d");
     refused({cube, "--plane", plane, "--out", place("p%d.stl")}, 2, "--out");
     refused({cube, cube, "--plane", plane, "--out", out}, 2, "use a name with %s");
     refused({cube, "--plane", plane, "--out", out, "--edge", "-1"}, 2, "--edge");

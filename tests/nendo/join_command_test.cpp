@@ -65,7 +65,7 @@ TEST_SUITE("nendo join") {
       int exit_code;
       std::string about;
     };
-    for (const Case& wrong : {Case{{"join", a, "--out", out}, 2, "name two files"},
+    for (const Case& wrong : {Case{{"join", a, "--out", out}, 2, "name a second file"},
                               Case{{"join", a, b, "--out", "x.stl"}, 2, "--out"},
                               Case{{"join", a, b, "--out", a}, 2, "--force"},
                               Case{{"join", a, b, "--seam", "-1", "--out", out}, 2, "--seam"},

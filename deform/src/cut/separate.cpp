@@ -2,6 +2,8 @@
 
 #include <nendo/deform/cut.hpp>
 
+#include "cut/cut_assembly.hpp"
+
 namespace nendo::deform {
 namespace {
 
@@ -71,20 +73,17 @@ void copy_face(const Mesh& from, std::uint32_t face, Renumbered& vertices, Renum
   take(from.look.objects.of_face, to.look.objects.of_face);
 }
 
-} // namespace
-
-std::vector<Mesh> separate(const CutModel& model) {
-  const Mesh& mesh = model.mesh;
-  const auto part_of = [&](std::uint32_t vertex) { return model.part_of_vertex[vertex]; };
-  const ByPart vertices =
-      by_part(static_cast<std::size_t>(mesh.vertices.cols()), model.parts, part_of);
-  const ByPart faces = by_part(mesh.face_count(), model.parts, [&](std::uint32_t face) {
+std::vector<Mesh> separated(const Mesh& mesh, const std::vector<std::uint32_t>& part_of_vertex,
+                            std::uint32_t count) {
+  const auto part_of = [&](std::uint32_t vertex) { return part_of_vertex[vertex]; };
+  const ByPart vertices = by_part(static_cast<std::size_t>(mesh.vertices.cols()), count, part_of);
+  const ByPart faces = by_part(mesh.face_count(), count, [&](std::uint32_t face) {
     return part_of(mesh.face_corners[mesh.face_starts[face]]);
   });
   Renumbered vertex(static_cast<std::size_t>(mesh.vertices.cols()));
   Renumbered texcoord(static_cast<std::size_t>(mesh.texcoords.cols()));
-  std::vector<Mesh> parts(model.parts);
-  for (std::uint32_t part = 0; part < model.parts; ++part) {
+  std::vector<Mesh> parts(count);
+  for (std::uint32_t part = 0; part < count; ++part) {
     Mesh& own = parts[part];
     vertex.clear();
     texcoord.clear();
@@ -102,6 +101,18 @@ std::vector<Mesh> separate(const CutModel& model) {
     own.look.objects.names = mesh.look.objects.names;
   }
   return parts;
+}
+
+} // namespace
+
+std::vector<Mesh> separate(const CutModel& model) {
+  return separated(model.mesh, model.part_of_vertex, model.parts);
+}
+
+std::vector<Mesh> separate(const Mesh& mesh) {
+  std::vector<std::uint32_t> part_of_vertex;
+  const std::uint32_t count = number_parts(mesh, part_of_vertex);
+  return separated(mesh, part_of_vertex, count);
 }
 
 } // namespace nendo::deform

@@ -72,6 +72,10 @@ Result<CutModel> cut_model(const Mesh& mesh, const CutWire& wire, const CutOptio
 /// faces keep their order. Allocates.
 std::vector<Mesh> separate(const CutModel& model);
 
+/// Does the same with any mesh: two vertices are of one part if edges lead from the one to the
+/// other.
+std::vector<Mesh> separate(const Mesh& mesh);
+
 /// Returns the volume that a closed surface encloses, in cubic model units; negative if its faces
 /// face inwards.
 double volume_of(const Mesh& mesh) noexcept;
