@@ -136,9 +136,11 @@ Result<Exported> by_key_shapes(takes::FrameSource& source, const Choice& choice,
   if (!played) return played.error();
   segments.back()->finish();
   if (weight_count(segments) > options.most_weights) return too_many_keys(path);
-  MorphReport report = add_models(
-      segments, GltfMaterials(source.model(segments.front()->version()).look, document.file),
-      *played, diagonal, document);
+  std::vector<const deform::Appearance*> looks;
+  for (const auto& segment : segments)
+    looks.push_back(&source.model(segment->version()).look);
+  MorphReport report = add_models(segments, GltfMaterials(richest_of(looks), document.file),
+                                  *played, diagonal, document);
   report.tolerance = tolerance / diagonal;
   report.diagonal_m = diagonal / played->units_per_metre;
   Json roots = Json::array();

@@ -52,6 +52,12 @@ Json material_named(const std::string& name, const Eigen::Vector4f& colour) {
 
 } // namespace
 
+const deform::Appearance& richest_of(std::span<const deform::Appearance* const> looks) noexcept {
+  return **std::max_element(looks.begin(), looks.end(), [](const auto* one, const auto* other) {
+    return one->materials.size() < other->materials.size();
+  });
+}
+
 GltfMaterials::GltfMaterials(const deform::Appearance& look, GlbFile& file) {
   const auto textures = add_textures(look, file);
   for (const deform::Material& given : look.materials) {

@@ -2,6 +2,7 @@
 // Puts a model's materials, and the textures of their base colours, into a glTF document.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <nendo/deform/mesh.hpp>
@@ -9,6 +10,9 @@
 #include "export/glb_file.hpp"
 
 namespace nendo::exporting {
+
+/// Returns the one with the most materials. Versions of a model add theirs behind those before.
+const deform::Appearance& richest_of(std::span<const deform::Appearance* const> looks) noexcept;
 
 class GltfMaterials {
 public:

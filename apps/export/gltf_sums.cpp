@@ -26,7 +26,10 @@ struct SummedModel {
 Result<Exported> finish_sums(const SumTake& take, const std::vector<SummedModel>& models,
                              MorphBasis basis, const Played& played, GltfTake& document) {
   const double diagonal = take.source.layout(models.front().version).diagonal();
-  const GltfMaterials materials(take.source.model(models.front().version).look, document.file);
+  std::vector<const deform::Appearance*> looks;
+  for (const SummedModel& one : models)
+    looks.push_back(&take.source.model(one.version).look);
+  const GltfMaterials materials(richest_of(looks), document.file);
   MorphReport report;
   report.basis = basis;
   report.models = models.size();

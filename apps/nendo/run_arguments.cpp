@@ -160,6 +160,19 @@ Result<void> set_size(RunArguments& options) {
   return {};
 }
 
+Result<void> set_wire(RunArguments& options) {
+  if (options.wire.empty()) return {};
+  const auto colon = options.wire.find(':');
+  const auto from = cli::seconds_of(options.wire.substr(0, colon));
+  const auto to =
+      colon == std::string::npos ? std::nullopt : cli::seconds_of(options.wire.substr(colon + 1));
+  if (!from || !to || !(*from >= 0.0) || !(*to > *from))
+    return Error{Errc::usage, "--wire " + options.wire +
+                                  ": use two times with a colon between, such as 0.8s:2.5s"};
+  options.run.wire = {*from, *to};
+  return {};
+}
+
 Result<void> check_refinable(const deform::Mesh& model, const RunArguments& options) {
   if (options.run.refine_to == 0) return {};
   const auto fine = deform::Refiner::check(model);
@@ -179,6 +192,7 @@ Result<void> check(RunArguments& options) {
   run.loop.sculptor.mode = mode.value_or(flow::Mode::type1);
   if (auto fine = options.brush.parse(options.mode, run.loop.sculptor); !fine) return fine;
   if (auto fine = set_size(options); !fine) return fine;
+  if (auto fine = set_wire(options); !fine) return fine;
   const auto action = flow::switch_action_named(options.switch_action);
   if (!action) {
     return Error{Errc::usage, "--switch " + options.switch_action +

@@ -20,6 +20,7 @@ struct RunArguments {
   std::string radius;
   std::string mode; ///< empty: type1, or type2 with a brush
   std::string hold = "tips";
+  std::string wire; ///< FROM:TO, when it is drawn; empty: when asked for
   std::string size; ///< of the model on the stage; empty: as the mode has it
   std::string switch_action = "none";
   session::FilterArguments filter;

@@ -158,6 +158,10 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
   command.add_option("--mask", run_options.mask_file,
                      "A file of places that fingertips leave as they are: [[masks]] with at and "
                      "radius, as in a puppet's file; the window paints and saves them");
+  command.add_option(
+      "--wire", options.wire,
+      "FROM:TO, times of the run: between them the index fingers draw a wire through "
+      "the model, and it then cuts, e.g. 0.8s:2.5s; C does it by hand");
   command.add_option("--refine", options.refine_to,
                      "While the hands shape it, the model gets more triangles where it is "
                      "stretched, and fewer where it is crowded, up to so many vertices");

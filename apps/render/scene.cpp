@@ -20,6 +20,7 @@ const Material skin{{0.33F, 0.345F, 0.37F}, 0.10F, 0.64F, 1.0F, 0.0F, 0.0F, true
 const Material silent_skin{{0.22F, 0.22F, 0.22F}, 0.0F, 0.25F, 0.85F};
 const Material bone{{0.80F, 0.78F, 0.70F}, 0.10F};
 const Material arrow{{0.95F, 0.52F, 0.02F}, 0.20F};
+const Material wire{{0.15F, 0.15F, 0.17F}, 0.30F};
 const Material reach{{0.80F, 0.40F, 0.05F}, 0.0F, 0.0F, 0.30F};
 const Material ground{{0.74F, 0.74F, 0.74F}, 0.0F, 1.0F, 1.0F, 0.1F, 1.0F};
 
@@ -91,6 +92,7 @@ void SceneBuilder::build_beside(const SceneFrame& scene_frame, const SceneParts&
     if (scene_frame.hands[slot])
       add_hand(*scene_frame.hands[slot], slot, scene_frame, parts, scene);
   if (parts.contacts) add_contacts(scene_frame, scene);
+  if (!scene_frame.wire.empty()) add_wire(scene_frame, scene);
   if (parts.ground) add_ground(scene);
 }
 
@@ -133,6 +135,32 @@ void SceneBuilder::add_contacts(const SceneFrame& scene_frame, Scene& scene) con
     surfaces[colour].material = contact_colours[colour];
     if (!surfaces[colour].is_empty()) scene.solids.push_back(std::move(surfaces[colour]));
   }
+}
+
+// The wire as it is now, and what it has swept.
+void SceneBuilder::add_wire(const SceneFrame& scene_frame, Scene& scene) const {
+  constexpr float wire_radius_m = 0.0015F;
+  const auto place_of = [&](const Eigen::Vector3d& place_m) -> Vector3f {
+    return (place_m - origin_m_).cast<float>();
+  };
+  const deform::WirePlace& now = scene_frame.wire.back();
+  scene.solids.push_back({{}, {}, {}, wire});
+  add_capsule(scene.solids.back(), place_of(now.from), place_of(now.to), wire_radius_m,
+              wire_radius_m);
+  if (scene_frame.wire.size() < 2) return;
+  Surface swept{{}, {}, {}, reach};
+  for (std::size_t at = 0; at + 1 < scene_frame.wire.size(); ++at) {
+    const Vector3f a = place_of(scene_frame.wire[at].from), b = place_of(scene_frame.wire[at].to),
+                   c = place_of(scene_frame.wire[at + 1].to),
+                   d = place_of(scene_frame.wire[at + 1].from);
+    const Vector3f normal = (c - a).cross(d - b).normalized();
+    const auto first = static_cast<std::uint32_t>(swept.places.size());
+    swept.places.insert(swept.places.end(), {a, b, c, d});
+    swept.normals.insert(swept.normals.end(), 4, normal);
+    swept.corners.insert(swept.corners.end(),
+                         {first, first + 1, first + 2, first, first + 2, first + 3});
+  }
+  scene.veils.push_back(std::move(swept));
 }
 
 // In cells, for what light reaches it is known at its vertices.

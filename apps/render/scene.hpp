@@ -59,6 +59,7 @@ private:
   void add_hand(const SceneHand& hand, std::size_t slot, const SceneFrame& scene_frame,
                 const SceneParts& parts, Scene& scene) const;
   void add_contacts(const SceneFrame& scene_frame, Scene& scene) const;
+  void add_wire(const SceneFrame& scene_frame, Scene& scene) const;
   void add_ground(Scene& scene) const;
 
   double units_per_metre_;

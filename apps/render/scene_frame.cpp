@@ -16,6 +16,11 @@ void set_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& s
   for (const deform::ClayContact& contact : frame.contacts.all())
     scene_frame.contacts.push_back(
         {contact.place / frame.units_per_metre, flow::strength_of(contact)});
+  scene_frame.wire.clear();
+  if (frame.wire.is_drawn())
+    for (const deform::WirePlace& place : frame.wire.places())
+      scene_frame.wire.push_back(
+          {place.from / frame.units_per_metre, place.to / frame.units_per_metre});
   for (std::size_t slot = 0; slot < scene_frame.hands.size(); ++slot) {
     const flow::HandFrame& hand = frame.hands[slot];
     scene_frame.hands[slot].reset();

@@ -35,6 +35,7 @@ struct SceneFrame {
   /// The radius of each fingertip's support, on the stage; 0 means not shown.
   std::array<double, 5> radius_m{};
   std::vector<SceneContact> contacts{};
+  std::vector<deform::WirePlace> wire{}; ///< that hands draw now; on the stage, metres
 };
 
 /// Remembers where the fingertips took hold. The places are exact if the tracker sees every frame.

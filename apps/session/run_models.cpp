@@ -16,6 +16,12 @@ constexpr double least_unfit_fraction = 0.004; ///< of the vertices
 /// In the middle of a stroke, which ends by it: as many times as many.
 constexpr double in_a_stroke = 5.0;
 
+std::string parts_text(const flow::ModelVersion& model) {
+  const auto parts = deform::ModelParts(model.mesh, model.layout()).count();
+  return parts == 1 ? "the model is one part now"
+                    : "the model has " + std::to_string(parts) + " parts now";
+}
+
 std::uint64_t newest_stamp(const deform::BlockShape& shape) {
   std::uint64_t newest = 0;
   for (std::size_t block = 0; block < shape.block_count(); ++block)
@@ -93,8 +99,9 @@ std::optional<std::string> RunModels::begin() {
   made_ = *std::exchange(asked_, {});
   is_by_itself_ = false;
   const flow::ModelVersion& model = placed_.loop->newest_model();
-  making_ = std::async(std::launch::async,
-                       [&model, how = made_] { return Made{flow::FinerModel::make(model, how)}; });
+  making_ = std::async(std::launch::async, [&model, how = made_, wire = wire_] {
+    return Made{flow::FinerModel::make(model, how, wire.places())};
+  });
   return std::nullopt;
 }
 
@@ -113,6 +120,8 @@ std::optional<std::string> RunModels::hand_over() {
   // What nobody has asked for happens many times a minute.
   if (is_by_itself_ && (taken || finer->found_nothing())) return std::nullopt;
   if (!taken) return taken.error().message + "; the model stays as it is";
+  if (made_.source == flow::ModelSource::cut || made_.source == flow::ModelSource::joined)
+    return parts_text(loop.newest_model());
   return "the model has " + std::to_string(loop.newest_model().layout().vertex_count()) +
          " vertices now";
 }

@@ -22,6 +22,11 @@ public:
 
   /// Asks for another model, made of the present one: flow::model_asked_by().
   void ask(const flow::ChangeModel& change) noexcept { asked_ = change; }
+  /// Asks for the present model, cut by that wire.
+  void cut(const flow::WirePath& wire) noexcept {
+    wire_ = wire;
+    ask({0, flow::ModelSource::cut});
+  }
   /// Goes back, or on, to settings and a version that are kept: flow::Frame::awaited. Returns a
   /// message for people if that cannot be.
   std::optional<std::string> go_to(const flow::Awaited& awaited);
@@ -57,6 +62,7 @@ private:
   std::optional<flow::ChangeModel> asked_;     ///< without its number
   std::future<Made> making_;
   flow::ChangeModel made_;                ///< what making_ and finer_ are
+  flow::WirePath wire_;                   ///< that cuts
   std::optional<flow::FinerModel> finer_; ///< made, and not the loop's yet
   Stage stage_ = Stage::none;
 };

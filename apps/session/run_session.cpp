@@ -113,6 +113,7 @@ private:
     const flow::ModelVersion& model = *placed_.loop->model(frame.model);
     settle_sinks();
     follow_layers(frame);
+    follow_wire(frame);
     const RunStatus status{
         frame, model, fresh, gloves_, recorder_.is_to_file(), placed_.loop->puppet(frame.puppet)};
     for (Observer* observer : observers_) {
@@ -150,7 +151,8 @@ private:
     if (taken_puppet_ && !awaits && !loop.is_changing() && !recorder_.is_changing() &&
         !models_.is_handing_over())
       follow_taken_puppet();
-    if (record_ && !recorder_.is_changing() && !models_.is_handing_over())
+    // A recording has the whole of a wire that cuts in it, or nothing of it.
+    if (record_ && !recorder_.is_changing() && !models_.is_handing_over() && !models_.is_due())
       recorder_.set_file(*std::exchange(record_, {}), frame);
     tell(recorder_.follow());
     tell(models_.follow(!awaits && !recorder_.is_changing()));
@@ -164,6 +166,17 @@ private:
         else
           dispatch(command);
       });
+  }
+  /// Draws the wire of the options, and cuts by each that has been drawn.
+  void follow_wire(const flow::Frame& frame) {
+    if (options_.wire) {
+      const double now_s = static_cast<double>(frame.tick) / options_.loop.rate_hz;
+      const bool draws = now_s >= options_.wire->from_s && now_s < options_.wire->to_s;
+      if (std::exchange(draws_wire_, draws) != draws)
+        loop_commands_.try_push(flow::DrawWire{draws});
+    }
+    if (std::exchange(wires_, frame.wire.completed()) == frame.wire.completed()) return;
+    if (!frame.wire.is_drawn()) models_.cut(frame.wire);
   }
   void follow_layers(const flow::Frame& frame) {
     if (frame.ticks_run == 0) return;
@@ -247,6 +260,7 @@ private:
       settings_ = change->settings; // only the newest count
     if (const auto* recording = std::get_if<flow::SetRecording>(&command)) record_ = recording->on;
     if (const auto change = flow::model_asked_by(command)) models_.ask(*change);
+    if (std::holds_alternative<flow::DrawWire>(command)) loop_commands_.try_push(command);
     if (std::holds_alternative<flow::Mark>(command)) mark();
     if (std::holds_alternative<flow::Punch>(command)) punch();
     if (std::holds_alternative<flow::SetMask>(command)) mask_edits_.push_back(command);
@@ -390,6 +404,8 @@ private:
   std::optional<flow::LoopSettings> settings_;           ///< not passed on yet
   std::shared_ptr<const puppet::Rig> puppet_;            ///< not passed on yet
   std::optional<std::uint32_t> taken_puppet_;            ///< likewise, by the take's number
+  std::uint32_t wires_ = 0;                              ///< that have been drawn to their end
+  bool draws_wire_ = false;                              ///< that of the options
   std::map<std::uint32_t, std::uint32_t> taken_puppets_; ///< the loop's numbers of the take's
   std::vector<flow::Command> mask_edits_;                ///< likewise, and symmetry
   std::optional<bool> record_;                           ///< to a file, or not; not done yet

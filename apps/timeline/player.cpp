@@ -270,8 +270,10 @@ void Player::make_model(const flow::ChangeModel& change) {
   shaping_.hold_still(tips_, frame_, stats_);
   const auto number = static_cast<std::uint32_t>(versions_.size());
   auto finer = flow::FinerModel::make(shaping_.model(), change);
-  if (auto made = finer ? finer->finish(number, undo_room()) : nullptr) {
-    versions_.push_back(std::move(made));
+  auto made = finer ? finer->finish(number, undo_room())
+                    : Result<std::unique_ptr<flow::ModelVersion>>(finer.error());
+  if (made) {
+    versions_.push_back(*std::move(made));
     if (change_to({shaping_.settings(), number, shaping_.puppet()}, true)) return;
     versions_.pop_back();
     was_refused_ = true;

@@ -116,6 +116,12 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
     commands.emplace_back(flow::SaveShape{});
   if (button("Keep", "The recording of what was just done (k)"))
     commands.emplace_back(flow::SaveRecording{});
+  if (button(frame.wire.is_drawn() ? "Cut" : "Wire",
+             "Draws a wire between the index fingers through the model, and then cuts by it "
+             "(shift c)"))
+    commands.emplace_back(flow::DrawWire{!frame.wire.is_drawn()});
+  if (button("Join", "Parts that overlap become one; undo takes it back (shift j)"))
+    commands.emplace_back(flow::JoinParts{});
   if (button("Subdivide", "More vertices for finer strokes; undo takes it back (e)"))
     commands.emplace_back(flow::Subdivide{});
   if (button("Refine", "More triangles where the model was stretched, fewer where it was crowded; "

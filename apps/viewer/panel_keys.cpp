@@ -39,6 +39,8 @@ constexpr std::array key_table{
     KeyLine{"j", "the whole hand holds, or its fingertips"},
     KeyLine{"e", "subdivide: the model gets more vertices for finer strokes"},
     KeyLine{"shift e", "refine: more triangles where it was stretched, fewer where it was crowded"},
+    KeyLine{"shift c", "begins to draw a wire between index fingers, and then cuts by it"},
+    KeyLine{"shift j", "joins parts that overlap"},
     KeyLine{"Home", "all of the model and the hands in the picture"},
     KeyLine{"p", "the panel folded and unfolded"},
     KeyLine{"q", "quit; the shape is written"},
@@ -98,11 +100,14 @@ void LiveWindow::Panel::step_keys(const flow::Frame& frame, Commands& commands) 
 
 void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gauges,
                                     SceneWindow& window, Commands& commands) {
+  const bool shift = ImGui::GetIO().KeyShift;
   for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
                                      {GLFW_KEY_L, Request::let_go},
                                      {GLFW_KEY_C, Request::commit},
                                      {GLFW_KEY_X, Request::reset}})
-    if (pressed(key)) commands.emplace_back(request);
+    if (pressed(key) && !(shift && key == GLFW_KEY_C)) commands.emplace_back(request);
+  if (shift && pressed(GLFW_KEY_C)) commands.emplace_back(flow::DrawWire{!frame.wire.is_drawn()});
+  if (shift && pressed(GLFW_KEY_J)) commands.emplace_back(flow::JoinParts{});
   if (pressed(GLFW_KEY_U)) step(Request::undo, frame, commands);
   if (pressed(GLFW_KEY_R)) step(Request::redo, frame, commands);
   if (pressed(GLFW_KEY_T)) commands.emplace_back(flow::SetRecording{!gauges.recording});
@@ -117,7 +122,7 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
     if (pressed(GLFW_KEY_A)) commands.emplace_back(Request::take_hold);
     if (pressed(GLFW_KEY_O)) commands.emplace_back(flow::Punch{});
     if (pressed(GLFW_KEY_SEMICOLON)) wanted.next_volume();
-    if (pressed(GLFW_KEY_J)) wanted.toggle_hold();
+    if (pressed(GLFW_KEY_J) && !shift) wanted.toggle_hold();
   }
   if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});
   if (pressed(GLFW_KEY_E)) {

@@ -151,6 +151,9 @@ std::optional<flow::Command> parse_command(std::string_view text) noexcept {
   if (const auto request = flow::request_named(text)) return *request;
   if (text == "subdivide") return flow::Subdivide{};
   if (text == "refine") return flow::Refine{};
+  if (text == "wire on") return flow::DrawWire{true};
+  if (text == "wire off") return flow::DrawWire{false};
+  if (text == "join") return flow::JoinParts{};
   if (text == "mark") return flow::Mark{};
   if (text == "punch") return flow::Punch{};
   if (text == "record") return flow::SetRecording{true};

@@ -131,6 +131,40 @@ TEST_SUITE("export_command") {
     CHECK(diagonal_m < 0.8 * 1.74);
   }
 
+  TEST_CASE(
+      "a run in which a wire cuts comes out with the cut's material, and no timeline has it") {
+    const test::TemporaryFolder folder;
+    const auto path = [&](const std::string& name) { return (folder.path() / name).string(); };
+    const auto ran =
+        test::nendo({"run", NENDO_MODELS "/moai.obj", "--mode", "parts", "--left", "sim:cut",
+                     "--right", "sim:cut", "--wire", "0.8s:2.5s", "--duration", "3.5", "--out",
+                     path("cut.obj"), "--record", path("cut.nendo")});
+    CAPTURE(ran.err);
+    REQUIRE(ran.exit_code == 0);
+    CHECK(ran.err.find("the model has 2 parts now") != std::string::npos);
+    const auto written = deform::read_mesh(path("cut.obj"));
+    REQUIRE(written);
+    CHECK(written->look.materials.back().name == "cut");
+    const auto done = test::nendo({"export", path("cut.nendo"), "--out", path("cut.glb")});
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    const test::Glb glb(contents(path("cut.glb")));
+    CHECK(glb.json["meshes"].size() == 4); // before, behind, and both hands
+    const auto& materials = glb.json["materials"];
+    CHECK(std::any_of(materials.begin(), materials.end(),
+                      [](const json& material) { return material["name"] == "cut"; }));
+    const auto refused =
+        test::nendo({"edit", "make", path("cut.nendo"), "--out", path("cut.timeline.toml")});
+    CHECK(refused.exit_code == 5);
+    CHECK(is_one_line_about(refused.err, "cuts or joins the model on the way"));
+    for (const char* wrong : {"1s", "2s:1s", "x:2s", ":2s", "-1s:2s"}) {
+      CAPTURE(wrong);
+      const auto bad = test::nendo({"run", "--wire", wrong, "--out", path("none.obj")});
+      CHECK(bad.exit_code == 2);
+      CHECK(is_one_line_about(bad.err, "--wire"));
+    }
+  }
+
   TEST_CASE("a puppet's targets are named, and where they cannot be, that is said") {
     const test::TemporaryFolder folder;
     const auto path = [&](const std::string& name) { return (folder.path() / name).string(); };

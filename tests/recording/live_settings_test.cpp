@@ -180,8 +180,9 @@ TEST_SUITE("live_settings") {
       CHECK(again.shapes == shapes);
       CHECK(again.last == last);
     }
-    CHECK(shaped >= test::rounds(8) / 2);            // the others end with an undo or a reset
-    constexpr bool are_all = test::rounds(16) == 16; // a few meet neither
+    // The others end with an undo or a reset. A few meet nothing of all this.
+    constexpr bool are_all = test::rounds(16) == 16;
+    CHECK((shaped >= test::rounds(8) / 2 || !are_all));
     CHECK((other_models > 0 || !are_all));
     CHECK((refined > 0 || !are_all));
   }

@@ -1,6 +1,11 @@
 #include "session/run_models.hpp"
 
+#include <algorithm>
+
 #include <doctest/doctest.h>
+
+#include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/cut.hpp>
 
 #include "session/asking_run.hpp"
 
@@ -62,6 +67,38 @@ TEST_SUITE("run_models") {
     CHECK(outcome.recordings.size() == 2);
     for (const auto& recording : outcome.recordings)
       CHECK(replay(recording.file) >= 0);
+  }
+
+  TEST_CASE("a wire cuts the model while the loop runs, and takes from before and behind replay") {
+    Run run;
+    run.options.left = run.options.right = "sim:cut";
+    run.options.loop.sculptor.mode = flow::Mode::parts;
+    run.options.wire = {0.8, 2.5};
+    run.options.recording.file = (run.folder.path() / "take.nendo").string();
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    Asker asker(Changes{{}, {}, {flow::SaveShape{}}, {record(false)}, {record(true)}, {}});
+    asker.least_ticks = 100;
+    const auto outcome = run.follow({&asker});
+    CHECK(asker.prepared == std::vector<std::uint32_t>{1});
+    CHECK(std::count(asker.reports.begin(), asker.reports.end(), "the model has 2 parts now") == 1);
+    const auto written = deform::read_mesh(run.options.out);
+    REQUIRE(written);
+    CHECK(deform::separate(*written).size() == 2);
+    CHECK(deform::check_closed_manifold(*written));
+    REQUIRE(outcome.recordings.size() == 2);
+    for (const auto& recording : outcome.recordings)
+      replay(recording.file);
+  }
+
+  TEST_CASE("what cannot be cut or joined is told, and the run goes on") {
+    Run run;
+    Asker asker(Changes{{flow::DrawWire{true}}, {flow::DrawWire{false}}, {flow::JoinParts{}}, {}});
+    run.follow({&asker});
+    CHECK(asker.prepared.empty());
+    REQUIRE(asker.reports.size() == 2);
+    CHECK(asker.reports[0].starts_with("the model "));
+    CHECK(asker.reports[0].ends_with("; the model stays as it is"));
+    CHECK(asker.reports[1] == "the model is one part, which is whole; the model stays as it is");
   }
 
   TEST_CASE("the model is refined by itself where hands stretch it, and never beyond the bound") {

@@ -63,9 +63,16 @@ public:
   bool comes_to_catch(int number) const {
     return eventually([&] { return catches(number); });
   }
+  /// Waits until a run tells its progress, on standard error or, as JSON, on standard output.
+  bool comes_to_tell_progress() const {
+    return eventually([&] {
+      return err_so_far().find("samples") != std::string::npos ||
+             contents(folder_.path() / "out").find("progress") != std::string::npos;
+    });
+  }
   std::string err_so_far() const { return contents(folder_.path() / "err"); }
 
-  Finished wait(std::chrono::seconds patience = std::chrono::seconds(60)) {
+  Finished wait(std::chrono::seconds patience = std::chrono::seconds(240)) {
     Finished finished;
     int status = 0;
     while (::waitpid(pid_, &status, WNOHANG) == 0) {

@@ -242,7 +242,7 @@ TEST_SUITE("player") {
       auto unbounded = flow::FinerModel::make(
           live.loop->newest_model(), {0, flow::ModelSource::refined, flow::Refine{}.most_vertices});
       REQUIRE(unbounded);
-      CHECK(unbounded->finish(9, {})->layout().vertex_count() > most);
+      CHECK((*unbounded->finish(9, {}))->layout().vertex_count() > most);
       REQUIRE(live.loop->change_model(*finer));
       for (int bent = 130; bent > 120; --bent)
         next(bent);

@@ -126,6 +126,8 @@ void DeformLoop::begin_anew(LogChange& change, Frame& frame) noexcept {
   if (rig_) gestures_->reset(*rig_);
   place_tips(tips_);
   switch_on_ = false;
+  wire_.clear();
+  holds_after_wire_ = false;
   last_due_ = {};                      // as in a loop that begins
   if (rig_) state.rig = rig_->state(); // which has room for it
   shaping_.begin_anew(tips_, change.log != nullptr, frame, stats_);

@@ -30,10 +30,16 @@ Result<void>
 DeformLoop::change_model(FinerModel& finer,
                          const std::function<Result<void>(const ModelVersion&)>& accepts) {
   assert(is_still() && finer.is_of(*asked_model_));
-  auto made = finer.finish(last_number_ + 1, undo_room());
+  // What a puppet does would be part of its rest.
+  if (finer.is_of_shape() && is_played(puppets_[asked_puppet_].get())) {
+    keep_model();
+    return Error{Errc::bad_input, "a puppet's model is neither cut nor joined"};
+  }
+  auto finished = finer.finish(last_number_ + 1, undo_room());
+  std::unique_ptr<ModelVersion> made = finished ? *std::move(finished) : nullptr;
   SculptorOptions sculptor = asked_.options;
   const auto check = [&]() -> Result<void> {
-    if (!made) return Error{Errc::bad_input, "there is nothing to refine"};
+    if (!made) return Error{finished.error().code, "the model " + finished.error().message};
     // A puppet's points may lie too near to each other on another version.
     if (auto fits = set_model(sculptor, *made); !fits) return fits;
     return accepts ? accepts(*made) : Result<void>();

@@ -389,6 +389,60 @@ private:
   Vector3d taken_at_;
 };
 
+/// One end of a wire at the index finger's tip, which goes through the model from the front. Then
+/// the upper part is carried.
+class CutAndCarry final : public KneadPlan {
+public:
+  CutAndCarry(const KneadedModel& model, const hand::HandSkeleton& skeleton)
+      : model_(model), carry_(model, skeleton), angles_(fist()),
+        side_(skeleton.side() == Side::right ? 1.0 : -1.0) {
+    angles_.fingers[1] = {};
+    tip_m_ = skeleton.pose(angles_, Isometry3d::Identity())[hand::Joint::index_tip].translation();
+  }
+
+  double length_s() const noexcept override { return carry_from_s + carry_.length_s(); }
+
+  Pose at(double time_s) const noexcept override {
+    if (time_s >= carry_from_s) return carry_.at(time_s - carry_from_s);
+    const Pose cuts = cutting_at(time_s);
+    const double part = ease(time_s, 2.7, carry_from_s);
+    if (part <= 0.0) return cuts;
+    Pose pose = carry_.at(0.0);
+    for (std::size_t k = 0; k < hand::angle_count; ++k) {
+      const hand::Angle angle = hand::angle_at(k);
+      pose.angles[angle] = cuts.angles[angle] + part * (pose.angles[angle] - cuts.angles[angle]);
+    }
+    const Eigen::Quaterniond from(cuts.T_stage_wrist.linear()), to(pose.T_stage_wrist.linear());
+    const Vector3d way = pose.T_stage_wrist.translation() - cuts.T_stage_wrist.translation();
+    pose.T_stage_wrist.linear() = from.slerp(part, to).toRotationMatrix();
+    pose.T_stage_wrist.translation() = cuts.T_stage_wrist.translation() + part * way;
+    return pose;
+  }
+
+private:
+  Pose cutting_at(double time_s) const noexcept {
+    Vector3d tip = model_.middle();
+    tip.x() += side_ * (0.5 * (model_.high.x() - model_.low.x()) + beside_m);
+    tip.y() = model_.low.y() + neck * model_.height();
+    tip.z() = model_.high.z() + away_m -
+              ease(time_s, 0.6, 2.6) * (model_.high.z() - model_.low.z() + 2.0 * away_m);
+    Pose pose{angles_, Isometry3d::Identity()};
+    pose.T_stage_wrist.linear() = axes_of(-Vector3d::UnitZ(), Vector3d::UnitY());
+    pose.T_stage_wrist.translation() = tip - pose.T_stage_wrist.linear() * tip_m_;
+    return pose;
+  }
+
+  static constexpr double carry_from_s = 4.2;
+  static constexpr double neck = 0.57;      ///< of the model's height
+  static constexpr double beside_m = 0.030; ///< from the model's box
+
+  KneadedModel model_;
+  Carry carry_;
+  JointAngles angles_;
+  double side_; ///< of x
+  Vector3d tip_m_;
+};
+
 } // namespace
 
 std::unique_ptr<KneadPlan> plan_of(KneadTask task, const KneadedModel& model,
@@ -396,6 +450,7 @@ std::unique_ptr<KneadPlan> plan_of(KneadTask task, const KneadedModel& model,
   if (task == KneadTask::press) return std::make_unique<Flatten>(model, skeleton);
   if (task == KneadTask::grip) return std::make_unique<Pinch>(model, skeleton);
   if (task == KneadTask::carry) return std::make_unique<Carry>(model, skeleton);
+  if (task == KneadTask::cut) return std::make_unique<CutAndCarry>(model, skeleton);
   if (skeleton.side() == Side::right) return std::make_unique<Thumb>(model, skeleton);
   return std::make_unique<Wall>(model, skeleton);
 }

@@ -12,7 +12,7 @@ namespace nendo::flow {
 namespace {
 
 constexpr double knead_step_s = 1.0 / 60.0;
-constexpr std::array<std::string_view, 4> task_names{"press", "knead", "grip", "carry"};
+constexpr std::array<std::string_view, 5> task_names{"press", "knead", "grip", "carry", "cut"};
 
 /// Which two keys a time lies between, and how far.
 struct Between {

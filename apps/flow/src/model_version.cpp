@@ -1,8 +1,10 @@
 #include <nendo/flow/model_version.hpp>
 
+#include <string>
 #include <utility>
 
 #include <nendo/deform/deformer_options.hpp>
+#include <nendo/deform/join.hpp>
 
 namespace nendo::flow {
 namespace {
@@ -30,6 +32,23 @@ Result<void> check_subdividable(const deform::Mesh& mesh) {
   return Error{Errc::bad_input, "is too large to be subdivided"};
 }
 
+Result<deform::Mesh> cut(const deform::Mesh& shaped, const ModelOrigin& origin) {
+  auto made = deform::cut_model(shaped, deform::CutWire{origin.wire});
+  if (!made) return made.error();
+  return std::move(made->mesh);
+}
+
+Result<deform::Mesh> joined(const deform::Mesh& shaped, const ModelOrigin& origin) {
+  const std::vector<deform::Mesh> meshes = deform::separate(shaped);
+  if (meshes.size() < 2) return Error{Errc::bad_input, "is one part, which is whole"};
+  std::vector<deform::JoinPart> parts;
+  for (const deform::Mesh& mesh : meshes)
+    parts.push_back({&mesh, "part " + std::to_string(parts.size() + 1)});
+  auto made = deform::join(parts, {.seam_width = origin.seam_width});
+  if (!made) return Error{made.error().code, "cannot be joined: " + made.error().message};
+  return std::move(made->mesh);
+}
+
 } // namespace
 
 ModelVersion::ModelVersion(std::uint32_t version, deform::Mesh model, deform::BlockLayout layout,
@@ -43,6 +62,13 @@ deform::BlockShape room_for_shape(const ModelVersion& version) {
 
 Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& origin) {
   if (origin.source == ModelSource::refined) return deform::refined(before, origin.refining);
+  if (origin.source == ModelSource::cut || origin.source == ModelSource::joined) {
+    if (origin.shape.cols() != before.vertices.cols())
+      return Error{Errc::bad_input, "is another one than was cut or joined"};
+    deform::Mesh shaped = before;
+    shaped.vertices = origin.shape;
+    return origin.source == ModelSource::cut ? cut(shaped, origin) : joined(shaped, origin);
+  }
   if (auto fine = check_subdividable(before); !fine) return fine.error();
   return deform::subdivide(before).mesh;
 }
@@ -54,43 +80,69 @@ FinerModel::FinerModel(const ModelVersion& from)
         return Subdividing{std::move(subdivision), std::move(layout)};
       }()) {}
 
-Result<FinerModel> FinerModel::make(const ModelVersion& from, const ChangeModel& change) {
+Result<FinerModel> FinerModel::make(const ModelVersion& from, const ChangeModel& change,
+                                    std::span<const deform::WirePlace> wire) {
   if (change.source == ModelSource::refined) {
     auto refiner = deform::Refiner::make(from.mesh);
     if (!refiner) return refiner.error();
     return FinerModel(from, Refining{*std::move(refiner), {.most_vertices = change.most_vertices}});
   }
+  if (change.source == ModelSource::cut || change.source == ModelSource::joined) {
+    ModelOrigin origin;
+    origin.source = change.source;
+    origin.seam_width = change.seam_width;
+    origin.wire.assign(wire.begin(), wire.end());
+    return FinerModel(from, Remaking{std::move(origin)});
+  }
   if (auto fine = check_subdividable(from.mesh); !fine) return fine.error();
   return FinerModel(from);
 }
 
-std::unique_ptr<ModelVersion> FinerModel::finish(std::uint32_t number, const UndoRoom& undo) {
+/// With the shape of now as its rest.
+Result<std::unique_ptr<ModelVersion>> FinerModel::remade(Remaking& remaking, std::uint32_t number,
+                                                         const UndoRoom& undo) const {
+  ModelOrigin& origin = remaking.origin;
+  from_->layout().unpack(from_->shape.shape(), origin.shape);
+  auto mesh = made_again(from_->mesh, origin);
+  if (!mesh) return mesh.error();
+  deform::BlockLayout layout(mesh->vertices);
+  auto made =
+      std::make_unique<ModelVersion>(number, *std::move(mesh), std::move(layout), undo, nullptr);
+  made->origin = std::make_shared<ModelOrigin>(std::move(origin));
+  return made;
+}
+
+Result<std::unique_ptr<ModelVersion>> FinerModel::finish(std::uint32_t number,
+                                                         const UndoRoom& undo) {
+  if (auto* const remaking = std::get_if<Remaking>(&making_))
+    return remade(*remaking, number, undo);
   const deform::BlockShape& shape = from_->shape.shape();
   if (auto* const finer = std::get_if<Subdividing>(&making_)) {
     const deform::BlockShape first =
         deform::subdivided(shape, from_->layout(), finer->subdivision, finer->layout);
     auto made = std::make_unique<ModelVersion>(number, std::move(finer->subdivision.mesh),
                                                std::move(finer->layout), undo, &first);
-    made->origin = std::make_shared<ModelOrigin>(ModelOrigin{ModelSource::subdivided, {}});
+    made->origin = std::make_shared<ModelOrigin>(ModelOrigin{.source = ModelSource::subdivided});
     return made;
   }
   const Refining& refining = std::get<Refining>(making_);
   deform::Refinement refinement = refining.refiner.refine(shape, from_->layout(), refining.limits);
   found_nothing_ = refinement.operations.empty();
-  if (found_nothing_) return nullptr;
+  if (found_nothing_) return Error{Errc::bad_input, "has nothing to refine"};
   deform::BlockLayout layout(refinement.mesh.vertices);
   const deform::BlockShape first = deform::shape_in_blocks(refinement.shape, layout);
   auto made = std::make_unique<ModelVersion>(number, std::move(refinement.mesh), std::move(layout),
                                              undo, &first);
   made->origin = std::make_shared<ModelOrigin>(
-      ModelOrigin{ModelSource::refined, std::move(refinement.operations)});
+      ModelOrigin{.source = ModelSource::refined, .refining = std::move(refinement.operations)});
   return made;
 }
 
 ChangeModel FinerModel::change_to(const ModelVersion& version) const noexcept {
   const auto* const refining = std::get_if<Refining>(&making_);
   return {version.number, version.origin->source,
-          refining != nullptr ? static_cast<std::uint32_t>(refining->limits.most_vertices) : 0};
+          refining != nullptr ? static_cast<std::uint32_t>(refining->limits.most_vertices) : 0,
+          version.origin->seam_width};
 }
 
 std::size_t FinerModel::count_unfit(const deform::BlockShape& shape) const {

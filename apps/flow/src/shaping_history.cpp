@@ -121,10 +121,16 @@ void Shaping::note_settings(const LoopSettings& before, bool is_step) noexcept {
     shape.mark(noted.note());
 }
 
+/// Of a model that was not there before.
+static StepKind kind_of(ModelSource source) noexcept {
+  if (source == ModelSource::refined) return StepKind::refine;
+  if (source == ModelSource::cut) return StepKind::cut;
+  return source == ModelSource::joined ? StepKind::join : StepKind::subdivide;
+}
+
 /// Adds a step to that new version.
 void Shaping::note_model(ModelVersion& next, const LoopSettings& before) noexcept {
-  const bool is_refined = next.origin->source == ModelSource::refined;
-  const Step step = step_now(is_refined ? StepKind::refine : StepKind::subdivide);
+  const Step step = step_now(kind_of(next.origin->source));
   next.before = model_;
   model_->behind = nullptr; // as mark() forgets what was undone
   model_->shape.mark(NotedStep{step, {before, next.number, puppet_}}.note());

@@ -110,7 +110,7 @@ bool LoopReplay::follow(const flow::ChangeModel& change) {
     loop_->keep_model();
     return true;
   }
-  auto finer = flow::FinerModel::make(loop_->newest_model(), change);
+  auto finer = flow::FinerModel::make(loop_->newest_model(), change, loop_->drawn_wire().places());
   if (!finer) {
     loop_->keep_model();
     return false;

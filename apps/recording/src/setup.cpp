@@ -88,15 +88,8 @@ std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks) {
     append(puppet_chunk, [&](ByteWriter writer) { put_puppet(writer, *setup.loop); });
   for (std::size_t at = plain_origins(*setup.loop); at < setup.loop->origins.size(); ++at) {
     const flow::ModelOrigin& origin = *setup.loop->origins[at];
-    std::span<const deform::EdgeOperation> left(origin.refining);
-    bool goes_on = false;
-    do {
-      const auto part = left.first(std::min(left.size(), most_operations_of_chunk));
-      append(origin_chunk,
-             [&](ByteWriter writer) { put_origin(writer, origin.source, goes_on, part); });
-      left = left.subspan(part.size());
-      goes_on = true;
-    } while (!left.empty());
+    for (std::size_t chunk = 0; chunk < origin_chunks(origin); ++chunk)
+      append(origin_chunk, [&](ByteWriter writer) { put_origin(writer, origin, chunk); });
   }
   std::span<const deform::VertexBlock> rest(setup.loop->rest);
   while (!rest.empty()) {

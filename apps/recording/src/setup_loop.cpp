@@ -377,8 +377,8 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
   const std::uint32_t subdivisions = reader.remaining() > 0 ? reader.u32_le() : 0; // since 1.4
   checked.require(subdivisions <= most_plain_origins);
   if (checked.fine())
-    read.origins.assign(subdivisions, std::make_shared<const flow::ModelOrigin>(
-                                          flow::ModelOrigin{flow::ModelSource::subdivided, {}}));
+    read.origins.assign(subdivisions, std::make_shared<const flow::ModelOrigin>(flow::ModelOrigin{
+                                          .source = flow::ModelSource::subdivided}));
   options.pull_is_step = reader.remaining() > 0 && reader.u8() != 0; // since 1.5
   if (reader.remaining() > 0) {                                      // since 1.6
     checked.require(

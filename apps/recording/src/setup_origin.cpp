@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <nendo/flow/wire_path.hpp>
+
 #include "setup_parts.hpp"
 
 namespace nendo::recording {
@@ -13,6 +15,13 @@ using flow::ModelSource;
 namespace {
 
 constexpr std::size_t operation_bytes = 9;
+constexpr std::size_t vertex_bytes = 24;
+constexpr double largest_coordinate = 1e100;
+
+/// Of a version that is made of the shape before, and not of its rest.
+bool is_of_shape(ModelSource source) noexcept {
+  return source == ModelSource::cut || source == ModelSource::joined;
+}
 
 } // namespace
 
@@ -26,31 +35,94 @@ std::size_t plain_origins(const LoopSetup& loop) noexcept {
       first);
 }
 
-void put_origin(ByteWriter& writer, ModelSource source, bool goes_on,
-                std::span<const EdgeOperation> operations) {
-  writer.u8(static_cast<std::uint8_t>(source));
-  writer.u8(static_cast<std::uint8_t>(goes_on));
-  for (const EdgeOperation& operation : operations) {
-    writer.u8(static_cast<std::uint8_t>(operation.kind));
-    writer.u32_le(operation.from);
-    writer.u32_le(operation.to);
+namespace {
+
+/// What of an origin stands in its first chunk alone.
+void put_wire(ByteWriter& writer, const ModelOrigin& origin) {
+  writer.f64_le(origin.seam_width);
+  writer.u32_le(static_cast<std::uint32_t>(origin.wire.size()));
+  for (const deform::WirePlace& place : origin.wire)
+    for (const Eigen::Vector3d& end : {place.from, place.to})
+      for (const double coordinate : end)
+        writer.f64_le(coordinate);
+}
+
+void read_wire(ByteReader& reader, CheckedReader& checked, ModelOrigin& origin) {
+  origin.seam_width = checked.number(0.0, largest_coordinate);
+  const std::uint32_t places = reader.u32_le();
+  checked.require(places <= flow::WirePath::most_places);
+  for (std::uint32_t at = 0; checked.fine() && at < places; ++at) {
+    deform::WirePlace& place = origin.wire.emplace_back();
+    for (Eigen::Vector3d* const end : {&place.from, &place.to})
+      for (double& coordinate : *end)
+        coordinate = checked.number(-largest_coordinate, largest_coordinate);
+  }
+}
+
+void read_operations(ByteReader& reader, CheckedReader& checked, ModelOrigin& origin) {
+  checked.require(reader.remaining() % operation_bytes == 0);
+  while (checked.fine() && reader.remaining() > 0) {
+    EdgeOperation& operation = origin.refining.emplace_back();
+    operation.kind = checked.one_of(EdgeOperation::Kind::flip);
+    operation.from = reader.u32_le();
+    operation.to = reader.u32_le();
+  }
+}
+
+void read_vertices(ByteReader& reader, CheckedReader& checked, ModelOrigin& origin) {
+  checked.require(reader.remaining() % vertex_bytes == 0);
+  if (!checked.fine()) return;
+  const Eigen::Index first = origin.shape.cols();
+  origin.shape.conservativeResize(
+      3, first + static_cast<Eigen::Index>(reader.remaining() / vertex_bytes));
+  for (Eigen::Index at = first; at < origin.shape.cols(); ++at)
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      origin.shape(axis, at) = checked.number(-largest_coordinate, largest_coordinate);
+}
+
+} // namespace
+
+std::size_t origin_chunks(const ModelOrigin& origin) noexcept {
+  const std::size_t all = is_of_shape(origin.source) ? static_cast<std::size_t>(origin.shape.cols())
+                                                     : origin.refining.size();
+  return std::max<std::size_t>(1, (all + most_operations_of_chunk - 1) / most_operations_of_chunk);
+}
+
+void put_origin(ByteWriter& writer, const ModelOrigin& origin, std::size_t chunk) {
+  writer.u8(static_cast<std::uint8_t>(origin.source));
+  writer.u8(static_cast<std::uint8_t>(chunk > 0));
+  const std::size_t first = chunk * most_operations_of_chunk;
+  const std::size_t end = first + most_operations_of_chunk;
+  if (is_of_shape(origin.source)) {
+    if (chunk == 0) put_wire(writer, origin);
+    const auto count = static_cast<std::size_t>(origin.shape.cols());
+    for (std::size_t at = first; at < std::min(end, count); ++at)
+      for (const double coordinate : origin.shape.col(static_cast<Eigen::Index>(at)))
+        writer.f64_le(coordinate);
+    return;
+  }
+  for (std::size_t at = first; at < std::min(end, origin.refining.size()); ++at) {
+    writer.u8(static_cast<std::uint8_t>(origin.refining[at].kind));
+    writer.u32_le(origin.refining[at].from);
+    writer.u32_le(origin.refining[at].to);
   }
 }
 
 bool read_origin(std::span<const std::byte> payload, std::optional<LoopSetup>& loop) {
   ByteReader reader(payload);
   CheckedReader checked(reader);
-  const auto source = checked.one_of(ModelSource::refined);
+  const auto source = checked.one_of(ModelSource::joined);
   const bool goes_on = reader.u8() != 0;
   if (!loop || !checked.fine() || source == ModelSource::kept) return false;
-  if (reader.remaining() % operation_bytes != 0) return false;
   if (goes_on && (loop->origins.empty() || loop->origins.back()->source != source)) return false;
-  ModelOrigin origin = goes_on ? *loop->origins.back() : ModelOrigin{source, {}};
-  while (reader.remaining() > 0) {
-    EdgeOperation& operation = origin.refining.emplace_back();
-    operation.kind = checked.one_of(EdgeOperation::Kind::flip);
-    operation.from = reader.u32_le();
-    operation.to = reader.u32_le();
+  ModelOrigin origin;
+  if (goes_on) origin = *loop->origins.back();
+  origin.source = source;
+  if (is_of_shape(source)) {
+    if (!goes_on) read_wire(reader, checked, origin);
+    read_vertices(reader, checked, origin);
+  } else {
+    read_operations(reader, checked, origin);
   }
   if (!checked.fine()) return false;
   if (goes_on) loop->origins.pop_back();

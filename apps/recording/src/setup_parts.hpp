@@ -89,10 +89,10 @@ inline constexpr std::size_t most_blocks_of_chunk = std::size_t{1} << 14;
 /// Of the origins, the first ones that only subdivide. LOOP has their number, and ORIG the others.
 std::size_t plain_origins(const LoopSetup& loop) noexcept;
 inline constexpr std::size_t most_plain_origins = 16;
-/// Writes an origin, or, `goes_on`, more of the operations of the one before. A chunk has at most
-/// most_operations_of_chunk.
-void put_origin(ByteWriter& writer, flow::ModelSource source, bool goes_on,
-                std::span<const deform::EdgeOperation> operations);
+/// Writes that of so many chunks of an origin. Each has at most most_operations_of_chunk of its
+/// operations, or of the vertices of the shape that it was made of.
+void put_origin(ByteWriter& writer, const flow::ModelOrigin& origin, std::size_t chunk);
+std::size_t origin_chunks(const flow::ModelOrigin& origin) noexcept;
 inline constexpr std::size_t most_operations_of_chunk = std::size_t{1} << 20;
 
 /// Writes settings, as they stand in a loop's chunk and in entries.

@@ -43,7 +43,8 @@ private:
     put(flow::Command(flow::ChangeSettings{settings}));
   }
   void add_one(const flow::ChangeModel& change) {
-    if (change.is_new()) put(flow::asking_for(change));
+    // A cut is asked for by the wire, which the loop is given.
+    if (change.is_new() && change.source != flow::ModelSource::cut) put(flow::asking_for(change));
   }
   void add_one(const flow::HoldStill&) {}
   void add_one(const PuppetChange& change) {

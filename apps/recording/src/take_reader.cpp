@@ -14,7 +14,7 @@ constexpr std::size_t tick_bytes = 24;
 constexpr std::size_t request_bytes = 1;
 constexpr std::size_t gap_bytes = 8;
 constexpr std::size_t wrist_bytes = 57;
-constexpr std::size_t model_bytes = 9;
+constexpr std::size_t model_bytes = 17;
 constexpr std::size_t clutch_bytes = 3;
 constexpr std::size_t role_bytes = 4;
 constexpr std::size_t layer_bytes = 2;
@@ -59,6 +59,7 @@ struct EntryWriter {
     writer.u32_le(change.number);
     writer.u8(static_cast<std::uint8_t>(change.source));
     writer.u32_le(change.most_vertices);
+    writer.f64_le(change.seam_width);
   }
   void operator()(const flow::Mark&) const { driver::put_entry_head(writer, EntryKind::mark, 0); }
   void operator()(const flow::SetClutch& clutch) const {
@@ -80,6 +81,10 @@ struct EntryWriter {
     driver::put_entry_head(writer, EntryKind::layer, layer_bytes);
     writer.u8(layer.input);
     writer.u8(static_cast<std::uint8_t>(layer.on));
+  }
+  void operator()(const flow::DrawWire& wire) const {
+    driver::put_entry_head(writer, EntryKind::wire, 1);
+    writer.u8(static_cast<std::uint8_t>(wire.on));
   }
   void operator()(const PuppetChange& change) const {
     driver::put_entry_head(writer, EntryKind::puppet, puppet_bytes);
@@ -128,10 +133,13 @@ std::optional<Entry> model_of(ByteReader& reader) {
   flow::ChangeModel change;
   change.number = reader.u32_le();
   const std::uint8_t source = reader.u8();
-  if (reader.overrun() || source > static_cast<std::uint8_t>(flow::ModelSource::refined))
+  if (reader.overrun() || source > static_cast<std::uint8_t>(flow::ModelSource::joined))
     return std::nullopt;
   change.source = static_cast<flow::ModelSource>(source);
   if (reader.remaining() > 0) change.most_vertices = reader.u32_le(); // since 1.8
+  if (reader.remaining() > 0) change.seam_width = reader.f64_le();    // since 1.11
+  if (reader.overrun() || !(change.seam_width >= 0.0) || !std::isfinite(change.seam_width))
+    return std::nullopt;
   return change;
 }
 
@@ -313,6 +321,9 @@ std::optional<Entry> TakeReader::entry_of(const driver::LogEntry& record) {
     const flow::SetLayer layer{input, reader.u8() != 0};
     const bool is_layer = input < setup_.hands.size() && setup_.hands[input].layer;
     if (!reader.overrun() && is_layer) entry = layer;
+  } else if (record.is(EntryKind::wire)) {
+    const flow::DrawWire wire{reader.u8() != 0};
+    if (!reader.overrun()) entry = wire;
   } else if (record.is(EntryKind::puppet)) {
     PuppetChange change{reader.u32_le(), nullptr};
     if (const auto known = puppets_.find(change.number); known != puppets_.end())

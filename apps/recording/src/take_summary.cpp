@@ -41,6 +41,7 @@ public:
   void operator()(const flow::SetClutch&) {}
   void operator()(const flow::SetRole&) {}
   void operator()(const flow::SetSymmetry&) {}
+  void operator()(const flow::DrawWire&) {}
   void operator()(const flow::SetLayer& layer) {
     if (layer.input < summary_.gloves.size()) ++summary_.gloves[layer.input].punches;
   }

@@ -32,6 +32,7 @@ enum class EntryKind : std::uint8_t {
   symmetry = 12,
   puppet = 13,
   layer = 15,
+  wire = 16,
 };
 
 /// One entry of an input log: its kind and what it holds.

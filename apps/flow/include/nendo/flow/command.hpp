@@ -102,6 +102,18 @@ struct SetLayer {
 struct Punch {
   friend bool operator==(const Punch&, const Punch&) = default;
 };
+/// Begins to draw a wire through the model (WirePath): between both index fingertips, or, of one
+/// hand alone, between thumb and index finger. Or ends that, and the wire then cuts the model.
+/// Meanwhile the hands let go of the model.
+struct DrawWire {
+  bool on = false;
+  friend bool operator==(const DrawWire&, const DrawWire&) = default;
+};
+/// Joins the parts of the model, which must overlap (deform::join()).
+struct JoinParts {
+  double seam_width = 0.0; ///< model units, >= 0
+  friend bool operator==(const JoinParts&, const JoinParts&) = default;
+};
 /// Ends the run, which then writes its shape.
 struct EndRun {
   friend bool operator==(const EndRun&, const EndRun&) = default;
@@ -117,12 +129,15 @@ enum class ModelSource : std::uint8_t {
   kept,       ///< it was there before: an undo or a redo goes there
   subdivided, ///< it is the model before, subdivided
   refined,    ///< it is the model before, refined for the shape that it had
+  cut,        ///< it is the shape before, cut by the wire that was drawn last
+  joined,     ///< it is the shape before, with all its parts joined
 };
 /// The loop goes on with another version of the model (ModelVersion::number).
 struct ChangeModel {
   std::uint32_t number = 0;
   ModelSource source = ModelSource::kept;
   std::uint32_t most_vertices = 0; ///< Refine::most_vertices of what is refined
+  double seam_width = 0.0;         ///< JoinParts::seam_width of what is joined
   bool is_new() const noexcept { return source != ModelSource::kept; }
   friend bool operator==(const ChangeModel&, const ChangeModel&) = default;
 };
@@ -134,13 +149,13 @@ struct ChangePuppet {
   friend bool operator==(const ChangePuppet&, const ChangePuppet&) = default;
 };
 
-/// A loop obeys Request, WristMove, SetLayer and what is for puppets at the beginning of its next
-/// tick, and logs a Mark. All others are obeyed by the code that runs the loop. HoldStill,
+/// A loop obeys Request, WristMove, SetLayer, DrawWire and what is for puppets at the beginning of
+/// its next tick, and logs a Mark. All others are obeyed by the code that runs the loop. HoldStill,
 /// ChangeModel and ChangePuppet only tell a log what the loop did.
 using Command =
     std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape, SaveRecording, EndRun,
                  Subdivide, HoldStill, ChangeModel, Mark, SetClutch, SetRole, SetSymmetry, SetLayer,
-                 Punch, ChangePuppet, SavePuppet, SetMask, Refine>;
+                 Punch, ChangePuppet, SavePuppet, SetMask, Refine, DrawWire, JoinParts>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
 /// Returns what the command asks to be made of the model, without a number; nothing if it does not.
@@ -148,10 +163,14 @@ constexpr std::optional<ChangeModel> model_asked_by(const Command& command) noex
   if (std::holds_alternative<Subdivide>(command)) return ChangeModel{0, ModelSource::subdivided};
   if (const auto* refine = std::get_if<Refine>(&command))
     return ChangeModel{0, ModelSource::refined, refine->most_vertices};
+  if (const auto* join = std::get_if<JoinParts>(&command))
+    return ChangeModel{0, ModelSource::joined, 0, join->seam_width};
   return std::nullopt;
 }
-/// Returns the command that asks for such a change, which is_new().
+/// Returns the command that asks for such a change, which is_new() and is no cut: that is asked for
+/// by a wire.
 constexpr Command asking_for(const ChangeModel& change) noexcept {
+  if (change.source == ModelSource::joined) return JoinParts{change.seam_width};
   if (change.source == ModelSource::refined) return Refine{change.most_vertices};
   return Subdivide{};
 }
@@ -169,7 +188,7 @@ constexpr bool is_for_puppet(const Command& command) noexcept {
 constexpr bool is_for_loop(const Command& command) noexcept {
   return std::holds_alternative<Request>(command) || std::holds_alternative<WristMove>(command) ||
          std::holds_alternative<Mark>(command) || std::holds_alternative<SetLayer>(command) ||
-         is_for_puppet(command);
+         std::holds_alternative<DrawWire>(command) || is_for_puppet(command);
 }
 
 } // namespace nendo::flow

@@ -213,12 +213,14 @@ public:
   /// be still and goes on with it. `accepts` is called with the new version before the loop has it.
   /// Settings that are asked for meanwhile come with it. Later, versions to which no undo or redo
   /// leads any more are freed. With an error the loop goes on with the model that it has: that of
-  /// `accepts`, or bad_input if there is nothing to refine (FinerModel::found_nothing()), or the
-  /// points of a puppet cannot be solved for on that version. Allocates.
+  /// `accepts`, what FinerModel::finish() tells, or bad_input if a puppet plays the model and it
+  /// would be cut or joined, or a puppet's points cannot be solved for on that version. Allocates.
   Result<void> change_model(FinerModel& finer,
                             const std::function<Result<void>(const ModelVersion&)>& accepts = {});
   /// Lets a loop that holds still go on with the model that it has.
   void keep_model();
+  /// Returns the last wire that was drawn to its end. On the loop's thread; others see Frame::wire.
+  const WirePath& drawn_wire() const noexcept { return drawn_wire_; }
   /// Returns the version that the loop has or was asked last to go on with.
   const ModelVersion& newest_model() const noexcept { return *asked_model_; }
   /// Returns that version; null if there is none. It lives until change_model() frees it.
@@ -263,6 +265,8 @@ private:
   void tell_rig(Frame& frame) const noexcept;
   void play_rig() noexcept;
   void set_rig(const Command& command) noexcept;
+  void draw_wire(bool on) noexcept;
+  void follow_wire(const Frame& frame) noexcept;
   puppet::RigPlayer::Hands played_hands() const noexcept;
   puppet::RigPlayer::Hands hands_now() noexcept;
   ModelVersion* version_numbered(std::uint32_t number) const noexcept;
@@ -360,7 +364,10 @@ private:
   // For the loop's thread:
   Shaping shaping_;
   deform::FieldStatus grab_status_ = deform::FieldStatus::ok;
-  bool switch_on_ = false; ///< any hand's, for SwitchAction::grab
+  bool switch_on_ = false;        ///< any hand's, for SwitchAction::grab
+  WirePath wire_;                 ///< that hands draw, or have drawn last
+  WirePath drawn_wire_;           ///< the last one that has been drawn to its end
+  bool holds_after_wire_ = false; ///< the hands held the model before
   JobOffer<PreparedChange*> changes_;
   PreparedChange* taken_ = nullptr; ///< by this tick
   // For the thread that asks for changes:

@@ -19,6 +19,7 @@
 #include <nendo/flow/part_hands.hpp>
 #include <nendo/flow/placement.hpp>
 #include <nendo/flow/step.hpp>
+#include <nendo/flow/wire_path.hpp>
 #include <nendo/hand/skeleton.hpp>
 #include <nendo/puppet/puppet.hpp>
 
@@ -99,6 +100,7 @@ struct Frame {
   deform::ChainReport chain; ///< how the shape stayed injective; all 0 if that is not asked for
   ClayState clay{};
   PartsState parts{};
+  WirePath wire{}; ///< that hands draw, or have drawn last
   Contacts contacts{};
   std::uint32_t model = 0;  ///< the version of the model that `shape` is of
   std::uint32_t puppet = 0; ///< the number of the puppet whose functions made this frame

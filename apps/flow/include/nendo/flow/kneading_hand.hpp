@@ -22,8 +22,8 @@ enum class KneadTask : std::uint8_t {
   press, ///< flattens the model on its table with the palm, turned from press to press; by turns
   knead, ///< thumbs it into a bowl; left: holds the wall from outside
   grip,  ///< pinches it with thumb and index finger, and pulls an ear; left: on the other side
-  carry, ///< takes its upper part by the side, lifts it, and presses it on again the other way
-         ///< round
+  carry, ///< takes its upper part by the side, lifts it, turns it round, and presses it on again
+  cut,   ///< draws a wire through it, below the upper part, from 0.8 s to 2.5 s, and then does that
 };
 std::string_view name_of(KneadTask task) noexcept;
 std::optional<KneadTask> knead_task_named(std::string_view name) noexcept;

@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <variant>
 #include <vector>
 
+#include <nendo/deform/cut.hpp>
 #include <nendo/deform/part_mover.hpp>
 #include <nendo/deform/refinement.hpp>
 #include <nendo/deform/sculpted_shape.hpp>
@@ -29,6 +31,9 @@ struct UndoRoom {
 struct ModelOrigin {
   ModelSource source = ModelSource::kept;        ///< kept: the loop began with it
   std::vector<deform::EdgeOperation> refining{}; ///< of a refined one
+  deform::Points shape{}; ///< of the one before, when it was cut or joined; its model units
+  std::vector<deform::WirePlace> wire{}; ///< that cut it
+  double seam_width = 0.0;               ///< of a joined one
 };
 /// Makes that version of a mesh again. Error: bad_input, without the mesh's name.
 Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& origin);
@@ -66,15 +71,19 @@ class FinerModel {
 public:
   /// Subdivides. Any thread may call it while the loop goes on. Allocates.
   explicit FinerModel(const ModelVersion& from);
-  /// Subdivides, or makes ready to refine, likewise: what the change, which is_new(), says. Error:
-  /// bad_input, without the model's name.
-  static Result<FinerModel> make(const ModelVersion& from, const ChangeModel& change);
+  /// Subdivides, or makes ready to refine, to cut by that wire or to join, likewise: what the
+  /// change, which is_new(), says. Error: bad_input, without the model's name.
+  static Result<FinerModel> make(const ModelVersion& from, const ChangeModel& change,
+                                 std::span<const deform::WirePlace> wire = {});
 
   bool is_of(const ModelVersion& version) const noexcept { return &version == from_; }
-  /// Makes the version, with the shape that `from` has now: the loop must hold still. Null if
-  /// nothing is left to refine. May be called once. Allocates.
-  std::unique_ptr<ModelVersion> finish(std::uint32_t number, const UndoRoom& undo);
+  /// Makes the version, with the shape that `from` has now: the loop must hold still. May be called
+  /// once. Allocates. Errors, which go behind "the model": bad_input (nothing is left to refine:
+  /// found_nothing()), and those of deform::cut_model() and join().
+  Result<std::unique_ptr<ModelVersion>> finish(std::uint32_t number, const UndoRoom& undo);
   bool found_nothing() const noexcept { return found_nothing_; } ///< finish() did
+  /// Tells whether it is made of the shape, which becomes its rest: it cuts or joins.
+  bool is_of_shape() const noexcept { return std::holds_alternative<Remaking>(making_); }
   /// Returns the change to that version.
   ChangeModel change_to(const ModelVersion& version) const noexcept;
   /// Of one that refines: deform::Refiner::count_unfit() of that shape of `from`. Any thread.
@@ -93,11 +102,17 @@ private:
     deform::Refiner refiner;
     deform::RefinementLimits limits;
   };
-  FinerModel(const ModelVersion& from, Refining refining)
-      : from_(&from), making_(std::move(refining)) {}
+  /// Another shape becomes the model, with its own faces: what made_again() makes of it.
+  struct Remaking {
+    ModelOrigin origin;
+  };
+  using Making = std::variant<Subdividing, Refining, Remaking>;
+  FinerModel(const ModelVersion& from, Making making) : from_(&from), making_(std::move(making)) {}
+  Result<std::unique_ptr<ModelVersion>> remade(Remaking& remaking, std::uint32_t number,
+                                               const UndoRoom& undo) const;
 
   const ModelVersion* from_;
-  std::variant<Subdividing, Refining> making_;
+  Making making_;
   bool found_nothing_ = false;
 };
 

@@ -29,6 +29,8 @@ enum class StepKind : std::uint8_t {
   mask,      ///< what fingertips leave alone was painted, cleared or inverted
   symmetry,  ///< fingertips shape both sides, or no longer
   refine,    ///< the model's triangles were made to suit the shape
+  cut,       ///< a wire went through the model
+  join,      ///< the model's parts became one
 };
 
 std::string_view name_of(StepKind kind) noexcept;

@@ -36,10 +36,10 @@ struct PuppetChange {
   std::shared_ptr<const RecordedPuppet> puppet; ///< null: the one with which the recording began
 };
 
-using Entry =
-    std::variant<driver::RecordedSample, flow::Request, flow::WristMove, flow::LoopSettings,
-                 flow::HoldStill, flow::ChangeModel, flow::Mark, flow::SetClutch, flow::SetRole,
-                 flow::SetSymmetry, flow::SetLayer, PuppetChange, flow::LoggedTick, Gap>;
+using Entry = std::variant<driver::RecordedSample, flow::Request, flow::WristMove,
+                           flow::LoopSettings, flow::HoldStill, flow::ChangeModel, flow::Mark,
+                           flow::SetClutch, flow::SetRole, flow::SetSymmetry, flow::SetLayer,
+                           flow::DrawWire, PuppetChange, flow::LoggedTick, Gap>;
 
 template <class One, class Of = Entry>
 inline constexpr bool is_entry = false;

@@ -1,0 +1,45 @@
+#pragma once
+// A wire that hands draw through the model, as a potter cuts clay. When it has been drawn, it cuts.
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include <nendo/deform/cut.hpp>
+
+namespace nendo::flow {
+
+/// The places of a wire's ends one after another, in model units. It has a fixed size and does not
+/// allocate. Where a wire is drawn far, every second place is forgotten.
+class WirePath {
+public:
+  static constexpr std::size_t most_places = 128;
+
+  /// Begins another wire, of which places that are nearer to each other than `step` are one.
+  void begin(double step) noexcept;
+  /// Does nothing unless the wire is being drawn. Places that are not finite are passed over.
+  void draw_to(const deform::WirePlace& place) noexcept;
+  void end() noexcept;   ///< the wire is drawn, if it has been anywhere
+  void clear() noexcept; ///< there is no wire
+
+  bool is_drawn() const noexcept { return is_drawn_; } ///< just now
+  /// Returns how many wires have been drawn to their end. Their number tells a new one from one
+  /// that has cut already.
+  std::uint32_t completed() const noexcept { return completed_; }
+  /// Returns the present wire's places, or those of the last one.
+  std::span<const deform::WirePlace> places() const noexcept { return {places_.data(), count_}; }
+  bool operator==(const WirePath& other) const noexcept { return version_ == other.version_; }
+
+private:
+  void thin_out() noexcept;
+
+  std::array<deform::WirePlace, most_places> places_{};
+  std::uint32_t count_ = 0;
+  std::uint32_t completed_ = 0;
+  std::uint64_t version_ = 0; ///< differs where anything does
+  double step_ = 0.0;
+  deform::WirePlace last_{}; ///< which may not be among the places
+  bool is_drawn_ = false;
+};
+
+} // namespace nendo::flow

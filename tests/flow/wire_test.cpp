@@ -1,0 +1,229 @@
+// A wire that hands draw through the model, and the versions that it makes.
+
+#include <nendo/flow/wire_path.hpp>
+
+#include <limits>
+#include <memory>
+
+#include <doctest/doctest.h>
+
+#include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/cut.hpp>
+
+#include "support/flow_fixtures.hpp"
+#include "support/restraint.hpp"
+
+namespace wire_test {
+
+using namespace std::chrono_literals;
+using namespace nendo;
+using namespace nendo::flow;
+using deform::WirePlace;
+using Eigen::Vector3d;
+
+namespace {
+
+WirePlace place_at(double z) {
+  return {{-1.0, 0.0, z}, {1.0, 0.5, z}};
+}
+
+/// Both hands beside a ball, with index fingers that draw a wire through it along z.
+class Drawing {
+public:
+  Drawing() {
+    for (const Side side : {Side::left, Side::right}) {
+      Eigen::Isometry3d& wrist = test_.placement.T_stage_wrist[Placement::index_of(side)];
+      wrist.translation().x() += side == Side::left ? -0.4 : 0.4;
+      wrists_[Placement::index_of(side)] = wrist;
+    }
+    test_.loop =
+        std::make_unique<DeformLoop>(test_.model, test_.placement, test_.inputs, test_.options);
+    go();
+  }
+
+  DeformLoop& loop() { return *test_.loop; }
+  test::LoopUnderTest& test() { return test_; }
+  const Frame& go(int ticks = 1) {
+    for (int tick = 0; tick < ticks; ++tick) {
+      now_ += 11ms;
+      test_.bend(0, now_);
+      test_.loop->tick(ticks_++, now_, now_);
+      test_.loop->frames().update();
+    }
+    return test_.loop->frames().front();
+  }
+  const Frame& ask(const Command& command) {
+    REQUIRE(test_.commands.try_push(command));
+    return go();
+  }
+  /// Leads the wire from one side of the ball to the other, or only to a part of the way.
+  const Frame& draw(double part = 1.0) {
+    constexpr int steps = 60;
+    constexpr double way_m = 1.6;
+    for (int step = 0; step <= steps; ++step) {
+      for (const Side side : {Side::left, Side::right}) {
+        Eigen::Isometry3d wrist = wrists_[Placement::index_of(side)];
+        wrist.translation().z() += way_m * (0.5 - part * step / steps);
+        REQUIRE(test_.commands.try_push(WristMove::to(side, wrist)));
+      }
+      const Frame& frame = step == 0 ? ask(DrawWire{true}) : go();
+      CHECK(frame.wire.is_drawn());
+      CHECK_FALSE(frame.held); // hands that draw hold nothing
+    }
+    return ask(DrawWire{false});
+  }
+  /// Of the model, as who runs the loop does. Returns what cannot be.
+  Result<void> change(const ChangeModel& change) {
+    auto finer =
+        FinerModel::make(loop().newest_model(), change, loop().frames().front().wire.places());
+    REQUIRE(finer);
+    REQUIRE(loop().hold_still());
+    go();
+    REQUIRE(loop().is_still());
+    auto changed = loop().change_model(*finer);
+    go();
+    return changed;
+  }
+  void go_back(Request request) {
+    const Frame& frame = ask(request);
+    REQUIRE(frame.awaited.has_value());
+    REQUIRE(loop().change_to(*frame.awaited));
+    go(2);
+  }
+
+private:
+  test::LoopUnderTest test_{Mode::parts, {.rings_of_ball = 16}};
+  std::array<Eigen::Isometry3d, 2> wrists_;
+  HostTime now_ = HostClock::now();
+  std::uint64_t ticks_ = 0;
+};
+
+constexpr ChangeModel cut{0, ModelSource::cut};
+
+} // namespace
+
+TEST_SUITE("wire") {
+  TEST_CASE("a path has places that are a step apart, its first and its last, and never too many") {
+    WirePath path;
+    path.draw_to(place_at(0.0)); // nobody draws
+    CHECK(path.places().empty());
+    for (const int count : {2, 50, 127, 128, 129, 255, 256, 1000, 5000}) {
+      CAPTURE(count);
+      path.begin(0.01);
+      CHECK(path.is_drawn());
+      const std::uint32_t before = path.completed();
+      for (int at = 0; at < count; ++at) {
+        path.draw_to(place_at(0.011 * at));
+        path.draw_to(place_at(0.011 * at + 0.001)); // nearer than a step
+      }
+      path.draw_to(place_at(std::numeric_limits<double>::quiet_NaN()));
+      path.end();
+      CHECK_FALSE(path.is_drawn());
+      CHECK(path.completed() == before + 1);
+      const auto places = path.places();
+      REQUIRE(places.size() >= 2);
+      CHECK(places.size() <= WirePath::most_places);
+      CHECK(places.size() >= std::min<std::size_t>(static_cast<std::size_t>(count), 60));
+      CHECK(places.front().from.z() == 0.0);
+      CHECK(places.back().from.z() == doctest::Approx(0.011 * (count - 1) + 0.001));
+      for (std::size_t at = 1; at < places.size(); ++at)
+        CHECK(places[at].from.z() > places[at - 1].from.z());
+    }
+    path.begin(0.01);
+    path.draw_to(place_at(0.0));
+    const std::uint32_t before = path.completed();
+    path.end(); // it has been at one place alone
+    CHECK(path.completed() == before);
+  }
+
+  TEST_CASE("a wire that is drawn through the model cuts it, is undone, and is done again") {
+    Drawing hands;
+    CHECK(hands.go().wire.completed() == 0);
+    const Frame& drawn = hands.draw();
+    CHECK(drawn.wire.completed() == 1);
+    CHECK(drawn.held);
+    CHECK(drawn.wire.places().size() > 20);
+    CHECK(hands.test().vertices_of(drawn) == hands.test().model.vertices);
+    REQUIRE(hands.change(cut));
+    const ModelVersion& version = hands.loop().newest_model();
+    CHECK(version.number == 1);
+    CHECK(deform::check_closed_manifold(version.mesh));
+    const auto parts = deform::separate(version.mesh);
+    REQUIRE(parts.size() == 2);
+    double volume = 0.0;
+    for (const deform::Mesh& part : parts) {
+      CHECK(deform::check_closed_manifold(part));
+      volume += deform::volume_of(part);
+    }
+    CHECK(volume == doctest::Approx(deform::volume_of(hands.test().model)).epsilon(1e-9));
+    CHECK(hands.go().parts.count == 2);
+    const auto& steps = hands.go().steps;
+    CHECK(steps.all()[steps.undoable - 1].kind == StepKind::cut);
+    const auto again = made_again(hands.test().model, *version.origin);
+    REQUIRE(again);
+    CHECK(again->vertices == version.mesh.vertices);
+    CHECK(again->face_corners == version.mesh.face_corners);
+    hands.go_back(Request::undo);
+    CHECK(hands.go().model == 0);
+    CHECK(hands.test().vertices_of(hands.go()) == hands.test().model.vertices);
+    hands.go_back(Request::redo);
+    CHECK(hands.go().model == 1);
+    CHECK(hands.go().parts.count == 2);
+  }
+
+  TEST_CASE("a wire that does not go through says why, and the model stays as it is") {
+    Drawing hands;
+    CHECK(hands.draw(0.5).wire.completed() == 1);
+    const auto refused = hands.change(cut);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message.starts_with("the model "));
+    CHECK(hands.go(3).model == 0);
+    CHECK(hands.test().vertices_of(hands.go()) == hands.test().model.vertices);
+    hands.draw(1.0); // and then another one cuts
+    CHECK(hands.change(cut));
+    CHECK(hands.go(2).model == 1);
+  }
+
+  TEST_CASE("parts that overlap are joined as they are now, and one that is whole stays") {
+    Drawing hands;
+    const auto whole = hands.change({0, ModelSource::joined});
+    REQUIRE_FALSE(whole);
+    CHECK(whole.error().message == "the model is one part, which is whole");
+    hands.draw();
+    REQUIRE(hands.change(cut));
+    const auto apart = hands.change({0, ModelSource::joined}); // they touch, and do not overlap
+    CHECK((!apart || deform::separate(hands.loop().newest_model().mesh).size() == 1));
+  }
+
+  TEST_CASE("a puppet's model is neither cut nor joined") {
+    test::LoopUnderTest test(Mode::type1, {.rings_of_ball = 16, .puppet = test::ball_puppet});
+    test.frame_after_tick(0);
+    auto finer = FinerModel::make(test.loop->newest_model(), {0, ModelSource::joined});
+    REQUIRE(finer);
+    REQUIRE(test.loop->hold_still());
+    test.frame_after_tick(1);
+    REQUIRE(test.loop->is_still());
+    const auto refused = test.loop->change_model(*finer);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message == "a puppet's model is neither cut nor joined");
+    CHECK(test.frame_after_tick(2).model == 0);
+    CHECK_FALSE(test.loop->is_still());
+  }
+
+  TEST_CASE("drawing allocates nothing and takes no lock") {
+    Drawing hands;
+    test::RestraintCounts counts;
+    {
+      const test::Restraint restraint;
+      hands.draw();
+      hands.draw(0.3);
+      counts = restraint.counts();
+    }
+    CHECK(counts.allocations == 0);
+    CHECK(counts.frees == 0);
+    CHECK(counts.locks == 0);
+    CHECK(hands.go().wire.completed() == 2);
+  }
+}
+
+} // namespace wire_test
