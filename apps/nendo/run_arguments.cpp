@@ -169,7 +169,7 @@ Result<void> set_wire(RunArguments& options) {
   if (!from || !to || !(*from >= 0.0) || !(*to > *from))
     return Error{Errc::usage, "--wire " + options.wire +
                                   ": use two times with a colon between, such as 0.8s:2.5s"};
-  options.run.wire = {*from, *to};
+  options.run.loop.wire_time = {*from, *to};
   return {};
 }
 

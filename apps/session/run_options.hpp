@@ -40,11 +40,6 @@ struct RunOptions {
   /// The triangles follow the shape by themselves, up to so many vertices; 0: they do not.
   std::uint32_t refine_to = 0;
   double duration_s = 0.0; ///< 0: until a stop signal
-  /// When a wire is drawn, since the run began; nothing: when somebody asks for it.
-  struct WireTime {
-    double from_s = 0.0, to_s = 0.0;
-  };
-  std::optional<WireTime> wire{};
   /// The supports of both hands' fingertips in model units (flow::parse_finger_supports). nullopt
   /// means one radius for all, computed from the model's size.
   std::optional<deform::Supports> supports{};

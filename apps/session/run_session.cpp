@@ -167,14 +167,8 @@ private:
           dispatch(command);
       });
   }
-  /// Draws the wire of the options, and cuts by each that has been drawn.
+  /// Cuts by each wire that has been drawn.
   void follow_wire(const flow::Frame& frame) {
-    if (options_.wire) {
-      const double now_s = static_cast<double>(frame.tick) / options_.loop.rate_hz;
-      const bool draws = now_s >= options_.wire->from_s && now_s < options_.wire->to_s;
-      if (std::exchange(draws_wire_, draws) != draws)
-        loop_commands_.try_push(flow::DrawWire{draws});
-    }
     if (std::exchange(wires_, frame.wire.completed()) == frame.wire.completed()) return;
     if (!frame.wire.is_drawn()) models_.cut(frame.wire);
   }
@@ -405,7 +399,6 @@ private:
   std::shared_ptr<const puppet::Rig> puppet_;            ///< not passed on yet
   std::optional<std::uint32_t> taken_puppet_;            ///< likewise, by the take's number
   std::uint32_t wires_ = 0;                              ///< that have been drawn to their end
-  bool draws_wire_ = false;                              ///< that of the options
   std::map<std::uint32_t, std::uint32_t> taken_puppets_; ///< the loop's numbers of the take's
   std::vector<flow::Command> mask_edits_;                ///< likewise, and symmetry
   std::optional<bool> record_;                           ///< to a file, or not; not done yet

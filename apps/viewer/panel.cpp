@@ -184,7 +184,7 @@ void LiveWindow::Panel::brushes(flow::LoopSettings& chosen) {
 void LiveWindow::Panel::settings() {
   flow::LoopSettings& chosen = wanted.now;
   int mode = static_cast<int>(chosen.mode);
-  const float half = ImGui::GetContentRegionAvail().x * 0.55F;
+  const float half = ImGui::GetContentRegionAvail().x * 0.64F;
   ImGui::RadioButton("type 1: pull", &mode, 0);
   ImGui::SameLine(half);
   ImGui::RadioButton("clay: press", &mode, 2);

@@ -73,7 +73,7 @@ TEST_SUITE("run_models") {
     Run run;
     run.options.left = run.options.right = "sim:cut";
     run.options.loop.sculptor.mode = flow::Mode::parts;
-    run.options.wire = {0.8, 2.5};
+    run.options.loop.wire_time = {0.8, 2.5};
     run.options.recording.file = (run.folder.path() / "take.nendo").string();
     REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
     Asker asker(Changes{{}, {}, {flow::SaveShape{}}, {record(false)}, {record(true)}, {}});

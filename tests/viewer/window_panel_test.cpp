@@ -103,7 +103,7 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
       person.frame.undo_steps = in_hand ? 2 : 1;
       person.frame.redo_steps = 2;
       std::vector<std::size_t> undos, redos;        // that single clicks asked for
-      for (double y = 630.0; y < 720.0; y += 6.0) { // of the list
+      for (double y = 654.0; y < 744.0; y += 6.0) { // of the list
         const Commands asked = person.click(110.0, y);
         if (asked.empty()) continue;
         const auto count = [&](Request request) {

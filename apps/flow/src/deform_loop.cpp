@@ -287,7 +287,12 @@ bool DeformLoop::has_clutch(const Hand& hand) const noexcept {
   return rig_ && rig_->rig().puppet().clutch.means[hand.slot] == puppet::ClutchMeans::wrist_switch;
 }
 
-void DeformLoop::take_commands() noexcept {
+void DeformLoop::take_commands(HostTime scheduled) noexcept {
+  if (const auto& wire = options_.wire_time) {
+    const double now_s = stats_.ticks == 0 ? 0.0 : seconds_between(first_due_, scheduled);
+    const bool draws = now_s >= wire->from_s && now_s < wire->to_s;
+    if (std::exchange(draws_in_time_, draws) != draws) apply(DrawWire{draws});
+  }
   if (options_.commands == nullptr) return;
   options_.commands->drain([this](const Command& command) noexcept { apply(command); });
 }
@@ -436,7 +441,7 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   const auto now_ns = [&]() noexcept { return saturated_ns(HostClock::now() - record.woke); };
   take_change();
   if (runs.input) {
-    take_commands();
+    take_commands(record.scheduled);
     take_script(record.scheduled);
     take_samples(record);
   }

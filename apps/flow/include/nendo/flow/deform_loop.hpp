@@ -88,6 +88,11 @@ struct LoopOptions : PaceOptions {
   /// Recorded input that the loop takes in its ticks, before what is live. It must outlive the
   /// loop.
   InputScript* script = nullptr;
+  /// When a wire is drawn (DrawWire) by itself, since the first tick was due.
+  struct WireTime {
+    double from_s = 0.0, to_s = 0.0;
+  };
+  std::optional<WireTime> wire_time{};
   std::size_t undo_most_bytes = 0; ///< UndoRoom::most_bytes, of all versions together
   /// The sinks that are shown every frame. They must outlive the loop.
   std::vector<FrameSink*> sinks;
@@ -251,7 +256,7 @@ public:
 private:
   struct Hand;
   void tick(const Pacer::Due& due) noexcept;
-  void take_commands() noexcept;
+  void take_commands(HostTime scheduled) noexcept;
   void apply(const Command& command) noexcept;
   void take_change() noexcept;
   void finish_change(Frame& frame) noexcept;
@@ -367,6 +372,7 @@ private:
   bool switch_on_ = false;        ///< any hand's, for SwitchAction::grab
   WirePath wire_;                 ///< that hands draw, or have drawn last
   WirePath drawn_wire_;           ///< the last one that has been drawn to its end
+  bool draws_in_time_ = false;    ///< by LoopOptions::wire_time
   bool holds_after_wire_ = false; ///< the hands held the model before
   JobOffer<PreparedChange*> changes_;
   PreparedChange* taken_ = nullptr; ///< by this tick
