@@ -187,10 +187,11 @@ void LiveWindow::Panel::settings() {
   const float half = ImGui::GetContentRegionAvail().x * 0.64F;
   ImGui::RadioButton("type 1: pull", &mode, 0);
   ImGui::SameLine(half);
-  ImGui::RadioButton("clay: press", &mode, 2);
+  ImGui::RadioButton("clay", &mode, 2);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Whole hands press the surface (m)");
   ImGui::RadioButton("type 2: strokes", &mode, 1);
   ImGui::SameLine(half);
-  ImGui::RadioButton("parts: move", &mode, 3);
+  ImGui::RadioButton("parts", &mode, 3);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("A hand that closes takes the part under it, until it opens (m)");
   chosen.mode = static_cast<flow::Mode>(mode);
