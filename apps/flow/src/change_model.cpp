@@ -35,14 +35,13 @@ DeformLoop::change_model(FinerModel& finer,
     keep_model();
     return Error{Errc::bad_input, "a puppet's model is neither cut nor joined"};
   }
-  auto finished = finer.finish(last_number_ + 1, undo_room());
-  std::unique_ptr<ModelVersion> made = finished ? *std::move(finished) : nullptr;
+  auto made = finer.finish(last_number_ + 1, undo_room());
   SculptorOptions sculptor = asked_.options;
   const auto check = [&]() -> Result<void> {
-    if (!made) return Error{finished.error().code, "the model " + finished.error().message};
+    if (!made) return Error{made.error().code, "the model " + made.error().message};
     // A puppet's points may lie too near to each other on another version.
-    if (auto fits = set_model(sculptor, *made); !fits) return fits;
-    return accepts ? accepts(*made) : Result<void>();
+    if (auto fits = set_model(sculptor, **made); !fits) return fits;
+    return accepts ? accepts(**made) : Result<void>();
   };
   if (auto fine = check(); !fine) {
     keep_model();
@@ -50,7 +49,7 @@ DeformLoop::change_model(FinerModel& finer,
   }
   asked_.options = std::move(sculptor);
   ++last_number_;
-  versions_.push_back(std::move(made));
+  versions_.push_back(*std::move(made));
   offer_model(*versions_.back(), finer.change_to(*versions_.back()));
   return {};
 }
