@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <memory>
+#include <numbers>
 
 #include <doctest/doctest.h>
 
@@ -12,6 +13,7 @@
 
 #include "support/flow_fixtures.hpp"
 #include "support/restraint.hpp"
+#include "support/test_meshes.hpp"
 
 namespace wire_test {
 
@@ -36,6 +38,10 @@ public:
       wrist.translation().x() += side == Side::left ? -0.4 : 0.4;
       wrists_[Placement::index_of(side)] = wrist;
     }
+    begin_anew();
+  }
+  /// With the model as it is.
+  void begin_anew() {
     test_.loop =
         std::make_unique<DeformLoop>(test_.model, test_.placement, test_.inputs, test_.options);
     go();
@@ -193,6 +199,42 @@ TEST_SUITE("wire") {
     REQUIRE(hands.change(cut));
     const auto apart = hands.change({0, ModelSource::joined}); // they touch, and do not overlap
     CHECK((!apart || deform::separate(hands.loop().newest_model().mesh).size() == 1));
+  }
+
+  TEST_CASE(
+      "balls that overlap become one, which has the union's volume, and come back by an undo") {
+    Drawing hands;
+    deform::Mesh& model = hands.test().model;
+    const deform::Mesh ball = test::sphere(16, 24, 1.0);
+    model = ball;
+    const auto count = static_cast<std::uint32_t>(ball.vertices.cols());
+    model.vertices.conservativeResize(3, 2 * count);
+    model.vertices.rightCols(count) = ball.vertices.colwise() + Vector3d(1.1, 0.13, 0.07);
+    for (std::size_t face = 0; face < ball.face_count(); ++face) {
+      for (std::uint32_t at = ball.face_starts[face]; at < ball.face_starts[face + 1]; ++at)
+        model.face_corners.push_back(count + ball.face_corners[at]);
+      model.face_starts.push_back(static_cast<std::uint32_t>(model.face_corners.size()));
+    }
+    hands.begin_anew();
+    CHECK(hands.go().parts.count == 2);
+    const deform::Points before = hands.test().vertices_of(hands.go());
+    REQUIRE(hands.change({0, ModelSource::joined}));
+    const ModelVersion& version = hands.loop().newest_model();
+    CHECK(hands.go().parts.count == 1);
+    CHECK(deform::check_closed_manifold(version.mesh));
+    // Of two balls of radius 1, d apart, the part in common is pi (4 + d) (2 - d)^2 / 12.
+    const double d = Vector3d(1.1, 0.13, 0.07).norm();
+    const double common = std::numbers::pi * (4.0 + d) * (2.0 - d) * (2.0 - d) / 12.0;
+    CHECK(deform::volume_of(version.mesh) ==
+          doctest::Approx(2.0 * deform::volume_of(ball) - common).epsilon(0.02));
+    const auto& steps = hands.go().steps;
+    CHECK(steps.all()[steps.undoable - 1].kind == StepKind::join);
+    const auto again = made_again(model, *version.origin);
+    REQUIRE(again);
+    CHECK(again->vertices == version.mesh.vertices);
+    hands.go_back(Request::undo);
+    CHECK(hands.go().parts.count == 2);
+    CHECK(hands.test().vertices_of(hands.go()) == before);
   }
 
   TEST_CASE("a puppet's model is neither cut nor joined") {

@@ -1,7 +1,6 @@
 #include <nendo/flow/part_hands.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 #include <utility>
 
@@ -20,8 +19,7 @@ deform::PartMoverOptions mover_options(const HandBodies& bodies,
 template <class Visit>
 void each_place(const deform::ModelParts& parts, std::uint32_t part, const Visit& visit) {
   for (const deform::ModelParts::Block& block : parts.blocks_of(part))
-    for (std::uint64_t lanes = block.lanes; lanes != 0; lanes &= lanes - 1)
-      visit(block.number * deform::block_size + static_cast<std::size_t>(std::countr_zero(lanes)));
+    block.each_lane([&](std::size_t lane) { visit(block.number * deform::block_size + lane); });
 }
 
 Eigen::Vector3d vertex_of(const deform::BlockLayout& layout, const deform::BlockShape& shape,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -24,12 +23,6 @@ using Eigen::Vector3f;
 /// Parts may be put so many units of the layout away: float is precise enough there.
 constexpr double farthest = 1e4;
 
-template <class Visit>
-void each_lane(std::uint64_t lanes, const Visit& visit) {
-  for (; lanes != 0; lanes &= lanes - 1)
-    visit(static_cast<std::size_t>(std::countr_zero(lanes)));
-}
-
 Vector3f vertex_in(const VertexBlock& block, std::size_t lane) noexcept {
   return {block.x[lane], block.y[lane], block.z[lane]};
 }
@@ -45,8 +38,7 @@ std::vector<bool> held_down(const ModelParts& parts, const VertexMask* mask) {
   for (std::uint32_t part = 0; part < parts.count(); ++part)
     for (const ModelParts::Block& block : parts.blocks_of(part))
       if (const float* weights = mask->of_block(block.number))
-        each_lane(block.lanes,
-                  [&](std::size_t lane) { down[part] = down[part] || weights[lane] < 0.5F; });
+        block.each_lane([&](std::size_t lane) { down[part] = down[part] || weights[lane] < 0.5F; });
   return down;
 }
 
@@ -144,8 +136,7 @@ private:
   bool is_in_box(const BlockShape& shape, std::uint32_t part, const Vector3f& at) const noexcept {
     Eigen::AlignedBox3f box;
     for (const ModelParts::Block& block : parts_->blocks_of(part))
-      each_lane(block.lanes,
-                [&](std::size_t lane) { box.extend(vertex_in(shape[block.number], lane)); });
+      block.each_lane([&](std::size_t lane) { box.extend(vertex_in(shape[block.number], lane)); });
     return box.contains(at);
   }
 
@@ -158,7 +149,7 @@ private:
         hands_[hand].last = Isometry3d::Identity();
       }
     for (const ModelParts::Block& block : parts_->blocks_of(part))
-      each_lane(block.lanes, [&](std::size_t lane) {
+      block.each_lane([&](std::size_t lane) {
         set_vertex(base_[block.number], lane, vertex_in(shape[block.number], lane));
       });
   }
@@ -185,7 +176,7 @@ private:
     const std::uint64_t stamp = BlockShape::new_stamp();
     for (const ModelParts::Block& block : parts_->blocks_of(part)) {
       VertexBlock& to = shape.shape.data()[block.number];
-      each_lane(block.lanes, [&](std::size_t lane) {
+      block.each_lane([&](std::size_t lane) {
         set_vertex(to, lane, turn * vertex_in(base_[block.number], lane) + way);
       });
       const std::size_t first = block.number * block_size;

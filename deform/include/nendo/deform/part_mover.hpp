@@ -2,6 +2,7 @@
 // Parts of a model as rigid bodies, which hands take, move, turn and put down. The model is not
 // deformed, and parts go through each other.
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -27,6 +28,13 @@ public:
   struct Block {
     std::uint32_t number = 0;
     std::uint64_t lanes = 0;
+
+    /// Calls `visit` with the number in the block of each of them.
+    template <class Visit>
+    void each_lane(const Visit& visit) const {
+      for (std::uint64_t left = lanes; left != 0; left &= left - 1)
+        visit(static_cast<std::size_t>(std::countr_zero(left)));
+    }
   };
   std::uint32_t count() const noexcept { return static_cast<std::uint32_t>(starts_.size()) - 1; }
   /// Returns those of a part, by rising numbers.
