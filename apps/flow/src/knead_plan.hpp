@@ -11,7 +11,7 @@ namespace nendo::flow {
 struct KneadedModel {
   static constexpr double upper = 0.85; ///< of its height, where hands take its upper part
 
-  Eigen::Vector3d low, high;  ///< corners of its box
+  Eigen::Vector3d low, high;   ///< corners of its box
   double upper_radius_m = 0.0; ///< how far it reaches to its sides there
 
   Eigen::Vector3d middle() const { return 0.5 * (low + high); }
