@@ -143,7 +143,13 @@ TEST_SUITE("run_web") {
     browser.connect();
     const FollowingClient& seen = *browser.follower;
     CHECK(seen.coats.size() > 5);
-    browser.follow_until([&] { return seen.vectors > 0 && seen.updates > 100; });
+    const auto rest = deform::read_mesh(NENDO_MODELS "/face.obj");
+    REQUIRE(rest);
+    // A fair copy is only told from no copy where the face is not at rest, which it is between its expressions.
+    const auto is_shaped = [&] {
+      return (rest->vertices - seen.vertices()).cwiseAbs().maxCoeff() > 1e-2 * seen.diagonal;
+    };
+    browser.follow_until([&] { return seen.vectors > 0 && seen.updates > 100 && is_shaped(); });
     CHECK(seen.update_bytes < 1200);
     CHECK(std::find(seen.functions.begin(), seen.functions.end(),
                     std::pair<std::string, std::string>("jawOpen", "right.thumb_flexion")) !=
@@ -156,12 +162,8 @@ TEST_SUITE("run_web") {
     program.signal(SIGTERM);
     CHECK(program.wait().exit_code == 0);
     const auto written = deform::read_mesh(out);
-    const auto rest = deform::read_mesh(NENDO_MODELS "/face.obj");
     REQUIRE(written);
-    REQUIRE(rest);
-    const deform::Points shape = seen.vertices();
-    CHECK((written->vertices - shape).cwiseAbs().maxCoeff() < 2e-6 * seen.diagonal);
-    CHECK((rest->vertices - shape).cwiseAbs().maxCoeff() > 1e-3 * seen.diagonal);
+    CHECK((written->vertices - seen.vertices()).cwiseAbs().maxCoeff() < 2e-6 * seen.diagonal);
   }
 
   TEST_CASE(
