@@ -1,8 +1,11 @@
 #include "clay/face_meetings.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -17,7 +20,8 @@ namespace {
 constexpr float widest_angle = 2.0F;
 constexpr std::size_t pairs_a_block = 64;
 constexpr std::size_t most_met = 4096;
-constexpr std::size_t most_tests = 50'000; // of two triangles
+constexpr std::size_t most_tests = 50'000;    // of two triangles
+constexpr std::size_t most_boxes = 8'000'000; // compared with others
 
 using ThreePlaces = std::array<Eigen::Vector3f, 3>;
 
@@ -64,12 +68,18 @@ void extend(BlockBounds& box, const BlockBounds& by) noexcept {
     box.sides[side] = std::min(box.sides[side], by.sides[side]);
 }
 
-/// Without branches, which would be foretold badly.
+/// Two registers of four sides each, without branches, which would be foretold badly.
 bool overlap(const BlockBounds& a, const BlockBounds& b) noexcept {
-  float widest = 0.0F; // gap
-  for (std::size_t side = 0; side < 8; ++side)
-    widest = std::max(widest, a.sides[side] + b.sides[(side + 4) % 8]);
-  return widest <= 0.0F;
+  using Four = float __attribute__((vector_size(16)));
+  using Two = std::uint64_t __attribute__((vector_size(16)));
+  const auto half = [](const BlockBounds& box, std::size_t first) {
+    Four four;
+    std::memcpy(&four, box.sides.data() + first, sizeof(four));
+    return four;
+  };
+  const auto is_gap = (half(a, 0) + half(b, 4) > 0.0F) | (half(a, 4) + half(b, 0) > 0.0F);
+  const auto both = std::bit_cast<Two>(is_gap);
+  return (both[0] | both[1]) == 0;
 }
 
 } // namespace
@@ -126,7 +136,8 @@ std::uint32_t FaceMeetings::block_of(const Corners& corners) noexcept {
 }
 
 bool FaceMeetings::is_given_up() const noexcept {
-  return is_crowded_ || tests_ > most_tests || met_.size() == most_met;
+  return is_crowded_ || tests_ > most_tests || boxes_compared_ > most_boxes ||
+         met_.size() == most_met;
 }
 
 void FaceMeetings::find(const BoundedShape& shape, const BlockShape& before,
@@ -143,7 +154,7 @@ void FaceMeetings::find(const BoundedShape& shape, const BlockShape& before,
 }
 
 void FaceMeetings::begin(const BoundedShape& shape, const VolumeKeeper& volume) noexcept {
-  tests_ = 0;
+  tests_ = boxes_compared_ = 0;
   met_.clear();
   boxed_.clear();
   directions_ = volume.directions();
@@ -245,6 +256,7 @@ void FaceMeetings::search(BlockPair blocks, const BlockShape& shape,
   collect(first, hulls_[second], some_);
   if (some_.empty()) return;
   collect(second, hulls_[first], others_);
+  boxes_compared_ += some_.size() * others_.size();
   const auto is_even_between = [&](Triangle one, Triangle other) {
     for (const std::uint32_t corner : corners_[one])
       for (const std::uint32_t of : corners_[other])
@@ -271,6 +283,7 @@ void FaceMeetings::find_at(std::span<const std::uint32_t> places, const BlockSha
     const std::uint32_t block = block_of(corners_[one]);
     measure_boxes(shape, block);
     triangle_boxes_[one] = box_of(shape, one);
+    extend(hulls_[block], triangle_boxes_[one]);
     extend(boxes_[block], triangle_boxes_[one]);
     extend(whole, triangle_boxes_[one]);
   }
@@ -282,8 +295,11 @@ void FaceMeetings::find_at(std::span<const std::uint32_t> places, const BlockSha
     }
   for (const Triangle one : around_.members()) {
     const BlockBounds& box = triangle_boxes_[one];
+    boxes_compared_ += near_.size();
+    if (is_given_up()) return;
     for (const std::uint32_t block : near_) {
-      if (!overlap(box, boxes_[block])) continue;
+      if (!overlap(box, hulls_[block])) continue;
+      boxes_compared_ += first_triangles_[block + 1] - first_triangles_[block];
       for (Triangle other = first_triangles_[block]; other < first_triangles_[block + 1]; ++other)
         if (overlap(box, triangle_boxes_[other]) && (!around_.has(other) || one < other))
           test(one, other, shape, before);

@@ -70,7 +70,7 @@ private:
   std::vector<Triangle> some_, others_;              ///< room for search()
   Marks around_;                                     ///< triangles of find_at()
   std::vector<std::uint32_t> near_;                  ///< blocks near these
-  std::size_t tests_ = 0;                            ///< since find()
+  std::size_t tests_ = 0, boxes_compared_ = 0;       ///< since find()
   std::vector<std::pair<Triangle, Triangle>> met_;
 };
 
