@@ -7,6 +7,8 @@
 
 #include <nendo/base/text.hpp>
 
+#include "cli/model_files.hpp"
+
 namespace nendo::cli {
 namespace {
 
@@ -55,8 +57,13 @@ check_distinct(std::initializer_list<std::pair<std::string_view, std::string_vie
 
 Result<void> check_spares(const std::string& model, std::string_view option, const std::string& out,
                           bool force) {
-  std::error_code not_there;
-  if (force || out.empty() || !std::filesystem::equivalent(model, out, not_there)) return {};
+  if (force || out.empty()) return {};
+  const std::vector<std::string> files = files_of_name(model);
+  if (std::none_of(files.begin(), files.end(), [&](const std::string& file) {
+        std::error_code not_there;
+        return std::filesystem::equivalent(file, out, not_there);
+      }))
+    return {};
   return Error{Errc::usage, std::string(option) + " " + out +
                                 ": is the model itself, whose normals, materials and groups would "
                                 "be lost; name another file, or add --force"};

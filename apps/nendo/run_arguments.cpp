@@ -13,9 +13,11 @@
 #include <nendo/puppet/puppet.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "cli/quantities.hpp"
 #include "nendo/puppet_file.hpp"
+#include "takes/model_files.hpp"
 #include "takes/recorded_model.hpp"
 
 namespace nendo::app::run_command {
@@ -161,15 +163,19 @@ Result<void> set_size(RunArguments& options) {
 }
 
 Result<void> set_wire(RunArguments& options) {
-  if (options.wire.empty()) return {};
-  const auto colon = options.wire.find(':');
-  const auto from = cli::seconds_of(options.wire.substr(0, colon));
+  if (!options.wire.empty() && !options.knife.empty())
+    return Error{Errc::usage, "--wire and --knife: give one of them"};
+  const bool is_knife = !options.knife.empty();
+  const std::string& span = is_knife ? options.knife : options.wire;
+  if (span.empty()) return {};
+  const auto colon = span.find(':');
+  const auto from = cli::seconds_of(span.substr(0, colon));
   const auto to =
-      colon == std::string::npos ? std::nullopt : cli::seconds_of(options.wire.substr(colon + 1));
+      colon == std::string::npos ? std::nullopt : cli::seconds_of(span.substr(colon + 1));
   if (!from || !to || !(*from >= 0.0) || !(*to > *from))
-    return Error{Errc::usage, "--wire " + options.wire +
+    return Error{Errc::usage, std::string(is_knife ? "--knife " : "--wire ") + span +
                                   ": use two times with a colon between, such as 0.8s:2.5s"};
-  options.run.loop.wire_time = {*from, *to};
+  options.run.loop.wire_time = {*from, *to, is_knife ? flow::Blade::knife : flow::Blade::wire};
   return {};
 }
 
@@ -185,6 +191,7 @@ Result<void> check_refinable(const deform::Mesh& model, const RunArguments& opti
 
 Result<void> check(RunArguments& options) {
   auto& run = options.run;
+  run.mesh = cli::name_of_files(options.models);
   const auto mode = flow::mode_named(options.mode);
   if (!mode && !options.mode.empty())
     return Error{Errc::usage,
@@ -241,6 +248,11 @@ Result<void> check(RunArguments& options) {
   if (run.out.empty()) run.out = dated_name();
   if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
   if (auto fine = read_puppet(options); !fine) return fine;
+  if (run.changes_topology && !options.refine_to)
+    return Error{Errc::usage, "--topology: triangles must follow what becomes thin; add --refine, "
+                              "as --refine 100000"};
+  if (run.changes_topology && run.puppet)
+    return Error{Errc::usage, "--topology: a puppet's model stays as it is; leave one of them out"};
   if (run.puppet && *hold == flow::Hold::hand)
     return Error{Errc::usage, "--hold hand: a puppet's own points move it; leave it out"};
   if (run.puppet && csrbf->keep_volume > 0.0 && run.puppet->distance != puppet::Distance::air &&
@@ -257,14 +269,14 @@ Result<void> check(RunArguments& options) {
             .string();
   if (options.view.window && run.out_puppet.file.empty() && !run.over)
     run.out_puppet.file =
-        std::filesystem::path(run.mesh).filename().replace_extension(".puppet.toml").string();
+        std::filesystem::path(cli::short_name(run.mesh)).replace_extension(".puppet.toml").string();
   return check_outputs(options);
 }
 
 Result<deform::Mesh> read_model(RunArguments& options) {
   session::RunOptions& run = options.run;
   if (!run.over) {
-    auto model = deform::read_mesh(run.mesh);
+    auto model = takes::read_models(run.mesh);
     if (!model) return model;
     if (auto fine = check_refinable(*model, options); !fine) return fine.error();
     return model;

@@ -135,8 +135,9 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
       "\nWithout --left and --right every identified glove is used, or simulated hands.");
   command.add_option("--left", run_options.left, "GLOVE on the left hand");
   command.add_option("--right", run_options.right, "GLOVE on the right hand");
-  command.add_option("MODEL,--mesh", run_options.mesh,
-                     "OBJ, PLY or glTF file to shape; without it, the shipped Moai");
+  command.add_option("MODEL,--mesh", options.models,
+                     "OBJ, PLY or glTF file to shape, or several, which stand side by side; "
+                     "without it, the shipped Moai");
   command.add_option(
       "--puppet", run_options.puppet_file,
       "A puppet file, or face, moai or spot: what each finger does to the model, in place of "
@@ -162,9 +163,15 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
       "--wire", options.wire,
       "FROM:TO, times of the run: between them the index fingers draw a wire through "
       "the model, and it then cuts, e.g. 0.8s:2.5s; C does it by hand");
+  command.add_option("--knife", options.knife,
+                     "FROM:TO, likewise: a knife, as long as the model, in the index finger that "
+                     "points more; K does it by hand");
   command.add_option("--refine", options.refine_to,
                      "While the hands shape it, the model gets more triangles where it is "
                      "stretched, and fewer where it is crowded, up to so many vertices");
+  command.add_flag("--topology", run_options.changes_topology,
+                   "With --refine, thin necks part, thin walls get a hole, and what comes as near "
+                   "fuses: thinner than the triangles' edges; O does it by hand");
   command.add_flag("--symmetry", run_options.symmetric,
                    "Fingertips, or hands in clay, shape both sides of the model's plane of "
                    "symmetry, or of x = 0");

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "cli/cli.hpp"
+#include "cli/model_files.hpp"
 #include "web/model_message.hpp"
 #include "web/weights_message.hpp"
 
@@ -100,8 +101,7 @@ Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoi
   if (address == "0.0.0.0" || address == "::")
     cli::note("from another machine, with this one's address in place of " + address +
               "; who is on the network can read along, for nothing is encrypted");
-  return std::make_unique<BrowserView>(*std::move(server),
-                                       std::filesystem::path(mesh).filename().string());
+  return std::make_unique<BrowserView>(*std::move(server), cli::short_name(mesh));
 }
 
 } // namespace nendo::session

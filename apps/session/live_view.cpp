@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "cli/model_files.hpp"
 #include "viewer/live_window.hpp"
 #include "viewer/puppet_editor.hpp"
 
@@ -21,7 +22,7 @@ class LiveView final : public Observer {
 public:
   LiveView(std::unique_ptr<LiveWindow> window, const ViewOptions& options, const RunOptions& run)
       : window_(std::move(window)), options_(options) {
-    model_name_ = std::filesystem::path(run.mesh).filename().string();
+    model_name_ = cli::short_name(run.mesh);
     gauges_.model = model_name_;
     if (run.over)
       gauges_.model += " over " + std::filesystem::path(run.over->file).filename().string();

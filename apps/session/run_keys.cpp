@@ -31,9 +31,11 @@ RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : ti
       std::string("[ and ] make the radii smaller, larger; m the next mode, n the next kernel, ") +
       "w the next brush of type 2, - and = make it weaker, stronger; i never folds, or may; "
       "semicolon more clay, from all to air; j the whole hand holds, or its tips; e "
-      "makes the model finer, E makes its triangles suit the shape; C begins to draw a wire, and "
-      "cuts by it; J joins parts that "
-      "overlap; t records; . marks the moment; "
+      "makes the model finer, E makes its triangles suit the shape; O lets what is thin part, open "
+      "or fuse; C begins to draw a wire, K a "
+      "knife, and cuts by it; J joins parts that "
+      "overlap; D copies the part that was taken last, X removes it; t records; . marks the "
+      "moment; "
       "o punches a layer in or out; s saves; "
       "comma and quote let one hand go of a puppet; y shapes both sides by one hand; z clears the "
       "masks, "
@@ -54,8 +56,13 @@ void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
   if (*key == 't') commands.try_push(flow::SetRecording{!status.recording});
   if (*key == 'e') commands.try_push(flow::Subdivide{});
   if (*key == 'E') commands.try_push(flow::Refine{});
+  if (*key == 'O') commands.try_push(flow::ChangeTopology{});
   if (*key == 'C') commands.try_push(flow::DrawWire{!status.frame.wire.is_drawn()});
+  if (*key == 'K')
+    commands.try_push(flow::DrawWire{!status.frame.wire.is_drawn(), flow::Blade::knife});
   if (*key == 'J') commands.try_push(flow::JoinParts{});
+  if (*key == 'D') commands.try_push(flow::EditPart{});
+  if (*key == 'X') commands.try_push(flow::EditPart{true});
   if (*key == '.') commands.try_push(flow::Mark{});
   if (*key == 'o') commands.try_push(flow::Punch{});
   if (*key == ',') clutch(Side::left, status.frame, commands);

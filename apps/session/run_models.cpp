@@ -4,6 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include <nendo/deform/topology.hpp>
+
 namespace nendo::session {
 
 namespace {
@@ -20,6 +22,19 @@ std::string parts_text(const flow::ModelVersion& model) {
   const auto parts = deform::ModelParts(model.mesh, model.layout()).count();
   return parts == 1 ? "the model is one part now"
                     : "the model has " + std::to_string(parts) + " parts now";
+}
+
+bool is_part_edit(const flow::ChangeModel& change) noexcept {
+  return change.source == flow::ModelSource::copied || change.source == flow::ModelSource::removed;
+}
+
+/// Of a shape of that model: something would happen to it.
+bool is_thin(const flow::ModelVersion& model, const deform::BlockShape& shape) {
+  deform::Mesh shaped = model.mesh;
+  model.layout().unpack(shape, shaped.vertices);
+  if (deform::count_thin_places(shaped) == 0) return false;
+  const auto changed = deform::change_topology(shaped);
+  return changed && changed->counts.all() > 0;
 }
 
 std::uint64_t newest_stamp(const deform::BlockShape& shape) {
@@ -58,6 +73,8 @@ std::optional<std::string> RunModels::follow(bool may_begin) {
       refine_to_ = is_by_itself_ ? 0 : refine_to_;
       return "the model " + made.finer.error().message + "; the run goes on as it was";
     }
+    if (is_by_itself_) made_.source = made.source;
+    if (is_by_itself_ && made.is_wanted) was_refined_ = made.source == flow::ModelSource::refined;
     if (made.is_wanted) finer_ = *std::move(made.finer);
   }
   // Another version would forget what can be redone, and nobody has asked for it.
@@ -87,17 +104,40 @@ void RunModels::look() {
   const auto least = std::max(
       least_unfit,
       static_cast<std::size_t>(fraction * static_cast<double>(model.layout().vertex_count())));
-  making_ = std::async(std::launch::async, [&model, least, how = made_, shape = frame.shape] {
+  // Fine triangles find what is thin better, but hands that stretch clay all the time would let
+  // nothing else happen: by turns, where both are needed.
+  making_ = std::async(std::launch::async, [&model, least, how = made_, shape = frame.shape,
+                                            changes_topology = changes_topology_,
+                                            was_refined = was_refined_] {
+    constexpr flow::ChangeModel change{0, flow::ModelSource::topology};
+    const auto changed = [&] {
+      return Made{flow::FinerModel::make(model, change), true, change.source};
+    };
+    if (changes_topology && was_refined && is_thin(model, shape)) return changed();
     Made made{flow::FinerModel::make(model, how)};
     if (!made.finer) return made;
     made.is_wanted = made.finer->count_unfit(shape) >= least;
+    if (changes_topology && !was_refined && !made.is_wanted && is_thin(model, shape))
+      return changed();
     return made;
   });
+}
+
+/// Of what is asked for. Returns a message for people if there is none.
+std::optional<std::string> RunModels::choose_part() {
+  flow::DeformLoop& loop = *placed_.loop;
+  const flow::Frame& frame = loop.frames().front();
+  made_.part = frame.model == loop.newest_model().number ? frame.parts.chosen : deform::no_index;
+  if (made_.part != deform::no_index) return std::nullopt;
+  return "no hand has taken a part of this model yet; take the one that is meant, in mode parts "
+         "(m)";
 }
 
 std::optional<std::string> RunModels::begin() {
   made_ = *std::exchange(asked_, {});
   is_by_itself_ = false;
+  if (is_part_edit(made_) && made_.part == deform::no_index)
+    if (auto told = choose_part()) return told;
   const flow::ModelVersion& model = placed_.loop->newest_model();
   making_ = std::async(std::launch::async, [&model, how = made_, wire = wire_] {
     return Made{flow::FinerModel::make(model, how, wire.places())};
@@ -112,16 +152,19 @@ std::optional<std::string> RunModels::hand_over() {
   stage_ = Stage::handing_over;
   if (!finer->is_of(loop.newest_model())) { // somebody has undone meanwhile
     loop.keep_model();
+    if (is_part_edit(made_)) return "the model is another one now; choose the part again";
     if (!is_by_itself_) asked_ = made_; // of the model that there is now
     return std::nullopt;
   }
   const auto taken =
       loop.change_model(*finer, [this](const auto& version) { return prepare(version); });
   // What nobody has asked for happens many times a minute.
-  if (is_by_itself_ && (taken || finer->found_nothing())) return std::nullopt;
+  const bool is_topology = made_.source == flow::ModelSource::topology;
+  if (is_by_itself_ && (finer->found_nothing() || (taken && !is_topology))) return std::nullopt;
   if (!taken) return taken.error().message + "; the model stays as it is";
-  if (made_.source == flow::ModelSource::cut || made_.source == flow::ModelSource::joined)
-    return parts_text(loop.newest_model());
+  if (is_topology)
+    return "what was thin has parted, opened or fused; " + parts_text(loop.newest_model());
+  if (is_of_shape(made_.source)) return parts_text(loop.newest_model());
   return "the model has " + std::to_string(loop.newest_model().layout().vertex_count()) +
          " vertices now";
 }

@@ -16,9 +16,12 @@ namespace nendo::session {
 class RunModels {
 public:
   /// Both must outlive this. `placed` has its loop before the first call. The model is refined
-  /// again and again where it needs that, up to `refine_to` vertices; 0: only when asked.
-  RunModels(const PlacedLoop& placed, const std::vector<Sink*>& sinks, std::uint32_t refine_to)
-      : placed_(placed), sinks_(sinks), refine_to_(refine_to) {}
+  /// again and again where it needs that, up to `refine_to` vertices; 0: only when asked. With
+  /// `changes_topology`, what is thin then parts, opens or fuses.
+  RunModels(const PlacedLoop& placed, const std::vector<Sink*>& sinks, std::uint32_t refine_to,
+            bool changes_topology)
+      : placed_(placed), sinks_(sinks), refine_to_(refine_to), changes_topology_(changes_topology) {
+  }
 
   /// Asks for another model, made of the present one: flow::model_asked_by().
   void ask(const flow::ChangeModel& change) noexcept { asked_ = change; }
@@ -45,10 +48,12 @@ private:
   /// What another thread has made.
   struct Made {
     Result<flow::FinerModel> finer;
-    bool is_wanted = true; ///< enough edges are unfit, if nobody has asked for it
+    bool is_wanted = true; ///< enough edges are unfit, or something is thin, if nobody has asked
+    flow::ModelSource source = flow::ModelSource::refined; ///< then
   };
 
   std::optional<std::string> begin();
+  std::optional<std::string> choose_part();
   void look();
   std::optional<std::string> hand_over();
   Result<void> prepare(const flow::ModelVersion& version);
@@ -56,9 +61,11 @@ private:
   const PlacedLoop& placed_;
   const std::vector<Sink*>& sinks_;
   std::uint32_t refine_to_;
+  bool changes_topology_;
   HostTime looked_at_{};                       ///< whether the model needs refining
   std::pair<std::uint64_t, bool> last_look_{}; ///< the newest stamp in the shape, in a stroke
   bool is_by_itself_ = false;                  ///< what is being made
+  bool was_refined_ = false;                   ///< by itself, the last time
   std::optional<flow::ChangeModel> asked_;     ///< without its number
   std::future<Made> making_;
   flow::ChangeModel made_;                ///< what making_ and finer_ are

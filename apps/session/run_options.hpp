@@ -39,7 +39,8 @@ struct RunOptions {
   bool symmetric = false;                 ///< fingertips shape both sides
   /// The triangles follow the shape by themselves, up to so many vertices; 0: they do not.
   std::uint32_t refine_to = 0;
-  double duration_s = 0.0; ///< 0: until a stop signal
+  bool changes_topology = false; ///< meanwhile, what is thin parts, opens or fuses
+  double duration_s = 0.0;       ///< 0: until a stop signal
   /// The supports of both hands' fingertips in model units (flow::parse_finger_supports). nullopt
   /// means one radius for all, computed from the model's size.
   std::optional<deform::Supports> supports{};

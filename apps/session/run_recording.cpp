@@ -8,6 +8,7 @@
 #include <nendo/driver/record_counts.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "cli/quantities.hpp"
 #include "session/place_loop.hpp"
@@ -86,7 +87,7 @@ recording::Setup RunRecorder::setup_now() const {
     const auto& gloves = options_.over->take.setup.gloves;
     setup.gloves.insert(setup.gloves.begin(), gloves.begin(), gloves.end());
   }
-  setup.loop = recording::LoopSetup{std::filesystem::absolute(options_.mesh).string(),
+  setup.loop = recording::LoopSetup{cli::absolute_name(options_.mesh),
                                     recording::sum_of(model_.vertices),
                                     placed_.setup.placement,
                                     placed_.setup.options,

@@ -47,7 +47,8 @@ public:
       : options_(std::move(options)), hands_(hands), model_(std::move(model)),
         participants_(participants), grants_(std::move(grants)),
         recorder_(options_, placed_, hands_, model_),
-        models_(placed_, participants_.sinks, options_.refine_to), saving_(options_, recorder_) {
+        models_(placed_, participants_.sinks, options_.refine_to, options_.changes_topology),
+        saving_(options_, recorder_) {
     for (const auto& hand : hands_)
       feedback_.push_back({hand.side, gloves::GloveFeedback(*hand.glove)});
     options_.loop.commands = &loop_commands_;

@@ -1,16 +1,16 @@
 #include "takes/recorded_model.hpp"
 
 #include <nendo/base/text.hpp>
-#include <nendo/deform/mesh_file.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
 #include "cli/cli.hpp"
+#include "takes/model_files.hpp"
 
 namespace nendo::takes {
 namespace {
 
 Result<RecordedModel> model_of_file(const recording::LoopSetup& loop, const std::string& named) {
-  auto model = deform::read_mesh(named.empty() ? loop.mesh : named);
+  auto model = read_models(named.empty() ? loop.mesh : named);
   if (!model) {
     if (!named.empty()) return model.error();
     return Error{Errc::bad_input, printable(model.error().message) +

@@ -36,7 +36,7 @@ public:
   bool has_one_model() const override {
     const auto& events = player_->timeline().events;
     return std::none_of(events.begin(), events.end(), [](const timeline::Event& event) {
-      return flow::model_asked_by(event.command).has_value();
+      return timeline::changes_model(event.command);
     });
   }
   std::optional<PlayedPuppet> puppet() const override {

@@ -147,7 +147,16 @@ public:
   /// The model is made of the shape of the tick in which the loop began to hold still.
   void hear(const flow::ChangeModel& change) {
     is_still_ = false;
-    if (change.is_new()) timeline_.events.push_back({still_at_s_, flow::asking_for(change)});
+    if (!change.is_new()) return;
+    if (change.source != flow::ModelSource::cut)
+      return timeline_.events.push_back({still_at_s_, flow::asking_for(change)});
+    const auto number = static_cast<std::uint32_t>(timeline_.wires.size());
+    timeline_.wires.push_back(wire_);
+    timeline_.events.push_back({still_at_s_, flow::ChangeModel{number, change.source}});
+  }
+  /// That cuts, if a cut is heard next.
+  void note_wire(const flow::WirePath& wire) {
+    wire_.assign(wire.places().begin(), wire.places().end());
   }
 
   /// Returns false if a timeline has no such settings.
@@ -280,6 +289,7 @@ private:
   std::optional<flow::Awaited> awaited_;       ///< after the last tick, by an undo or a redo
   std::uint32_t puppet_ = 0;                   ///< in the last tick
   std::optional<flow::LoggedTick> first_;
+  std::vector<deform::WirePlace> wire_;
 };
 
 void hear_told(const recording::Entry& entry, const flow::DeformLoop& loop, Follower& follower) {
@@ -349,9 +359,7 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
     hear_told(*entry, (*replay)->loop(), follower);
     if (const auto* still = std::get_if<flow::HoldStill>(&*entry)) follower.hear(*still);
     if (const auto* change = std::get_if<flow::ChangeModel>(&*entry)) {
-      if (change->source == flow::ModelSource::cut || change->source == flow::ModelSource::joined)
-        return bad("cuts or joins the model on the way, which a timeline cannot; cut out the part "
-                   "before that with `nendo recording cut`");
+      follower.note_wire((*replay)->loop().drawn_wire());
       follower.hear(*change);
     }
     const auto* settings = std::get_if<flow::LoopSettings>(&*entry);

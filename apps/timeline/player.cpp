@@ -55,13 +55,15 @@ std::shared_ptr<flow::ModelVersion> first_version(const deform::Mesh& model) {
                                               undo_room(), nullptr);
 }
 
-/// Each subdivision makes at most four corners of one.
+/// Each subdivision makes at most four corners of one, and a copy two.
 bool are_too_many(const std::vector<Event>& events, const deform::Mesh& model) {
   std::size_t corners = model.face_corners.size();
   for (const Event& event : events) {
-    if (!std::holds_alternative<flow::Subdivide>(event.command)) continue;
-    if (corners > flow::FinerModel::most_corners) return true;
-    corners *= 4;
+    const bool divides = std::holds_alternative<flow::Subdivide>(event.command);
+    if (divides && corners > flow::FinerModel::most_corners) return true;
+    const auto* const edit = std::get_if<flow::EditPart>(&event.command);
+    if (divides || (edit != nullptr && !edit->removes)) corners *= divides ? 4 : 2;
+    if (corners > 4 * flow::FinerModel::most_corners) return true;
   }
   return false;
 }
@@ -95,8 +97,8 @@ Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Me
   if (std::string wrong = complaint_about(timeline); !wrong.empty())
     return Error{Errc::bad_input, std::move(wrong)};
   if (are_too_many(timeline.events, model))
-    return Error{Errc::bad_input, "the model would be too large when it is subdivided so often; "
-                                  "take out a subdivide event"};
+    return Error{Errc::bad_input, "the model would be too large when it is subdivided so often, or "
+                                  "its parts are copied; take out such an event"};
   if (auto fits = complete(timeline, model); !fits) return fits.error();
   std::unique_ptr<Player> player(new Player(std::move(timeline), model));
   player->pose_hands(0.0);
@@ -194,6 +196,7 @@ void Player::ask(const Event& event) {
     settings_due_ = change->settings; // of several in a frame the last counts, as in the loop
   if (const auto* change = std::get_if<flow::ChangePuppet>(&command)) masks_due_ = change->number;
   if (const auto change = flow::model_asked_by(command)) model_due_ = change;
+  if (const auto* change = std::get_if<flow::ChangeModel>(&command)) model_due_ = *change;
   const auto* request = std::get_if<flow::Request>(&command);
   // A puppet's hands take hold of its functions.
   if (request != nullptr && !(puppet_ && *request == flow::Request::take_hold))
@@ -269,7 +272,9 @@ bool Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
 void Player::make_model(const flow::ChangeModel& change) {
   shaping_.hold_still(tips_, frame_, stats_);
   const auto number = static_cast<std::uint32_t>(versions_.size());
-  auto finer = flow::FinerModel::make(shaping_.model(), change);
+  std::span<const deform::WirePlace> wire;
+  if (change.source == flow::ModelSource::cut) wire = timeline_.wires[change.number];
+  auto finer = flow::FinerModel::make(shaping_.model(), change, wire);
   auto made = finer ? finer->finish(number, undo_room())
                     : Result<std::unique_ptr<flow::ModelVersion>>(finer.error());
   if (made) {

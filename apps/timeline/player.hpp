@@ -80,7 +80,7 @@ private:
   std::size_t next_event_ = 0;
   std::optional<flow::LoopSettings> settings_due_;
   std::optional<std::uint32_t> masks_due_;     ///< their number
-  std::optional<flow::ChangeModel> model_due_; ///< without its number
+  std::optional<flow::ChangeModel> model_due_; ///< its number is that of a wire, or none
   bool was_refused_ = false;                   ///< a change in this frame
   std::uint64_t made_ = 0;                     ///< frames
   std::uint64_t frames_ = 0;                   ///< in all

@@ -92,7 +92,40 @@ std::string complaint_about(const flow::Command& command, const puppet::Rig* rig
   return {};
 }
 
-std::string complaint_about(const Event& event, const puppet::Rig* rig, std::size_t masks) {
+/// Of what changes the model's parts; empty for all other commands.
+std::string complaint_about_parts(const flow::Command& command, const Timeline& timeline) {
+  const auto* change = std::get_if<flow::ChangeModel>(&command);
+  const auto* edit = std::get_if<flow::EditPart>(&command);
+  const auto* join = std::get_if<flow::JoinParts>(&command);
+  if (change == nullptr && edit == nullptr && join == nullptr &&
+      !std::holds_alternative<flow::ChangeTopology>(command))
+    return {};
+  if (timeline.rig) return "a puppet's model stays as it is";
+  if (change != nullptr && change->source != flow::ModelSource::cut)
+    return "is none that a timeline can have";
+  if (change != nullptr && change->number >= timeline.wires.size())
+    return "there is no wire " + std::to_string(change->number);
+  if (edit != nullptr && edit->part == deform::no_index) return "must name a part";
+  if (join != nullptr && !within(join->seam_width, 0.0, largest))
+    return "the seam must be 0 or wider";
+  return {};
+}
+
+std::string complaint_about(const std::vector<std::vector<deform::WirePlace>>& wires) {
+  for (std::size_t at = 0; at < wires.size(); ++at) {
+    const std::string which = "wire " + std::to_string(at) + ": ";
+    if (wires[at].size() < 2 || wires[at].size() > flow::WirePath::most_places)
+      return which + "must have 2 to " + std::to_string(flow::WirePath::most_places) + " places";
+    for (const deform::WirePlace& place : wires[at])
+      if (!(place.from.cwiseAbs().maxCoeff() <= largest) ||
+          !(place.to.cwiseAbs().maxCoeff() <= largest))
+        return which + "its places must be finite";
+  }
+  return {};
+}
+
+std::string complaint_about(const Event& event, const Timeline& timeline) {
+  const puppet::Rig* const rig = timeline.rig.get();
   const flow::Command& command = event.command;
   if (!within(event.time_s, 0.0, longest_s)) return "its time must lie within 0 and 1000000 s";
   if (const auto* change = std::get_if<flow::ChangeSettings>(&command);
@@ -101,19 +134,21 @@ std::string complaint_about(const Event& event, const puppet::Rig* rig, std::siz
            "keep_volume within 0 and 1";
   const bool is_known = std::holds_alternative<flow::Request>(command) ||
                         std::holds_alternative<flow::ChangeSettings>(command) ||
-                        flow::model_asked_by(command) ||
-                        std::holds_alternative<flow::Mark>(command) || flow::is_for_puppet(command);
+                        changes_model(command) || std::holds_alternative<flow::Mark>(command) ||
+                        flow::is_for_puppet(command);
   if (const auto* change = std::get_if<flow::ChangePuppet>(&command))
-    return change->number < std::max<std::size_t>(masks, 1) ? "" : "there are no such masks";
+    return change->number < std::max<std::size_t>(timeline.masks.size(), 1)
+               ? ""
+               : "there are no such masks";
+  if (std::string wrong = complaint_about_parts(command, timeline); !wrong.empty()) return wrong;
   return is_known ? complaint_about(command, rig) : "is none that a timeline can have";
 }
 
-std::string complaint_about(const std::vector<Event>& events, const puppet::Rig* rig,
-                            std::size_t masks) {
+std::string complaint_about(const std::vector<Event>& events, const Timeline& timeline) {
   if (events.size() > most_events)
     return "has more than " + std::to_string(most_events) + " events";
   for (std::size_t at = 0; at < events.size(); ++at) {
-    std::string wrong = complaint_about(events[at], rig, masks);
+    std::string wrong = complaint_about(events[at], timeline);
     if (wrong.empty() && at > 0 && events[at].time_s < events[at - 1].time_s)
       wrong = "its time must not be before that of the event before";
     if (!wrong.empty()) return "event " + std::to_string(at) + ": " + wrong;
@@ -209,6 +244,22 @@ std::optional<std::uint8_t> clutched_named(std::string_view name) noexcept {
   return std::nullopt;
 }
 
+bool changes_model(const flow::Command& command) noexcept {
+  return flow::model_asked_by(command) || std::holds_alternative<flow::ChangeModel>(command);
+}
+
+/// Of what changes the model.
+static std::string words_of_model(const flow::Command& command) {
+  if (const auto* refine = std::get_if<flow::Refine>(&command))
+    return "refine up to " + std::to_string(refine->most_vertices) + " vertices";
+  if (std::holds_alternative<flow::ChangeModel>(command)) return "cut";
+  if (std::holds_alternative<flow::JoinParts>(command)) return "join";
+  if (std::holds_alternative<flow::ChangeTopology>(command)) return "topology";
+  if (const auto* edit = std::get_if<flow::EditPart>(&command))
+    return (edit->removes ? "remove part " : "copy part ") + std::to_string(edit->part);
+  return "subdivide";
+}
+
 std::string in_words(const Timeline& timeline, const Event& event) {
   if (const auto* request = std::get_if<flow::Request>(&event.command))
     return std::string(name_of(*request));
@@ -227,9 +278,7 @@ std::string in_words(const Timeline& timeline, const Event& event) {
            (count > 0 && masks->puppet().inverted ? ", inverted" : "") +
            (flow::mirror_of(masks) ? ", symmetric" : "");
   }
-  if (const auto* refine = std::get_if<flow::Refine>(&event.command))
-    return "refine up to " + std::to_string(refine->most_vertices) + " vertices";
-  return std::holds_alternative<flow::Subdivide>(event.command) ? "subdivide" : "mark";
+  return changes_model(event.command) ? words_of_model(event.command) : "mark";
 }
 
 HandTrack* Timeline::track(Side side) noexcept {
@@ -289,7 +338,8 @@ std::string complaint_about(const Timeline& timeline) {
   if (timeline.rig && !timeline.masks.empty()) return "a puppet's masks are in its own text";
   for (const auto& masks : timeline.masks)
     if (flow::is_played(masks.get())) return "masks must have no points";
-  return complaint_about(timeline.events, timeline.rig.get(), timeline.masks.size());
+  if (std::string wrong = complaint_about(timeline.wires); !wrong.empty()) return wrong;
+  return complaint_about(timeline.events, timeline);
 }
 
 } // namespace nendo::timeline

@@ -39,12 +39,16 @@ struct HandTrack {
   hand::HandSkeleton skeleton() const { return hand::HandSkeleton(side, size); }
 };
 
+/// Tells whether the command makes another version of the model.
+bool changes_model(const flow::Command& command) noexcept;
+
 struct Event {
   double time_s = 0.0;
   /// A Request, ChangeSettings (without a filter, because keys are poses that were filtered),
   /// Subdivide, Refine, Mark, or, with a puppet, SetClutch, SetRole or SetSymmetry. These three
   /// find the hands as they were in the frame before. Without a puppet, ChangePuppet names other
-  /// `masks`.
+  /// `masks`, JoinParts, ChangeTopology or EditPart (with its part) changes the model, and so does
+  /// ChangeModel of a cut, whose number is that of the wire in `wires`.
   flow::Command command = flow::Request::grab;
 };
 
@@ -69,6 +73,8 @@ struct Timeline {
   /// Without a puppet: the masks of the fingertips, and whether these are mirrored, by their
   /// numbers. The first is in force at 0 s. Null: there are none; empty: there never are.
   std::vector<std::shared_ptr<const puppet::Rig>> masks{};
+  /// Wires and knives that cut the model, in its units.
+  std::vector<std::vector<deform::WirePlace>> wires{};
   /// One or two, of different sides. Without a puppet, their order numbers the own supports.
   std::vector<HandTrack> hands;
   std::vector<Event> events; ///< in order of their times, which may be equal

@@ -155,6 +155,22 @@ std::string masks_text(const Timeline& timeline) {
   return "masks = [\n" + texts + "]\n";
 }
 
+/// The places of all wires, by their numbers.
+std::string wires_text(const Timeline& timeline) {
+  if (timeline.wires.empty()) return {};
+  std::string texts;
+  for (const auto& wire : timeline.wires) {
+    texts += "  [\n";
+    for (const deform::WirePlace& place : wire) {
+      Eigen::Matrix<double, 6, 1> ends;
+      ends << place.from, place.to;
+      texts += "    " + list(ends) + ",\n";
+    }
+    texts += "  ],\n";
+  }
+  return "wires = [\n" + texts + "]\n";
+}
+
 std::string event_text(const Timeline& timeline, const Event& event) {
   const flow::Command& command = event.command;
   if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
@@ -171,6 +187,12 @@ std::string event_text(const Timeline& timeline, const Event& event) {
     return "symmetric = " + word(symmetry->on);
   if (const auto* refine = std::get_if<flow::Refine>(&command))
     return "refine = " + std::to_string(refine->most_vertices);
+  if (const auto* change = std::get_if<flow::ChangeModel>(&command))
+    return "cut = " + std::to_string(change->number);
+  if (const auto* join = std::get_if<flow::JoinParts>(&command))
+    return "join = " + decimal_text(join->seam_width);
+  if (const auto* edit = std::get_if<flow::EditPart>(&command))
+    return (edit->removes ? "remove_part = " : "copy_part = ") + std::to_string(edit->part);
   return "request = " + toml_string(in_words(timeline, event));
 }
 
@@ -186,7 +208,7 @@ std::string head_text(const Timeline& timeline) {
          line("rate_hz", decimal_text(timeline.rate_hz)) +
          line("duration_s", decimal_text(timeline.duration_s)) + line("held", word(timeline.held)) +
          (timeline.pull_is_step ? line("pull_is_step", "true") : "") + masks_text(timeline) +
-         "events = [\n" + events + "]\n" + "\n[model]\n" +
+         wires_text(timeline) + "events = [\n" + events + "]\n" + "\n[model]\n" +
          line("file", toml_string(timeline.mesh)) +
          line("vertices", std::to_string(timeline.mesh_sum.vertices)) +
          line("crc32c", std::to_string(timeline.mesh_sum.crc));

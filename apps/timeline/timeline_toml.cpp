@@ -225,10 +225,29 @@ void read_masks(TomlReader& reader, const toml::table& root, Timeline& timeline)
   }
 }
 
+/// The places of all wires, by their numbers.
+void read_wires(TomlReader& reader, const toml::table& root, Timeline& timeline) {
+  const toml::array* const wires = reader.array(root, "wires");
+  if (wires == nullptr) return;
+  for (const toml::node& node : *wires) {
+    const toml::array* const places = node.as_array();
+    if (places == nullptr || places->size() > flow::WirePath::most_places)
+      return reader.complain(node, "a wire must be a list of at most " +
+                                       std::to_string(flow::WirePath::most_places) + " places");
+    auto& wire = timeline.wires.emplace_back();
+    for (const toml::node& place : *places) {
+      const auto ends = reader.numbers<6>(place, "a wire's place");
+      wire.push_back({Eigen::Vector3d::Map(ends.data()), Eigen::Vector3d::Map(ends.data() + 3)});
+    }
+    if (reader.error()) return;
+  }
+}
+
 flow::Command read_request(TomlReader& reader, const toml::table& event) {
   const auto name = event["request"].value<std::string_view>();
   if (name == "subdivide") return flow::Subdivide{};
   if (name == "mark") return flow::Mark{};
+  if (name == "topology") return flow::ChangeTopology{};
   return reader.named(event, "request", flow::request_named);
 }
 
@@ -242,6 +261,14 @@ flow::Command read_command(TomlReader& reader, const toml::table& event, const p
     return flow::ChangePuppet{
         static_cast<std::uint32_t>(reader.count(event, "masks", most_events))};
   if (event.contains("symmetric")) return flow::SetSymmetry{reader.truth(event, "symmetric")};
+  const auto number = [&](const char* name) {
+    constexpr std::uint32_t most = deform::no_index - 1;
+    return static_cast<std::uint32_t>(reader.count(event, name, most));
+  };
+  if (event.contains("cut")) return flow::ChangeModel{number("cut"), flow::ModelSource::cut};
+  if (event.contains("join")) return flow::JoinParts{reader.number(event, "join")};
+  if (event.contains("copy_part")) return flow::EditPart{false, number("copy_part")};
+  if (event.contains("remove_part")) return flow::EditPart{true, number("remove_part")};
   if (event.contains("refine"))
     return flow::Refine{static_cast<std::uint32_t>(
         reader.count(event, "refine", std::numeric_limits<std::uint32_t>::max()))};
@@ -255,7 +282,7 @@ void read_events(TomlReader& reader, const toml::table& root, Timeline& timeline
     const toml::table* const event = reader.as_table(node, "an event");
     if (event == nullptr || reader.error()) return;
     reader.allow_only(*event, {"time_s", "request", "settings", "clutch", "role", "symmetric",
-                               "masks", "refine"});
+                               "masks", "refine", "cut", "join", "copy_part", "remove_part"});
     Event read;
     read.time_s = reader.number(*event, "time_s");
     read.command = read_command(reader, *event, timeline.rig.get());
@@ -330,9 +357,9 @@ void read_model(TomlReader& reader, const toml::table& root, Timeline& timeline)
 }
 
 Timeline read_root(TomlReader& reader, const toml::table& root) {
-  reader.allow_only(root,
-                    {"version", "take", "units_per_metre", "rate_hz", "duration_s", "held",
-                     "pull_is_step", "events", "model", "sculptor", "puppet", "masks", "hands"});
+  reader.allow_only(root, {"version", "take", "units_per_metre", "rate_hz", "duration_s", "held",
+                           "pull_is_step", "events", "model", "sculptor", "puppet", "masks",
+                           "wires", "hands"});
   Timeline timeline;
   timeline.take = reader.text(root, "take");
   timeline.units_per_metre = reader.number(root, "units_per_metre");
@@ -342,6 +369,7 @@ Timeline read_root(TomlReader& reader, const toml::table& root) {
   timeline.pull_is_step = root.contains("pull_is_step") && reader.truth(root, "pull_is_step");
   read_puppet(reader, root, timeline);
   if (root.contains("masks")) read_masks(reader, root, timeline);
+  if (root.contains("wires")) read_wires(reader, root, timeline);
   read_events(reader, root, timeline);
   read_model(reader, root, timeline);
   read_sculptor(reader, root, timeline.rig != nullptr, timeline.sculptor);

@@ -116,23 +116,51 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
     commands.emplace_back(flow::SaveShape{});
   if (button("Keep", "The recording of what was just done (k)"))
     commands.emplace_back(flow::SaveRecording{});
-  if (button(frame.wire.is_drawn() ? "Cut" : "Wire",
-             "Draws a wire between the index fingers through the model, and then cuts by it "
-             "(shift c)"))
-    commands.emplace_back(flow::DrawWire{!frame.wire.is_drawn()});
-  if (button("Join", "Parts that overlap become one; undo takes it back (shift j)"))
-    commands.emplace_back(flow::JoinParts{});
-  if (button("Subdivide", "More vertices for finer strokes; undo takes it back (e)"))
-    commands.emplace_back(flow::Subdivide{});
-  if (button("Refine", "More triangles where the model was stretched, fewer where it was crowded; "
-                       "undo takes it back (shift e)"))
-    commands.emplace_back(flow::Refine{});
   if (button(gauges.recording ? "End recording" : "Record", "A recording from here on (t)"))
     commands.emplace_back(flow::SetRecording{!gauges.recording});
   if (gauges.has_layers && button("Punch", "The gloves' layer comes in, or goes out (o)"))
     commands.emplace_back(flow::Punch{});
+  model_buttons(frame, commands);
   told = note.empty() ? gauges.report : note;
   if (!told.empty()) ImGui::TextWrapped("%s", told.c_str());
+}
+
+/// What makes another model of the present one, three in a line.
+void LiveWindow::Panel::model_buttons(const flow::Frame& frame, Commands& commands) {
+  const float space = ImGui::GetStyle().ItemSpacing.x;
+  const float third = (ImGui::GetContentRegionAvail().x - 2.0F * space) / 3.0F;
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.0F, ImGui::GetStyle().FramePadding.y));
+  int column = 0;
+  const auto ask = [&](const char* words, const char* what, const flow::Command& command,
+                       bool possible = true) {
+    if (column++ % 3 != 0) ImGui::SameLine();
+    if (tipped_button(words, what, third, possible)) commands.push_back(command);
+  };
+  const bool draws = frame.wire.is_drawn();
+  ask(draws ? "Cut" : "Wire",
+      "Draws a wire between the index fingers through the model, and then cuts by it (shift c)",
+      flow::DrawWire{!draws});
+  ask("Knife",
+      "Draws a knife, from the finger that points on, through the model; Cut cuts by it (shift k)",
+      flow::DrawWire{true, flow::Blade::knife}, !draws);
+  ask("Join", "Parts that overlap become one; undo takes it back (shift j)", flow::JoinParts{});
+  ask("Subdivide", "More vertices for finer strokes; undo takes it back (e)", flow::Subdivide{});
+  ask("Refine",
+      "More triangles where the model was stretched, fewer where it was crowded; undo takes it "
+      "back (shift e)",
+      flow::Refine{});
+  ask("Open thin",
+      "Thin necks part, thin walls get a hole, and what is as near fuses; undo takes it back "
+      "(shift o)",
+      flow::ChangeTopology{});
+  if (frame.parts.count > 0) { // in another mode no hand takes a part
+    const bool chosen = frame.parts.chosen != deform::no_index;
+    ask("Copy", "A copy of the part that was taken last, beside it (shift d)", flow::EditPart{},
+        chosen);
+    ask("Remove", "The part that was taken last goes; undo takes it back (shift x)",
+        flow::EditPart{true}, chosen && frame.parts.count > 1);
+  }
+  ImGui::PopStyleVar();
 }
 
 void LiveWindow::Panel::parts(SceneWindow& window) {

@@ -51,6 +51,7 @@ struct LiveWindow::Panel {
   void follow_settings(const flow::LoopSettings& in_force);
   void follow(const flow::Frame& frame, double rate_hz);
   void buttons(const flow::Frame& frame, const Gauges& gauges, Commands& commands);
+  static void model_buttons(const flow::Frame& frame, Commands& commands);
   static void parts(SceneWindow& window);
   void settings();
   void brushes(flow::LoopSettings& chosen);
@@ -71,6 +72,7 @@ struct LiveWindow::Panel {
 private:
   void step(flow::Request request, const flow::Frame& frame, Commands& commands);
   void step_keys(const flow::Frame& frame, Commands& commands);
+  void part_keys(const flow::Frame& frame, Commands& commands);
   void single_keys(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
                    Commands& commands);
   void settings_keys(const flow::Frame& frame);

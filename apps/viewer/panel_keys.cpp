@@ -39,8 +39,10 @@ constexpr std::array key_table{
     KeyLine{"j", "the whole hand holds, or its fingertips"},
     KeyLine{"e", "subdivide: the model gets more vertices for finer strokes"},
     KeyLine{"shift e", "refine: more triangles where it was stretched, fewer where it was crowded"},
-    KeyLine{"shift c", "begins to draw a wire between index fingers, and then cuts by it"},
+    KeyLine{"shift c, shift k", "begins to draw a wire, a knife, and then cuts by it"},
     KeyLine{"shift j", "joins parts that overlap"},
+    KeyLine{"shift o", "thin necks part, thin walls open, and what is as near fuses"},
+    KeyLine{"shift d, shift x", "copies, removes the part that was taken last"},
     KeyLine{"Home", "all of the model and the hands in the picture"},
     KeyLine{"p", "the panel folded and unfolded"},
     KeyLine{"q", "quit; the shape is written"},
@@ -98,6 +100,17 @@ void LiveWindow::Panel::step_keys(const flow::Frame& frame, Commands& commands) 
   if (pressed(GLFW_KEY_Y, true)) step(Request::redo, frame, commands);
 }
 
+// With shift: what cuts the model and is done with its parts.
+void LiveWindow::Panel::part_keys(const flow::Frame& frame, Commands& commands) {
+  const bool draws = frame.wire.is_drawn();
+  if (pressed(GLFW_KEY_C)) commands.emplace_back(flow::DrawWire{!draws});
+  if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::DrawWire{!draws, flow::Blade::knife});
+  if (pressed(GLFW_KEY_J)) commands.emplace_back(flow::JoinParts{});
+  if (pressed(GLFW_KEY_O)) commands.emplace_back(flow::ChangeTopology{});
+  if (pressed(GLFW_KEY_D)) commands.emplace_back(flow::EditPart{});
+  if (pressed(GLFW_KEY_X)) commands.emplace_back(flow::EditPart{true});
+}
+
 void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gauges,
                                     SceneWindow& window, Commands& commands) {
   const bool shift = ImGui::GetIO().KeyShift;
@@ -105,9 +118,9 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
                                      {GLFW_KEY_L, Request::let_go},
                                      {GLFW_KEY_C, Request::commit},
                                      {GLFW_KEY_X, Request::reset}})
-    if (pressed(key) && !(shift && key == GLFW_KEY_C)) commands.emplace_back(request);
-  if (shift && pressed(GLFW_KEY_C)) commands.emplace_back(flow::DrawWire{!frame.wire.is_drawn()});
-  if (shift && pressed(GLFW_KEY_J)) commands.emplace_back(flow::JoinParts{});
+    if (pressed(key) && !(shift && (key == GLFW_KEY_C || key == GLFW_KEY_X)))
+      commands.emplace_back(request);
+  if (shift) part_keys(frame, commands);
   if (pressed(GLFW_KEY_U)) step(Request::undo, frame, commands);
   if (pressed(GLFW_KEY_R)) step(Request::redo, frame, commands);
   if (pressed(GLFW_KEY_T)) commands.emplace_back(flow::SetRecording{!gauges.recording});
@@ -120,11 +133,11 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
   if (pressed(GLFW_KEY_PERIOD)) commands.emplace_back(flow::Mark{});
   if (!edits_puppet) { // where these keys have another meaning
     if (pressed(GLFW_KEY_A)) commands.emplace_back(Request::take_hold);
-    if (pressed(GLFW_KEY_O)) commands.emplace_back(flow::Punch{});
+    if (pressed(GLFW_KEY_O) && !shift) commands.emplace_back(flow::Punch{});
     if (pressed(GLFW_KEY_SEMICOLON)) wanted.next_volume();
     if (pressed(GLFW_KEY_J) && !shift) wanted.toggle_hold();
   }
-  if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});
+  if (pressed(GLFW_KEY_K) && !shift) commands.emplace_back(flow::SaveRecording{});
   if (pressed(GLFW_KEY_E)) {
     if (ImGui::GetIO().KeyShift)
       commands.emplace_back(flow::Refine{});

@@ -223,7 +223,7 @@ void SceneWindow::move_camera() {
 }
 
 void SceneWindow::follow_part_keys() {
-  if (!takes_keys() || ImGui::GetIO().KeyCtrl) return;
+  if (!takes_keys() || ImGui::GetIO().KeyCtrl || ImGui::GetIO().KeyShift) return;
   for (const auto& [key, part] : {std::pair{GLFW_KEY_H, &parts_.hands},
                                   {GLFW_KEY_B, &parts_.bones},
                                   {GLFW_KEY_V, &parts_.vectors},

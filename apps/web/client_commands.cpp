@@ -153,7 +153,12 @@ std::optional<flow::Command> parse_command(std::string_view text) noexcept {
   if (text == "refine") return flow::Refine{};
   if (text == "wire on") return flow::DrawWire{true};
   if (text == "wire off") return flow::DrawWire{false};
+  if (text == "knife on") return flow::DrawWire{true, flow::Blade::knife};
+  if (text == "knife off") return flow::DrawWire{false, flow::Blade::knife};
+  if (text == "topology") return flow::ChangeTopology{};
   if (text == "join") return flow::JoinParts{};
+  if (text == "copy part") return flow::EditPart{};
+  if (text == "remove part") return flow::EditPart{true};
   if (text == "mark") return flow::Mark{};
   if (text == "punch") return flow::Punch{};
   if (text == "record") return flow::SetRecording{true};

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <tuple>
 
 #include <doctest/doctest.h>
 
@@ -14,6 +15,7 @@
 #include "support/flow_fixtures.hpp"
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
+#include "support/thin_meshes.hpp"
 
 namespace wire_test {
 
@@ -52,7 +54,9 @@ public:
   const Frame& go(int ticks = 1) {
     for (int tick = 0; tick < ticks; ++tick) {
       now_ += 11ms;
-      test_.bend(0, now_);
+      for (const Side side : {Side::left, Side::right})
+        test_.rings[Placement::index_of(side)]->try_push(
+            test::bent_sample(side, bent_[Placement::index_of(side)], now_));
       test_.loop->tick(ticks_++, now_, now_);
       test_.loop->frames().update();
     }
@@ -78,6 +82,28 @@ public:
     }
     return ask(DrawWire{false});
   }
+  void bend_other_than(Side side) {
+    bent_[Placement::index_of(side)] = 0;
+    bent_[1 - Placement::index_of(side)] = 60;
+  }
+  /// Leads that hand's knife through the ball, from one side to the other, from before it.
+  const Frame& draw_knife(Side side) {
+    constexpr int steps = 60;
+    const double radius_m = 1.0 / test_.placement.units_per_metre;
+    Eigen::Isometry3d& wrist = wrists_[Placement::index_of(side)];
+    REQUIRE(test_.commands.try_push(WristMove::to(side, wrist)));
+    const Vector3d tip =
+        go(6).hands[Placement::index_of(side)].pose[hand::Joint::index_tip].translation();
+    for (int step = 0; step <= steps; ++step) {
+      Eigen::Isometry3d moved = wrist;
+      const double x = 1.4 - 2.8 * step / steps;
+      moved.translation() += radius_m * Vector3d(x, 0.1, 1.3) - tip;
+      REQUIRE(test_.commands.try_push(WristMove::to(side, moved)));
+      if (step == 0) go(); // the hand is there
+      step == 0 ? ask(DrawWire{true, Blade::knife}) : go();
+    }
+    return ask(DrawWire{false});
+  }
   /// Of the model, as who runs the loop does. Returns what cannot be.
   Result<void> change(const ChangeModel& change) {
     auto finer =
@@ -100,6 +126,7 @@ public:
 private:
   test::LoopUnderTest test_{Mode::parts, {.rings_of_ball = 16}};
   std::array<Eigen::Isometry3d, 2> wrists_;
+  std::array<int, 2> bent_{};
   HostTime now_ = HostClock::now();
   std::uint64_t ticks_ = 0;
 };
@@ -237,6 +264,30 @@ TEST_SUITE("wire") {
     CHECK(hands.test().vertices_of(hands.go()) == before);
   }
 
+  TEST_CASE("a neck that is thin parts, which is undone, done again, and made again") {
+    Drawing hands;
+    const auto thick = hands.change({0, ModelSource::topology});
+    REQUIRE_FALSE(thick);
+    CHECK(thick.error().message == "the model is nowhere thinner than its edges");
+    hands.test().model = test::hourglass(0.2);
+    hands.begin_anew();
+    CHECK(hands.go().parts.count == 1);
+    const deform::Points before = hands.test().vertices_of(hands.go());
+    REQUIRE(hands.change({0, ModelSource::topology}));
+    const ModelVersion& version = hands.loop().newest_model();
+    CHECK(hands.go().parts.count == 2);
+    CHECK(version.mesh.detail.size() == static_cast<std::size_t>(version.mesh.vertices.cols()));
+    const auto& steps = hands.go().steps;
+    CHECK(steps.all()[steps.undoable - 1].kind == StepKind::topology);
+    const auto again = made_again(version.before->mesh, *version.origin);
+    REQUIRE(again);
+    CHECK(again->vertices == version.mesh.vertices);
+    hands.go_back(Request::undo);
+    CHECK(hands.test().vertices_of(hands.go()) == before);
+    hands.go_back(Request::redo);
+    CHECK(hands.go().parts.count == 2);
+  }
+
   TEST_CASE("a puppet's model is neither cut nor joined") {
     test::LoopUnderTest test(Mode::type1, {.rings_of_ball = 16, .puppet = test::ball_puppet});
     test.frame_after_tick(0);
@@ -247,9 +298,66 @@ TEST_SUITE("wire") {
     REQUIRE(test.loop->is_still());
     const auto refused = test.loop->change_model(*finer);
     REQUIRE_FALSE(refused);
-    CHECK(refused.error().message == "a puppet's model is neither cut nor joined");
+    CHECK(refused.error().message ==
+          "a puppet's model is neither cut nor joined, and its parts stay");
     CHECK(test.frame_after_tick(2).model == 0);
     CHECK_FALSE(test.loop->is_still());
+  }
+
+  TEST_CASE("a knife leads from the index finger that points more on, and cuts what it sweeps") {
+    for (const Side side : {Side::left, Side::right}) {
+      CAPTURE(static_cast<int>(side));
+      Drawing hands;
+      hands.bend_other_than(side);
+      const Frame& drawn = hands.draw_knife(side);
+      const auto& pose = drawn.hands[Placement::index_of(side)].pose;
+      const double units = hands.test().placement.units_per_metre;
+      const deform::WirePlace& last = drawn.wire.places().back();
+      CHECK(last.from.isApprox(units * pose[hand::Joint::index_tip].translation(), 1e-12));
+      const Vector3d finger = pose[hand::Joint::index_tip].translation() -
+                              pose[hand::Joint::index_proximal].translation();
+      CHECK((last.to - last.from).normalized().dot(finger.normalized()) > 1.0 - 1e-12);
+      CHECK((last.to - last.from).norm() ==
+            doctest::Approx(deform::diagonal_of(hands.test().model.vertices)));
+      REQUIRE(hands.change(cut));
+      const auto parts = deform::separate(hands.loop().newest_model().mesh);
+      REQUIRE(parts.size() == 2);
+      for (const deform::Mesh& part : parts) // neither is a crumb
+        CHECK(deform::volume_of(part) > 0.2 * deform::volume_of(hands.test().model));
+    }
+  }
+
+  TEST_CASE("a part is copied and removed, which is undone, done again, and made again") {
+    Drawing hands;
+    hands.draw();
+    REQUIRE(hands.change(cut));
+    const deform::Points before = hands.test().vertices_of(hands.go(2));
+    for (const auto& [source, kind, parts] : {std::tuple{ModelSource::copied, StepKind::copy, 3U},
+                                              {ModelSource::removed, StepKind::remove, 1U}}) {
+      ChangeModel edit{0, source};
+      edit.part = 1;
+      REQUIRE(hands.change(edit));
+      const ModelVersion& version = hands.loop().newest_model();
+      CHECK(hands.go().parts.count == parts);
+      CHECK(deform::check_closed_manifold(version.mesh));
+      const auto& steps = hands.go().steps;
+      CHECK(steps.all()[steps.undoable - 1].kind == kind);
+      const auto again = made_again(version.before->mesh, *version.origin);
+      REQUIRE(again);
+      CHECK(again->vertices == version.mesh.vertices);
+      hands.go_back(Request::undo);
+      CHECK(hands.go().parts.count == 2);
+      CHECK(hands.test().vertices_of(hands.go()) == before);
+      hands.go_back(Request::redo);
+      CHECK(hands.go().parts.count == parts);
+      hands.go_back(Request::undo);
+    }
+    ChangeModel none{0, ModelSource::removed};
+    none.part = 7;
+    const auto refused = hands.change(none);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message == "the model has no such part");
+    CHECK(hands.test().vertices_of(hands.go()) == before);
   }
 
   TEST_CASE("drawing allocates nothing and takes no lock") {
@@ -259,12 +367,13 @@ TEST_SUITE("wire") {
       const test::Restraint restraint;
       hands.draw();
       hands.draw(0.3);
+      hands.draw_knife(Side::right);
       counts = restraint.counts();
     }
     CHECK(counts.allocations == 0);
     CHECK(counts.frees == 0);
     CHECK(counts.locks == 0);
-    CHECK(hands.go().wire.completed() == 2);
+    CHECK(hands.go().wire.completed() == 3);
   }
 }
 

@@ -132,7 +132,7 @@ TEST_SUITE("export_command") {
   }
 
   TEST_CASE(
-      "a run in which a wire cuts comes out with the cut's material, and no timeline has it") {
+      "a run in which a wire cuts comes out with the cut's material, and so does a timeline") {
     const test::TemporaryFolder folder;
     const auto path = [&](const std::string& name) { return (folder.path() / name).string(); };
     const auto ran =
@@ -153,10 +153,20 @@ TEST_SUITE("export_command") {
     const auto& materials = glb.json["materials"];
     CHECK(std::any_of(materials.begin(), materials.end(),
                       [](const json& material) { return material["name"] == "cut"; }));
-    const auto refused =
+    const auto made =
         test::nendo({"edit", "make", path("cut.nendo"), "--out", path("cut.timeline.toml")});
-    CHECK(refused.exit_code == 5);
-    CHECK(is_one_line_about(refused.err, "cuts or joins the model on the way"));
+    CAPTURE(made.err);
+    REQUIRE(made.exit_code == 0);
+    const auto played =
+        test::nendo({"edit", "play", path("cut.timeline.toml"), "--out", path("played.obj")});
+    CAPTURE(played.err);
+    REQUIRE(played.exit_code == 0);
+    const auto again = deform::read_mesh(path("played.obj"));
+    REQUIRE(again);
+    REQUIRE(again->vertices.cols() == written->vertices.cols());
+    CHECK((again->vertices - written->vertices).cwiseAbs().maxCoeff() <
+          1e-4 * deform::diagonal_of(written->vertices)); // nobody has moved a part yet
+    CHECK(again->look.materials.back().name == "cut");
     for (const char* wrong : {"1s", "2s:1s", "x:2s", ":2s", "-1s:2s"}) {
       CAPTURE(wrong);
       const auto bad = test::nendo({"run", "--wire", wrong, "--out", path("none.obj")});

@@ -510,8 +510,8 @@ TEST_SUITE("run") {
           Case{{"--symmetry", "--puppet", "face"}, 2, "--symmetry"},
           Case{{"--mesh", "/no/such/mesh.obj"}, 5, "/no/such/mesh.obj"},
           Case{{"/no/such/mesh.obj"}, 5, "/no/such/mesh.obj"},
-          Case{{"a.obj", "--mesh", "b.obj"}, 2, "--mesh"},
-          Case{{"a.obj", "b.obj"}, 2, "b.obj"}}) {
+          Case{{"a.obj", "--mesh", "b.obj"}, 5, "a.obj"},
+          Case{{"a.obj", "b.obj"}, 5, "a.obj"}}) {
       std::vector<std::string> arguments{"run", "--right", "sim", "--out", out};
       arguments.insert(arguments.end(), c.arguments.begin(), c.arguments.end());
       const auto done = nendo::test::nendo(arguments);

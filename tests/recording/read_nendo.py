@@ -128,7 +128,7 @@ def sent(b):
 def tape(b):
     forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 5: lambda e: {"side": e.take("B"), "wrist": e.take("7d")}, 4: lambda e: {"gap": e.take("Q")},
              6: lambda e: {**settings(e), **brushes(e), **hold(e)}, 9: lambda e: {"mark": 1}, 10: lambda e: {"clutch": e.take("3B")}, 11: lambda e: {"role": e.take("HBB")},
-             12: lambda e: {"symmetry": e.take("B")}, 13: lambda e: {"puppet": e.take("I")}, 15: lambda e: dict(zip(("input", "on"), e.take("BB"))), 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source", "most_vertices", "seam"), e.take("IBId"))), 16: lambda e: {"wire": e.take("B")}, 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
+             12: lambda e: {"symmetry": e.take("B")}, 13: lambda e: {"puppet": e.take("I")}, 15: lambda e: dict(zip(("input", "on"), e.take("BB"))), 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source", "most_vertices", "seam", "part"), e.take("IBIdI"))), 16: lambda e: {"wire": e.take("B")}, 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
     entries = []
     while b.left():
         kind, size = b.take("BB")
@@ -152,11 +152,12 @@ def puppet(b):
 
 def origin(b):
     source, goes_on = b.take("BB")
-    assert source in (1, 2, 3, 4), "a source of a model"
+    assert source in (1, 2, 3, 4, 5, 6, 7), "a source of a model"
     of_shape = source > 2
     o = {"source": source, "goes_on": goes_on}
     if of_shape and not goes_on:
         o["seam"] = b.take("d")
+        o["part"] = b.take("I")
         o["wire"] = [b.take("6d") for _ in range(b.take("I"))]
     o["vertices" if of_shape else "operations"] = rest = []
     while b.left() > 0:

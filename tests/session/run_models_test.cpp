@@ -8,6 +8,7 @@
 #include <nendo/deform/cut.hpp>
 
 #include "session/asking_run.hpp"
+#include "support/thin_meshes.hpp"
 
 namespace run_models_test {
 
@@ -90,15 +91,50 @@ TEST_SUITE("run_models") {
       replay(recording.file);
   }
 
+  TEST_CASE("the part that was taken last is copied and removed, and the takes replay") {
+    Run run;
+    run.options.left = run.options.right = "sim:carry";
+    run.options.loop.sculptor.mode = flow::Mode::parts;
+    run.options.recording.file = (run.folder.path() / "take.nendo").string();
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    Asker asker(Changes{{},
+                        {},
+                        {flow::EditPart{}},
+                        {record(false)},
+                        {record(true)},
+                        {flow::EditPart{false, 1}},
+                        {flow::EditPart{true, 0}},
+                        {}});
+    asker.least_ticks = 100;
+    const auto outcome = run.follow({&asker});
+    CHECK(asker.prepared == std::vector<std::uint32_t>{1, 2, 3});
+    CHECK(asker.reports == std::vector<std::string>{"the model has 2 parts now",
+                                                    "the model has 3 parts now",
+                                                    "the model has 2 parts now"});
+    const auto written = deform::read_mesh(run.options.out);
+    REQUIRE(written);
+    CHECK(deform::separate(*written).size() == 2);
+    CHECK(written->vertices.cols() == 2 * run.mesh.vertices.cols());
+    REQUIRE(outcome.recordings.size() == 2);
+    for (const auto& recording : outcome.recordings)
+      replay(recording.file);
+  }
+
   TEST_CASE("what cannot be cut or joined is told, and the run goes on") {
     Run run;
-    Asker asker(Changes{{flow::DrawWire{true}}, {flow::DrawWire{false}}, {flow::JoinParts{}}, {}});
+    Asker asker(Changes{{flow::DrawWire{true}},
+                        {flow::DrawWire{false}},
+                        {flow::JoinParts{}},
+                        {flow::EditPart{}},
+                        {}});
     run.follow({&asker});
     CHECK(asker.prepared.empty());
-    REQUIRE(asker.reports.size() == 2);
+    REQUIRE(asker.reports.size() == 3);
     CHECK(asker.reports[0].starts_with("the model "));
     CHECK(asker.reports[0].ends_with("; the model stays as it is"));
     CHECK(asker.reports[1] == "the model is one part, which is whole; the model stays as it is");
+    CHECK(asker.reports[2] == "no hand has taken a part of this model yet; take the one that is "
+                              "meant, in mode parts (m)");
   }
 
   TEST_CASE("the model is refined by itself where hands stretch it, and never beyond the bound") {
@@ -118,6 +154,34 @@ TEST_SUITE("run_models") {
     CHECK(asker.prepared.size() > 0);
     REQUIRE(outcome.recordings.size() == 1);
     CHECK(replay(outcome.recordings[0].file) >= 0);
+  }
+
+  TEST_CASE("a wall that is thin opens by itself, once, or when it is asked for, and replays") {
+    for (const bool by_itself : {true, false}) {
+      CAPTURE(by_itself);
+      Run run;
+      run.mesh = test::dented_plate(0.4, 0.01);
+      REQUIRE(deform::write_mesh(run.options.mesh, run.mesh));
+      run.options.loop.held = false;
+      if (by_itself) run.options.refine_to = 100000;
+      run.options.changes_topology = by_itself;
+      run.options.recording.file = (run.folder.path() / "take.nendo").string();
+      REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+      const std::vector<flow::Command> nothing;
+      const std::vector<flow::Command> asks{flow::ChangeTopology{}};
+      Asker asker(by_itself ? Changes{nothing, nothing} : Changes{asks, asks});
+      asker.least_ticks = 120;
+      const auto outcome = run.follow({&asker});
+      CHECK(asker.prepared == std::vector<std::uint32_t>{1});
+      REQUIRE(asker.reports.size() == (by_itself ? 1 : 2));
+      CHECK(asker.reports[0] ==
+            "what was thin has parted, opened or fused; the model is one part now");
+      if (!by_itself)
+        CHECK(asker.reports[1] ==
+              "the model is nowhere thinner than its edges; the model stays as it is");
+      REQUIRE(outcome.recordings.size() == 1);
+      CHECK(replay(outcome.recordings[0].file) >= 0);
+    }
   }
 
   TEST_CASE("what was undone is not forgotten because the model refines itself") {

@@ -32,6 +32,23 @@ std::string instead(std::string text, const std::string& part, const std::string
   return text.replace(at, part.size(), other);
 }
 
+/// And then the model is cut by two wires, and its parts are edited.
+Timeline with_cuts(Timeline timeline, std::mt19937& random) {
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  for (const int places : {2, 128}) {
+    auto& wire = timeline.wires.emplace_back();
+    for (int place = 0; place < places; ++place)
+      wire.push_back({{any(random), any(random), any(random)}, {any(random), -0.0, 1e-300}});
+  }
+  for (const flow::Command& command :
+       {flow::Command(flow::ChangeModel{1, flow::ModelSource::cut}),
+        flow::Command(flow::ChangeModel{0, flow::ModelSource::cut}),
+        flow::Command(flow::JoinParts{any(random) + 1.0}), flow::Command(flow::EditPart{false, 3}),
+        flow::Command(flow::EditPart{true, 0}), flow::Command(flow::ChangeTopology{})})
+    timeline.events.push_back({3.0, command});
+  return timeline;
+}
+
 } // namespace
 
 TEST_SUITE("timeline_file") {
@@ -39,6 +56,7 @@ TEST_SUITE("timeline_file") {
     std::mt19937 random(1);
     for (int round = 0; round < 50; ++round) {
       Timeline made = test::random_timeline(random);
+      if (round % 2 == 1) made = with_cuts(std::move(made), random);
       made.hands[0].keys[2].angles.thumb_roll_rad = -0.0;
       made.hands[0].keys[2].angles.wrist_yaw_rad = std::numeric_limits<double>::denorm_min();
       made.hands[1].keys[3].wrist_m.x() = -1000.0;
@@ -130,11 +148,22 @@ TEST_SUITE("timeline_file") {
     CHECK(complaint(instead(text, "rate_hz = 60.0", "rate_hz = 1e300")).find("rate_hz") !=
           std::string::npos);
     CHECK(complaint(text + "\n[more]\n").find("more") != std::string::npos);
+    const std::string cut = text_of(with_cuts(test::random_timeline(random), random));
+    CHECK(complaint(instead(cut, "cut = 1", "cut = 2")).find("there is no wire 2") !=
+          std::string::npos);
+    CHECK(complaint(instead(cut, "copy_part = 3", "copy_part = -3")).find("copy_part") !=
+          std::string::npos);
+    CHECK(complaint(instead(cut, "join = ", "join = -")).find("seam") != std::string::npos);
+    CHECK(complaint(instead(cut, "1e-300]", "1e300]")).find("wire 0") != std::string::npos);
+    CHECK(complaint(instead(cut, "1e-300]", "1e-300, 1]")).find("a wire's place") !=
+          std::string::npos);
+    CHECK(complaint(instead(cut, "wires = [", "wires = [[],")).find("wire 0: must have 2") !=
+          std::string::npos);
   }
 
   TEST_CASE("whatever is done to its bytes, it is refused, or can be written and played") {
     std::mt19937 random(4);
-    const std::string text = text_of(test::random_timeline(random, 2));
+    const std::string text = text_of(with_cuts(test::random_timeline(random, 2), random));
     const auto judge = [](const std::string& bytes) {
       const auto parsed = parse_timeline(bytes, "bytes");
       if (!parsed) {

@@ -145,7 +145,7 @@ TEST_SUITE("run_web") {
     CHECK(seen.coats.size() > 5);
     const auto rest = deform::read_mesh(NENDO_MODELS "/face.obj");
     REQUIRE(rest);
-    // A fair copy is only told from no copy where the face is not at rest, which it is between its expressions.
+    // Between its expressions the face is at rest, and a copy of nothing would look alike.
     const auto is_shaped = [&] {
       return (rest->vertices - seen.vertices()).cwiseAbs().maxCoeff() > 1e-2 * seen.diagonal;
     };

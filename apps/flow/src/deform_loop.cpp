@@ -291,7 +291,7 @@ void DeformLoop::take_commands(HostTime scheduled) noexcept {
   if (const auto& wire = options_.wire_time) {
     const double now_s = stats_.ticks == 0 ? 0.0 : seconds_between(first_due_, scheduled);
     const bool draws = now_s >= wire->from_s && now_s < wire->to_s;
-    if (std::exchange(draws_in_time_, draws) != draws) apply(DrawWire{draws});
+    if (std::exchange(draws_in_time_, draws) != draws) apply(DrawWire{draws, wire->blade});
   }
   if (options_.commands == nullptr) return;
   options_.commands->drain([this](const Command& command) noexcept { apply(command); });
@@ -306,42 +306,13 @@ void DeformLoop::apply(const Command& command) noexcept {
   if (rig_ && command == Command(Request::take_hold)) return rig_->take_hold(hands_now());
   if (request != nullptr) return shaping_.ask(*request);
   if (is_for_puppet(command)) return set_rig(command);
-  if (const auto* wire = std::get_if<DrawWire>(&command)) return draw_wire(wire->on);
+  if (const auto* wire = std::get_if<DrawWire>(&command)) return draw_blade(*wire);
   if (const auto* layer = std::get_if<SetLayer>(&command))
     if (layer->input < hands_.size() && hands_[layer->input].input.layer)
       hands_[layer->input].input.layer->on = layer->on;
   if (move == nullptr) return; // a mark is only logged
   for (Hand& hand : hands_)
     if (hand.slot == Placement::index_of(move->side)) hand.T_stage_wrist = move->pose();
-}
-
-/// Hands that draw hold nothing meanwhile.
-void DeformLoop::draw_wire(bool on) noexcept {
-  constexpr double step_m = 0.002;
-  if (!on) {
-    const std::uint32_t before = wire_.completed();
-    wire_.end();
-    if (wire_.completed() != before) drawn_wire_ = wire_;
-    if (std::exchange(holds_after_wire_, false)) shaping_.ask(Request::grab);
-    return;
-  }
-  if (!wire_.is_drawn()) holds_after_wire_ = shaping_.is_held();
-  wire_.begin(step_m * units_per_metre_);
-  shaping_.ask(Request::let_go);
-}
-
-/// Between both index fingertips, or thumb and index finger of the one hand that there is.
-void DeformLoop::follow_wire(const Frame& frame) noexcept {
-  if (!wire_.is_drawn()) return;
-  const auto& [left, right] = frame.hands;
-  const auto place = [&](const HandFrame& hand, hand::Joint joint) -> Eigen::Vector3d {
-    return units_per_metre_ * hand.pose[joint].translation();
-  };
-  if (left.present && right.present)
-    return wire_.draw_to(
-        {place(left, hand::Joint::index_tip), place(right, hand::Joint::index_tip)});
-  const HandFrame& one = left.present ? left : right;
-  wire_.draw_to({place(one, hand::Joint::thumb_tip), place(one, hand::Joint::index_tip)});
 }
 
 void DeformLoop::set_rig(const Command& command) noexcept {
@@ -377,7 +348,7 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
     if (is_by_hands(shaping_.sculptor().mode()) || taken_ != nullptr || stats_.ticks == 0)
       place_body(hand, shown.pose);
   }
-  follow_wire(frame);
+  follow_blade(frame);
   if (!(frame.wire == wire_)) frame.wire = wire_;
   if (rig_) play_rig();
   if (mirror_) mirror_half(*mirror_, tips_);

@@ -171,11 +171,10 @@ private:
   }
 };
 
-/// The thumb goes down the middle, and then presses outwards all around.
-class Thumb final : public KneadPlan {
+/// A fist whose thumb points down.
+class PointingThumb {
 public:
-  Thumb(const KneadedModel& model, const hand::HandSkeleton& skeleton)
-      : model_(model), angles_(fist()) {
+  explicit PointingThumb(const hand::HandSkeleton& skeleton) : angles_(fist()) {
     angles_.thumb_abduction_rad = from_degrees(50); // 65 mm of it are free of the fist
     const hand::HandPose pose = skeleton.pose(angles_, Isometry3d::Identity());
     tip_m_ = pose[hand::Joint::thumb_tip].translation();
@@ -184,6 +183,36 @@ public:
     aside_ = (knuckle - tip_m_) - (knuckle - tip_m_).dot(along_) * along_;
     aside_.normalize();
   }
+
+  KneadPlan::Pose at(const Vector3d& tip, const Vector3d& down) const noexcept {
+    KneadPlan::Pose pose{angles_, Isometry3d::Identity()};
+    pose.T_stage_wrist.linear() = turn_to(down);
+    pose.T_stage_wrist.translation() = tip - pose.T_stage_wrist.linear() * tip_m_;
+    return pose;
+  }
+
+private:
+  /// The thumb points down, and the knuckles to the operator's right and towards the operator.
+  Matrix3d turn_to(const Vector3d& down) const noexcept {
+    const auto frame = [](const Vector3d& x, const Vector3d& y) {
+      Matrix3d axes;
+      axes.col(0) = x;
+      axes.col(1) = (y - y.dot(x) * x).normalized();
+      axes.col(2) = axes.col(0).cross(axes.col(1));
+      return axes;
+    };
+    return frame(down, Vector3d(1.0, 0.0, 0.6)) * frame(along_, aside_).transpose();
+  }
+
+  JointAngles angles_;
+  Vector3d tip_m_, along_, aside_; ///< in the wrist's frame
+};
+
+/// The thumb goes down the middle, and then presses outwards all around.
+class Thumb final : public KneadPlan {
+public:
+  Thumb(const KneadedModel& model, const hand::HandSkeleton& skeleton)
+      : model_(model), thumb_(skeleton) {}
 
   double length_s() const noexcept override { return BowlRounds::length_s(); }
 
@@ -201,31 +230,43 @@ public:
     tip.y() = deep + lift * (above - deep);
     const double lean =
         out > 0.0 ? BowlRounds::lean_rad[now.round] * std::min(1.0, 4.0 * out) : 0.0;
-    Pose pose{angles_, Isometry3d::Identity()};
-    const Vector3d down = (-lean * now.outwards() - Vector3d::UnitY()).normalized();
-    pose.T_stage_wrist.linear() = turn_to(down);
-    pose.T_stage_wrist.translation() = tip - pose.T_stage_wrist.linear() * tip_m_;
-    return pose;
+    return thumb_.at(tip, (-lean * now.outwards() - Vector3d::UnitY()).normalized());
   }
 
 private:
   static constexpr double floor = 0.30; ///< of the height: the thumb's tip over the model's foot
 
-  /// The thumb points down, and the knuckles to the operator's right and towards the operator.
-  Matrix3d turn_to(const Vector3d& down) const noexcept {
-    const auto frame = [](const Vector3d& x, const Vector3d& y) {
-      Matrix3d axes;
-      axes.col(0) = x;
-      axes.col(1) = (y - y.dot(x) * x).normalized();
-      axes.col(2) = axes.col(0).cross(axes.col(1));
-      return axes;
-    };
-    return frame(down, Vector3d(1.0, 0.0, 0.6)) * frame(along_, aside_).transpose();
+  KneadedModel model_;
+  PointingThumb thumb_;
+};
+
+/// The thumb goes down through the middle to the table. Two hands take turns, each from its own
+/// side.
+class Bore final : public KneadPlan {
+public:
+  Bore(const KneadedModel& model, const hand::HandSkeleton& skeleton)
+      : model_(model), thumb_(skeleton), side_(skeleton.side() == Side::right ? 1.0 : -1.0) {}
+
+  double length_s() const noexcept override { return turn_s * (turns + 0.5); }
+
+  Pose at(double time_s) const noexcept override {
+    const double own_s = std::max(0.0, time_s - (side_ > 0.0 ? 0.0 : 0.5 * turn_s));
+    const double t = own_s - turn_s * std::min(std::floor(own_s / turn_s), turns - 1.0);
+    const double lift = 1.0 - ease(t, 0.4, 1.1) + ease(t, 2.3, 2.9);
+    const double aside = aside_m * (1.0 - ease(t, 0.0, 0.5) + ease(t, 2.7, 3.2));
+    Vector3d tip = model_.middle() + side_ * aside * Vector3d::UnitX();
+    tip.y() = model_.low.y() + lift * (model_.height() + away_m);
+    return thumb_.at(tip, -Vector3d::UnitY());
   }
 
+private:
+  static constexpr double turn_s = 6.4;   ///< from one bore to the same hand's next
+  static constexpr double aside_m = 0.11; ///< between them: there the other hand has room
+  static constexpr double turns = 2.0;
+
   KneadedModel model_;
-  JointAngles angles_;
-  Vector3d tip_m_, along_, aside_; ///< in the wrist's frame
+  PointingThumb thumb_;
+  double side_; ///< 1: right
 };
 
 /// The palm that holds the wall against the thumb.
@@ -451,6 +492,7 @@ std::unique_ptr<KneadPlan> plan_of(KneadTask task, const KneadedModel& model,
   if (task == KneadTask::grip) return std::make_unique<Pinch>(model, skeleton);
   if (task == KneadTask::carry) return std::make_unique<Carry>(model, skeleton);
   if (task == KneadTask::cut) return std::make_unique<CutAndCarry>(model, skeleton);
+  if (task == KneadTask::bore) return std::make_unique<Bore>(model, skeleton);
   if (skeleton.side() == Side::right) return std::make_unique<Thumb>(model, skeleton);
   return std::make_unique<Wall>(model, skeleton);
 }

@@ -4,7 +4,9 @@
 #include <utility>
 
 #include <nendo/deform/deformer_options.hpp>
+#include <nendo/deform/edit_part.hpp>
 #include <nendo/deform/join.hpp>
+#include <nendo/deform/topology.hpp>
 
 namespace nendo::flow {
 namespace {
@@ -49,6 +51,18 @@ Result<deform::Mesh> joined(const deform::Mesh& shaped, const ModelOrigin& origi
   return std::move(made->mesh);
 }
 
+Result<deform::Mesh> made_of_shape(const deform::Mesh& shaped, const ModelOrigin& origin) {
+  if (origin.source == ModelSource::cut) return cut(shaped, origin);
+  if (origin.source == ModelSource::joined) return joined(shaped, origin);
+  if (origin.source == ModelSource::copied) return deform::copied_part(shaped, origin.part);
+  if (origin.source == ModelSource::removed) return deform::removed_part(shaped, origin.part);
+  auto changed = deform::change_topology(shaped);
+  if (!changed) return changed.error();
+  if (changed->counts.all() == 0)
+    return Error{Errc::bad_input, "is nowhere thinner than its edges"};
+  return std::move(changed->mesh);
+}
+
 } // namespace
 
 ModelVersion::ModelVersion(std::uint32_t version, deform::Mesh model, deform::BlockLayout layout,
@@ -62,12 +76,12 @@ deform::BlockShape room_for_shape(const ModelVersion& version) {
 
 Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& origin) {
   if (origin.source == ModelSource::refined) return deform::refined(before, origin.refining);
-  if (origin.source == ModelSource::cut || origin.source == ModelSource::joined) {
+  if (is_of_shape(origin.source)) {
     if (origin.shape.cols() != before.vertices.cols())
-      return Error{Errc::bad_input, "is another one than was cut or joined"};
+      return Error{Errc::bad_input, "is another one than was changed"};
     deform::Mesh shaped = before;
     shaped.vertices = origin.shape;
-    return origin.source == ModelSource::cut ? cut(shaped, origin) : joined(shaped, origin);
+    return made_of_shape(shaped, origin);
   }
   if (auto fine = check_subdividable(before); !fine) return fine.error();
   return deform::subdivide(before).mesh;
@@ -87,10 +101,11 @@ Result<FinerModel> FinerModel::make(const ModelVersion& from, const ChangeModel&
     if (!refiner) return refiner.error();
     return FinerModel(from, Refining{*std::move(refiner), {.most_vertices = change.most_vertices}});
   }
-  if (change.source == ModelSource::cut || change.source == ModelSource::joined) {
+  if (flow::is_of_shape(change.source)) {
     ModelOrigin origin;
     origin.source = change.source;
     origin.seam_width = change.seam_width;
+    origin.part = change.part;
     origin.wire.assign(wire.begin(), wire.end());
     return FinerModel(from, Remaking{std::move(origin)});
   }
@@ -100,10 +115,11 @@ Result<FinerModel> FinerModel::make(const ModelVersion& from, const ChangeModel&
 
 /// With the shape of now as its rest.
 Result<std::unique_ptr<ModelVersion>> FinerModel::remade(Remaking& remaking, std::uint32_t number,
-                                                         const UndoRoom& undo) const {
+                                                         const UndoRoom& undo) {
   ModelOrigin& origin = remaking.origin;
   from_->layout().unpack(from_->shape.shape(), origin.shape);
   auto mesh = made_again(from_->mesh, origin);
+  found_nothing_ = !mesh && origin.source == ModelSource::topology;
   if (!mesh) return mesh.error();
   deform::BlockLayout layout(mesh->vertices);
   auto made =
@@ -142,7 +158,7 @@ ChangeModel FinerModel::change_to(const ModelVersion& version) const noexcept {
   const auto* const refining = std::get_if<Refining>(&making_);
   return {version.number, version.origin->source,
           refining != nullptr ? static_cast<std::uint32_t>(refining->limits.most_vertices) : 0,
-          version.origin->seam_width};
+          version.origin->seam_width, version.origin->part};
 }
 
 std::size_t FinerModel::count_unfit(const deform::BlockShape& shape) const {

@@ -59,8 +59,12 @@ std::span<const deform::PartGrip> PartHands::grips(const deform::Points& tips) n
 
 deform::FieldStatus PartHands::follow(const deform::Points& tips) noexcept {
   const deform::FieldStatus status = mover_.move_to(grips(tips));
-  for (std::size_t at = 0; at < hands_.size(); ++at)
-    if (std::exchange(hands_[at].held, mover_.held_by(at)) != mover_.held_by(at)) find_places(at);
+  for (std::size_t at = 0; at < hands_.size(); ++at) {
+    const std::uint32_t held = mover_.held_by(at);
+    if (std::exchange(hands_[at].held, held) == held) continue;
+    find_places(at);
+    if (held != deform::no_index) chosen_ = held;
+  }
   tell_contacts();
   return status;
 }
@@ -122,6 +126,7 @@ PartsState PartHands::state() const noexcept {
   state.count = parts_->count();
   for (std::size_t at = 0; at < std::min(hands_.size(), state.held.size()); ++at)
     state.held[at] = mover_.held_by(at);
+  state.chosen = chosen_;
   return state;
 }
 

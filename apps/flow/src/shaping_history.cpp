@@ -125,6 +125,9 @@ void Shaping::note_settings(const LoopSettings& before, bool is_step) noexcept {
 static StepKind kind_of(ModelSource source) noexcept {
   if (source == ModelSource::refined) return StepKind::refine;
   if (source == ModelSource::cut) return StepKind::cut;
+  if (source == ModelSource::copied) return StepKind::copy;
+  if (source == ModelSource::removed) return StepKind::remove;
+  if (source == ModelSource::topology) return StepKind::topology;
   return source == ModelSource::joined ? StepKind::join : StepKind::subdivide;
 }
 

@@ -5,9 +5,10 @@
 namespace nendo::flow {
 namespace {
 
-constexpr std::array<std::string_view, 18> step_names{
-    "stroke", "reset",  "mode",   "kernel", "radius", "folding",  "filter", "settings", "subdivide",
-    "brush",  "puppet", "volume", "hold",   "mask",   "symmetry", "refine", "cut",      "join"};
+constexpr std::array<std::string_view, 21> step_names{
+    "stroke",   "reset",     "mode",  "kernel", "radius", "folding", "filter",
+    "settings", "subdivide", "brush", "puppet", "volume", "hold",    "mask",
+    "symmetry", "refine",    "cut",   "join",   "copy",   "remove",  "topology"};
 
 } // namespace
 

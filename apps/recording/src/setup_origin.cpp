@@ -18,11 +18,6 @@ constexpr std::size_t operation_bytes = 9;
 constexpr std::size_t vertex_bytes = 24;
 constexpr double largest_coordinate = 1e100;
 
-/// Of a version that is made of the shape before, and not of its rest.
-bool is_of_shape(ModelSource source) noexcept {
-  return source == ModelSource::cut || source == ModelSource::joined;
-}
-
 } // namespace
 
 std::size_t plain_origins(const LoopSetup& loop) noexcept {
@@ -38,8 +33,9 @@ std::size_t plain_origins(const LoopSetup& loop) noexcept {
 namespace {
 
 /// What of an origin stands in its first chunk alone.
-void put_wire(ByteWriter& writer, const ModelOrigin& origin) {
+void put_change(ByteWriter& writer, const ModelOrigin& origin) {
   writer.f64_le(origin.seam_width);
+  writer.u32_le(origin.part);
   writer.u32_le(static_cast<std::uint32_t>(origin.wire.size()));
   for (const deform::WirePlace& place : origin.wire)
     for (const Eigen::Vector3d& end : {place.from, place.to})
@@ -47,8 +43,9 @@ void put_wire(ByteWriter& writer, const ModelOrigin& origin) {
         writer.f64_le(coordinate);
 }
 
-void read_wire(ByteReader& reader, CheckedReader& checked, ModelOrigin& origin) {
+void read_change(ByteReader& reader, CheckedReader& checked, ModelOrigin& origin) {
   origin.seam_width = checked.number(0.0, largest_coordinate);
+  origin.part = reader.u32_le();
   const std::uint32_t places = reader.u32_le();
   checked.require(places <= flow::WirePath::most_places);
   for (std::uint32_t at = 0; checked.fine() && at < places; ++at) {
@@ -94,7 +91,7 @@ void put_origin(ByteWriter& writer, const ModelOrigin& origin, std::size_t chunk
   const std::size_t first = chunk * most_operations_of_chunk;
   const std::size_t end = first + most_operations_of_chunk;
   if (is_of_shape(origin.source)) {
-    if (chunk == 0) put_wire(writer, origin);
+    if (chunk == 0) put_change(writer, origin);
     const auto count = static_cast<std::size_t>(origin.shape.cols());
     for (std::size_t at = first; at < std::min(end, count); ++at)
       for (const double coordinate : origin.shape.col(static_cast<Eigen::Index>(at)))
@@ -111,7 +108,7 @@ void put_origin(ByteWriter& writer, const ModelOrigin& origin, std::size_t chunk
 bool read_origin(std::span<const std::byte> payload, std::optional<LoopSetup>& loop) {
   ByteReader reader(payload);
   CheckedReader checked(reader);
-  const auto source = checked.one_of(ModelSource::joined);
+  const auto source = checked.one_of(ModelSource::topology);
   const bool goes_on = reader.u8() != 0;
   if (!loop || !checked.fine() || source == ModelSource::kept) return false;
   if (goes_on && (loop->origins.empty() || loop->origins.back()->source != source)) return false;
@@ -119,7 +116,7 @@ bool read_origin(std::span<const std::byte> payload, std::optional<LoopSetup>& l
   if (goes_on) origin = *loop->origins.back();
   origin.source = source;
   if (is_of_shape(source)) {
-    if (!goes_on) read_wire(reader, checked, origin);
+    if (!goes_on) read_change(reader, checked, origin);
     read_vertices(reader, checked, origin);
   } else {
     read_operations(reader, checked, origin);

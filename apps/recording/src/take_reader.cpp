@@ -14,7 +14,7 @@ constexpr std::size_t tick_bytes = 24;
 constexpr std::size_t request_bytes = 1;
 constexpr std::size_t gap_bytes = 8;
 constexpr std::size_t wrist_bytes = 57;
-constexpr std::size_t model_bytes = 17;
+constexpr std::size_t model_bytes = 21;
 constexpr std::size_t clutch_bytes = 3;
 constexpr std::size_t role_bytes = 4;
 constexpr std::size_t layer_bytes = 2;
@@ -60,6 +60,7 @@ struct EntryWriter {
     writer.u8(static_cast<std::uint8_t>(change.source));
     writer.u32_le(change.most_vertices);
     writer.f64_le(change.seam_width);
+    writer.u32_le(change.part);
   }
   void operator()(const flow::Mark&) const { driver::put_entry_head(writer, EntryKind::mark, 0); }
   void operator()(const flow::SetClutch& clutch) const {
@@ -84,7 +85,7 @@ struct EntryWriter {
   }
   void operator()(const flow::DrawWire& wire) const {
     driver::put_entry_head(writer, EntryKind::wire, 1);
-    writer.u8(static_cast<std::uint8_t>(wire.on));
+    writer.u8(static_cast<std::uint8_t>(wire.on ? 1U + static_cast<unsigned>(wire.blade) : 0U));
   }
   void operator()(const PuppetChange& change) const {
     driver::put_entry_head(writer, EntryKind::puppet, puppet_bytes);
@@ -133,14 +134,25 @@ std::optional<Entry> model_of(ByteReader& reader) {
   flow::ChangeModel change;
   change.number = reader.u32_le();
   const std::uint8_t source = reader.u8();
-  if (reader.overrun() || source > static_cast<std::uint8_t>(flow::ModelSource::joined))
+  if (reader.overrun() || source > static_cast<std::uint8_t>(flow::ModelSource::topology))
     return std::nullopt;
   change.source = static_cast<flow::ModelSource>(source);
   if (reader.remaining() > 0) change.most_vertices = reader.u32_le(); // since 1.8
-  if (reader.remaining() > 0) change.seam_width = reader.f64_le();    // since 1.11
+  if (reader.remaining() > 0) {                                       // since 1.11
+    change.seam_width = reader.f64_le();
+    change.part = reader.u32_le();
+  }
   if (reader.overrun() || !(change.seam_width >= 0.0) || !std::isfinite(change.seam_width))
     return std::nullopt;
   return change;
+}
+
+std::optional<Entry> wire_of(ByteReader& reader) {
+  const std::uint8_t blade = reader.u8(); // from 1 on
+  if (reader.overrun() || blade > 1U + static_cast<unsigned>(flow::Blade::knife))
+    return std::nullopt;
+  if (blade == 0) return flow::DrawWire{};
+  return flow::DrawWire{true, static_cast<flow::Blade>(blade - 1U)};
 }
 
 std::optional<Entry> clutch_of(ByteReader& reader) {
@@ -322,8 +334,7 @@ std::optional<Entry> TakeReader::entry_of(const driver::LogEntry& record) {
     const bool is_layer = input < setup_.hands.size() && setup_.hands[input].layer;
     if (!reader.overrun() && is_layer) entry = layer;
   } else if (record.is(EntryKind::wire)) {
-    const flow::DrawWire wire{reader.u8() != 0};
-    if (!reader.overrun()) entry = wire;
+    entry = wire_of(reader);
   } else if (record.is(EntryKind::puppet)) {
     PuppetChange change{reader.u32_le(), nullptr};
     if (const auto known = puppets_.find(change.number); known != puppets_.end())

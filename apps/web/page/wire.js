@@ -72,7 +72,7 @@ function readSettings(buffer) {
   }
 }
 
-const STEPS = ['stroke', 'reset', 'mode', 'kernel', 'radius', 'folding', 'filter', 'settings', 'subdivide', 'brush', 'puppet', 'volume', 'hold', 'mask', 'symmetry', 'refine', 'cut', 'join']
+const STEPS = ['stroke', 'reset', 'mode', 'kernel', 'radius', 'folding', 'filter', 'settings', 'subdivide', 'brush', 'puppet', 'volume', 'hold', 'mask', 'symmetry', 'refine', 'cut', 'join', 'copy', 'remove', 'topology']
 function readSteps(buffer) {
   const view = new DataView(buffer), count = view.getUint8(1)
   const steps = Array.from({ length: count }, (_, n) => ({ kind: STEPS[view.getUint32(8 + 8 * n, true)] || 'step', at: view.getFloat32(12 + 8 * n, true) }))

@@ -42,4 +42,8 @@ CutAssembly assemble(const ChosenCut& cut, CutSurface& surface);
 /// no_index. Returns their number.
 std::uint32_t number_parts(const Mesh& mesh, std::vector<std::uint32_t>& part_of_vertex);
 
+/// Returns so many parts as meshes of their own, by the part of each vertex; no_index: of none.
+std::vector<Mesh> separated(const Mesh& mesh, const std::vector<std::uint32_t>& part_of_vertex,
+                            std::uint32_t count);
+
 } // namespace nendo::deform

@@ -73,6 +73,8 @@ void copy_face(const Mesh& from, std::uint32_t face, Renumbered& vertices, Renum
   take(from.look.objects.of_face, to.look.objects.of_face);
 }
 
+} // namespace
+
 std::vector<Mesh> separated(const Mesh& mesh, const std::vector<std::uint32_t>& part_of_vertex,
                             std::uint32_t count) {
   const auto part_of = [&](std::uint32_t vertex) { return part_of_vertex[vertex]; };
@@ -102,8 +104,6 @@ std::vector<Mesh> separated(const Mesh& mesh, const std::vector<std::uint32_t>& 
   }
   return parts;
 }
-
-} // namespace
 
 std::vector<Mesh> separate(const CutModel& model) {
   return separated(model.mesh, model.part_of_vertex, model.parts);

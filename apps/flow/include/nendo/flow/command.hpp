@@ -33,6 +33,10 @@ struct Refine {
   std::uint32_t most_vertices = std::uint32_t{1} << 22;
   friend bool operator==(const Refine&, const Refine&) = default;
 };
+/// Lets what is thinner than its edges part, open, or fuse (deform::change_topology()).
+struct ChangeTopology {
+  friend bool operator==(const ChangeTopology&, const ChangeTopology&) = default;
+};
 /// Begins or ends a recording to a file.
 struct SetRecording {
   bool on = false;
@@ -102,17 +106,29 @@ struct SetLayer {
 struct Punch {
   friend bool operator==(const Punch&, const Punch&) = default;
 };
-/// Begins to draw a wire through the model (WirePath): between both index fingertips, or, of one
-/// hand alone, between thumb and index finger. Or ends that, and the wire then cuts the model.
-/// Meanwhile the hands let go of the model.
+/// With what hands cut.
+enum class Blade : std::uint8_t {
+  wire,  ///< between both index fingertips, or, of one hand alone, between thumb and index finger
+  knife, ///< from the tip of an index finger on, where it points to; as long as the model
+};
+/// Begins to draw a wire, or a knife, through the model (WirePath). Or ends that, and what it swept
+/// then cuts the model. Meanwhile the hands let go of the model.
 struct DrawWire {
   bool on = false;
+  Blade blade = Blade::wire;
   friend bool operator==(const DrawWire&, const DrawWire&) = default;
 };
 /// Joins the parts of the model, which must overlap (deform::join()).
 struct JoinParts {
   double seam_width = 0.0; ///< model units, >= 0
   friend bool operator==(const JoinParts&, const JoinParts&) = default;
+};
+/// Puts a copy of a part beside it, or removes the part: of the one that a hand holds, or has held
+/// last (PartsState::chosen).
+struct EditPart {
+  bool removes = false;
+  std::uint32_t part = deform::no_index; ///< or that one of the newest model
+  friend bool operator==(const EditPart&, const EditPart&) = default;
 };
 /// Ends the run, which then writes its shape.
 struct EndRun {
@@ -131,13 +147,21 @@ enum class ModelSource : std::uint8_t {
   refined,    ///< it is the model before, refined for the shape that it had
   cut,        ///< it is the shape before, cut by the wire that was drawn last
   joined,     ///< it is the shape before, with all its parts joined
+  copied,     ///< it is the shape before, with a copy of one of its parts
+  removed,    ///< it is the shape before, without one of its parts
+  topology,   ///< it is the shape before, changed where it was thin
 };
+/// Tells whether such a model is made of the shape before, which becomes its rest.
+constexpr bool is_of_shape(ModelSource source) noexcept {
+  return source >= ModelSource::cut;
+}
 /// The loop goes on with another version of the model (ModelVersion::number).
 struct ChangeModel {
   std::uint32_t number = 0;
   ModelSource source = ModelSource::kept;
   std::uint32_t most_vertices = 0; ///< Refine::most_vertices of what is refined
   double seam_width = 0.0;         ///< JoinParts::seam_width of what is joined
+  std::uint32_t part = 0;          ///< that is copied or removed (deform::ModelParts)
   bool is_new() const noexcept { return source != ModelSource::kept; }
   friend bool operator==(const ChangeModel&, const ChangeModel&) = default;
 };
@@ -155,7 +179,8 @@ struct ChangePuppet {
 using Command =
     std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape, SaveRecording, EndRun,
                  Subdivide, HoldStill, ChangeModel, Mark, SetClutch, SetRole, SetSymmetry, SetLayer,
-                 Punch, ChangePuppet, SavePuppet, SetMask, Refine, DrawWire, JoinParts>;
+                 Punch, ChangePuppet, SavePuppet, SetMask, Refine, DrawWire, JoinParts, EditPart,
+                 ChangeTopology>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
 /// Returns what the command asks to be made of the model, without a number; nothing if it does not.
@@ -163,14 +188,21 @@ constexpr std::optional<ChangeModel> model_asked_by(const Command& command) noex
   if (std::holds_alternative<Subdivide>(command)) return ChangeModel{0, ModelSource::subdivided};
   if (const auto* refine = std::get_if<Refine>(&command))
     return ChangeModel{0, ModelSource::refined, refine->most_vertices};
+  if (std::holds_alternative<ChangeTopology>(command)) return ChangeModel{0, ModelSource::topology};
   if (const auto* join = std::get_if<JoinParts>(&command))
     return ChangeModel{0, ModelSource::joined, 0, join->seam_width};
+  if (const auto* edit = std::get_if<EditPart>(&command))
+    return ChangeModel{0, edit->removes ? ModelSource::removed : ModelSource::copied, 0, 0.0,
+                       edit->part};
   return std::nullopt;
 }
 /// Returns the command that asks for such a change, which is_new() and is no cut: that is asked for
 /// by a wire.
 constexpr Command asking_for(const ChangeModel& change) noexcept {
+  if (change.source == ModelSource::copied || change.source == ModelSource::removed)
+    return EditPart{change.source == ModelSource::removed, change.part};
   if (change.source == ModelSource::joined) return JoinParts{change.seam_width};
+  if (change.source == ModelSource::topology) return ChangeTopology{};
   if (change.source == ModelSource::refined) return Refine{change.most_vertices};
   return Subdivide{};
 }

@@ -88,9 +88,10 @@ struct LoopOptions : PaceOptions {
   /// Recorded input that the loop takes in its ticks, before what is live. It must outlive the
   /// loop.
   InputScript* script = nullptr;
-  /// When a wire is drawn (DrawWire) by itself, since the first tick was due.
+  /// When a wire or knife is drawn (DrawWire) by itself, since the first tick was due.
   struct WireTime {
     double from_s = 0.0, to_s = 0.0;
+    Blade blade = Blade::wire;
   };
   std::optional<WireTime> wire_time{};
   std::size_t undo_most_bytes = 0; ///< UndoRoom::most_bytes, of all versions together
@@ -270,8 +271,8 @@ private:
   void tell_rig(Frame& frame) const noexcept;
   void play_rig() noexcept;
   void set_rig(const Command& command) noexcept;
-  void draw_wire(bool on) noexcept;
-  void follow_wire(const Frame& frame) noexcept;
+  void draw_blade(const DrawWire& draw) noexcept;
+  void follow_blade(const Frame& frame) noexcept;
   puppet::RigPlayer::Hands played_hands() const noexcept;
   puppet::RigPlayer::Hands hands_now() noexcept;
   ModelVersion* version_numbered(std::uint32_t number) const noexcept;
@@ -369,9 +370,11 @@ private:
   // For the loop's thread:
   Shaping shaping_;
   deform::FieldStatus grab_status_ = deform::FieldStatus::ok;
-  bool switch_on_ = false;        ///< any hand's, for SwitchAction::grab
-  WirePath wire_;                 ///< that hands draw, or have drawn last
-  WirePath drawn_wire_;           ///< the last one that has been drawn to its end
+  bool switch_on_ = false; ///< any hand's, for SwitchAction::grab
+  WirePath wire_;          ///< that hands draw, or have drawn last
+  WirePath drawn_wire_;    ///< the last one that has been drawn to its end
+  Blade blade_ = Blade::wire;
+  bool knife_in_right_ = true;    ///< hand
   bool draws_in_time_ = false;    ///< by LoopOptions::wire_time
   bool holds_after_wire_ = false; ///< the hands held the model before
   JobOffer<PreparedChange*> changes_;

@@ -23,6 +23,7 @@ enum class KneadTask : std::uint8_t {
   knead, ///< thumbs it into a bowl; left: holds the wall from outside
   grip,  ///< pinches it with thumb and index finger, and pulls an ear; left: on the other side
   carry, ///< takes its upper part by the side, lifts it, turns it round, and presses it on again
+  bore,  ///< goes down through its middle to the table with the thumb; by turns
   cut,   ///< draws a wire through it, below the upper part, from 0.8 s to 2.5 s, and then does that
 };
 std::string_view name_of(KneadTask task) noexcept;

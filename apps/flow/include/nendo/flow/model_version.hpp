@@ -31,9 +31,10 @@ struct UndoRoom {
 struct ModelOrigin {
   ModelSource source = ModelSource::kept;        ///< kept: the loop began with it
   std::vector<deform::EdgeOperation> refining{}; ///< of a refined one
-  deform::Points shape{}; ///< of the one before, when it was cut or joined; its model units
+  deform::Points shape{}; ///< of the one before, if it is_of_shape(); its model units
   std::vector<deform::WirePlace> wire{}; ///< that cut it
   double seam_width = 0.0;               ///< of a joined one
+  std::uint32_t part = 0;                ///< that was copied or removed
 };
 /// Makes that version of a mesh again. Error: bad_input, without the mesh's name.
 Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& origin);
@@ -71,18 +72,20 @@ class FinerModel {
 public:
   /// Subdivides. Any thread may call it while the loop goes on. Allocates.
   explicit FinerModel(const ModelVersion& from);
-  /// Subdivides, or makes ready to refine, to cut by that wire or to join, likewise: what the
-  /// change, which is_new(), says. Error: bad_input, without the model's name.
+  /// Subdivides, or makes ready to refine, to cut by that wire, to join, to edit a part,
+  /// or to change the topology, likewise: what the change, which is_new(), says. Error: bad_input,
+  /// without the model's name.
   static Result<FinerModel> make(const ModelVersion& from, const ChangeModel& change,
                                  std::span<const deform::WirePlace> wire = {});
 
   bool is_of(const ModelVersion& version) const noexcept { return &version == from_; }
   /// Makes the version, with the shape that `from` has now: the loop must hold still. May be called
-  /// once. Allocates. Errors, which go behind "the model": bad_input (nothing is left to refine:
-  /// found_nothing()), and those of deform::cut_model() and join().
+  /// once. Allocates. Errors, which go behind "the model": bad_input (nothing is left to refine, or
+  /// thin: found_nothing()), and those of deform::cut_model(), join(), copied_part(),
+  /// removed_part() and change_topology().
   Result<std::unique_ptr<ModelVersion>> finish(std::uint32_t number, const UndoRoom& undo);
   bool found_nothing() const noexcept { return found_nothing_; } ///< finish() did
-  /// Tells whether it is made of the shape, which becomes its rest: it cuts or joins.
+  /// Tells whether it is made of the shape, which becomes its rest.
   bool is_of_shape() const noexcept { return std::holds_alternative<Remaking>(making_); }
   /// Returns the change to that version.
   ChangeModel change_to(const ModelVersion& version) const noexcept;
@@ -109,7 +112,7 @@ private:
   using Making = std::variant<Subdividing, Refining, Remaking>;
   FinerModel(const ModelVersion& from, Making making) : from_(&from), making_(std::move(making)) {}
   Result<std::unique_ptr<ModelVersion>> remade(Remaking& remaking, std::uint32_t number,
-                                               const UndoRoom& undo) const;
+                                               const UndoRoom& undo);
 
   const ModelVersion* from_;
   Making making_;

@@ -21,6 +21,8 @@ struct PartsState {
   std::uint32_t count = 0; ///< of parts; 0: the mode is another one
   /// The part that each hand holds, of the hands that are present, left hand first; none: no_index.
   std::array<std::uint32_t, 2> held{deform::no_index, deform::no_index};
+  /// The part that a hand has taken last; no_index if none has taken any of this model's.
+  std::uint32_t chosen = deform::no_index;
 
   bool is_held() const noexcept {
     return held[0] != deform::no_index || held[1] != deform::no_index;
@@ -80,6 +82,7 @@ private:
   std::shared_ptr<const deform::ModelParts> parts_;
   std::shared_ptr<const HandBodies> bodies_;
   std::vector<Hand> hands_;
+  std::uint32_t chosen_ = deform::no_index;
   std::vector<deform::PartGrip> grips_;
   std::vector<deform::ClayContact> contacts_;
   deform::PartMover mover_;

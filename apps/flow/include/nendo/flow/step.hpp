@@ -31,6 +31,9 @@ enum class StepKind : std::uint8_t {
   refine,    ///< the model's triangles were made to suit the shape
   cut,       ///< a wire went through the model
   join,      ///< the model's parts became one
+  copy,      ///< a part was copied
+  remove,    ///< a part was removed
+  topology,  ///< what was thin has parted, opened or fused
 };
 
 std::string_view name_of(StepKind kind) noexcept;

@@ -1,5 +1,6 @@
-# Times Blender's exact Boolean for one plane through the ball of `nendo bench cut`, both halves, by
-# Blender's own processor time: blender -b --factory-startup --python tests/evidence/blender_cut.py
+# Times Blender's exact Boolean, by Blender's own processor time: one plane through the ball of `nendo
+# bench cut`, both halves, and the union of the balls of `nendo bench join`.
+#   blender -b --factory-startup --python tests/evidence/blender_boolean.py
 import math
 import time
 
@@ -10,14 +11,15 @@ from mathutils import Vector
 POINT, NORMAL = Vector((0.1, 0.05, 0.02)), Vector((0.3, 0.5, 0.8)).normalized()
 
 
-def ball(rings, segments):
-    places = [(0, 0, 1), (0, 0, -1)]
+def ball(rings, middle=0.0, is_bumpy=True):
+    segments = 2 * rings
+    places = [(middle, 0, 1), (middle, 0, -1)]
     for ring in range(rings):
         for segment in range(segments):
             polar, turn = math.pi * (ring + 1) / (rings + 1), 2 * math.pi * segment / segments
             x, y, z = math.sin(polar) * math.cos(turn), math.sin(polar) * math.sin(turn), math.cos(polar)
-            bump = 1 + 0.1 * math.sin(7 * x) * math.sin(9 * y + 1)
-            places.append((x * bump, y * bump, z * bump))
+            bump = 1 + 0.1 * math.sin(7 * x) * math.sin(9 * y + 1) if is_bumpy else 1
+            places.append((middle + x * bump, y * bump, z * bump))
     faces, last = [], 2 + (rings - 1) * segments
     for at in range(segments):
         beside = (at + 1) % segments
@@ -39,9 +41,9 @@ def half_space():
     return bpy.context.object
 
 
-def volume_after(thing, box, operation):
-    modifier = thing.modifiers.new("cut", "BOOLEAN")
-    modifier.operation, modifier.solver, modifier.object = operation, "EXACT", box
+def volume_after(thing, other, operation):
+    modifier = thing.modifiers.new("boolean", "BOOLEAN")
+    modifier.operation, modifier.solver, modifier.object = operation, "EXACT", other
     begin = time.process_time()
     made = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh = made.to_mesh()
@@ -57,8 +59,17 @@ def volume_after(thing, box, operation):
 
 box = half_space()
 for rings in (87, 287):
-    thing = ball(rings, 2 * rings)
+    thing = ball(rings)
     runs = [volume_after(thing, box, operation) for operation in ("DIFFERENCE", "INTERSECT")]
     print(f"{len(thing.data.polygons)} triangles: both halves {1e3 * sum(run[0] for run in runs):.0f} ms, "
           f"volumes {runs[0][1]:.9f} + {runs[1][1]:.9f} = {runs[0][1] + runs[1][1]:.9f}")
     bpy.data.objects.remove(thing)
+bpy.data.objects.remove(box)
+for rings in (40, 87, 160):
+    one, other = ball(rings, 0.0, False), ball(rings, 1.0, False)
+    runs = [volume_after(one, other, "UNION") for _ in range(3)]
+    exact = 8 / 3 * math.pi - 5 / 12 * math.pi
+    print(f"2 x {len(one.data.polygons)} triangles: union {1e3 * min(run[0] for run in runs):.0f} ms, "
+          f"volume off by {abs(runs[0][1] - exact) / exact:.1e}")
+    for thing in (one, other):
+        bpy.data.objects.remove(thing)
