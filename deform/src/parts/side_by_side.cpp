@@ -8,7 +8,7 @@
 namespace nendo::deform {
 namespace {
 
-constexpr double gap = 0.1; // of the widest model's width
+constexpr double gap_of_width = 0.1; // of the widest model's width
 
 /// What each mesh is to have, so that all are alike.
 struct Shared {
@@ -68,8 +68,8 @@ std::vector<Eigen::Vector3d> ways_of(std::span<const Mesh> models) {
     const Box& box = boxes[at];
     if (is_empty(box)) continue;
     if (before != nullptr)
-      ways[at] = {right + gap * widest - box.lowest.x(), before->lowest.y() - box.lowest.y(),
-                  before->highest.z() - box.highest.z()};
+      ways[at] = {right + gap_of_width * widest - box.lowest.x(),
+                  before->lowest.y() - box.lowest.y(), before->highest.z() - box.highest.z()};
     else
       before = &box;
     right = box.highest.x() + ways[at].x();

@@ -18,13 +18,13 @@ namespace nendo::deform {
 namespace {
 
 /// Where faces met, nothing is done in the next attempt.
-constexpr int most_attempts = 5;
+constexpr int most_tries = 5;
 /// Walls that are thin in many places get one hole after the other, and not all at once: so far
 /// apart, in edges.
 constexpr double between_holes = 8.0;
 constexpr std::size_t most_of_patch = 4096; // points
 
-Result<void> check(const Mesh& mesh) {
+Result<void> check_usable(const Mesh& mesh) {
   if (!mesh.vertices.allFinite())
     return Error{Errc::bad_input, "has a coordinate that is not finite"};
   if (const ManifoldCheck check = check_closed_manifold(mesh); !check)
@@ -32,7 +32,7 @@ Result<void> check(const Mesh& mesh) {
   return {};
 }
 
-std::pair<TriangleSurface, Appearance> surface_of(const Mesh& mesh) {
+std::pair<TriangleSurface, Appearance> shaped_surface_of(const Mesh& mesh) {
   const Mesh* const one = &mesh;
   SharedSurfaces shared = surfaces_of({&one, 1});
   shared.surfaces[0].detail = mesh.detail;
@@ -50,10 +50,10 @@ void count(ThinPlace::Kind kind, int patches, TopologyCounts& counts) noexcept {
 }
 
 /// What was tried at once, from the thinnest place on.
-class Attempt {
+class TopologyAttempt {
 public:
-  Attempt(ThinSurface surface, const std::vector<ThinPlace>& places,
-          const std::set<Triple>& left_alone)
+  TopologyAttempt(ThinSurface surface, const std::vector<ThinPlace>& places,
+                  const std::set<Triple>& left_alone)
       : surface_(std::move(surface)) {
     for (const ThinPlace& place : places)
       if (place.kind != ThinPlace::Kind::neck)
@@ -164,19 +164,19 @@ private:
 } // namespace
 
 Result<ChangedTopology> change_topology(const Mesh& mesh) {
-  if (const auto fine = check(mesh); !fine) return fine.error();
-  auto [surface, look] = surface_of(mesh);
+  if (const auto fine = check_usable(mesh); !fine) return fine.error();
+  auto [surface, look] = shaped_surface_of(mesh);
   const ThinSurface before(std::move(surface));
   const std::vector<ThinPlace> places = thin_places(before);
   std::set<Triple> left_alone;
-  for (int number = 0; number < most_attempts; ++number) {
-    Attempt attempt(before, places, left_alone);
+  for (int number = 0; number < most_tries; ++number) {
+    TopologyAttempt attempt(before, places, left_alone);
     if (attempt.counts.all() == 0) break;
     const std::set<Triple> meeting = attempt.meeting();
     if (meeting.empty()) {
       ChangedTopology changed{mesh_of(attempt.kept, look), attempt.counts};
       changed.mesh.detail = std::move(attempt.kept.detail);
-      if (check(changed.mesh)) return changed;
+      if (check_usable(changed.mesh)) return changed;
       break;
     }
     left_alone.insert(meeting.begin(), meeting.end());
@@ -185,8 +185,8 @@ Result<ChangedTopology> change_topology(const Mesh& mesh) {
 }
 
 std::size_t count_thin_places(const Mesh& mesh) {
-  if (!check(mesh)) return 0;
-  const std::vector<ThinPlace> places = thin_places(ThinSurface(surface_of(mesh).first));
+  if (!check_usable(mesh)) return 0;
+  const std::vector<ThinPlace> places = thin_places(ThinSurface(shaped_surface_of(mesh).first));
   return static_cast<std::size_t>(std::count_if(
       places.begin(), places.end(), [](const ThinPlace& place) { return place.begins; }));
 }
