@@ -144,19 +144,16 @@ public:
   }
 
   void hear(const flow::HoldStill&) { is_still_ = true; }
-  /// The model is made of the shape of the tick in which the loop began to hold still.
-  void hear(const flow::ChangeModel& change) {
+  /// The model is made of the shape of the tick in which the loop began to hold still; a cut one by
+  /// that wire.
+  void hear(const flow::ChangeModel& change, const flow::WirePath& wire) {
     is_still_ = false;
     if (!change.is_new()) return;
     if (change.source != flow::ModelSource::cut)
       return timeline_.events.push_back({still_at_s_, flow::asking_for(change)});
     const auto number = static_cast<std::uint32_t>(timeline_.wires.size());
-    timeline_.wires.push_back(wire_);
+    timeline_.wires.emplace_back(wire.places().begin(), wire.places().end());
     timeline_.events.push_back({still_at_s_, flow::ChangeModel{number, change.source}});
-  }
-  /// That cuts, if a cut is heard next.
-  void note_wire(const flow::WirePath& wire) {
-    wire_.assign(wire.places().begin(), wire.places().end());
   }
 
   /// Returns false if a timeline has no such settings.
@@ -289,7 +286,6 @@ private:
   std::optional<flow::Awaited> awaited_;       ///< after the last tick, by an undo or a redo
   std::uint32_t puppet_ = 0;                   ///< in the last tick
   std::optional<flow::LoggedTick> first_;
-  std::vector<deform::WirePlace> wire_;
 };
 
 void hear_told(const recording::Entry& entry, const flow::DeformLoop& loop, Follower& follower) {
@@ -358,10 +354,8 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
     if (const auto* request = std::get_if<flow::Request>(&*entry)) follower.hear(*request);
     hear_told(*entry, (*replay)->loop(), follower);
     if (const auto* still = std::get_if<flow::HoldStill>(&*entry)) follower.hear(*still);
-    if (const auto* change = std::get_if<flow::ChangeModel>(&*entry)) {
-      follower.note_wire((*replay)->loop().drawn_wire());
-      follower.hear(*change);
-    }
+    if (const auto* change = std::get_if<flow::ChangeModel>(&*entry))
+      follower.hear(*change, (*replay)->loop().drawn_wire());
     const auto* settings = std::get_if<flow::LoopSettings>(&*entry);
     if (settings != nullptr && !follower.hear(*settings, (*replay)->loop().settings()))
       return bad("changes the filter of the hands on the way, which a timeline cannot; cut out the "

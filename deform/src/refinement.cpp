@@ -45,22 +45,17 @@ std::vector<VertexDetail> present_detail(const LiveSurface& surface) {
 
 /// The surface of one mesh before the hands, and its lists of materials and names.
 std::pair<LiveSurface, Appearance> surface_of(const Mesh& mesh) {
-  const Mesh* const one = &mesh;
-  SharedSurfaces shared = surfaces_of({&one, 1});
-  TriangleSurface& surface = shared.surfaces[0];
+  auto [surface, look] = single_surface_of(mesh);
   surface.rest = surface.points;
-  surface.detail = mesh.detail;
   LiveSurface live(std::move(surface));
   if (mesh.detail.empty()) live.set_detail(present_detail(live));
-  return {std::move(live), std::move(shared.look)};
+  return {std::move(live), std::move(look)};
 }
 
 /// The mesh before the hands.
 Mesh mesh_at_rest(TriangleSurface surface, const Appearance& look) {
   surface.points = std::move(surface.rest);
-  Mesh mesh = mesh_of(surface, look);
-  mesh.detail = std::move(surface.detail);
-  return mesh;
+  return mesh_of(surface, look);
 }
 
 /// The vertices that bound the box: where they stay, the layout's numbers mean the same.

@@ -132,6 +132,13 @@ SharedSurfaces surfaces_of(std::span<const Mesh* const> meshes) {
   return shared;
 }
 
+std::pair<TriangleSurface, Appearance> single_surface_of(const Mesh& mesh) {
+  const Mesh* const one = &mesh;
+  SharedSurfaces shared = surfaces_of({&one, 1});
+  shared.surfaces[0].detail = mesh.detail;
+  return {std::move(shared.surfaces[0]), std::move(shared.look)};
+}
+
 Mesh mesh_of(const TriangleSurface& surface, const Appearance& look) {
   Mesh mesh;
   mesh.vertices.resize(3, static_cast<Eigen::Index>(surface.points.size()));
@@ -148,6 +155,7 @@ Mesh mesh_of(const TriangleSurface& surface, const Appearance& look) {
   set_names(surface, look.groups, &FaceLook::group, mesh.look.groups);
   set_names(surface, look.objects, &FaceLook::object, mesh.look.objects);
   if (!surface.face_texture.empty()) set_texture(surface, mesh);
+  mesh.detail = surface.detail;
   mesh.look.vertex_colours.resize(4, static_cast<Eigen::Index>(surface.colours.size()));
   for (std::size_t i = 0; i < surface.colours.size(); ++i)
     mesh.look.vertex_colours.col(static_cast<Eigen::Index>(i)) << surface.colours[i][0],

@@ -2,6 +2,7 @@
 // Meshes of files as surfaces of triangles, and back.
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <nendo/deform/mesh.hpp>
@@ -21,8 +22,11 @@ struct SharedSurfaces {
 /// Faces become triangles as in triangles.hpp. Allocates.
 SharedSurfaces surfaces_of(std::span<const Mesh* const> meshes);
 
-/// Returns the mesh. Materials, textures, names and texture points that no face uses are left out.
-/// Allocates.
+/// Returns the surface of one mesh, with Mesh::detail, and its lists. Allocates.
+std::pair<TriangleSurface, Appearance> single_surface_of(const Mesh& mesh);
+
+/// Returns the mesh, with the surface's detail. Materials, textures, names and texture points that
+/// no face uses are left out. Allocates.
 Mesh mesh_of(const TriangleSurface& surface, const Appearance& look);
 
 } // namespace nendo::deform

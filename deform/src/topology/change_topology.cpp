@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/refinement.hpp>
 
 #include "join/mesh_surface.hpp"
 #include "join/self_intersections.hpp"
@@ -23,21 +23,6 @@ constexpr int most_tries = 5;
 /// apart, in edges.
 constexpr double between_holes = 8.0;
 constexpr std::size_t most_of_patch = 4096; // points
-
-Result<void> check_usable(const Mesh& mesh) {
-  if (!mesh.vertices.allFinite())
-    return Error{Errc::bad_input, "has a coordinate that is not finite"};
-  if (const ManifoldCheck check = check_closed_manifold(mesh); !check)
-    return Error{Errc::bad_input, describe(check, mesh)};
-  return {};
-}
-
-std::pair<TriangleSurface, Appearance> shaped_surface_of(const Mesh& mesh) {
-  const Mesh* const one = &mesh;
-  SharedSurfaces shared = surfaces_of({&one, 1});
-  shared.surfaces[0].detail = mesh.detail;
-  return {std::move(shared.surfaces[0]), std::move(shared.look)};
-}
 
 /// A hole that there was, or a bridge, becomes wider where there was one patch.
 void count(ThinPlace::Kind kind, int patches, TopologyCounts& counts) noexcept {
@@ -61,8 +46,7 @@ public:
                                                                     place.points.end());
     for (const ThinPlace& place : places)
       if (place.begins && !left_alone.contains(place.points) && !is_touched(place)) change(place);
-    TriangleSurface taken = surface_.take(numbers_, faces_);
-    kept = std::move(taken);
+    kept = surface_.take(numbers_, faces_);
   }
 
   /// Returns the places of which some face meets another now.
@@ -164,8 +148,8 @@ private:
 } // namespace
 
 Result<ChangedTopology> change_topology(const Mesh& mesh) {
-  if (const auto fine = check_usable(mesh); !fine) return fine.error();
-  auto [surface, look] = shaped_surface_of(mesh);
+  if (const auto fine = Refiner::check(mesh); !fine) return fine.error();
+  auto [surface, look] = single_surface_of(mesh);
   const ThinSurface before(std::move(surface));
   const std::vector<ThinPlace> places = thin_places(before);
   std::set<Triple> left_alone;
@@ -175,8 +159,7 @@ Result<ChangedTopology> change_topology(const Mesh& mesh) {
     const std::set<Triple> meeting = attempt.meeting();
     if (meeting.empty()) {
       ChangedTopology changed{mesh_of(attempt.kept, look), attempt.counts};
-      changed.mesh.detail = std::move(attempt.kept.detail);
-      if (check_usable(changed.mesh)) return changed;
+      if (Refiner::check(changed.mesh)) return changed;
       break;
     }
     left_alone.insert(meeting.begin(), meeting.end());
@@ -185,8 +168,8 @@ Result<ChangedTopology> change_topology(const Mesh& mesh) {
 }
 
 std::size_t count_thin_places(const Mesh& mesh) {
-  if (!check_usable(mesh)) return 0;
-  const std::vector<ThinPlace> places = thin_places(ThinSurface(shaped_surface_of(mesh).first));
+  if (!Refiner::check(mesh)) return 0;
+  const std::vector<ThinPlace> places = thin_places(ThinSurface(single_surface_of(mesh).first));
   return static_cast<std::size_t>(std::count_if(
       places.begin(), places.end(), [](const ThinPlace& place) { return place.begins; }));
 }

@@ -308,18 +308,18 @@ int ThinSurface::join_rims(const std::vector<std::uint32_t>& points) {
 
 std::uint32_t ThinSurface::copy_point(std::uint32_t number) {
   const auto copy = point_count();
-  surface_.points.push_back(SpacePoint(surface_.points[number]));
-  if (!surface_.colours.empty()) surface_.colours.push_back(Colour(surface_.colours[number]));
-  if (!surface_.detail.empty()) surface_.detail.push_back(VertexDetail(surface_.detail[number]));
+  surface_.points.push_back(surface_.points[number]);
+  if (!surface_.colours.empty()) surface_.colours.push_back(surface_.colours[number]);
+  if (!surface_.detail.empty()) surface_.detail.push_back(surface_.detail[number]);
   faces_at_.emplace_back();
   return copy;
 }
 
 /// With the look of another face, and the texture of one of its corners.
-std::uint32_t ThinSurface::add_face(const Corners& corners, std::uint32_t like) {
+void ThinSurface::add_face(const Corners& corners, std::uint32_t like) {
   const auto face = static_cast<std::uint32_t>(surface_.faces.size());
   surface_.faces.push_back(corners);
-  surface_.looks.push_back(FaceLook(surface_.looks[like]));
+  surface_.looks.push_back(surface_.looks[like]);
   if (!surface_.face_texture.empty()) {
     const std::uint32_t texture = surface_.face_texture[like][0];
     surface_.face_texture.push_back({texture, texture, texture});
@@ -328,7 +328,6 @@ std::uint32_t ThinSurface::add_face(const Corners& corners, std::uint32_t like) 
   for (const std::uint32_t corner : corners)
     faces_at_[corner].push_back(face);
   changed_.push_back(face);
-  return face;
 }
 
 void ThinSurface::remove_face(std::uint32_t face) {

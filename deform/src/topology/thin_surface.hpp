@@ -71,7 +71,7 @@ private:
   std::vector<Corners> between(const std::vector<std::uint32_t>& u,
                                const std::vector<std::uint32_t>& v) const;
   std::uint32_t copy_point(std::uint32_t number);
-  std::uint32_t add_face(const Corners& corners, std::uint32_t like);
+  void add_face(const Corners& corners, std::uint32_t like);
   void remove_face(std::uint32_t face);
   void note_around(std::uint32_t number);
 
