@@ -71,9 +71,9 @@ struct PlannedHand {
 
 /// Returns the context in which open_glove() can open `sim:touch`, a simulated glove whose hand
 /// touches the model, `sim:press`, `sim:knead` and `sim:grip`, whose hands work on clay, and
-/// `sim:carry`, `sim:bore` and `sim:cut`. Opening such a glove takes about 0.2 s, and says on
-/// standard error which fingers cannot reach the model. Opening fails with bad_input if nothing can
-/// be done to the model. `hand` must outlive the opening.
+/// `sim:carry`, `sim:bore`, `sim:cut` and `sim:slice`. Opening such a glove takes about 0.2 s, and
+/// says on standard error which fingers cannot reach the model. Opening fails with bad_input if
+/// nothing can be done to the model. `hand` must outlive the opening.
 driver::GloveContext planned_context(PlannedHand& hand);
 
 } // namespace nendo::gloves

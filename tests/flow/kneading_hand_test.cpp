@@ -19,8 +19,8 @@ using namespace nendo::flow;
 namespace {
 
 constexpr double size_m = 0.09;
-constexpr std::array tasks{KneadTask::press, KneadTask::knead, KneadTask::grip,
-                           KneadTask::carry, KneadTask::bore,  KneadTask::cut};
+constexpr std::array tasks{KneadTask::press, KneadTask::knead, KneadTask::grip, KneadTask::carry,
+                           KneadTask::bore,  KneadTask::cut,   KneadTask::slice};
 
 KneadingHand hand_on(const deform::Mesh& model, Side side, KneadTask task) {
   auto made = KneadingHand::make(model, hand::HandSkeleton(side), task, size_m);

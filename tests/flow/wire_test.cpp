@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <random>
 #include <tuple>
 
 #include <doctest/doctest.h>
@@ -142,12 +143,12 @@ TEST_SUITE("wire") {
     CHECK(path.places().empty());
     for (const int count : {2, 50, 127, 128, 129, 255, 256, 1000, 5000}) {
       CAPTURE(count);
-      path.begin(0.01);
+      path.begin(0.06);
       CHECK(path.is_drawn());
       const std::uint32_t before = path.completed();
       for (int at = 0; at < count; ++at) {
-        path.draw_to(place_at(0.011 * at));
-        path.draw_to(place_at(0.011 * at + 0.001)); // nearer than a step
+        path.draw_to(place_at(0.066 * at));
+        path.draw_to(place_at(0.066 * at + 0.006)); // nearer than a step
       }
       path.draw_to(place_at(std::numeric_limits<double>::quiet_NaN()));
       path.end();
@@ -158,7 +159,7 @@ TEST_SUITE("wire") {
       CHECK(places.size() <= WirePath::most_places);
       CHECK(places.size() >= std::min<std::size_t>(static_cast<std::size_t>(count), 60));
       CHECK(places.front().from.z() == 0.0);
-      CHECK(places.back().from.z() == doctest::Approx(0.011 * (count - 1) + 0.001));
+      CHECK(places.back().from.z() == doctest::Approx(0.066 * (count - 1) + 0.006));
       for (std::size_t at = 1; at < places.size(); ++at)
         CHECK(places[at].from.z() > places[at - 1].from.z());
     }
@@ -167,6 +168,37 @@ TEST_SUITE("wire") {
     const std::uint32_t before = path.completed();
     path.end(); // it has been at one place alone
     CHECK(path.completed() == before);
+  }
+
+  TEST_CASE("hands that stand still and tremble draw no wire, and on their way a smooth one") {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> tremor(-0.01, 0.01);
+    const auto near = [&](double z) {
+      deform::WirePlace place = place_at(z);
+      for (Eigen::Vector3d* const end : {&place.from, &place.to})
+        *end += Eigen::Vector3d(tremor(random), tremor(random), tremor(random));
+      return place;
+    };
+    WirePath path;
+    path.begin(0.002);
+    for (int tick = 0; tick < 300; ++tick)
+      path.draw_to(near(0.0));
+    CHECK(path.places().size() == 1);
+    for (int tick = 0; tick <= 200; ++tick)
+      path.draw_to(near(0.01 * tick));
+    for (int tick = 0; tick < 300; ++tick)
+      path.draw_to(near(2.0));
+    path.end();
+    const auto places = path.places();
+    REQUIRE(places.size() > 20);
+    CHECK(places.size() < 80);
+    CHECK(places.back().from.z() == doctest::Approx(2.0).epsilon(0.02));
+    for (std::size_t at = 1; at < places.size(); ++at) {
+      const Eigen::Vector3d way = places[at].from - places[at - 1].from;
+      CHECK(way.z() > 0.0);
+      const bool is_end = at == 1 || at + 1 == places.size();
+      CHECK(std::abs(way.y()) < (is_end ? 0.5 : 0.15) * way.z());
+    }
   }
 
   TEST_CASE("a wire that is drawn through the model cuts it, is undone, and is done again") {

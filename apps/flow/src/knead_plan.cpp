@@ -9,6 +9,8 @@
 #include <nendo/hand/hand_body.hpp>
 #include <nendo/hand/inverse_kinematics.hpp>
 
+#include "carry_plan.hpp"
+#include "plan_hands.hpp"
 #include "touch_score.hpp"
 
 namespace nendo::flow {
@@ -18,36 +20,6 @@ using Eigen::Isometry3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using hand::JointAngles;
-
-constexpr double away_m = 0.05; // from the model, where a motion begins and ends
-
-/// From 0 at `begin_s` to 1 at `end_s`.
-double ease(double time_s, double begin_s, double end_s) noexcept {
-  return least_jerk((time_s - begin_s) / (end_s - begin_s));
-}
-
-/// Axes of a wrist whose fingers point along `fingers`, with the back of the hand towards `back`.
-Matrix3d axes_of(const Vector3d& fingers, const Vector3d& back) noexcept {
-  Matrix3d axes;
-  axes.col(2) = -fingers.normalized();
-  axes.col(1) = (back - back.dot(axes.col(2)) * axes.col(2)).normalized();
-  axes.col(0) = axes.col(1).cross(axes.col(2));
-  return axes;
-}
-
-JointAngles flat_hand() noexcept {
-  JointAngles angles;
-  angles.thumb_abduction_rad = from_degrees(10);
-  return angles;
-}
-
-/// Bent fingers that are out of the way of a thumb or of a pinch.
-JointAngles fist() noexcept {
-  JointAngles angles;
-  for (auto& finger : angles.fingers)
-    finger = {from_degrees(85), 0.0, from_degrees(100), from_degrees(60)};
-  return angles;
-}
 
 /// The lowest place of a flat hand, below the wrist's axis.
 double palm_depth_m(const hand::HandSkeleton& skeleton, const JointAngles& angles) {
@@ -302,59 +274,6 @@ private:
   Palm palm_;
 };
 
-/// Thumb and index finger at a side of the model, from above.
-class PinchingFingers {
-public:
-  PinchingFingers(const hand::HandSkeleton& skeleton, double open_gap_m, double closed_gap_m) {
-    JointAngles start;
-    for (auto& finger : start.fingers)
-      finger = {1.2, 0.0, 1.4, 0.9};
-    start.fingers[0] = {0.6, 0.0, 0.5, 0.3};
-    start.thumb_roll_rad = 0.6;
-    start.thumb_abduction_rad = 0.5;
-    stage_ = Eigen::AngleAxisd(from_degrees(30.0), Vector3d::UnitZ()).matrix() *
-             Eigen::AngleAxisd(from_degrees(-70.0), Vector3d::UnitX()).matrix();
-    if (skeleton.side() == Side::left) stage_.row(0) *= -1.0;
-    open_ = pinched(skeleton, start, open_gap_m);
-    closed_ = pinched(skeleton, start, closed_gap_m);
-  }
-
-  Vector3d outwards() const noexcept { return stage_.col(0); }
-  /// With the middle between the tips there, and fingers that are closed by so much, 0 to 1.
-  KneadPlan::Pose at(const Vector3d& tips, double closed) const noexcept {
-    KneadPlan::Pose pose{open_, wrist_at(tips)};
-    for (std::size_t k = 0; k < hand::angle_count; ++k) {
-      const hand::Angle angle = hand::angle_at(k);
-      pose.angles[angle] += closed * (closed_[angle] - open_[angle]);
-    }
-    return pose;
-  }
-
-private:
-  Isometry3d wrist_at(const Vector3d& tips) const noexcept {
-    Isometry3d wrist = Isometry3d::Identity();
-    wrist.linear() = axes_of(stage_ * Vector3d(-std::cos(up_rad), std::sin(up_rad), 0.0),
-                             stage_ * Vector3d(std::sin(up_rad), std::cos(up_rad), 0.0));
-    wrist.translation() = tips + stage_ * Vector3d(0.130, -0.030, -0.020);
-    return wrist;
-  }
-  /// With both fingertips that far apart.
-  JointAngles pinched(const hand::HandSkeleton& skeleton, const JointAngles& start,
-                      double gap_m) const {
-    hand::FingertipTargets targets;
-    targets[0] = {-0.5 * gap_m * stage_.col(1), 1.0};
-    targets[1] = {0.5 * gap_m * stage_.col(1), 1.0};
-    return hand::inverse_kinematics(skeleton, wrist_at(Vector3d::Zero()), targets, start).angles;
-  }
-
-  static constexpr double up_rad = from_degrees(50.0); ///< of the fingers: both tips reach then
-
-  JointAngles open_, closed_;
-  Matrix3d stage_; ///< outwards, from the thumb to the index finger, and across; left: mirrored
-};
-
-constexpr double pinch_gap_m = 0.011; ///< between the tips of thumb and index finger
-
 /// Thumb and index finger close on a side of the model, pull, and open.
 class Pinch final : public KneadPlan {
 public:
@@ -386,112 +305,15 @@ private:
   PinchingFingers fingers_;
 };
 
-/// Takes the upper part by the side, lifts it, turns it half-way round, presses it on, and leaves.
-class Carry final : public KneadPlan {
-public:
-  Carry(const KneadedModel& model, const hand::HandSkeleton& skeleton)
-      : model_(model), fingers_(skeleton, open_gap_m, pinch_gap_m) {
-    taken_at_ = model.middle();
-    taken_at_.y() = model.low.y() + KneadedModel::upper * model.height();
-    const double side = fingers_.outwards().x() > 0.0 ? 1.0 : -1.0;
-    taken_at_.x() += side * std::max(0.0, model.upper_radius_m - into_m);
-  }
-
-  double length_s() const noexcept override { return 8.6; }
-
-  Pose at(double time_s) const noexcept override {
-    const double closed = ease(time_s, 1.0, 1.6) - ease(time_s, 7.0, 7.4);
-    const double out = 2.0 * away_m * (1.0 - ease(time_s, 0.0, 0.9) + ease(time_s, 7.4, 8.6));
-    Pose pose = fingers_.at(taken_at_ + out * fingers_.outwards(), closed);
-    pose.T_stage_wrist = motion_at(time_s) * pose.T_stage_wrist;
-    return pose;
-  }
-
-private:
-  /// Of the part: about the vertical line through the model's middle.
-  Isometry3d motion_at(double time_s) const noexcept {
-    const double turned = std::numbers::pi * ease(time_s, 2.8, 5.4);
-    const double lifted = lift * model_.height() * ease(time_s, 1.8, 3.0) -
-                          (lift + press) * model_.height() * ease(time_s, 5.4, 6.8);
-    Isometry3d motion = Isometry3d::Identity();
-    motion.linear() = Eigen::AngleAxisd(turned, Vector3d::UnitY()).matrix();
-    motion.translation() =
-        model_.middle() - motion.linear() * model_.middle() + lifted * Vector3d::UnitY();
-    return motion;
-  }
-
-  static constexpr double open_gap_m = 0.055; ///< wide enough to have let go
-  static constexpr double into_m = 0.012;     ///< the model, from its side
-  static constexpr double lift = 0.5;         ///< of the model's height
-  static constexpr double press = 0.02;       ///< likewise: deeper than it was
-
-  KneadedModel model_;
-  PinchingFingers fingers_;
-  Vector3d taken_at_;
-};
-
-/// One end of a wire at the index finger's tip, which goes through the model from the front. Then
-/// the upper part is carried.
-class CutAndCarry final : public KneadPlan {
-public:
-  CutAndCarry(const KneadedModel& model, const hand::HandSkeleton& skeleton)
-      : model_(model), carry_(model, skeleton), angles_(fist()),
-        side_(skeleton.side() == Side::right ? 1.0 : -1.0) {
-    angles_.fingers[1] = {};
-    tip_m_ = skeleton.pose(angles_, Isometry3d::Identity())[hand::Joint::index_tip].translation();
-  }
-
-  double length_s() const noexcept override { return carry_from_s + carry_.length_s(); }
-
-  Pose at(double time_s) const noexcept override {
-    if (time_s >= carry_from_s) return carry_.at(time_s - carry_from_s);
-    const Pose cuts = cutting_at(time_s);
-    const double part = ease(time_s, 2.7, carry_from_s);
-    if (part <= 0.0) return cuts;
-    Pose pose = carry_.at(0.0);
-    for (std::size_t k = 0; k < hand::angle_count; ++k) {
-      const hand::Angle angle = hand::angle_at(k);
-      pose.angles[angle] = cuts.angles[angle] + part * (pose.angles[angle] - cuts.angles[angle]);
-    }
-    const Eigen::Quaterniond from(cuts.T_stage_wrist.linear()), to(pose.T_stage_wrist.linear());
-    const Vector3d way = pose.T_stage_wrist.translation() - cuts.T_stage_wrist.translation();
-    pose.T_stage_wrist.linear() = from.slerp(part, to).toRotationMatrix();
-    pose.T_stage_wrist.translation() = cuts.T_stage_wrist.translation() + part * way;
-    return pose;
-  }
-
-private:
-  Pose cutting_at(double time_s) const noexcept {
-    Vector3d tip = model_.middle();
-    tip.x() += side_ * (0.5 * (model_.high.x() - model_.low.x()) + beside_m);
-    tip.y() = model_.low.y() + neck * model_.height();
-    tip.z() = model_.high.z() + away_m -
-              ease(time_s, 0.6, 2.6) * (model_.high.z() - model_.low.z() + 2.0 * away_m);
-    Pose pose{angles_, Isometry3d::Identity()};
-    pose.T_stage_wrist.linear() = axes_of(-Vector3d::UnitZ(), Vector3d::UnitY());
-    pose.T_stage_wrist.translation() = tip - pose.T_stage_wrist.linear() * tip_m_;
-    return pose;
-  }
-
-  static constexpr double carry_from_s = 4.2;
-  static constexpr double neck = 0.57;      ///< of the model's height
-  static constexpr double beside_m = 0.030; ///< from the model's box
-
-  KneadedModel model_;
-  Carry carry_;
-  JointAngles angles_;
-  double side_; ///< of x
-  Vector3d tip_m_;
-};
-
 } // namespace
 
 std::unique_ptr<KneadPlan> plan_of(KneadTask task, const KneadedModel& model,
                                    const hand::HandSkeleton& skeleton) {
   if (task == KneadTask::press) return std::make_unique<Flatten>(model, skeleton);
   if (task == KneadTask::grip) return std::make_unique<Pinch>(model, skeleton);
-  if (task == KneadTask::carry) return std::make_unique<Carry>(model, skeleton);
-  if (task == KneadTask::cut) return std::make_unique<CutAndCarry>(model, skeleton);
+  if (task == KneadTask::carry) return plan_to_carry(model, skeleton);
+  if (task == KneadTask::cut) return plan_to_cut(CutTool::wire, model, skeleton);
+  if (task == KneadTask::slice) return plan_to_cut(CutTool::knife, model, skeleton);
   if (task == KneadTask::bore) return std::make_unique<Bore>(model, skeleton);
   if (skeleton.side() == Side::right) return std::make_unique<Thumb>(model, skeleton);
   return std::make_unique<Wall>(model, skeleton);

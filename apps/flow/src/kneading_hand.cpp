@@ -12,8 +12,8 @@ namespace nendo::flow {
 namespace {
 
 constexpr double knead_step_s = 1.0 / 60.0;
-constexpr std::array<std::string_view, 6> task_names{"press", "knead", "grip",
-                                                     "carry", "bore",  "cut"};
+constexpr std::array<std::string_view, 7> task_names{"press", "knead", "grip", "carry",
+                                                     "bore",  "cut",   "slice"};
 
 /// Which two keys a time lies between, and how far.
 struct Between {

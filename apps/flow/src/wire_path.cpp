@@ -4,6 +4,20 @@
 
 namespace nendo::flow {
 
+namespace {
+
+/// The least step, in lengths of the wire: a degree and a half that a hand trembles.
+constexpr double least_turn = 0.025;
+constexpr double back = 1.5;        // steps: nearer than that, a wire has come back
+constexpr double most_detour = 6.0; // steps
+constexpr int smoothings = 16;      // as a Gaussian of 2.8 places
+
+double way_between(const deform::WirePlace& a, const deform::WirePlace& b) noexcept {
+  return std::max((a.from - b.from).norm(), (a.to - b.to).norm());
+}
+
+} // namespace
+
 void WirePath::begin(double step) noexcept {
   clear();
   step_ = step;
@@ -14,13 +28,37 @@ void WirePath::draw_to(const deform::WirePlace& place) noexcept {
   if (!is_drawn_ || !place.from.allFinite() || !place.to.allFinite()) return;
   ++version_;
   last_ = place;
-  if (count_ > 0) {
-    const deform::WirePlace& before = places_[count_ - 1];
-    const double way = std::max((place.from - before.from).norm(), (place.to - before.to).norm());
-    if (way < step_) return;
-  }
+  const double step = std::max(step_, least_turn * (place.to - place.from).norm());
+  if (count_ > 0 && way_between(place, places_[count_ - 1]) < step) return;
+  forget_detour(place, step);
+  if (count_ > 0 && way_between(place, places_[count_ - 1]) < step) return;
   if (count_ == most_places) thin_out();
   places_[count_++] = place;
+}
+
+/// A hand that stands still trembles, and a blade that goes back and forth passes through itself.
+/// Where the wire comes back to a place by a short way, that way is forgotten.
+void WirePath::forget_detour(const deform::WirePlace& place, double step) noexcept {
+  double detour = count_ > 0 ? way_between(place, places_[count_ - 1]) : 0.0;
+  for (std::uint32_t at = count_; at > 1 && detour <= most_detour * step; --at) {
+    if (way_between(place, places_[at - 2]) < back * step) count_ = at - 1;
+    detour += way_between(places_[at - 1], places_[at - 2]);
+  }
+}
+
+/// Fingers tremble and sensors have steps of half a degree, but a taut wire does not ripple. Both
+/// ends stay.
+void WirePath::smooth() noexcept {
+  for (int round = 0; round < smoothings; ++round) {
+    deform::WirePlace before = places_[0];
+    for (std::uint32_t at = 1; at + 1 < count_; ++at) {
+      const deform::WirePlace here = places_[at];
+      const deform::WirePlace& next = places_[at + 1];
+      places_[at] = {0.25 * before.from + 0.5 * here.from + 0.25 * next.from,
+                     0.25 * before.to + 0.5 * here.to + 0.25 * next.to};
+      before = here;
+    }
+  }
 }
 
 /// The first place stays.
@@ -37,8 +75,14 @@ void WirePath::end() noexcept {
   is_drawn_ = false;
   if (count_ == 0) return;
   if (count_ == most_places) thin_out();
-  if (last_.from != places_[count_ - 1].from || last_.to != places_[count_ - 1].to)
+  const double step = std::max(step_, least_turn * (last_.to - last_.from).norm());
+  if (way_between(last_, places_[count_ - 1]) > 0.5 * step) {
+    forget_detour(last_, step);
     places_[count_++] = last_;
+  } else if (count_ > 1) {
+    places_[count_ - 1] = last_;
+  }
+  smooth();
   if (count_ > 1) ++completed_;
 }
 

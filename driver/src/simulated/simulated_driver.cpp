@@ -124,9 +124,9 @@ Error usage(const GloveSpec& spec, std::string_view what) {
 }
 
 /// The motions that need what GloveContext has.
-constexpr std::array<std::string_view, 7> planned_motions{"touch", "press", "knead", "grip",
-                                                          "carry", "bore",  "cut"};
-constexpr std::string_view planned_names = "touch, press, knead, grip, carry, bore, cut";
+constexpr std::array<std::string_view, 8> planned_motions{"touch", "press", "knead", "grip",
+                                                          "carry", "bore",  "cut",   "slice"};
+constexpr std::string_view planned_names = "touch, press, knead, grip, carry, bore, cut, slice";
 
 bool is_planned(std::string_view motion) noexcept {
   return std::find(planned_motions.begin(), planned_motions.end(), motion) != planned_motions.end();

@@ -47,9 +47,9 @@ struct SimulatedGloveOptions {
 /// What some kinds of gloves need and this library does not know.
 struct GloveContext {
   /// Makes the motion of a hand that does something to a model: `sim:touch`, `sim:press`,
-  /// `sim:knead`, `sim:grip`, `sim:carry`, `sim:bore` or `sim:cut`, which the options name. It is
-  /// called at most once, by open_glove(), and its error is returned. Without it, these are usage
-  /// errors.
+  /// `sim:knead`, `sim:grip`, `sim:carry`, `sim:bore`, `sim:cut` or `sim:slice`, which the options
+  /// name. It is called at most once, by open_glove(), and its error is returned. Without it, these
+  /// are usage errors.
   std::function<Result<SensorMotion>(const SimulatedGloveOptions&)> planned_motion;
 };
 

@@ -25,6 +25,7 @@ enum class KneadTask : std::uint8_t {
   carry, ///< takes its upper part by the side, lifts it, turns it round, and presses it on again
   bore,  ///< goes down through its middle to the table with the thumb; by turns
   cut,   ///< draws a wire through it, below the upper part, from 0.8 s to 2.5 s, and then does that
+  slice, ///< the same with a knife, which one hand draws alone
 };
 std::string_view name_of(KneadTask task) noexcept;
 std::optional<KneadTask> knead_task_named(std::string_view name) noexcept;

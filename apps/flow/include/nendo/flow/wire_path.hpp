@@ -10,16 +10,18 @@
 namespace nendo::flow {
 
 /// The places of a wire's ends one after another, in model units. It has a fixed size and does not
-/// allocate. Where a wire is drawn far, every second place is forgotten.
+/// allocate. Where a wire is drawn far, every second place is forgotten; and what a hand goes back
+/// and forth by a few steps is, too.
 class WirePath {
 public:
   static constexpr std::size_t most_places = 128;
 
-  /// Begins another wire, of which places that are nearer to each other than `step` are one.
+  /// Begins another wire, of which places that are nearer to each other than `step`, or than 1/40
+  /// of the wire's length, are one.
   void begin(double step) noexcept;
   /// Does nothing unless the wire is being drawn. Places that are not finite are passed over.
   void draw_to(const deform::WirePlace& place) noexcept;
-  void end() noexcept;   ///< the wire is drawn, if it has been anywhere
+  void end() noexcept;   ///< the wire is drawn, if it has been anywhere; its way is smoothed
   void clear() noexcept; ///< there is no wire
 
   bool is_drawn() const noexcept { return is_drawn_; } ///< just now
@@ -32,6 +34,8 @@ public:
 
 private:
   void thin_out() noexcept;
+  void smooth() noexcept;
+  void forget_detour(const deform::WirePlace& place, double step) noexcept;
 
   std::array<deform::WirePlace, most_places> places_{};
   std::uint32_t count_ = 0;
