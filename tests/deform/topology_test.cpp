@@ -69,6 +69,26 @@ TEST_SUITE("topology") {
     CHECK(change_topology(parted->mesh)->counts.all() == 0); // and they do not fuse again
   }
 
+  TEST_CASE("a hole that becomes as narrow as an edge is closed, and a wider one stays") {
+    for (const double narrow : {0.1, 0.5}) {
+      CAPTURE(narrow);
+      Mesh ring = test::torus(3, 24); // its hole is 0.65 wide
+      for (auto column : ring.vertices.colwise())
+        column.head<2>() *= 1.0 - (0.65 - narrow) / column.head<2>().norm();
+      ring.detail.assign(static_cast<std::size_t>(ring.vertices.cols()), {0.3F, false});
+      REQUIRE(euler_of(ring) == 0);
+      check_sound(ring);
+      const auto closed = change_topology(ring);
+      REQUIRE(closed);
+      check_sound(closed->mesh);
+      const bool is_narrow = narrow < 0.3;
+      CHECK(closed->counts.all() == (is_narrow ? 1 : 0));
+      CHECK(euler_of(closed->mesh) == (is_narrow ? 2 : 0));
+      CHECK(separate(closed->mesh).size() == 1);
+      CHECK(volume_of(closed->mesh) == doctest::Approx(volume_of(ring)).epsilon(0.05));
+    }
+  }
+
   TEST_CASE("a neck that is not thin stays, and so does what would be a crumb") {
     CHECK(change_topology(test::hourglass(2.0))->counts.all() == 0);
     Mesh bump = test::sphere(16, 24, 1.0); // with a vertex of three faces on it
