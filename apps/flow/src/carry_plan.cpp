@@ -73,7 +73,7 @@ public:
 
   Pose at(double time_s) const noexcept override {
     if (time_s >= carry_from_s) return carry_.at(time_s - carry_from_s);
-    const Pose cuts = cutting_at(time_s);
+    Pose cuts = cutting_at(time_s);
     const double part = ease(time_s, 2.7, carry_from_s);
     if (part <= 0.0) return cuts;
     Pose pose = carry_.at(0.0);
