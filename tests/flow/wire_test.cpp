@@ -163,6 +163,18 @@ TEST_SUITE("wire") {
       for (std::size_t at = 1; at < places.size(); ++at)
         CHECK(places[at].from.z() > places[at - 1].from.z());
     }
+    path.begin(0.002); // of a long wire places are farther apart, and it is thinned out evenly
+    for (int at = 0; at < 1000; ++at)
+      path.draw_to(place_at(0.066 * at));
+    path.end();
+    double least = std::numeric_limits<double>::max(), most = 0.0;
+    for (std::size_t at = 1; at + 1 < path.places().size(); ++at) {
+      const double way = path.places()[at].from.z() - path.places()[at - 1].from.z();
+      least = std::min(least, way);
+      most = std::max(most, way);
+    }
+    CHECK(most < 2.5 * least);
+
     path.begin(0.01);
     path.draw_to(place_at(0.0));
     const std::uint32_t before = path.completed();

@@ -76,16 +76,9 @@ public:
     Pose cuts = cutting_at(time_s);
     const double part = ease(time_s, 2.7, carry_from_s);
     if (part <= 0.0) return cuts;
-    Pose pose = carry_.at(0.0);
-    for (std::size_t k = 0; k < hand::angle_count; ++k) {
-      const hand::Angle angle = hand::angle_at(k);
-      pose.angles[angle] = cuts.angles[angle] + part * (pose.angles[angle] - cuts.angles[angle]);
-    }
-    const Eigen::Quaterniond from(cuts.T_stage_wrist.linear()), to(pose.T_stage_wrist.linear());
-    const Vector3d way = pose.T_stage_wrist.translation() - cuts.T_stage_wrist.translation();
-    pose.T_stage_wrist.linear() = from.slerp(part, to).toRotationMatrix();
-    pose.T_stage_wrist.translation() = cuts.T_stage_wrist.translation() + part * way;
-    return pose;
+    const Pose carries = carry_.at(0.0);
+    return {blended(cuts.angles, carries.angles, part),
+            blended(cuts.T_stage_wrist, carries.T_stage_wrist, part)};
   }
 
 private:

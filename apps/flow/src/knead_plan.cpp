@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <nendo/hand/hand_body.hpp>
-#include <nendo/hand/inverse_kinematics.hpp>
 
 #include "carry_plan.hpp"
 #include "plan_hands.hpp"
-#include "touch_score.hpp"
 
 namespace nendo::flow {
 namespace {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "knead_plan.hpp"
+#include "plan_hands.hpp"
 #include "sensor_angles.hpp"
 
 namespace nendo::flow {
@@ -57,14 +58,7 @@ WristPath::WristPath(std::vector<Eigen::Isometry3d> poses, double step_s)
 
 Eigen::Isometry3d WristPath::at(double time_s) const noexcept {
   const auto [first, part] = between(time_s, step_s_, poses_.size());
-  const Eigen::Isometry3d& a = poses_[first];
-  const Eigen::Isometry3d& b = poses_[first + 1];
-  const Eigen::Quaterniond from(a.linear());
-  const Eigen::Quaterniond to(b.linear());
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = from.slerp(part, to).toRotationMatrix();
-  pose.translation() = a.translation() + part * (b.translation() - a.translation());
-  return pose;
+  return blended(poses_[first], poses_[first + 1], part);
 }
 
 Result<KneadingHand> KneadingHand::make(const deform::Mesh& model,
@@ -96,13 +90,7 @@ Result<KneadingHand> KneadingHand::make(const deform::Mesh& model,
 
 hand::JointAngles KneadingHand::angles(double time_s) const noexcept {
   const auto [first, part] = between(time_s, knead_step_s, keys_->size());
-  hand::JointAngles angles;
-  for (std::size_t k = 0; k < hand::angle_count; ++k) {
-    const hand::Angle angle = hand::angle_at(k);
-    const double before = (*keys_)[first][angle];
-    angles[angle] = before + part * ((*keys_)[first + 1][angle] - before);
-  }
-  return angles;
+  return blended((*keys_)[first], (*keys_)[first + 1], part);
 }
 
 hand::SensorAngles KneadingHand::sensor_angles(double time_s) const noexcept {

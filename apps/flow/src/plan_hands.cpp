@@ -1,7 +1,6 @@
 #include "plan_hands.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <nendo/hand/inverse_kinematics.hpp>
 
@@ -45,6 +44,24 @@ JointAngles fist() noexcept {
   return angles;
 }
 
+JointAngles blended(const JointAngles& from, const JointAngles& to, double part) noexcept {
+  JointAngles angles;
+  for (std::size_t k = 0; k < hand::angle_count; ++k) {
+    const hand::Angle angle = hand::angle_at(k);
+    angles[angle] = from[angle] + part * (to[angle] - from[angle]);
+  }
+  return angles;
+}
+
+Isometry3d blended(const Isometry3d& from, const Isometry3d& to, double part) noexcept {
+  const Eigen::Quaterniond before(from.linear());
+  const Eigen::Quaterniond after(to.linear());
+  Isometry3d pose = Isometry3d::Identity();
+  pose.linear() = before.slerp(part, after).toRotationMatrix();
+  pose.translation() = from.translation() + part * (to.translation() - from.translation());
+  return pose;
+}
+
 PinchingFingers::PinchingFingers(const hand::HandSkeleton& skeleton, double open_gap_m,
                                  double closed_gap_m) {
   JointAngles start;
@@ -61,12 +78,7 @@ PinchingFingers::PinchingFingers(const hand::HandSkeleton& skeleton, double open
 }
 
 KneadPlan::Pose PinchingFingers::at(const Vector3d& tips, double closed) const noexcept {
-  KneadPlan::Pose pose{open_, wrist_at(tips)};
-  for (std::size_t k = 0; k < hand::angle_count; ++k) {
-    const hand::Angle angle = hand::angle_at(k);
-    pose.angles[angle] += closed * (closed_[angle] - open_[angle]);
-  }
-  return pose;
+  return {blended(open_, closed_, closed), wrist_at(tips)};
 }
 
 Isometry3d PinchingFingers::wrist_at(const Vector3d& tips) const noexcept {

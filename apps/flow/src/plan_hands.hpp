@@ -21,6 +21,13 @@ hand::JointAngles flat_hand() noexcept;
 /// Bent fingers that are out of the way of a thumb or of a pinch.
 hand::JointAngles fist() noexcept;
 
+/// What lies between two hands' angles, or two wrists' poses, the shorter way round: 0 is `from`,
+/// and 1 is `to`.
+hand::JointAngles blended(const hand::JointAngles& from, const hand::JointAngles& to,
+                          double part) noexcept;
+Eigen::Isometry3d blended(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
+                          double part) noexcept;
+
 /// Thumb and index finger at a side of the model, from above.
 class PinchingFingers {
 public:

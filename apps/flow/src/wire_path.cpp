@@ -28,20 +28,24 @@ void WirePath::draw_to(const deform::WirePlace& place) noexcept {
   if (!is_drawn_ || !place.from.allFinite() || !place.to.allFinite()) return;
   ++version_;
   last_ = place;
-  const double step = std::max(step_, least_turn * (place.to - place.from).norm());
-  if (count_ > 0 && way_between(place, places_[count_ - 1]) < step) return;
-  forget_detour(place, step);
-  if (count_ > 0 && way_between(place, places_[count_ - 1]) < step) return;
+  step_ = std::max(step_, least_turn * (place.to - place.from).norm());
+  if (is_near_last(place)) return;
+  forget_detour(place);
+  if (is_near_last(place)) return;
   if (count_ == most_places) thin_out();
   places_[count_++] = place;
 }
 
+bool WirePath::is_near_last(const deform::WirePlace& place) const noexcept {
+  return count_ > 0 && way_between(place, places_[count_ - 1]) < step_;
+}
+
 /// A hand that stands still trembles, and a blade that goes back and forth passes through itself.
 /// Where the wire comes back to a place by a short way, that way is forgotten.
-void WirePath::forget_detour(const deform::WirePlace& place, double step) noexcept {
+void WirePath::forget_detour(const deform::WirePlace& place) noexcept {
   double detour = count_ > 0 ? way_between(place, places_[count_ - 1]) : 0.0;
-  for (std::uint32_t at = count_; at > 1 && detour <= most_detour * step; --at) {
-    if (way_between(place, places_[at - 2]) < back * step) count_ = at - 1;
+  for (std::uint32_t at = count_; at > 1 && detour <= most_detour * step_; --at) {
+    if (way_between(place, places_[at - 2]) < back * step_) count_ = at - 1;
     detour += way_between(places_[at - 1], places_[at - 2]);
   }
 }
@@ -75,9 +79,8 @@ void WirePath::end() noexcept {
   is_drawn_ = false;
   if (count_ == 0) return;
   if (count_ == most_places) thin_out();
-  const double step = std::max(step_, least_turn * (last_.to - last_.from).norm());
-  if (way_between(last_, places_[count_ - 1]) > 0.5 * step) {
-    forget_detour(last_, step);
+  if (way_between(last_, places_[count_ - 1]) > 0.5 * step_) {
+    forget_detour(last_);
     places_[count_++] = last_;
   } else if (count_ > 1) {
     places_[count_ - 1] = last_;

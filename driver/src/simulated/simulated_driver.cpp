@@ -126,7 +126,6 @@ Error usage(const GloveSpec& spec, std::string_view what) {
 /// The motions that need what GloveContext has.
 constexpr std::array<std::string_view, 8> planned_motions{"touch", "press", "knead", "grip",
                                                           "carry", "bore",  "cut",   "slice"};
-constexpr std::string_view planned_names = "touch, press, knead, grip, carry, bore, cut, slice";
 
 bool is_planned(std::string_view motion) noexcept {
   return std::find(planned_motions.begin(), planned_motions.end(), motion) != planned_motions.end();
@@ -176,7 +175,12 @@ Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::option
                                               const GloveContext& context) {
   if (is_planned(spec.target)) return open_planned(spec, side, context);
   const auto motion = find_motion(spec.target.empty() ? "sculpt" : spec.target);
-  if (!motion) return usage(spec, motion.error().message + ", " + std::string(planned_names));
+  if (!motion) {
+    std::string what = motion.error().message;
+    for (const std::string_view planned : planned_motions)
+      what.append(", ").append(planned);
+    return usage(spec, what);
+  }
   auto settings = simulated_glove_options(spec, side);
   if (!settings) return settings.error();
   return make_simulated_glove(

@@ -17,7 +17,7 @@ public:
   static constexpr std::size_t most_places = 128;
 
   /// Begins another wire, of which places that are nearer to each other than `step`, or than 1/40
-  /// of the wire's length, are one.
+  /// of the wire's greatest length, are one.
   void begin(double step) noexcept;
   /// Does nothing unless the wire is being drawn. Places that are not finite are passed over.
   void draw_to(const deform::WirePlace& place) noexcept;
@@ -35,7 +35,8 @@ public:
 private:
   void thin_out() noexcept;
   void smooth() noexcept;
-  void forget_detour(const deform::WirePlace& place, double step) noexcept;
+  bool is_near_last(const deform::WirePlace& place) const noexcept;
+  void forget_detour(const deform::WirePlace& place) noexcept;
 
   std::array<deform::WirePlace, most_places> places_{};
   std::uint32_t count_ = 0;
