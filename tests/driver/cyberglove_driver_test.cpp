@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "support/pty_host.hpp"
+#include "support/required.hpp"
 #include "support/scripted_port.hpp"
 #include "support/stream_laws.hpp"
 
@@ -71,7 +72,7 @@ TEST_SUITE("cyberglove_driver") {
       CHECK(glove->info().rate_hz == doctest::Approx(90.0));
 
       const HostTime before = HostClock::now();
-      REQUIRE(glove->start(ring));
+      test::require_ok(glove->start(ring));
       CHECK_FALSE(glove->start(ring));
       CHECK(eventually([&] { return ring.size() >= 20; }));
       glove->stop();
@@ -107,7 +108,7 @@ TEST_SUITE("cyberglove_driver") {
       const ScriptedPort port(script);
       SampleRing ring(64);
       auto glove = required(open_port(port));
-      REQUIRE(glove->start(ring));
+      test::require_ok(glove->start(ring));
       GloveSample sample;
       REQUIRE(eventually([&] { return ring.try_pop(sample); }));
       CHECK(sample.has_device_time == knows_options);
@@ -161,7 +162,7 @@ TEST_SUITE("cyberglove_driver") {
     std::filesystem::create_symlink(first->path(), link);
     SampleRing ring(1U << 16U);
     auto glove = required(open_glove("serial:" + link.string()));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     REQUIRE(eventually([&] { return ring.size() > 3; }));
 
     first.reset();
@@ -189,7 +190,7 @@ TEST_SUITE("cyberglove_driver") {
     const ScriptedPort port(script);
     SampleRing ring(1U << 16U);
     auto glove = required(open_port(port));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     GloveSample sample;
     CHECK(eventually([&] { return ring.try_pop(sample) && sample.present == sensors_18; }));
     glove->stop();
@@ -225,7 +226,7 @@ TEST_SUITE("cyberglove_driver") {
         const ServedEmulator emulator(options);
         SampleRing ring(1024);
         auto glove = required(open_glove("serial:" + emulator->tty_path()));
-        REQUIRE(glove->start(ring));
+        test::require_ok(glove->start(ring));
         CHECK(glove->info().side == side);
         CHECK(glove->info().sensors == (sensors == 18 ? sensors_18 : sensors_22));
         CHECK(glove->info().rate_hz == doctest::Approx(90.0).epsilon(0.01));
@@ -250,14 +251,14 @@ TEST_SUITE("cyberglove_driver") {
       SampleRing ring(4096);
       auto glove = required(open_glove("serial:" + emulator->tty_path() + "?hires=on"));
       CHECK(glove->info().counts.most == 4095);
-      REQUIRE(glove->start(ring));
+      test::require_ok(glove->start(ring));
       CHECK(eventually([&] { return ring.size() >= 20; }));
       glove->set_feedback({true, {}, {}});
       const std::uint64_t before = glove->stats().records;
       CHECK(eventually([&] { return glove->stats().records > before + 20; }));
       glove->stop();
       CHECK(glove->stats().silences == 0);
-      REQUIRE(glove->start(ring));
+      test::require_ok(glove->start(ring));
       CHECK(eventually([&] { return glove->stats().records > 20; }));
       glove->stop();
       test::check_conservation(glove->stats(), 61);
@@ -272,7 +273,7 @@ TEST_SUITE("cyberglove_driver") {
     const ServedEmulator emulator(options);
     SampleRing ring(4096);
     auto glove = required(open_glove("serial:" + emulator->tty_path()));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     CHECK(eventually([&] { return glove->stats().too_fast > 20; }));
     CHECK(eventually([&] { return glove->stats().silences == 1; }));
     const std::uint64_t before = glove->stats().records;
@@ -294,7 +295,7 @@ TEST_SUITE("cyberglove_driver") {
         required(open_glove("serial:" + link.string() + "?rate=100&filter=off&mask=0x00000F"));
     CHECK(glove->info().rate_hz == 100.0);
     CHECK(glove->info().sensors == SensorMask{0x0F});
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     REQUIRE(eventually([&] { return glove->stats().records > 3; }));
     const auto times = [](const ScriptedPort& port) {
       const std::string heard = port.control.heard();
@@ -337,7 +338,7 @@ TEST_SUITE("cyberglove_driver") {
     for (int again = 0; again < 4 && !opened; ++again) // a busy machine answers too late at a rate
       opened = open_glove("serial:" + link.string());
     auto glove = required(std::move(opened));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     REQUIRE(eventually([&] { return glove->stats().records > 3; }));
     first.reset();
     std::filesystem::remove(link);
@@ -357,7 +358,7 @@ TEST_SUITE("cyberglove_driver") {
     auto glove = required(open_port(port));
     CHECK(glove->info().abilities.light);
     CHECK(glove->info().abilities.vibration);
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     REQUIRE(eventually([&] { return glove->stats().records > 3; }));
     Feedback feedback;
     feedback.light = true;
@@ -386,7 +387,7 @@ TEST_SUITE("cyberglove_driver") {
     SampleRing ring(1U << 16U);
     auto glove = required(open_port(port));
     CHECK_FALSE(glove->info().abilities.light);
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     REQUIRE(eventually([&] { return glove->stats().records > 3; }));
     const std::string heard = port.control.heard();
     glove->set_feedback({true, {}, {}});
@@ -399,7 +400,7 @@ TEST_SUITE("cyberglove_driver") {
     ScriptedPort port;
     SampleRing ring(1U << 16U);
     auto glove = required(open_port(port));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     REQUIRE(eventually([&] { return glove->stats().records > 3; }));
     port.control.unplugged = true;
     REQUIRE(eventually([&] { return glove->stats().silences >= 1; }));
@@ -422,7 +423,7 @@ TEST_SUITE("cyberglove_driver") {
     SampleRing ring(1024);
     auto glove = required(open_glove("serial:" + port.path() + "?sync=on"));
     CHECK(glove->info().rate_hz == 0.0);
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     CHECK(eventually([&] { return port.control.heard().ends_with("Y\x01S"); }));
     glove->stop();
     // Behind it there may be one more \x03, if a busy machine answered late.

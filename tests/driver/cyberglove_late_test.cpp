@@ -1,6 +1,7 @@
 // Gloves that answer late: a link that was asleep, or one that is slow throughout.
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <deque>
@@ -63,6 +64,7 @@ public:
   }
   IoStatus write_all(std::span<const std::byte> bytes,
                      std::chrono::milliseconds) noexcept override {
+    if (deaf_until && HostClock::now() < deaf_until->load()) return IoStatus::done;
     std::string input = std::exchange(unit.held, {});
     for (const std::byte byte : bytes)
       input.push_back(std::to_integer<char>(byte));
@@ -73,11 +75,14 @@ public:
       std::string answer = unit.answer(rest);
       if (!answer.empty()) coming_.push_back({due, std::move(answer)});
     }
+    std::this_thread::sleep_for(host_sleeps);
     return IoStatus::done;
   }
   void discard_input() noexcept override {}
 
   ScriptedUnit unit;
+  std::chrono::milliseconds host_sleeps{0};                ///< after each command
+  std::shared_ptr<const std::atomic<HostTime>> deaf_until; ///< what is sent before is lost
 
 private:
   struct Coming {
@@ -159,11 +164,37 @@ TEST_SUITE("cyberglove_late") {
     CHECK(glove->info().sensors == sensors_22);
     CHECK(glove->info().abilities.wrist_switch);
     SampleRing ring(1024);
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     CHECK(eventually([&] { return ring.size() > 20; }));
     glove->stop();
     CHECK(glove->stats().silences == 0);
     CHECK(glove->stats().bad_records <= 2);
+  }
+
+  TEST_CASE("a glove that is held up for 0.8 s after it was opened streams") {
+    const auto deaf_until = std::make_shared<std::atomic<HostTime>>(HostTime{});
+    auto glove = required(open_cyberglove(
+        "serial:held up",
+        [&]() -> Result<std::unique_ptr<Transport>> {
+          auto transport = std::make_unique<LateTransport>(Script(), "", 1ms);
+          transport->deaf_until = deaf_until;
+          return std::unique_ptr<Transport>(std::move(transport));
+        },
+        Options(), HostClock::now() + 4s));
+    SampleRing ring(1024);
+    deaf_until->store(HostClock::now() + 800ms);
+    test::require_ok(glove->start(ring));
+    CHECK(eventually([&] { return ring.size() > 20; }));
+    glove->stop();
+  }
+
+  TEST_CASE("an answer counts that came in time, where the host looks too late") {
+    LateTransport transport(Script(), "", 1ms);
+    transport.host_sleeps = 250ms;
+    Dialogue dialogue(transport, HostClock::now() + 4s);
+    std::byte data{};
+    CHECK(dialogue.ask(ask_sensor_count, std::span(&data, 1), 100ms) == Answer::good);
+    CHECK(std::to_integer<int>(data) == 22);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "support/glove_facts.hpp"
+#include "support/required.hpp"
 #include "support/stream_laws.hpp"
 #include "units/fivedt_unit.hpp"
 
@@ -129,7 +130,7 @@ TEST_SUITE("fivedt_driver") {
     }
     auto glove = required(open_glove("5dt:" + port.path()));
     CHECK(glove->info().side == Side::left);
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     CHECK(eventually([&] { return ring.size() > 3; }));
   }
 
@@ -152,7 +153,7 @@ TEST_SUITE("fivedt_driver") {
       auto glove = required(open_glove("5dt:" + port.path() + c.options));
       CHECK(glove->info().side == c.side);
       CHECK(fact(glove->info(), "finger_order").find(c.said) == 0);
-      REQUIRE(glove->start(ring));
+      test::require_ok(glove->start(ring));
       GloveSample sample;
       REQUIRE(eventually([&] { return ring.try_pop(sample); }));
       glove->stop();
@@ -173,7 +174,7 @@ TEST_SUITE("fivedt_driver") {
     const PtyUnit port(make_fivedt_unit(options));
     SampleRing ring(1U << 14U);
     auto glove = required(open_glove("5dt:" + port.path() + "?left_first=pinky"));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     GloveSample sample;
     REQUIRE(eventually([&] { return ring.try_pop(sample); }));
     check_at_rest(sample, resting_knuckles, 255.0, 2.0); // tremor

@@ -44,7 +44,7 @@ TEST_SUITE("fivedt_usb_driver") {
       CHECK(fact(glove->info(), "link") == (product == 7      ? "wireless, port B"
                                             : product == 0x13 ? "wireless, port A"
                                                               : "cable"));
-      REQUIRE(glove->start(ring));
+      test::require_ok(glove->start(ring));
       CHECK(eventually([&] { return ring.size() >= 40; }));
       glove->stop();
       const GloveStats stats = glove->stats();
@@ -74,7 +74,7 @@ TEST_SUITE("fivedt_usb_driver") {
     auto& device = bus.plug(model, 3, 7);
     SampleRing ring(4096);
     auto glove = required(open_glove("usb:5d70:0000"));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     MockedUsb::with_model(device, [&] { model.odd_reports = {UsbBytes(63, 1), UsbBytes(1, 1)}; });
     CHECK(eventually([&] { return glove->stats().bad_records == 2; }));
     CHECK(glove->stats().discarded_bytes == 64);

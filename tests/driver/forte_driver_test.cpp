@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "support/glove_facts.hpp"
+#include "support/required.hpp"
 #include "support/stream_laws.hpp"
 #include "units/forte_unit.hpp"
 
@@ -91,7 +92,7 @@ TEST_SUITE("forte_driver") {
     const PtyUnit port(std::make_unique<Stranger>(frame));
     SampleRing ring(64);
     auto glove = required(open_glove("forte:" + port.path()));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     GloveSample sample;
     REQUIRE(eventually([&] { return ring.try_pop(sample); }));
     glove->stop();

@@ -19,6 +19,7 @@
 
 #include "lucidgloves/lucidgloves_driver.hpp"
 #include "support/glove_facts.hpp"
+#include "support/required.hpp"
 #include "support/stream_laws.hpp"
 #include "units/lucidgloves_unit.hpp"
 
@@ -197,7 +198,7 @@ TEST_SUITE("lucidgloves_driver") {
     const auto glove = glove_at(wire);
     CHECK(glove->info().side == Side::right); // assumed
     SampleRing ring(1U << 14U);
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     GloveSample sample;
     REQUIRE(eventually([&] { return ring.try_pop(sample); }));
     CHECK(sample.side == Side::right);
@@ -216,7 +217,7 @@ TEST_SUITE("lucidgloves_driver") {
     const auto glove = glove_at(wire);
     CHECK(glove->info().side == Side::left);
     SampleRing ring(1U << 14U);
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     {
       const std::lock_guard lock(wire.mutex);
       wire.chunks.assign(400, "A1B2C3D4E5\n"); // 0.8 s of them: it is asked for 0.3 s otherwise
@@ -251,7 +252,7 @@ TEST_SUITE("lucidgloves_driver") {
     CHECK(fact(glove->info(), "encoding") == "legacy");
     CHECK(glove->info().model == "LucidGloves, 5 sensors");
     CHECK_FALSE(glove->info().abilities.resistance);
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     Feedback feedback;
     feedback.resistance = {1, 2, 3, 4, 5};
     glove->set_feedback(feedback);
@@ -273,7 +274,7 @@ TEST_SUITE("lucidgloves_driver") {
     SampleRing ring(1U << 14U);
     auto glove = required(open_glove("lucidgloves:" + port.path() + "?range=1023"));
     CHECK(fact(glove->info(), "above_range").find("1023") != std::string::npos);
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     GloveSample sample;
     REQUIRE(eventually([&] { return ring.try_pop(sample); }));
     glove->stop();
@@ -299,7 +300,7 @@ TEST_SUITE("lucidgloves_driver") {
     PtyUnit port(lucidgloves().make(Side::right));
     SampleRing ring(1U << 14U);
     auto glove = required(open_glove("lucidgloves:" + port.path()));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     Feedback feedback;
     feedback.resistance = {0, 1, 500, 1000, 65535};
     glove->set_feedback(feedback);
@@ -314,7 +315,7 @@ TEST_SUITE("lucidgloves_driver") {
     SampleRing ring(1U << 14U);
     auto glove = required(open_glove("lucidgloves:" + port.path()));
     CHECK(fact(glove->info(), "encoding") == "alpha");
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     const auto start = HostClock::now();
     REQUIRE(eventually([&] { return glove->stats().records >= 300; }));
     CHECK(HostClock::now() - start < 3s); // a host that says nothing needs five minutes
@@ -335,7 +336,7 @@ TEST_SUITE("lucidgloves_driver") {
     const auto glove = glove_at(wire);
     SampleRing ring(1U << 14U);
     wire.begin_anew();
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     for (std::uint16_t k = 1; wire.reads_so_far() < 50; ++k) {
       glove->set_feedback(resistance({k, k, k, k, k}));
       std::this_thread::sleep_for(100us);
@@ -350,7 +351,7 @@ TEST_SUITE("lucidgloves_driver") {
     const auto glove = glove_at(wire);
     SampleRing ring(1U << 14U);
     wire.begin_anew();
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     REQUIRE(eventually([&] { return wire.count_of("\n") > 5; }));
     glove->set_feedback(resistance({1, 2, 3, 4, 5}));
     REQUIRE(eventually([&] { return wire.count_of("A1B2C3D4E5\n") > 5; }));
@@ -377,7 +378,7 @@ TEST_SUITE("lucidgloves_driver") {
       SampleRing ring(1U << 14U);
       wire.begin_anew();
       wire.chunks = c.chunks;
-      REQUIRE(glove->start(ring));
+      test::require_ok(glove->start(ring));
       CHECK(eventually([&] { return wire.reads_so_far() > 80; }));
       glove->stop();
       const std::size_t expected = wire.reads * c.answers / c.chunks.size();
@@ -392,7 +393,7 @@ TEST_SUITE("lucidgloves_driver") {
     SampleRing ring(1U << 14U);
     wire.begin_anew();
     wire.chunks = {""};
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     CHECK(eventually([&] { return wire.count_of("\n") > 3; }));
     glove->stop();
     CHECK(wire.written.size() == wire.count_of("\n"));
@@ -404,7 +405,7 @@ TEST_SUITE("lucidgloves_driver") {
     SampleRing ring(1U << 14U);
     wire.begin_anew();
     wire.takes_nothing = true;
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     glove->set_feedback(resistance({1, 2, 3, 4, 5}));
     CHECK(eventually([&] { return wire.count_of("\nA1B2C3D4E5\n") > 20; }));
     CHECK(eventually([&] { return ring.size() > 20; }));
@@ -421,7 +422,7 @@ TEST_SUITE("lucidgloves_driver") {
     SampleRing ring(1U << 14U);
     wire.begin_anew();
     wire.takes_all_brakes = false;
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     glove->set_feedback(resistance({1, 2, 3, 4, 5}));
     CHECK(eventually([&] { return wire.count_of("A1B2C3D4E5\n") > 3; }));
     glove->stop();
@@ -439,7 +440,7 @@ TEST_SUITE("lucidgloves_driver") {
     std::filesystem::create_symlink(first->path(), link);
     SampleRing ring(1U << 14U);
     auto glove = required(open_glove("lucidgloves:" + link.string()));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     glove->set_feedback(resistance({900, 900, 900, 900, 900}));
     REQUIRE(eventually([&] { return brakes_of(*first)[0] == 900; }));
     first.reset();
@@ -458,7 +459,7 @@ TEST_SUITE("lucidgloves_driver") {
     SampleRing ring(1U << 14U);
     auto glove = required(open_glove("lucidgloves:" + port.path()));
     CHECK(fact(glove->info(), "encoding") == "legacy");
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     glove->set_feedback(resistance({1, 2, 3, 4, 5}));
     CHECK(eventually([&] { return ring.size() > 30; }));
     glove->stop();
@@ -470,7 +471,7 @@ TEST_SUITE("lucidgloves_driver") {
     PtyUnit port(lucidgloves().make(Side::right));
     SampleRing ring(1U << 14U);
     auto glove = required(open_glove("lucidgloves:" + port.path()));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     Feedback feedback;
     feedback.resistance = {700, 600, 500, 400, 300};
     glove->set_feedback(feedback);

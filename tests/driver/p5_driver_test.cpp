@@ -52,7 +52,7 @@ struct StreamingP5 {
   SampleRing ring{1U << 15U};
   std::unique_ptr<Glove> glove = required(open_glove("usb:0d7f:0100"));
 
-  StreamingP5() { REQUIRE(glove->start(ring)); }
+  StreamingP5() { test::require_ok(glove->start(ring)); }
 };
 
 void check_conservation(const GloveStats& stats) {
@@ -75,7 +75,7 @@ TEST_SUITE("p5_driver") {
     CHECK(info.sensors == knuckles);
     CHECK(info.counts == CountScale{63, true});
     CHECK(info.abilities.wrist_switch);
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     CHECK_FALSE(glove->start(ring));
     CHECK(eventually([&] { return ring.size() >= 60; }));
     glove->stop();
@@ -94,7 +94,7 @@ TEST_SUITE("p5_driver") {
     SampleRing ring(64);
     auto glove = required(open_glove("usb:0d7f:0100?serial=A1&hand=left"));
     CHECK(glove->info().side == Side::left);
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     GloveSample sample;
     CHECK(eventually([&] { return ring.try_pop(sample); }));
     CHECK(sample.side == Side::left);
@@ -137,7 +137,7 @@ TEST_SUITE("p5_driver") {
       auto glove = required(open_glove("usb:0d7f:0100"));
       MockedUsb::with_model(device, [&] { CHECK(model.mouse_modes_set.empty()); });
       for (int round = 0; round < 2; ++round) {
-        REQUIRE(glove->start(ring));
+        test::require_ok(glove->start(ring));
         MockedUsb::with_model(device, [&] { CHECK(model.mouse_mode == 0xFF); });
         CHECK(eventually([&] { return glove->stats().records > 3; }));
         const auto start = Clock::now();
@@ -158,7 +158,7 @@ TEST_SUITE("p5_driver") {
     bus.plug(model, 3, 7);
     SampleRing ring(4096);
     auto glove = required(open_glove("usb:0d7f:0100"));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     CHECK(eventually([&] { return ring.size() > 3; }));
   }
 
@@ -224,7 +224,7 @@ TEST_SUITE("p5_driver") {
       auto& device = bus.plug(first, 3, 7, serial);
       SampleRing ring(1U << 15U);
       auto glove = required(open_glove("usb:0d7f:0100"));
-      REQUIRE(glove->start(ring));
+      test::require_ok(glove->start(ring));
       REQUIRE(eventually([&] { return ring.size() > 3; }));
       bus.unplug(device);
       // Of the same kind, but not this one: at another port, with another serial number.

@@ -8,6 +8,7 @@
 #include <nendo/driver/sample_record.hpp>
 
 #include "support/eventually.hpp"
+#include "support/required.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace replay_driver_test {
@@ -66,7 +67,7 @@ struct Take {
 std::vector<GloveSample> samples_of(Glove& glove, std::size_t wanted) {
   std::vector<GloveSample> samples;
   SampleRing ring(1024);
-  REQUIRE(glove.start(ring));
+  test::require_ok(glove.start(ring));
   test::eventually([&] {
     ring.drain([&](const GloveSample& sample) noexcept { samples.push_back(sample); });
     return samples.size() >= wanted;
@@ -151,7 +152,7 @@ TEST_SUITE("replay_driver") {
     SampleRing ring(64);
     for (int turn = 0; turn < 2; ++turn) { // when it is started again, it has not ended yet
       const HostTime begin = HostClock::now();
-      REQUIRE((*glove)->start(ring));
+      test::require_ok((*glove)->start(ring));
       std::size_t there = 0; // in the ring when it was seen to have ended
       CHECK(test::eventually([&] {
         if (!(*glove)->has_ended()) return false;
@@ -173,7 +174,7 @@ TEST_SUITE("replay_driver") {
       const auto glove = open_glove(take.spec("?hand=right&speed=10" + options));
       REQUIRE(glove);
       SampleRing ring(1024);
-      REQUIRE((*glove)->start(ring));
+      test::require_ok((*glove)->start(ring));
       CHECK(test::eventually([&] { return ring.size() >= 6; }));
       std::this_thread::sleep_for(200ms);
       CHECK_FALSE((*glove)->has_ended());

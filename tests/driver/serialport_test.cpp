@@ -94,7 +94,7 @@ TEST_SUITE("serialport") {
     const MockedAdapter adapter("FT232R USB UART");
     SampleRing ring(1024);
     auto glove = required(open_glove("serial:/dev/ttyUSB0"));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     std::this_thread::sleep_for(500ms);
     glove->stop();
     CHECK(ring.size() > 20);

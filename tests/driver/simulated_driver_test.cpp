@@ -16,6 +16,7 @@
 
 #include "simulated/typical_wearer.hpp"
 #include "support/eventually.hpp"
+#include "support/required.hpp"
 
 namespace simulated_driver_test {
 
@@ -29,6 +30,7 @@ using nendo::Side;
 using nendo::driver::Glove;
 using nendo::driver::GloveSpec;
 using nendo::driver::open_simulated;
+using nendo::test::require_ok;
 
 TEST_SUITE("simulated_driver") {
   namespace {
@@ -39,7 +41,7 @@ TEST_SUITE("simulated_driver") {
 
   std::vector<GloveSample> run(Glove& glove, std::size_t count) {
     SampleRing ring(1024);
-    REQUIRE(glove.start(ring));
+    require_ok(glove.start(ring));
     std::vector<GloveSample> samples;
     const auto deadline = HostClock::now() + 10s;
     while (samples.size() < count && HostClock::now() < deadline) {
@@ -155,7 +157,7 @@ TEST_SUITE("simulated_driver") {
     const auto glove = open_simulated(spec("rest", {{"rate", "1000"}}), Side::right);
     REQUIRE(glove);
     SampleRing ring(2);
-    REQUIRE((*glove)->start(ring));
+    require_ok((*glove)->start(ring));
     while ((*glove)->stats().ring_refused < 3)
       std::this_thread::sleep_for(1ms);
     (*glove)->stop();
@@ -169,7 +171,7 @@ TEST_SUITE("simulated_driver") {
     SampleRing ring(16);
     HostClock::duration least = 1h; // of some: a busy machine may keep one waiting
     for (std::uint64_t round = 0; round < 5; ++round) {
-      REQUIRE((*glove)->start(ring));
+      require_ok((*glove)->start(ring));
       CHECK(nendo::test::eventually([&] { return (*glove)->stats().records > round; }));
       const auto twice = (*glove)->start(ring);
       REQUIRE_FALSE(twice);

@@ -15,6 +15,7 @@
 #include <nendo/hand/joint_limits.hpp>
 #include <nendo/hand/sensor_gate.hpp>
 
+#include "support/required.hpp"
 #include "support/surface_distance.hpp"
 #include "support/test_meshes.hpp"
 
@@ -209,7 +210,7 @@ TEST_SUITE("touching_hand") {
     const auto glove = driver::make_simulated_glove(
         options, [hand](double time_s) { return hand.sensor_angles(speed * time_s); });
     SampleRing ring(4096);
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     std::vector<double> off_mm;
     const auto deadline = HostClock::now() + std::chrono::seconds(60);
     while (off_mm.size() < 5 * 500 && HostClock::now() < deadline) {

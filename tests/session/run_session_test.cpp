@@ -295,8 +295,12 @@ TEST_SUITE("run_session") {
       REQUIRE(recording.recorded);
       CHECK(recording.recorded->lost == 0);
       CHECK(recording.recorded->samples > 0);
-      for (const auto& counts : recording.recorded->sent)
-        CHECK(2 * counts.delivered >= recording.recorded->samples); // of two gloves alike
+      std::uint64_t delivered = 0;
+      for (const auto& counts : recording.recorded->sent) {
+        CHECK(counts.delivered > 0);
+        delivered += counts.delivered;
+      }
+      CHECK(delivered >= recording.recorded->samples);
       const auto take = recording::TakeReader::open(recording.file);
       REQUIRE(take);
       for (const auto& hand : take->setup().hands)

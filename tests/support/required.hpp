@@ -16,4 +16,9 @@ Value required(Result<Value> result) {
   return *std::move(result);
 }
 
+/// Ends the test where a result is an error, with its message.
+inline void require_ok(const Result<void>& result) {
+  REQUIRE_MESSAGE(result, result.error().message);
+}
+
 } // namespace nendo::test

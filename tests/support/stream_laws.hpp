@@ -70,7 +70,7 @@ inline void samples_are_in_order_and_add_up(const Kind& kind) {
   SampleRing ring(4096);
   auto glove = required(driver::open_glove(kind.spec(port.path())));
   const HostTime before = HostClock::now();
-  REQUIRE(glove->start(ring));
+  test::require_ok(glove->start(ring));
   CHECK(glove->start(ring).error().code == Errc::failed);
   CHECK(eventually([&] { return ring.size() >= 20; }));
   glove->stop();
@@ -100,7 +100,7 @@ inline void what_had_waited_is_no_rate(const Kind& kind) {
   auto glove = required(driver::open_glove(kind.spec(port.path())));
   std::this_thread::sleep_for(2s); // nobody reads
   SampleRing ring(4096);
-  REQUIRE(glove->start(ring));
+  test::require_ok(glove->start(ring));
   CHECK(eventually([&] { return glove->stats().rate_hz > 0.0; }));
   const double first_hz = glove->stats().rate_hz;
   // Of seconds in which nothing waited; of one in which nobody could read, if the machine was busy.
@@ -119,7 +119,7 @@ void a_full_ring_refuses_and_counts(const AnyKind& kind) {
   const auto port = kind.plug(Side::right);
   SampleRing ring(8);
   auto glove = required(driver::open_glove(kind.spec(port->path())));
-  REQUIRE(glove->start(ring));
+  test::require_ok(glove->start(ring));
   CHECK(eventually([&] { return glove->stats().ring_refused > 5; }));
   glove->stop();
   const driver::GloveStats stats = glove->stats();
@@ -133,7 +133,7 @@ void stop_is_prompt_and_start_works_again(const AnyKind& kind) {
   SampleRing ring(4096);
   auto glove = required(driver::open_glove(kind.spec(port->path())));
   for (int round = 0; round < 2; ++round) {
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     CHECK(eventually([&] { return glove->stats().records > 3; }));
     const auto start = HostClock::now();
     glove->stop();
@@ -147,7 +147,7 @@ void a_silent_stream_is_started_again(const AnyKind& kind) {
   const auto port = kind.plug(Side::right);
   SampleRing ring(1U << 14U);
   auto glove = required(driver::open_glove(kind.spec(port->path())));
-  REQUIRE(glove->start(ring));
+  test::require_ok(glove->start(ring));
   REQUIRE(eventually([&] { return glove->stats().records > 3; }));
   port->mute = true;
   REQUIRE(eventually([&] { return glove->stats().silences >= 1; }));
@@ -168,7 +168,7 @@ inline void stop_is_prompt_while_silent_or_away(const Kind& kind) {
     PtyUnit port(kind.make(Side::right));
     SampleRing ring(1U << 14U);
     auto glove = required(driver::open_glove(kind.spec(port.path())));
-    REQUIRE(glove->start(ring));
+    test::require_ok(glove->start(ring));
     REQUIRE(eventually([&] { return glove->stats().records > 3; }));
     port.mute = true;
     if (away) {
@@ -190,7 +190,7 @@ inline void a_glove_that_vanishes_is_found_again(const Kind& kind, bool tells_it
   std::filesystem::create_symlink(first->path(), link);
   SampleRing ring(1U << 14U);
   auto glove = required(driver::open_glove(kind.spec(link.string())));
-  REQUIRE(glove->start(ring));
+  test::require_ok(glove->start(ring));
   REQUIRE(eventually([&] { return ring.size() > 3; }));
 
   first.reset();
@@ -244,7 +244,7 @@ inline GloveSample sample_at_rest(std::unique_ptr<emulator::EmulatedUnit> unit,
   const PtyUnit port(std::move(unit));
   SampleRing ring(1U << 14U);
   auto glove = required(driver::open_glove(kind + ":" + port.path()));
-  REQUIRE(glove->start(ring));
+  test::require_ok(glove->start(ring));
   GloveSample sample;
   REQUIRE(eventually([&] { return ring.try_pop(sample); }));
   return sample;

@@ -83,11 +83,13 @@ Answer Dialogue::send(std::span<const std::byte> command) noexcept {
 Answer Dialogue::next(std::byte& byte, HostTime until) noexcept {
   using std::chrono::milliseconds;
   while (unread_.empty()) {
-    const auto left = std::chrono::ceil<milliseconds>(until - HostClock::now());
-    if (left <= 0ms || cancelled_.stop_requested()) return Answer::silent;
+    if (cancelled_.stop_requested()) return Answer::silent;
+    // What has arrived counts, also where this thread was kept from looking until it was too late.
+    const auto left = std::max(std::chrono::ceil<milliseconds>(until - HostClock::now()), 0ms);
     const auto [status, count] =
         transport_.read_some(buffer_, std::min<milliseconds>(left, longest_wait));
     if (status == IoStatus::gone) return Answer::gone;
+    if (count == 0 && left == 0ms) return Answer::silent;
     bytes_received_ += count;
     unread_ = std::span(buffer_).first(count);
   }

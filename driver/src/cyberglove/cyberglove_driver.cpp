@@ -25,6 +25,7 @@ using namespace std::chrono_literals;
 
 constexpr auto state_answer = 300ms; ///< of a unit that has just answered all else
 constexpr std::uint16_t most_hires_count = 4095;
+constexpr int tries_at_start = 4;   ///< to ask a unit how it is, before the stream begins
 constexpr int answers_at_start = 4; ///< two tries, each as long as one and a half of the slowest
 constexpr auto pause_answer = 150ms;
 constexpr auto control_answer = 100ms; ///< while the stream waits
@@ -69,7 +70,9 @@ public:
     dialogue.stop_stream();
     Commands commands(dialogue, state_answer);
     Reply<GloveState> state = commands.state();
-    if (!state && state.answer != Answer::gone) state = commands.state(); // noise on the line
+    // Noise on the line, or a unit or a host that was held up for a moment.
+    for (int tries = 1; tries < tries_at_start && !state && state.answer != Answer::gone; ++tries)
+      state = commands.state();
     const auto ready = check_state(source, state, "?G");
     const Answer answer = ready ? begin(dialogue) : Answer::silent;
     parser_.count_discarded(dialogue.bytes_received());

@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto start_budget = 900ms;
+constexpr auto start_budget = 1'900ms;
 constexpr auto stop_budget = 400ms;
 constexpr auto feedback_budget = 400ms;
 constexpr auto read_timeout = 100ms; ///< also how soon the reader notices that it is to stop

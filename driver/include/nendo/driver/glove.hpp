@@ -86,8 +86,8 @@ public:
   /// meanwhile: samples tell their hand and sensors themselves. Any thread.
   virtual const GloveInfo& info() const noexcept = 0;
   /// Starts the reader thread, which is the only producer of `ring`; the ring must outlive stop().
-  /// After stop() it may be started again. May block for a second. Errors: no_device (it no longer
-  /// answers), failed (called twice).
+  /// After stop() it may be started again. May block for two seconds. Errors: no_device (it no
+  /// longer answers), failed (called twice).
   virtual Result<void> start(SampleRing& ring) = 0;
   /// Ends the stream and joins the reader thread. Idempotent; may block for a second.
   virtual void stop() noexcept = 0;
