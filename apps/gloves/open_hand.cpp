@@ -77,6 +77,21 @@ Result<void> start(std::span<OpenHand> hands) {
   return {};
 }
 
+Result<void> begin_again(std::span<OpenHand> hands) {
+  const auto is_worn = [](const OpenHand& hand) {
+    return hand.glove->info().kind == driver::GloveKind::device;
+  };
+  for (OpenHand& hand : hands)
+    if (!is_worn(hand)) hand.glove->stop();
+  for (OpenHand& hand : hands) {
+    if (is_worn(hand)) continue;
+    for (GloveSample old; hand.ring->try_pop(old);) {
+    }
+    if (auto started = hand.glove->start(*hand.ring); !started) return started;
+  }
+  return {};
+}
+
 bool have_ended(std::span<const OpenHand> hands) noexcept {
   return std::all_of(hands.begin(), hands.end(),
                      [](const OpenHand& hand) { return hand.glove->has_ended(); });

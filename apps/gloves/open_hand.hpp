@@ -48,6 +48,11 @@ OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
 /// Starts the gloves. Blocks and fails as Glove::start() does.
 Result<void> start(std::span<OpenHand> hands);
 
+/// Begins anew with the gloves whose time begins when they are started, which are simulated ones
+/// and recordings: so they do nothing while a run gets ready. What they sent before is thrown away.
+/// Nobody else may read their rings meanwhile. Blocks as Glove::stop() does.
+Result<void> begin_again(std::span<OpenHand> hands);
+
 /// Returns whether all gloves have sent all that they ever will (Glove::has_ended()), so that who
 /// waits for more waits for ever. What they sent is in their rings then, or has been taken out.
 bool have_ended(std::span<const OpenHand> hands) noexcept;

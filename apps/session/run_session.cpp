@@ -72,6 +72,7 @@ public:
     observers_.push_back(&keys);
     observers_.insert(observers_.end(), participants_.observers.begin(),
                       participants_.observers.end());
+    if (const auto begun = begin_gloves(); !begun) return begun.error();
     run_loop(picture);
     for (auto& [side, feedback] : feedback_)
       feedback.put_out();
@@ -302,13 +303,19 @@ private:
     }
   }
 
-  // Runs the loop until it ends, and leaves its shape in model_.
-  void run_loop(RunPicture& picture) {
-    flow::DeformLoop& loop = *placed_.loop;
+  // When all else is ready: what simulated hands do is done at times of the run.
+  Result<void> begin_gloves() {
     gloves_ = status_of(hands_);
     for (Observer* observer : observers_)
       observer->loop_begins(start());
     if (options_.over) std::this_thread::sleep_until(options_.over->begin);
+    const flow::InheritedPriority readers(flow::reader_priority(options_.realtime.priority));
+    return gloves::begin_again(hands_);
+  }
+
+  // Runs the loop until it ends, and leaves its shape in model_.
+  void run_loop(RunPicture& picture) {
+    flow::DeformLoop& loop = *placed_.loop;
     LoopThread thread(loop, options_);
     report_refusals(thread.grants());
     watch(thread, picture);

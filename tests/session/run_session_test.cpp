@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <fstream>
+#include <thread>
 #include <utility>
 
 #include <doctest/doctest.h>
@@ -59,6 +61,27 @@ public:
 
 private:
   bool stays_;
+};
+
+/// Takes half a second to get ready, and ends the run when it has seen samples of both hands.
+class Slow final : public Sink, public PacingObserver {
+public:
+  Result<void> begin(const LoopStart&) override { return {}; }
+  Result<void> prepare(const flow::ModelVersion&) override { return {}; }
+  Result<void> settle() override { return {}; }
+  void loop_begins(const LoopStart&) override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  }
+  void show(const flow::Frame& frame) noexcept override {
+    if (frame.ticks_run == 1) waiting = frame.hands[0].samples;
+  }
+  void update(const RunStatus& status, flow::CommandRing& commands) override {
+    wait();
+    if (status.frame.hands[0].samples > 0 && status.frame.hands[1].samples > 0)
+      commands.try_push(flow::EndRun{});
+  }
+
+  std::atomic<std::uint64_t> waiting{1000}; ///< samples of the left hand, for the first tick
 };
 
 /// Makes a puppet, edits it twice, undoes the last edit, and ends the run.
@@ -192,7 +215,7 @@ TEST_SUITE("run_session") {
       const auto outcome = run_session(again.options, replayed->hands, again.mesh,
                                        {[](const auto&, double) {}, {&onlooker}});
       REQUIRE(outcome);
-      CHECK(outcome->stats.samples[0] == samples - 1); // the first one placed the hand
+      CHECK(outcome->stats.samples[0] == samples); // the first one placed the hand
       CHECK(onlooker.reports.size() == (stays ? 1 : 0));
       CHECK((onlooker.frames_after > 50) == stays);
     }
@@ -306,6 +329,16 @@ TEST_SUITE("run_session") {
       for (const auto& hand : take->setup().hands)
         CHECK(hand.wearer.learned);
     }
+  }
+
+  TEST_CASE("what simulated hands do begins with the loop, however long it takes to get ready") {
+    Run run;
+    Slow slow;
+    auto opened = open_hands(run.options, run.mesh, run.event_count);
+    REQUIRE(opened);
+    REQUIRE(run_session(run.options, opened->hands, run.mesh,
+                        {[](const auto&, double) {}, {&slow}, {&slow}}));
+    CHECK(slow.waiting < 25); // of some 45 that would have come in half a second
   }
 
   TEST_CASE("what is kept in memory goes on in the next recording, and can be kept as a file") {

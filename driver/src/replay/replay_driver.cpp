@@ -94,8 +94,10 @@ public:
 
   Result<void> start(SampleRing& ring) override {
     ended_.store(false, std::memory_order_relaxed);
-    return reader_.start(info_.source,
-                         [this, &ring](const std::stop_token& stop) { replay(stop, ring); });
+    return reader_.start(info_.source, [this, &ring](const std::stop_token& stop) {
+      records_ = missed_ = ring_refused_ = 0;
+      replay(stop, ring);
+    });
   }
   void stop() noexcept override { reader_.stop(); }
 

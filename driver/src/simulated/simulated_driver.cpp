@@ -37,8 +37,10 @@ public:
   const GloveInfo& info() const noexcept override { return info_; }
 
   Result<void> start(SampleRing& ring) override {
-    return reader_.start(info_.source,
-                         [this, &ring](const std::stop_token& stop) { read(stop, ring); });
+    return reader_.start(info_.source, [this, &ring](const std::stop_token& stop) {
+      records_ = ring_refused_ = 0;
+      read(stop, ring);
+    });
   }
   void stop() noexcept override { reader_.stop(); }
 
