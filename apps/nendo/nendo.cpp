@@ -1,5 +1,7 @@
 // The nendo program: one command a file.
 
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <exception>
 #include <iostream>
@@ -10,9 +12,18 @@
 
 #include <nendo/base/result.hpp>
 
+#include "cli/huge_pages.hpp"
 #include "nendo/commands.hpp"
 
 namespace {
+
+/// Of a command. A loop with deadlines is better off with small pages: where the first touch of a
+/// huge one falls into a tick, that takes milliseconds.
+bool works_without_a_clock(std::string_view command) {
+  constexpr std::array<std::string_view, 6> all{"cut",  "deform",  "export",
+                                                "join", "picture", "replay"};
+  return std::find(all.begin(), all.end(), command) != all.end();
+}
 
 int run(int argc, char** argv) {
   using namespace nendo;
@@ -60,6 +71,7 @@ int run(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && works_without_a_clock(argv[1])) nendo::cli::use_huge_pages(argv);
   try {
     return run(argc, argv);
   } catch (const std::exception& error) { // out of memory, mostly

@@ -343,7 +343,8 @@ TEST_SUITE("wire") {
     const auto refused = test.loop->change_model(*finer);
     REQUIRE_FALSE(refused);
     CHECK(refused.error().message ==
-          "a puppet's model is neither cut nor joined, and its parts stay");
+          "a puppet's model is neither cut nor joined (nendo cut and nendo join do so before), and "
+          "its parts stay");
     CHECK(test.frame_after_tick(2).model == 0);
     CHECK_FALSE(test.loop->is_still());
   }

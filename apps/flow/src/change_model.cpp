@@ -33,7 +33,8 @@ DeformLoop::change_model(FinerModel& finer,
   // What a puppet does would be part of its rest.
   if (finer.is_of_shape() && is_played(puppets_[asked_puppet_].get())) {
     keep_model();
-    return Error{Errc::bad_input, "a puppet's model is neither cut nor joined, and its parts stay"};
+    return Error{Errc::bad_input, "a puppet's model is neither cut nor joined (nendo cut and nendo "
+                                  "join do so before), and its parts stay"};
   }
   auto made = finer.finish(last_number_ + 1, undo_room());
   SculptorOptions sculptor = asked_.options;
