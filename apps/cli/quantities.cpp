@@ -3,11 +3,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <system_error>
 
 namespace nendo::cli {
 namespace {
+
+constexpr double most_s = 1e7; // longer than any recording
 
 struct Unit {
   std::string_view name;
@@ -45,11 +48,29 @@ std::optional<double> number_of(std::string_view text) noexcept {
 }
 
 Result<double> parse_duration(const std::string& text, const std::string& option) {
-  constexpr double most_s = 1e7;
   const auto seconds = seconds_of(text);
   if (seconds && *seconds > 0.0 && *seconds <= most_s) return *seconds;
   return Error{Errc::usage,
                option + " " + text + ": use " + std::string(duration_words) + ", above 0"};
+}
+
+Result<TimeSpan> parse_time_span(const std::string& text, const std::string& option) {
+  const auto time = [](std::string_view part, double without) -> std::optional<double> {
+    if (part.empty()) return without;
+    const auto seconds = seconds_of(part);
+    return seconds && *seconds >= 0.0 && *seconds <= most_s ? seconds : std::nullopt;
+  };
+  const auto colon = text.find(':');
+  std::optional<double> from, to;
+  if (colon != std::string::npos) {
+    from = time(std::string_view(text).substr(0, colon), 0.0);
+    to = time(std::string_view(text).substr(colon + 1), std::numeric_limits<double>::infinity());
+  }
+  if (!from || !to)
+    return Error{Errc::usage,
+                 option + " " + text + ": use two times with a colon between, such as 0.8s:2.5s"};
+  if (*to <= *from) return Error{Errc::usage, option + " " + text + ": ends before it begins"};
+  return TimeSpan{*from, *to};
 }
 
 } // namespace nendo::cli

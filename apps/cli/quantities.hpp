@@ -29,4 +29,13 @@ std::optional<double> number_of(std::string_view text) noexcept;
 /// naming the option.
 Result<double> parse_duration(const std::string& text, const std::string& option = "--duration");
 
+/// Two times, s. `to_s` is infinite where it was left out, and `from_s` 0.
+struct TimeSpan {
+  double from_s = 0.0;
+  double to_s = 0.0;
+};
+/// Reads two times with a colon between, each of which may be left out, up to 10000000 s; the
+/// second is later. Error: usage, naming the option.
+Result<TimeSpan> parse_time_span(const std::string& text, const std::string& option);
+
 } // namespace nendo::cli

@@ -1,5 +1,6 @@
 #include "nendo/run_arguments.hpp"
 
+#include <cmath>
 #include <ctime>
 #include <filesystem>
 #include <system_error>
@@ -166,16 +167,16 @@ Result<void> set_wire(RunArguments& options) {
   if (!options.wire.empty() && !options.knife.empty())
     return Error{Errc::usage, "--wire and --knife: give one of them"};
   const bool is_knife = !options.knife.empty();
-  const std::string& span = is_knife ? options.knife : options.wire;
-  if (span.empty()) return {};
-  const auto colon = span.find(':');
-  const auto from = cli::seconds_of(span.substr(0, colon));
-  const auto to =
-      colon == std::string::npos ? std::nullopt : cli::seconds_of(span.substr(colon + 1));
-  if (!from || !to || !(*from >= 0.0) || !(*to > *from))
-    return Error{Errc::usage, std::string(is_knife ? "--knife " : "--wire ") + span +
-                                  ": use two times with a colon between, such as 0.8s:2.5s"};
-  options.run.loop.wire_time = {*from, *to, is_knife ? flow::Blade::knife : flow::Blade::wire};
+  const std::string& text = is_knife ? options.knife : options.wire;
+  if (text.empty()) return {};
+  const std::string option = is_knife ? "--knife" : "--wire";
+  const auto span = cli::parse_time_span(text, option);
+  if (!span) return span.error();
+  if (std::isinf(span->to_s))
+    return Error{Errc::usage,
+                 option + " " + text + " has no end; use two times, such as 0.8s:2.5s"};
+  options.run.loop.wire_time = {span->from_s, span->to_s,
+                                is_knife ? flow::Blade::knife : flow::Blade::wire};
   return {};
 }
 

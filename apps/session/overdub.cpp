@@ -1,6 +1,7 @@
 #include "session/overdub.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <spdlog/fmt/fmt.h>
@@ -24,27 +25,14 @@ Error bad_span(const std::string& option, const std::string& text, const std::st
   return {Errc::usage, option + " " + text + ": " + why};
 }
 
-/// Parses two times with a colon between, each of which may be left out.
 Result<Span> parse_span(const std::string& option, const std::string& text,
                         HostClock::duration length) {
-  const auto colon = text.find(':');
-  const auto time = [](const std::string& part, HostClock::duration without) {
-    const auto seconds = part.empty() ? std::optional(0.0) : cli::seconds_of(part);
-    if (!seconds || *seconds < 0.0 || *seconds > 1e7) return std::optional<HostClock::duration>();
-    return std::optional(part.empty() ? without : from_seconds(*seconds));
-  };
-  std::optional<HostClock::duration> from, to;
-  if (colon != std::string::npos) {
-    from = time(text.substr(0, colon), HostClock::duration::zero());
-    to = time(text.substr(colon + 1), HostClock::duration::max());
-  }
-  if (!from || !to)
-    return bad_span(option, text,
-                    "use two times with a colon between, such as 2s:5.5s, 2s: or :5s");
-  if (*from >= length)
+  const auto span = cli::parse_time_span(text, option);
+  if (!span) return span.error();
+  const auto from = from_seconds(span->from_s);
+  if (from >= length)
     return bad_span(option, text, fmt::format("the take lasts {:.2f} s", to_seconds(length)));
-  if (*from >= *to) return bad_span(option, text, "ends before it begins");
-  return Span{*from, *to};
+  return Span{from, std::isinf(span->to_s) ? HostClock::duration::max() : from_seconds(span->to_s)};
 }
 
 Result<void> set_round(const std::string& text, flow::InputScript& script) {

@@ -2,6 +2,7 @@
 
 #include "cli/quantities.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -59,6 +60,26 @@ TEST_SUITE("quantities") {
       CHECK(parsed.error().code == Errc::usage);
       CHECK(parsed.error().message.starts_with("--keep-last " + std::string(none)));
     }
+  }
+
+  TEST_CASE("of two times each may be left out, and the second is later") {
+    const auto span = [](const char* text) { return cli::parse_time_span(text, "--wire"); };
+    REQUIRE(span("0.8s:2.5s"));
+    CHECK(span("0.8s:2.5s")->from_s == 0.8);
+    CHECK(span("0.8s:2.5s")->to_s == 2.5);
+    CHECK(span("500ms:1m")->from_s == 0.5);
+    CHECK(span("500ms:1m")->to_s == 60.0);
+    CHECK(span(":5s")->from_s == 0.0);
+    CHECK(std::isinf(span("2s:")->to_s));
+    for (const char* wrong :
+         {"", "2s", "x:3s", "1s:y", "-1s:2s", "1s:2s:3s", "nan:1s", "1s:1e9d"}) {
+      CAPTURE(wrong);
+      REQUIRE_FALSE(span(wrong));
+      CHECK(span(wrong).error().message.find("use two times with a colon") != std::string::npos);
+    }
+    for (const char* turned : {"2s:1s", "1s:1s", "5s:0"})
+      CHECK(span(turned).error().message ==
+            "--wire " + std::string(turned) + ": ends before it begins");
   }
 
   TEST_CASE("every command that runs for a while takes a duration with its unit") {

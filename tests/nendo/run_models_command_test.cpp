@@ -74,7 +74,7 @@ TEST_SUITE("run_models_command") {
   TEST_CASE_FIXTURE(Fixture, "a wire or a knife is drawn from one time to another, and not both") {
     const std::string ball = save_ball("ball.obj", 1.0);
     for (const auto& [option, value] :
-         {std::pair{"--knife", "1"}, {"--knife", "2s:1s"}, {"--wire", "x:y"}}) {
+         {std::pair{"--knife", "1"}, {"--knife", "2s:1s"}, {"--wire", "x:y"}, {"--wire", "1s:"}}) {
       const auto refused = run({ball, option, value, "--out", place("all.obj")});
       CHECK(refused.exit_code == 2);
       CHECK(is_one_line_about(refused.err, option));
