@@ -1,6 +1,5 @@
 #include "nendo/run_arguments.hpp"
 
-#include <cmath>
 #include <ctime>
 #include <filesystem>
 #include <system_error>
@@ -172,9 +171,8 @@ Result<void> set_wire(RunArguments& options) {
   const std::string option = is_knife ? "--knife" : "--wire";
   const auto span = cli::parse_time_span(text, option);
   if (!span) return span.error();
-  if (std::isinf(span->to_s))
-    return Error{Errc::usage,
-                 option + " " + text + " has no end; use two times, such as 0.8s:2.5s"};
+  if (text.starts_with(':') || text.ends_with(':'))
+    return Error{Errc::usage, option + " " + text + ": use both times, such as 0.8s:2.5s"};
   options.run.loop.wire_time = {span->from_s, span->to_s,
                                 is_knife ? flow::Blade::knife : flow::Blade::wire};
   return {};
