@@ -54,9 +54,11 @@ Result<double> parse_duration(const std::string& text, const std::string& option
                option + " " + text + ": use " + std::string(duration_words) + ", above 0"};
 }
 
-Result<TimeSpan> parse_time_span(const std::string& text, const std::string& option) {
-  const auto time = [](std::string_view part, double without) -> std::optional<double> {
-    if (part.empty()) return without;
+Result<TimeSpan> parse_time_span(const std::string& text, const std::string& option,
+                                 SpanEnds ends) {
+  const bool may_be_open = ends == SpanEnds::may_be_open;
+  const auto time = [&](std::string_view part, double open) -> std::optional<double> {
+    if (part.empty() && may_be_open) return open;
     const auto seconds = seconds_of(part);
     return seconds && *seconds >= 0.0 && *seconds <= most_s ? seconds : std::nullopt;
   };
@@ -67,8 +69,9 @@ Result<TimeSpan> parse_time_span(const std::string& text, const std::string& opt
     to = time(std::string_view(text).substr(colon + 1), std::numeric_limits<double>::infinity());
   }
   if (!from || !to)
-    return Error{Errc::usage,
-                 option + " " + text + ": use two times with a colon between, such as 0.8s:2.5s"};
+    return Error{Errc::usage, option + " " + text +
+                                  ": use two times with a colon between, such as " +
+                                  (may_be_open ? "2s:5.5s, 2s: or :5s" : "0.8s:2.5s")};
   if (*to <= *from) return Error{Errc::usage, option + " " + text + ": ends before it begins"};
   return TimeSpan{*from, *to};
 }

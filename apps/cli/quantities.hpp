@@ -29,13 +29,14 @@ std::optional<double> number_of(std::string_view text) noexcept;
 /// naming the option.
 Result<double> parse_duration(const std::string& text, const std::string& option = "--duration");
 
-/// Two times, s. `to_s` is infinite where it was left out, and `from_s` 0.
+/// Two times, s. Where it is open, `from_s` is 0, and `to_s` infinite.
 struct TimeSpan {
   double from_s = 0.0;
   double to_s = 0.0;
 };
-/// Reads two times with a colon between, each of which may be left out, up to 10000000 s; the
-/// second is later. Error: usage, naming the option.
-Result<TimeSpan> parse_time_span(const std::string& text, const std::string& option);
+enum class SpanEnds : bool { both, may_be_open };
+/// Reads two times with a colon between, up to 10000000 s; the second is later. One that may be
+/// open needs neither. Error: usage, naming the option.
+Result<TimeSpan> parse_time_span(const std::string& text, const std::string& option, SpanEnds ends);
 
 } // namespace nendo::cli

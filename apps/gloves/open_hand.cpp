@@ -85,8 +85,7 @@ Result<void> begin_again(std::span<OpenHand> hands) {
     if (!is_worn(hand)) hand.glove->stop();
   for (OpenHand& hand : hands) {
     if (is_worn(hand)) continue;
-    for (GloveSample old; hand.ring->try_pop(old);) {
-    }
+    hand.ring->drain([](const GloveSample&) noexcept {});
     if (auto started = hand.glove->start(*hand.ring); !started) return started;
   }
   return {};

@@ -50,7 +50,8 @@ Result<void> start(std::span<OpenHand> hands);
 
 /// Begins anew with the gloves whose time begins when they are started, which are simulated ones
 /// and recordings: so they do nothing while a run gets ready. What they sent before is thrown away.
-/// Nobody else may read their rings meanwhile. Blocks as Glove::stop() does.
+/// Nobody else may read their rings meanwhile. Blocks as Glove::stop() does,
+/// and fails as Glove::start() does.
 Result<void> begin_again(std::span<OpenHand> hands);
 
 /// Returns whether all gloves have sent all that they ever will (Glove::has_ended()), so that who

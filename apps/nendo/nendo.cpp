@@ -17,8 +17,8 @@
 
 namespace {
 
-/// Of a command. A loop with deadlines is better off with small pages: where the first touch of a
-/// huge one falls into a tick, that takes milliseconds.
+/// Of a command. Loops with deadlines go without: with huge pages some runs of the stress test had
+/// ticks of several milliseconds.
 bool works_without_a_clock(std::string_view command) {
   constexpr std::array<std::string_view, 6> all{"cut",  "deform",  "export",
                                                 "join", "picture", "replay"};

@@ -168,11 +168,9 @@ Result<void> set_wire(RunArguments& options) {
   const bool is_knife = !options.knife.empty();
   const std::string& text = is_knife ? options.knife : options.wire;
   if (text.empty()) return {};
-  const std::string option = is_knife ? "--knife" : "--wire";
-  const auto span = cli::parse_time_span(text, option);
+  const auto span =
+      cli::parse_time_span(text, is_knife ? "--knife" : "--wire", cli::SpanEnds::both);
   if (!span) return span.error();
-  if (text.starts_with(':') || text.ends_with(':'))
-    return Error{Errc::usage, option + " " + text + ": use both times, such as 0.8s:2.5s"};
   options.run.loop.wire_time = {span->from_s, span->to_s,
                                 is_knife ? flow::Blade::knife : flow::Blade::wire};
   return {};

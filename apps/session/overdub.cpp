@@ -27,7 +27,7 @@ Error bad_span(const std::string& option, const std::string& text, const std::st
 
 Result<Span> parse_span(const std::string& option, const std::string& text,
                         HostClock::duration length) {
-  const auto span = cli::parse_time_span(text, option);
+  const auto span = cli::parse_time_span(text, option, cli::SpanEnds::may_be_open);
   if (!span) return span.error();
   const auto from = from_seconds(span->from_s);
   if (from >= length)

@@ -49,6 +49,7 @@ struct RunParticipants {
 /// observe every run. Prints on standard error which rights were refused. `grants` are the rights
 /// that were asked for before, for the process and the readers.
 ///
+/// Simulated hands and recordings of gloves begin when the loop does (gloves::begin_again()).
 /// The loop takes all commands without a pause. What a change of settings needs is made on the main
 /// thread beforehand. If a command cannot be obeyed, the observers are told, and the run goes on.
 /// Blocks.

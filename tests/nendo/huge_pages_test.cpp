@@ -1,8 +1,6 @@
 // The program's large memory is in huge pages where the kernel gives them to those who ask.
 
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -14,17 +12,13 @@
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
+#include "support/text_files.hpp"
 
 namespace huge_pages_test {
 
 using namespace nendo;
 
 namespace {
-
-std::string text_of(const std::string& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -41,9 +35,10 @@ Seen look_until_end(const test::Program& program) {
   const std::string process = "/proc/" + std::to_string(program.id());
   Seen seen;
   test::eventually([&] {
-    if (contains(text_of(process + "/stat"), ") Z ")) return true; // ended, and not waited for
-    const std::string environment = text_of(process + "/environ");
-    seen.name = text_of(process + "/comm");
+    if (contains(test::contents(process + "/stat"), ") Z "))
+      return true; // ended, and not waited for
+    const std::string environment = test::contents(process + "/environ");
+    seen.name = test::contents(process + "/comm");
     if (environment.empty()) return false; // it is being replaced
     seen.asks = seen.asks || contains(environment, "glibc.malloc.hugetlb=1");
     seen.environment = environment;
@@ -73,7 +68,7 @@ TEST_SUITE("huge_pages") {
   TEST_CASE(
       "commands without a clock ask for huge pages where that is needed, and keep their name") {
     const bool are_asked_for =
-        contains(text_of("/sys/kernel/mm/transparent_hugepage/enabled"), "[madvise]");
+        contains(test::contents("/sys/kernel/mm/transparent_hugepage/enabled"), "[madvise]");
     const test::TemporaryFolder folder;
     const std::string ball = (folder.path() / "ball.obj").string();
     REQUIRE(deform::write_mesh(ball, test::sphere(300, 600, 1.0))); // reading it takes a moment

@@ -62,8 +62,10 @@ TEST_SUITE("quantities") {
     }
   }
 
-  TEST_CASE("of two times each may be left out, and the second is later") {
-    const auto span = [](const char* text) { return cli::parse_time_span(text, "--wire"); };
+  TEST_CASE("of two times the second is later, and each may be left out where that is allowed") {
+    const auto span = [](const char* text) {
+      return cli::parse_time_span(text, "--wire", cli::SpanEnds::may_be_open);
+    };
     REQUIRE(span("0.8s:2.5s"));
     CHECK(span("0.8s:2.5s")->from_s == 0.8);
     CHECK(span("0.8s:2.5s")->to_s == 2.5);
@@ -80,6 +82,17 @@ TEST_SUITE("quantities") {
     for (const char* turned : {"2s:1s", "1s:1s", "5s:0"})
       CHECK(span(turned).error().message ==
             "--wire " + std::string(turned) + ": ends before it begins");
+    const auto whole = [](const char* text) {
+      return cli::parse_time_span(text, "--wire", cli::SpanEnds::both);
+    };
+    CHECK(whole("0.8s:2.5s")->to_s == 2.5);
+    for (const char* open : {"1s:", ":2s", ":"}) {
+      CAPTURE(open);
+      CHECK(span(open));
+      CHECK(whole(open).error().message ==
+            "--wire " + std::string(open) +
+                ": use two times with a colon between, such as 0.8s:2.5s");
+    }
   }
 
   TEST_CASE("every command that runs for a while takes a duration with its unit") {

@@ -215,7 +215,7 @@ TEST_SUITE("run_session") {
       const auto outcome = run_session(again.options, replayed->hands, again.mesh,
                                        {[](const auto&, double) {}, {&onlooker}});
       REQUIRE(outcome);
-      CHECK(outcome->stats.samples[0] == samples); // the first one placed the hand
+      CHECK(outcome->stats.samples[0] == samples);
       CHECK(onlooker.reports.size() == (stays ? 1 : 0));
       CHECK((onlooker.frames_after > 50) == stays);
     }
