@@ -24,8 +24,10 @@ constexpr double least_cosine = 0.9;
 /// however uneven they are.
 constexpr double least_change = 0.3;
 constexpr int most_refining_rounds = 8;
-/// Where an operation made a self-intersection, nothing is done the next time.
-constexpr int most_attempts = 6;
+/// Where an operation made a self-intersection, nothing is done the next time. The last attempts
+/// only split, which changes no shape but for rounding. After them, nothing is done at all.
+constexpr int most_attempts = 7;
+constexpr int splitting_attempts = 2;
 
 /// The mean length of the edges around each point, of a surface that was not refined before.
 std::vector<VertexDetail> present_detail(const LiveSurface& surface) {
@@ -153,7 +155,8 @@ std::size_t Refiner::count_unfit(const BlockShape& shape, const BlockLayout& lay
 
 namespace {
 
-/// What came of one attempt.
+/// What came of one attempt. Points are rounded to the floats that blocks have: where sheets nearly
+/// touch, that may make them meet.
 struct Attempt {
   TriangleSurface surface;
   std::vector<std::uint32_t> numbers; ///< of each point, those that are gone as well
@@ -170,6 +173,9 @@ Attempt attempt(LiveSurface live, RefineZone zone, RefineLimits limits, bool onl
     if (done.splits + done.collapses + done.flips == 0) break;
   }
   made.surface = live.take(&made.numbers);
+  for (SpacePoint& point : made.surface.points)
+    for (double& coordinate : point)
+      coordinate = static_cast<double>(static_cast<float>(coordinate));
   return made;
 }
 
@@ -240,10 +246,11 @@ Refinement Refiner::refine(const BlockShape& shape, const BlockLayout& layout,
                            const RefinementLimits& asked) const {
   const LiveSurface live = parts_->shaped(shape, layout);
   RefineZone zone = parts_->zone_of(live, layout.unit());
-  const RefineLimits limits = parts_->limits(layout.unit(), asked);
+  RefineLimits limits = parts_->limits(layout.unit(), asked);
   Attempt made;
-  for (int count = 0; count < most_attempts; ++count) {
-    made = attempt(live, zone, limits, count + 1 == most_attempts);
+  for (int count = 0; count <= most_attempts; ++count) {
+    if (count == most_attempts) limits.budget = 0; // nothing is done
+    made = attempt(live, zone, limits, count + splitting_attempts >= most_attempts);
     if (!leave_alone(made, live, zone)) break;
   }
   Refinement result;

@@ -243,6 +243,36 @@ TEST_SUITE("refinement") {
     }
   }
 
+  TEST_CASE("sheets that nearly touch do not come to meet when new vertices are rounded") {
+    std::mt19937 random(6);
+    int refined = 0;
+    for (int round = 0; round < 60; ++round) {
+      CAPTURE(round);
+      const Mesh mesh = ball();
+      std::uniform_real_distribution<double> logarithm(-7.0, -6.0), slope(-0.5, 0.5);
+      const double left = std::pow(10.0, logarithm(random));
+      const Vector3d tilt(slope(random), slope(random), 0.7);
+      Points places = mesh.vertices;
+      for (auto place : places.colwise()) {
+        place[0] = 1.7 * place[0] + 0.3 * place[2];
+        place[2] = left * place[2] + tilt[0] * place[0] + tilt[1] * place[1];
+      }
+      const Shaped before(mesh, places);
+      const auto as_numbers = [](const Eigen::Matrix3Xf& shape) -> Points {
+        return shape.cast<double>();
+      };
+      Eigen::Matrix3Xf numbers(3, places.cols());
+      for (Eigen::Index at = 0; at < places.cols(); ++at)
+        numbers.col(before.layout.order()[static_cast<std::size_t>(at)]) =
+            vertex_at(before.shape, static_cast<std::size_t>(at));
+      if (meets_itself(mesh, as_numbers(numbers))) continue;
+      const Refinement made = before.refine();
+      refined += made.operations.empty() ? 0 : 1;
+      CHECK_FALSE(meets_itself(made.mesh, as_numbers(made.shape)));
+    }
+    CHECK(refined > 10);
+  }
+
   TEST_CASE("the budget and the bound are kept, and the rest is done the next time") {
     const Shaped before(ball(), pulled(ball().vertices));
     const Refinement few = before.refine({.budget = 20});
