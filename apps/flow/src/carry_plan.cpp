@@ -34,15 +34,15 @@ public:
   }
 
 private:
-  /// Of the part: about the vertical line through the model's middle.
+  /// Of the part: about the vertical line through the neck's middle, where the faces of a cut then
+  /// lie on each other the best.
   Isometry3d motion_at(double time_s) const noexcept {
     const double turned = std::numbers::pi * ease(time_s, 2.8, 5.4);
     const double lifted = lift * model_.height() * ease(time_s, 1.8, 3.0) -
                           (lift + press) * model_.height() * ease(time_s, 5.4, 6.8);
     Isometry3d motion = Isometry3d::Identity();
     motion.linear() = Eigen::AngleAxisd(turned, Vector3d::UnitY()).matrix();
-    motion.translation() =
-        model_.middle() - motion.linear() * model_.middle() + lifted * Vector3d::UnitY();
+    motion.translation() = model_.neck - motion.linear() * model_.neck + lifted * Vector3d::UnitY();
     return motion;
   }
 
@@ -85,7 +85,7 @@ private:
   Pose cutting_at(double time_s) const noexcept {
     Vector3d tip = model_.middle();
     tip.x() += side_ * (0.5 * (model_.high.x() - model_.low.x()) + beside_m);
-    tip.y() = model_.low.y() + neck * model_.height();
+    tip.y() = model_.neck.y();
     tip.z() = model_.high.z() + away_m -
               ease(time_s, 0.6, 2.6) * (model_.high.z() - model_.low.z() + 2.0 * away_m);
     Pose pose{angles_, Isometry3d::Identity()};
@@ -95,7 +95,6 @@ private:
   }
 
   static constexpr double carry_from_s = 4.2;
-  static constexpr double neck = 0.57;      ///< of the model's height
   static constexpr double beside_m = 0.030; ///< from the model's box
 
   KneadedModel model_;

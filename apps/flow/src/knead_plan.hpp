@@ -9,10 +9,12 @@ namespace nendo::flow {
 
 /// The model on the stage, in metres.
 struct KneadedModel {
-  static constexpr double upper = 0.85; ///< of its height, where hands take its upper part
+  static constexpr double upper = 0.85;   ///< of its height, where hands take its upper part
+  static constexpr double neck_at = 0.57; ///< likewise, where it is cut
 
   Eigen::Vector3d low, high;   ///< corners of its box
   double upper_radius_m = 0.0; ///< how far it reaches to its sides there
+  Eigen::Vector3d neck;        ///< the middle of what is cut; there its upper part is turned
 
   Eigen::Vector3d middle() const { return 0.5 * (low + high); }
   double height() const { return high.y() - low.y(); }

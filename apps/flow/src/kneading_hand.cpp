@@ -5,6 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Geometry>
+
+#include <nendo/deform/triangles.hpp>
+
 #include "knead_plan.hpp"
 #include "plan_hands.hpp"
 #include "sensor_angles.hpp"
@@ -41,6 +45,26 @@ double upper_radius_of(const deform::Mesh& model, const Eigen::Vector3d& low,
   return farthest;
 }
 
+/// The middle of the box around the section at the neck, or of the whole model if there is none.
+Eigen::Vector3d neck_of(const deform::Mesh& model, const Eigen::Vector3d& low,
+                        const Eigen::Vector3d& high) {
+  const double neck = low.y() + KneadedModel::neck_at * (high.y() - low.y());
+  Eigen::AlignedBox3d section;
+  deform::for_each_triangle(model, [&](const std::array<std::uint32_t, 3>& corners) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector3d from = model.vertices.col(corners[k]);
+      const Eigen::Vector3d to = model.vertices.col(corners[(k + 1) % 3]);
+      if ((from.y() < neck) == (to.y() < neck)) continue;
+      const double part = (neck - from.y()) / (to.y() - from.y());
+      section.extend(Eigen::Vector3d(from + part * (to - from)));
+    }
+  });
+  Eigen::Vector3d middle =
+      section.isEmpty() ? Eigen::Vector3d(0.5 * (low + high)) : section.center();
+  middle.y() = neck;
+  return middle;
+}
+
 } // namespace
 
 std::string_view name_of(KneadTask task) noexcept {
@@ -71,8 +95,10 @@ Result<KneadingHand> KneadingHand::make(const deform::Mesh& model,
   if (!(size > 0.0) || !std::isfinite(size))
     return Error{Errc::bad_input, "the model has no size, so hands find nothing to press"};
   const double scale = model_size_m / size;
-  const auto plan = plan_of(
-      task, {scale * low, scale * high, scale * upper_radius_of(model, low, high)}, skeleton);
+  const auto plan = plan_of(task,
+                            {scale * low, scale * high, scale * upper_radius_of(model, low, high),
+                             scale * neck_of(model, low, high)},
+                            skeleton);
   const auto count = static_cast<std::size_t>(std::ceil(plan->length_s() / knead_step_s)) + 1;
   auto keys = std::make_shared<std::vector<hand::JointAngles>>();
   std::vector<Eigen::Isometry3d> poses;
