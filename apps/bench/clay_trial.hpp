@@ -37,6 +37,7 @@ struct ClayTrialOptions {
   bool keeps_volume = true;
   bool grips = true;
   bool judges_inside = false; ///< takes long
+  int scenes = 1;             ///< how often it is played, each time from the ball on, for the times
 };
 
 double clay_volume(const deform::Mesh& mesh);

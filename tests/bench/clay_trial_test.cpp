@@ -67,7 +67,7 @@ TEST_SUITE("clay_trial") {
       } else if (thing == KneadedThing::sausage) {
         CHECK(clay.turned_rad > std::numbers::pi);
         CHECK(size.y() > 2.0 * std::max(size.x(), size.z()));
-        CHECK(std::abs(size.x() / size.z() - 1.0) < 0.2);
+        CHECK(std::abs(size.x() / size.z() - 1.0) < 0.3); // it depends on where the last rub ends
       } else {
         CHECK(clay.most_held > 4);
         CHECK(size.x() > before + 15.0);

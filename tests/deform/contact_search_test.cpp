@@ -145,19 +145,18 @@ TEST_SUITE("contact_search") {
 
   TEST_CASE("points are chosen by depth, without crowds, in whatever order they come") {
     std::mt19937 random(33);
-    std::vector<ContactPoint> offered;
-    std::uniform_real_distribution<double> depth(0.0, 1.0);
-    for (std::uint32_t place = 0; place < 2000; ++place)
-      offered.push_back({place, 0, static_cast<std::uint32_t>(random() % 3), depth(random),
-                         random_points(random, 1, 2.0).col(0), Vector3d::UnitZ()});
+    std::vector<NearVertex> offered;
+    std::uniform_real_distribution<float> depth(0.0F, 1.0F);
+    for (std::uint32_t place = 0; place < 2000; ++place) {
+      const Eigen::Vector3f at = random_points(random, 1, 2.0).col(0).cast<float>();
+      offered.push_back({place, 0, static_cast<std::uint32_t>(random() % 3), depth(random), at,
+                         at - Eigen::Vector3f::UnitZ()});
+    }
     const auto chosen_of = [&](std::size_t most) {
       ContactPoints points(most);
       points.clear(0.5);
-      for (const ContactPoint& point : offered)
-        if (ContactPoint* const kept =
-                points.offer(point.at.cast<float>(), point.part, point.depth);
-            kept != nullptr)
-          *kept = point;
+      for (const NearVertex& vertex : offered)
+        points.offer(vertex);
       std::vector<std::uint32_t> places;
       const auto chosen = points.choose(0.3);
       for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -172,7 +171,7 @@ TEST_SUITE("contact_search") {
     CHECK(first.size() > 200);
     const auto deepest = std::max_element(
         offered.begin(), offered.end(),
-        [](const ContactPoint& a, const ContactPoint& b) { return a.depth < b.depth; });
+        [](const NearVertex& a, const NearVertex& b) { return a.depth < b.depth; });
     CHECK(first.front() == deepest->place);
     std::shuffle(offered.begin(), offered.end(), random);
     CHECK(chosen_of(2000) == first);

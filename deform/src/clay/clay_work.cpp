@@ -16,12 +16,12 @@ using Eigen::Vector3d;
 namespace {
 
 // In millimetres, for hands.
-constexpr double margin_mm = 1.0;    // around a body, where surfaces are kept from being pulled in
+constexpr double margin_mm = 0.5;    // around a body, where surfaces are kept from being pulled in
 constexpr double skin_mm = 0.02;     // a surface this deep is outside
 constexpr double between_mm = 0.3;   // and this deep it may wait for the next sub-step
 constexpr double give_mm = 0.3;      // by which skin gives way sideways before it drags
 constexpr double loaded_mm = 0.01;   // less does not stick
-constexpr double most_step_mm = 2.0; // of a body in a sub-step
+constexpr double most_step_mm = 2.5; // of a body in a sub-step
 constexpr double most_straight_mm = 0.2; // a last push, which may fold
 
 // The least radius of functions, in radii of the thickest part. Clay that is softer is pressed into
@@ -85,13 +85,15 @@ ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32
           room_for(most_centres(bodies, options), options.radius_mm * options.units_a_mm, layout_)),
       evaluator_(layout_, most_centres(bodies, options), options.evaluation), masked_(options.mask),
       volume_(layout_, options.keeps_volume ? triangles : std::span<const std::uint32_t>{}),
-      pressed_(from_.size()), around_(BoxGate::shut()) {
+      deep_(bodies), pressed_(from_.size()), around_(BoxGate::shut()) {
   contacts_.reserve(static_cast<std::size_t>(options.most_constraints));
   if (volume_.is_closed()) zones_.emplace(layout_, triangles);
   assert(options.still_bodies <= bodies);
   assert(options.units_a_mm > 0.0 && options.radius_mm > 0.0 && options.most_constraints > 0);
   for (std::size_t body = 0; body < bodies; ++body)
     grips_.emplace_back(body * parts_a_body, parts_a_body, mm_);
+  for (std::vector<std::uint32_t>& blocks : deep_)
+    blocks.reserve(layout_.block_count());
   carriers_.reserve(static_cast<std::size_t>(options.most_constraints) + bodies * Grip::most_held);
 }
 
@@ -231,7 +233,7 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
     if (gone < 1.0) left = press_out(shape, skin_mm * mm_, report);
     report.penetration_mm = left / mm_;
     list_contacts();
-    push_straight(shape);
+    if (left > 0.0) push_straight(shape);
     report.is_moved = report.passes > 0 || report.carried_mm > 0.0 || left > 0.0;
     if (options_.grips) look_for_grips(report);
   }
@@ -300,6 +302,7 @@ ClayDeformer::Work::Found ClayDeformer::Work::find(const BoundedShape& shape, bo
   Found found;
   chosen_.clear(radius_ / cells_a_radius);
   for (std::size_t body = 0; body < search_.bodies(); ++body) {
+    deep_[body].clear();
     search_.each_near(shape, body, margin_mm * mm_,
                       [&](std::size_t block, const NearestLanes& all) {
                         const NearestLanes& nearest = free_lanes(block, all);
@@ -317,6 +320,8 @@ void ClayDeformer::Work::offer(const BoundedShape& shape, std::size_t body, std:
   std::array<std::uint8_t, block_size> lanes;
   const std::size_t count = nearest_of_cells(
       shape.shape[block], nearest, static_cast<float>(margin_mm * mm_), chosen_.cells(), lanes);
+  if (count > 0 && nearest.distance[lanes[0]] < 0.0F)
+    deep_[body].push_back(static_cast<std::uint32_t>(block));
   for (std::size_t at = 0; at < count; ++at) {
     const std::size_t lane = lanes[at];
     const auto part = static_cast<std::uint32_t>(nearest.part[lane]);
@@ -324,16 +329,12 @@ void ClayDeformer::Work::offer(const BoundedShape& shape, std::size_t body, std:
     deepest = std::max(deepest, depth);
     pressed_[part] = std::max(pressed_[part], static_cast<float>(depth));
     const std::size_t place = block * block_size + lane;
-    const Eigen::Vector3f vertex = vertex_at(shape.shape, place);
-    ContactPoint* const point = chosen_.offer(vertex, part, depth);
-    if (point == nullptr) continue;
-    const Eigen::Vector3f centre(nearest.x[lane], nearest.y[lane], nearest.z[lane]);
-    *point = {static_cast<std::uint32_t>(place),
-              static_cast<std::uint32_t>(body),
-              part,
-              depth,
-              vertex.cast<double>(),
-              vertex.cast<double>() - centre.cast<double>()};
+    chosen_.offer({static_cast<std::uint32_t>(place),
+                   static_cast<std::uint32_t>(body),
+                   part,
+                   -nearest.distance[lane],
+                   vertex_at(shape.shape, place),
+                   {nearest.x[lane], nearest.y[lane], nearest.z[lane]}});
   }
 }
 
@@ -376,7 +377,7 @@ void ClayDeformer::Work::slide(std::span<const ContactPoint> points) noexcept {
 /// The whole field, or the part of it that does not fold; the next pass does the rest.
 ClayDeformer::Work::Applied
 ClayDeformer::Work::apply(BoundedShape& shape, std::span<const ContactPoint> points) noexcept {
-  const double bound = problem_.lipschitz_bound();
+  const double bound = problem_.lipschitz_bound(most_bound);
   if (!(bound > 0.0)) return Applied::nothing;
   const bool is_whole = bound <= most_bound;
   const double part = (is_whole ? 1.0 : most_bound / bound) * layout_.unit();
@@ -414,14 +415,14 @@ void ClayDeformer::Work::list_contacts() noexcept {
   }
 }
 
-/// What is left goes straight out. This may fold, but it is less than a tenth of an edge.
+/// What the last search has found to be left goes straight out. This may fold, but it is less than
+/// a tenth of an edge.
 void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
   const double most = most_straight_mm * mm_;
   const std::uint64_t stamp = BlockShape::new_stamp();
   for (std::size_t body = 0; body < search_.bodies(); ++body)
-    search_.each_near(shape, body, 0.0, [&](std::size_t block, const NearestLanes& all) {
+    search_.each_of(shape, body, deep_[body], 0.0, [&](std::size_t block, const NearestLanes& all) {
       const NearestLanes& nearest = free_lanes(block, all);
-      if (*std::min_element(nearest.distance.begin(), nearest.distance.end()) >= 0.0F) return;
       VertexBlock& content = shape.shape.data()[block];
       for (std::size_t lane = 0; lane < block_size; ++lane) {
         const double depth = -static_cast<double>(nearest.distance[lane]);

@@ -116,7 +116,8 @@ private:
   std::optional<ImpactZones> zones_; ///< where the volume is kept
   double whole_volume_ = 0.0;
   double volume_now_ = 0.0;
-  std::vector<float> pressed_; ///< how deep each part came in this call
+  std::vector<std::vector<std::uint32_t>> deep_; ///< blocks in each body, by the last search
+  std::vector<float> pressed_;                   ///< how deep each part came in this call
   std::vector<ClayContact> contacts_;
   bool is_settling_ = false; ///< some volume has not been given back yet
   bool swells_all_ = false;  ///< what is near the contacts did not suffice

@@ -9,16 +9,7 @@ ContactLoad::ContactLoad(std::size_t blocks, double most)
       slips_(blocks * block_size, 0) {}
 
 void ContactLoad::press(std::size_t block, const NearestLanes& nearest) noexcept {
-  float* const pressed = pressed_.data() + block * block_size;
-  float largest = 0.0F;
-  for (std::size_t lane = 0; lane < block_size; ++lane) { // vectorised: no branches
-    const float distance = nearest.distance[lane];
-    float more = pressed[lane] + (distance < 0.0F ? -distance : 0.0F);
-    more = more < most_ ? more : most_;
-    pressed[lane] = distance > most_ ? 0.0F : more;
-    largest = pressed[lane] > largest ? pressed[lane] : largest;
-  }
-  if (!(largest > 0.0F)) return;
+  if (!add_loads(nearest, most_, pressed_.data() + block * block_size)) return;
   rounds_[block] = round_;
   is_any_ = true;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 namespace nendo::deform {
 
@@ -22,34 +21,36 @@ std::size_t hash_of(std::uint64_t key) noexcept { // the finaliser of MurmurHash
   return key ^ key >> 33;
 }
 
-bool is_deeper(const ContactPoint& a, const ContactPoint& b) noexcept {
-  if (a.depth != b.depth) return a.depth > b.depth;
-  return a.place != b.place ? a.place < b.place : a.part < b.part;
+/// Numbers of floats, which are ordered as these are.
+std::uint64_t key_of(const NearVertex& vertex) noexcept {
+  const auto bits = std::bit_cast<std::uint32_t>(-vertex.depth);
+  constexpr std::uint32_t sign = 1U << 31;
+  const std::uint32_t ordered = (bits & sign) != 0 ? ~bits : bits | sign;
+  return std::uint64_t{ordered} << 32 | vertex.place;
 }
 
 } // namespace
 
 ContactPoints::ContactPoints(std::size_t most)
-    : slots_(std::bit_ceil(slots_a_point * most)), most_(most) {
-  points_.reserve(cells_a_point * most);
-  for (auto* numbers : {&chosen_.x, &chosen_.y, &chosen_.z, &chosen_.normal_x, &chosen_.normal_y,
-                        &chosen_.normal_z})
-    numbers->resize(most);
+    : slots_(std::bit_ceil(slots_a_point * most)), places_(most) {
+  vertices_.reserve(cells_a_point * most);
+  order_.reserve(cells_a_point * most);
+  chosen_.reserve(most);
 }
 
 void ContactPoints::clear(double cell) noexcept {
   constexpr auto half = static_cast<float>(cells_a_side / 2);
   cells_ = {static_cast<float>(1.0 / cell), half, 2.0F * half - 1.0F};
-  points_.clear();
+  vertices_.clear();
+  is_chosen_ = false;
   if (++round_ != 0) return;
   std::fill(slots_.begin(), slots_.end(), Slot{});
   round_ = 1;
 }
 
-ContactPoint* ContactPoints::offer(const Eigen::Vector3f& at, std::uint32_t part,
-                                   double depth) noexcept {
-  std::uint64_t key = part;
-  for (const float coordinate : at) {
+void ContactPoints::offer(const NearVertex& vertex) noexcept {
+  std::uint64_t key = vertex.part;
+  for (const float coordinate : vertex.at) {
     const float cell = coordinate * cells_.a_length + cells_.shift;
     key = key << 18 | static_cast<std::uint64_t>(std::clamp(cell, 0.0F, cells_.most));
   }
@@ -58,54 +59,38 @@ ContactPoint* ContactPoints::offer(const Eigen::Vector3f& at, std::uint32_t part
   while (slots_[slot].round == round_ && slots_[slot].key != key)
     slot = (slot + 1) & mask;
   if (slots_[slot].round != round_) {
-    if (points_.size() == points_.capacity()) return nullptr;
-    slots_[slot] = {key, round_, static_cast<std::uint32_t>(points_.size())};
-    points_.emplace_back().depth = -std::numeric_limits<double>::infinity();
+    if (vertices_.size() == vertices_.capacity()) return;
+    slots_[slot] = {key, round_, static_cast<std::uint32_t>(vertices_.size())};
+    vertices_.push_back(vertex);
+    return;
   }
-  ContactPoint& kept = points_[slots_[slot].point];
-  return depth > kept.depth ? &kept : nullptr;
-}
-
-/// All are looked at, because vectors do that faster than a search that ends early.
-bool ContactPoints::is_crowded(const ContactPoint& point, std::size_t chosen,
-                               float squared) const noexcept {
-  const Eigen::Vector3f at = point.at.cast<float>();
-  const Eigen::Vector3f normal = point.normal.cast<float>();
-  std::uint32_t crowding = 0;
-  for (std::size_t other = 0; other < chosen; ++other) {
-    const float x = chosen_.x[other] - at.x();
-    const float y = chosen_.y[other] - at.y();
-    const float z = chosen_.z[other] - at.z();
-    const float along = chosen_.normal_x[other] * normal.x() +
-                        chosen_.normal_y[other] * normal.y() + chosen_.normal_z[other] * normal.z();
-    crowding |= static_cast<std::uint32_t>(x * x + y * y + z * z < squared) &
-                static_cast<std::uint32_t>(along > 0.5F);
-  }
-  return crowding != 0;
-}
-
-void ContactPoints::note_chosen(const ContactPoint& point, std::size_t at) noexcept {
-  chosen_.x[at] = static_cast<float>(point.at.x());
-  chosen_.y[at] = static_cast<float>(point.at.y());
-  chosen_.z[at] = static_cast<float>(point.at.z());
-  chosen_.normal_x[at] = static_cast<float>(point.normal.x());
-  chosen_.normal_y[at] = static_cast<float>(point.normal.y());
-  chosen_.normal_z[at] = static_cast<float>(point.normal.z());
+  NearVertex& kept = vertices_[slots_[slot].vertex];
+  if (vertex.depth > kept.depth) kept = vertex;
 }
 
 std::span<const ContactPoint> ContactPoints::choose(double apart) noexcept {
-  std::sort(points_.begin(), points_.end(), is_deeper);
-  for (ContactPoint& point : points_) {
-    const double length = point.normal.norm();
-    point.normal = length > 0.0 ? Eigen::Vector3d(point.normal / length) : Eigen::Vector3d::UnitZ();
+  if (is_chosen_) return chosen_;
+  is_chosen_ = true;
+  order_.clear();
+  for (const NearVertex& vertex : vertices_)
+    order_.push_back(
+        {key_of(vertex), vertex.part, static_cast<std::uint32_t>(&vertex - vertices_.data())});
+  std::sort(order_.begin(), order_.end());
+  chosen_.clear();
+  places_.clear();
+  for (const Order& next : order_) {
+    if (chosen_.size() == chosen_.capacity()) break;
+    const NearVertex& vertex = vertices_[next.vertex];
+    const Eigen::Vector3d at = vertex.at.cast<double>();
+    const Eigen::Vector3d way = at - vertex.centre.cast<double>();
+    const double length = way.norm();
+    const Eigen::Vector3d normal =
+        length > 0.0 ? Eigen::Vector3d(way / length) : Eigen::Vector3d::UnitZ();
+    if (!places_.add(vertex.at, normal.cast<float>(), static_cast<float>(apart * apart))) continue;
+    chosen_.push_back(
+        {vertex.place, vertex.body, vertex.part, static_cast<double>(vertex.depth), at, normal});
   }
-  std::size_t chosen = 0;
-  for (std::size_t at = 0; at < points_.size() && chosen < most_; ++at)
-    if (!is_crowded(points_[at], chosen, static_cast<float>(apart * apart))) {
-      note_chosen(points_[at], chosen);
-      points_[chosen++] = points_[at];
-    }
-  return {points_.data(), chosen};
+  return chosen_;
 }
 
 } // namespace nendo::deform

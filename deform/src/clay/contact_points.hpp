@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "clay/crowded_places.hpp"
 #include "simd/contact_kernels.hpp"
 
 namespace nendo::deform {
@@ -22,6 +23,16 @@ struct ContactPoint {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero(); ///< out of the body
 };
 
+/// A vertex near a body, as a search has found it. It takes little room, because many are kept.
+struct NearVertex {
+  std::uint32_t place = 0;
+  std::uint32_t body = 0;
+  std::uint32_t part = 0;
+  float depth = 0.0F; ///< negative outside
+  Eigen::Vector3f at = Eigen::Vector3f::Zero();
+  Eigen::Vector3f centre = Eigen::Vector3f::Zero(); ///< of the part's ball that is the nearest
+};
+
 /// Nothing depends on an order of memory or of a hash, so that a replay chooses the same.
 class ContactPoints {
 public:
@@ -32,34 +43,37 @@ public:
   void clear(double cell) noexcept;
   /// Returns the cells, for nearest_of_cells().
   const SpaceCells& cells() const noexcept { return cells_; }
-  /// Offers a vertex. If it is the deepest yet of its cell and part, returns the point that the
-  /// caller sets to it, with a normal of any length; otherwise null. The first of those that are
+  /// Keeps the vertex if it is the deepest yet of its cell and part. The first of those that are
   /// equally deep stays. When the table is full, vertices of new cells are left out; the next pass
-  /// meets them.
-  ContactPoint* offer(const Eigen::Vector3f& at, std::uint32_t part, double depth) noexcept;
+  /// meets them. Not after choose().
+  void offer(const NearVertex& vertex) noexcept;
   /// Returns the deepest, none nearer than `apart` to a deeper one that pushes into nearly the same
-  /// direction; at most as many as there is room for.
+  /// direction; at most as many as there is room for. Until the next clear() they stay the same.
   std::span<const ContactPoint> choose(double apart) noexcept;
 
 private:
   struct Slot {
     std::uint64_t key = 0;
     std::uint32_t round = 0; ///< of the choice to which it belongs
-    std::uint32_t point = 0;
+    std::uint32_t vertex = 0;
   };
-  /// Those chosen so far, as vectors take them.
-  struct Chosen {
-    std::vector<float> x, y, z, normal_x, normal_y, normal_z;
+  /// What vertices are sorted by.
+  struct Order {
+    std::uint64_t key; ///< less for what is deeper, and then for lower places
+    std::uint32_t part, vertex;
+    bool operator<(const Order& other) const noexcept {
+      return key != other.key ? key < other.key : part < other.part;
+    }
   };
-  bool is_crowded(const ContactPoint& point, std::size_t chosen, float squared) const noexcept;
-  void note_chosen(const ContactPoint& point, std::size_t at) noexcept;
 
   SpaceCells cells_{};
   std::uint32_t round_ = 0;
-  Chosen chosen_;
   std::vector<Slot> slots_;          ///< an open hash table
-  std::vector<ContactPoint> points_; ///< one a cell
-  std::size_t most_;
+  std::vector<NearVertex> vertices_; ///< one a cell
+  std::vector<Order> order_;         ///< the deepest first
+  CrowdedPlaces places_;             ///< of those chosen
+  std::vector<ContactPoint> chosen_;
+  bool is_chosen_ = false; ///< since clear()
 };
 
 } // namespace nendo::deform

@@ -1,6 +1,7 @@
 #include "clay/contact_search.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace nendo::deform {
@@ -43,8 +44,8 @@ void BoxGate::extend(const BoxGate& other) noexcept {
 
 ContactSearch::ContactSearch(std::size_t bodies, std::size_t parts_a_body)
     : bodies_(bodies), parts_a_body_(parts_a_body), parts_(bodies * parts_a_body),
-      is_out_(parts_.size(), 0), body_boxes_(bodies, BoxGate::shut()), list_(parts_a_body),
-      seen_(parts_a_body), excess_(parts_a_body * block_size) {
+      is_out_(parts_.size(), 0), body_boxes_(bodies, BoxGate::shut()), seen_(parts_a_body),
+      lists_(parts_a_body * block_size) {
   cones_.reserve(3 * parts_.size());
   planes_.reserve(parts_.size());
 }
@@ -142,28 +143,24 @@ void ContactSearch::measure_boxes(std::size_t body, float margin) noexcept {
       lanes->x[at] = lanes->y[at] = lanes->z[at] = 0.0F;
   boxes_.nearest.distance.fill(std::numeric_limits<float>::max());
   boxes_.nearest.to_centre.fill(1.0F);
-  boxes_.least_excess.fill(std::numeric_limits<float>::max());
+  boxes_.list_sizes.fill(0);
   const auto first = static_cast<std::uint32_t>(body * parts_a_body_);
   for (std::uint32_t part = 0; part < parts_a_body_; ++part)
     if (is_out_[first + part] == 0)
       part_from_boxes(boxes_.lanes, arrays(), first + part, seen_[part], boxes_.nearest);
-  for (std::size_t part = 0; part < parts_a_body_; ++part) {
-    float* const excess = excess_.data() + part * block_size;
+  for (std::uint32_t part = 0; part < parts_a_body_; ++part)
     if (is_out_[first + part] == 0)
-      excess_in_boxes(boxes_.lanes, seen_[part], boxes_.nearest, margin, excess,
-                      boxes_.least_excess);
-    else
-      std::fill_n(excess, block_size, std::numeric_limits<float>::max());
-  }
+      list_part(first + part, near_in_boxes(boxes_.lanes, seen_[part], boxes_.nearest, margin));
   distances_ += parts_a_body_ * boxes_.count;
 }
 
-std::size_t ContactSearch::list_parts(std::size_t body, std::size_t box) noexcept {
-  std::size_t count = 0;
-  for (std::size_t part = 0; part < parts_a_body_; ++part)
-    if (excess_[part * block_size + box] <= 0.0F)
-      list_[count++] = static_cast<std::uint32_t>(body * parts_a_body_ + part);
-  return count;
+/// Adds the part to the lists of these boxes, a bit each.
+void ContactSearch::list_part(std::uint32_t part, std::uint64_t near) noexcept {
+  const std::uint64_t all = ~std::uint64_t{0} >> (block_size - boxes_.count);
+  for (std::uint64_t left = near & all; left != 0; left &= left - 1) {
+    const auto box = static_cast<std::size_t>(std::countr_zero(left));
+    lists_[box * parts_a_body_ + boxes_.list_sizes[box]++] = part;
+  }
 }
 
 } // namespace nendo::deform

@@ -51,6 +51,10 @@ public:
   /// Distances are right if they are at most `margin`, and otherwise more than it.
   template <class Visit>
   void each_near(const BoundedShape& shape, std::size_t body, double margin, const Visit& visit);
+  /// Does the same for these blocks only.
+  template <class Visit>
+  void each_of(const BoundedShape& shape, std::size_t body, std::span<const std::uint32_t> blocks,
+               double margin, const Visit& visit);
   /// Returns how many distances were computed since it was last set to 0.
   std::size_t& distances() noexcept { return distances_; }
 
@@ -61,7 +65,7 @@ private:
     std::array<std::uint32_t, block_size> blocks{};
     BoxLanes lanes;
     NearestFromBoxes nearest;
-    std::array<float, block_size> least_excess{};
+    std::array<std::uint32_t, block_size> list_sizes{};
   };
 
   void add_cone(const ContactPart& part, std::size_t first, std::size_t second) noexcept;
@@ -69,7 +73,7 @@ private:
   PartArrays arrays() const noexcept { return {cones_.data(), planes_.data(), parts_.data()}; }
   void add_box(const BlockBounds& bounds, std::uint32_t block) noexcept;
   void measure_boxes(std::size_t body, float margin) noexcept;
-  std::size_t list_parts(std::size_t body, std::size_t box) noexcept;
+  void list_part(std::uint32_t part, std::uint64_t near) noexcept;
   template <class Visit>
   void visit_boxes(const BoundedShape& shape, std::size_t body, float margin, const Visit& visit);
 
@@ -80,12 +84,11 @@ private:
   std::vector<PartEntry> parts_;
   std::vector<std::uint8_t> is_out_; ///< a part
   std::vector<BoxGate> body_boxes_;
-  std::vector<std::uint32_t> list_;
   std::size_t distances_ = 0;
   NearestLanes nearest_{};
   Boxes boxes_;
-  std::vector<PartFromBoxes> seen_; ///< each part of a body, from 64 boxes
-  std::vector<float> excess_;       ///< of 64 boxes, for each part of a body
+  std::vector<PartFromBoxes> seen_;  ///< each part of a body, from 64 boxes
+  std::vector<std::uint32_t> lists_; ///< of 64 boxes: parts that may be the nearest
 };
 
 template <class Visit>
@@ -102,14 +105,27 @@ void ContactSearch::each_near(const BoundedShape& shape, std::size_t body, doubl
 }
 
 template <class Visit>
+void ContactSearch::each_of(const BoundedShape& shape, std::size_t body,
+                            std::span<const std::uint32_t> blocks, double margin,
+                            const Visit& visit) {
+  boxes_.count = 0;
+  for (const std::uint32_t block : blocks) {
+    add_box(shape.bounds[block], block);
+    if (boxes_.count == block_size) visit_boxes(shape, body, static_cast<float>(margin), visit);
+  }
+  if (boxes_.count > 0) visit_boxes(shape, body, static_cast<float>(margin), visit);
+}
+
+template <class Visit>
 void ContactSearch::visit_boxes(const BoundedShape& shape, std::size_t body, float margin,
                                 const Visit& visit) {
   measure_boxes(body, margin);
   for (std::size_t box = 0; box < boxes_.count; ++box) {
-    if (boxes_.least_excess[box] > 0.0F) continue;
-    const std::size_t count = list_parts(body, box);
+    const std::size_t count = boxes_.list_sizes[box];
+    if (count == 0) continue;
     const std::size_t block = boxes_.blocks[box];
-    nearest_in_block(shape.shape[block], arrays(), list_.data(), count, nearest_);
+    nearest_in_block(shape.shape[block], arrays(), lists_.data() + box * parts_a_body_, count,
+                     nearest_);
     distances_ += count * block_size;
     visit(block, nearest_);
   }

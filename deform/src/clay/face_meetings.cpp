@@ -17,7 +17,7 @@ namespace {
 /// Faces of two blocks whose directions are within this angle do not look at each other. For a
 /// surface without wrinkles that could be half a turn. At 2.8, wrinkles of a ball that is torn met
 /// unseen; at 2.2, no longer.
-constexpr float widest_angle = 2.0F;
+constexpr float widest_cosine = -0.4161468F, widest_sine = 0.9092974F; // of the angle 2.0
 constexpr std::size_t pairs_a_block = 64;
 constexpr std::size_t most_met = 4096;
 constexpr std::size_t most_tests = 50'000;    // of two triangles
@@ -54,11 +54,15 @@ bool looks_away(const Eigen::Vector3f& normal, const std::array<float, 4>& way) 
   return !(normal.x() * way[0] + normal.y() * way[1] + normal.z() * way[2] > 0.0F);
 }
 
+/// Tells whether the angle between the axes, and those around both, are together wider. Cosines and
+/// sines of sums tell it without the angles, which would take longer.
 bool may_face(const RingFacts& one, const RingFacts& other) noexcept {
-  const float cosine =
+  const float cosine = one.least_cosine * other.least_cosine - one.sine * other.sine;
+  const float sine = one.sine * other.least_cosine + one.least_cosine * other.sine;
+  if (sine < 0.0F || cosine < widest_cosine) return true; // those around both suffice
+  const float between =
       one.axis[0] * other.axis[0] + one.axis[1] * other.axis[1] + one.axis[2] * other.axis[2];
-  const auto angle = [](float of) { return std::acos(std::clamp(of, -1.0F, 1.0F)); };
-  return angle(cosine) + angle(one.least_cosine) + angle(other.least_cosine) > widest_angle;
+  return between < widest_cosine * cosine + widest_sine * sine;
 }
 
 constexpr BlockBounds no_bounds{{1e30F, 1e30F, 1e30F, 0.0F, 1e30F, 1e30F, 1e30F, 0.0F}};
@@ -108,6 +112,8 @@ FaceMeetings::FaceMeetings(const BlockLayout& layout, std::span<const std::uint3
   for (std::size_t block = 0; block < blocks; ++block)
     most = std::max<std::size_t>(most, first_triangles_[block + 1] - first_triangles_[block]);
   boxes_.resize(blocks);
+  for (std::vector<float>& row : rows_) // beyond the last box, there is none to overlap
+    row.assign(blocks + 2 * block_size, std::numeric_limits<float>::infinity());
   hulls_.resize(blocks);
   triangle_boxes_.resize(corners_.size());
   pairs_.reserve(pairs_a_block * blocks);
@@ -180,6 +186,11 @@ void FaceMeetings::list_pairs(const BlockShape& shape, const BlockShape& before,
   for (std::size_t at = 1; at < order_.size(); ++at) // nearly sorted since the last call
     for (std::size_t to = at; to > 0 && is_before(order_[to], order_[to - 1]); --to)
       std::swap(order_[to], order_[to - 1]);
+  for (std::size_t at = 0; at < order_.size(); ++at)
+    for (std::size_t row = 0; row < rows_.size(); ++row)
+      rows_[row][at] = boxes_[order_[at]].sides[row < 3 ? row : row + 2];
+  const BoxRows rows{rows_[0].data(), rows_[1].data(), rows_[2].data(), rows_[3].data(),
+                     rows_[4].data()};
   const auto has_moved = [&](std::uint32_t block) {
     return shape.stamp(block) != before.stamp(block);
   };
@@ -187,17 +198,18 @@ void FaceMeetings::list_pairs(const BlockShape& shape, const BlockShape& before,
   is_crowded_ = false;
   for (std::size_t at = 0; at < order_.size(); ++at) {
     const std::uint32_t one = order_[at];
-    const bool moved = has_moved(one);
-    for (std::size_t to = at; to < order_.size(); ++to) {
-      const std::uint32_t other = order_[to];
-      if (boxes_[other].sides[0] > -boxes_[one].sides[4]) break;
-      if (!(moved || has_moved(other)) || !overlap(boxes_[one], boxes_[other]) ||
-          !(is_folded_[one] != 0 || is_folded_[other] != 0 || may_face(facts[one], facts[other])))
-        continue;
-      is_crowded_ = pairs_.size() == pairs_.capacity();
-      if (is_crowded_) return;
-      pairs_.emplace_back(one, other);
-    }
+    const BlockBounds& box = boxes_[one];
+    for (std::size_t first = at; rows[0][first] <= -box.sides[4]; first += block_size)
+      for (std::uint64_t left = boxes_in_way(rows, first, box.sides); left != 0; left &= left - 1) {
+        const std::uint32_t other =
+            order_[first + static_cast<std::size_t>(std::countr_zero(left))];
+        if (!(has_moved(one) || has_moved(other)) ||
+            !(is_folded_[one] != 0 || is_folded_[other] != 0 || may_face(facts[one], facts[other])))
+          continue;
+        is_crowded_ = pairs_.size() == pairs_.capacity();
+        if (is_crowded_) return;
+        pairs_.emplace_back(one, other);
+      }
   }
 }
 

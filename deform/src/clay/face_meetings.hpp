@@ -4,6 +4,7 @@
 // self-collision detection on smoothly discretized surface animations", 1994). What a VolumeKeeper
 // measures tells which blocks' faces do. The rest is tested exactly.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "clay/volume_keeper.hpp"
 #include "cut/space.hpp"
 #include "rows_by_key.hpp"
+#include "simd/contact_kernels.hpp"
 
 namespace nendo::deform {
 
@@ -59,6 +61,7 @@ private:
   RowsByKey<std::uint32_t> triangles_at_;      ///< of each place
   std::vector<std::uint32_t> order_;           ///< blocks, by their lowest x
   std::vector<BlockBounds> boxes_;             ///< of each block's triangles, and more
+  std::array<std::vector<float>, 5> rows_;     ///< these, as order_ and BoxRows have them
   Marks boxed_;                                ///< blocks of which these are known:
   std::vector<BlockBounds> hulls_, triangle_boxes_;
   std::vector<BlockPair> pairs_;        ///< of blocks whose faces may meet

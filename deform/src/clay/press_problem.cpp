@@ -130,37 +130,32 @@ Vector3d PressProblem::coefficient(std::size_t i) const noexcept {
           l_[i] * normals_[2][i] + t_[2][i]};
 }
 
-/// Where no function of the one side reaches one of the other: an axis, and a coordinate between.
-PressProblem::Gap PressProblem::widest_gap() noexcept {
-  Gap widest{0, std::numeric_limits<double>::infinity(), 2.0 * radius_};
-  double* const sorted = left_[0].get();
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < count_; ++i)
-      if (!coefficient(i).isZero(0.0)) sorted[count++] = places_[axis][i];
-    std::sort(sorted, sorted + count);
-    for (std::size_t i = 1; i < count; ++i)
-      if (const double width = sorted[i] - sorted[i - 1]; width >= widest.width)
-        widest = {axis, 0.5 * (sorted[i] + sorted[i - 1]), width};
-  }
-  return widest;
-}
-
-/// The sums of psi_ij c_j are made in the room of left_. Two hands on a model are often farther
-/// apart than their functions reach; nowhere do both add to the slope then.
-double PressProblem::lipschitz_bound() noexcept {
-  const Gap gap = widest_gap();
+/// The sums of psi_ij c_j are made in the room of left_.
+double PressProblem::lipschitz_bound(double enough) noexcept {
   for (auto& numbers : left_)
     std::fill_n(numbers.get(), stride_, 0.0);
   for (std::size_t i = 0; i < count_; ++i)
     if (const Vector3d one = coefficient(i); !one.isZero(0.0))
       add_row(arrays(), psi_row(i), {one.x(), one.y(), one.z()},
               {left_[0].get(), left_[1].get(), left_[2].get()});
-  std::array<Eigen::Matrix3d, 2> grams{Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero()};
+  Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < count_; ++i)
-    grams[places_[gap.axis][i] < gap.middle ? 0 : 1] +=
-        coefficient(i) * Eigen::RowVector3d(left_[0][i], left_[1][i], left_[2][i]);
-  return std::max(bound_of_gram(grams[0], radius_), bound_of_gram(grams[1], radius_));
+    gram += coefficient(i) * Eigen::RowVector3d(left_[0][i], left_[1][i], left_[2][i]);
+  const double bound = bound_of_gram(gram, radius_);
+  return bound <= enough ? bound : std::min(bound, bound_of_slopes());
+}
+
+double PressProblem::bound_of_slopes() noexcept {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Eigen::Array3d low = Eigen::Array3d::Constant(infinite), high = -low;
+  for (std::size_t i = 0; i < count_; ++i) {
+    low = low.min(place(i).array());
+    high = high.max(place(i).array());
+  }
+  slopes_.begin(low, high, radius_);
+  for (std::size_t i = 0; i < count_; ++i)
+    if (const double length = coefficient(i).norm(); length > 0.0) slopes_.add(place(i), length);
+  return slopes_.lipschitz_bound();
 }
 
 } // namespace nendo::deform

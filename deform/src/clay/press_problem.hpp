@@ -14,6 +14,7 @@
 
 #include "block_field.hpp"
 #include "clay/contact_points.hpp"
+#include "clay/slope_grid.hpp"
 #include "simd/press_kernels.hpp"
 
 namespace nendo::deform {
@@ -45,8 +46,9 @@ public:
   double pressure(std::size_t i) const noexcept { return l_[i]; }
   std::size_t size() const noexcept { return count_; }
   /// Returns an L with |s(x) - s(y)| <= L |x - y|, by the field's norm in the native space of
-  /// Wendland's C2 (jacobian.hpp). Where L < 1, nothing folds.
-  double lipschitz_bound() noexcept;
+  /// Wendland's C2 (jacobian.hpp). Where L < 1, nothing folds. Where that is more than `enough`, it
+  /// is the lesser of that and a SlopeGrid's.
+  double lipschitz_bound(double enough) noexcept;
 
   /// Gauss-Seidel ends after so many sweeps, or when nothing moves any more.
   static constexpr int most_sweeps = 60;
@@ -54,14 +56,11 @@ public:
 private:
   using Three = std::array<VectorArray<double>, 3>; ///< an array an axis
 
-  struct Gap {
-    std::size_t axis;
-    double middle; ///< infinite if there is none
-    double width;
-  };
-
   PressArrays arrays() const noexcept;
-  Gap widest_gap() noexcept;
+  double bound_of_slopes() noexcept;
+  Eigen::Vector3d place(std::size_t i) const noexcept {
+    return {places_[0][i], places_[1][i], places_[2][i]};
+  }
   const double* psi_row(std::size_t i) const noexcept { return psi_.get() + i * stride_; }
   bool sweep_friction(std::span<const Friction> frictions, double coefficient,
                       double least) noexcept;
@@ -75,6 +74,7 @@ private:
   VectorArray<double> p_, l_, w_; ///< w = A l - p
   Three t_;
   Three left_; ///< of the ways, where the field does not lead yet
+  SlopeGrid slopes_;
 };
 
 } // namespace nendo::deform

@@ -53,11 +53,6 @@ void scatter(const VertexBlock& from, std::array<float, 4>* to) noexcept {
     to[lane] = {from.x[lane], from.y[lane], from.z[lane], 0.0F};
 }
 
-float smooth_step(float t) noexcept {
-  const float s = std::clamp(t, 0.0F, 1.0F);
-  return s * s * (3.0F - 2.0F * s);
-}
-
 /// Each edge is run along once in each direction.
 bool is_closed_surface(std::span<const std::uint32_t> corners, std::size_t vertices) {
   const auto edges = [&](bool ahead) {
@@ -92,6 +87,7 @@ VolumeKeeper::VolumeKeeper(const BlockLayout& layout, std::span<const std::uint3
   build_neighbours(fans, blocks);
   stamps_.assign(blocks, 0);
   facts_.assign(blocks, {});
+  is_turned_.assign(blocks, 1);
   is_free_.assign(blocks, 0);
   points_.assign(blocks * block_size, {});
   directions_.assign(blocks * block_size, {});
@@ -165,11 +161,12 @@ void VolumeKeeper::measure(const BoundedShape& shape, std::size_t block, bool tu
     gather(points_.data(), from + at * block_size, around_points_[at]);
     if (turns) gather(directions_.data(), from + at * block_size, around_directions_[at]);
   }
-  facts_[block] = measure_rings(shape.shape[block],
-                                {{around_points_.data(), most},
-                                 {around_directions_.data(), turns ? most : 0},
-                                 ring_counts_.data() + block * block_size},
-                                measured_[block]);
+  measure_rings(shape.shape[block],
+                {{around_points_.data(), most},
+                 {around_directions_.data(), turns ? most : 0},
+                 ring_counts_.data() + block * block_size},
+                is_turned_[block] != 0, measured_[block], facts_[block]);
+  is_turned_[block] = turns ? 1 : 0;
   if (turns) scatter(measured_[block].direction, directions_.data() + block * block_size);
 }
 
@@ -219,47 +216,28 @@ double VolumeKeeper::volume(const BoundedShape& shape) noexcept {
 void VolumeKeeper::forget() noexcept {
   std::fill(stamps_.begin(), stamps_.end(), 0);
   std::fill(directions_.begin(), directions_.end(), std::array<float, 4>{});
+  std::fill(is_turned_.begin(), is_turned_.end(), std::uint8_t{1});
   calls_ = 0;
 }
 
-/// By the distance from the box along the farthest axis.
-void VolumeKeeper::weigh_around(const BoundedShape& shape, std::size_t block,
-                                const GiveBack& how) noexcept {
-  float* const weights = weights_.data() + block * block_size;
-  std::fill_n(weights, block_size, 1.0F);
-  if (how.around == nullptr) return;
-  const VertexBlock& content = shape.shape[block];
-  const auto& sides = how.around->limits.sides;
-  const std::array<const float*, 3> coordinates{content.x.data(), content.y.data(),
-                                                content.z.data()};
-  std::array<float, block_size> distances{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t lane = 0; lane < block_size; ++lane) {
-      const float coordinate = coordinates[axis][lane];
-      const float above = coordinate - sides[axis];
-      const float below = -coordinate - sides[axis + 4];
-      const float farther = above > below ? above : below;
-      distances[lane] = distances[lane] > farther ? distances[lane] : farther;
-    }
-  const float inverse = 1.0F / static_cast<float>(how.reach);
-  for (std::size_t lane = 0; lane < block_size; ++lane)
-    weights[lane] = smooth_step(1.0F - distances[lane] * inverse);
-}
-
+/// By the distance from the box along the farthest axis, and by that from the bodies.
 void VolumeKeeper::weigh(const BoundedShape& shape, ContactSearch& search,
                          const GiveBack& how) noexcept {
   const auto reach = static_cast<float>(how.reach);
   for (std::size_t block = 0; block < facts_.size(); ++block) {
     const bool is_reached = how.around == nullptr || how.around->meets(shape.bounds[block], reach);
     is_free_[block] = is_reached ? 1 : 0;
-    if (is_reached) weigh_around(shape, block, how);
+    if (!is_reached) continue;
+    if (how.around == nullptr)
+      std::fill_n(weights_.data() + block * block_size, block_size, 1.0F);
+    else
+      weigh_around_box(shape.shape[block], how.around->limits, reach,
+                       weights_.data() + block * block_size);
   }
-  const auto inverse = static_cast<float>(1.0 / how.near);
+  const auto near = static_cast<float>(how.near);
   for (std::size_t body = 0; body < search.bodies(); ++body)
     search.each_near(shape, body, how.near, [&](std::size_t block, const NearestLanes& nearest) {
-      float* const weights = weights_.data() + block * block_size;
-      for (std::size_t lane = 0; lane < block_size; ++lane)
-        weights[lane] *= smooth_step(nearest.distance[lane] * inverse);
+      hold_near_body(nearest.distance.data(), near, weights_.data() + block * block_size);
     });
 }
 

@@ -65,7 +65,6 @@ private:
   }
   bool has_changed(const BoundedShape& shape, std::size_t block) const noexcept;
   void weigh(const BoundedShape& shape, ContactSearch& search, const GiveBack& how) noexcept;
-  void weigh_around(const BoundedShape& shape, std::size_t block, const GiveBack& how) noexcept;
   void sum_rates() noexcept;
   double distance_for(double missing, double most) const noexcept;
   double swell(BoundedShape& shape, double far, double fairness) noexcept;
@@ -79,6 +78,7 @@ private:
   RowsByKey<std::uint32_t> neighbours_; ///< of each block, with itself
   std::vector<std::uint64_t> stamps_;   ///< of the blocks when they were measured
   std::vector<RingFacts> facts_;        ///< one a block
+  std::vector<std::uint8_t> is_turned_; ///< its directions have changed since it was measured
   std::vector<std::uint8_t> is_free_;   ///< one a block: some weight is not 0
   std::vector<std::array<float, 4>> points_;
   std::vector<std::array<float, 4>> directions_;

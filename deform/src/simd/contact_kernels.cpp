@@ -1,6 +1,7 @@
 #include "simd/contact_kernels.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -165,9 +166,18 @@ void part_lanes(const BoxLanes& boxes, const PartArrays& arrays, std::uint32_t p
   }
 }
 
-void excess_lanes(const BoxLanes& boxes, const PartFromBoxes& seen, const NearestFromBoxes& nearest,
-                  float margin, float* excess, float* least) {
+HWY_INLINE std::uint64_t bits_of(ContactTag d, hn::Mask<ContactTag> mask, std::size_t lane) {
+  std::array<std::uint8_t, 8> bytes{}; // as Highway asks for
+  hn::StoreMaskBits(d, mask, bytes.data());
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, bytes.data(), sizeof(bits));
+  return bits << lane;
+}
+
+std::uint64_t near_lanes(const BoxLanes& boxes, const PartFromBoxes& seen,
+                         const NearestFromBoxes& nearest, float margin) {
   const ContactTag d;
+  std::uint64_t near = 0;
   for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
     const auto of = [&](const std::array<float, block_size>& numbers)
                         HWY_ATTR { return hn::Load(d, numbers.data() + lane); };
@@ -182,10 +192,9 @@ void excess_lanes(const BoxLanes& boxes, const PartFromBoxes& seen, const Neares
     const ContactV size = hn::Add(hn::Abs(of(nearest.distance)), hn::Sqrt(squared));
     const ContactV rounding = hn::MulAdd(hn::Set(d, 1e-5F), size, hn::Set(d, 1e-5F));
     const ContactV more = hn::Max(hn::Sub(farther, hn::Add(turns, bends)), beyond);
-    const ContactV here = hn::Sub(more, rounding);
-    hn::StoreU(here, d, excess + lane);
-    hn::StoreU(hn::Min(here, hn::LoadU(d, least + lane)), d, least + lane);
+    near |= bits_of(d, hn::Le(more, rounding), lane);
   }
+  return near;
 }
 
 /// A number for each cell: ten bits of each coordinate's.
@@ -203,6 +212,15 @@ cell_keys(ContactTag d, const VertexBlock& block, std::size_t lane, const SpaceC
                 hn::Or(hn::ShiftLeft<10>(cell_of(place.y)), hn::ShiftLeft<20>(cell_of(place.z))));
 }
 
+/// The first lane that has this number; some lane must.
+HWY_INLINE std::size_t first_of(ContactTag d, const std::array<float, block_size>& numbers,
+                                ContactV number) {
+  for (std::size_t lane = 0;; lane += hn::Lanes(d)) {
+    const auto at = hn::FindFirstTrue(d, hn::Eq(hn::Load(d, numbers.data() + lane), number));
+    if (at >= 0) return lane + static_cast<std::size_t>(at);
+  }
+}
+
 std::size_t nearest_lane_of_cells(const VertexBlock& block, const NearestLanes& nearest,
                                   float margin, const SpaceCells& cells,
                                   std::array<std::uint8_t, block_size>& lanes) {
@@ -211,31 +229,83 @@ std::size_t nearest_lane_of_cells(const VertexBlock& block, const NearestLanes& 
   constexpr float none = std::numeric_limits<float>::max();
   alignas(64) std::array<float, block_size> left;
   alignas(64) std::array<std::int32_t, block_size> keys;
+  ContactV least = hn::Set(d, none);
   for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
     const ContactV distance = hn::Load(d, nearest.distance.data() + lane);
     const auto is_near = hn::Lt(distance, hn::Set(d, margin));
-    hn::Store(hn::IfThenElse(is_near, distance, hn::Set(d, none)), d, left.data() + lane);
+    const ContactV here = hn::IfThenElse(is_near, distance, hn::Set(d, none));
+    hn::Store(here, d, left.data() + lane);
     hn::Store(cell_keys(d, block, lane, cells), di, keys.data() + lane);
+    least = hn::Min(least, here);
   }
   for (std::size_t count = 0;; ++count) {
-    ContactV least = hn::Load(d, left.data());
-    for (std::size_t lane = hn::Lanes(d); lane < block_size; lane += hn::Lanes(d))
-      least = hn::Min(least, hn::Load(d, left.data() + lane));
-    const float nearest_left = hn::GetLane(hn::MinOfLanes(d, least));
-    if (!(nearest_left < none)) return count;
-    const auto first =
-        static_cast<std::size_t>(std::find(left.begin(), left.end(), nearest_left) - left.begin());
+    const ContactV nearest_left = hn::MinOfLanes(d, least);
+    if (!(hn::GetLane(nearest_left) < none)) return count;
+    const std::size_t first = first_of(d, left, nearest_left);
     lanes[count] = static_cast<std::uint8_t>(first);
     const auto key = hn::Set(di, keys[first]);
     const ContactV part = hn::Set(d, nearest.part[first]);
+    least = hn::Set(d, none);
     for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
       const auto same_cell = hn::RebindMask(d, hn::Eq(hn::Load(di, keys.data() + lane), key));
       const auto same_part = hn::Eq(hn::Load(d, nearest.part.data() + lane), part);
-      hn::Store(hn::IfThenElse(hn::And(same_cell, same_part), hn::Set(d, none),
-                               hn::Load(d, left.data() + lane)),
-                d, left.data() + lane);
+      const ContactV here = hn::IfThenElse(hn::And(same_cell, same_part), hn::Set(d, none),
+                                           hn::Load(d, left.data() + lane));
+      hn::Store(here, d, left.data() + lane);
+      least = hn::Min(least, here);
     }
   }
+}
+
+bool load_lanes(const NearestLanes& nearest, float most, float* loads) {
+  const ContactTag d;
+  const ContactV zero = hn::Zero(d);
+  ContactV largest = zero;
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const ContactV distance = hn::Load(d, nearest.distance.data() + lane);
+    const ContactV depth = hn::Max(hn::Neg(distance), zero);
+    const ContactV sum = hn::Min(hn::Add(hn::LoadU(d, loads + lane), depth), hn::Set(d, most));
+    const ContactV load = hn::IfThenElseZero(hn::Le(distance, hn::Set(d, most)), sum);
+    hn::StoreU(load, d, loads + lane);
+    largest = hn::Max(largest, load);
+  }
+  return hn::GetLane(hn::MaxOfLanes(d, largest)) > 0.0F;
+}
+
+/// All are looked at, because that is faster than a search that ends early.
+bool is_any_near(const PlaceRows& rows, std::size_t count, const std::array<float, 6>& place,
+                 float squared) {
+  const ContactTag d;
+  ContactV crowding = hn::Zero(d);
+  for (std::size_t at = 0; at < count; at += hn::Lanes(d)) {
+    const auto number = [&](std::size_t row) HWY_ATTR { return hn::LoadU(d, rows[row] + at); };
+    const auto away = [&](std::size_t row)
+                          HWY_ATTR { return hn::Sub(number(row), hn::Set(d, place[row])); };
+    const auto x = away(0), y = away(1), z = away(2);
+    const auto distance = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+    const auto along = hn::MulAdd(
+        number(3), hn::Set(d, place[3]),
+        hn::MulAdd(number(4), hn::Set(d, place[4]), hn::Mul(number(5), hn::Set(d, place[5]))));
+    const auto is_one =
+        hn::And(hn::Lt(distance, hn::Set(d, squared)), hn::Gt(along, hn::Set(d, 0.5F)));
+    crowding = hn::IfThenElse(is_one, hn::Set(d, 1.0F), crowding);
+  }
+  return !hn::AllTrue(d, hn::Eq(crowding, hn::Zero(d)));
+}
+
+std::uint64_t overlapping_lanes(const BoxRows& rows, std::size_t first,
+                                const std::array<float, 8>& sides) {
+  const ContactTag d;
+  std::uint64_t overlapping = 0;
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const auto gap = [&](std::size_t row, std::size_t side) HWY_ATTR {
+      return hn::Add(hn::LoadU(d, rows[row] + first + lane), hn::Set(d, sides[side]));
+    };
+    const ContactV widest =
+        hn::Max(hn::Max(gap(0, 4), hn::Max(gap(1, 5), gap(2, 6))), hn::Max(gap(3, 1), gap(4, 2)));
+    overlapping |= bits_of(d, hn::Le(widest, hn::Zero(d)), lane);
+  }
+  return overlapping;
 }
 
 BlockBounds bounds_by_vectors(const VertexBlock& block) {
@@ -250,8 +320,11 @@ namespace nendo::deform {
 
 HWY_EXPORT(nearest_lanes);
 HWY_EXPORT(part_lanes);
-HWY_EXPORT(excess_lanes);
+HWY_EXPORT(near_lanes);
 HWY_EXPORT(nearest_lane_of_cells);
+HWY_EXPORT(load_lanes);
+HWY_EXPORT(is_any_near);
+HWY_EXPORT(overlapping_lanes);
 HWY_EXPORT(bounds_by_vectors);
 
 void nearest_in_block(const VertexBlock& block, const PartArrays& arrays, const std::uint32_t* list,
@@ -264,16 +337,29 @@ void part_from_boxes(const BoxLanes& boxes, const PartArrays& arrays, std::uint3
   HWY_DYNAMIC_DISPATCH(part_lanes)(boxes, arrays, part, seen, nearest);
 }
 
-void excess_in_boxes(const BoxLanes& boxes, const PartFromBoxes& seen,
-                     const NearestFromBoxes& nearest, float margin, float* excess,
-                     std::array<float, block_size>& least) noexcept {
-  HWY_DYNAMIC_DISPATCH(excess_lanes)(boxes, seen, nearest, margin, excess, least.data());
+std::uint64_t near_in_boxes(const BoxLanes& boxes, const PartFromBoxes& seen,
+                            const NearestFromBoxes& nearest, float margin) noexcept {
+  return HWY_DYNAMIC_DISPATCH(near_lanes)(boxes, seen, nearest, margin);
 }
 
 std::size_t nearest_of_cells(const VertexBlock& block, const NearestLanes& nearest, float margin,
                              const SpaceCells& cells,
                              std::array<std::uint8_t, block_size>& lanes) noexcept {
   return HWY_DYNAMIC_DISPATCH(nearest_lane_of_cells)(block, nearest, margin, cells, lanes);
+}
+
+bool add_loads(const NearestLanes& nearest, float most, float* loads) noexcept {
+  return HWY_DYNAMIC_DISPATCH(load_lanes)(nearest, most, loads);
+}
+
+bool is_crowded(const PlaceRows& rows, std::size_t count, const std::array<float, 6>& place,
+                float squared) noexcept {
+  return HWY_DYNAMIC_DISPATCH(is_any_near)(rows, count, place, squared);
+}
+
+std::uint64_t boxes_in_way(const BoxRows& rows, std::size_t first,
+                           const std::array<float, 8>& sides) noexcept {
+  return HWY_DYNAMIC_DISPATCH(overlapping_lanes)(rows, first, sides);
 }
 
 BlockBounds fast_bounds_of(const VertexBlock& block) noexcept {

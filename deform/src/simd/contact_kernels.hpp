@@ -87,13 +87,32 @@ struct alignas(64) NearestFromBoxes {
 /// Sets `seen`, and makes the part the nearest where it is nearer than `nearest`.
 void part_from_boxes(const BoxLanes& boxes, const PartArrays& arrays, std::uint32_t part,
                      PartFromBoxes& seen, NearestFromBoxes& nearest) noexcept;
-/// Sets `excess` to at most 0 where the part may be within `margin` of a place of the box and
+/// Returns a bit for each box: whether the part may be within `margin` of a place of the box and
 /// nearer to one than the nearest part is. A place is at most as far from that as from the ball
 /// that is the nearest to the middle; so how much farther the part is can be bounded by the two
 /// directions.
-void excess_in_boxes(const BoxLanes& boxes, const PartFromBoxes& seen,
-                     const NearestFromBoxes& nearest, float margin, float* excess,
-                     std::array<float, block_size>& least) noexcept;
+std::uint64_t near_in_boxes(const BoxLanes& boxes, const PartFromBoxes& seen,
+                            const NearestFromBoxes& nearest, float margin) noexcept;
+
+/// Adds each vertex' depth to its load, up to `most`; a vertex farther than `most` has none any
+/// more. Returns whether some load is left.
+bool add_loads(const NearestLanes& nearest, float most, float* loads) noexcept;
+
+/// Coordinates of places, and of the normals there, in rows of a multiple of this many.
+using PlaceRows = std::array<const float*, 6>;
+inline constexpr std::size_t place_lanes = 64;
+/// Tells whether one of the first `count` places is nearer to `place` than the root of `squared`
+/// and has a normal within 60 degrees of its one. What follows them must be far away.
+bool is_crowded(const PlaceRows& rows, std::size_t count, const std::array<float, 6>& place,
+                float squared) noexcept;
+
+/// The sides of boxes, a row each: lowest x, y, z, and negated highest y, z.
+using BoxRows = std::array<const float*, 5>;
+/// Returns a bit for each of the `block_size` boxes from `first` on: whether it overlaps that box
+/// in y and z, and begins before the box ends in x. `sides`: lowest x, y, z, 0, negated highest x,
+/// y, z.
+std::uint64_t boxes_in_way(const BoxRows& rows, std::size_t first,
+                           const std::array<float, 8>& sides) noexcept;
 
 /// As bounds_of(), but faster.
 BlockBounds fast_bounds_of(const VertexBlock& block) noexcept;

@@ -81,12 +81,74 @@ void add_rows(const PressArrays& arrays, const double* row, const std::array<dou
     add_scaled(row, change[axis], arrays.stride, to[axis]);
 }
 
+using SlopeTag = hn::CappedTag<float, 8>; // about as many cells as a function reaches in a row
+
+/// |psi'| = 20 t (1 - t)^3 is the steepest at 1/4. All of a cell is within half its diagonal.
+HWY_INLINE void add_row_of_slopes(const SlopeCells& cells, float along, float across_squared,
+                                  float reach, float coefficient, float* sums) {
+  const SlopeTag d;
+  const auto one = hn::Set(d, 1.0F);
+  const float inverse = 1.0F / cells.radius;
+  const auto half = hn::Set(d, reach * inverse - 1.0F);
+  const float widest = std::sqrt(reach * reach - across_squared) / cells.size;
+  const float middle = along / cells.size - 0.5F; // in cells
+  const auto last = static_cast<float>(cells.counts[0]) - 1.0F;
+  const auto begin = static_cast<std::size_t>(std::clamp(middle - widest, 0.0F, last));
+  const auto end = static_cast<std::size_t>(std::clamp(middle + widest + 1.0F, 0.0F, last));
+  for (std::size_t at = begin / hn::Lanes(d) * hn::Lanes(d); at <= end; at += hn::Lanes(d)) {
+    const auto x = hn::Mul(hn::Sub(hn::Iota(d, static_cast<float>(at)), hn::Set(d, middle)),
+                           hn::Set(d, cells.size));
+    const auto distance = hn::Sqrt(hn::MulAdd(x, x, hn::Set(d, across_squared)));
+    const auto t = hn::Mul(distance, hn::Set(d, inverse));
+    const auto least = hn::Sub(t, half);
+    const auto steepest =
+        hn::Min(hn::Min(hn::Max(hn::Set(d, 0.25F), least), hn::Add(t, half)), one);
+    const auto left = hn::Sub(one, steepest);
+    const auto slope = hn::Mul(hn::Mul(hn::Set(d, 20.0F * coefficient), steepest),
+                               hn::Mul(left, hn::Mul(left, left)));
+    hn::Store(hn::Add(hn::Load(d, sums + at), slope), d, sums + at);
+  }
+}
+
+float steepest_of_cells(const SlopeCells& cells) {
+  const SlopeTag d;
+  auto steepest = hn::Zero(d);
+  for (std::size_t layer = 0; layer < cells.counts[2]; ++layer)
+    for (std::size_t row = 0; row < cells.counts[1]; ++row) {
+      const float* const sums = cells.sums + (layer * slope_cells + row) * slope_cells;
+      for (std::size_t at = 0; at < cells.counts[0]; at += hn::Lanes(d))
+        steepest = hn::Max(steepest, hn::Load(d, sums + at));
+    }
+  return hn::GetLane(hn::MaxOfLanes(d, steepest));
+}
+
+void add_slopes_to_cells(const SlopeCells& cells, const std::array<float, 3>& centre,
+                         float coefficient) {
+  const float reach = cells.radius + 0.8661F * cells.size;
+  const auto from = [&](std::size_t axis, std::size_t cell) HWY_ATTR {
+    return (static_cast<float>(cell) + 0.5F) * cells.size - centre[axis];
+  };
+  for (std::size_t layer = 0; layer < cells.counts[2]; ++layer) {
+    const float z = from(2, layer);
+    if (std::abs(z) >= reach) continue;
+    for (std::size_t row = 0; row < cells.counts[1]; ++row) {
+      const float y = from(1, row);
+      const float across_squared = y * y + z * z;
+      if (across_squared < reach * reach)
+        add_row_of_slopes(cells, centre[0], across_squared, reach, coefficient,
+                          cells.sums + (layer * slope_cells + row) * slope_cells);
+    }
+  }
+}
+
 } // namespace nendo::deform::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace nendo::deform {
 
+HWY_EXPORT(add_slopes_to_cells);
+HWY_EXPORT(steepest_of_cells);
 HWY_EXPORT(fill_rows);
 HWY_EXPORT(sweep);
 HWY_EXPORT(add_rows);
@@ -103,6 +165,15 @@ void sweep_pressure(const PressArrays& arrays, double* l, double* w, double leas
 void add_row(const PressArrays& arrays, const double* row, const std::array<double, 3>& change,
              const std::array<double*, 3>& to) noexcept {
   HWY_DYNAMIC_DISPATCH(add_rows)(arrays, row, change, to);
+}
+
+void add_slopes(const SlopeCells& cells, const std::array<float, 3>& centre,
+                float coefficient) noexcept {
+  HWY_DYNAMIC_DISPATCH(add_slopes_to_cells)(cells, centre, coefficient);
+}
+
+float steepest_slope(const SlopeCells& cells) noexcept {
+  return HWY_DYNAMIC_DISPATCH(steepest_of_cells)(cells);
 }
 
 } // namespace nendo::deform

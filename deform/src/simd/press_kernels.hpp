@@ -30,4 +30,19 @@ void sweep_pressure(const PressArrays& arrays, double* l, double* w, double leas
 void add_row(const PressArrays& arrays, const double* row, const std::array<double, 3>& change,
              const std::array<double*, 3>& to) noexcept;
 
+/// Cells of space, slope_cells a row and slope_cells rows a layer, of which the first `counts` are
+/// used. The first one begins at the origin.
+inline constexpr std::size_t slope_cells = 32;
+struct SlopeCells {
+  float size, radius; ///< of a cell; of the functions
+  std::array<std::size_t, 3> counts;
+  float* sums; ///< one a cell; rows along x
+};
+/// Adds to each cell coefficient * the steepest |psi'| of Wendland's C2 about `centre` in that
+/// cell.
+void add_slopes(const SlopeCells& cells, const std::array<float, 3>& centre,
+                float coefficient) noexcept;
+/// Returns the largest sum of a cell.
+float steepest_slope(const SlopeCells& cells) noexcept;
+
 } // namespace nendo::deform

@@ -149,14 +149,14 @@ void find_axis(RingTag d, const VertexBlock& directions, RingFacts& facts) {
   for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d))
     least = hn::Min(least, dot_product(axis, load_vectors(d, directions, lane)));
   facts.least_cosine = hn::GetLane(hn::MinOfLanes(d, least));
+  facts.sine = std::sqrt(std::max(1.0F - facts.least_cosine * facts.least_cosine, 0.0F));
 }
 
-RingFacts measure_all_lanes(const VertexBlock& block, const BlockRings& rings,
-                            RingBlock& measured) {
+void measure_all_lanes(const VertexBlock& block, const BlockRings& rings, bool is_turned,
+                       RingBlock& measured, RingFacts& facts) {
   const RingTag d;
   const RingV zero = hn::Zero(d);
-  RingFacts facts;
-  find_axis(d, measured.direction, facts); // those that the faces are compared with
+  if (is_turned) find_axis(d, measured.direction, facts); // those that faces are compared with
   LaneFacts lanes{zero, zero, hn::Set(d, 1e30F)};
   alignas(64) std::array<float, block_size> products{};
   for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d))
@@ -166,7 +166,39 @@ RingFacts measure_all_lanes(const VertexBlock& block, const BlockRings& rings,
   facts.least_height = std::sqrt(hn::GetLane(hn::MinOfLanes(d, lanes.smallest))) /
                        std::max(facts.longest_edge, least_square);
   facts.is_even = !(hn::GetLane(hn::MinOfLanes(d, lanes.least)) < 0.0F);
-  return facts;
+  facts.may_turn = false;
+}
+
+HWY_INLINE RingV smooth_step(RingTag d, RingV t) {
+  const RingV s = hn::Min(hn::Max(t, hn::Zero(d)), hn::Set(d, 1.0F));
+  return hn::Mul(hn::Mul(s, s), hn::NegMulAdd(hn::Set(d, 2.0F), s, hn::Set(d, 3.0F)));
+}
+
+/// By the distance along the farthest axis.
+void weigh_lanes_around(const VertexBlock& block, const BlockBounds& box, float reach,
+                        float* weights) {
+  const RingTag d;
+  const auto beyond = [&](RingV coordinate, std::size_t axis) HWY_ATTR {
+    return hn::Max(hn::Sub(coordinate, hn::Set(d, box.sides[axis])),
+                   hn::Sub(hn::Neg(coordinate), hn::Set(d, box.sides[axis + 4])));
+  };
+  const RingV inverse = hn::Set(d, 1.0F / reach);
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const Ring3 at = load_vectors(d, block, lane);
+    const RingV distance =
+        hn::Max(hn::Max(beyond(at.x, 0), beyond(at.y, 1)), hn::Max(beyond(at.z, 2), hn::Zero(d)));
+    const RingV weight = smooth_step(d, hn::Sub(hn::Set(d, 1.0F), hn::Mul(distance, inverse)));
+    hn::StoreU(weight, d, weights + lane);
+  }
+}
+
+void hold_lanes(const float* distances, float near, float* weights) {
+  const RingTag d;
+  const RingV inverse = hn::Set(d, 1.0F / near);
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const RingV free = smooth_step(d, hn::Mul(hn::LoadU(d, distances + lane), inverse));
+    hn::StoreU(hn::Mul(hn::LoadU(d, weights + lane), free), d, weights + lane);
+  }
 }
 
 SwellRates swell_rates_of_lanes(const RingBlock& measured, const float* weights) {
@@ -231,13 +263,24 @@ HWY_AFTER_NAMESPACE();
 namespace nendo::deform {
 
 HWY_EXPORT(measure_all_lanes);
+HWY_EXPORT(weigh_lanes_around);
+HWY_EXPORT(hold_lanes);
 HWY_EXPORT(swell_rates_of_lanes);
 HWY_EXPORT(swell_lanes);
 
-RingFacts measure_rings(const VertexBlock& block, const BlockRings& rings,
-                        RingBlock& measured) noexcept {
-  if (rings.points.empty()) return {}; // of vertices in no triangle
-  return HWY_DYNAMIC_DISPATCH(measure_all_lanes)(block, rings, measured);
+void measure_rings(const VertexBlock& block, const BlockRings& rings, bool is_turned,
+                   RingBlock& measured, RingFacts& facts) noexcept {
+  if (!rings.points.empty()) // in some triangle
+    HWY_DYNAMIC_DISPATCH(measure_all_lanes)(block, rings, is_turned, measured, facts);
+}
+
+void weigh_around_box(const VertexBlock& block, const BlockBounds& box, float reach,
+                      float* weights) noexcept {
+  HWY_DYNAMIC_DISPATCH(weigh_lanes_around)(block, box, reach, weights);
+}
+
+void hold_near_body(const float* distances, float near, float* weights) noexcept {
+  HWY_DYNAMIC_DISPATCH(hold_lanes)(distances, near, weights);
 }
 
 SwellRates swell_rates(const RingBlock& measured, const float* weights) noexcept {

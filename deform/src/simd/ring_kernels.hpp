@@ -32,15 +32,25 @@ struct RingFacts {
   double volume = 0.0;         ///< the block's part
   std::array<float, 3> axis{}; ///< the middle of the directions, of length 1
   float least_cosine = 1.0F;   ///< of an angle between the axis and a direction
+  float sine = 0.0F;           ///< of that angle
   float longest_edge = 0.0F;
   float least_height = 0.0F; ///< of a face; at most
   bool is_even = true;       ///< each face looks into the directions of its corners, to 72 degrees
   bool may_turn = false;     ///< some face may have been turned over by swelling since
 };
 
-/// Measures a block. Without the directions of neighbours, its own are those that `measured` has.
-RingFacts measure_rings(const VertexBlock& block, const BlockRings& rings,
-                        RingBlock& measured) noexcept;
+/// Measures a block. Without the directions of neighbours, its own stay those that `measured` has.
+/// `facts` are those of the last time; `is_turned`: the directions have changed since.
+void measure_rings(const VertexBlock& block, const BlockRings& rings, bool is_turned,
+                   RingBlock& measured, RingFacts& facts) noexcept;
+
+/// Sets the weights of a block's vertices: 1 in the box, and less and less to 0 at `reach` from it.
+/// The box is as BlockBounds has it, but with the signs of BoxGate.
+void weigh_around_box(const VertexBlock& block, const BlockBounds& box, float reach,
+                      float* weights) noexcept;
+/// Multiplies the weights by 0 at the surface of a body, and by more and more to 1 at `near` from
+/// it.
+void hold_near_body(const float* distances, float near, float* weights) noexcept;
 
 /// By how much the volume grows with the distance and with its square.
 struct SwellRates {
