@@ -86,11 +86,13 @@ std::vector<Row> rows_of(bool short_form) {
           {"radius 20 mm", {.radius_mm = 20.0, .scenes = scenes}},
           {"radius 15 mm", {.radius_mm = 15.0, .scenes = scenes}},
           {"radius 10 mm", {.radius_mm = 10.0, .scenes = scenes}},
+          {"radius 10 mm, more places", {.radius_mm = 10.0, .most_constraints = 1024}},
           {"radius 40 mm", {.radius_mm = 40.0, .scenes = scenes}},
           {"2.6 thousand vertices", {.level = 4, .scenes = scenes}},
           {"10 thousand vertices", {.level = 5, .scenes = scenes}},
           {"164 thousand vertices", {.level = 7, .scenes = scenes}},
-          {"655 thousand vertices", {.level = 8, .scenes = 4}}};
+          {"655 thousand vertices", {.level = 8, .scenes = 4}},
+          {"2.6 million vertices", {.level = 9}}};
 }
 
 /// Makes one thing, and writes it.

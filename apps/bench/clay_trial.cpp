@@ -131,7 +131,8 @@ ClayTrial measure_clay(const ClayTrialOptions& options) {
                             {.radius_mm = options.radius_mm,
                              .friction = options.friction,
                              .keeps_volume = options.keeps_volume,
-                             .grips = options.grips});
+                             .grips = options.grips,
+                             .most_constraints = options.most_constraints});
   clay.begin(scene.at(0));
   return run_scene(
       options, mesh, scene, [&](auto parts) { return clay.press_to(parts); },

@@ -36,6 +36,7 @@ struct ClayTrialOptions {
   double friction = 0.5; ///< the plain program has none
   bool keeps_volume = true;
   bool grips = true;
+  int most_constraints = 256; ///< of a pass
   bool judges_inside = false; ///< takes long
   int scenes = 1;             ///< how often it is played, each time from the ball on, for the times
 };
