@@ -94,12 +94,9 @@ void BlockLayout::unpack(const BlockShape& shape, Points& out) const {
     const Eigen::Vector3f place = vertex_at(shape, at);
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       const double before = original_(axis, vertex);
-      const float before_packed = packed(before, axis);
-      // Adding 0 would turn a coordinate of -0 into +0.
-      out(axis, vertex) = place[axis] == before_packed
+      out(axis, vertex) = place[axis] == packed(before, axis)
                               ? before
-                              : before + unit_ * (static_cast<double>(place[axis]) -
-                                                  static_cast<double>(before_packed));
+                              : origin_[axis] + unit_ * static_cast<double>(place[axis]);
     }
   }
 }

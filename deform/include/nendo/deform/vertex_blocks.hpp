@@ -90,8 +90,9 @@ public:
 
   /// Returns the original in blocks. The rest of the last block repeats its last vertex. Allocates.
   BlockShape pack() const;
-  /// Computes out = original + (shape - pack()), 3 by #vertices, so that a coordinate that nothing
-  /// moved is the original's, bit for bit. `out` is resized only if its size differs.
+  /// Computes out = origin + unit * shape, 3 by #vertices; but a coordinate that nothing moved is
+  /// the original's, bit for bit. So faces that do not meet in the blocks do not meet in `out`, but
+  /// for what nothing moved. `out` is resized only if its size differs.
   void unpack(const BlockShape& shape, Points& out) const;
 
   /// Returns the nearest place that a float can hold in these coordinates. A field must be solved
