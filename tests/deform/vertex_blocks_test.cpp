@@ -79,6 +79,28 @@ TEST_SUITE("vertex_blocks") {
     CHECK(out == expected);
   }
 
+  TEST_CASE("what moved is returned exactly as the blocks have it") {
+    const BlockLayout layout(cloud(200));
+    BlockShape shape = layout.pack();
+    std::mt19937 random(42);
+    std::uniform_real_distribution<float> way(-1e-6F, 1e-6F); // some steps of a float
+    for (std::size_t block = 0; block < shape.block_count(); ++block)
+      for (auto* row : {&shape.data()[block].x, &shape.data()[block].y, &shape.data()[block].z})
+        for (float& coordinate : *row)
+          coordinate += way(random);
+    const Points out = unpacked(layout, shape);
+    std::size_t exact = 0, kept = 0;
+    for (std::size_t at = 0; at < layout.vertex_count(); ++at)
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const double coordinate = static_cast<double>(vertex_at(shape, at)[axis]);
+        const auto vertex = static_cast<Eigen::Index>(layout.order()[at]);
+        exact += out(axis, vertex) == layout.origin()[axis] + layout.unit() * coordinate ? 1U : 0U;
+        kept += out(axis, vertex) == layout.original()(axis, vertex) ? 1U : 0U;
+      }
+    CHECK(exact > 500); // the others were not moved by as much as a step
+    CHECK(exact + kept >= 600);
+  }
+
   TEST_CASE("a copy follows what changed, and only that") {
     const BlockLayout layout(cloud(300));
     BlockShape shape = layout.pack();
