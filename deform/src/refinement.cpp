@@ -163,6 +163,12 @@ struct Attempt {
   std::vector<EdgeOperation> operations;
 };
 
+/// Not inlined: GCC 12 makes vectors of a loop of these, and leaves out the first two coordinates
+/// of the last points.
+[[gnu::noinline]] double rounded_to_float(double number) noexcept {
+  return static_cast<double>(static_cast<float>(number));
+}
+
 Attempt attempt(LiveSurface live, RefineZone zone, RefineLimits limits, bool only_splits) {
   Attempt made;
   live.note_in(&made.operations);
@@ -175,7 +181,7 @@ Attempt attempt(LiveSurface live, RefineZone zone, RefineLimits limits, bool onl
   made.surface = live.take(&made.numbers);
   for (SpacePoint& point : made.surface.points)
     for (double& coordinate : point)
-      coordinate = static_cast<double>(static_cast<float>(coordinate));
+      coordinate = rounded_to_float(coordinate);
   return made;
 }
 
