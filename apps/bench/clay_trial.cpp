@@ -44,7 +44,7 @@ double deepest_inside(const Mesh& mesh, std::span<const deform::ContactPart> par
 }
 
 /// Plays a scene through press(parts), which returns a deform::ClayReport, and calls see(report,
-/// parts) after each call that pressed something. Returns what these took, in microseconds.
+/// parts) after each call. Returns what those took that pressed something, in microseconds.
 template <class Press, class See>
 std::vector<double> play(ClayScene& scene, const Press& press, const See& see) {
   std::vector<double> times_us;
@@ -59,7 +59,7 @@ std::vector<double> play(ClayScene& scene, const Press& press, const See& see) {
   return times_us;
 }
 
-/// Plays the scene and judges it by shape(points); then plays it from begin() on for the times.
+/// Plays the scene, each time from begin() on, the first time judging it by shape(points).
 template <class Press, class Shape, class Begin>
 ClayTrial run_scene(const ClayTrialOptions& options, Mesh mesh, ClayScene& scene,
                     const Press& press, const Shape& shape, const Begin& begin) {
@@ -83,6 +83,7 @@ ClayTrial run_scene(const ClayTrialOptions& options, Mesh mesh, ClayScene& scene
     trial.worst_volume = std::max(trial.worst_volume, std::abs(trial.last_volume));
     if (options.judges_inside) inside_mm.push_back(deepest_inside(mesh, parts));
   };
+  begin();
   std::vector<double> times_us = play(scene, press, see);
   shape(mesh.vertices);
   trial.last_volume = clay_volume(mesh) / whole - 1.0;
@@ -133,7 +134,6 @@ ClayTrial measure_clay(const ClayTrialOptions& options) {
                              .keeps_volume = options.keeps_volume,
                              .grips = options.grips,
                              .most_constraints = options.most_constraints});
-  clay.begin(scene.at(0));
   return run_scene(
       options, mesh, scene, [&](auto parts) { return clay.press_to(parts); },
       [&](Points& points) { shape.layout().unpack(clay.shape(), points); },
@@ -147,7 +147,6 @@ ClayTrial measure_plain_clay(const ClayTrialOptions& options) {
   const Mesh mesh = reference::icosphere(options.level, ClayScene::ball_radius_mm);
   ClayScene scene(options.hands, options.speed_m_s);
   PlainClay clay(mesh.vertices, options.radius_mm);
-  clay.begin(scene.at(0));
   return run_scene(
       options, mesh, scene, [&](auto parts) { return clay.press_to(parts); },
       [&](Points& points) { points = clay.vertices(); },

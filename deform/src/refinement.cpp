@@ -9,6 +9,7 @@
 #include "join/live_surface.hpp"
 #include "join/mesh_surface.hpp"
 #include "join/refine.hpp"
+#include "join/round_points.hpp"
 #include "join/self_intersections.hpp"
 
 namespace nendo::deform {
@@ -155,19 +156,14 @@ std::size_t Refiner::count_unfit(const BlockShape& shape, const BlockLayout& lay
 
 namespace {
 
-/// What came of one attempt. Points are rounded to the floats that blocks have: where sheets nearly
-/// touch, that may make them meet.
+/// What came of one attempt. Where sheets nearly touch, rounding may make them meet; so the points
+/// of the surface are the numbers of the shape.
 struct Attempt {
   TriangleSurface surface;
+  Eigen::Matrix3Xf shape;
   std::vector<std::uint32_t> numbers; ///< of each point, those that are gone as well
   std::vector<EdgeOperation> operations;
 };
-
-/// Not inlined: GCC 12 makes vectors of a loop of these, and leaves out the first two coordinates
-/// of the last points.
-[[gnu::noinline]] double rounded_to_float(double number) noexcept {
-  return static_cast<double>(static_cast<float>(number));
-}
 
 Attempt attempt(LiveSurface live, RefineZone zone, RefineLimits limits, bool only_splits) {
   Attempt made;
@@ -179,9 +175,7 @@ Attempt attempt(LiveSurface live, RefineZone zone, RefineLimits limits, bool onl
     if (done.splits + done.collapses + done.flips == 0) break;
   }
   made.surface = live.take(&made.numbers);
-  for (SpacePoint& point : made.surface.points)
-    for (double& coordinate : point)
-      coordinate = rounded_to_float(coordinate);
+  made.shape = round_points(made.surface.points);
   return made;
 }
 
@@ -261,12 +255,7 @@ Refinement Refiner::refine(const BlockShape& shape, const BlockLayout& layout,
   }
   Refinement result;
   result.operations = std::move(made.operations);
-  result.shape.resize(3, static_cast<Eigen::Index>(made.surface.points.size()));
-  for (std::size_t at = 0; at < made.surface.points.size(); ++at) {
-    const SpacePoint& point = made.surface.points[at];
-    result.shape.col(static_cast<Eigen::Index>(at)) << static_cast<float>(point[0]),
-        static_cast<float>(point[1]), static_cast<float>(point[2]);
-  }
+  result.shape = std::move(made.shape);
   result.mesh = mesh_at_rest(std::move(made.surface), parts_->look);
   return result;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -11,6 +12,7 @@
 #include <nendo/deform/mesh_file.hpp>
 
 #include "join/mesh_surface.hpp"
+#include "join/round_points.hpp"
 #include "reference/icosphere.hpp"
 #include "support/cut_laws.hpp"
 #include "support/placed_meshes.hpp"
@@ -240,6 +242,25 @@ TEST_SUITE("refinement") {
       CHECK(made.operations.size() > 20);
       CHECK(check_closed_manifold(made.mesh));
       CHECK_FALSE(meets_itself(made.mesh, places_of(made)));
+    }
+  }
+
+  TEST_CASE("all points are rounded to floats, however many there are") {
+    for (std::size_t count = 0; count < 20; ++count) {
+      CAPTURE(count);
+      std::vector<SpacePoint> points(count);
+      for (std::size_t at = 0; at < count; ++at)
+        points[at] = {0.1 * static_cast<double>(at) + 0.123, -0.7 / (1.0 + static_cast<double>(at)),
+                      1.0 / (3.0 + static_cast<double>(at))};
+      const std::vector<SpacePoint> before = points;
+      const Eigen::Matrix3Xf floats = round_points(points);
+      REQUIRE(floats.cols() == static_cast<Eigen::Index>(count));
+      for (std::size_t at = 0; at < count; ++at)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const volatile float rounded = static_cast<float>(before[at][axis]);
+          CHECK(points[at][axis] == static_cast<double>(rounded));
+          CHECK(floats(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(at)) == rounded);
+        }
     }
   }
 

@@ -21,12 +21,9 @@ std::size_t hash_of(std::uint64_t key) noexcept { // the finaliser of MurmurHash
   return key ^ key >> 33;
 }
 
-/// Numbers of floats, which are ordered as these are.
-std::uint64_t key_of(const NearVertex& vertex) noexcept {
-  const auto bits = std::bit_cast<std::uint32_t>(-vertex.depth);
-  constexpr std::uint32_t sign = 1U << 31;
-  const std::uint32_t ordered = (bits & sign) != 0 ? ~bits : bits | sign;
-  return std::uint64_t{ordered} << 32 | vertex.place;
+bool is_deeper(const NearVertex& a, const NearVertex& b) noexcept {
+  if (a.depth != b.depth) return a.depth > b.depth;
+  return a.place != b.place ? a.place < b.place : a.part < b.part;
 }
 
 } // namespace
@@ -34,7 +31,6 @@ std::uint64_t key_of(const NearVertex& vertex) noexcept {
 ContactPoints::ContactPoints(std::size_t most)
     : slots_(std::bit_ceil(slots_a_point * most)), places_(most) {
   vertices_.reserve(cells_a_point * most);
-  order_.reserve(cells_a_point * most);
   chosen_.reserve(most);
 }
 
@@ -71,16 +67,11 @@ void ContactPoints::offer(const NearVertex& vertex) noexcept {
 std::span<const ContactPoint> ContactPoints::choose(double apart) noexcept {
   if (is_chosen_) return chosen_;
   is_chosen_ = true;
-  order_.clear();
-  for (const NearVertex& vertex : vertices_)
-    order_.push_back(
-        {key_of(vertex), vertex.part, static_cast<std::uint32_t>(&vertex - vertices_.data())});
-  std::sort(order_.begin(), order_.end());
+  std::sort(vertices_.begin(), vertices_.end(), is_deeper);
   chosen_.clear();
   places_.clear();
-  for (const Order& next : order_) {
+  for (const NearVertex& vertex : vertices_) {
     if (chosen_.size() == chosen_.capacity()) break;
-    const NearVertex& vertex = vertices_[next.vertex];
     const Eigen::Vector3d at = vertex.at.cast<double>();
     const Eigen::Vector3d way = at - vertex.centre.cast<double>();
     const double length = way.norm();

@@ -57,20 +57,11 @@ private:
     std::uint32_t round = 0; ///< of the choice to which it belongs
     std::uint32_t vertex = 0;
   };
-  /// What vertices are sorted by.
-  struct Order {
-    std::uint64_t key; ///< less for what is deeper, and then for lower places
-    std::uint32_t part, vertex;
-    bool operator<(const Order& other) const noexcept {
-      return key != other.key ? key < other.key : part < other.part;
-    }
-  };
 
   SpaceCells cells_{};
   std::uint32_t round_ = 0;
   std::vector<Slot> slots_;          ///< an open hash table
   std::vector<NearVertex> vertices_; ///< one a cell
-  std::vector<Order> order_;         ///< the deepest first
   CrowdedPlaces places_;             ///< of those chosen
   std::vector<ContactPoint> chosen_;
   bool is_chosen_ = false; ///< since clear()

@@ -2,6 +2,7 @@
 // Finds the vertices near a body. The cost is what is near: a block is looked at if its bounds meet
 // the body's box, and then only against the parts that may be the nearest to one of its vertices.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -74,6 +75,9 @@ private:
   void add_box(const BlockBounds& bounds, std::uint32_t block) noexcept;
   void measure_boxes(std::size_t body, float margin) noexcept;
   void list_part(std::uint32_t part, std::uint64_t near) noexcept;
+  template <class Each, class Visit>
+  void visit_each(const BoundedShape& shape, std::size_t body, float margin, const Each& each,
+                  const Visit& visit);
   template <class Visit>
   void visit_boxes(const BoundedShape& shape, std::size_t body, float margin, const Visit& visit);
 
@@ -95,25 +99,32 @@ template <class Visit>
 void ContactSearch::each_near(const BoundedShape& shape, std::size_t body, double margin,
                               const Visit& visit) {
   const auto wide = static_cast<float>(margin);
-  boxes_.count = 0;
-  for (std::size_t block = 0; block < shape.bounds.size(); ++block) {
-    if (!body_boxes_[body].meets(shape.bounds[block], wide)) continue;
-    add_box(shape.bounds[block], static_cast<std::uint32_t>(block));
-    if (boxes_.count == block_size) visit_boxes(shape, body, wide, visit);
-  }
-  if (boxes_.count > 0) visit_boxes(shape, body, wide, visit);
+  const auto blocks = static_cast<std::uint32_t>(shape.bounds.size());
+  const auto each = [&](const auto& take) {
+    for (std::uint32_t block = 0; block < blocks; ++block)
+      if (body_boxes_[body].meets(shape.bounds[block], wide)) take(block);
+  };
+  visit_each(shape, body, wide, each, visit);
 }
 
 template <class Visit>
 void ContactSearch::each_of(const BoundedShape& shape, std::size_t body,
                             std::span<const std::uint32_t> blocks, double margin,
                             const Visit& visit) {
+  const auto each = [&](const auto& take) { std::for_each(blocks.begin(), blocks.end(), take); };
+  visit_each(shape, body, static_cast<float>(margin), each, visit);
+}
+
+/// `each(take)` calls take(block) for each block.
+template <class Each, class Visit>
+void ContactSearch::visit_each(const BoundedShape& shape, std::size_t body, float margin,
+                               const Each& each, const Visit& visit) {
   boxes_.count = 0;
-  for (const std::uint32_t block : blocks) {
+  each([&](std::uint32_t block) {
     add_box(shape.bounds[block], block);
-    if (boxes_.count == block_size) visit_boxes(shape, body, static_cast<float>(margin), visit);
-  }
-  if (boxes_.count > 0) visit_boxes(shape, body, static_cast<float>(margin), visit);
+    if (boxes_.count == block_size) visit_boxes(shape, body, margin, visit);
+  });
+  if (boxes_.count > 0) visit_boxes(shape, body, margin, visit);
 }
 
 template <class Visit>

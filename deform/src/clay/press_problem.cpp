@@ -81,9 +81,6 @@ double PressProblem::solve_pressure(double extra) noexcept {
 bool PressProblem::sweep_friction(std::span<const Friction> frictions, double coefficient,
                                   double least) noexcept {
   bool is_moved = false;
-  const auto at = [](const Three& three, std::size_t i) -> Vector3d {
-    return {three[0][i], three[1][i], three[2][i]};
-  };
   for (std::size_t i = 0; i < count_; ++i) {
     const Friction& friction = frictions[i];
     const double limit = coefficient * (l_[i] + friction.load);
@@ -149,12 +146,13 @@ double PressProblem::bound_of_slopes() noexcept {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   Eigen::Array3d low = Eigen::Array3d::Constant(infinite), high = -low;
   for (std::size_t i = 0; i < count_; ++i) {
-    low = low.min(place(i).array());
-    high = high.max(place(i).array());
+    low = low.min(at(places_, i).array());
+    high = high.max(at(places_, i).array());
   }
   slopes_.begin(low, high, radius_);
   for (std::size_t i = 0; i < count_; ++i)
-    if (const double length = coefficient(i).norm(); length > 0.0) slopes_.add(place(i), length);
+    if (const double length = coefficient(i).norm(); length > 0.0)
+      slopes_.add(at(places_, i), length);
   return slopes_.lipschitz_bound();
 }
 

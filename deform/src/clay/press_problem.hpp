@@ -58,8 +58,8 @@ private:
 
   PressArrays arrays() const noexcept;
   double bound_of_slopes() noexcept;
-  Eigen::Vector3d place(std::size_t i) const noexcept {
-    return {places_[0][i], places_[1][i], places_[2][i]};
+  static Eigen::Vector3d at(const Three& three, std::size_t i) noexcept {
+    return {three[0][i], three[1][i], three[2][i]};
   }
   const double* psi_row(std::size_t i) const noexcept { return psi_.get() + i * stride_; }
   bool sweep_friction(std::span<const Friction> frictions, double coefficient,

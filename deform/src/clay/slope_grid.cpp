@@ -13,7 +13,9 @@ constexpr double rounding_of_slopes = 1.0001;    // of sums in float
 } // namespace
 
 SlopeGrid::SlopeGrid()
-    : sums_(hwy::AllocateAligned<float>(slope_cells * slope_cells * slope_cells)) {}
+    : sums_(hwy::AllocateAligned<float>(slope_cells * slope_cells * slope_cells)) {
+  cells_.sums = sums_.get();
+}
 
 void SlopeGrid::begin(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                       double radius) noexcept {
@@ -27,7 +29,6 @@ void SlopeGrid::begin(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
         static_cast<std::size_t>(std::ceil(extent[static_cast<Eigen::Index>(axis)] / size));
   cells_.size = static_cast<float>(size);
   cells_.radius = static_cast<float>(radius);
-  cells_.sums = sums_.get();
   std::fill_n(cells_.sums, cells_.counts[2] * slope_cells * slope_cells, 0.0F);
 }
 

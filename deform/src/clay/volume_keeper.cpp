@@ -228,11 +228,11 @@ void VolumeKeeper::weigh(const BoundedShape& shape, ContactSearch& search,
     const bool is_reached = how.around == nullptr || how.around->meets(shape.bounds[block], reach);
     is_free_[block] = is_reached ? 1 : 0;
     if (!is_reached) continue;
+    float* const weights = weights_.data() + block * block_size;
     if (how.around == nullptr)
-      std::fill_n(weights_.data() + block * block_size, block_size, 1.0F);
+      std::fill_n(weights, block_size, 1.0F);
     else
-      weigh_around_box(shape.shape[block], how.around->limits, reach,
-                       weights_.data() + block * block_size);
+      weigh_around_box(shape.shape[block], how.around->limits, reach, weights);
   }
   const auto near = static_cast<float>(how.near);
   for (std::size_t body = 0; body < search.bodies(); ++body)

@@ -1,7 +1,6 @@
 #include "simd/contact_kernels.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -166,14 +165,6 @@ void part_lanes(const BoxLanes& boxes, const PartArrays& arrays, std::uint32_t p
   }
 }
 
-HWY_INLINE std::uint64_t bits_of(ContactTag d, hn::Mask<ContactTag> mask, std::size_t lane) {
-  std::array<std::uint8_t, 8> bytes{}; // as Highway asks for
-  hn::StoreMaskBits(d, mask, bytes.data());
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, bytes.data(), sizeof(bits));
-  return bits << lane;
-}
-
 std::uint64_t near_lanes(const BoxLanes& boxes, const PartFromBoxes& seen,
                          const NearestFromBoxes& nearest, float margin) {
   const ContactTag d;
@@ -192,7 +183,7 @@ std::uint64_t near_lanes(const BoxLanes& boxes, const PartFromBoxes& seen,
     const ContactV size = hn::Add(hn::Abs(of(nearest.distance)), hn::Sqrt(squared));
     const ContactV rounding = hn::MulAdd(hn::Set(d, 1e-5F), size, hn::Set(d, 1e-5F));
     const ContactV more = hn::Max(hn::Sub(farther, hn::Add(turns, bends)), beyond);
-    near |= bits_of(d, hn::Le(more, rounding), lane);
+    near |= bits_of(d, hn::Le(more, rounding)) << lane;
   }
   return near;
 }
@@ -303,7 +294,7 @@ std::uint64_t overlapping_lanes(const BoxRows& rows, std::size_t first,
     };
     const ContactV widest =
         hn::Max(hn::Max(gap(0, 4), hn::Max(gap(1, 5), gap(2, 6))), hn::Max(gap(3, 1), gap(4, 2)));
-    overlapping |= bits_of(d, hn::Le(widest, hn::Zero(d)), lane);
+    overlapping |= bits_of(d, hn::Le(widest, hn::Zero(d))) << lane;
   }
   return overlapping;
 }

@@ -9,6 +9,8 @@
 #endif
 
 #include <array>
+#include <cstdint>
+#include <cstring>
 
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
@@ -70,6 +72,16 @@ HWY_INLINE void stream_vectors(D, const Vectors3<V>& values, VertexBlock& to, st
   stream(values.x, to.x);
   stream(values.y, to.y);
   stream(values.z, to.z);
+}
+
+/// Returns a mask as bits; bit n is lane n.
+template <class D>
+HWY_INLINE std::uint64_t bits_of(D d, hn::Mask<D> mask) {
+  alignas(8) std::array<std::uint8_t, 8> bytes{}; // as many as Highway asks for
+  hn::StoreMaskBits(d, mask, bytes.data());
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, bytes.data(), sizeof(bits));
+  return bits;
 }
 
 /// Shapes that do not stay in the caches are fetched this many blocks before their turn.

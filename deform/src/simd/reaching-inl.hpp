@@ -15,6 +15,7 @@
 #include <hwy/highway.h>
 
 #include "simd/field_kernels.hpp"
+#include "simd/kernels-inl.hpp"
 
 #ifndef NENDO_SIMD_SET_LANES
 #define NENDO_SIMD_SET_LANES
@@ -67,13 +68,6 @@ HWY_INLINE hn::Mask<ListVectors> reaching(const CentreVector& centres, const Blo
   return hn::Le(squared, centres.squared_radius);
 }
 
-/// Returns a mask as bits; bit n is lane n.
-HWY_INLINE std::uint32_t bits_of(hn::Mask<ListVectors> mask) {
-  alignas(8) std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(ListVectors(), mask, bytes);
-  return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8U;
-}
-
 /// Stores the lanes whose bits are set and overwrites what is beyond them. It does not branch on
 /// the bits, which a processor could not predict.
 HWY_INLINE void store_set_lanes(const std::uint32_t* from, std::uint32_t bits, std::uint32_t* to) {
@@ -101,7 +95,7 @@ HWY_INLINE std::size_t store_reaching(const CentreVector& centres, const BlockBo
     hn::StoreU(hn::Compress(hn::Load(du, centres.names), hn::RebindMask(du, reached)), du, to);
     return hn::CountTrue(d, reached);
   } else {
-    const std::uint32_t bits = bits_of(reached);
+    const auto bits = static_cast<std::uint32_t>(bits_of(ListVectors(), reached));
     store_set_lanes(centres.names, bits, to);
     return static_cast<std::size_t>(std::popcount(bits));
   }
@@ -167,7 +161,7 @@ static HWY_NOINLINE CentreArrays gather_reaching(const CentreArrays& centres,
       count += hn::CountTrue(d, reached);
       continue;
     }
-    std::uint32_t bits = bits_of(reached);
+    auto bits = static_cast<std::uint32_t>(bits_of(ListVectors(), reached));
     for (; bits != 0; bits &= bits - 1, ++count) {
       const std::size_t from = at + static_cast<std::size_t>(std::countr_zero(bits));
       room.names[count] = centres.names[from];
