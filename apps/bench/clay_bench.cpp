@@ -28,6 +28,7 @@ struct Options {
   std::string simd;
   std::string only;
   bool short_form = false;
+  bool refines = false;
   bool json = false;
 };
 
@@ -106,9 +107,9 @@ int make_thing(const Options& options) {
     return cli::report(
         {Errc::usage,
          "--make " + options.thing + ": there is no such thing; use cake, bowl, nose or sausage"});
-  const KneadedClay made = knead(thing->second, options.short_form ? 4 : 6);
-  const Eigen::Vector3d size =
-      made.shape.vertices.rowwise().maxCoeff() - made.shape.vertices.rowwise().minCoeff();
+  const KneadedClay made =
+      knead(thing->second, {.level = options.short_form ? 4 : 6, .refines = options.refines});
+  const Eigen::Vector3d size = extents_mm(made.shape.vertices);
   std::printf("%s: %zu vertices; %.2f ms a tick, p99 %.2f; left p99 %.4f mm; volume %% worst %.4f, "
               "at the end %.4f; places held %zu; turned %.0f degrees; %.0f x %.0f x %.0f mm\n",
               options.thing.c_str(), static_cast<std::size_t>(made.shape.vertices.cols()),
@@ -153,6 +154,8 @@ void add(cli::Command& bench) {
   command.add_option("--make", options->thing,
                      "Knead a ball into a thing instead: cake, bowl, nose or sausage");
   command.add_option("--save", options->save, "Where to write what --make made: .obj or .ply");
+  command.add_flag("--refine", options->refines,
+                   "Let the triangles of what --make makes follow its shape");
   command.add_option("--simd", options->simd,
                      "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
   command.add_option("--only", options->only, "Only rows whose names contain this");

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <numbers>
 
-#include <nendo/deform/triangles.hpp>
+#include <Eigen/Eigenvalues>
+
 #include <nendo/flow/hand_contact.hpp>
 #include <nendo/hand/inverse_kinematics.hpp>
 
 #include "bench/clay_trial.hpp"
 #include "bench/deform_frames.hpp"
+#include "bench/refined_clay.hpp"
 #include "reference/icosphere.hpp"
 
 namespace nendo::bench {
@@ -201,18 +203,41 @@ void ClayKneading::pose_sausage(double time) {
   constexpr double rub_s = 0.8; // there and back
   constexpr double end_s = 10.7;
   constexpr double aside_mm = 26.0;
-  constexpr double last_gap_mm = 26.0;
-  constexpr double middle_mm = 58.0; // of the palm, from the wrist
+  constexpr double last_gap_mm = 29.0; // nearer costs volume: all of the clay is enclosed
+  constexpr double middle_mm = 58.0;   // of the palm, from the wrist
   const double rubs = std::clamp((time - closed_s) / rub_s, 0.0, (end_s - closed_s) / rub_s);
   const double aside = aside_mm * std::sin(2.0 * std::numbers::pi * rubs);
   const double first_gap = 2.0 * ball_radius_mm() - 3.0;
   const double gap = first_gap + 40.0 * (1.0 - ease(time, 0.0, closed_s)) -
                      (first_gap - last_gap_mm) * std::clamp((time - closed_s) / 9.0, 0.0, 1.0) +
                      60.0 * ease(time, end_s, end_s + 0.5);
+  const Vector3d fingers(std::cos(turn_rad_), std::sin(turn_rad_), 0.0);
   for (const double side : {1.0, -1.0})
     place_hand(side > 0.0 ? 0 : 1, flat_hand(),
-               wrist_of(side * Vector3d::UnitX(), side * Vector3d::UnitZ(),
-                        seen_ + side * Vector3d(aside - middle_mm, 0.0, 0.5 * gap + palm_skin_mm)));
+               wrist_of(side * fingers, side * Vector3d::UnitZ(),
+                        middle_ + side * ((aside - middle_mm) * fingers +
+                                          (0.5 * gap + palm_skin_mm) * Vector3d::UnitZ())));
+}
+
+void ClayKneading::see(const Eigen::Matrix3Xd& vertices) {
+  constexpr double follow = 0.2; // of the way, a tick
+  constexpr double follow_turn = 0.1;
+  const Vector3d middle = vertices.rowwise().mean();
+  middle_ += follow * (middle - middle_);
+  const Eigen::Matrix2Xd flat = (vertices.colwise() - middle).topRows<2>();
+  const Eigen::Matrix2d spread = flat * flat.transpose();
+  // The long axis as a double angle. As long as the clay is round it says nothing.
+  const Eigen::Vector2d axis(spread(0, 0) - spread(1, 1), 2.0 * spread(0, 1));
+  const double across = 0.5 * std::atan2(axis.y(), axis.x()) - 0.5 * std::numbers::pi;
+  turn_rad_ += follow_turn * axis.norm() / spread.trace() *
+               std::remainder(across - turn_rad_, std::numbers::pi);
+}
+
+Vector3d extents_mm(const Eigen::Matrix3Xd& vertices) {
+  const Eigen::Matrix3Xd off = vertices.colwise() - vertices.rowwise().mean();
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(off * off.transpose());
+  const Eigen::Matrix3Xd along = axes.eigenvectors().rowwise().reverse().transpose() * off;
+  return along.rowwise().maxCoeff() - along.rowwise().minCoeff();
 }
 
 std::span<const deform::ContactPart> ClayKneading::at(int tick) {
@@ -224,33 +249,34 @@ std::span<const deform::ContactPart> ClayKneading::at(int tick) {
   return parts_;
 }
 
-KneadedClay knead(KneadedThing thing, int level) {
+KneadedClay knead(KneadedThing thing, const KneadingOptions& options) {
+  constexpr int refine_ticks = 9;
   ClayKneading hands(thing);
   KneadedClay result;
-  result.shape = reference::icosphere(level, hands.ball_radius_mm());
-  deform::SculptedShape shape(result.shape.vertices, {});
-  deform::ClayDeformer clay(
-      shape, deform::corners_of_triangles(result.shape), ClayKneading::bodies, HandBody::part_count,
-      {.radius_mm = hands.softness_mm(), .lies_on_table = hands.lies_on_table()});
+  RefinedClay clay(reference::icosphere(options.level, options.scale * hands.ball_radius_mm()),
+                   ClayKneading::bodies, HandBody::part_count,
+                   {.radius_mm = hands.softness_mm(), .lies_on_table = hands.lies_on_table()});
   clay.begin(hands.at(0));
-  const double whole = clay_volume(result.shape);
+  const double whole = clay_volume(clay.shown());
   std::vector<double> left_mm, times_us;
   for (int tick = 1; tick <= hands.ticks(); ++tick) {
     const auto parts = hands.at(tick);
     const auto begin = ThreadClock::now();
-    const deform::ClayReport& report = clay.press_to(parts);
+    const deform::ClayReport report = clay.press_to(parts);
     const std::chrono::duration<double, std::micro> took = ThreadClock::now() - begin;
+    if (options.refines && tick % refine_ticks == 0) clay.refine(parts);
     result.most_held = std::max(result.most_held, report.held);
     result.turned_rad += report.turned_rad;
-    shape.layout().unpack(clay.shape(), result.shape.vertices);
-    hands.see(result.shape.vertices.rowwise().mean());
-    result.last_volume = clay_volume(result.shape) / whole - 1.0;
+    hands.see(clay.shown().vertices);
+    result.last_volume = clay_volume(clay.shown()) / whole - 1.0;
     result.worst_volume = std::max(result.worst_volume, std::abs(result.last_volume));
+
     if (report.passes == 0) continue;
     left_mm.push_back(report.penetration_mm);
     times_us.push_back(took.count());
     result.mean_us += took.count();
   }
+  result.shape = clay.shown();
   result.mean_us /= static_cast<double>(std::max<std::size_t>(1, times_us.size()));
   result.p99_us = percentile_99(times_us);
   result.penetration_p99_mm = percentile_99(left_mm);

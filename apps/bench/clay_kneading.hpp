@@ -30,8 +30,9 @@ public:
   int ticks() const noexcept;
   /// Otherwise the hands carry and turn it.
   bool lies_on_table() const noexcept { return thing_ != KneadedThing::sausage; }
-  /// Tells where the middle of the clay is; the hands that roll it stay about it.
-  void see(const Eigen::Vector3d& middle) { seen_ += 0.1 * (0.7 * middle - seen_); }
+  /// Tells where the vertices of the clay are, 3 x n. The hands that roll it stay about its middle,
+  /// and across its long axis.
+  void see(const Eigen::Matrix3Xd& vertices);
   /// Returns the parts of both bodies in that tick: of two hands, or of a hand and a table.
   std::span<const deform::ContactPart> at(int tick);
 
@@ -48,8 +49,9 @@ private:
   KneadedThing thing_;
   hand::HandSkeleton skeleton_;
   hand::HandBody body_;
-  Eigen::Vector3d seen_ = Eigen::Vector3d::Zero();
-  hand::JointAngles pinch_; ///< the last one, with which the next begins
+  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero(); ///< that the hands stay about
+  double turn_rad_ = 0.0;                            ///< about Z, of the hands that roll
+  hand::JointAngles pinch_;                          ///< the last one, with which the next begins
   std::vector<deform::ContactPart> parts_;
 };
 
@@ -63,7 +65,16 @@ struct KneadedClay {
   double turned_rad = 0.0; ///< as a whole, there and back
 };
 
-/// Makes a thing of a ball of that level (reference/icosphere.hpp).
-KneadedClay knead(KneadedThing thing, int level);
+/// Lengths along the principal axes, the longest first.
+Eigen::Vector3d extents_mm(const Eigen::Matrix3Xd& vertices);
+
+struct KneadingOptions {
+  int level = 6;        ///< of the ball (reference/icosphere.hpp)
+  double scale = 1.0;   ///< of the ball
+  bool refines = false; ///< ten times a second (deform::Refiner)
+};
+
+/// Makes a thing of a ball.
+KneadedClay knead(KneadedThing thing, const KneadingOptions& options);
 
 } // namespace nendo::bench

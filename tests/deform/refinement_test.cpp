@@ -15,6 +15,7 @@
 #include "join/round_points.hpp"
 #include "reference/icosphere.hpp"
 #include "support/cut_laws.hpp"
+#include "support/nasty_meshes.hpp"
 #include "support/placed_meshes.hpp"
 #include "support/test_meshes.hpp"
 #include "support/triangle_angles.hpp"

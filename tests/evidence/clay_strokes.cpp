@@ -22,6 +22,7 @@
 #include <nendo/deform/triangles.hpp>
 #include <nendo/flow/hand_contact.hpp>
 
+#include "bench/refined_clay.hpp"
 #include "evidence/intersection_count.hpp"
 #include "reference/icosphere.hpp"
 #include "support/clay_strokes.hpp"
@@ -69,56 +70,30 @@ struct Outcome {
 class Trial {
 public:
   Trial(int level, std::size_t parts, bool refines)
-      : parts_(parts), refines_(refines), ball_(reference::icosphere(level, ball_mm)),
-        whole_(volume_of(ball_)) {
-    take(deform::BlockLayout(ball_.vertices), nullptr);
-  }
+      : refines_(refines), clay_(reference::icosphere(level, ball_mm), 1, parts,
+                                 deform::ClayOptions{.radius_mm = 30.0}),
+        whole_(volume_of(clay_.shown())) {}
   void stroke(std::mt19937& random, const Parts& parts) {
     test::violent_stroke(
-        random, parts, [this](const Parts& first) { clay_->begin(first); },
+        random, parts, [this](const Parts& first) { clay_.begin(first); },
         [this](const Parts& next) { press(next); });
-    outcome_.pairs = evidence::self_intersections(shown()).size();
+    outcome_.pairs = evidence::self_intersections(clay_.shown()).size();
   }
   const Outcome& outcome() const { return outcome_; }
-  deform::Mesh shown() const {
-    deform::Mesh mesh = ball_;
-    shape_->layout().unpack(clay_->shape(), mesh.vertices);
-    return mesh;
-  }
+  const deform::Mesh& shown() { return clay_.shown(); }
 
 private:
-  void take(deform::BlockLayout layout, const deform::BlockShape* first) {
-    clay_.reset();
-    shape_ = std::make_unique<deform::SculptedShape>(std::move(layout), deform::DeformerOptions{},
-                                                     first);
-    clay_ = std::make_unique<deform::ClayDeformer>(*shape_, deform::corners_of_triangles(ball_), 1,
-                                                   parts_, deform::ClayOptions{.radius_mm = 30.0});
-  }
   void press(const Parts& parts) {
     outcome_.penetration_mm =
-        std::max(outcome_.penetration_mm, clay_->press_to(parts).penetration_mm);
-    outcome_.last_volume = std::abs(volume_of(shown()) / whole_ - 1.0);
+        std::max(outcome_.penetration_mm, clay_.press_to(parts).penetration_mm);
+    outcome_.last_volume = std::abs(volume_of(clay_.shown()) / whole_ - 1.0);
     outcome_.volume = std::max(outcome_.volume, outcome_.last_volume);
-    if (refines_ && ++calls_ % 9 == 0) refine(parts);
-  }
-  void refine(const Parts& parts) {
-    const auto refiner = deform::Refiner::make(ball_);
-    if (!refiner) return;
-    deform::Refinement made = refiner->refine(clay_->shape(), shape_->layout(), {});
-    if (made.operations.empty()) return;
-    ball_ = std::move(made.mesh);
-    deform::BlockLayout layout(ball_.vertices);
-    const deform::BlockShape first = deform::shape_in_blocks(made.shape, layout);
-    take(std::move(layout), &first);
-    clay_->begin(parts);
+    if (refines_ && ++calls_ % 9 == 0) clay_.refine(parts);
   }
 
-  std::size_t parts_;
   bool refines_;
-  deform::Mesh ball_; ///< before it was pressed
+  bench::RefinedClay clay_;
   double whole_;
-  std::unique_ptr<deform::SculptedShape> shape_;
-  std::unique_ptr<deform::ClayDeformer> clay_;
   Outcome outcome_;
   int calls_ = 0;
 };

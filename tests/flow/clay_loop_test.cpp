@@ -22,7 +22,11 @@ namespace {
 /// Both hands come from beside the ball, press it, and go back, in so many ticks.
 class Presses {
 public:
-  explicit Presses(Mode mode = Mode::clay) : test_(mode, {.rings_of_ball = 32}) {
+  /// Edges that are refined, all of them, get `edge` long, in model units; 0: as they are.
+  explicit Presses(Mode mode = Mode::clay, float edge = 0.0F) : test_(mode, {.rings_of_ball = 32}) {
+    if (edge > 0.0F)
+      test_.model.detail.assign(static_cast<std::size_t>(test_.model.vertices.cols()),
+                                {edge, true});
     for (const HandInput& hand : test_.inputs) {
       const std::size_t slot = Placement::index_of(hand.side);
       beside_[slot] = beside(test_.model, test_.placement.units_per_metre, hand.skeleton(hand.side),
@@ -66,6 +70,16 @@ public:
                                                test_.model);
   }
   void ask(Request request) { test_.commands.try_push(request); }
+  /// Edges there are split and collapsed, as who runs the loop does it. Hands stay at that part.
+  void refine(double part) {
+    DeformLoop& loop = *test_.loop;
+    auto finer = FinerModel::make(loop.newest_model(), {0, ModelSource::refined, 100'000});
+    REQUIRE(finer);
+    REQUIRE(loop.hold_still());
+    go(part, 1);
+    REQUIRE(loop.change_model(*finer));
+    go(part, 1);
+  }
   void change_to(Mode mode) {
     LoopSettings settings = test_.loop->settings();
     settings.mode = mode;
@@ -280,6 +294,19 @@ TEST_SUITE("clay_loop") {
     LoopSettings settings = test.loop->settings();
     settings.mode = Mode::clay;
     CHECK(test.loop->change_settings(settings));
+  }
+
+  TEST_CASE("clay that is refined while hands press it keeps its volume") {
+    Presses presses(Mode::clay, 0.04F);
+    const double whole = presses.frame().clay.volume;
+    CHECK(whole > 0.0);
+    presses.go(0.6, 1);
+    CHECK(presses.frame().clay.touching > 0);
+    presses.refine(0.6);
+    CHECK(presses.frame().model == 1);
+    presses.go(0.6, 20);
+    presses.go(0.0, 60);
+    CHECK(presses.frame().clay.volume == doctest::Approx(whole).epsilon(2e-5));
   }
 
   TEST_CASE("masks come and go while hands press, and what they hold keeps its bits") {

@@ -264,6 +264,9 @@ bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
                           : is_still_ ? still_tips_
                                       : tips;
   if (held_) held_ = is_solved(sculptor_->grab_on(held_at));
+  if (held_ && !is_step_over && !is_refused)
+    sculptor_->go_on_from(*ready.sculptor,
+                          !other_model || next.origin->source == ModelSource::refined);
   is_still_ = false;
   if (frame.model != model_->number) {
     make_room(frame);

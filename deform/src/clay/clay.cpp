@@ -19,6 +19,10 @@ FieldStatus ClayDeformer::begin(std::span<const ContactPart> parts) {
   return take_hold(parts);
 }
 
+void ClayDeformer::go_on_from(const ClayDeformer& before, bool keeps_volume) noexcept {
+  work_->go_on_from(*before.work_, keeps_volume);
+}
+
 void ClayDeformer::release(bool is_step) noexcept {
   if (is_step) shape_->parts().keep();
   work_->release();

@@ -53,6 +53,40 @@ bool ClayDeformer::Work::holds_any() const noexcept {
   return std::any_of(grips_.begin(), grips_.end(), [](const Grip& grip) { return grip.holds(); });
 }
 
+void ClayDeformer::Work::go_on_from(const Work& before, bool keeps_volume) noexcept {
+  if (before.from_.size() != from_.size() || before.parts_a_body_ != parts_a_body_ ||
+      before.options_.units_a_mm != options_.units_a_mm)
+    return;
+  const double scale = before.layout_.unit() / layout_.unit();
+  const Vector3d origin = (before.layout_.origin() - layout_.origin()) / layout_.unit();
+  const auto move = [&](const ContactPart& part) {
+    ContactPart moved = part;
+    for (std::size_t corner = 0; corner < part.corner_count; ++corner) {
+      moved.corners[corner] = scale * part.corners[corner] + origin;
+      moved.radii[corner] *= scale;
+    }
+    moved.frame.translation() = scale * part.frame.translation() + origin;
+    return moved;
+  };
+  std::transform(before.from_.begin(), before.from_.end(), from_.begin(), move);
+  std::transform(before.skins_.begin(), before.skins_.end(), skins_.begin(), move);
+  for (std::size_t body = 0; body < grips_.size(); ++body)
+    grips_[body].take_over(before.grips_[body], scale, origin);
+  leave_out_held(true);
+  around_ = before.around_;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto from = static_cast<float>(origin[static_cast<Eigen::Index>(axis)]);
+    float& high = around_.limits.sides[axis];
+    float& negated_low = around_.limits.sides[axis + 4];
+    high = static_cast<float>(scale) * high + from;
+    negated_low = static_cast<float>(scale) * negated_low - from;
+  }
+  swells_all_ = before.swells_all_;
+  if (!keeps_volume || !volume_.is_closed() || !before.volume_.is_closed()) return;
+  whole_volume_ = before.whole_volume_ * scale * scale * scale;
+  is_settling_ = true;
+}
+
 /// Parts that hold do not press as well.
 void ClayDeformer::Work::leave_out_held(bool is_out) noexcept {
   for (std::size_t part = 0; part < from_.size(); ++part)

@@ -155,6 +155,25 @@ bool Grip::end_look(std::span<const ContactPart> parts) noexcept {
   return held != holds();
 }
 
+void Grip::take_over(const Grip& other, double scale, const Vector3d& origin) noexcept {
+  held_.assign(other.held_.begin(), other.held_.end());
+  for (HeldPoint& point : held_) {
+    point.local *= scale;
+    point.at = scale * point.at + origin;
+    point.goal = scale * point.goal + origin;
+  }
+  held_side_ = other.held_side_;
+  narrowest_ = scale * other.narrowest_;
+  calls_ = other.calls_;
+  for (std::size_t side = 0; side < sides_.size(); ++side) {
+    const Side& from = other.sides_[side];
+    sides_[side].frame = from.frame;
+    sides_[side].frame.translation() = scale * from.frame.translation() + origin;
+    sides_[side].closed = scale * from.closed;
+    sides_[side].is_held = from.is_held;
+  }
+}
+
 void Grip::let_go() noexcept {
   held_.clear();
   held_side_ = 0;

@@ -37,6 +37,9 @@ public:
   /// is held. Returns true if that changed.
   bool end_look(std::span<const ContactPart> parts) noexcept;
   void let_go() noexcept;
+  /// Holds what another grip of a body of as many parts holds, in coordinates that are `scale`
+  /// times as large, with `origin` added.
+  void take_over(const Grip& other, double scale, const Eigen::Vector3d& origin) noexcept;
   /// Sets the goals of what is held. Parts that open do not pull clay apart: they are not glued.
   void follow(std::span<const ContactPart> parts) noexcept;
 

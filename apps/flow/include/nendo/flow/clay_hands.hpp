@@ -60,6 +60,9 @@ public:
 
   deform::FieldStatus begin(const deform::Points&) { return clay_.begin(parts()); }
   deform::FieldStatus grab(const deform::Points&) { return clay_.grab(parts()); }
+  void go_on_from(const ClayHands& before, bool keeps_volume) noexcept {
+    clay_.go_on_from(before.clay_, keeps_volume);
+  }
   /// Presses the surface out of where the bodies are now. With `ends`, all of their way is made.
   deform::FieldStatus press(bool ends);
   void release(bool is_step) noexcept;

@@ -92,6 +92,9 @@ public:
   deform::FieldStatus grab(const deform::Points& tips) noexcept;
   /// Does the same in the middle of a step, behind release(false).
   deform::FieldStatus grab_on(const deform::Points& tips) noexcept;
+  /// Behind grab_on(): hands in clay hold on to what they hold in `before`, and if `keeps_volume`
+  /// the clay goes back to the volume that it keeps.
+  void go_on_from(const Sculptor& before, bool keeps_volume) noexcept;
   /// Writes the shape for the fingertips' present places into `out`; blocks that `out` already has
   /// are not written again. Wait-free, except that it may wait for a second thread to finish its
   /// part. It does not allocate if `out` has the right size.
