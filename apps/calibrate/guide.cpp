@@ -27,9 +27,10 @@ constexpr double deviations_allowed = 3.0;
 
 } // namespace
 
-CalibrationGuide::CalibrationGuide(std::span<const PoseId> poses, CountScale scale)
-    : scale_(scale), planned_(poses.begin(), poses.end()), poses_(planned_), kept_(poses.size()),
-      capture_(scale) {}
+CalibrationGuide::CalibrationGuide(std::span<const PoseId> poses, CountScale scale,
+                                   SensorMask stiff)
+    : scale_(scale), stiff_(stiff), planned_(poses.begin(), poses.end()), poses_(planned_),
+      kept_(poses.size()), capture_(scale) {}
 
 CalibrationGuide::Event CalibrationGuide::push(const GloveSample& sample) {
   if (is_done()) return Event::none;
@@ -179,8 +180,8 @@ std::optional<Sensor> CalibrationGuide::find_unbent(const HeldPose& held) const 
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
     const double gain = usual.sensors[slot].gain_rad_per_count;
-    if (!held.present.has(sensor) || !other->present.has(sensor) || bend_rad(slot) == 0.0 ||
-        gain == 0.0)
+    if (!held.present.has(sensor) || !other->present.has(sensor) || stiff_.has(sensor) ||
+        bend_rad(slot) == 0.0 || gain == 0.0)
       continue;
     ++judged;
     const double rise = (now == PoseId::fist ? 1.0 : -1.0) * (gain > 0.0 ? 1.0 : -1.0) *
@@ -207,14 +208,15 @@ std::optional<Sensor> CalibrationGuide::find_implausible(const HeldPose& held) c
     const double counts = fist->mean_counts[slot] - flat->mean_counts[slot];
     const double turn_rad = bend_rad(slot);
     // Only joints that the two poses tell well apart can judge a third.
-    if (!held.present.has(static_cast<Sensor>(slot)) || turn_rad == 0.0 || !expected.known() ||
+    const auto sensor = static_cast<Sensor>(slot);
+    if (!held.present.has(sensor) || stiff_.has(sensor) || turn_rad == 0.0 || !expected.known() ||
         std::abs(counts) < hand::PoseCapture::least_change_counts)
       continue;
     const double angle_rad =
         at_flat.angle_rad + turn_rad / counts * (held.mean_counts[slot] - flat->mean_counts[slot]);
     if (std::abs(angle_rad - expected.angle_rad) >
         most_doubt_rad + deviations_allowed * expected.deviation_rad)
-      return static_cast<Sensor>(slot);
+      return sensor;
   }
   return std::nullopt;
 }

@@ -18,8 +18,8 @@ namespace nendo::calibrate {
 class CalibrationGuide {
 public:
   /// `poses` are in the order in which they are asked for; a pose that is in it twice is taken
-  /// twice. They must contain flat and fist.
-  CalibrationGuide(std::span<const hand::PoseId> poses, CountScale scale);
+  /// twice. They must contain flat and fist. By sensors of `stiff` joints no pose is refused.
+  CalibrationGuide(std::span<const hand::PoseId> poses, CountScale scale, SensorMask stiff = {});
 
   enum class Event : std::uint8_t {
     none,
@@ -68,6 +68,7 @@ private:
   const hand::HeldPose* kept(hand::PoseId pose) const;
 
   CountScale scale_;
+  SensorMask stiff_;
   std::vector<hand::PoseId> planned_;               ///< as they were given
   std::vector<hand::PoseId> poses_;                 ///< those, and what is taken once more
   std::vector<std::optional<hand::HeldPose>> kept_; ///< by number

@@ -66,6 +66,16 @@ void print_set_aside(std::ostream& out, const hand::CalibrationFit& fit,
   out << '\n';
 }
 
+void print_stiff(std::ostream& out, const hand::CalibrationFit& fit) {
+  for (std::size_t finger = 0; finger < hand::finger_count; ++finger) {
+    if (!fit.went_less_far[finger]) continue;
+    const auto name = hand::name_of(static_cast<hand::Finger>(finger));
+    out << fmt::format("{0}: it went less far than the poses ask; if it is stiff, use --stiff {0}, "
+                       "and if not, take the poses again\n",
+                       name);
+  }
+}
+
 void print_hand(std::ostream& out, const hand::CalibrationFit& fit) {
   if (fit.touch_residual_m == 0.0) return;
   out << fmt::format(
@@ -121,6 +131,7 @@ void print_report(std::ostream& out, const hand::CalibrationFit& fit,
   });
   print_readings(out, fit, readings);
   print_set_aside(out, fit, readings);
+  print_stiff(out, fit);
   print_hand(out, fit);
   // Where the poses leave a sensor's gain or offset to the default, a condition says nothing.
   if (fit.undetermined.bits == 0)

@@ -1,5 +1,6 @@
 // nendo calibrate: from a wearer's poses to a calibration that the other commands find.
 
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -38,6 +39,7 @@ struct Options {
   std::string picture;
   double length_mm = 1e3 * hand::HandSize{}.length_m;
   double breadth_mm = 1e3 * hand::HandSize{}.breadth_m;
+  std::string stiff;
   bool quick = false;
   bool touch_up = false;
   bool fresh = false;
@@ -51,6 +53,25 @@ struct Wearer {
   std::optional<hand::WearerCalibration> known; ///< what is touched up
 };
 
+/// Returns the sensors of the fingers in a list, and of the wrist.
+Result<SensorMask> sensors_of(const std::string& list) {
+  SensorMask mask;
+  for (std::string_view rest = list; !rest.empty();) {
+    const std::string_view name = cut(rest, ',');
+    SensorMask found = name == "wrist" ? mask_of(std::array{Sensor::wrist_pitch, Sensor::wrist_yaw})
+                                       : SensorMask{};
+    for (std::size_t at = 0; at < hand::finger_count; ++at)
+      if (name == hand::name_of(static_cast<hand::Finger>(at)))
+        found = hand::sensors_of(static_cast<hand::Finger>(at));
+    if (found.bits == 0)
+      return Error{Errc::usage, "--stiff " + printable(list) +
+                                    ": use thumb, index, middle, ring, little and wrist, with "
+                                    "commas between"};
+    mask.bits |= found.bits;
+  }
+  return mask;
+}
+
 Result<void> check(const Options& options) {
   if (options.quick && options.touch_up)
     return Error{Errc::usage,
@@ -60,6 +81,7 @@ Result<void> check(const Options& options) {
   if (options.user.empty())
     return Error{Errc::usage, "--user is missing: whose hand is it? e.g. --user anna"};
   if (auto fine = gloves::HandLength{options.length_mm}.check(); !fine) return fine;
+  if (const auto stiff = sensors_of(options.stiff); !stiff) return stiff.error();
   if (!(options.breadth_mm >= 50.0 && options.breadth_mm <= 130.0))
     return Error{Errc::usage, "--hand-breadth: use 50 to 130 millimetres, across the knuckles"};
   const bool at_terminal = ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0;
@@ -76,6 +98,7 @@ hand::HandSize size_of(const Options& options) {
 hand::FitOptions fit_options(const Options& options, CountScale counts,
                              const std::optional<hand::WearerCalibration>& known) {
   hand::FitOptions fitting;
+  fitting.stiff = *sensors_of(options.stiff);
   if (known) {
     fitting.scale = counts;
     fitting.mode = hand::FitMode::touch_up;
@@ -183,7 +206,8 @@ int fit_and_write(const Options& options, Wearer& wearer,
 int calibrate_from_capture(const Options& options) {
   const auto capture = calibrate::read_capture(options.from);
   if (!capture) return cli::report(capture.error());
-  calibrate::CalibrationGuide guide(poses_for(options), capture->counts);
+  calibrate::CalibrationGuide guide(poses_for(options), capture->counts,
+                                    *sensors_of(options.stiff));
   guide.restore(capture->readings, capture->free_motion);
   SensorMask sensors;
   for (const auto& reading : capture->readings)
@@ -235,7 +259,7 @@ int calibrate_glove(const Options& options) {
   wearer.about.glove_serial = gloves::serial_of(info);
   set_path(wearer, options);
   if (const auto fine = begin_with_known(wearer, options); !fine) return cli::report(fine.error());
-  calibrate::CalibrationGuide guide(poses_for(options), info.counts);
+  calibrate::CalibrationGuide guide(poses_for(options), info.counts, *sensors_of(options.stiff));
   std::error_code error;
   bool went_on = false;
   if (!options.fresh && fs::exists(unfinished_path(wearer), error)) {
@@ -273,6 +297,9 @@ void add(cli::Command& program) {
   command.add_flag("--touch-up", options->touch_up,
                    "Mends the calibration that there is after the glove was put on anew: flat "
                    "hand, fist and pinches");
+  command.add_option("--stiff", options->stiff,
+                     "Fingers that cannot go as far as the poses ask, e.g. thumb,index, or wrist: "
+                     "they do what they can, and of them only the flat hand is believed");
   command.add_option("--from", options->from,
                      "A capture instead of a glove: what nendo monitor --json has printed while "
                      "the poses were held one after another, three seconds each");

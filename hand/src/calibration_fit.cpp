@@ -157,12 +157,13 @@ void describe_readings(CalibrationFit& fit, std::span<const PoseReading> reading
 /// A finger's first two joints are bent by whoever makes a fist. Where their counts do not follow,
 /// the glove is broken, or the poses were others than those named.
 Result<void> check_fingers(std::span<const PoseReading> readings, SensorMask sensors,
-                           CountScale scale) {
-  const Calibration start = default_calibration(scale);
+                           const FitOptions& options) {
+  const Calibration start = default_calibration(options.scale);
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const bool mcp_or_pip = slot >= static_cast<std::size_t>(Sensor::index_mcp) &&
                             slot < static_cast<std::size_t>(Sensor::palm_arch) && slot % 4 < 2;
-    if (!mcp_or_pip || !sensors.has(static_cast<Sensor>(slot))) continue;
+    const auto sensor = static_cast<Sensor>(slot);
+    if (!mcp_or_pip || !sensors.has(sensor) || options.stiff.has(sensor)) continue;
     std::array<double, 2> counts{}, angles{}, number{};
     for (const PoseReading& reading : readings) {
       const AssumedAngle& assumed = pose_of(reading.pose).assumed[slot];
@@ -268,6 +269,32 @@ void mend_lines(CalibrationFit& fit, SensorMask sensors, const Calibration& star
   }
 }
 
+/// Compares the flexion gains of a finger, and the thumb's roll and abduction, with the default's,
+/// and with how those of all sensors compare, because a glove's electronics are common to them.
+void find_fingers_that_went_less_far(CalibrationFit& fit, SensorMask sensors,
+                                     const Calibration& start) {
+  constexpr double suspicious = 0.35; // of a logarithm
+  std::vector<double> all;
+  std::array<double, finger_count> sum{}, counted{};
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const bool is_gap = slot >= 4 && slot % 4 == 3;
+    if (!sensors.has(static_cast<Sensor>(slot)) || !fit.sensors[slot].gain_determined || is_gap)
+      continue;
+    const double beyond = std::log(fit.calibration.sensors[slot].gain_rad_per_count /
+                                   start.sensors[slot].gain_rad_per_count);
+    all.push_back(beyond);
+    if (slot / 4 >= finger_count) continue;
+    sum[slot / 4] += beyond;
+    counted[slot / 4] += 1.0;
+  }
+  if (all.empty()) return;
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  for (std::size_t finger = 0; finger < finger_count; ++finger)
+    fit.went_less_far[finger] =
+        counted[finger] >= 2.0 && sum[finger] / counted[finger] - *middle > suspicious;
+}
+
 double touch_residual_m(const CalibrationFit& fit) {
   double squares = 0.0, touches = 0.0;
   for (const ReadingFit& reading : fit.readings) {
@@ -279,10 +306,20 @@ double touch_residual_m(const CalibrationFit& fit) {
 
 } // namespace
 
+SensorMask sensors_of(Finger finger) noexcept {
+  const std::size_t first = 4 * static_cast<std::size_t>(finger);
+  SensorMask mask;
+  for (std::size_t slot = first; slot < first + 4; ++slot)
+    mask.add(static_cast<Sensor>(slot));
+  const bool has_gap_behind = finger != Finger::thumb && finger != Finger::little;
+  if (has_gap_behind) mask.add(static_cast<Sensor>(first + 7));
+  return mask;
+}
+
 Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Side side,
                                        SensorMask sensors, const FitOptions& options) {
   if (auto fine = check(readings, sensors, options); !fine) return fine.error();
-  if (auto fine = check_fingers(readings, sensors, options.scale); !fine) return fine.error();
+  if (auto fine = check_fingers(readings, sensors, options); !fine) return fine.error();
   FitProblem problem(readings, side, sensors, options);
   FreeUnknowns free = first_unknowns(sensors, options);
   for (const Eigen::Index unknown : problem.wearers_unknowns())
@@ -315,6 +352,7 @@ Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Si
   if (options.mode == FitMode::full && options.hold_out)
     choose_by_held_out_poses(fit, readings, side, sensors, options, solution);
   mend_lines(fit, sensors, start);
+  if (options.mode == FitMode::full) find_fingers_that_went_less_far(fit, sensors, start);
   return fit;
 }
 

@@ -98,7 +98,9 @@ void choose_by_held_out_poses(CalibrationFit& fit, std::span<const PoseReading> 
       for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
         const AssumedAngle& assumed = pose_of(reading.pose).assumed[slot];
         const Alike group = alike_of(slot);
-        if (!assumed.known() || group == Alike::none || !sensors.has(static_cast<Sensor>(slot)))
+        const auto sensor = static_cast<Sensor>(slot);
+        if (!assumed.known() || group == Alike::none || !sensors.has(sensor) ||
+            options.stiff.has(sensor))
           continue;
         const auto cost_of = [&](const Calibration& calibration) {
           const double off = angle_rad(calibration, reading.held, slot) - assumed.angle_rad;

@@ -39,7 +39,8 @@ bool is_flexion(std::size_t slot) {
 FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorMask sensors,
                        const FitOptions& options)
     : readings_(readings), mode_(options.mode), full_(options.mode != FitMode::quick),
-      sensors_(sensors), side_(side), start_size_(options.size), size_known_(options.size_known),
+      sensors_(sensors), stiff_(options.stiff), side_(side), start_size_(options.size),
+      size_known_(options.size_known),
       start_(options.start.value_or(default_calibration(options.scale))),
       most_counts_(options.scale.most), touch_is_set_aside_(readings.size()) {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
@@ -56,7 +57,9 @@ FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorM
     auto& assumptions = assumptions_.emplace_back();
     for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
       // Without couplings, a fist says nothing of the gaps between fingers.
-      const bool speaks = full_ || is_flexion(slot) || reading.pose == PoseId::flat;
+      const bool is_flat = reading.pose == PoseId::flat;
+      const bool speaks =
+          is_flat || (!stiff_.has(static_cast<Sensor>(slot)) && (full_ || is_flexion(slot)));
       if (sensors_.has(static_cast<Sensor>(slot)) && pose.assumed[slot].known() && speaks)
         assumptions.push_back({slot, as_it_comes_out(pose.assumed[slot], slot)});
     }

@@ -140,6 +140,7 @@ private:
   FitMode mode_;
   bool full_; ///< not quick
   SensorMask sensors_;
+  SensorMask stiff_; ///< of these only the flat hand speaks
   Side side_;
   HandSize start_size_;
   bool size_known_;

@@ -92,7 +92,7 @@ FitProblem::Hands FitProblem::hands(const Unknowns& at, bool with_moved) const {
 void FitProblem::find_range_ends(const CountRanges& free_motion) {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
-    if (!sensors_.has(sensor) || !free_motion.present.has(sensor)) continue;
+    if (!sensors_.has(sensor) || !free_motion.present.has(sensor) || stiff_.has(sensor)) continue;
     double least = readings_.front().held.mean_counts[slot], most = least;
     for (const auto& reading : readings_) {
       least = std::min(least, reading.held.mean_counts[slot]);
@@ -113,17 +113,18 @@ void FitProblem::find_range_ends(const CountRanges& free_motion) {
 
 bool FitProblem::usable(const Touch& touch) const noexcept {
   // What is filled in by rule is no measurement: a loop needs sensors all the way around.
-  const bool whole = sensors_.has(Sensor::thumb_roll) && sensors_.has(Sensor::thumb_abduction) &&
-                     sensors_.has(Sensor::thumb_mcp) && sensors_.has(Sensor::thumb_ip);
+  const SensorMask moving{sensors_.bits & ~stiff_.bits};
+  const bool whole = moving.has(Sensor::thumb_roll) && moving.has(Sensor::thumb_abduction) &&
+                     moving.has(Sensor::thumb_mcp) && moving.has(Sensor::thumb_ip);
   switch (touch.with) {
   case Joint::index_tip:
-    return whole && sensors_.has(Sensor::index_mcp) && sensors_.has(Sensor::index_pip);
+    return whole && moving.has(Sensor::index_mcp) && moving.has(Sensor::index_pip);
   case Joint::middle_tip:
-    return whole && sensors_.has(Sensor::middle_mcp) && sensors_.has(Sensor::middle_pip);
+    return whole && moving.has(Sensor::middle_mcp) && moving.has(Sensor::middle_pip);
   case Joint::ring_tip:
-    return whole && sensors_.has(Sensor::ring_mcp) && sensors_.has(Sensor::ring_pip);
+    return whole && moving.has(Sensor::ring_mcp) && moving.has(Sensor::ring_pip);
   case Joint::little_tip:
-    return whole && sensors_.has(Sensor::pinky_mcp) && sensors_.has(Sensor::pinky_pip);
+    return whole && moving.has(Sensor::pinky_mcp) && moving.has(Sensor::pinky_pip);
   default:
     return whole;
   }

@@ -96,6 +96,27 @@ TEST_SUITE("calibrate") {
     }
   }
 
+  TEST_CASE("of stiff fingers only the flat hand is believed") {
+    const TemporaryFolder folder;
+    reference::Wearer wearer(2004);
+    const auto capture = folder.path() / "capture.jsonl";
+    const auto out = folder.path() / "cy.toml";
+    record(wearer, hand::full_takes(), capture);
+    const auto done = nendo::test::nendo(
+        {"calibrate", "--from", capture, "--user", "cy", "--stiff", "thumb,wrist", "--out", out});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto written = hand::read_calibration(out);
+    REQUIRE_MESSAGE(written, written.error().message);
+    const hand::Calibration usual = hand::default_calibration();
+    for (const Sensor sensor : {Sensor::thumb_ip, Sensor::wrist_pitch, Sensor::wrist_yaw}) {
+      CAPTURE(name_of(sensor));
+      CHECK(written->calibration[sensor].gain_rad_per_count == usual[sensor].gain_rad_per_count);
+    }
+    CHECK(written->calibration[Sensor::ring_pip].gain_rad_per_count !=
+          usual[Sensor::ring_pip].gain_rad_per_count);
+    CHECK(done.out.find("gain is the default's") != std::string::npos);
+  }
+
   TEST_CASE("two poses are enough for the quick way, and less is an error that names what lacks") {
     const TemporaryFolder folder;
     reference::Wearer wearer(2003);
@@ -203,6 +224,8 @@ TEST_SUITE("calibrate") {
     refused({"sim", "--user", "a"}, 2, "terminal");
     refused({"--from", "x", "--user", "a", "--hand-length", "0.19"}, 2, "--hand-length");
     refused({"--from", "x", "--user", "a", "--hand-breadth", "nan"}, 2, "--hand-breadth");
+    refused({"--from", "x", "--user", "a", "--stiff", "thumb,toe"}, 2, "--stiff thumb,toe");
+    refused({"--from", "x", "--user", "a", "--stiff", "thumb,,index"}, 2, "--stiff thumb,,index");
     const std::string missing = folder.path() / "missing";
     refused({"--from", missing, "--user", "a"}, 5, missing);
     const auto file = folder.path() / "bad.jsonl";

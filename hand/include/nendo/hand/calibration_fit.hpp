@@ -19,11 +19,15 @@
 #include <nendo/base/result.hpp>
 #include <nendo/hand/calibration.hpp>
 #include <nendo/hand/calibration_poses.hpp>
+#include <nendo/hand/joints.hpp>
 #include <nendo/hand/pose_capture.hpp>
 #include <nendo/hand/range_capture.hpp>
 #include <nendo/hand/skeleton.hpp>
 
 namespace nendo::hand {
+
+/// Returns the sensors of a finger's joints, with those of the gaps beside it. Wait-free.
+SensorMask sensors_of(Finger finger) noexcept;
 
 struct PoseReading {
   PoseId pose = PoseId::flat;
@@ -48,6 +52,9 @@ struct FitOptions {
   /// fitted. In a touch-up all of it is kept.
   HandSize size{};
   bool size_known = false;
+  /// Sensors of joints that cannot do the poses. Of them only what the flat hand says is believed,
+  /// and no touch of their fingers; gains stay the default's where nothing else tells them.
+  SensorMask stiff{};
   /// The calibration that is touched up; needed for that alone.
   std::optional<Calibration> start{};
   /// Compares the full fit with the quick one by poses that are held out (see
@@ -94,6 +101,9 @@ struct CalibrationFit {
   SensorMask by_two_poses;
   std::array<SensorFit, sensor_slots> sensors{};
   std::array<bool, couplings.size()> coupling_determined{};
+  /// Fingers, thumb to little finger, whose joints went so much less far than was asked that their
+  /// gains are no glove's: they may be stiff (FitOptions::stiff).
+  std::array<bool, finger_count> went_less_far{};
   SensorMask undetermined; ///< sensors that are present, whose gain or offset is the default's
   std::vector<ReadingFit> readings; ///< in the order of those given
   /// Ratio of the largest singular value of the determined problem to its smallest, in units of
