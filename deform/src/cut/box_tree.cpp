@@ -22,13 +22,6 @@ std::vector<std::uint32_t> counted(std::size_t count) {
 
 } // namespace
 
-void widen(SpaceBox& box, const SpaceBox& by) noexcept {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] = std::min(box.low[axis], by.low[axis]);
-    box.high[axis] = std::max(box.high[axis], by.high[axis]);
-  }
-}
-
 SpaceBox box_around(std::span<const SpacePoint> places, const Corners& triangle) noexcept {
   SpaceBox box{places[triangle[0]], places[triangle[0]]};
   for (std::size_t k = 1; k < 3; ++k)
@@ -48,51 +41,57 @@ BoxTree::BoxTree(std::span<const SpacePoint> places, std::span<const Corners> tr
 void BoxTree::build(std::span<const SpacePoint> places, std::span<const Corners> triangles) {
   if (order_.empty()) return;
   std::vector<SpaceBox> unsorted;
-  std::vector<SpacePoint> middles; // in the order of `chosen`
+  std::vector<Middle> middles;
   unsorted.reserve(order_.size());
   middles.reserve(order_.size());
   for (const std::uint32_t triangle : order_) {
-    unsorted.push_back(box_around(places, triangles[triangle]));
-    middles.push_back(0.5 * (unsorted.back().low + unsorted.back().high));
+    const auto number = static_cast<std::uint32_t>(unsorted.size());
+    const SpaceBox& box = unsorted.emplace_back(box_around(places, triangles[triangle]));
+    middles.push_back({0.5 * (box.low + box.high), number});
   }
-  const std::vector<std::uint32_t> chosen = std::exchange(order_, counted(order_.size()));
-  boxes_ = std::move(unsorted);
   nodes_.reserve(order_.size());
   nodes_.push_back({});
-  split(0, 0, static_cast<std::uint32_t>(order_.size()), middles);
-  std::vector<SpaceBox> sorted;
-  sorted.reserve(boxes_.size());
-  for (std::uint32_t& at : order_) {
-    sorted.push_back(boxes_[at]);
-    at = chosen[at];
+  split(0, 0, middles);
+  boxes_.reserve(unsorted.size());
+  std::vector<std::uint32_t> sorted;
+  sorted.reserve(order_.size());
+  for (const Middle& middle : middles) {
+    boxes_.push_back(unsorted[middle.number]);
+    sorted.push_back(order_[middle.number]);
   }
-  boxes_ = std::move(sorted);
+  order_ = std::move(sorted);
+  for (std::size_t node = nodes_.size(); node-- > 0;) // children come behind
+    nodes_[node].box = box_of(nodes_[node]);
 }
 
-void BoxTree::split(std::uint32_t node, std::uint32_t begin, std::uint32_t end,
-                    std::vector<SpacePoint>& middles) {
-  SpaceBox box = boxes_[order_[begin]];
-  SpaceBox of_middles{middles[order_[begin]], middles[order_[begin]]};
-  for (std::uint32_t at = begin + 1; at < end; ++at) {
-    widen(box, boxes_[order_[at]]);
-    widen(of_middles, {middles[order_[at]], middles[order_[at]]});
-  }
-  if (end - begin <= leaf_size) {
-    nodes_[node] = {box, begin, end - begin};
+void BoxTree::split(std::uint32_t node, std::uint32_t begin, std::span<Middle> middles) {
+  if (middles.size() <= leaf_size) {
+    nodes_[node] = {{}, begin, static_cast<std::uint32_t>(middles.size())};
     return;
   }
-  const std::size_t axis = longest_axis(of_middles);
-  const std::uint32_t middle = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                   [&](std::uint32_t a, std::uint32_t b) {
-                     return middles[a][axis] < middles[b][axis] ||
-                            (middles[a][axis] == middles[b][axis] && a < b);
+  SpaceBox box{middles[0].at, middles[0].at};
+  for (const Middle& middle : middles)
+    widen(box, {middle.at, middle.at});
+  const std::size_t axis = longest_axis(box);
+  const std::size_t half = middles.size() / 2;
+  std::nth_element(middles.begin(), middles.begin() + static_cast<std::ptrdiff_t>(half),
+                   middles.end(), [axis](const Middle& a, const Middle& b) {
+                     return a.at[axis] < b.at[axis] ||
+                            (a.at[axis] == b.at[axis] && a.number < b.number);
                    });
   const auto first = static_cast<std::uint32_t>(nodes_.size());
   nodes_.resize(nodes_.size() + 2);
-  nodes_[node] = {box, first, 0};
-  split(first, begin, middle, middles);
-  split(first + 1, middle, end, middles);
+  nodes_[node] = {{}, first, 0};
+  split(first, begin, middles.first(half));
+  split(first + 1, begin + static_cast<std::uint32_t>(half), middles.subspan(half));
+}
+
+SpaceBox BoxTree::box_of(const Node& node) const noexcept {
+  const bool is_leaf = node.count > 0;
+  SpaceBox box = is_leaf ? boxes_[node.first] : nodes_[node.first].box;
+  for (std::uint32_t at = node.first + 1; at < node.first + (is_leaf ? node.count : 2); ++at)
+    widen(box, is_leaf ? boxes_[at] : nodes_[at].box);
+  return box;
 }
 
 } // namespace nendo::deform

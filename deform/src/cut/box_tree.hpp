@@ -18,7 +18,12 @@ inline bool meet(const SpaceBox& a, const SpaceBox& b) noexcept {
          b.low[1] <= a.high[1] && a.low[2] <= b.high[2] && b.low[2] <= a.high[2];
 }
 
-void widen(SpaceBox& box, const SpaceBox& by) noexcept;
+inline void widen(SpaceBox& box, const SpaceBox& by) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.low[axis] = by.low[axis] < box.low[axis] ? by.low[axis] : box.low[axis];
+    box.high[axis] = by.high[axis] > box.high[axis] ? by.high[axis] : box.high[axis];
+  }
+}
 SpaceBox box_around(std::span<const SpacePoint> places, const Corners& triangle) noexcept;
 
 /// The tree keeps no reference to what it was built of.
@@ -84,8 +89,13 @@ private:
     std::uint32_t count; ///< 0: no leaf
   };
   void build(std::span<const SpacePoint> places, std::span<const Corners> triangles);
-  void split(std::uint32_t node, std::uint32_t begin, std::uint32_t end,
-             std::vector<SpacePoint>& middles);
+  /// Of a triangle's box, together, because they are compared much more often than they are moved.
+  struct Middle {
+    SpacePoint at;
+    std::uint32_t number; ///< of the triangle among those that were chosen
+  };
+  void split(std::uint32_t node, std::uint32_t begin, std::span<Middle> middles);
+  SpaceBox box_of(const Node& node) const noexcept;
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_; ///< triangles, leaf by leaf

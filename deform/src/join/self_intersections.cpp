@@ -18,16 +18,11 @@ std::vector<TrianglePair> sorted_pairs(std::vector<TrianglePair> pairs, std::siz
   return pairs;
 }
 
-} // namespace
-
-std::vector<TrianglePair> intersections_between(std::span<const SpacePoint> places,
-                                                std::span<const Corners> triangles,
-                                                std::span<const std::uint32_t> some,
-                                                std::span<const std::uint32_t> others,
-                                                std::size_t most) {
-  std::vector<TrianglePair> found;
-  if (some.empty() || others.empty()) return found;
-  const BoxTree tree(places, triangles, {some.begin(), some.end()});
+/// Of triangles of a tree with others, unsorted.
+void find_between(std::span<const SpacePoint> places, std::span<const Corners> triangles,
+                  const BoxTree& tree, std::span<const std::uint32_t> others, std::size_t most,
+                  std::vector<TrianglePair>& found) {
+  if (tree.empty() || others.empty()) return;
   std::vector<std::uint32_t> near;
   for (const std::uint32_t triangle : others)
     if (meet(tree.box(), box_around(places, triangles[triangle]))) near.push_back(triangle);
@@ -37,6 +32,18 @@ std::vector<TrianglePair> intersections_between(std::span<const SpacePoint> plac
         triangles_meet(places, triangles[mine], triangles[other]))
       found.push_back(std::minmax(mine, other));
   });
+}
+
+} // namespace
+
+std::vector<TrianglePair> intersections_between(std::span<const SpacePoint> places,
+                                                std::span<const Corners> triangles,
+                                                std::span<const std::uint32_t> some,
+                                                std::span<const std::uint32_t> others,
+                                                std::size_t most) {
+  std::vector<TrianglePair> found;
+  const BoxTree tree(places, triangles, {some.begin(), some.end()});
+  find_between(places, triangles, tree, others, most, found);
   return sorted_pairs(std::move(found), most);
 }
 
@@ -45,21 +52,21 @@ std::vector<TrianglePair> self_intersections_of(std::span<const SpacePoint> plac
                                                 std::span<const std::uint32_t> changed,
                                                 std::size_t most) {
   std::vector<char> is_changed(triangles.size(), 0);
-  std::vector<TrianglePair> found;
+  std::vector<TrianglePair> degenerate;
   for (const std::uint32_t triangle : changed) {
     is_changed[triangle] = 1;
     const Corners& corner = triangles[triangle];
     if (is_degenerate(places[corner[0]], places[corner[1]], places[corner[2]]))
-      found.emplace_back(triangle, triangle);
+      degenerate.emplace_back(triangle, triangle);
   }
   std::vector<std::uint32_t> others;
   for (std::uint32_t triangle = 0; triangle < triangles.size(); ++triangle)
     if (!is_changed[triangle]) others.push_back(triangle);
-  const auto append = [&](const std::vector<TrianglePair>& more) {
-    found.insert(found.end(), more.begin(), more.end());
-  };
-  append(intersections_between(places, triangles, changed, others, most));
   const BoxTree tree(places, triangles, {changed.begin(), changed.end()});
+  std::vector<TrianglePair> found;
+  find_between(places, triangles, tree, others, most, found);
+  found = sorted_pairs(std::move(found), most);
+  found.insert(found.end(), degenerate.begin(), degenerate.end());
   tree.visit_pairs(tree, [&](std::uint32_t one, std::uint32_t other) {
     if (one < other && found.size() < most &&
         triangles_meet(places, triangles[one], triangles[other]))
