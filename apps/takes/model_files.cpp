@@ -1,22 +1,53 @@
 #include "takes/model_files.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <string>
 #include <vector>
+
+#include <nendo/base/text.hpp>
 
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/side_by_side.hpp>
 
+#include "cli/cli.hpp"
 #include "cli/model_files.hpp"
 
 namespace nendo::takes {
+namespace {
+
+double size_of(const deform::Mesh& model) {
+  return (model.vertices.rowwise().maxCoeff() - model.vertices.rowwise().minCoeff()).maxCoeff();
+}
+
+/// One in millimetres beside one in metres is not to be seen.
+void note_other_units(const std::vector<std::string>& files,
+                      const std::vector<deform::Mesh>& models) {
+  constexpr double too_many = 30.0;
+  const auto [least, most] =
+      std::minmax_element(models.begin(), models.end(),
+                          [](const auto& a, const auto& b) { return size_of(a) < size_of(b); });
+  const double times = size_of(*most) / size_of(*least);
+  if (!(times > too_many) || !std::isfinite(times)) return;
+  const auto name = [&](auto model) {
+    return printable(files[static_cast<std::size_t>(model - models.begin())]);
+  };
+  cli::note(name(most) + " is " + std::to_string(std::lround(times)) + " times as large as " +
+            name(least) + ", which is a speck beside it; if their units differ, scale one of them");
+}
+
+} // namespace
 
 Result<deform::Mesh> read_models(const std::string& name) {
   std::vector<deform::Mesh> models;
-  for (const std::string& file : cli::files_of_name(name)) {
+  const std::vector<std::string> files = cli::files_of_name(name);
+  for (const std::string& file : files) {
     auto model = deform::read_mesh(file);
     if (!model) return model;
     models.push_back(*std::move(model));
   }
   if (models.size() == 1) return std::move(models.front());
+  note_other_units(files, models);
   auto both = deform::side_by_side(models);
   if (!both) return Error{both.error().code, name + ": " + both.error().message};
   return both;

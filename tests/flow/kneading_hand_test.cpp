@@ -1,11 +1,15 @@
 #include <nendo/flow/kneading_hand.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <doctest/doctest.h>
 
+#include <nendo/deform/cut.hpp>
+#include <nendo/deform/side_by_side.hpp>
 #include <nendo/hand/hand_body.hpp>
 #include <nendo/hand/joint_limits.hpp>
 
@@ -94,6 +98,44 @@ TEST_SUITE("kneading_hand") {
         CHECK(fastest_m_s > 0.02);
         CHECK(fastest_rad_s < 8.0);
       }
+    }
+  }
+
+  TEST_CASE("of models side by side each hand takes the one on its side, and puts it down beside") {
+    const std::array models{test::sphere(24, 36, 1.0), test::sphere(24, 36, 0.5)};
+    const auto pair = deform::side_by_side(models);
+    REQUIRE(pair);
+    const auto extent = [](const deform::Mesh& mesh) -> Eigen::Vector3d {
+      return mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff();
+    };
+    const double scale = size_m / extent(*pair).maxCoeff();
+    const std::vector<deform::Mesh> balls = deform::separate(*pair);
+    REQUIRE(balls.size() == 2);
+    for (const deform::Mesh& ball : balls) {
+      const Eigen::Vector3d middle_m =
+          scale * 0.5 * (ball.vertices.rowwise().maxCoeff() + ball.vertices.rowwise().minCoeff());
+      const double radius_m = 0.5 * scale * extent(ball).x();
+      const bool is_first = &ball == &balls.front();
+      const bool is_left =
+          (balls[0].vertices.row(0).mean() < balls[1].vertices.row(0).mean()) == is_first;
+      const Side side = is_left ? Side::left : Side::right;
+      const double sign = is_left ? -1.0 : 1.0;
+      CAPTURE(name_of(side));
+      const KneadingHand hand = hand_on(*pair, side, KneadTask::carry);
+      const auto pinched = [&](double time_s) -> Eigen::Vector3d {
+        const auto pose =
+            hand::HandSkeleton(side).pose(hand.angles(time_s), hand.wrist()->at(time_s));
+        return 0.5 * (pose[hand::Joint::thumb_tip].translation() +
+                      pose[hand::Joint::index_tip].translation());
+      };
+      const Eigen::Vector3d taken = pinched(1.75) - middle_m;
+      CHECK(taken.norm() < radius_m + 0.01);
+      CHECK(sign * taken.x() > 0.0);
+      CHECK(taken.y() > 0.3 * radius_m);
+      const Eigen::Vector3d way = pinched(6.9) - pinched(1.75);
+      CHECK(sign * way.x() == doctest::Approx(0.7 * 2.0 * radius_m).epsilon(0.1));
+      CHECK(std::abs(way.y()) < 0.003);
+      CHECK(pinched(4.0).y() > pinched(1.75).y() + 0.4 * 2.0 * radius_m);
     }
   }
 

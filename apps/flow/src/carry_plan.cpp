@@ -13,6 +13,7 @@ using Eigen::Vector3d;
 using hand::JointAngles;
 
 /// Takes the upper part by the side, lifts it, turns it half-way round, presses it on, and leaves.
+/// One of several models is lifted over to the side instead, and put down there.
 class Carry final : public KneadPlan {
 public:
   Carry(const KneadedModel& model, const hand::HandSkeleton& skeleton)
@@ -21,6 +22,10 @@ public:
     taken_at_.y() = model.low.y() + KneadedModel::upper * model.height();
     const double side = fingers_.outwards().x() > 0.0 ? 1.0 : -1.0;
     taken_at_.x() += side * std::max(0.0, model.upper_radius_m - into_m);
+    if (!model.taken_at) return;
+    const double breadth = model.high.x() - model.low.x();
+    taken_at_ = *model.taken_at - side * std::min(into_m, 0.15 * breadth) * Vector3d::UnitX();
+    aside_ = side * aside * breadth * Vector3d::UnitX();
   }
 
   double length_s() const noexcept override { return 8.6; }
@@ -37,6 +42,11 @@ private:
   /// Of the part: about the vertical line through the neck's middle, where the faces of a cut then
   /// lie on each other the best.
   Isometry3d motion_at(double time_s) const noexcept {
+    if (model_.taken_at) {
+      const double up = lift * model_.height() * (ease(time_s, 1.8, 3.0) - ease(time_s, 5.4, 6.8));
+      return Isometry3d(
+          Eigen::Translation3d(ease(time_s, 2.4, 6.0) * aside_ + up * Vector3d::UnitY()));
+    }
     const double turned = std::numbers::pi * ease(time_s, 2.8, 5.4);
     const double lifted = lift * model_.height() * ease(time_s, 1.8, 3.0) -
                           (lift + press) * model_.height() * ease(time_s, 5.4, 6.8);
@@ -50,10 +60,12 @@ private:
   static constexpr double into_m = 0.012;     ///< the model, from its side
   static constexpr double lift = 0.5;         ///< of the model's height
   static constexpr double press = 0.02;       ///< likewise: deeper than it was
+  static constexpr double aside = 0.7;        ///< of its breadth
 
   KneadedModel model_;
   PinchingFingers fingers_;
   Vector3d taken_at_;
+  Vector3d aside_ = Vector3d::Zero();
 };
 
 /// The index finger leads a wire's end, or a knife, through the model from the front. Then the

@@ -2,6 +2,7 @@
 // What a kneading hand does at each time: where its wrist is, and how its fingers are bent.
 
 #include <memory>
+#include <optional>
 
 #include <nendo/flow/kneading_hand.hpp>
 
@@ -15,6 +16,10 @@ struct KneadedModel {
   Eigen::Vector3d low, high;   ///< corners of its box
   double upper_radius_m = 0.0; ///< how far it reaches to its sides there
   Eigen::Vector3d neck;        ///< the middle of what is cut; there its upper part is turned
+
+  /// Of one of several models side by side: where its upper part reaches the farthest to the hand's
+  /// side. All else is that model's.
+  std::optional<Eigen::Vector3d> taken_at{};
 
   Eigen::Vector3d middle() const { return 0.5 * (low + high); }
   double height() const { return high.y() - low.y(); }

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
 
+#include <nendo/deform/cut.hpp>
 #include <nendo/deform/triangles.hpp>
 
 #include "knead_plan.hpp"
@@ -65,6 +68,52 @@ Eigen::Vector3d neck_of(const deform::Mesh& model, const Eigen::Vector3d& low,
   return middle;
 }
 
+/// A model on the stage, of `scale` metres a unit.
+KneadedModel kneaded(const deform::Mesh& model, double scale) {
+  const Eigen::Vector3d low = model.vertices.rowwise().minCoeff();
+  const Eigen::Vector3d high = model.vertices.rowwise().maxCoeff();
+  return {scale * low, scale * high, scale * upper_radius_of(model, low, high),
+          scale * neck_of(model, low, high)};
+}
+
+/// Where the upper part reaches the farthest to a side: 1 to +X, -1 to -X.
+Eigen::Vector3d farthest_of_upper(const deform::Mesh& model, double side) {
+  const Eigen::VectorXd heights = model.vertices.row(1);
+  const double low = heights.minCoeff();
+  const double height = heights.maxCoeff() - low;
+  Eigen::Vector3d farthest = model.vertices.col(0);
+  double most = -std::numeric_limits<double>::max();
+  for (const auto vertex : model.vertices.colwise()) {
+    const bool is_upper = std::abs(vertex.y() - low - KneadedModel::upper * height) < 0.1 * height;
+    if (!is_upper || side * vertex.x() <= most) continue;
+    most = side * vertex.x();
+    farthest = vertex;
+  }
+  return farthest;
+}
+
+/// Of models side by side, the one that is the farthest on the hand's side; nothing if no two parts
+/// stand beside each other, as a head does not stand beside its trunk.
+std::optional<deform::Mesh> outermost(const deform::Mesh& model, double side) {
+  std::vector<deform::Mesh> parts = deform::separate(model);
+  const auto reach = [&](const deform::Mesh& part) {
+    return std::pair(part.vertices.row(0).minCoeff(), part.vertices.row(0).maxCoeff());
+  };
+  const auto out = [&](const deform::Mesh& part) {
+    const auto [low, high] = reach(part);
+    return side * (low + high);
+  };
+  const auto chosen = std::max_element(
+      parts.begin(), parts.end(), [&](const auto& a, const auto& b) { return out(a) < out(b); });
+  if (chosen == parts.end()) return std::nullopt;
+  const auto [low, high] = reach(*chosen);
+  const bool is_apart = std::any_of(parts.begin(), parts.end(), [&](const deform::Mesh& other) {
+    const auto [least, most] = reach(other);
+    return std::min(high, most) - std::max(low, least) < 0.0;
+  });
+  return is_apart ? std::optional(std::move(*chosen)) : std::nullopt;
+}
+
 } // namespace
 
 std::string_view name_of(KneadTask task) noexcept {
@@ -95,10 +144,14 @@ Result<KneadingHand> KneadingHand::make(const deform::Mesh& model,
   if (!(size > 0.0) || !std::isfinite(size))
     return Error{Errc::bad_input, "the model has no size, so hands find nothing to press"};
   const double scale = model_size_m / size;
-  const auto plan = plan_of(task,
-                            {scale * low, scale * high, scale * upper_radius_of(model, low, high),
-                             scale * neck_of(model, low, high)},
-                            skeleton);
+  KneadedModel on_stage = kneaded(model, scale);
+  const double side = skeleton.side() == Side::right ? 1.0 : -1.0;
+  const auto alone = task == KneadTask::carry ? outermost(model, side) : std::nullopt;
+  if (alone) {
+    on_stage = kneaded(*alone, scale);
+    on_stage.taken_at = scale * farthest_of_upper(*alone, side);
+  }
+  const auto plan = plan_of(task, on_stage, skeleton);
   const auto count = static_cast<std::size_t>(std::ceil(plan->length_s() / knead_step_s)) + 1;
   auto keys = std::make_shared<std::vector<hand::JointAngles>>();
   std::vector<Eigen::Isometry3d> poses;
