@@ -8,6 +8,7 @@
 
 #include "cli/cli.hpp"
 #include "gloves/calibration_names.hpp"
+#include "gloves/kept_ranges.hpp"
 
 namespace nendo::gloves {
 namespace {
@@ -125,13 +126,13 @@ void add_calibration_options(cli::Command& command, CalibrationOptions& options)
   command.add_option("--calibration", options.calibration,
                      "A file or stored name to use instead (see nendo calibration), or none");
   command.add_flag("--adapt", options.adapt,
-                   "Learn the wearer's ranges while the glove is used, in place of a calibration");
+                   "Learn the wearer's ranges while the glove is used, in place of a calibration; "
+                   "with --user, nendo run keeps them, and they are gone on from");
 }
 
 Result<void> check(const CalibrationOptions& options) {
-  if (!options.adapt || (options.user.empty() && options.calibration.empty())) return {};
-  return Error{Errc::usage, "--adapt learns the hand from how it moves; leave out " +
-                                std::string(options.user.empty() ? "--calibration" : "--user")};
+  if (!options.adapt || options.calibration.empty()) return {};
+  return Error{Errc::usage, "--adapt learns the hand from how it moves; leave out --calibration"};
 }
 
 Result<void> HandLength::check() const {
@@ -160,6 +161,9 @@ Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
   hand::Wearer wearer{average_hand(glove.counts), average_hand(glove.counts)};
   if (options.adapt) {
     wearer.adapt = glove.counts;
+    const auto learned = kept_ranges(glove, side, options.user);
+    if (!learned) return learned.error();
+    wearer.learned = *learned;
     return wearer;
   }
   if (options.calibration == "none") return wearer;

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include <spdlog/fmt/fmt.h>
 
+#include <nendo/base/text.hpp>
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/supports.hpp>
 
 #include "cli/cli.hpp"
+#include "gloves/kept_ranges.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/run_arguments.hpp"
 #include "service/service_notice.hpp"
@@ -80,6 +83,25 @@ void choose_injective(const deform::Mesh& model, RunArguments& options) {
                         options.run.mesh, most_injective_unasked));
 }
 
+/// Of hands that --adapt has learned for a --user.
+Result<void> keep_learned(const session::RunOptions& options,
+                          const std::vector<gloves::OpenHand>& hands,
+                          const flow::LoopStats& stats) {
+  const std::string& user = options.calibration.user;
+  for (const gloves::OpenHand& hand : hands) {
+    if (!hand.wearer.adapt || user.empty()) continue;
+    const std::size_t slot = flow::Placement::index_of(hand.side);
+    const auto kept =
+        gloves::keep_ranges(hand.glove->info(), stats.range_sides[slot], user, stats.ranges[slot]);
+    if (!kept) return kept.error();
+    cli::note(kept->empty() ? std::string(name_of(hand.side)) + " hand: learned nothing, for no "
+                                                                "joint went to and fro"
+                            : "what was learned is kept in " + printable(kept->string()) +
+                                  "; --user " + printable(user) + " uses it");
+  }
+  return {};
+}
+
 int run(RunArguments& options) {
   if (const auto fine = check(options); !fine) return cli::report(fine.error());
   auto published = session::publish_to(options.publish);
@@ -118,6 +140,8 @@ int run(RunArguments& options) {
   for (const auto& sink : *published)
     outcome->published.push_back(sink->end());
   session::print_summary(wanted, opened->hands, *outcome);
+  if (const auto kept = keep_learned(wanted, opened->hands, outcome->stats); !kept)
+    return cli::report(kept.error());
   const bool recorded =
       std::all_of(outcome->recordings.begin(), outcome->recordings.end(),
                   [](const auto& of_loop) { return of_loop.recorded.has_value(); });

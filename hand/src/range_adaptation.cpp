@@ -40,6 +40,25 @@ double drawn(double bound, double end, double outwards, double amplitude, double
 
 } // namespace
 
+SensorCalibration line_of(std::size_t slot, const SensorRange& range) noexcept {
+  const SensorCalibration usual = default_calibration({1, true}).sensors[slot];
+  const double span = range.high_counts - range.low_counts;
+  if (range.turns == 0 || usual.gain_rad_per_count == 0.0 || !(span > 0.0)) return {};
+  const double gain_rad = usual.gain_rad_per_count / span;
+  return {gain_rad, range.low_counts - usual.angle_rad(RawCount{0}) / gain_rad};
+}
+
+LearnedRanges learned_from(const SensorRanges& ranges, Side side) noexcept {
+  LearnedRanges learned{side, {}};
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto turns =
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(ranges[slot].turns, 1u << 20));
+    learned.sensors[slot] = {ranges[slot].low_counts, ranges[slot].high_counts, turns - turns / 2,
+                             turns / 2, line_of(slot, ranges[slot])};
+  }
+  return learned;
+}
+
 RangeAdaptation::RangeAdaptation(CountScale counts) noexcept
     : counts_(counts), calibration_(default_calibration(counts)) {
   const Calibration usual_ranges = default_calibration({1, true});

@@ -240,8 +240,10 @@ void DeformLoop::count(Hand& hand, std::size_t samples, HostTime now) noexcept {
     rate.last = hand.latest.arrival;
   }
   stats_.spikes[hand.slot] = hand.gate.spikes();
-  if (const auto* learned = hand.calibration.adaptation())
+  if (const auto* learned = hand.calibration.adaptation()) {
     stats_.ranges[hand.slot] = learned->ranges();
+    stats_.range_sides[hand.slot] = learned->side().value_or(hand.input.side);
+  }
 }
 
 /// By the times at which ticks are due, so that a replay does the same.

@@ -39,6 +39,12 @@ struct LearnedRanges {
   std::array<Sensor, sensor_slots> sensors{};
 };
 
+/// Returns the line that such a range leads to in the end; a gain of 0 for one that was not
+/// learned.
+SensorCalibration line_of(std::size_t slot, const SensorRange& range) noexcept;
+/// Returns a state from which another learner goes on: its lines are those that the ranges lead to.
+LearnedRanges learned_from(const SensorRanges& ranges, Side side) noexcept;
+
 class RangeAdaptation {
 public:
   /// Learning changes the angle of a count at most this fast.
@@ -69,6 +75,8 @@ public:
   const Calibration& calibration() const noexcept { return calibration_; }
   /// Returns the ranges towards which the lines drift; zeros for slots that no glove fills.
   SensorRanges ranges() const noexcept;
+  /// Returns the hand whose ranges are learned; nullopt before the first sample.
+  std::optional<Side> side() const noexcept { return side_; }
   /// Returns the state from which another learner can go on. It is nullopt before the first sample,
   /// because then not even the hand is known.
   std::optional<LearnedRanges> learned() const noexcept;

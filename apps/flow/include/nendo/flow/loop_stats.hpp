@@ -37,6 +37,7 @@ struct LoopStats {
   std::array<std::uint64_t, 2> switch_uses{}; ///< how often a hand's switch was turned on
   std::array<std::array<std::uint64_t, sensor_slots>, 2> spikes{}; ///< kept out, by sensor
   std::array<hand::SensorRanges, 2> ranges{}; ///< learned; zeros if not adapting
+  std::array<Side, 2> range_sides{};          ///< of the gloves that taught them
   std::uint64_t grabs = 0;                    ///< times the hands took hold again
   std::uint64_t commits = 0;                  ///< times the shape became the rest shape
   std::uint64_t undos = 0;                    ///< times it became an earlier one

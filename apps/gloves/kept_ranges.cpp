@@ -1,0 +1,97 @@
+#include "gloves/kept_ranges.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <system_error>
+
+#include <nendo/base/text.hpp>
+#include <nendo/hand/calibration_file.hpp>
+#include <nendo/hand/calibration_store.hpp>
+
+#include "gloves/glove_calibration.hpp"
+
+namespace nendo::gloves {
+namespace {
+
+constexpr const char* method = "adapted";
+/// So many turns make a sensor's confidence a half.
+constexpr double half_sure_turns = 8.0;
+
+std::filesystem::path path_of(const driver::GloveInfo& glove, Side side, const std::string& user) {
+  return hand::calibration_folders().own /
+         hand::calibration_file_name(user, serial_of(glove), side);
+}
+
+double confidence_of(std::uint64_t turns) noexcept {
+  const auto number = static_cast<double>(turns);
+  return number / (number + half_sure_turns);
+}
+
+std::uint64_t turns_of(double confidence) noexcept {
+  constexpr double most_turns = 1e6;
+  const double left = std::max(1.0 - confidence, half_sure_turns / most_turns);
+  return static_cast<std::uint64_t>(std::llround(half_sure_turns * confidence / left));
+}
+
+/// Reads what is kept, if anything is.
+Result<std::optional<hand::WearerCalibration>> kept(const driver::GloveInfo& glove, Side side,
+                                                    const std::string& user) {
+  const std::filesystem::path path = path_of(glove, side, user);
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return std::optional<hand::WearerCalibration>();
+  auto wearer = hand::read_calibration(path);
+  if (!wearer) return wearer.error();
+  if (wearer->method != method)
+    return Error{Errc::bad_input, printable(path.string()) +
+                                      ": was made by poses, which know the hand better; leave out "
+                                      "--adapt to use it, or name another --user"};
+  if (wearer->counts != glove.counts)
+    return Error{Errc::bad_input,
+                 printable(path.string()) + ": is of another kind of glove; name another --user"};
+  return std::optional(*std::move(wearer));
+}
+
+} // namespace
+
+Result<std::optional<hand::LearnedRanges>> kept_ranges(const driver::GloveInfo& glove, Side side,
+                                                       const std::string& user) {
+  if (user.empty()) return std::optional<hand::LearnedRanges>();
+  const auto wearer = kept(glove, side, user);
+  if (!wearer) return wearer.error();
+  if (!*wearer) return std::optional<hand::LearnedRanges>();
+  hand::SensorRanges ranges{};
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    if (const auto& quality = (*wearer)->quality[slot])
+      ranges[slot] = {quality->least_counts, quality->most_counts, turns_of(quality->confidence)};
+  return std::optional(hand::learned_from(ranges, side));
+}
+
+Result<std::filesystem::path> keep_ranges(const driver::GloveInfo& glove, Side side,
+                                          const std::string& user,
+                                          const hand::SensorRanges& ranges) {
+  const bool is_any = std::any_of(ranges.begin(), ranges.end(),
+                                  [](const hand::SensorRange& range) { return range.turns > 0; });
+  if (!is_any) return std::filesystem::path();
+  if (const auto before = kept(glove, side, user); !before) return before.error();
+  hand::WearerCalibration wearer;
+  wearer.user = user;
+  wearer.glove_model = glove.model;
+  wearer.glove_serial = serial_of(glove);
+  wearer.counts = glove.counts;
+  wearer.side = side;
+  wearer.made = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  wearer.method = method;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    wearer.calibration.sensors[slot] = hand::line_of(slot, ranges[slot]);
+    if (wearer.calibration.sensors[slot].gain_rad_per_count == 0.0) continue;
+    wearer.quality[slot] = hand::SensorQuality{
+        0.0, ranges[slot].low_counts, ranges[slot].high_counts, confidence_of(ranges[slot].turns)};
+  }
+  std::filesystem::path path = path_of(glove, side, user);
+  const auto written = hand::write_calibration(path, wearer);
+  if (!written) return written.error();
+  return path;
+}
+
+} // namespace nendo::gloves
