@@ -106,10 +106,10 @@ std::optional<deform::Mesh> outermost(const deform::Mesh& model, double side) {
   const auto chosen = std::max_element(
       parts.begin(), parts.end(), [&](const auto& a, const auto& b) { return out(a) < out(b); });
   if (chosen == parts.end()) return std::nullopt;
-  const auto [low, high] = reach(*chosen);
+  const auto own = reach(*chosen);
   const bool is_apart = std::any_of(parts.begin(), parts.end(), [&](const deform::Mesh& other) {
     const auto [least, most] = reach(other);
-    return std::min(high, most) - std::max(low, least) < 0.0;
+    return std::min(own.second, most) - std::max(own.first, least) < 0.0;
   });
   return is_apart ? std::optional(std::move(*chosen)) : std::nullopt;
 }
