@@ -503,7 +503,6 @@ TEST_SUITE("run") {
           Case{{"--pinches", "open"}, 2, "closed or measured"},
           Case{{"--hand-length", "0.19"}, 2, "millimetres"},
           Case{{"--hand-length", "nan"}, 2, "--hand-length"},
-          Case{{"--adapt", "--user", "anna"}, 2, "--adapt"},
           Case{{"--adapt", "--calibration", "none"}, 2, "--adapt"},
           Case{{"--mask", "/no/such/mask.toml"}, 5, "/no/such/mask.toml"},
           Case{{"--mask", NENDO_MODELS "/face.puppet.toml"}, 5, "is a puppet"},
