@@ -178,7 +178,7 @@ Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
   if (options.user.empty()) {
     if (const auto recorded = recorded_wearer(glove, side)) return *recorded;
   }
-  return stored_wearer(glove, side, std::move(wearer), options.user);
+  return stored_wearer(glove, side, wearer, options.user);
 }
 
 bool is_uncalibrated(const driver::GloveInfo& glove, const hand::Wearer& wearer, Side side) {

@@ -35,7 +35,7 @@ ContactPoints::ContactPoints(std::size_t most)
 }
 
 void ContactPoints::clear(double cell) noexcept {
-  constexpr auto half = static_cast<float>(cells_a_side / 2);
+  constexpr float half = 0.5F * static_cast<float>(cells_a_side);
   cells_ = {static_cast<float>(1.0 / cell), half, 2.0F * half - 1.0F};
   vertices_.clear();
   is_chosen_ = false;

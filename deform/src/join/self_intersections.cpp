@@ -30,7 +30,7 @@ void find_between(std::span<const SpacePoint> places, std::span<const Corners> t
   tree.visit_pairs(near_tree, [&](std::uint32_t mine, std::uint32_t other) {
     if (mine != other && found.size() < most &&
         triangles_meet(places, triangles[mine], triangles[other]))
-      found.push_back(std::minmax(mine, other));
+      found.emplace_back(std::min(mine, other), std::max(mine, other));
   });
 }
 
