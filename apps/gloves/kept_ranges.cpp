@@ -18,11 +18,6 @@ constexpr const char* method = "adapted";
 /// So many turns make a sensor's confidence a half.
 constexpr double half_sure_turns = 8.0;
 
-std::filesystem::path path_of(const driver::GloveInfo& glove, Side side, const std::string& user) {
-  return hand::calibration_folders().own /
-         hand::calibration_file_name(user, serial_of(glove), side);
-}
-
 double confidence_of(std::uint64_t turns) noexcept {
   const auto number = static_cast<double>(turns);
   return number / (number + half_sure_turns);
@@ -34,10 +29,9 @@ std::uint64_t turns_of(double confidence) noexcept {
   return static_cast<std::uint64_t>(std::llround(half_sure_turns * confidence / left));
 }
 
-/// Reads what is kept, if anything is.
-Result<std::optional<hand::WearerCalibration>> kept(const driver::GloveInfo& glove, Side side,
-                                                    const std::string& user) {
-  const std::filesystem::path path = path_of(glove, side, user);
+/// Reads what is kept there, if anything is.
+Result<std::optional<hand::WearerCalibration>> kept(const std::filesystem::path& path,
+                                                    CountScale counts) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return std::optional<hand::WearerCalibration>();
   auto wearer = hand::read_calibration(path);
@@ -46,7 +40,7 @@ Result<std::optional<hand::WearerCalibration>> kept(const driver::GloveInfo& glo
     return Error{Errc::bad_input, printable(path.string()) +
                                       ": was made by poses, which know the hand better; leave out "
                                       "--adapt to use it, or name another --user"};
-  if (wearer->counts != glove.counts)
+  if (wearer->counts != counts)
     return Error{Errc::bad_input,
                  printable(path.string()) + ": is of another kind of glove; name another --user"};
   return std::optional(*std::move(wearer));
@@ -57,7 +51,9 @@ Result<std::optional<hand::WearerCalibration>> kept(const driver::GloveInfo& glo
 Result<std::optional<hand::LearnedRanges>> kept_ranges(const driver::GloveInfo& glove, Side side,
                                                        const std::string& user) {
   if (user.empty()) return std::optional<hand::LearnedRanges>();
-  const auto wearer = kept(glove, side, user);
+  const auto path = hand::own_calibration_path(user, serial_of(glove), side);
+  if (!path) return path.error();
+  const auto wearer = kept(*path, glove.counts);
   if (!wearer) return wearer.error();
   if (!*wearer) return std::optional<hand::LearnedRanges>();
   hand::SensorRanges ranges{};
@@ -73,7 +69,9 @@ Result<std::filesystem::path> keep_ranges(const driver::GloveInfo& glove, Side s
   const bool is_any = std::any_of(ranges.begin(), ranges.end(),
                                   [](const hand::SensorRange& range) { return range.turns > 0; });
   if (!is_any) return std::filesystem::path();
-  if (const auto before = kept(glove, side, user); !before) return before.error();
+  auto path = hand::own_calibration_path(user, serial_of(glove), side);
+  if (!path) return path;
+  if (const auto before = kept(*path, glove.counts); !before) return before.error();
   hand::WearerCalibration wearer;
   wearer.user = user;
   wearer.glove_model = glove.model;
@@ -88,8 +86,7 @@ Result<std::filesystem::path> keep_ranges(const driver::GloveInfo& glove, Side s
     wearer.quality[slot] = hand::SensorQuality{
         0.0, ranges[slot].low_counts, ranges[slot].high_counts, confidence_of(ranges[slot].turns)};
   }
-  std::filesystem::path path = path_of(glove, side, user);
-  const auto written = hand::write_calibration(path, wearer);
+  const auto written = hand::write_calibration(*path, wearer);
   if (!written) return written.error();
   return path;
 }

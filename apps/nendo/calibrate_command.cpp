@@ -40,6 +40,7 @@ struct Options {
   double length_mm = 1e3 * hand::HandSize{}.length_m;
   double breadth_mm = 1e3 * hand::HandSize{}.breadth_m;
   std::string stiff;
+  SensorMask stiff_sensors{}; ///< what `stiff` says
   bool quick = false;
   bool touch_up = false;
   bool fresh = false;
@@ -81,7 +82,6 @@ Result<void> check(const Options& options) {
   if (options.user.empty())
     return Error{Errc::usage, "--user is missing: whose hand is it? e.g. --user anna"};
   if (auto fine = gloves::HandLength{options.length_mm}.check(); !fine) return fine;
-  if (const auto stiff = sensors_of(options.stiff); !stiff) return stiff.error();
   if (!(options.breadth_mm >= 50.0 && options.breadth_mm <= 130.0))
     return Error{Errc::usage, "--hand-breadth: use 50 to 130 millimetres, across the knuckles"};
   const bool at_terminal = ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0;
@@ -98,7 +98,7 @@ hand::HandSize size_of(const Options& options) {
 hand::FitOptions fit_options(const Options& options, CountScale counts,
                              const std::optional<hand::WearerCalibration>& known) {
   hand::FitOptions fitting;
-  fitting.stiff = *sensors_of(options.stiff);
+  fitting.stiff = options.stiff_sensors;
   if (known) {
     fitting.scale = counts;
     fitting.mode = hand::FitMode::touch_up;
@@ -132,20 +132,8 @@ Wearer describe(const Options& options, Side side, CountScale counts, SensorMask
   return wearer;
 }
 
-/// Returns where the other commands find the calibration.
-fs::path stored_path(const Wearer& wearer, const Options& options) {
-  return hand::calibration_folders().own /
-         hand::calibration_file_name(options.user, wearer.about.glove_serial, wearer.about.side);
-}
-
-void set_path(Wearer& wearer, const Options& options) {
-  wearer.path = options.out.empty() ? stored_path(wearer, options) : fs::path(options.out);
-}
-
 /// For a touch-up, takes over the calibration that there is.
-Result<void> begin_with_known(Wearer& wearer, const Options& options) {
-  if (!options.touch_up) return {};
-  const fs::path stored = stored_path(wearer, options);
+Result<void> begin_with_known(Wearer& wearer, const fs::path& stored) {
   std::error_code error;
   if (!fs::exists(stored, error))
     return Error{Errc::bad_input, printable(stored.string()) +
@@ -162,6 +150,17 @@ Result<void> begin_with_known(Wearer& wearer, const Options& options) {
   if (!known->method.ends_with(mark)) known->method += mark;
   wearer.about = *std::move(known);
   return {};
+}
+
+/// Sets where the calibration goes, and for a touch-up takes over the one that there is.
+Result<void> find_files(Wearer& wearer, const Options& options) {
+  wearer.path = options.out;
+  if (!options.out.empty() && !options.touch_up) return {};
+  const auto stored =
+      hand::own_calibration_path(options.user, wearer.about.glove_serial, wearer.about.side);
+  if (!stored) return stored.error();
+  if (options.out.empty()) wearer.path = *stored;
+  return options.touch_up ? begin_with_known(wearer, *stored) : Result<void>();
 }
 
 /// Returns the path of the file, beside the calibration, with the poses of a session that was quit.
@@ -206,8 +205,7 @@ int fit_and_write(const Options& options, Wearer& wearer,
 int calibrate_from_capture(const Options& options) {
   const auto capture = calibrate::read_capture(options.from);
   if (!capture) return cli::report(capture.error());
-  calibrate::CalibrationGuide guide(poses_for(options), capture->counts,
-                                    *sensors_of(options.stiff));
+  calibrate::CalibrationGuide guide(poses_for(options), capture->counts, options.stiff_sensors);
   guide.restore(capture->readings, capture->free_motion);
   SensorMask sensors;
   for (const auto& reading : capture->readings)
@@ -226,8 +224,7 @@ int calibrate_from_capture(const Options& options) {
     cli::note(options.from + ": ends before the pose " +
               std::string(hand::pose_of(guide.asked()).name) + " was held");
   Wearer wearer = describe(options, capture->side, capture->counts, sensors);
-  set_path(wearer, options);
-  if (const auto fine = begin_with_known(wearer, options); !fine) return cli::report(fine.error());
+  if (const auto fine = find_files(wearer, options); !fine) return cli::report(fine.error());
   return fit_and_write(options, wearer, guide);
 }
 
@@ -257,9 +254,8 @@ int calibrate_glove(const Options& options) {
   Wearer wearer = describe(options, info.side, info.counts, info.sensors);
   wearer.about.glove_model = info.model;
   wearer.about.glove_serial = gloves::serial_of(info);
-  set_path(wearer, options);
-  if (const auto fine = begin_with_known(wearer, options); !fine) return cli::report(fine.error());
-  calibrate::CalibrationGuide guide(poses_for(options), info.counts, *sensors_of(options.stiff));
+  if (const auto fine = find_files(wearer, options); !fine) return cli::report(fine.error());
+  calibrate::CalibrationGuide guide(poses_for(options), info.counts, options.stiff_sensors);
   std::error_code error;
   bool went_on = false;
   if (!options.fresh && fs::exists(unfinished_path(wearer), error)) {
@@ -280,7 +276,10 @@ int calibrate_glove(const Options& options) {
   return code == 0 ? 0 : (keep_for_later(wearer, guide, went_on), code);
 }
 
-int calibrate(const Options& options) {
+int calibrate(Options& options) {
+  const auto stiff = sensors_of(options.stiff);
+  if (!stiff) return cli::report(stiff.error());
+  options.stiff_sensors = *stiff;
   if (const auto fine = check(options); !fine) return cli::report(fine.error());
   return options.from.empty() ? calibrate_glove(options) : calibrate_from_capture(options);
 }

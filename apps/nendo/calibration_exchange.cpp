@@ -121,15 +121,12 @@ Result<WearerCalibration> read_foreign(const ImportOptions& options) {
 int import_calibration(const ImportOptions& options) {
   const auto wearer = read_foreign(options);
   if (!wearer) return cli::report(wearer.error());
-  const auto folder = hand::calibration_folders().own;
-  if (folder.empty())
-    return cli::report({Errc::failed, "you have no home folder; set XDG_CONFIG_HOME to a folder"});
-  const auto path =
-      folder / hand::calibration_file_name(wearer->user, wearer->glove_serial, wearer->side);
-  const auto kept = hand::write_calibration(path, *wearer);
+  const auto path = hand::own_calibration_path(wearer->user, wearer->glove_serial, wearer->side);
+  if (!path) return cli::report(path.error());
+  const auto kept = hand::write_calibration(*path, *wearer);
   if (!kept) return cli::report(kept.error());
   if (!kept->empty()) cli::note("the earlier one is kept as " + printable(kept->string()));
-  std::cout << "imported for " << gloves::title_of(*wearer) << ": " << printable(path.string())
+  std::cout << "imported for " << gloves::title_of(*wearer) << ": " << printable(path->string())
             << '\n';
   return 0;
 }

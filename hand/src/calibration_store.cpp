@@ -112,6 +112,14 @@ std::string calibration_file_name(const std::string& user, const std::string& gl
   return part_of(user) + "+" + glove + "+" + std::string(name_of(side)) + ".toml";
 }
 
+Result<fs::path> own_calibration_path(const std::string& user, const std::string& glove_serial,
+                                      Side side) {
+  const fs::path folder = calibration_folders().own;
+  if (folder.empty())
+    return Error{Errc::failed, "you have no home folder; set XDG_CONFIG_HOME to a folder"};
+  return folder / calibration_file_name(user, glove_serial, side);
+}
+
 CalibrationList list_calibrations(const CalibrationFolders& folders) {
   CalibrationList list;
   list_folder(folders.own, false, list);

@@ -211,6 +211,9 @@ TEST_SUITE("calibration store") {
     };
     CHECK(folders_with("/x/y").own == "/x/y/nendo/calibrations");
     CHECK(folders_with("/x/y").shared == "/etc/nendo/calibrations");
+    const auto own = own_calibration_path("anna", "A 2", Side::left);
+    REQUIRE(own);
+    CHECK(*own == calibration_folders().own / calibration_file_name("anna", "A 2", Side::left));
     const char* const home = std::getenv("HOME");
     if (home != nullptr && home[0] == '/') {
       CHECK(folders_with("relative").own == fs::path(home) / ".config/nendo/calibrations");

@@ -29,6 +29,11 @@ CalibrationFolders calibration_folders();
 std::string calibration_file_name(const std::string& user, const std::string& glove_serial,
                                   Side side);
 
+/// Returns where this user's own calibration of that name is, or would be. Error: failed, without a
+/// folder of this user's own.
+Result<std::filesystem::path> own_calibration_path(const std::string& user,
+                                                   const std::string& glove_serial, Side side);
+
 struct StoredCalibration {
   std::filesystem::path path;
   bool shared = false; ///< from the folder of all users
