@@ -267,10 +267,10 @@ KneadedClay knead(KneadedThing thing, const KneadingOptions& options) {
     if (options.refines && tick % refine_ticks == 0) clay.refine(parts);
     result.most_held = std::max(result.most_held, report.held);
     result.turned_rad += report.turned_rad;
-    hands.see(clay.shown().vertices);
-    result.last_volume = clay_volume(clay.shown()) / whole - 1.0;
+    const deform::Mesh& shown = clay.shown();
+    hands.see(shown.vertices);
+    result.last_volume = clay_volume(shown) / whole - 1.0;
     result.worst_volume = std::max(result.worst_volume, std::abs(result.last_volume));
-
     if (report.passes == 0) continue;
     left_mm.push_back(report.penetration_mm);
     times_us.push_back(took.count());

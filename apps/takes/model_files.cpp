@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <nendo/base/text.hpp>
-
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/side_by_side.hpp>
 
@@ -17,7 +16,8 @@ namespace nendo::takes {
 namespace {
 
 double size_of(const deform::Mesh& model) {
-  return (model.vertices.rowwise().maxCoeff() - model.vertices.rowwise().minCoeff()).maxCoeff();
+  const deform::Box box = deform::finite_box_of(model.vertices);
+  return (box.highest - box.lowest).maxCoeff();
 }
 
 /// One in millimetres beside one in metres is not to be seen.

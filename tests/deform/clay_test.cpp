@@ -25,6 +25,7 @@ using namespace nendo::deform;
 using Eigen::Vector3d;
 using nendo::test::cone;
 using nendo::test::moved;
+using nendo::test::pinch;
 using Parts = std::vector<ContactPart>;
 
 namespace {
@@ -37,13 +38,6 @@ Parts finger() {
 double mean_edge(const Mesh& mesh) {
   return std::sqrt(4.0 / std::sqrt(3.0) * 4.0 * std::numbers::pi * 30.0 * 30.0 /
                    static_cast<double>(mesh.face_count()));
-}
-
-/// Two fingers of one hand, above each other, with that much room between them.
-Parts pinch(double gap, const Vector3d& middle) {
-  const double up = 0.5 * gap + 8.0;
-  return moved({cone({0, 0, up}, {40, 0, up}, 8.0, 9.0), cone({0, 0, -up}, {40, 0, -up}, 8.0, 9.0)},
-               middle);
 }
 
 Vector3d middle_of(const Mesh& mesh) {

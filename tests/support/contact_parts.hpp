@@ -68,4 +68,11 @@ inline std::vector<deform::ContactPart> moved(std::vector<deform::ContactPart> p
   return moved(std::move(parts), Eigen::Isometry3d(Eigen::Translation3d(by)));
 }
 
+/// Two fingers of one hand, above each other, with that much room between them; millimetres.
+inline std::vector<deform::ContactPart> pinch(double gap, const Eigen::Vector3d& middle) {
+  const double up = 0.5 * gap + 8.0;
+  return moved({cone({0, 0, up}, {40, 0, up}, 8.0, 9.0), cone({0, 0, -up}, {40, 0, -up}, 8.0, 9.0)},
+               middle);
+}
+
 } // namespace nendo::test

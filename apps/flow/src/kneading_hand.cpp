@@ -36,6 +36,11 @@ Between between(double time_s, double step_s, std::size_t keys) noexcept {
   return {static_cast<std::size_t>(whole), at - whole};
 }
 
+/// Tells whether a place is where hands take the upper part, within this part of the height.
+bool is_upper(double y, double low, double height, double within) noexcept {
+  return std::abs(y - low - KneadedModel::upper * height) <= within * height;
+}
+
 /// How far vertices of the upper part are from the vertical line through the box's middle.
 double upper_radius_of(const deform::Mesh& model, const Eigen::Vector3d& low,
                        const Eigen::Vector3d& high) {
@@ -43,7 +48,7 @@ double upper_radius_of(const deform::Mesh& model, const Eigen::Vector3d& low,
   const double height = high.y() - low.y();
   double farthest = 0.0;
   for (const auto vertex : model.vertices.colwise())
-    if (std::abs(vertex.y() - low.y() - KneadedModel::upper * height) <= 0.05 * height)
+    if (is_upper(vertex.y(), low.y(), height, 0.05))
       farthest = std::max(farthest, std::abs(vertex.x() - middle.x()));
   return farthest;
 }
@@ -84,8 +89,7 @@ Eigen::Vector3d farthest_of_upper(const deform::Mesh& model, double side) {
   Eigen::Vector3d farthest = model.vertices.col(0);
   double most = -std::numeric_limits<double>::max();
   for (const auto vertex : model.vertices.colwise()) {
-    const bool is_upper = std::abs(vertex.y() - low - KneadedModel::upper * height) < 0.1 * height;
-    if (!is_upper || side * vertex.x() <= most) continue;
+    if (!is_upper(vertex.y(), low, height, 0.1) || side * vertex.x() <= most) continue;
     most = side * vertex.x();
     farthest = vertex;
   }
@@ -144,13 +148,10 @@ Result<KneadingHand> KneadingHand::make(const deform::Mesh& model,
   if (!(size > 0.0) || !std::isfinite(size))
     return Error{Errc::bad_input, "the model has no size, so hands find nothing to press"};
   const double scale = model_size_m / size;
-  KneadedModel on_stage = kneaded(model, scale);
   const double side = skeleton.side() == Side::right ? 1.0 : -1.0;
   const auto alone = task == KneadTask::carry ? outermost(model, side) : std::nullopt;
-  if (alone) {
-    on_stage = kneaded(*alone, scale);
-    on_stage.taken_at = scale * farthest_of_upper(*alone, side);
-  }
+  KneadedModel on_stage = kneaded(alone ? *alone : model, scale);
+  if (alone) on_stage.taken_at = scale * farthest_of_upper(*alone, side);
   const auto plan = plan_of(task, on_stage, skeleton);
   const auto count = static_cast<std::size_t>(std::ceil(plan->length_s() / knead_step_s)) + 1;
   auto keys = std::make_shared<std::vector<hand::JointAngles>>();

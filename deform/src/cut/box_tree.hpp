@@ -1,6 +1,7 @@
 #pragma once
 // A tree of boxes around triangles: which of them may meet.
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,8 +21,8 @@ inline bool meet(const SpaceBox& a, const SpaceBox& b) noexcept {
 
 inline void widen(SpaceBox& box, const SpaceBox& by) noexcept {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] = by.low[axis] < box.low[axis] ? by.low[axis] : box.low[axis];
-    box.high[axis] = by.high[axis] > box.high[axis] ? by.high[axis] : box.high[axis];
+    box.low[axis] = std::min(box.low[axis], by.low[axis]);
+    box.high[axis] = std::max(box.high[axis], by.high[axis]);
   }
 }
 SpaceBox box_around(std::span<const SpacePoint> places, const Corners& triangle) noexcept;

@@ -18,11 +18,12 @@ std::vector<TrianglePair> sorted_pairs(std::vector<TrianglePair> pairs, std::siz
   return pairs;
 }
 
-/// Of triangles of a tree with others, unsorted.
-void find_between(std::span<const SpacePoint> places, std::span<const Corners> triangles,
-                  const BoxTree& tree, std::span<const std::uint32_t> others, std::size_t most,
-                  std::vector<TrianglePair>& found) {
-  if (tree.empty() || others.empty()) return;
+/// Of triangles of a tree with others, unsorted. None is in both.
+std::vector<TrianglePair> found_between(std::span<const SpacePoint> places,
+                                        std::span<const Corners> triangles, const BoxTree& tree,
+                                        std::span<const std::uint32_t> others, std::size_t most) {
+  std::vector<TrianglePair> found;
+  if (tree.empty() || others.empty()) return found;
   std::vector<std::uint32_t> near;
   for (const std::uint32_t triangle : others)
     if (meet(tree.box(), box_around(places, triangles[triangle]))) near.push_back(triangle);
@@ -32,6 +33,7 @@ void find_between(std::span<const SpacePoint> places, std::span<const Corners> t
         triangles_meet(places, triangles[mine], triangles[other]))
       found.emplace_back(std::min(mine, other), std::max(mine, other));
   });
+  return found;
 }
 
 } // namespace
@@ -41,10 +43,9 @@ std::vector<TrianglePair> intersections_between(std::span<const SpacePoint> plac
                                                 std::span<const std::uint32_t> some,
                                                 std::span<const std::uint32_t> others,
                                                 std::size_t most) {
-  std::vector<TrianglePair> found;
+  if (others.empty()) return {};
   const BoxTree tree(places, triangles, {some.begin(), some.end()});
-  find_between(places, triangles, tree, others, most, found);
-  return sorted_pairs(std::move(found), most);
+  return sorted_pairs(found_between(places, triangles, tree, others, most), most);
 }
 
 std::vector<TrianglePair> self_intersections_of(std::span<const SpacePoint> places,
@@ -52,21 +53,19 @@ std::vector<TrianglePair> self_intersections_of(std::span<const SpacePoint> plac
                                                 std::span<const std::uint32_t> changed,
                                                 std::size_t most) {
   std::vector<char> is_changed(triangles.size(), 0);
-  std::vector<TrianglePair> degenerate;
+  std::vector<TrianglePair> found;
   for (const std::uint32_t triangle : changed) {
     is_changed[triangle] = 1;
     const Corners& corner = triangles[triangle];
     if (is_degenerate(places[corner[0]], places[corner[1]], places[corner[2]]))
-      degenerate.emplace_back(triangle, triangle);
+      found.emplace_back(triangle, triangle);
   }
   std::vector<std::uint32_t> others;
   for (std::uint32_t triangle = 0; triangle < triangles.size(); ++triangle)
     if (!is_changed[triangle]) others.push_back(triangle);
   const BoxTree tree(places, triangles, {changed.begin(), changed.end()});
-  std::vector<TrianglePair> found;
-  find_between(places, triangles, tree, others, most, found);
-  found = sorted_pairs(std::move(found), most);
-  found.insert(found.end(), degenerate.begin(), degenerate.end());
+  const auto between = found_between(places, triangles, tree, others, most);
+  found.insert(found.end(), between.begin(), between.end());
   tree.visit_pairs(tree, [&](std::uint32_t one, std::uint32_t other) {
     if (one < other && found.size() < most &&
         triangles_meet(places, triangles[one], triangles[other]))

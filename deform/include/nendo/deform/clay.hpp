@@ -88,7 +88,7 @@ public:
   FieldStatus grab(std::span<const ContactPart> parts) { return take_hold(parts); }
   /// Behind begin() or grab(): goes on from where the same bodies were for `before`, which has had
   /// this clay, perhaps with other triangles. What they hold there they hold here. The volume to
-  /// keep is that of `before` if `keeps_volume`. Does nothing for other bodies.
+  /// keep is that of `before` if `keeps_volume`. Does nothing for other bodies. Does not allocate.
   void go_on_from(const ClayDeformer& before, bool keeps_volume) noexcept;
   /// Lets go until the next begin() or grab(). With `is_step`, the stroke has ended.
   void release(bool is_step) noexcept;
