@@ -302,11 +302,14 @@ TEST_SUITE("clay_loop") {
     CHECK(whole > 0.0);
     presses.go(0.6, 1);
     CHECK(presses.frame().clay.touching > 0);
+    const double first = presses.frame().clay.first_volume;
     presses.refine(0.6);
     CHECK(presses.frame().model == 1);
+    CHECK(presses.frame().clay.first_volume == first); // whatever other triangles enclose at rest
     presses.go(0.6, 20);
     presses.go(0.0, 60);
     CHECK(presses.frame().clay.volume == doctest::Approx(whole).epsilon(2e-5));
+    CHECK(presses.frame().clay.volume_part() == doctest::Approx(1.0).epsilon(2e-5));
   }
 
   TEST_CASE("masks come and go while hands press, and what they hold keeps its bits") {

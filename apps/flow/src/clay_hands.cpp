@@ -59,7 +59,10 @@ HandTouch touch_of(std::span<const deform::ClayContact> contacts, std::size_t bo
 }
 
 ClayModel::ClayModel(const deform::Mesh& mesh)
-    : corners(deform::corners_of_triangles(mesh)), volume(std::abs(deform::volume_of(mesh))) {}
+    : ClayModel(mesh, std::abs(deform::volume_of(mesh))) {}
+
+ClayModel::ClayModel(const deform::Mesh& mesh, double first_volume)
+    : corners(deform::corners_of_triangles(mesh)), volume(first_volume) {}
 
 ClayHands::ClayHands(deform::SculptedShape& shape, std::shared_ptr<const ClayModel> model,
                      std::shared_ptr<const HandBodies> bodies, double radius_m,

@@ -151,6 +151,7 @@ Result<std::unique_ptr<ModelVersion>> FinerModel::finish(std::uint32_t number,
                                              undo, &first);
   made->origin = std::make_shared<ModelOrigin>(
       ModelOrigin{.source = ModelSource::refined, .refining = std::move(refinement.operations)});
+  if (from_->clay) made->clay = std::make_shared<const ClayModel>(made->mesh, from_->clay->volume);
   return made;
 }
 

@@ -15,10 +15,13 @@
 
 namespace nendo::flow {
 
-/// The corners of a model's triangles, three each, and the volume that they enclose in the model's
-/// own units.
+/// The corners of a model's triangles, three each, and the volume that the clay had at first, in
+/// the model's own units.
 struct ClayModel {
   explicit ClayModel(const deform::Mesh& mesh);
+  /// Of a mesh that was refined: the clay is the same, and rest shapes of other triangles enclose a
+  /// little less.
+  ClayModel(const deform::Mesh& mesh, double first_volume);
 
   std::vector<std::uint32_t> corners;
   double volume = 0.0; ///< >= 0
