@@ -131,6 +131,16 @@ double gap(const deform::Points& a, const deform::Points& b) {
 } // namespace
 
 TEST_SUITE("view_command") {
+  TEST_CASE("the screen goes on when its last client leaves") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there() || !Person::does("version")) return;
+    // A screen that begins anew puts the pointer in its middle, and refuses a window meanwhile.
+    REQUIRE(Person::does("mousemove 11 12"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    const auto told = test::shell("xdotool getmouselocation");
+    CHECK(told.out.find("x:11 y:12") == 0);
+  }
+
   TEST_CASE("a person shapes, changes radius, kernel and mode, shapes on, undoes all of it and "
             "redoes it, "
             "and the recording replays to the same bytes") {

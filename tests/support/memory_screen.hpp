@@ -10,7 +10,8 @@
 
 namespace nendo::test {
 
-/// An Xvfb of this test's own; its number is in DISPLAY while it lives.
+/// An Xvfb of this test's own; its number is in DISPLAY while it lives. It goes on when its last
+/// client leaves: without -noreset it would begin anew then, and refuse who comes meanwhile.
 class MemoryScreen {
 public:
   MemoryScreen() {
@@ -20,7 +21,7 @@ public:
     if (pid_ == 0) {
       ::dup2(ends[1], 3);
       ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "800x600x24", "-nolisten", "tcp",
-               nullptr);
+               "-noreset", nullptr);
       ::_exit(127);
     }
     ::close(ends[1]);
