@@ -79,6 +79,7 @@ std::vector<Row> rows_of(bool short_form) {
     return {{"both hands, 0.5 m/s", {.level = 4}}, {"the same, plain", {.level = 4}, true}};
   constexpr int scenes = 30; // of a dozen ticks each
   return {{"both hands, 0.5 m/s", {.judges_inside = true, .scenes = scenes}},
+          {"the same, 90 ticks a second", {.rests = true, .scenes = scenes}},
           {"the same, plain", {.judges_inside = true}, true},
           {"the same, no volume kept", {.keeps_volume = false, .scenes = scenes}},
           {"0.075 m/s", {.speed_m_s = 0.075, .scenes = 4}},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <thread>
 
 #include <nendo/deform/clay.hpp>
 #include <nendo/deform/triangles.hpp>
@@ -46,10 +47,13 @@ double deepest_inside(const Mesh& mesh, std::span<const deform::ContactPart> par
 /// Plays a scene through press(parts), which returns a deform::ClayReport, and calls see(report,
 /// parts) after each call. Returns what those took that pressed something, in microseconds.
 template <class Press, class See>
-std::vector<double> play(ClayScene& scene, const Press& press, const See& see) {
+std::vector<double> play(const ClayTrialOptions& options, ClayScene& scene, const Press& press,
+                         const See& see) {
+  constexpr std::chrono::duration<double> period{1.0 / 90.0};
   std::vector<double> times_us;
   for (int tick = 1; tick <= scene.ticks(); ++tick) {
     const auto parts = scene.at(tick);
+    if (options.rests) std::this_thread::sleep_for(period);
     const auto begin = ThreadClock::now();
     const deform::ClayReport report = press(parts);
     const std::chrono::duration<double, std::micro> took = ThreadClock::now() - begin;
@@ -84,7 +88,7 @@ ClayTrial run_scene(const ClayTrialOptions& options, Mesh mesh, ClayScene& scene
     if (options.judges_inside) inside_mm.push_back(deepest_inside(mesh, parts));
   };
   begin();
-  std::vector<double> times_us = play(scene, press, see);
+  std::vector<double> times_us = play(options, scene, press, see);
   shape(mesh.vertices);
   trial.last_volume = clay_volume(mesh) / whole - 1.0;
   const double per_tick = 1.0 / std::max(1, trial.ticks);
@@ -93,7 +97,7 @@ ClayTrial run_scene(const ClayTrialOptions& options, Mesh mesh, ClayScene& scene
   trial.distances *= per_tick;
   for (int again = 1; again < options.scenes; ++again) {
     begin();
-    const auto more = play(scene, press, [](const auto&, const auto&) {});
+    const auto more = play(options, scene, press, [](const auto&, const auto&) {});
     times_us.insert(times_us.end(), more.begin(), more.end());
   }
   for (const double time_us : times_us)

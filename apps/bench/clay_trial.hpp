@@ -38,7 +38,8 @@ struct ClayTrialOptions {
   bool grips = true;
   int most_constraints = 256; ///< of a pass
   bool judges_inside = false; ///< takes long
-  int scenes = 1;             ///< how often it is played, each time from the ball on, for the times
+  bool rests = false; ///< sleeps between ticks, as a loop at 90 Hz does: the caches are cold then
+  int scenes = 1;     ///< how often it is played, each time from the ball on, for the times
 };
 
 double clay_volume(const deform::Mesh& mesh);

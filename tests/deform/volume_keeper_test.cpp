@@ -66,6 +66,19 @@ TEST_SUITE("volume_keeper") {
     }
   }
 
+  TEST_CASE("a vertex may have more neighbours than a byte tells") {
+    for (const std::uint32_t around : {100U, 300U, 1000U}) {
+      CAPTURE(around);
+      const Mesh cones = nendo::test::sphere(1, around, 1.0);
+      const BlockLayout layout(cones.vertices);
+      const BoundedShape shape(layout.pack());
+      VolumeKeeper keeper(layout, corners_of_triangles(cones));
+      REQUIRE(keeper.is_closed());
+      CHECK(keeper.volume(shape) * std::pow(layout.unit(), 3.0) ==
+            doctest::Approx(signed_volume(cones, cones.vertices)).epsilon(1e-5));
+    }
+  }
+
   TEST_CASE("what is missing comes back, but not at a body nor far from the contacts") {
     const Mesh ball = nendo::reference::icosphere(4, 30.0);
     const BlockLayout layout(ball.vertices);

@@ -50,8 +50,8 @@ Eigen::Vector3f normal_of(const BlockShape& shape, const Corners& corners) noexc
   return (at[1] - at[0]).cross(at[2] - at[0]);
 }
 
-bool looks_away(const Eigen::Vector3f& normal, const std::array<float, 4>& way) noexcept {
-  return !(normal.x() * way[0] + normal.y() * way[1] + normal.z() * way[2] > 0.0F);
+bool looks_away(const Eigen::Vector3f& normal, const Eigen::Vector3f& way) noexcept {
+  return !(normal.x() * way.x() + normal.y() * way.y() + normal.z() * way.z() > 0.0F);
 }
 
 /// Tells whether the angle between the axes, and those around both, are together wider. Cosines and
@@ -163,7 +163,7 @@ void FaceMeetings::begin(const BoundedShape& shape, const VolumeKeeper& volume) 
   tests_ = boxes_compared_ = 0;
   met_.clear();
   boxed_.clear();
-  directions_ = volume.directions();
+  rings_ = volume.rings();
   uneven_.clear();
   gone_round_.clear();
   const std::span<const RingFacts> facts = volume.facts();
@@ -213,12 +213,19 @@ void FaceMeetings::list_pairs(const BlockShape& shape, const BlockShape& before,
   }
 }
 
+/// In which the vertex there swells.
+Eigen::Vector3f FaceMeetings::direction_at(std::uint32_t place) const noexcept {
+  const VertexBlock& directions = rings_[place / block_size].direction;
+  const std::size_t lane = place % block_size;
+  return {directions.x[lane], directions.y[lane], directions.z[lane]};
+}
+
 /// Tells whether some face of the block looks away from the direction of one of its vertices.
 bool FaceMeetings::has_face_away(const BlockShape& shape, std::uint32_t block) const noexcept {
   for (Triangle at = first_triangles_[block]; at < first_triangles_[block + 1]; ++at) {
     const Eigen::Vector3f normal = normal_of(shape, corners_[at]);
     for (const std::uint32_t corner : corners_[at])
-      if (looks_away(normal, directions_[corner])) return true;
+      if (looks_away(normal, direction_at(corner))) return true;
   }
   return false;
 }
@@ -249,7 +256,7 @@ void FaceMeetings::measure_boxes(const BlockShape& shape, std::uint32_t block) n
 bool FaceMeetings::is_uneven(const BlockShape& shape, std::uint32_t place) noexcept {
   if (!gone_round_.add(place)) return uneven_.has(place);
   for (const Triangle at : triangles_at_[place])
-    if (looks_away(normal_of(shape, corners_[at]), directions_[place])) {
+    if (looks_away(normal_of(shape, corners_[at]), direction_at(place))) {
       uneven_.add(place);
       return true;
     }

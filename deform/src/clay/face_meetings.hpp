@@ -48,6 +48,7 @@ private:
   void list_pairs(const BlockShape& shape, const BlockShape& before,
                   std::span<const RingFacts> facts) noexcept;
   bool has_face_away(const BlockShape& shape, std::uint32_t block) const noexcept;
+  Eigen::Vector3f direction_at(std::uint32_t place) const noexcept;
   bool is_uneven(const BlockShape& shape, std::uint32_t place) noexcept;
   BlockBounds box_of(const BlockShape& shape, Triangle triangle) const noexcept;
   void measure_boxes(const BlockShape& shape, std::uint32_t block) noexcept;
@@ -64,16 +65,16 @@ private:
   std::array<std::vector<float>, 5> rows_;     ///< these, as order_ and BoxRows have them
   Marks boxed_;                                ///< blocks of which these are known:
   std::vector<BlockBounds> hulls_, triangle_boxes_;
-  std::vector<BlockPair> pairs_;        ///< of blocks whose faces may meet
-  bool is_crowded_ = false;             ///< there are more
-  std::vector<std::uint8_t> is_folded_; ///< of each block: some face looks away, or nearly
-  std::span<const std::array<float, 4>> directions_; ///< of each place, from find() on
-  Marks uneven_;                                     ///< places where some face looks away
-  Marks gone_round_;                                 ///< places of which that is known
-  std::vector<Triangle> some_, others_;              ///< room for search()
-  Marks around_;                                     ///< triangles of find_at()
-  std::vector<std::uint32_t> near_;                  ///< blocks near these
-  std::size_t tests_ = 0, boxes_compared_ = 0;       ///< since find()
+  std::vector<BlockPair> pairs_;               ///< of blocks whose faces may meet
+  bool is_crowded_ = false;                    ///< there are more
+  std::vector<std::uint8_t> is_folded_;        ///< of each block: some face looks away, or nearly
+  std::span<const RingBlock> rings_;           ///< of the blocks, from find() on
+  Marks uneven_;                               ///< places where some face looks away
+  Marks gone_round_;                           ///< places of which that is known
+  std::vector<Triangle> some_, others_;        ///< room for search()
+  Marks around_;                               ///< triangles of find_at()
+  std::vector<std::uint32_t> near_;            ///< blocks near these
+  std::size_t tests_ = 0, boxes_compared_ = 0; ///< since find()
   std::vector<std::pair<Triangle, Triangle>> met_;
 };
 

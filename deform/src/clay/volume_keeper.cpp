@@ -2,8 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstring>
-#include <utility>
 
 #include "block_edit.hpp"
 
@@ -21,37 +19,6 @@ constexpr double fairness = 2.0;
 
 /// A block's, about.
 constexpr float edges_across = 8.0F;
-
-/// Four coordinates in a register: one load takes a neighbour, where three would wait for three
-/// cache lines.
-using Four = float __attribute__((vector_size(16)));
-
-void gather(const std::array<float, 4>* points, const std::uint32_t* places,
-            VertexBlock& to) noexcept {
-  const auto load = [&](std::size_t lane) {
-    Four four;
-    std::memcpy(&four, points[places[lane]].data(), sizeof(four));
-    return four;
-  };
-  for (std::size_t lane = 0; lane < block_size; lane += 4) {
-    const Four a = load(lane), b = load(lane + 1), c = load(lane + 2), d = load(lane + 3);
-    const Four xy = __builtin_shufflevector(a, b, 0, 4, 1, 5);
-    const Four xy2 = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-    const Four z = __builtin_shufflevector(a, b, 2, 6, 3, 7);
-    const Four z2 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-    const Four all_x = __builtin_shufflevector(xy, xy2, 0, 1, 4, 5);
-    const Four all_y = __builtin_shufflevector(xy, xy2, 2, 3, 6, 7);
-    const Four all_z = __builtin_shufflevector(z, z2, 0, 1, 4, 5);
-    std::memcpy(to.x.data() + lane, &all_x, sizeof(Four));
-    std::memcpy(to.y.data() + lane, &all_y, sizeof(Four));
-    std::memcpy(to.z.data() + lane, &all_z, sizeof(Four));
-  }
-}
-
-void scatter(const VertexBlock& from, std::array<float, 4>* to) noexcept {
-  for (std::size_t lane = 0; lane < block_size; ++lane)
-    to[lane] = {from.x[lane], from.y[lane], from.z[lane], 0.0F};
-}
 
 /// Each edge is run along once in each direction.
 bool is_closed_surface(std::span<const std::uint32_t> corners, std::size_t vertices) {
@@ -79,114 +46,42 @@ bool is_closed_surface(std::span<const std::uint32_t> corners, std::size_t verti
 } // namespace
 
 VolumeKeeper::VolumeKeeper(const BlockLayout& layout, std::span<const std::uint32_t> triangles)
-    : vertices_(layout.vertex_count()), is_closed_(is_closed_surface(triangles, vertices_)) {
-  if (!is_closed_) return;
+    : vertices_(layout.vertex_count()) {
+  if (!is_closed_surface(triangles, vertices_)) return;
   const std::size_t blocks = layout.block_count();
-  const Fans fans = fans_of(layout, triangles);
-  build_rings(fans, blocks);
-  build_neighbours(fans, blocks);
+  ring_layout_.emplace(layout, triangles);
   stamps_.assign(blocks, 0);
   facts_.assign(blocks, {});
   is_turned_.assign(blocks, 1);
   is_free_.assign(blocks, 0);
-  points_.assign(blocks * block_size, {});
-  directions_.assign(blocks * block_size, {});
   measured_.assign(blocks, RingBlock{});
   weights_.assign(blocks * block_size, 0.0F);
+  points_.resize(ring_layout_->most_parts());
+  directions_.resize(points_.size());
+  parts_.resize(points_.size());
 }
 
-/// Orders the neighbours of each vertex as they are met when one goes round it, counter-clockwise.
-/// Where several fans meet, each begins and ends with the same neighbour, so that the products of
-/// neighbours in a row are still those of the triangles: what leads from fan to fan cancels out.
-VolumeKeeper::Fans VolumeKeeper::fans_of(const BlockLayout& layout,
-                                         std::span<const std::uint32_t> corners) const {
-  using Edge = std::pair<std::uint32_t, std::uint32_t>;
-  const std::vector<std::uint32_t> places = layout.places();
-  auto edges = rows_by_key<Edge>(vertices_, [&](const auto& visit) {
-    for (std::size_t at = 0; at < corners.size(); ++at) {
-      const std::size_t first = at / 3 * 3;
-      visit(places[corners[at]],
-            Edge{places[corners[first + (at + 1) % 3]], places[corners[first + (at + 2) % 3]]});
-    }
-  });
-  Fans fans;
-  fans.starts.assign(1, 0);
-  for (std::size_t place = 0; place < vertices_; ++place) {
-    const std::span<Edge> around = edges[place];
-    std::size_t fan = 0; // its first edge
-    for (std::size_t at = 0; at < around.size(); ++at) {
-      fans.items.push_back(around[at].first);
-      if (around[at].second == around[fan].first) { // round
-        if (fan > 0 || at + 1 < around.size()) fans.items.push_back(around[fan].first);
-        fan = at + 1;
-        continue;
-      }
-      const auto next =
-          std::find_if(around.begin() + static_cast<std::ptrdiff_t>(at) + 1, around.end(),
-                       [&](const Edge& edge) { return edge.first == around[at].second; });
-      if (next != around.end())
-        std::iter_swap(around.begin() + static_cast<std::ptrdiff_t>(at) + 1, next);
-    }
-    fans.starts.push_back(static_cast<std::uint32_t>(fans.items.size()));
-  }
-  return fans;
-}
-
-void VolumeKeeper::build_rings(const Fans& fans, std::size_t blocks) {
-  ring_counts_.assign(blocks * block_size, 0.0F);
-  first_rings_.assign(1, 0);
-  for (std::size_t block = 0; block < blocks; ++block) {
-    std::size_t most = 0;
-    for (std::size_t place = block * block_size; place < end_of(block); ++place) {
-      most = std::max(most, fans[place].size());
-      ring_counts_[place] = static_cast<float>(fans[place].size());
-    }
-    for (std::size_t at = 0; at < most; ++at)
-      for (std::size_t place = block * block_size; place < (block + 1) * block_size; ++place) {
-        const auto fan = place < vertices_ ? fans[place] : std::span<const std::uint32_t>{};
-        const auto itself = static_cast<std::uint32_t>(std::min(place, vertices_ - 1));
-        ring_neighbours_.push_back(fan.empty() ? itself : fan[std::min(at, fan.size() - 1)]);
-      }
-    first_rings_.push_back(ring_neighbours_.size());
-    around_points_.resize(std::max(around_points_.size(), most));
-  }
-  around_directions_.resize(around_points_.size());
-}
-
-/// The neighbours are brought together one by one: many processors' gathering loads take longer.
 void VolumeKeeper::measure(const BoundedShape& shape, std::size_t block, bool turns) noexcept {
-  const std::uint32_t* const from = ring_neighbours_.data() + first_rings_[block];
-  const std::size_t most = (first_rings_[block + 1] - first_rings_[block]) / block_size;
-  for (std::size_t at = 0; at < most; ++at) {
-    gather(points_.data(), from + at * block_size, around_points_[at]);
-    if (turns) gather(directions_.data(), from + at * block_size, around_directions_[at]);
+  const std::size_t parts = ring_layout_->parts(block);
+  for (std::size_t part = 0; part < parts; ++part) {
+    ring_layout_->fill(
+        block, part, [&](std::size_t of) -> const VertexBlock& { return shape.shape[of]; },
+        points_[part]);
+    if (turns)
+      ring_layout_->fill(
+          block, part,
+          [&](std::size_t of) -> const VertexBlock& { return measured_[of].direction; },
+          directions_[part]);
+    parts_[part] = {ring_layout_->rows(block, part), &points_[part],
+                    turns ? &directions_[part] : nullptr};
   }
-  measure_rings(shape.shape[block],
-                {{around_points_.data(), most},
-                 {around_directions_.data(), turns ? most : 0},
-                 ring_counts_.data() + block * block_size},
+  measure_rings(shape.shape[block], {{parts_.data(), parts}, ring_layout_->counts(block)},
                 is_turned_[block] != 0, measured_[block], facts_[block]);
   is_turned_[block] = turns ? 1 : 0;
-  if (turns) scatter(measured_[block].direction, directions_.data() + block * block_size);
-}
-
-void VolumeKeeper::build_neighbours(const Fans& fans, std::size_t blocks) {
-  neighbours_.starts.assign(1, 0);
-  std::vector<std::uint32_t> of_block;
-  for (std::size_t block = 0; block < blocks; ++block) {
-    of_block.assign(1, static_cast<std::uint32_t>(block));
-    for (std::size_t place = block * block_size; place < end_of(block); ++place)
-      for (const std::uint32_t other : fans[place])
-        of_block.push_back(static_cast<std::uint32_t>(other / block_size));
-    std::sort(of_block.begin(), of_block.end());
-    of_block.erase(std::unique(of_block.begin(), of_block.end()), of_block.end());
-    neighbours_.items.insert(neighbours_.items.end(), of_block.begin(), of_block.end());
-    neighbours_.starts.push_back(static_cast<std::uint32_t>(neighbours_.items.size()));
-  }
 }
 
 bool VolumeKeeper::has_changed(const BoundedShape& shape, std::size_t block) const noexcept {
-  const auto around = neighbours_[block];
+  const auto around = ring_layout_->blocks_around(block);
   return std::any_of(around.begin(), around.end(), [&](std::uint32_t other) {
     return stamps_[other] != shape.shape.stamp(other);
   });
@@ -195,9 +90,6 @@ bool VolumeKeeper::has_changed(const BoundedShape& shape, std::size_t block) con
 /// In which directions a shape swells need not be known to the last call: a block's are found anew
 /// in one of some calls. The first call, which knows none, goes round some times.
 double VolumeKeeper::volume(const BoundedShape& shape) noexcept {
-  for (std::size_t block = 0; block < facts_.size(); ++block)
-    if (stamps_[block] != shape.shape.stamp(block))
-      scatter(shape.shape[block], points_.data() + block * block_size);
   const int rounds = facts_.size() <= most_blocks_for_all_rounds ? first_rounds : 1;
   for (int round = 0; calls_ == 0 && round < rounds; ++round)
     for (std::size_t block = 0; block < facts_.size(); ++block)
@@ -215,7 +107,8 @@ double VolumeKeeper::volume(const BoundedShape& shape) noexcept {
 
 void VolumeKeeper::forget() noexcept {
   std::fill(stamps_.begin(), stamps_.end(), 0);
-  std::fill(directions_.begin(), directions_.end(), std::array<float, 4>{});
+  for (RingBlock& measured : measured_)
+    measured.direction = VertexBlock{};
   std::fill(is_turned_.begin(), is_turned_.end(), std::uint8_t{1});
   calls_ = 0;
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,7 +14,7 @@
 
 #include "block_evaluator.hpp"
 #include "clay/contact_search.hpp"
-#include "rows_by_key.hpp"
+#include "clay/ring_layout.hpp"
 #include "simd/ring_kernels.hpp"
 
 namespace nendo::deform {
@@ -33,7 +34,7 @@ public:
 
   /// Tells whether the triangles are a closed, oriented surface: each edge is run along once in
   /// each direction. Otherwise there is no volume, and the other functions must not be called.
-  bool is_closed() const noexcept { return is_closed_; }
+  bool is_closed() const noexcept { return ring_layout_.has_value(); }
   /// Returns the volume of that shape. Does not allocate.
   double volume(const BoundedShape& shape) noexcept;
   /// The next volume() then measures all anew. Between, only what has changed is measured, and the
@@ -41,7 +42,7 @@ public:
   void forget() noexcept;
   /// Somebody has changed that block, and its stamp has stayed.
   void read_again(std::size_t block) noexcept {
-    if (is_closed_) stamps_[block] = 0;
+    if (is_closed()) stamps_[block] = 0;
   }
   /// Moves what is free along its normals, so that the volume grows by `missing`, or by what
   /// GiveBack::most permits. Call volume() first. Returns how much it grew, to second order. Does
@@ -49,16 +50,11 @@ public:
   double give_back(BoundedShape& shape, ContactSearch& search, double missing,
                    const GiveBack& how) noexcept;
 
-  /// Of each block, as the last volume() has found it.
+  /// Of each block, as the last volume() has found them.
   std::span<const RingFacts> facts() const noexcept { return facts_; }
-  /// Of the vertex at each place, the direction in which it swells.
-  std::span<const std::array<float, 4>> directions() const noexcept { return directions_; }
+  std::span<const RingBlock> rings() const noexcept { return measured_; }
 
 private:
-  using Fans = RowsByKey<std::uint32_t>; ///< of each place: its neighbours in their order
-  Fans fans_of(const BlockLayout& layout, std::span<const std::uint32_t> corners) const;
-  void build_rings(const Fans& fans, std::size_t blocks);
-  void build_neighbours(const Fans& fans, std::size_t blocks);
   void measure(const BoundedShape& shape, std::size_t block, bool turns) noexcept;
   std::size_t end_of(std::size_t block) const noexcept {
     return std::min(vertices_, (block + 1) * block_size);
@@ -71,23 +67,18 @@ private:
   void finish_blocks(BoundedShape& shape) noexcept;
 
   std::size_t vertices_;
-  bool is_closed_ = false;
-  std::vector<std::size_t> first_rings_;       ///< of each block, in the next, and of none
-  std::vector<std::uint32_t> ring_neighbours_; ///< places, as BlockRings has them
-  std::vector<float> ring_counts_;
-  RowsByKey<std::uint32_t> neighbours_; ///< of each block, with itself
-  std::vector<std::uint64_t> stamps_;   ///< of the blocks when they were measured
-  std::vector<RingFacts> facts_;        ///< one a block
-  std::vector<std::uint8_t> is_turned_; ///< its directions have changed since it was measured
-  std::vector<std::uint8_t> is_free_;   ///< one a block: some weight is not 0
-  std::vector<std::array<float, 4>> points_;
-  std::vector<std::array<float, 4>> directions_;
+  std::optional<RingLayout> ring_layout_; ///< of a closed surface
+  std::vector<std::uint64_t> stamps_;     ///< of the blocks when they were measured
+  std::vector<RingFacts> facts_;          ///< one a block
+  std::vector<std::uint8_t> is_turned_;   ///< its directions have changed since it was measured
+  std::vector<std::uint8_t> is_free_;     ///< one a block: some weight is not 0
   std::vector<RingBlock> measured_;
   std::vector<float> weights_;
-  std::vector<VertexBlock> around_points_, around_directions_; ///< of one block's rings
-  std::size_t calls_ = 0;                                      ///< of volume(), since forget()
-  double rate_ = 0.0; ///< by which the volume grows with the distance
-  double bend_ = 0.0; ///< and with its square
+  std::vector<RingTable> points_, directions_; ///< of one block's parts
+  std::vector<RingPart> parts_;
+  std::size_t calls_ = 0; ///< of volume(), since forget()
+  double rate_ = 0.0;     ///< by which the volume grows with the distance
+  double bend_ = 0.0;     ///< and with its square
 };
 
 } // namespace nendo::deform

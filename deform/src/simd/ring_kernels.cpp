@@ -34,6 +34,46 @@ HWY_INLINE Ring3 masked(hn::Mask<RingTag> mask, const Ring3& a) {
           hn::IfThenElseZero(mask, a.z)};
 }
 
+#if HWY_TARGET != HWY_SCALAR
+/// The vectors of which the first byte tells, the fifth, the ninth, and so on.
+template <class D>
+HWY_INLINE hn::Vec<D> load_each_fourth(D d, const RingTable& table, const std::uint8_t* first) {
+  if constexpr (hn::MaxLanes(D()) == 4) {
+    return hn::LoadU(d, table[*first].data());
+  } else {
+    const hn::Half<D> half;
+    return hn::Combine(d, load_each_fourth(half, table, first + hn::MaxLanes(half)),
+                       load_each_fourth(half, table, first));
+  }
+}
+#endif
+
+/// The vectors that the row has from `lane` on. They are loaded one by one: many processors'
+/// gathering loads take longer.
+HWY_INLINE Ring3 load_row(RingTag d, const RingTable& table, const RingRow& row, std::size_t lane) {
+#if HWY_TARGET == HWY_SCALAR
+  const std::array<float, 4>& at = table[row[lane]];
+  return {hn::Set(d, at[0]), hn::Set(d, at[1]), hn::Set(d, at[2])};
+#else
+  const std::uint8_t* const first = row.data() + lane;
+  const RingV a = load_each_fourth(d, table, first), b = load_each_fourth(d, table, first + 1);
+  const RingV c = load_each_fourth(d, table, first + 2), e = load_each_fourth(d, table, first + 3);
+  const RingV xy_even = hn::InterleaveLower(d, a, c), xy_odd = hn::InterleaveLower(d, b, e);
+  const RingV z_even = hn::InterleaveUpper(d, a, c), z_odd = hn::InterleaveUpper(d, b, e);
+  return {hn::InterleaveLower(d, xy_even, xy_odd), hn::InterleaveUpper(d, xy_even, xy_odd),
+          hn::InterleaveLower(d, z_even, z_odd)};
+#endif
+}
+
+/// Calls visit(part, row, number) for each row.
+template <class Visit>
+HWY_INLINE void each_row(const BlockRings& rings, const Visit& visit) {
+  std::size_t number = 0;
+  for (const RingPart& part : rings.parts)
+    for (const RingRow& row : part.rows)
+      visit(part, row, static_cast<float>(number++));
+}
+
 /// Sums over the ring around each vertex, of ways from it.
 struct RingSums {
   Ring3 crosses, ways;
@@ -47,10 +87,11 @@ HWY_INLINE RingSums sum_ring(RingTag d, const BlockRings& rings, std::size_t lan
   const RingV zero = hn::Zero(d);
   const RingV count = hn::LoadU(d, rings.counts + lane);
   RingSums sums{{zero, zero, zero}, {zero, zero, zero}, zero, zero, zero, hn::Set(d, 1e30F)};
-  Ring3 before = difference_of(load_vectors(d, rings.points.back(), lane), here);
-  for (std::size_t at = 0; at < rings.points.size(); ++at) {
-    const Ring3 way = difference_of(load_vectors(d, rings.points[at], lane), here);
-    const auto is_one = hn::Lt(hn::Set(d, static_cast<float>(at)), count);
+  const RingPart& last = rings.parts.back();
+  Ring3 before = difference_of(load_row(d, *last.points, last.rows.back(), lane), here);
+  each_row(rings, [&](const RingPart& part, const RingRow& row, float number) HWY_ATTR {
+    const Ring3 way = difference_of(load_row(d, *part.points, row, lane), here);
+    const auto is_one = hn::Lt(hn::Set(d, number), count);
     const Ring3 cross = cross_product(before, way);
     sums.crosses = sum_of(sums.crosses, cross);
     const RingV along = dot_product(cross, direction);
@@ -64,7 +105,7 @@ HWY_INLINE RingSums sum_ring(RingTag d, const BlockRings& rings, std::size_t lan
     sums.squares = hn::Add(sums.squares, square);
     sums.longest = hn::Max(sums.longest, square);
     before = way;
-  }
+  });
   return sums;
 }
 
@@ -77,9 +118,10 @@ HWY_INLINE Ring3 smooth_direction(RingTag d, const BlockRings& rings, std::size_
   const RingV least = hn::Set(d, least_square);
   const RingV count = hn::LoadU(d, rings.counts + lane);
   Ring3 sum{zero, zero, zero};
-  for (std::size_t at = 0; at < rings.directions.size(); ++at)
-    sum = sum_of(sum, masked(hn::Lt(hn::Set(d, static_cast<float>(at)), count),
-                             load_vectors(d, rings.directions[at], lane)));
+  each_row(rings, [&](const RingPart& part, const RingRow& row, float number) HWY_ATTR {
+    sum = sum_of(
+        sum, masked(hn::Lt(hn::Set(d, number), count), load_row(d, *part.directions, row, lane)));
+  });
   const RingV length = hn::Sqrt(hn::Max(dot_product(normal, normal), least));
   const RingV own = hn::Mul(hn::Set(d, own_share), hn::Max(count, hn::Set(d, 1.0F)));
   sum = sum_of(sum, scaled(normal, hn::Div(own, length)));
@@ -102,7 +144,7 @@ HWY_INLINE RingV measure_lanes(RingTag d, const VertexBlock& block, const BlockR
   const Ring3 here = load_vectors(d, block, lane);
   const RingSums sums = sum_ring(d, rings, lane, here, load_vectors(d, measured.direction, lane));
   const Ring3 normal = scaled(sums.crosses, hn::Set(d, 1.0F / 6.0F));
-  if (!rings.directions.empty())
+  if (rings.parts[0].directions != nullptr)
     store_vectors(d, smooth_direction(d, rings, lane, normal), measured.direction, lane);
   const Ring3 direction = load_vectors(d, measured.direction, lane);
   facts.longest = hn::Max(facts.longest, sums.longest);
@@ -121,6 +163,14 @@ HWY_INLINE RingV measure_lanes(RingTag d, const VertexBlock& block, const BlockR
   hn::Store(rate, d, measured.rate.data() + lane);
   hn::Store(hn::Mul(curvature, rate), d, measured.bend.data() + lane);
   return dot_product(here, normal);
+}
+
+void put_lanes(const VertexBlock& block, RingTable& table) {
+  const RingTag d;
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const Ring3 at = load_vectors(d, block, lane);
+    hn::StoreInterleaved4(at.x, at.y, at.z, hn::Zero(d), d, table[lane].data());
+  }
 }
 
 /// In eight sums, so that each is not waited for.
@@ -262,15 +312,20 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace nendo::deform {
 
+HWY_EXPORT(put_lanes);
 HWY_EXPORT(measure_all_lanes);
 HWY_EXPORT(weigh_lanes_around);
 HWY_EXPORT(hold_lanes);
 HWY_EXPORT(swell_rates_of_lanes);
 HWY_EXPORT(swell_lanes);
 
+void begin_table(const VertexBlock& block, RingTable& table) noexcept {
+  HWY_DYNAMIC_DISPATCH(put_lanes)(block, table);
+}
+
 void measure_rings(const VertexBlock& block, const BlockRings& rings, bool is_turned,
                    RingBlock& measured, RingFacts& facts) noexcept {
-  if (!rings.points.empty()) // in some triangle
+  if (!rings.parts.empty()) // in some triangle
     HWY_DYNAMIC_DISPATCH(measure_all_lanes)(block, rings, is_turned, measured, facts);
 }
 

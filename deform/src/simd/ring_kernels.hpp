@@ -3,18 +3,29 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include <nendo/deform/vertex_blocks.hpp>
 
 namespace nendo::deform {
 
-/// A block's vertices and their neighbours, which are ordered as one meets them going round. A
-/// block of them has the first neighbour of each vertex, the next one the second, and so on. A
-/// vertex that has fewer than the others repeats its last one.
+/// Vectors, the last number of each being 0: one load takes one, where three would wait for three
+/// cache lines. A byte tells which.
+using RingTable = std::array<std::array<float, 4>, 256>;
+/// One neighbour of each vertex of a block, by its number in a table.
+using RingRow = std::array<std::uint8_t, block_size>;
+struct RingPart {
+  std::span<const RingRow> rows;
+  const RingTable* points;
+  const RingTable* directions; ///< or null
+};
+/// The neighbours of a block's vertices, which are ordered as one meets them going round. The first
+/// row has the first neighbour of each vertex, the next one the second, and so on. A vertex that
+/// has fewer than the others repeats its last one.
 struct BlockRings {
-  std::span<const VertexBlock> points, directions; ///< of the neighbours; directions or nothing
-  const float* counts;                             ///< of each vertex' neighbours
+  std::span<const RingPart> parts;
+  const float* counts; ///< of each vertex' neighbours
 };
 
 /// Of each vertex of a block. Where the weight is w, a shape that swells by `far` moves the vertex
@@ -39,6 +50,8 @@ struct RingFacts {
   bool may_turn = false;     ///< some face may have been turned over by swelling since
 };
 
+/// Puts a block's vectors first in a table.
+void begin_table(const VertexBlock& block, RingTable& table) noexcept;
 /// Measures a block. Without the directions of neighbours, its own stay those that `measured` has.
 /// `facts` are those of the last time; `is_turned`: the directions have changed since.
 void measure_rings(const VertexBlock& block, const BlockRings& rings, bool is_turned,
