@@ -8,6 +8,7 @@
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
+#include "takes/joint_report.hpp"
 #include "takes/recorded_model.hpp"
 #include "takes/recording_report.hpp"
 
@@ -31,6 +32,17 @@ int info(const Options& options) {
     takes::print_take_json(options.file, *summary);
   } else {
     takes::print_take(options.file, *summary);
+  }
+  return 0;
+}
+
+int joints(const Options& options) {
+  const auto studies = takes::study_joints(std::filesystem::path(options.file));
+  if (!studies) return cli::report(studies.error());
+  if (options.json) {
+    takes::print_joints_json(options.file, *studies);
+  } else {
+    takes::print_joints(options.file, *studies);
   }
   return 0;
 }
@@ -120,6 +132,12 @@ void add(cli::Command& program) {
   telling.add_option("FILE", options->file, "A recording").required();
   telling.add_flag("--json", options->json, "One JSON object");
   telling.on_chosen([options] { return info(*options); });
+
+  cli::Command studying = command.add_command(
+      "joints", "How far each joint moved, how noisily, and with which others, beside anatomy");
+  studying.add_option("FILE", options->file, "A recording").required();
+  studying.add_flag("--json", options->json, "One JSON object");
+  studying.on_chosen([options] { return joints(*options); });
 
   cli::Command checking =
       command.add_command("check", "Verifies all checksums and numbers; exit code 1 on damage");

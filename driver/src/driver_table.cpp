@@ -49,8 +49,10 @@ constexpr std::array drivers{
            alone<open_auto>},
     Driver{"sim", "sim[:MOTION][?seed=N&rate=HZ&hand=left|right&sensors=18|22]",
            "a simulated glove", open_simulated},
-    Driver{"replay", "replay:FILE[?hand=left|right&speed=X&loop=yes|end=hold]",
-           "a glove as `nendo record` or `nendo run --record` recorded it", alone<open_replay>},
+    Driver{"replay", "replay:FILE[?hand=left|right&speed=X&loop=yes|end=hold&rate=HZ]",
+           "a glove as `nendo record` or `nendo run --record` recorded it, or a table of counts "
+           "(.csv)",
+           alone<open_replay>},
 };
 
 /// Names the glove as it was typed: its port alone does not tell which of two it was, nor what

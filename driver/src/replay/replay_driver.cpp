@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
+#include <filesystem>
+#include <functional>
 #include <stop_token>
-#include <system_error>
 #include <vector>
 
 #include <nendo/driver/sample_record.hpp>
 
+#include "replay/sample_table.hpp"
+#include "spec/decimal.hpp"
 #include "spec/glove_options.hpp"
 #include "spec/glove_spec.hpp"
 #include "stream/reader_thread.hpp"
@@ -31,11 +33,10 @@ Result<Settings> settings_of(const GloveSpec& spec) {
   constexpr double most_speed = 100.0;
   Settings settings;
   if (const auto option = spec.options.find("speed"); option != spec.options.end()) {
-    const char* const end = option->second.data() + option->second.size();
-    const auto [stopped, failure] = std::from_chars(option->second.data(), end, settings.speed);
-    if (failure != std::errc{} || stopped != end ||
-        !(settings.speed >= least_speed && settings.speed <= most_speed))
+    const auto speed = decimal_of(option->second);
+    if (!speed || !(*speed >= least_speed && *speed <= most_speed))
       return error_of(spec, Errc::usage, "speed must be a number from 0.01 to 100");
+    settings.speed = *speed;
   }
   if (const auto option = spec.options.find("loop"); option != spec.options.end()) {
     if (option->second != "yes" && option->second != "no")
@@ -52,13 +53,24 @@ Result<Settings> settings_of(const GloveSpec& spec) {
   return settings;
 }
 
-/// The samples of one glove of a recording, in their order.
+/// Samples of one glove, in their order.
 class SampleSource {
 public:
-  SampleSource(ChunkReader reader, std::uint8_t glove)
+  SampleSource() = default;
+  SampleSource(const SampleSource&) = delete;
+  SampleSource& operator=(const SampleSource&) = delete;
+  virtual ~SampleSource() = default;
+  virtual std::optional<GloveSample> next() = 0;
+};
+/// Begins once more; null if the file has been taken away since.
+using OpenSource = std::function<std::unique_ptr<SampleSource>()>;
+
+class RecordedSamples final : public SampleSource {
+public:
+  RecordedSamples(ChunkReader reader, std::uint8_t glove)
       : reader_(std::move(reader)), glove_(glove) {}
 
-  std::optional<GloveSample> next() {
+  std::optional<GloveSample> next() override {
     for (;;) {
       while (const auto record = records_.next()) {
         const auto recorded = sample_of(*record);
@@ -77,11 +89,25 @@ private:
   LogEntries records_{{}};
 };
 
+class TableSamples final : public SampleSource {
+public:
+  explicit TableSamples(std::shared_ptr<const std::vector<GloveSample>> samples)
+      : samples_(std::move(samples)) {}
+
+  std::optional<GloveSample> next() override {
+    if (at_ == samples_->size()) return std::nullopt;
+    return (*samples_)[at_++];
+  }
+
+private:
+  std::shared_ptr<const std::vector<GloveSample>> samples_;
+  std::size_t at_ = 0;
+};
+
 class ReplayedGlove final : public Glove {
 public:
-  ReplayedGlove(const GloveSpec& spec, const Settings& settings, RecordedGlove glove)
-      : path_(spec.target), settings_(settings), number_(glove.number),
-        info_(std::move(glove.info)) {
+  ReplayedGlove(const GloveSpec& spec, const Settings& settings, GloveInfo info, OpenSource open)
+      : settings_(settings), info_(std::move(info)), open_(std::move(open)) {
     info_.facts.push_back({"recorded_from", info_.source});
     info_.kind = GloveKind::recorded;
     info_.recording = spec.target;
@@ -128,16 +154,15 @@ private:
   /// When the next pass begins; nothing if there is none.
   std::optional<HostTime> replay_once(const std::stop_token& stop, SampleRing& ring,
                                       HostTime begin) {
-    auto reader = ChunkReader::open(path_);
-    if (!reader) return std::nullopt; // it has been taken away since
-    SampleSource source(*std::move(reader), number_);
-    auto sample = source.next();
+    const auto source = open_();
+    if (source == nullptr) return std::nullopt;
+    auto sample = source->next();
     if (!sample) return std::nullopt;
     const HostTime first = sample->arrival;
     const std::uint64_t first_sequence = sample->sequence;
     const std::uint64_t sequence_base = next_sequence_;
     HostTime due = begin;
-    for (; sample; sample = source.next()) {
+    for (; sample; sample = source->next()) {
       due = begin + scaled(sample->arrival - first);
       if (!reader_.wait_until(stop, due)) return std::nullopt;
       const std::uint64_t sequence = sequence_base + (sample->sequence - first_sequence);
@@ -173,10 +198,9 @@ private:
     return from_seconds(1.0 / std::clamp(info_.rate_hz, least_rate_hz, most_rate_hz));
   }
 
-  std::string path_;
   Settings settings_;
-  std::uint8_t number_;
   GloveInfo info_;
+  OpenSource open_;
   std::uint64_t next_sequence_ = 0; ///< used by the reader thread only
   std::atomic<std::uint64_t> records_{0};
   std::atomic<std::uint64_t> missed_{0};
@@ -214,10 +238,47 @@ Result<RecordedGlove> choose(const GloveSpec& spec, std::vector<RecordedGlove> g
   return std::move(gloves.front());
 }
 
+Result<std::unique_ptr<Glove>> open_recording(const GloveSpec& spec, const Settings& settings,
+                                              std::optional<Side> asked, std::optional<Side> side) {
+  if (spec.options.contains("rate"))
+    return error_of(spec, Errc::usage, "rate is for tables (.csv); a recording has its times");
+  auto reader = ChunkReader::open(spec.target);
+  if (!reader) return reader.error();
+  auto glove = choose(spec, gloves_of(*std::move(reader)), asked, side);
+  if (!glove) return glove.error();
+  const OpenSource open = [path = spec.target,
+                           number = glove->number]() -> std::unique_ptr<SampleSource> {
+    auto again = ChunkReader::open(path);
+    if (!again) return nullptr;
+    return std::make_unique<RecordedSamples>(*std::move(again), number);
+  };
+  if (const auto source = open(); source == nullptr || !source->next())
+    return error_of(spec, Errc::bad_input, "holds no sample of this glove");
+  return std::unique_ptr<Glove>(
+      std::make_unique<ReplayedGlove>(spec, settings, std::move(glove->info), open));
+}
+
+Result<std::unique_ptr<Glove>> open_table(const GloveSpec& spec, const Settings& settings,
+                                          TableWishes wishes) {
+  if (const auto option = spec.options.find("rate"); option != spec.options.end()) {
+    const auto rate_hz = decimal_of(option->second);
+    if (!rate_hz || !(*rate_hz >= 1.0 && *rate_hz <= 1e4))
+      return error_of(spec, Errc::usage, "rate must be a number from 1 to 10000, rows a second");
+    wishes.rate_hz = rate_hz;
+  }
+  auto table = read_sample_table(spec.target, wishes);
+  if (!table) return table.error();
+  const auto samples = std::make_shared<const std::vector<GloveSample>>(std::move(table->samples));
+  return std::unique_ptr<Glove>(
+      std::make_unique<ReplayedGlove>(spec, settings, std::move(table->info), [samples] {
+        return std::make_unique<TableSamples>(samples);
+      }));
+}
+
 } // namespace
 
 Result<std::unique_ptr<Glove>> open_replay(const GloveSpec& spec, std::optional<Side> side) {
-  if (const auto fine = allow_options(spec, {"hand", "speed", "loop", "end"}); !fine)
+  if (const auto fine = allow_options(spec, {"hand", "speed", "loop", "end", "rate"}); !fine)
     return fine.error();
   if (spec.target.empty())
     return error_of(spec, Errc::usage, "name the recording, e.g. replay:take1.nendo");
@@ -225,16 +286,9 @@ Result<std::unique_ptr<Glove>> open_replay(const GloveSpec& spec, std::optional<
   if (!settings) return settings.error();
   const auto asked = hand_option(spec);
   if (!asked) return asked.error();
-  auto reader = ChunkReader::open(spec.target);
-  if (!reader) return reader.error();
-  auto glove = choose(spec, gloves_of(*std::move(reader)), *asked, side);
-  if (!glove) return glove.error();
-  auto again = ChunkReader::open(spec.target);
-  if (!again) return again.error();
-  if (!SampleSource(*std::move(again), glove->number).next())
-    return error_of(spec, Errc::bad_input, "holds no sample of this glove");
-  return std::unique_ptr<Glove>(
-      std::make_unique<ReplayedGlove>(spec, *settings, *std::move(glove)));
+  return std::filesystem::path(spec.target).extension() == ".csv"
+             ? open_table(spec, *settings, {*asked, side, std::nullopt})
+             : open_recording(spec, *settings, *asked, side);
 }
 
 } // namespace nendo::driver

@@ -1,0 +1,187 @@
+#include "takes/joint_study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include <Eigen/Dense>
+
+#include <nendo/hand/active_calibration.hpp>
+#include <nendo/hand/joint_limits.hpp>
+#include <nendo/recording/take_reader.hpp>
+
+#include "takes/glove_samples.hpp"
+
+namespace nendo::takes {
+namespace {
+
+using hand::Angle;
+
+constexpr std::size_t noise_window = 24; // samples, a quarter of a second of most gloves
+constexpr double least_moved_rad = 0.02; // standard deviation; less is no motion to compare
+
+std::vector<double> column_of(const std::vector<hand::JointAngles>& angles, Angle angle) {
+  std::vector<double> column;
+  column.reserve(angles.size());
+  for (const hand::JointAngles& at : angles)
+    column.push_back(at[angle]);
+  return column;
+}
+
+double percentile(const std::vector<double>& sorted, double part) {
+  return sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1) + 0.5)];
+}
+
+/// White noise has second differences with six times its variance. A motion that changes little
+/// from sample to sample has hardly any.
+double noise_of(std::span<const double> column) {
+  std::vector<double> windows;
+  for (std::size_t first = 1; first + noise_window < column.size(); first += noise_window) {
+    double squares = 0.0;
+    for (std::size_t at = first; at < first + noise_window; ++at) {
+      const double bend = column[at - 1] - 2.0 * column[at] + column[at + 1];
+      squares += bend * bend;
+    }
+    windows.push_back(squares / (6.0 * static_cast<double>(noise_window)));
+  }
+  if (windows.empty()) return 0.0;
+  std::sort(windows.begin(), windows.end());
+  windows.resize((windows.size() + 3) / 4);
+  double sum = 0.0;
+  for (const double variance : windows)
+    sum += variance;
+  return std::sqrt(sum / static_cast<double>(windows.size()));
+}
+
+JointRange range_of(std::vector<double> column, Angle angle, hand::AngleSource source) {
+  const hand::JointLimit& limit = hand::limit_of(angle);
+  JointRange range{.source = source, .noise_rad = noise_of(column)};
+  const auto outside = std::count_if(column.begin(), column.end(), [&](double at) {
+    return at < limit.soft_least_rad || at > limit.soft_most_rad;
+  });
+  range.beyond = static_cast<double>(outside) / static_cast<double>(column.size());
+  std::sort(column.begin(), column.end());
+  range.least_rad = column.front();
+  range.most_rad = column.back();
+  range.low_rad = percentile(column, 0.05);
+  range.median_rad = percentile(column, 0.5);
+  range.high_rad = percentile(column, 0.95);
+  return range;
+}
+
+std::vector<std::pair<Angle, Angle>> neighbours() {
+  std::vector<std::pair<Angle, Angle>> pairs{{Angle::thumb_mcp_flexion, Angle::thumb_ip_flexion}};
+  constexpr std::array mcp{Angle::index_mcp_flexion, Angle::middle_mcp_flexion,
+                           Angle::ring_mcp_flexion, Angle::little_mcp_flexion};
+  constexpr std::array pip{Angle::index_pip_flexion, Angle::middle_pip_flexion,
+                           Angle::ring_pip_flexion, Angle::little_pip_flexion};
+  constexpr std::array dip{Angle::index_dip_flexion, Angle::middle_dip_flexion,
+                           Angle::ring_dip_flexion, Angle::little_dip_flexion};
+  for (std::size_t finger = 0; finger < mcp.size(); ++finger) {
+    pairs.emplace_back(mcp[finger], pip[finger]);
+    pairs.emplace_back(pip[finger], dip[finger]);
+  }
+  for (const auto& joint : {mcp, pip})
+    for (std::size_t finger = 0; finger + 1 < joint.size(); ++finger)
+      pairs.emplace_back(joint[finger], joint[finger + 1]);
+  return pairs;
+}
+
+/// Columns of angles that the glove measures, less their means; and what they have in common.
+struct Covariance {
+  std::vector<Angle> angles;
+  Eigen::MatrixXd matrix;
+
+  Covariance(const std::vector<hand::JointAngles>& samples, const hand::AngleSources& sources) {
+    for (std::size_t at = 0; at <= hand::index_of(Angle::little_dip_flexion); ++at)
+      if (sources[at] == hand::AngleSource::measured) angles.push_back(hand::angle_at(at));
+    Eigen::MatrixXd table(samples.size(), angles.size());
+    for (std::size_t row = 0; row < samples.size(); ++row)
+      for (std::size_t column = 0; column < angles.size(); ++column)
+        table(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
+            samples[row][angles[column]];
+    table.rowwise() -= table.colwise().mean().eval();
+    matrix = table.transpose() * table / static_cast<double>(samples.size());
+  }
+
+  Eigen::Index index_of(Angle angle) const {
+    const auto found = std::find(angles.begin(), angles.end(), angle);
+    return found == angles.end() ? -1 : found - angles.begin();
+  }
+};
+
+void add_pairs(const Covariance& covariance, JointStudy& study) {
+  constexpr double least = least_moved_rad * least_moved_rad;
+  for (const auto& [one, other] : neighbours()) {
+    const Eigen::Index a = covariance.index_of(one), b = covariance.index_of(other);
+    if (a < 0 || b < 0) continue;
+    const double variance = covariance.matrix(a, a), of_other = covariance.matrix(b, b);
+    if (!(variance > least && of_other > least)) continue;
+    const double common = covariance.matrix(a, b);
+    study.pairs.push_back({one, other, common / std::sqrt(variance * of_other), common / variance});
+  }
+}
+
+void add_components(const Covariance& covariance, JointStudy& study) {
+  const double all = covariance.matrix.trace();
+  if (!(all > least_moved_rad * least_moved_rad)) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance.matrix,
+                                                              Eigen::EigenvaluesOnly);
+  double sum = 0.0;
+  for (Eigen::Index at = solver.eigenvalues().size() - 1; at >= 0; --at)
+    study.components.push_back((sum += solver.eigenvalues()[at]) / all);
+}
+
+} // namespace
+
+JointStudy study_joints(const std::vector<hand::JointAngles>& angles, SensorMask sensors) {
+  JointStudy study;
+  study.samples = angles.size();
+  if (angles.empty()) return study;
+  const hand::AngleSources sources = hand::angle_sources(sensors);
+  for (std::size_t at = 0; at < hand::angle_count; ++at)
+    study.ranges[at] =
+        range_of(column_of(angles, hand::angle_at(at)), hand::angle_at(at), sources[at]);
+  const Covariance covariance(angles, sources);
+  add_pairs(covariance, study);
+  add_components(covariance, study);
+  return study;
+}
+
+Result<std::vector<JointStudy>> study_joints(const std::filesystem::path& path) {
+  auto reader = recording::TakeReader::open(path);
+  if (!reader) return reader.error();
+  const recording::Setup& setup = reader->setup();
+  struct Hand {
+    hand::ActiveCalibration calibration;
+    std::vector<hand::JointAngles> angles;
+    SensorMask sensors;
+    HostTime first, last;
+  };
+  std::vector<Hand> hands;
+  for (const flow::HandInput& input : setup.hands)
+    hands.push_back({hand::ActiveCalibration(input.wearer), {}, {}, {}, {}});
+  while (const auto entry = reader->next()) {
+    const auto* const recorded = std::get_if<driver::RecordedSample>(&*entry);
+    if (recorded == nullptr || recorded->glove >= hands.size()) continue;
+    Hand& hand = hands[recorded->glove];
+    const GloveSample& sample = recorded->sample;
+    if (hand.angles.empty()) hand.first = sample.measured;
+    hand.last = sample.measured;
+    hand.sensors.bits |= sample.present.bits;
+    hand.angles.push_back(hand::joint_angles(sample, hand.calibration.follow(sample)));
+  }
+  std::vector<JointStudy> studies;
+  for (std::size_t at = 0; at < hands.size(); ++at) {
+    if (hands[at].angles.empty()) continue;
+    studies.push_back(study_joints(hands[at].angles, hands[at].sensors));
+    studies.back().side = setup.hands[at].side;
+    studies.back().is_calibrated = is_calibrated(setup, at);
+    studies.back().duration_s = to_seconds(hands[at].last - hands[at].first);
+  }
+  if (studies.empty())
+    return Error{Errc::bad_input, path.string() + ": holds no sample of a glove"};
+  return studies;
+}
+
+} // namespace nendo::takes
