@@ -79,7 +79,9 @@ TEST_SUITE("optical_hand") {
       REQUIRE(test::nendo({"export", worn.take, "--out", worn.at("out.csv")}).exit_code == 0);
       Columns seen = columns_of(worn.at("angles.csv")), out = columns_of(worn.at("out.csv"));
       int compared = 0;
-      for (const auto& [name, angles] : seen) {
+      for (const auto& column : seen) {
+        const std::string& name = column.first;
+        const std::vector<double>& angles = column.second;
         if (name == "time_s") continue;
         CAPTURE(name);
         const std::string sensor = name.substr(0, name.size() - std::string("_deg").size());

@@ -4,10 +4,12 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <istream>
 #include <set>
 #include <string>
 #include <string_view>
 
+#include <nendo/base/text.hpp>
 #include <nendo/base/units.hpp>
 
 #include "spec/decimal.hpp"
@@ -16,8 +18,9 @@ namespace nendo::driver {
 namespace {
 
 constexpr double most_count = 65535.0;
-constexpr double most_time_s = 1e9; // 30 years
-constexpr std::size_t most_samples = 50'000'000;
+constexpr double most_time_s = 1e9;             // 30 years
+constexpr std::size_t most_samples = 5'000'000; // 15 hours of a CyberGlove; some 160 bytes each
+constexpr std::uintmax_t most_bytes = 2'000'000'000;
 constexpr std::string_view count_ending = "_count";
 
 std::string_view trimmed(std::string_view text) {
@@ -54,28 +57,25 @@ struct Columns {
 
 class TableReader {
 public:
-  TableReader(const std::filesystem::path& path, const TableWishes& wishes)
-      : path_(path), wishes_(wishes) {}
+  TableReader(std::string name, const TableWishes& wishes)
+      : name_(std::move(name)), wishes_(wishes) {}
 
-  Result<SampleTable> read() {
-    std::ifstream file(path_);
+  Result<SampleTable> read(std::istream& text) {
     std::string line;
-    if (!file || !std::getline(file, line))
-      return Error{Errc::bad_input, path_.string() + ": cannot be read, or is empty"};
+    if (!std::getline(text, line))
+      return Error{Errc::bad_input, name_ + ": cannot be read, or is empty"};
     if (auto fine = read_head(line); !fine) return fine.error();
-    while (std::getline(file, line)) {
+    while (std::getline(text, line)) {
       ++line_;
       if (trimmed(line).empty()) continue;
       if (auto fine = read_row(line); !fine) return fine.error();
-      if (rows_.size() > most_samples) return wrong("there are more than 50 million rows");
+      if (rows_.size() > most_samples) return wrong("there are more than 5 million rows");
     }
     return finish();
   }
 
 private:
-  Error wrong(const std::string& what) const {
-    return {Errc::bad_input, path_.string() + ", line " + std::to_string(line_) + ": " + what};
-  }
+  Error wrong(const std::string& what) const { return bad_line(name_, line_, what); }
 
   Result<void> read_head(std::string_view line) {
     for (const char separator : {',', ';', '\t'})
@@ -121,8 +121,8 @@ private:
       if (cells[column].empty()) continue;
       const auto count = decimal_of(cells[column]);
       if (!count || !(*count >= 0.0 && *count <= most_count))
-        return wrong(std::string(name_of(sensor)) + " is \"" + std::string(cells[column]) +
-                     "\"; use a count from 0 to 65535, or nothing");
+        return wrong(std::string(name_of(sensor)) + " is " + in_quotes(cells[column]) +
+                     "; use a count from 0 to 65535, or nothing");
       sample.set(sensor, RawCount{static_cast<std::uint16_t>(std::lround(*count))});
     }
     return {};
@@ -135,7 +135,7 @@ private:
     }
     const std::string_view word = cells[*columns_.hand];
     if (word != "left" && word != "right")
-      return wrong("hand is \"" + std::string(word) + "\"; use left or right");
+      return wrong("hand is " + in_quotes(word) + "; use left or right");
     sample.side = word == "left" ? Side::left : Side::right;
     return {};
   }
@@ -145,7 +145,7 @@ private:
     if (columns_.time) {
       const auto told = decimal_of(cells[*columns_.time]);
       if (!told || !(std::abs(*told) <= most_time_s))
-        return wrong("time_s is \"" + std::string(cells[*columns_.time]) + "\"; use seconds");
+        return wrong("time_s is " + in_quotes(cells[*columns_.time]) + "; use seconds");
       time_s = *told;
     }
     sample.arrival = sample.measured = HostTime(from_seconds(time_s));
@@ -156,7 +156,7 @@ private:
       const auto [end, failure] =
           std::from_chars(text.data(), text.data() + text.size(), sample.sequence);
       if (failure != std::errc{} || end != text.data() + text.size())
-        return wrong("sequence is \"" + std::string(text) + "\"; use a whole number");
+        return wrong("sequence is " + in_quotes(text) + "; use a whole number");
     }
     return {};
   }
@@ -169,7 +169,7 @@ private:
   Result<SampleTable> finish() {
     if (rows_.empty()) return wrong("there is no row with a count");
     if (wishes_.hand && !has(*wishes_.hand))
-      return Error{Errc::no_device, path_.string() + ": has no row of a " +
+      return Error{Errc::no_device, name_ + ": has no row of a " +
                                         std::string(name_of(*wishes_.hand)) +
                                         " hand; leave hand= out, or choose the other"};
     Side side = rows_.front().side;
@@ -182,7 +182,7 @@ private:
       GloveSample& row = rows_[at];
       if (!columns_.sequence) row.sequence = at;
       if (at > 0 && row.sequence <= rows_[at - 1].sequence)
-        return Error{Errc::bad_input, path_.string() + ": sequence does not rise from row to row"};
+        return Error{Errc::bad_input, name_ + ": sequence does not rise from row to row"};
       table.info.sensors.bits |= row.present.bits;
       for (const RawCount& count : row.raw)
         while (count.value > table.info.counts.most)
@@ -191,13 +191,13 @@ private:
     const double span_s = to_seconds(rows_.back().arrival - rows_.front().arrival);
     table.info.rate_hz = span_s > 0.0 ? static_cast<double>(rows_.size() - 1) / span_s : 0.0;
     table.info.kind = GloveKind::recorded;
-    table.info.source = path_.string();
+    table.info.source = name_;
     table.info.model = "a table of " + std::to_string(columns_.sensors.size()) + " sensors";
     table.samples = std::move(rows_);
     return table;
   }
 
-  std::filesystem::path path_;
+  std::string name_;
   TableWishes wishes_;
   Columns columns_;
   std::size_t line_ = 1;
@@ -206,9 +206,20 @@ private:
 
 } // namespace
 
+Result<SampleTable> read_sample_table(std::istream& text, const std::string& name,
+                                      const TableWishes& wishes) {
+  return TableReader(name, wishes).read(text);
+}
+
 Result<SampleTable> read_sample_table(const std::filesystem::path& path,
                                       const TableWishes& wishes) {
-  return TableReader(path, wishes).read();
+  std::error_code failure;
+  if (!std::filesystem::is_regular_file(path, failure))
+    return Error{Errc::bad_input, path.string() + ": is no file"};
+  if (std::filesystem::file_size(path, failure) > most_bytes)
+    return Error{Errc::bad_input, path.string() + ": is larger than 2 GB; cut it into parts"};
+  std::ifstream file(path);
+  return read_sample_table(file, path.string(), wishes);
 }
 
 } // namespace nendo::driver

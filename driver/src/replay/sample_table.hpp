@@ -3,7 +3,9 @@
 // theirs: a head with the names of the columns, and then a row for each sample.
 
 #include <filesystem>
+#include <iosfwd>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <nendo/base/result.hpp>
@@ -30,5 +32,8 @@ struct TableWishes {
 /// without hands it is a right one. Errors: bad_input, with the line and what is wrong there;
 /// no_device (no row of that hand).
 Result<SampleTable> read_sample_table(const std::filesystem::path& path, const TableWishes& wishes);
+/// Does the same with a text that errors call by that name.
+Result<SampleTable> read_sample_table(std::istream& text, const std::string& name,
+                                      const TableWishes& wishes);
 
 } // namespace nendo::driver
