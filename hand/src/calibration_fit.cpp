@@ -273,7 +273,7 @@ void mend_lines(CalibrationFit& fit, SensorMask sensors, const Calibration& star
 /// and with how those of all sensors compare, because a glove's electronics are common to them.
 void find_fingers_that_went_less_far(CalibrationFit& fit, SensorMask sensors,
                                      const Calibration& start) {
-  constexpr double suspicious = 0.35; // of a logarithm
+  constexpr double suspicious = 0.26; // of a logarithm; without stiff fingers it was 0.2 at most
   std::vector<double> all;
   std::array<double, finger_count> sum{}, counted{};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {

@@ -14,7 +14,7 @@ namespace nendo::hand {
 // between fingers need it: the poses that spread them are few and loosely held, and a wider prior
 // made their errors greater by a fifth. Published offsets differ by half of theirs, so that one or
 // two poses outweigh it.
-inline constexpr double gain_deviation = 0.25; ///< of the gain's logarithm: its sign is known
+inline constexpr double gain_deviation = 0.22; ///< of the gain's logarithm: its sign is known
 inline constexpr double offset_deviation_of_range = 40.0 / 255.0;
 // Thumb sensors mix strongly; published slope matrices have ratios up to 0.9.
 inline constexpr double thumb_mix_deviation = 0.5;
@@ -39,7 +39,7 @@ inline constexpr double breadth_deviation = 0.05;
 constexpr double shape_deviation(ShapeTerm term) noexcept {
   if (term <= ShapeTerm::little_distal) return 0.06;
   if (term <= ShapeTerm::thumb_base_z) return 0.006;
-  if (term >= ShapeTerm::thumb_pronation_by_roll) return 0.5;
+  if (term >= ShapeTerm::thumb_pronation_by_roll) return 0.8;
   constexpr double degree = 0.017453292519943295;
   if (term == ShapeTerm::thumb_pronation) return 20.0 * degree;
   return (term < ShapeTerm::index_tilt ? 10.0 : 7.0) * degree;
@@ -57,12 +57,12 @@ inline constexpr double most_slip_rad = 0.11;
 // Beyond this many deviations a residual counts by its size and no longer by its square. So a pose
 // that was held badly, or another pose than was asked for, does not spoil what the other poses
 // agree on.
-inline constexpr double unusual = 3.0;
+inline constexpr double unusual = 2.0;
 
 // Where wearers bend a joint by feel, this part of their error is a habit, which is the same in all
-// poses of the joint. The square of this part is about a third, so the habit is a third of the
+// poses of the joint. The square of this part is about a sixth, so the habit is a sixth of the
 // variance. The poses alone could not tell a habit from a gain.
-inline constexpr double habit_part = 0.6;
+inline constexpr double habit_part = 0.4;
 
 // A PIP joint that is asked to be straight cannot go much beyond that, so that it is off to one
 // side: half of a normal scatter of 3 to 5 degrees stops at two degrees of hyperextension.
@@ -76,7 +76,7 @@ inline constexpr double straight_pip_rad = 0.014;
 // last iteration; but where few poses bend a joint, the line is then uncertain. For the wearers
 // used in tuning, errors were least this far from radians to counts, by a geometric mean of both
 // deviations.
-inline constexpr double scatter_in_counts = 0.6;
+inline constexpr double scatter_in_counts = 0.4;
 
 // Residuals that are set aside weigh so little.
 inline constexpr double set_aside_weight = 1e-4;
@@ -97,7 +97,7 @@ struct RangeEnds {
   double low_deg, low_deviation_deg, high_deg, high_deviation_deg; // deviation 0: not used
 };
 inline constexpr RangeEnds mcp_ends{0, 0, 93, 7};
-inline constexpr RangeEnds pip_ends{0, 0, 103, 10};
+inline constexpr RangeEnds pip_ends{0, 0, 103, 8};
 inline constexpr RangeEnds dip_ends{0, 0, 81, 8};
 inline constexpr RangeEnds no_ends{};
 inline constexpr std::array<RangeEnds, sensor_slots> range_ends_of{{
