@@ -29,7 +29,8 @@ std::vector<double> column_of(const std::vector<hand::JointAngles>& angles, Angl
 }
 
 double percentile(const std::vector<double>& sorted, double part) {
-  return sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1) + 0.5)];
+  return sorted[static_cast<std::size_t>(
+      std::lround(part * static_cast<double>(sorted.size() - 1)))];
 }
 
 /// White noise has second differences with six times its variance. A motion that changes little

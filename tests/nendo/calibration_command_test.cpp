@@ -312,7 +312,7 @@ TEST_SUITE("calibration command") {
     };
     // The gain by which index_mcp's angle was made of its count, if the offset is 60.
     const auto gain = [&](const Finished& done) {
-      REQUIRE(lines_of(done.out).size() == 2);
+      REQUIRE_MESSAGE(lines_of(done.out).size() == 2, done.err);
       const json sample = json::parse(lines_of(done.out)[0]);
       return sample["angle_rad"]["index_mcp"].get<double>() /
              (sample["raw"]["index_mcp"].get<double>() - 60.0);
