@@ -37,7 +37,7 @@ public:
   std::string row() {
     const GloveSample& sample = samples_.sample();
     row_.put(time_s(), time_decimals);
-    row_.put(seconds_between(samples_.begun(), sample.measured), time_decimals);
+    row_.put(seconds_between(samples_.setup().begun_host, sample.measured), time_decimals);
     row_.put(sample.has_device_time ? to_seconds(sample.device_time)
                                     : std::numeric_limits<double>::quiet_NaN(),
              time_decimals);
@@ -48,11 +48,14 @@ public:
       if (!sample.present.has(sensor)) return row_.put_nothing();
       row_.put(std::uint64_t{sample[sensor].value});
     });
-    put_angles(sample, samples_.calibration());
+    // Angles of an average hand would look like this wearer's.
+    put_angles(sample, samples_.is_calibrated() ? samples_.calibration() : nullptr);
     return row_.take();
   }
 
-  double time_s() const { return seconds_between(samples_.begun(), samples_.sample().arrival); }
+  double time_s() const {
+    return seconds_between(samples_.setup().begun_host, samples_.sample().arrival);
+  }
 
 private:
   template <class Visit>

@@ -43,10 +43,9 @@ Result<GloveSamples> GloveSamples::open(const std::filesystem::path& path) {
 
 GloveSamples::GloveSamples(recording::TakeReader reader) : reader_(std::move(reader)) {
   const recording::Setup& setup = reader_.setup();
-  for (std::size_t glove = 0; glove < setup.hands.size(); ++glove) {
-    calibrations_.emplace_back();
-    if (is_calibrated(setup, glove)) calibrations_.back().emplace(setup.hands[glove].wearer);
-  }
+  for (std::size_t glove = 0; glove < setup.hands.size(); ++glove)
+    gloves_.push_back(
+        {hand::ActiveCalibration(setup.hands[glove].wearer), takes::is_calibrated(setup, glove)});
 }
 
 SensorMask GloveSamples::sensors() const {
@@ -64,9 +63,8 @@ bool GloveSamples::next() {
     const auto* const recorded = std::get_if<driver::RecordedSample>(&*entry);
     if (recorded == nullptr) continue;
     sample_ = recorded->sample;
-    const bool is_known =
-        recorded->glove < calibrations_.size() && calibrations_[recorded->glove].has_value();
-    calibration_ = is_known ? &calibrations_[recorded->glove]->follow(sample_) : nullptr;
+    glove_ = recorded->glove;
+    calibration_ = glove_ < gloves_.size() ? &gloves_[glove_].calibration.follow(sample_) : nullptr;
     return true;
   }
   return false;

@@ -2,8 +2,8 @@
 // The samples in a recording, one after another, each with the calibration with which its hand was
 // recorded. It makes no difference whether a loop was recorded, too.
 
+#include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 #include <nendo/base/result.hpp>
@@ -23,23 +23,33 @@ public:
 
   /// Returns the sensors that any of the gloves has.
   SensorMask sensors() const;
-  HostTime begun() const noexcept { return reader_.setup().begun_host; } ///< of the recording
+  const recording::Setup& setup() const noexcept { return reader_.setup(); }
 
   /// Reads the next sample. Returns false if there is none.
   bool next();
   const GloveSample& sample() const noexcept { return sample_; } ///< the latest
-  /// Returns the calibration for the latest sample, or null if its hand was not calibrated
-  /// (is_calibrated()).
+  std::size_t glove() const noexcept { return glove_; }          ///< that sent it
+  /// Returns the calibration for the latest sample, or null if what told of its hand is damaged. It
+  /// may be an average hand's.
   const hand::Calibration* calibration() const noexcept { return calibration_; }
+  /// Returns whether it is the wearer's own (takes::is_calibrated()).
+  bool is_calibrated() const noexcept {
+    return calibration_ != nullptr && gloves_[glove_].is_calibrated;
+  }
   /// Returns true while nothing was missing in the recording.
   bool is_exact() const { return exact_ && reader_.chunks().damage_count() == 0; }
 
 private:
+  struct Glove {
+    hand::ActiveCalibration calibration;
+    bool is_calibrated;
+  };
   explicit GloveSamples(recording::TakeReader reader);
 
   recording::TakeReader reader_;
-  std::vector<std::optional<hand::ActiveCalibration>> calibrations_; ///< by glove; nothing: none
+  std::vector<Glove> gloves_;
   GloveSample sample_;
+  std::size_t glove_ = 0;
   const hand::Calibration* calibration_ = nullptr;
   bool exact_ = true;
 };

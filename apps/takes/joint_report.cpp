@@ -1,7 +1,7 @@
 #include "takes/joint_report.hpp"
 
 #include <cstdio>
-#include <string_view>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
@@ -17,27 +17,13 @@ namespace {
 using hand::Angle;
 using nlohmann::ordered_json;
 
-// Rijpkema and Girard, "Computer animation of knowledge-based human grasping", 1991: a finger's DIP
-// joint bends by two thirds of its PIP joint.
-constexpr double published_dip_per_pip = 2.0 / 3.0;
 // Santello, Flanders and Soechting, "Postural hand synergies for tool use", 1998: two principal
 // components hold more than this part of the variance of 15 joint angles of many grasps.
 constexpr double published_two_components = 0.8;
 
-bool is_published(const JointPair& pair) {
-  const Angle pip = pair.one;
-  const bool is_pip = pip == Angle::index_pip_flexion || pip == Angle::middle_pip_flexion ||
-                      pip == Angle::ring_pip_flexion || pip == Angle::little_pip_flexion;
-  return is_pip && hand::index_of(pair.other) == hand::index_of(pip) + 1;
-}
-
-std::string text_of(std::string_view view) {
-  return std::string(view);
-}
-
 void print_range(Angle angle, const JointRange& range) {
   const hand::JointLimit& limit = hand::limit_of(angle);
-  std::printf("  %-20s", text_of(hand::name_of(angle)).c_str());
+  std::printf("  %-20s", std::string(hand::name_of(angle)).c_str());
   for (const double angle_rad :
        {range.least_rad, range.low_rad, range.median_rad, range.high_rad, range.most_rad})
     std::printf(" %7.1f", to_degrees(angle_rad));
@@ -48,14 +34,14 @@ void print_range(Angle angle, const JointRange& range) {
 
 void print_pair(const JointPair& pair) {
   const std::string names =
-      text_of(hand::name_of(pair.one)) + " and " + text_of(hand::name_of(pair.other));
+      std::string(hand::name_of(pair.one)) + " and " + std::string(hand::name_of(pair.other));
   std::printf("  %-41s r %5.2f, slope %5.2f", names.c_str(), pair.correlation, pair.slope);
-  if (is_published(pair)) std::printf("; published: %.2f", published_dip_per_pip);
+  if (pair.published_slope) std::printf("; published: %.2f", *pair.published_slope);
   std::printf("\n");
 }
 
 void print_hand(const JointStudy& study) {
-  std::printf("%s hand: %zu samples in %.1f s%s\n", text_of(name_of(study.side)).c_str(),
+  std::printf("%s hand: %zu samples in %.1f s%s\n", std::string(name_of(study.side)).c_str(),
               study.samples, study.duration_s,
               study.is_calibrated ? ""
                                   : "; it was not calibrated, so angles are an average hand's");

@@ -6,9 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include <nendo/hand/active_calibration.hpp>
 #include <nendo/hand/joint_limits.hpp>
-#include <nendo/recording/take_reader.hpp>
 
 #include "takes/glove_samples.hpp"
 
@@ -19,6 +17,10 @@ using hand::Angle;
 
 constexpr std::size_t noise_window = 24; // samples, a quarter of a second of most gloves
 constexpr double least_moved_rad = 0.02; // standard deviation; less is no motion to compare
+
+// Rijpkema and Girard, "Computer animation of knowledge-based human grasping", 1991: a finger's DIP
+// joint bends by two thirds of its PIP joint.
+constexpr double published_dip_per_pip = 2.0 / 3.0;
 
 std::vector<double> column_of(const std::vector<hand::JointAngles>& angles, Angle angle) {
   std::vector<double> column;
@@ -70,8 +72,8 @@ JointRange range_of(std::vector<double> column, Angle angle, hand::AngleSource s
   return range;
 }
 
-std::vector<std::pair<Angle, Angle>> neighbours() {
-  std::vector<std::pair<Angle, Angle>> pairs{{Angle::thumb_mcp_flexion, Angle::thumb_ip_flexion}};
+std::vector<JointPair> neighbours() {
+  std::vector<JointPair> pairs{{Angle::thumb_mcp_flexion, Angle::thumb_ip_flexion}};
   constexpr std::array mcp{Angle::index_mcp_flexion, Angle::middle_mcp_flexion,
                            Angle::ring_mcp_flexion, Angle::little_mcp_flexion};
   constexpr std::array pip{Angle::index_pip_flexion, Angle::middle_pip_flexion,
@@ -79,12 +81,12 @@ std::vector<std::pair<Angle, Angle>> neighbours() {
   constexpr std::array dip{Angle::index_dip_flexion, Angle::middle_dip_flexion,
                            Angle::ring_dip_flexion, Angle::little_dip_flexion};
   for (std::size_t finger = 0; finger < mcp.size(); ++finger) {
-    pairs.emplace_back(mcp[finger], pip[finger]);
-    pairs.emplace_back(pip[finger], dip[finger]);
+    pairs.push_back({mcp[finger], pip[finger]});
+    pairs.push_back({pip[finger], dip[finger], published_dip_per_pip});
   }
   for (const auto& joint : {mcp, pip})
     for (std::size_t finger = 0; finger + 1 < joint.size(); ++finger)
-      pairs.emplace_back(joint[finger], joint[finger + 1]);
+      pairs.push_back({joint[finger], joint[finger + 1]});
   return pairs;
 }
 
@@ -113,13 +115,15 @@ struct Covariance {
 
 void add_pairs(const Covariance& covariance, JointStudy& study) {
   constexpr double least = least_moved_rad * least_moved_rad;
-  for (const auto& [one, other] : neighbours()) {
-    const Eigen::Index a = covariance.index_of(one), b = covariance.index_of(other);
+  for (JointPair& pair : neighbours()) {
+    const Eigen::Index a = covariance.index_of(pair.one), b = covariance.index_of(pair.other);
     if (a < 0 || b < 0) continue;
     const double variance = covariance.matrix(a, a), of_other = covariance.matrix(b, b);
     if (!(variance > least && of_other > least)) continue;
     const double common = covariance.matrix(a, b);
-    study.pairs.push_back({one, other, common / std::sqrt(variance * of_other), common / variance});
+    pair.correlation = common / std::sqrt(variance * of_other);
+    pair.slope = common / variance;
+    study.pairs.push_back(pair);
   }
 }
 
@@ -150,27 +154,23 @@ JointStudy study_joints(const std::vector<hand::JointAngles>& angles, SensorMask
 }
 
 Result<std::vector<JointStudy>> study_joints(const std::filesystem::path& path) {
-  auto reader = recording::TakeReader::open(path);
-  if (!reader) return reader.error();
-  const recording::Setup& setup = reader->setup();
+  auto samples = GloveSamples::open(path);
+  if (!samples) return samples.error();
   struct Hand {
-    hand::ActiveCalibration calibration;
     std::vector<hand::JointAngles> angles;
     SensorMask sensors;
     HostTime first, last;
   };
-  std::vector<Hand> hands;
-  for (const flow::HandInput& input : setup.hands)
-    hands.push_back({hand::ActiveCalibration(input.wearer), {}, {}, {}, {}});
-  while (const auto entry = reader->next()) {
-    const auto* const recorded = std::get_if<driver::RecordedSample>(&*entry);
-    if (recorded == nullptr || recorded->glove >= hands.size()) continue;
-    Hand& hand = hands[recorded->glove];
-    const GloveSample& sample = recorded->sample;
+  const recording::Setup& setup = samples->setup();
+  std::vector<Hand> hands(setup.hands.size());
+  while (samples->next()) {
+    if (samples->calibration() == nullptr) continue;
+    Hand& hand = hands[samples->glove()];
+    const GloveSample& sample = samples->sample();
     if (hand.angles.empty()) hand.first = sample.measured;
     hand.last = sample.measured;
     hand.sensors.bits |= sample.present.bits;
-    hand.angles.push_back(hand::joint_angles(sample, hand.calibration.follow(sample)));
+    hand.angles.push_back(hand::joint_angles(sample, *samples->calibration()));
   }
   std::vector<JointStudy> studies;
   for (std::size_t at = 0; at < hands.size(); ++at) {

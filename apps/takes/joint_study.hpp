@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include <nendo/base/result.hpp>
@@ -29,6 +30,7 @@ struct JointRange {
 /// Two angles that move together.
 struct JointPair {
   hand::Angle one, other;
+  std::optional<double> published_slope{};
   double correlation = 0.0; ///< Pearson's
   double slope = 0.0;       ///< of `other` over `one`
 };

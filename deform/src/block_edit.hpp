@@ -16,7 +16,7 @@ inline void set_vertex(VertexBlock& block, std::size_t lane, const Eigen::Vector
 /// Makes what a block has beyond its `used` vertices equal to the last of these, as
 /// BlockLayout::pack() does.
 inline void repeat_last(VertexBlock& block, std::size_t used) noexcept {
-  const Eigen::Vector3f last(block.x[used - 1], block.y[used - 1], block.z[used - 1]);
+  const Eigen::Vector3f last = vertex_in(block, used - 1);
   for (std::size_t lane = used; lane < block_size; ++lane)
     set_vertex(block, lane, last);
 }

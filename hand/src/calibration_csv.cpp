@@ -60,10 +60,10 @@ Result<ImportedCalibration> parse_calibration_csv(std::string_view text, std::st
     const std::string_view sensor = trimmed(cut(rest, ','));
     const auto gain = to_finite_number(trimmed(cut(rest, ',')));
     const auto offset = to_finite_number(trimmed(rest));
-    const auto found = std::find(sensor_names.begin(), sensor_names.end(), sensor);
-    if (found == sensor_names.end()) return bad("no sensor is called " + in_quotes(sensor));
+    const auto found = sensor_named(sensor);
+    if (!found) return bad("no sensor is called " + in_quotes(sensor));
     if (!gain || !offset) return bad(in_quotes(sensor) + " needs two finite numbers; mend the row");
-    const auto slot = static_cast<std::size_t>(found - sensor_names.begin());
+    const auto slot = static_cast<std::size_t>(*found);
     if (read.line[slot] != 0) return bad(in_quotes(sensor) + " stands here twice; leave one out");
     if (*gain == 0.0) return bad(in_quotes(sensor) + " has a gain of 0; leave it out");
     read.sensors[slot] = {*gain, *offset};

@@ -14,6 +14,7 @@
 #include "export/hands_bvh.hpp"
 #include "export/samples_csv.hpp"
 #include "support/bvh_reader.hpp"
+#include "support/csv_table.hpp"
 #include "support/glb_reader.hpp"
 #include "support/takes.hpp"
 #include "takes/glove_frames.hpp"
@@ -112,19 +113,12 @@ using Row = std::map<std::string, std::string>;
 
 std::vector<Row> rows_of(const std::string& file) {
   std::istringstream lines(test::file_bytes(file));
-  const auto cells_of = [](const std::string& line) {
-    std::vector<std::string> cells;
-    std::istringstream stream(line + ",");
-    for (std::string cell; std::getline(stream, cell, ',');)
-      cells.push_back(cell);
-    return cells;
-  };
   std::string line;
   std::getline(lines, line);
-  const auto head = cells_of(line);
+  const auto head = test::csv_cells(line);
   std::vector<Row> rows;
   while (std::getline(lines, line)) {
-    const auto cells = cells_of(line);
+    const auto cells = test::csv_cells(line);
     REQUIRE(cells.size() == head.size());
     rows.emplace_back();
     for (std::size_t at = 0; at < head.size(); ++at)

@@ -1,11 +1,10 @@
 #include "export/motion_csv.hpp"
 
 #include <limits>
-#include <map>
-#include <sstream>
 
 #include <doctest/doctest.h>
 
+#include "support/csv_table.hpp"
 #include "support/recorded_motion.hpp"
 #include "support/scripted_frames.hpp"
 
@@ -16,34 +15,6 @@ using namespace nendo::exporting;
 using nendo::test::Motion;
 using nendo::test::RecordedMotion;
 
-namespace {
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream stream(line + ","); // getline() gives no empty one at an end
-  for (std::string cell; std::getline(stream, cell, ',');)
-    cells.push_back(cell);
-  return cells;
-}
-
-/// By column, then row.
-std::map<std::string, std::vector<std::string>> table_of(const std::string& text) {
-  std::map<std::string, std::vector<std::string>> table;
-  std::istringstream lines(text);
-  std::string line;
-  std::getline(lines, line);
-  const auto head = cells_of(line);
-  while (std::getline(lines, line)) {
-    const auto cells = cells_of(line);
-    REQUIRE(cells.size() == head.size());
-    for (std::size_t at = 0; at < head.size(); ++at)
-      table[head[at]].push_back(cells[at]);
-  }
-  return table;
-}
-
-} // namespace
-
 TEST_SUITE("motion_csv") {
   TEST_CASE("a row a frame has time, status, fingertips, and angles that make those fingertips") {
     const RecordedMotion motion(Motion{.ticks = 15, .commit_at_tick = 9});
@@ -51,7 +22,7 @@ TEST_SUITE("motion_csv") {
     auto frames = ChosenFrames::make(*source, {});
     REQUIRE(frames);
     REQUIRE(export_motion_csv(*frames, motion.path("take.csv")));
-    auto table = table_of(test::file_bytes(motion.path("take.csv")));
+    auto table = test::csv_columns(test::file_bytes(motion.path("take.csv")));
     CHECK(table.size() == 6 + 2 * (2 + hand::angle_count + 15));
     REQUIRE(table["time_s"].size() == 15);
     CHECK(table["commits"][8] == "0");
@@ -95,7 +66,7 @@ TEST_SUITE("motion_csv") {
     REQUIRE(frames);
     const test::TemporaryFolder folder;
     REQUIRE(export_motion_csv(*frames, folder.path() / "a.csv"));
-    const auto table = table_of(test::file_bytes(folder.path() / "a.csv"));
+    const auto table = test::csv_columns(test::file_bytes(folder.path() / "a.csv"));
     std::vector<std::string> empty;
     for (const auto& [name, cells] : table) {
       REQUIRE(cells.size() == 3);

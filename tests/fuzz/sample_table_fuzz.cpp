@@ -3,16 +3,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <sstream>
 #include <string>
+#include <string_view>
 
 #include "replay/sample_table.hpp"
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace nendo::driver;
-  std::istringstream text(std::string(reinterpret_cast<const char*>(data), size));
-  const auto table = read_sample_table(text, "table", {.rate_hz = 90.0});
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const auto table = parse_sample_table(text, "table", {.rate_hz = 90.0});
   if (!table) {
     const std::string& message = table.error().message;
     if (message.rfind("table", 0) != 0 || message.find('\n') != std::string::npos) std::abort();

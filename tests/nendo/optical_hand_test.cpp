@@ -3,15 +3,14 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "support/csv_table.hpp"
 #include "support/program.hpp"
 #include "support/shell.hpp"
 #include "support/temporary_folder.hpp"
@@ -25,19 +24,11 @@ namespace {
 using Columns = std::map<std::string, std::vector<double>>;
 
 Columns columns_of(const std::string& path) {
-  std::ifstream file(path);
-  std::string line, cell;
-  std::getline(file, line);
-  std::vector<std::string> names;
-  for (std::istringstream head(line); std::getline(head, cell, ',');)
-    names.push_back(cell);
   Columns columns;
-  while (std::getline(file, line)) {
-    std::istringstream row(line);
-    for (const std::string& name : names)
-      if (std::getline(row, cell, ',') && name != "hand")
+  for (const auto& [name, cells] : test::csv_columns(test::contents(path)))
+    if (name != "hand")
+      for (const std::string& cell : cells)
         columns[name].push_back(std::strtod(cell.c_str(), nullptr));
-  }
   return columns;
 }
 

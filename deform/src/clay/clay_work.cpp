@@ -427,8 +427,7 @@ void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
       for (std::size_t lane = 0; lane < block_size; ++lane) {
         const double depth = -static_cast<double>(nearest.distance[lane]);
         if (!(depth > 0.0)) continue;
-        const Vector3d at =
-            Eigen::Vector3f(content.x[lane], content.y[lane], content.z[lane]).cast<double>();
+        const Vector3d at = vertex_in(content, lane).cast<double>();
         const Vector3d out = at + std::min(depth, most) * normal_at(at, nearest, lane);
         set_vertex(content, lane, out.cast<float>());
       }

@@ -215,9 +215,7 @@ void FaceMeetings::list_pairs(const BlockShape& shape, const BlockShape& before,
 
 /// In which the vertex there swells.
 Eigen::Vector3f FaceMeetings::direction_at(std::uint32_t place) const noexcept {
-  const VertexBlock& directions = rings_[place / block_size].direction;
-  const std::size_t lane = place % block_size;
-  return {directions.x[lane], directions.y[lane], directions.z[lane]};
+  return vertex_in(rings_[place / block_size].direction, place % block_size);
 }
 
 /// Tells whether some face of the block looks away from the direction of one of its vertices.

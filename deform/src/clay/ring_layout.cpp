@@ -55,8 +55,7 @@ RingLayout::RingLayout(const BlockLayout& layout, std::span<const std::uint32_t>
   first_parts_.assign(1, 0);
   for (std::size_t block = 0; block < blocks; ++block)
     add_block(fans, block);
-  parts_.push_back(
-      {static_cast<std::uint32_t>(rows_.size()), static_cast<std::uint32_t>(far_.size())});
+  begin_part();
   list_blocks_around(fans, blocks);
 }
 
@@ -76,14 +75,17 @@ void RingLayout::add_block(const Fans& fans, std::size_t block) {
       const auto itself = static_cast<std::uint32_t>(std::min(place, vertices_ - 1));
       neighbours[lane] = fan.empty() ? itself : fan[std::min(row, fan.size() - 1)];
     }
-    const bool begins = row == 0 || !add_row(block, neighbours);
-    if (!begins) continue;
-    parts_.push_back(
-        {static_cast<std::uint32_t>(rows_.size()), static_cast<std::uint32_t>(far_.size())});
+    if (row > 0 && add_row(block, neighbours)) continue;
+    begin_part();
     add_row(block, neighbours);
   }
   most_parts_ = std::max(most_parts_, parts_.size() - first_parts_.back());
   first_parts_.push_back(static_cast<std::uint32_t>(parts_.size()));
+}
+
+void RingLayout::begin_part() {
+  parts_.push_back(
+      {static_cast<std::uint32_t>(rows_.size()), static_cast<std::uint32_t>(far_.size())});
 }
 
 /// To the last part, if it has room for the row's places.

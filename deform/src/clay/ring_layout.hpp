@@ -62,6 +62,7 @@ private:
   using Fans = RowsByKey<std::uint32_t>; ///< of each place: its neighbours in their order
 
   void add_block(const Fans& fans, std::size_t block);
+  void begin_part();
   bool add_row(std::size_t block, std::span<const std::uint32_t> neighbours);
   void list_blocks_around(const Fans& fans, std::size_t blocks);
 

@@ -23,10 +23,6 @@ using Eigen::Vector3f;
 /// Parts may be put so many units of the layout away: float is precise enough there.
 constexpr double farthest = 1e4;
 
-Vector3f vertex_in(const VertexBlock& block, std::size_t lane) noexcept {
-  return {block.x[lane], block.y[lane], block.z[lane]};
-}
-
 float square_from(const BlockBounds& bounds, const Vector3f& point) noexcept {
   const Eigen::Map<const Vector3f> low(bounds.sides.data()), high(bounds.sides.data() + 4);
   return (low - point).cwiseMax(point + high).cwiseMax(0.0F).squaredNorm();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include <spdlog/fmt/fmt.h>
@@ -10,6 +9,7 @@
 #include "cyberglove/cyberglove_line.hpp"
 #include "cyberglove/cyberglove_parser.hpp"
 #include "spec/glove_spec.hpp"
+#include "spec/number_in.hpp"
 
 namespace nendo::driver::cyberglove {
 namespace {
@@ -19,15 +19,6 @@ constexpr double most_rate_hz = 1000.0;
 
 Error wrong(const GloveSpec& spec, const std::string& key, const std::string& known) {
   return {Errc::usage, spec.text + ": " + key + "=" + spec.options.at(key) + " is not " + known};
-}
-
-/// Reads the whole of `text`, or nothing.
-template <class T, class... Form>
-std::optional<T> number(std::string_view text, Form... form) {
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, form...);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 /// Sets `option` from the text of `key`, as `read` understands it.
@@ -50,13 +41,13 @@ std::optional<bool> read_switch(std::string_view text) {
 
 std::optional<int> read_baud(std::string_view text) {
   constexpr std::array known{115'200, 57'600, 38'400, 19'200, 9'600};
-  const auto baud = number<int>(text);
+  const auto baud = number_in<int>(text);
   if (!baud || std::find(known.begin(), known.end(), *baud) == known.end()) return std::nullopt;
   return baud;
 }
 
 std::optional<double> read_rate(std::string_view text) {
-  const auto rate_hz = number<double>(text);
+  const auto rate_hz = number_in<double>(text);
   if (!rate_hz || !(*rate_hz >= least_rate_hz && *rate_hz <= most_rate_hz)) return std::nullopt;
   return rate_hz;
 }
@@ -64,7 +55,7 @@ std::optional<double> read_rate(std::string_view text) {
 std::optional<SensorMask> read_mask(std::string_view text) {
   constexpr std::uint32_t all = (1U << sensor_slots) - 1;
   if (!text.starts_with("0x")) return std::nullopt;
-  const auto bits = number<std::uint32_t>(text.substr(2), 16);
+  const auto bits = number_in<std::uint32_t>(text.substr(2), 16);
   if (!bits || *bits == 0 || *bits > all) return std::nullopt;
   return SensorMask{*bits};
 }

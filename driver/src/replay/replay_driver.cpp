@@ -10,9 +10,9 @@
 #include <nendo/driver/sample_record.hpp>
 
 #include "replay/sample_table.hpp"
-#include "spec/decimal.hpp"
 #include "spec/glove_options.hpp"
 #include "spec/glove_spec.hpp"
+#include "spec/number_in.hpp"
 #include "stream/reader_thread.hpp"
 
 namespace nendo::driver {
@@ -33,7 +33,7 @@ Result<Settings> settings_of(const GloveSpec& spec) {
   constexpr double most_speed = 100.0;
   Settings settings;
   if (const auto option = spec.options.find("speed"); option != spec.options.end()) {
-    const auto speed = decimal_of(option->second);
+    const auto speed = number_in<double>(option->second);
     if (!speed || !(*speed >= least_speed && *speed <= most_speed))
       return error_of(spec, Errc::usage, "speed must be a number from 0.01 to 100");
     settings.speed = *speed;
@@ -261,7 +261,7 @@ Result<std::unique_ptr<Glove>> open_recording(const GloveSpec& spec, const Setti
 Result<std::unique_ptr<Glove>> open_table(const GloveSpec& spec, const Settings& settings,
                                           TableWishes wishes) {
   if (const auto option = spec.options.find("rate"); option != spec.options.end()) {
-    const auto rate_hz = decimal_of(option->second);
+    const auto rate_hz = number_in<double>(option->second);
     if (!rate_hz || !(*rate_hz >= 1.0 && *rate_hz <= 1e4))
       return error_of(spec, Errc::usage, "rate must be a number from 1 to 10000, rows a second");
     wishes.rate_hz = rate_hz;

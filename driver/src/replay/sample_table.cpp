@@ -1,18 +1,16 @@
 #include "replay/sample_table.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
-#include <istream>
 #include <set>
 #include <string>
 #include <string_view>
 
+#include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/base/units.hpp>
 
-#include "spec/decimal.hpp"
+#include "spec/number_in.hpp"
 
 namespace nendo::driver {
 namespace {
@@ -20,31 +18,28 @@ namespace {
 constexpr double most_count = 65535.0;
 constexpr double most_time_s = 1e9;             // 30 years
 constexpr std::size_t most_samples = 5'000'000; // 15 hours of a CyberGlove; some 160 bytes each
-constexpr std::uintmax_t most_bytes = 2'000'000'000;
+constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
 constexpr std::string_view count_ending = "_count";
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blank = " \t\r\"";
-  const std::size_t first = text.find_first_not_of(blank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blank) - first + 1);
+/// What stands in a cell, in quotes or not.
+std::string_view content_of(std::string_view cell) {
+  cell = trimmed(cell);
+  const bool is_quoted = cell.size() > 1 && cell.starts_with('"') && cell.ends_with('"');
+  return is_quoted ? trimmed(cell.substr(1, cell.size() - 2)) : cell;
 }
 
 std::vector<std::string_view> cells_of(std::string_view line, char separator) {
   std::vector<std::string_view> cells;
-  for (std::size_t first = 0; first <= line.size();) {
-    const std::size_t end = std::min(line.find(separator, first), line.size());
-    cells.push_back(trimmed(line.substr(first, end - first)));
-    first = end + 1;
+  for (bool is_last = false; !is_last;) {
+    is_last = line.find(separator) == std::string_view::npos;
+    cells.push_back(content_of(cut(line, separator)));
   }
   return cells;
 }
 
 std::optional<Sensor> sensor_of(std::string_view name) {
   if (name.ends_with(count_ending)) name.remove_suffix(count_ending.size());
-  const auto found = std::find(sensor_names.begin(), sensor_names.end(), name);
-  if (found == sensor_names.end()) return std::nullopt;
-  return static_cast<Sensor>(found - sensor_names.begin());
+  return sensor_named(name);
 }
 
 /// Which column has what.
@@ -60,12 +55,11 @@ public:
   TableReader(std::string name, const TableWishes& wishes)
       : name_(std::move(name)), wishes_(wishes) {}
 
-  Result<SampleTable> read(std::istream& text) {
-    std::string line;
-    if (!std::getline(text, line))
-      return Error{Errc::bad_input, name_ + ": cannot be read, or is empty"};
-    if (auto fine = read_head(line); !fine) return fine.error();
-    while (std::getline(text, line)) {
+  Result<SampleTable> read(std::string_view text) {
+    if (text.empty()) return Error{Errc::bad_input, name_ + ": is empty"};
+    if (auto fine = read_head(cut(text, '\n')); !fine) return fine.error();
+    while (!text.empty()) {
+      const std::string_view line = cut(text, '\n');
       ++line_;
       if (trimmed(line).empty()) continue;
       if (auto fine = read_row(line); !fine) return fine.error();
@@ -119,7 +113,7 @@ private:
   Result<void> read_counts(const std::vector<std::string_view>& cells, GloveSample& sample) {
     for (const auto& [column, sensor] : columns_.sensors) {
       if (cells[column].empty()) continue;
-      const auto count = decimal_of(cells[column]);
+      const auto count = number_in<double>(cells[column]);
       if (!count || !(*count >= 0.0 && *count <= most_count))
         return wrong(std::string(name_of(sensor)) + " is " + in_quotes(cells[column]) +
                      "; use a count from 0 to 65535, or nothing");
@@ -143,7 +137,7 @@ private:
   Result<void> read_time(const std::vector<std::string_view>& cells, GloveSample& sample) {
     double time_s = columns_.time ? 0.0 : static_cast<double>(rows_.size()) / *wishes_.rate_hz;
     if (columns_.time) {
-      const auto told = decimal_of(cells[*columns_.time]);
+      const auto told = number_in<double>(cells[*columns_.time]);
       if (!told || !(std::abs(*told) <= most_time_s))
         return wrong("time_s is " + in_quotes(cells[*columns_.time]) + "; use seconds");
       time_s = *told;
@@ -153,10 +147,9 @@ private:
       return wrong("time_s is less than in the row before");
     if (columns_.sequence) {
       const std::string_view text = cells[*columns_.sequence];
-      const auto [end, failure] =
-          std::from_chars(text.data(), text.data() + text.size(), sample.sequence);
-      if (failure != std::errc{} || end != text.data() + text.size())
-        return wrong("sequence is " + in_quotes(text) + "; use a whole number");
+      const auto sequence = number_in<std::uint64_t>(text);
+      if (!sequence) return wrong("sequence is " + in_quotes(text) + "; use a whole number");
+      sample.sequence = *sequence;
     }
     return {};
   }
@@ -206,20 +199,16 @@ private:
 
 } // namespace
 
-Result<SampleTable> read_sample_table(std::istream& text, const std::string& name,
-                                      const TableWishes& wishes) {
+Result<SampleTable> parse_sample_table(std::string_view text, const std::string& name,
+                                       const TableWishes& wishes) {
   return TableReader(name, wishes).read(text);
 }
 
 Result<SampleTable> read_sample_table(const std::filesystem::path& path,
                                       const TableWishes& wishes) {
-  std::error_code failure;
-  if (!std::filesystem::is_regular_file(path, failure))
-    return Error{Errc::bad_input, path.string() + ": is no file"};
-  if (std::filesystem::file_size(path, failure) > most_bytes)
-    return Error{Errc::bad_input, path.string() + ": is larger than 2 GB; cut it into parts"};
-  std::ifstream file(path);
-  return read_sample_table(file, path.string(), wishes);
+  const auto text = read_file(path, most_bytes, "table");
+  if (!text) return text.error();
+  return parse_sample_table(*text, path.string(), wishes);
 }
 
 } // namespace nendo::driver

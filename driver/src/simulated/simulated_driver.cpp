@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <stop_token>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include <nendo/driver/simulated_glove.hpp>
 
 #include "simulated/hand_motion.hpp"
 #include "simulated/typical_wearer.hpp"
+#include "spec/number_in.hpp"
 #include "stream/reader_thread.hpp"
 
 namespace nendo::driver {
@@ -91,10 +90,10 @@ private:
 };
 
 template <class Number>
-bool read_number(const std::string& text, Number& number) noexcept {
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc{} && stopped == end;
+bool set_number(Number& number, std::string_view text) noexcept {
+  const auto read = number_in<Number>(text);
+  if (read) number = *read;
+  return read.has_value();
 }
 
 struct Option {
@@ -108,9 +107,9 @@ constexpr std::array<Option, 4> known_options{{{"seed", "a whole number from 0 t
 
 // False: the value is none of those that `known_options` allows for this key.
 bool set_option(SimulatedGloveOptions& settings, const std::string& key, const std::string& value) {
-  if (key == "seed") return read_number(value, settings.seed);
+  if (key == "seed") return set_number(settings.seed, value);
   if (key == "rate") {
-    return read_number(value, settings.rate_hz) && settings.rate_hz >= 1.0 &&
+    return set_number(settings.rate_hz, value) && settings.rate_hz >= 1.0 &&
            settings.rate_hz <= 1000.0;
   }
   if (key == "hand") {

@@ -1,11 +1,12 @@
 #include "transport/sysfs.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <system_error>
 
 #include <nendo/base/text.hpp>
+
+#include "spec/number_in.hpp"
 
 namespace nendo::driver {
 namespace {
@@ -46,10 +47,7 @@ std::string read_text(const fs::path& path) {
 }
 
 std::optional<unsigned> parse_number(std::string_view text, int base) {
-  unsigned number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [last, error] = std::from_chars(text.data(), end, number, base);
-  return error == std::errc{} && last == end ? std::optional(number) : std::nullopt;
+  return number_in<unsigned>(text, base);
 }
 
 std::optional<unsigned> read_number(const fs::path& path, int base) {

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <string>
-#include <system_error>
 
 #include <nendo/udev/device_table.hpp>
 
@@ -13,6 +11,7 @@
 #include "fivedt_usb/fivedt_usb_protocol.hpp"
 #include "p5/p5_driver.hpp"
 #include "p5/p5_protocol.hpp"
+#include "spec/number_in.hpp"
 #include "stream/stream_glove.hpp"
 
 namespace nendo::driver {
@@ -40,11 +39,7 @@ const UsbDriver* find_driver(UsbId id) noexcept {
 
 /// Four hexadecimal digits.
 std::optional<std::uint16_t> read_number(std::string_view text) noexcept {
-  std::uint16_t number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, number, 16);
-  if (text.size() != 4 || error != std::errc{} || stopped != end) return std::nullopt;
-  return number;
+  return text.size() == 4 ? number_in<std::uint16_t>(text, 16) : std::nullopt;
 }
 
 Result<UsbId> id_of(const GloveSpec& spec) {

@@ -60,11 +60,13 @@ private:
   std::vector<std::uint64_t> stamps_;
 };
 
+/// Returns the vertex in that lane of a block.
+inline Eigen::Vector3f vertex_in(const VertexBlock& block, std::size_t lane) noexcept {
+  return {block.x[lane], block.y[lane], block.z[lane]};
+}
 /// Returns the vertex at that place in block order.
 inline Eigen::Vector3f vertex_at(const BlockShape& shape, std::size_t place) noexcept {
-  const VertexBlock& block = shape[place / block_size];
-  const std::size_t lane = place % block_size;
-  return {block.x[lane], block.y[lane], block.z[lane]};
+  return vertex_in(shape[place / block_size], place % block_size);
 }
 
 /// Where each vertex of a mesh stands in the blocks, and what the numbers there mean: vertex =

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include <nendo/base/event_count.hpp>
@@ -58,6 +59,12 @@ inline constexpr std::array<std::string_view, sensor_slots> sensor_names{
 
 constexpr std::string_view name_of(Sensor sensor) noexcept {
   return sensor_names[static_cast<std::size_t>(sensor)];
+}
+
+constexpr std::optional<Sensor> sensor_named(std::string_view name) noexcept {
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    if (sensor_names[slot] == name) return static_cast<Sensor>(slot);
+  return std::nullopt;
 }
 
 /// A set of sensor slots; bit k is slot k, as in the glove's own masks.
