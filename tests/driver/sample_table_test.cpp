@@ -72,6 +72,12 @@ TEST_SUITE("sample_table") {
     }
   }
 
+  TEST_CASE("a mark of UTF-8 before the first column, as spreadsheets write it, is passed over") {
+    const auto table = Table("\xEF\xBB\xBFtime_s,index_mcp\n0,7\n").read();
+    REQUIRE_MESSAGE(table, (table ? "" : table.error().message));
+    CHECK(table->samples[0][Sensor::index_mcp].value == 7);
+  }
+
   TEST_CASE("a hand's rows are chosen, and its sequence is kept") {
     const Table both("time_s,hand,sequence,index_mcp\n0,left,5,1\n0,right,8,2\n1,left,9,3\n");
     const auto left = both.read({.side = Side::left});

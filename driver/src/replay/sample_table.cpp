@@ -56,6 +56,7 @@ public:
       : name_(std::move(name)), wishes_(wishes) {}
 
   Result<SampleTable> read(std::string_view text) {
+    text = without_mark(text);
     if (text.empty()) return Error{Errc::bad_input, name_ + ": is empty"};
     if (auto fine = read_head(cut(text, '\n')); !fine) return fine.error();
     while (!text.empty()) {
