@@ -52,10 +52,10 @@ std::optional<std::size_t> group_of(std::size_t angle) {
 
 using GroupErrors = std::array<std::vector<float>, judged_groups.size()>;
 
-/// How far apart the pads are in these poses.
-double pads_apart_mm(const hand::HandPose& pose, const JudgedWearer& wearer, int touching) {
+/// How far apart these pads, thumb's to little finger's, are in this pose.
+double pads_apart_mm(const hand::HandPose& pose, const JudgedWearer::Pads& pads, int touching) {
   const auto pad = [&](std::size_t digit) -> Eigen::Vector3d {
-    const auto [depth, behind] = wearer.pads[digit];
+    const auto [depth, behind] = pads[digit];
     return pose[hand::fingertips[digit]] * Eigen::Vector3d(0.0, -depth, behind);
   };
   return 1e3 * (pad(0) - pad(static_cast<std::size_t>(touching))).norm();
@@ -64,7 +64,7 @@ double pads_apart_mm(const hand::HandPose& pose, const JudgedWearer& wearer, int
 /// What is made of a moment.
 struct Told {
   JointAngles angles;
-  double apart_mm; ///< the pads that touch
+  double apart_mm, drawn_apart_mm; ///< the pads that touch
 };
 
 template <class Tell>
@@ -79,7 +79,9 @@ GroupErrors errors_of(const JudgedWearer& wearer, const JudgedSession& session, 
       const double error = to_degrees(told.angles[hand::angle_at(n)]) - moment.angles_deg[n];
       errors[*group].push_back(static_cast<float>(std::abs(error)));
     }
-    if (moment.touching != 0) errors.back().push_back(static_cast<float>(told.apart_mm));
+    if (moment.touching == 0) continue;
+    errors[judged_groups.size() - 2].push_back(static_cast<float>(told.apart_mm));
+    errors.back().push_back(static_cast<float>(told.drawn_apart_mm));
   }
   return errors;
 }
@@ -90,9 +92,12 @@ GroupErrors errors_of(const JudgedWearer& wearer, const JudgedSession& session,
   return errors_of(wearer, session, [&](const JudgedMoment& moment) {
     JointAngles angles = hand::joint_angles(judged_sample(moment.counts, wearer), calibration);
     if (closes_pinches) angles = hand::close_pinches(angles, skeleton, wearer.sensors);
-    if (moment.touching == 0) return Told{angles, 0.0};
+    if (moment.touching == 0) return Told{angles, 0.0, 0.0};
     const auto pose = skeleton.pose(angles, Eigen::Isometry3d::Identity());
-    return Told{angles, pads_apart_mm(pose, wearer, moment.touching)};
+    JudgedWearer::Pads drawn;
+    drawn.fill({hand::pad_depth_m, hand::pad_behind_tip_m});
+    return Told{angles, pads_apart_mm(pose, wearer.pads, moment.touching),
+                pads_apart_mm(pose, drawn, moment.touching)};
   });
 }
 
@@ -104,15 +109,16 @@ JointAngles joints_at(const hand::SensorAngles& angles_rad, const JudgedWearer& 
   return hand::joint_angles(judged_sample({}, wearer), passing);
 }
 
-GroupErrors errors_of_floor(const JudgedWearer& wearer, const StrangerHand& hand) {
+GroupErrors errors_of_floor(const JudgedWearer& wearer, const StrangerHand* hand) {
   StrangerFloor floor(wearer, hand);
   return errors_of(wearer, wearer.fresh, [&](const JudgedMoment& moment) {
     hand::SensorAngles angles = floor.angles_rad(moment.counts);
     const JointAngles joints = joints_at(angles, wearer);
     for (std::size_t f = 0; f < joints.fingers.size(); ++f)
       angles[4 * f + 6] = joints.fingers[f].dip_flexion_rad; // by rule, where there is no sensor
-    if (moment.touching == 0) return Told{joints, 0.0};
-    return Told{joints, 1e3 * floor.pads_apart_m(angles, moment.touching)};
+    if (moment.touching == 0) return Told{joints, 0.0, 0.0};
+    const double apart_mm = 1e3 * floor.pads_apart_m(angles, moment.touching);
+    return Told{joints, apart_mm, apart_mm};
   });
 }
 
@@ -244,8 +250,13 @@ void judge(const JudgedWearer& wearer, Verdict& verdict, const StrangerHand* han
       errors_of(wearer, wearer.fresh, best_lines(wearer), own),
       errors_of(wearer, wearer.again, full->calibration, own),
       {},
+      {},
       {}};
-  if (hand != nullptr) errors.back() = errors_of_floor(wearer, *hand);
+  auto& of_floor = errors[static_cast<std::size_t>(Judged::floor)];
+  if (hand != nullptr) {
+    of_floor = errors_of_floor(wearer, hand);
+    errors[static_cast<std::size_t>(Judged::no_hand)] = errors_of_floor(wearer, nullptr);
+  }
   if (!wearer.again.takes.empty()) {
     hand::FitOptions again;
     again.mode = hand::FitMode::touch_up;
@@ -265,7 +276,7 @@ void judge(const JudgedWearer& wearer, Verdict& verdict, const StrangerHand* han
     const double two_pose =
         p95(errors[static_cast<std::size_t>(Judged::two_pose)][group]) + tolerance;
     if (p95(errors[0][group]) > two_pose) ++verdict.worse[group];
-    if (p95(errors.back()[group]) > two_pose) ++verdict.floor_worse[group];
+    if (p95(of_floor[group]) > two_pose) ++verdict.floor_worse[group];
     for (std::size_t method = 0; method < errors.size(); ++method) {
       auto& all = verdict.errors[method][group];
       all.insert(all.end(), errors[method][group].begin(), errors[method][group].end());

@@ -21,15 +21,17 @@ enum class Judged : std::uint8_t {
   lines,      ///< the best line of each sensor, by the true angles of the motion itself: a bound
   worn_again, ///< the full calibration, after the glove was put on again
   touched_up, ///< that, touched up
-  floor,      ///< what StrangerFloor reaches on the captures of full
+  floor,      ///< what StrangerFloor reaches on the captures of full, told the hand
+  no_hand,    ///< the same, not told the hand
 };
-inline constexpr std::array<std::string_view, 7> judged_names{
-    "full", "closed", "two_pose", "best lines", "worn again", "touched up", "floor"};
+inline constexpr std::array<std::string_view, 8> judged_names{
+    "full", "closed", "two_pose", "best lines", "worn again", "touched up", "floor", "no hand"};
 
-/// The last row are the distances of pads that touch, in millimetres; the others are degrees.
-inline constexpr std::array<std::string_view, 9> judged_groups{
+/// The last two rows are the distances of pads that touch, in millimetres; the others are degrees.
+/// The former are of the wearer's pads, the latter of those of the hand that the program draws.
+inline constexpr std::array<std::string_view, 10> judged_groups{
     "finger MCP",      "finger PIP",    "finger DIP", "abduction", "thumb roll",
-    "thumb abduction", "thumb flexion", "wrist",      "pinch, mm"};
+    "thumb abduction", "thumb flexion", "wrist",      "pinch, mm", "pinch drawn, mm"};
 
 template <class Value>
 using JudgedTable = std::array<std::array<Value, judged_groups.size()>, judged_names.size()>;
@@ -45,8 +47,8 @@ struct Verdict {
   std::vector<double> fit_ms;
 };
 
-/// Adds a wearer's errors. The floor is judged, too, if the wearer is a stranger whose true hand is
-/// given; this takes a second.
+/// Adds a wearer's errors. The floors are judged, too, if the wearer is a stranger whose true hand
+/// is given; this takes a second.
 void judge(const JudgedWearer& wearer, Verdict& verdict, const StrangerHand* hand = nullptr);
 
 } // namespace nendo::bench

@@ -32,6 +32,7 @@ constexpr std::array<std::array<double, 2>, judged_groups.size()> goals{{{2.0, 5
                                                                          {2.5, 8.0},
                                                                          {2.2, 7.0},
                                                                          {2.0, 6.0},
+                                                                         {3.0, 8.0},
                                                                          {3.0, 8.0}}};
 
 /// The true hand of a stranger, who is known by the name. Error: bad_input, of others.
@@ -66,7 +67,7 @@ bool has_floor(const Verdict& verdict) {
   return !verdict.errors.back().front().empty();
 }
 std::size_t columns_of(const Verdict& verdict) {
-  return judged_names.size() - (has_floor(verdict) ? 0 : 1);
+  return has_floor(verdict) ? judged_names.size() : static_cast<std::size_t>(Judged::floor);
 }
 
 void print_judged_json(const Verdict& verdict) {
@@ -101,7 +102,8 @@ void print_judged_table(const Verdict& verdict, bool markdown) {
   std::printf("%s%13s%sworse than two_pose%s%s\n", between, "goal for full", between,
               has_floor(verdict) ? " (floor)" : "", end);
   if (markdown)
-    std::printf("|---|---:|---:|---:|---:|---:|---:|---:|%s\n", has_floor(verdict) ? "---:|" : "");
+    std::printf("|---|---:|---:|---:|---:|---:|---:|---:|%s\n",
+                has_floor(verdict) ? "---:|---:|" : "");
   for (std::size_t group = 0; group < judged_groups.size(); ++group) {
     std::printf("%s%-16s", bar, std::string(judged_groups[group]).c_str());
     char cell[48];

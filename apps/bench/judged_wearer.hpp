@@ -46,7 +46,8 @@ struct JudgedWearer {
   struct Pad {
     double depth_m = 0.0, behind_m = 0.0;
   };
-  std::array<Pad, 5> pads{};
+  using Pads = std::array<Pad, 5>;
+  Pads pads{};
 };
 
 /// Returns the wearer as one line of JSON, with its end.

@@ -18,7 +18,7 @@ using Eigen::Index;
 using hand::SensorAngles;
 
 // The unknowns, each 0 at its mean and in its standard deviations: seven of each slot, then a part
-// of each that is read, then last joints without a sensor.
+// of each that is read, then last joints without a sensor, then the hand if it is unknown.
 enum class FloorTerm : Index { log_gain, offset, bow, lag, habit, low, high, count };
 
 constexpr Index floor_terms = static_cast<Index>(FloorTerm::count);
@@ -27,6 +27,9 @@ Index floor_unknown(std::size_t slot, FloorTerm term) {
   return static_cast<Index>(slot) * floor_terms + static_cast<Index>(term);
 }
 constexpr Index first_floor_read = static_cast<Index>(sensor_slots) * floor_terms;
+Index first_floor_hidden() {
+  return first_floor_read + static_cast<Index>(stranger_reads().size());
+}
 
 // What takes and ends have beyond the modelled: noise, creep, rounding.
 constexpr double unmodelled_rad = from_degrees(0.5);
@@ -89,8 +92,9 @@ ClampedMoments clamped_normal(double mean, double deviation, double least, doubl
 
 } // namespace
 
-StrangerFloor::StrangerFloor(const JudgedWearer& wearer, const StrangerHand& hand)
-    : hand_(hand), sensors_(wearer.sensors) {
+StrangerFloor::StrangerFloor(const JudgedWearer& wearer, const StrangerHand* hand)
+    : hand_is_known_(hand != nullptr), hand_(hand != nullptr ? *hand : StrangerHand::usual()),
+      sensors_(wearer.sensors) {
   SensorAngles before{};
   for (std::size_t slot = 0; slot < sensor_slots && !wearer.free_motion.empty(); ++slot)
     before[slot] = wearer.free_motion.back()[slot];
@@ -99,9 +103,10 @@ StrangerFloor::StrangerFloor(const JudgedWearer& wearer, const StrangerHand& han
     before = reading.held.mean_counts;
   }
   add_ends(wearer);
-  at_ = Eigen::VectorXd::Zero(first_floor_read + static_cast<Index>(stranger_reads().size()) +
-                              hidden_count_);
+  at_ = Eigen::VectorXd::Zero(first_floor_hidden() + hidden_count_ +
+                              (hand_is_known_ ? 0 : static_cast<Index>(StrangerHand::parts)));
   solve();
+  hand_ = hand_at(at_);
 }
 
 void StrangerFloor::add_take(const hand::PoseReading& reading, const SensorAngles& before) {
@@ -213,9 +218,16 @@ SensorAngles StrangerFloor::angles_of(const Eigen::VectorXd& at, const SensorAng
   return angles;
 }
 
+StrangerHand StrangerFloor::hand_at(const Eigen::VectorXd& at) const {
+  if (hand_is_known_) return hand_;
+  const double* const first = at.data() + first_floor_hidden() + hidden_count_;
+  return StrangerHand(std::span<const double, StrangerHand::parts>(first, StrangerHand::parts));
+}
+
 /// The unknowns themselves, the takes' angles and touches, and the ends of ranges.
 Eigen::VectorXd StrangerFloor::residuals(const Eigen::VectorXd& at) const {
   std::vector<double> rows(at.data(), at.data() + at.size());
+  const StrangerHand hand = hand_at(at);
   for (const Take& take : takes_) {
     SensorAngles angles = angles_of(at, take.counts, take.came);
     for (const Expected& expected : take.expected)
@@ -225,10 +237,10 @@ Eigen::VectorXd StrangerFloor::residuals(const Eigen::VectorXd& at) const {
     if (take.hidden >= 0)
       angles[4 * digit + 2] =
           from_degrees(stranger_touch_deg[digit][6] +
-                       hidden_deviation_deg * at[at.size() - hidden_count_ + take.hidden]);
+                       hidden_deviation_deg * at[first_floor_hidden() + take.hidden]);
     const Eigen::Vector3d other =
-        digit == 0 ? hand_.palm_at_little_finger(angles) : hand_.pad(digit, angles);
-    const Eigen::Vector3d off = (hand_.pad(0, angles) - other) / take.touch_deviation_m;
+        digit == 0 ? hand.palm_at_little_finger(angles) : hand.pad(digit, angles);
+    const Eigen::Vector3d off = (hand.pad(0, angles) - other) / take.touch_deviation_m;
     rows.insert(rows.end(), {off.x(), off.y(), off.z()});
   }
   for (const End& end : ends_) {

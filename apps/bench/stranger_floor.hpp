@@ -1,7 +1,8 @@
 #pragma once
 // The floor of a calibration: what an estimator reaches on the same captures that is told the
 // wearer's true hand, the true form of the sensors' errors, and the true spreads of all that it
-// does not know. Whoever knows less cannot be asked for more.
+// does not know. Whoever knows less cannot be asked for more. A second floor is not told the hand,
+// but how such hands differ, as nobody knows it of people.
 
 #include <cstdint>
 #include <vector>
@@ -16,16 +17,17 @@
 namespace nendo::bench {
 
 /// Finds the likeliest values of gains, offsets, curvatures, lags, cross-talk, habits and ends of
-/// ranges of one stranger, from the fresh takes and the ends of the free motion. Creep and slips
-/// are not modelled.
+/// ranges of one stranger, and of the hand where it is unknown, from the fresh takes and the ends
+/// of the free motion. Creep and slips are not modelled.
 class StrangerFloor {
 public:
-  StrangerFloor(const JudgedWearer& wearer, const StrangerHand& hand);
+  /// `hand` is the true one; without it, the likeliest is found.
+  StrangerFloor(const JudgedWearer& wearer, const StrangerHand* hand);
 
   /// Takes the next moment of a motion, and returns the joints' angles by slot, in radians. The
   /// moments before it tell where hysteresis stands. Angles of absent sensors are 0.
   hand::SensorAngles angles_rad(const CountRow& counts);
-  /// Returns how far the true pads of thumb and finger (1 to 4) are apart at these angles.
+  /// Returns how far the hand's pads of thumb and finger (1 to 4) are apart at these angles.
   double pads_apart_m(const hand::SensorAngles& angles_rad, int finger) const;
 
 private:
@@ -59,13 +61,15 @@ private:
   hand::SensorAngles angles_of(const Eigen::VectorXd& at, const hand::SensorAngles& counts,
                                const hand::SensorAngles& came) const;
   double expected_rad(const Eigen::VectorXd& at, const Expected& expected) const;
+  StrangerHand hand_at(const Eigen::VectorXd& at) const;
 
-  const StrangerHand& hand_;
+  bool hand_is_known_;
+  StrangerHand hand_;
   SensorMask sensors_;
   std::vector<Take> takes_;
   std::vector<End> ends_;
   Eigen::Index hidden_count_ = 0;
-  Eigen::VectorXd at_;
+  Eigen::VectorXd at_; ///< the last are the parts of the hand, if it is unknown
   /// Of the motion: the count from which a sensor last turned back, and which way it went.
   hand::SensorAngles turned_{}, came_{};
   bool begun_ = false;

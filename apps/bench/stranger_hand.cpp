@@ -1,6 +1,7 @@
 #include "bench/stranger_hand.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -52,9 +53,25 @@ Matrix3d about_z(double angle) {
 } // namespace
 
 StrangerHand::StrangerHand(std::mt19937_64& random) {
-  const auto normal = [&](double mean, double deviation) {
-    return std::normal_distribution<double>(mean, deviation)(random);
-  };
+  make([&](double mean,
+           double deviation) { return std::normal_distribution<double>(mean, deviation)(random); },
+       [&](double low, double high) {
+         return std::uniform_real_distribution<double>(low, high)(random);
+       });
+}
+
+StrangerHand::StrangerHand(std::span<const double, parts> deviations) {
+  std::size_t next = 0;
+  make([&](double mean, double deviation) { return mean + deviation * deviations[next++]; },
+       [&](double low, double high) {
+         return 0.5 * (low + high) + (high - low) / std::sqrt(12.0) * deviations[next++];
+       });
+  assert(next == parts);
+}
+
+/// Calls for one random number after the other, by mean and deviation or by both ends.
+template <class Normal, class Uniform>
+void StrangerHand::make(Normal&& normal, Uniform&& uniform) {
   const auto degrees = [&](double mean, double deviation) {
     return from_degrees(normal(mean, deviation));
   };
@@ -87,10 +104,11 @@ StrangerHand::StrangerHand(std::mt19937_64& random) {
   thumb_.ip_tilt = degrees(6.0, 4.0);
   for (std::size_t n = 0; n < 3; ++n)
     thumb_.bones[n] = bone(thumb_bones_mm[n]);
-  std::uniform_real_distribution<double> depth(0.006, 0.010), behind(0.002, 0.009);
-  const double common = depth(random);
-  for (Pad& pad : pads_)
-    pad = {std::clamp(common + normal(0.0, 0.0008), 0.006, 0.010), behind(random)};
+  const double common = uniform(0.006, 0.010);
+  for (Pad& pad : pads_) {
+    pad.depth = std::clamp(common + normal(0.0, 0.0008), 0.006, 0.010);
+    pad.behind = uniform(0.002, 0.009);
+  }
   palm_depth_ = normal(0.013, 0.002);
 }
 

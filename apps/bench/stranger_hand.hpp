@@ -5,6 +5,7 @@
 
 #include <array>
 #include <random>
+#include <span>
 
 #include <Eigen/Core>
 
@@ -16,6 +17,12 @@ class StrangerHand {
 public:
   /// Draws a hand.
   explicit StrangerHand(std::mt19937_64& random);
+  /// What is drawn of a hand, one after the other.
+  static constexpr std::size_t parts = 61;
+  /// Makes the hand whose parts lie so many standard deviations from their means.
+  explicit StrangerHand(std::span<const double, parts> deviations);
+  /// The hand whose parts are at their means.
+  static StrangerHand usual() { return StrangerHand(std::array<double, parts>{}); }
 
   /// Returns the middle of the pad of the thumb (0) or of a finger (1 to 4), in metres, by the
   /// angles of the sensors' joints. A right hand's axes: the thumb at -X, the back at +Y, the
@@ -50,6 +57,8 @@ private:
     std::array<double, 3> bones;
   };
 
+  template <class Normal, class Uniform>
+  void make(Normal&& normal, Uniform&& uniform);
   Eigen::Matrix3d thumb_turn(double roll_rad, double abduction_rad) const;
   Eigen::Vector3d thumb_pad(const hand::SensorAngles& angles_rad) const;
   Eigen::Vector3d knuckle(std::size_t finger, const hand::SensorAngles& angles_rad) const;

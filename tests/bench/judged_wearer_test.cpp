@@ -83,18 +83,20 @@ TEST_SUITE("judged_wearer") {
       CHECK(errors.empty());
   }
 
-  TEST_CASE("the floor closes pinches of the hand that it is told, and not of another one") {
-    double own_mm = 0.0, other_mm = 0.0, touching = 0.0;
+  TEST_CASE("the floor closes pinches of the hand that it is told or finds, not of another one") {
+    double own_mm = 0.0, found_mm = 0.0, other_mm = 0.0, touching = 0.0;
     for (std::uint64_t seed = 9004; seed < 9007; ++seed) {
       const JudgedWearer wearer = make_stranger(seed, sensors_22, {});
       const StrangerHand own_hand = hand_of_stranger(seed),
                          other_hand = hand_of_stranger(seed + 10);
-      StrangerFloor own(wearer, own_hand), other(wearer, other_hand);
+      StrangerFloor own(wearer, &own_hand), found(wearer, nullptr), other(wearer, &other_hand);
       for (const JudgedMoment& moment : wearer.fresh.motion) {
         const auto own_angles = own.angles_rad(moment.counts);
+        const auto found_angles = found.angles_rad(moment.counts);
         const auto other_angles = other.angles_rad(moment.counts);
         if (moment.touching == 0) continue;
         own_mm += 1e3 * own.pads_apart_m(own_angles, moment.touching);
+        found_mm += 1e3 * found.pads_apart_m(found_angles, moment.touching);
         // The true hand at the angles that the other one led to.
         other_mm += 1e3 * own.pads_apart_m(other_angles, moment.touching);
         touching += 1.0;
@@ -103,6 +105,31 @@ TEST_SUITE("judged_wearer") {
     REQUIRE(touching > 30.0);
     CHECK(own_mm / touching < 6.0); // the true pads touch; slips and scatter leave some millimetres
     CHECK(own_mm < 0.7 * other_mm);
+    CHECK(found_mm < 0.7 * other_mm);
+    CHECK(found_mm != own_mm);
+  }
+
+  TEST_CASE("a hand is drawn part by part, from the means that the usual one has") {
+    std::array<double, StrangerHand::parts> deviations{};
+    const hand::SensorAngles flat{};
+    const StrangerHand usual = StrangerHand::usual();
+    CHECK(usual.pad(1, flat) == StrangerHand(deviations).pad(1, flat));
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    constexpr int hands = 400;
+    for (std::uint64_t seed = 0; seed < hands; ++seed)
+      sum += hand_of_stranger(seed).pad(1, flat);
+    CHECK((sum / hands - usual.pad(1, flat)).norm() < 0.002);
+    for (double& deviation : deviations) { // each of them matters somewhere
+      deviation = 1.0;
+      const StrangerHand other(deviations);
+      deviation = 0.0;
+      hand::SensorAngles bent;
+      bent.fill(0.4);
+      double moved = (other.palm_at_little_finger(bent) - usual.palm_at_little_finger(bent)).norm();
+      for (std::size_t digit = 0; digit < 5; ++digit)
+        moved += (other.pad(digit, bent) - usual.pad(digit, bent)).norm();
+      CHECK(moved > 1e-5);
+    }
   }
 
   TEST_CASE("the floor is told of: a verdict with a true hand has its errors in every group") {
