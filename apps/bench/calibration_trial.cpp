@@ -10,6 +10,7 @@
 #include <nendo/hand/pose_capture.hpp>
 #include <nendo/hand/range_adaptation.hpp>
 #include <nendo/hand/range_capture.hpp>
+#include <nendo/hand/slip_adaptation.hpp>
 
 #include "reference/wearers.hpp"
 
@@ -74,6 +75,51 @@ Watched watch(reference::Wearer& wearer, std::uint64_t seed) {
   return {capture.seen(), adaptation.calibration()};
 }
 
+/// What ten minutes of use make of the glove: each sensor slips slowly, by some counts in the end,
+/// while joints move in parts of their ranges, other ones every minute.
+struct Worn {
+  hand::SensorAngles slips_counts{};
+  Calibration followed;
+};
+
+GloveSample slipped(GloveSample sample, const hand::SensorAngles& slips_counts, double part) {
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const double count = std::round(sample.raw[slot].value + part * slips_counts[slot]);
+    sample.raw[slot] = RawCount{static_cast<std::uint16_t>(std::clamp(count, 0.0, 255.0))};
+  }
+  return sample;
+}
+
+Worn wear(reference::Wearer& wearer, const Calibration& calibration,
+          const hand::CountRanges& ranges, std::mt19937_64& random) {
+  constexpr double slip_deviation_counts = 5.0;
+  constexpr int minutes = 10;
+  constexpr double most_unused = 0.1; // of a range, at either end
+  Worn worn;
+  std::normal_distribution<double> slip(0.0, slip_deviation_counts);
+  for (double& counts : worn.slips_counts)
+    counts = slip(random);
+  hand::SlipAdaptation adaptation(calibration, {wearer.side(), ranges}, CountScale{});
+  std::uniform_real_distribution<double> unused(0.0, most_unused);
+  for (int minute = 0; minute < minutes; ++minute) {
+    reference::Ranges used = wearer.ranges();
+    for (auto& [low_rad, high_rad] : used) {
+      const double span_rad = high_rad - low_rad;
+      low_rad += unused(random) * span_rad;
+      high_rad -= unused(random) * span_rad;
+    }
+    const reference::FreeMotion motion(random(), used);
+    for (double time_s = 0.0; time_s < 60.0; time_s += 1.0 / rate_hz) {
+      const double part = (minute + time_s / 60.0) / minutes;
+      GloveSample sample = slipped(wearer.read(motion.angles_rad(time_s)), worn.slips_counts, part);
+      sample.arrival = sample.measured = at_time(60.0 * minute + time_s);
+      adaptation.push(sample);
+    }
+  }
+  worn.followed = adaptation.calibration();
+  return worn;
+}
+
 Calibration min_max_calibration(const hand::CountRanges& ranges) {
   Calibration calibration = hand::default_calibration({1, true});
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
@@ -134,16 +180,20 @@ Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors) {
   if (!two_pose) return two_pose.error();
   errors.condition.push_back(full->condition);
 
+  const Worn worn = wear(wearer, full->calibration, watched.ranges, random);
   const std::array<Calibration, method_names.size()> calibrations{
       full->calibration, two_pose->calibration, min_max_calibration(watched.ranges),
-      watched.adaptive, wearer.truth()};
+      watched.adaptive,  wearer.truth(),        full->calibration,
+      worn.followed};
   const reference::FreeMotion motion(random(), wearer.ranges());
   for (double time_s = 0.0; time_s < 60.0; time_s += 0.2) {
     const hand::SensorAngles angles = motion.angles_rad(time_s);
     const GloveSample sample = wearer.read(angles);
+    const GloveSample later = slipped(sample, worn.slips_counts, 1.0);
     for (std::size_t method = 0; method < calibrations.size(); ++method) {
-      add_errors(hand::joint_angles(sample, calibrations[method]), reference::joints_of(angles),
-                 errors.deg[method]);
+      const bool has_slipped = method >= static_cast<std::size_t>(Method::slipped);
+      add_errors(hand::joint_angles(has_slipped ? later : sample, calibrations[method]),
+                 reference::joints_of(angles), errors.deg[method]);
     }
   }
   return {};

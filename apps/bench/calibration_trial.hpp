@@ -17,9 +17,11 @@ enum class Method : std::uint8_t {
   min_max,  ///< counts of a free motion, spread over each joint's range of motion
   adaptive, ///< what hand::RangeAdaptation makes of the same counts
   floor,    ///< the true lines and couplings: what noise, 8 bits and bent lines leave
+  slipped,  ///< full, after the sensors have slipped slowly
+  followed, ///< the same with hand::SlipAdaptation, which has followed
 };
-inline constexpr std::array<std::string_view, 5> method_names{"full", "two_pose", "min_max",
-                                                              "adaptive", "floor"};
+inline constexpr std::array<std::string_view, 7> method_names{
+    "full", "two_pose", "min_max", "adaptive", "floor", "slipped", "followed"};
 inline constexpr std::array<std::string_view, 9> group_names{
     "finger MCP",       "finger PIP", "finger DIP",
     "finger abduction", "thumb roll", "thumb abduction",

@@ -9,6 +9,7 @@
 #include "cli/cli.hpp"
 #include "gloves/calibration_names.hpp"
 #include "gloves/kept_ranges.hpp"
+#include "gloves/kept_slips.hpp"
 
 namespace nendo::gloves {
 namespace {
@@ -55,8 +56,8 @@ hand::WearerHand average_hand(CountScale counts) {
   return {hand::default_calibration(counts), {}};
 }
 
-Result<hand::WearerHand> asked_for(const driver::GloveInfo& glove, Side side,
-                                   const std::string& name) {
+Result<hand::StoredCalibration> asked_for(const driver::GloveInfo& glove, Side side,
+                                          const std::string& name) {
   const auto file = named_calibration(name);
   if (!file) return file.error();
   const auto refused = [&](const std::string& why) {
@@ -69,7 +70,7 @@ Result<hand::WearerHand> asked_for(const driver::GloveInfo& glove, Side side,
   if (file->wearer.counts.whole_range != glove.counts.whole_range)
     return refused("is of another kind of glove than " + printable(glove.source));
   report_choice(glove, *file, "");
-  return hand_of(file->wearer, glove.counts);
+  return file;
 }
 
 /// Returns the calibrations and sizes with which the hand of that side was recorded, if `glove`
@@ -113,6 +114,37 @@ Result<hand::Wearer> stored_wearer(const driver::GloveInfo& glove, Side side, ha
   return wearer;
 }
 
+/// Of a hand that was calibrated by poses, slips are learned; of others, ranges.
+Result<hand::Wearer> adapting_wearer(const driver::GloveInfo& glove, Side side, hand::Wearer wearer,
+                                     const CalibrationOptions& options) {
+  wearer.adapt = glove.counts;
+  std::optional<hand::StoredCalibration> made;
+  if (!options.calibration.empty()) {
+    const auto file = asked_for(glove, side, options.calibration);
+    if (!file) return file.error();
+    made = *file;
+  } else if (!options.user.empty()) {
+    const auto stored = stored_calibrations();
+    const auto choice = hand::choose_calibration(
+        stored.files, {options.user, glove.model, serial_of(glove), side, glove.counts});
+    if (choice && !is_kept_ranges(choice->file->wearer)) {
+      made = *choice->file;
+      report_choice(glove, *made, doubt_about(*choice));
+    }
+  }
+  if (made) {
+    const auto ends = ends_of(*made, glove);
+    if (!ends) return ends.error();
+    wearer.ends = *ends;
+    wearer.of(side) = hand_of(made->wearer, glove.counts);
+    return wearer;
+  }
+  const auto learned = kept_ranges(glove, side, options.user);
+  if (!learned) return learned.error();
+  wearer.learned = *learned;
+  return wearer;
+}
+
 } // namespace
 
 std::string serial_of(const driver::GloveInfo& glove) {
@@ -126,13 +158,15 @@ void add_calibration_options(cli::Command& command, CalibrationOptions& options)
   command.add_option("--calibration", options.calibration,
                      "A file or stored name to use instead (see nendo calibration), or none");
   command.add_flag("--adapt", options.adapt,
-                   "Learn the wearer's ranges while the glove is used, in place of a calibration; "
-                   "with --user, nendo run keeps them, and they are gone on from");
+                   "Learn while the glove is used: the wearer's ranges, or, with the --user or the "
+                   "--calibration of a hand that was calibrated by poses, how far the glove slips; "
+                   "with --user, nendo run keeps what was learned, and goes on from it");
 }
 
 Result<void> check(const CalibrationOptions& options) {
-  if (!options.adapt || options.calibration.empty()) return {};
-  return Error{Errc::usage, "--adapt learns the hand from how it moves; leave out --calibration"};
+  if (!options.adapt || options.calibration != "none") return {};
+  return Error{Errc::usage, "--calibration none: --adapt begins without a calibration by itself; "
+                            "leave out one of the two"};
 }
 
 Result<void> HandLength::check() const {
@@ -159,18 +193,12 @@ void add_hand_length(cli::Command& command, HandLength& length) {
 Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
                                  const CalibrationOptions& options) {
   hand::Wearer wearer{average_hand(glove.counts), average_hand(glove.counts)};
-  if (options.adapt) {
-    wearer.adapt = glove.counts;
-    const auto learned = kept_ranges(glove, side, options.user);
-    if (!learned) return learned.error();
-    wearer.learned = *learned;
-    return wearer;
-  }
+  if (options.adapt) return adapting_wearer(glove, side, std::move(wearer), options);
   if (options.calibration == "none") return wearer;
   if (!options.calibration.empty()) {
     const auto own = asked_for(glove, side, options.calibration);
     if (!own) return own.error();
-    wearer.of(side) = *own;
+    wearer.of(side) = hand_of(own->wearer, glove.counts);
     return wearer;
   }
   // The simulated wearer has the hand that the default is for.

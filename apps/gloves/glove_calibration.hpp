@@ -16,7 +16,7 @@ namespace nendo::gloves {
 struct CalibrationOptions {
   std::string user;        ///< empty: any
   std::string calibration; ///< a NAME of `nendo calibration`, or "none"; empty: what is stored
-  bool adapt = false;      ///< learn the wearer's ranges instead
+  bool adapt = false;      ///< learn the wearer's ranges, or the slips of such a calibration
 };
 
 /// Returns the serial number that the glove reports, or an empty text.

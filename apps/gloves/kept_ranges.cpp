@@ -6,7 +6,6 @@
 #include <system_error>
 
 #include <nendo/base/text.hpp>
-#include <nendo/hand/calibration_file.hpp>
 #include <nendo/hand/calibration_store.hpp>
 
 #include "gloves/glove_calibration.hpp"
@@ -36,7 +35,7 @@ Result<std::optional<hand::WearerCalibration>> kept(const std::filesystem::path&
   if (!std::filesystem::exists(path, error)) return std::optional<hand::WearerCalibration>();
   auto wearer = hand::read_calibration(path);
   if (!wearer) return wearer.error();
-  if (wearer->method != method)
+  if (!is_kept_ranges(*wearer))
     return Error{Errc::bad_input, printable(path.string()) +
                                       ": was made by poses, which know the hand better; leave out "
                                       "--adapt to use it, or name another --user"};
@@ -47,6 +46,10 @@ Result<std::optional<hand::WearerCalibration>> kept(const std::filesystem::path&
 }
 
 } // namespace
+
+bool is_kept_ranges(const hand::WearerCalibration& wearer) {
+  return wearer.method == method;
+}
 
 Result<std::optional<hand::LearnedRanges>> kept_ranges(const driver::GloveInfo& glove, Side side,
                                                        const std::string& user) {

@@ -7,9 +7,13 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/driver/glove.hpp>
+#include <nendo/hand/calibration_file.hpp>
 #include <nendo/hand/range_adaptation.hpp>
 
 namespace nendo::gloves {
+
+/// Tells whether a calibration is what keep_ranges() writes.
+bool is_kept_ranges(const hand::WearerCalibration& wearer);
 
 /// Returns the ranges that were kept for this user, glove and hand; nullopt without a user, or if
 /// there are none yet. Blocks. Error: bad_input, if the user has a calibration that was made by

@@ -1,5 +1,6 @@
 // nendo calibrate: from a wearer's poses to a calibration that the other commands find.
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <filesystem>
@@ -184,10 +185,21 @@ int fit_and_write(const Options& options, Wearer& wearer,
       wearer.about.calibration.sensors[slot] = {};
       continue;
     }
-    if (wearer.known) continue; // how well its line is known has not changed
+    auto& quality = wearer.about.quality[slot];
+    if (wearer.known) { // how well its line is known has not changed
+      if (quality)
+        hand::move_ends(*quality,
+                        fit->calibration.sensors[slot].offset_counts -
+                            wearer.known->calibration.sensors[slot].offset_counts,
+                        wearer.about.counts);
+      continue;
+    }
     const bool known = sensor.gain_determined && sensor.offset_determined;
-    wearer.about.quality[slot] = hand::SensorQuality{sensor.residual_rad, sensor.low_counts,
-                                                     sensor.high_counts, known ? 1.0 : 0.0};
+    quality = hand::SensorQuality{sensor.residual_rad, sensor.low_counts, sensor.high_counts,
+                                  known ? 1.0 : 0.0};
+    if (!fitting.free_motion.present.has(static_cast<Sensor>(slot))) continue;
+    quality->least_counts = std::min(quality->least_counts, fitting.free_motion.low_counts[slot]);
+    quality->most_counts = std::max(quality->most_counts, fitting.free_motion.high_counts[slot]);
   }
   const auto earlier = hand::write_calibration(wearer.path, wearer.about);
   if (!earlier) return cli::report(earlier.error());

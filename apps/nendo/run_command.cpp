@@ -13,6 +13,7 @@
 
 #include "cli/cli.hpp"
 #include "gloves/kept_ranges.hpp"
+#include "gloves/kept_slips.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/run_arguments.hpp"
 #include "service/service_notice.hpp"
@@ -91,6 +92,17 @@ Result<void> keep_learned(const session::RunOptions& options,
   for (const gloves::OpenHand& hand : hands) {
     if (!hand.wearer.adapt || user.empty()) continue;
     const std::size_t slot = flow::Placement::index_of(hand.side);
+    if (hand.wearer.ends) {
+      const auto slips = gloves::keep_slips(hand.glove->info(), hand.wearer.ends->side, user,
+                                            stats.slips_counts[slot]);
+      if (!slips) return slips.error();
+      cli::note(slips->is_changed
+                    ? "how far sensors have slipped is kept in " + printable(slips->path.string()) +
+                          "; the one before stays"
+                    : std::string(name_of(hand.side)) + " hand: no sensor has slipped, so that " +
+                          printable(slips->path.string()) + " stays as it is");
+      continue;
+    }
     const auto kept =
         gloves::keep_ranges(hand.glove->info(), stats.range_sides[slot], user, stats.ranges[slot]);
     if (!kept) return kept.error();

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iostream>
 #include <numeric>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
@@ -111,6 +113,19 @@ void print_ranges(const hand::SensorRanges& ranges, SensorMask sensors) {
   }
 }
 
+void print_slips(const hand::SensorAngles& slips_counts, const hand::SensorRanges& ranges) {
+  constexpr double least_shown = 0.5;
+  bool any = false;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    if (!(std::abs(slips_counts[slot]) >= least_shown)) continue;
+    if (!std::exchange(any, true))
+      print_row("", "slips learned, in counts, from so many turns of the joint:");
+    print_row("", fmt::format("{:22} {:+5.1f}  {}", sensor_names[slot], slips_counts[slot],
+                              ranges[slot].turns));
+  }
+  if (!any) print_row("", "no sensor is seen to have slipped since the calibration");
+}
+
 void print_hand(const gloves::OpenHand& hand, const RunOutcome& outcome) {
   const auto& stats = outcome.stats;
   const std::size_t slot = flow::Placement::index_of(hand.side);
@@ -122,7 +137,11 @@ void print_hand(const gloves::OpenHand& hand, const RunOutcome& outcome) {
   print_spikes(stats.spikes[slot]);
   if (hand.uncalibrated)
     print_row("", "uncalibrated: its angles are an average hand's; see `nendo calibrate`");
-  if (hand.wearer.adapt) print_ranges(stats.ranges[slot], info.sensors);
+  if (hand.wearer.ends) {
+    print_slips(stats.slips_counts[slot], stats.ranges[slot]);
+  } else if (hand.wearer.adapt) {
+    print_ranges(stats.ranges[slot], info.sensors);
+  }
 }
 
 void print_holds(const RunOptions& options, const flow::LoopStats& stats) {

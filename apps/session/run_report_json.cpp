@@ -33,6 +33,14 @@ ordered_json spikes_json(const std::array<std::uint64_t, sensor_slots>& spikes) 
   return by_sensor;
 }
 
+ordered_json slips_json(const hand::SensorAngles& slips_counts, SensorMask sensors) {
+  ordered_json by_sensor;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    if (sensors.has(static_cast<Sensor>(slot)))
+      by_sensor[std::string(sensor_names[slot])] = slips_counts[slot];
+  return by_sensor;
+}
+
 ordered_json ranges_json(const hand::SensorRanges& ranges, SensorMask sensors) {
   ordered_json by_sensor = ordered_json::object();
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
@@ -179,6 +187,9 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
     gloves::add_counts(of_hand, driver::counts_of(glove));
     if (hand.wearer.adapt)
       of_hand["ranges"] = ranges_json(stats.ranges[slot], hand.glove->info().sensors);
+    if (hand.wearer.ends)
+      of_hand["slips_counts"] =
+          slips_json(stats.slips_counts[slot], hand.wearer.ends->counts.present);
   }
   line["injective"] = injective_json(options, stats);
   line["clay"] = clay_json(stats, outcome.units_per_metre);

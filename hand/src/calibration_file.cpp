@@ -256,6 +256,11 @@ bool is_earlier_version(const fs::path& path) {
          version_of(path.filename().string(), stem.substr(0, dot)).has_value();
 }
 
+void move_ends(SensorQuality& quality, double by_counts, CountScale glove) noexcept {
+  for (double* const end : {&quality.least_counts, &quality.most_counts})
+    *end = std::clamp(*end + by_counts, 0.0, static_cast<double>(glove.most));
+}
+
 Calibration calibration_for(const WearerCalibration& wearer, CountScale glove) noexcept {
   Calibration calibration = default_calibration(glove);
   const bool comparable =

@@ -115,46 +115,12 @@ std::optional<LearnedRanges> RangeAdaptation::learned() const noexcept {
   return learned;
 }
 
-bool RangeAdaptation::Learner::median(std::uint16_t count, double& result) noexcept {
-  recent[seen % window] = count;
-  ++seen;
-  if (seen < window) return false;
-  auto sorted = recent;
-  std::nth_element(sorted.begin(), sorted.begin() + window / 2, sorted.end());
-  result = sorted[window / 2];
-  return true;
-}
-
-void RangeAdaptation::Learner::learn_top(double amplitude) noexcept {
-  const double to = drawn(high, top, 1.0, amplitude, high - low, usual_span, tops++);
-  if (to - low >= least_span * usual_span) high = to;
-}
-
-void RangeAdaptation::Learner::learn_bottom(double amplitude) noexcept {
-  const double to = drawn(low, bottom, -1.0, amplitude, high - low, usual_span, bottoms++);
-  if (high - to >= least_span * usual_span) low = to;
-}
-
-/// Where the first count lies in its swing is not known, so that the first turn teaches nothing.
-void RangeAdaptation::Learner::follow(double count) noexcept {
-  const double swing = least_swing * usual_span;
-  if (seen == window) { // the first since it was absent
-    rises = falls = false;
-    top = bottom = count;
-  }
-  if (!falls) top = std::max(top, count);
-  if (!rises) bottom = std::min(bottom, count);
-  if (!falls && count <= top - swing) {
-    if (rises) learn_top(top - bottom);
-    falls = true;
-    rises = false;
-    bottom = count;
-  } else if (!rises && count >= bottom + swing) {
-    if (falls) learn_bottom(top - bottom);
-    rises = true;
-    falls = false;
-    top = count;
-  }
+void RangeAdaptation::Learner::learn(const SwingFinder::End& end) noexcept {
+  double& bound = end.is_top ? high : low;
+  const double to = drawn(bound, end.counts, end.is_top ? 1.0 : -1.0, end.amplitude, high - low,
+                          usual_span, end.is_top ? tops++ : bottoms++);
+  const double span = end.is_top ? to - low : high - to;
+  if (span >= least_span * usual_span) bound = to;
 }
 
 // Between two lines an angle changes most at an end of the counts; there it is bounded, and so for
@@ -188,11 +154,11 @@ void RangeAdaptation::push(const GloveSample& sample) noexcept {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     Learner& learner = learners_[slot];
     if (learner.usual_span == 0.0) continue;
-    double count = 0.0;
+    const std::uint16_t count = std::min(sample.raw[slot].value, counts_.most);
     if (!sample.present.has(static_cast<Sensor>(slot))) {
-      learner.seen = 0;
-    } else if (learner.median(std::min(sample.raw[slot].value, counts_.most), count)) {
-      learner.follow(count);
+      learner.swings.begin_anew();
+    } else if (const auto end = learner.swings.push(count, least_swing * learner.usual_span)) {
+      learner.learn(*end);
     }
     drift(slot, interval_s);
   }

@@ -84,7 +84,7 @@ TEST_SUITE("kept_ranges") {
     CHECK(used.err.find("calibrated for vera") != std::string::npos);
   }
 
-  TEST_CASE("a calibration that was made by poses is not lost to ranges") {
+  TEST_CASE("a calibration that was made by poses is not lost to ranges: its slips are learned") {
     const Home home;
     hand::WearerCalibration made;
     made.user = "vera";
@@ -94,8 +94,17 @@ TEST_SUITE("kept_ranges") {
     const std::string before = contents(home.file());
     const Finished refused = home.run({"--adapt", "--user", "vera"});
     CHECK(refused.exit_code == 5);
-    CHECK(is_one_line_about(refused.err, "made by poses"));
+    CHECK(refused.err.find("does not tell how far its sensors went") != std::string::npos);
     CHECK(contents(home.file()) == before);
+    made.quality[4] = hand::SensorQuality{0.01, 40.0, 200.0, 1.0};
+    REQUIRE(hand::write_calibration(home.file(), made));
+    const std::string with_ends = contents(home.file());
+    const Finished run = home.run({"--adapt", "--user", "vera"}, "1");
+    REQUIRE_MESSAGE(run.exit_code == 0, run.err);
+    CHECK(run.err.find("no sensor has slipped") != std::string::npos);
+    const auto json = nlohmann::json::parse(lines_of(run.out).back());
+    CHECK(json.at("right").at("slips_counts") == nlohmann::json{{"index_mcp", 0.0}});
+    CHECK(contents(home.file()) == with_ends);
   }
 
   TEST_CASE("without a user nothing is kept, and one who does not move teaches nothing") {

@@ -138,9 +138,16 @@ TEST_SUITE("loop_replay") {
   }
 
   TEST_CASE("a loop that goes on with what one before it has learned is replayed with that") {
-    RecordedLoop before(Mode::type1, FilterKind::off, true);
+    bool slips = false;
+    SUBCASE("ranges") {}
+    SUBCASE("slips") {
+      slips = true;
+    }
+    RecordedLoop before(Mode::type1, FilterKind::off, true, false, flow::SwitchAction::none,
+                        nullptr, slips);
     test::play(before, 600);
-    RecordedLoop live(Mode::type1, FilterKind::off, true);
+    RecordedLoop live(Mode::type1, FilterKind::off, true, false, flow::SwitchAction::none, nullptr,
+                      slips);
     auto& test = live.test;
     before.test.loop->change_log(nullptr, before.test.loop->frames().front().shape);
     before.test.frame_after_tick(600);
@@ -163,6 +170,7 @@ TEST_SUITE("loop_replay") {
         sum += sensor.turns;
       return sum;
     };
+    CHECK(replay->loop().stats().slips_counts == test.loop->stats().slips_counts);
     CHECK(turns(*before.test.loop) > 0);
     CHECK(turns(replay->loop()) == turns(*test.loop));
     CHECK(turns(*test.loop) > turns(*before.test.loop));

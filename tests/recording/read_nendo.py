@@ -53,6 +53,7 @@ def glove(b):
 def hand(b):
     h = {"side": b.take("B"), "size": b.take("dd"), "first": sample(b), "gated": b.take("B"), "filter": b.take("Bddd"),
          "adapt": b.take("BHB")}
+    has_ends = h["filter"][0] & 64
     h["own"], h["swapped"], h["swapped_size"] = calibration(b), calibration(b), b.take("dd")
     if b.take("B"):
         h["learned"] = {"side": b.take("B"), "sensors": [b.take("ddIIdd") for _ in range(24)]}
@@ -64,6 +65,8 @@ def hand(b):
         h["shape"], h["swapped_shape"] = b.take("26d"), b.take("26d")
         later = b.take("2d"), b.take("2d")
         h["shape"], h["swapped_shape"] = h["shape"] + later[0], h["swapped_shape"] + later[1]
+    if has_ends:
+        h["ends"] = {"side": b.take("B"), "sensors": b.take("I"), "counts": [b.take("dd") for _ in range(24)]}
     return h
 
 
@@ -178,7 +181,7 @@ def shape(b):
 
 def main():
     data = open(sys.argv[1], "rb").read()
-    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 11, crc32c(data[:12])), "header"
+    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 12, crc32c(data[:12])), "header"
     at = 16
     number = 0
     readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "ORIG": origin, "REST": rest, "PUPP": puppet, "PUPV": puppet_version, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}

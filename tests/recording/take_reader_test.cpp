@@ -83,7 +83,7 @@ Setup unusual_setup() {
                                          .close_pinches = true,
                                          .adapt = CountScale{4095, true}});
   auto& input = test.inputs[0];
-  auto& [left, right, adapt, learned_before] = input.wearer;
+  auto& [left, right, adapt, learned_before, ends] = input.wearer;
   left.calibration[Sensor::ring_mcp] = {0.1, -17.25};
   left.calibration.mixed_in[3] = 0.125;
   left.calibration.middle_bias = 0.7;
@@ -93,6 +93,9 @@ Setup unusual_setup() {
   auto& learned = learned_before.emplace();
   learned.side = Side::left;
   learned.sensors[21] = {12.5, 3000.0, 17, 4'000'000'000, {0.001, -3.5}};
+  ends = test::narrow_ends(Side::right);
+  ends->counts.present.bits = 0x41;
+  ends->counts.high_counts[21] = 3000.5;
   input.first.device_time = std::chrono::nanoseconds(123456789);
   input.first.has_device_time = true;
   test.options.policy = flow::OverrunPolicy::catch_up;
@@ -212,6 +215,10 @@ TEST_SUITE("take_reader") {
     CHECK(lines[3]["learned"]["sensors"][21] ==
           json::parse("[12.5, 3000.0, 17, 4000000000, 0.001, -3.5]"));
     CHECK_FALSE(lines[4].contains("learned"));
+    CHECK(lines[3]["ends"]["side"] == 1);
+    CHECK(lines[3]["ends"]["sensors"] == 0x41);
+    CHECK(lines[3]["ends"]["counts"][21] == json::parse("[50.0, 3000.5]"));
+    CHECK_FALSE(lines[4].contains("ends"));
     const auto& options = setup.loop->options;
     CHECK(lines[at]["mesh"] == "ball.obj");
     CHECK(lines[at]["vertices"] == setup.loop->mesh_sum.vertices);

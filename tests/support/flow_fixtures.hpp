@@ -40,6 +40,15 @@ inline GloveSample bent_sample(Side side, int counts, HostTime arrival) {
   return sample;
 }
 
+/// Ends to which a wearer of these sensors would go with some that have slipped.
+inline hand::WornEnds narrow_ends(Side side) {
+  hand::WornEnds ends{side, {}};
+  ends.counts.present = sensors_22;
+  ends.counts.low_counts.fill(50.0);
+  ends.counts.high_counts.fill(130.0);
+  return ends;
+}
+
 /// The options of a test's loop.
 struct LoopFixture {
   std::uint32_t rings_of_ball = 24; ///< how fine the model is
@@ -49,6 +58,7 @@ struct LoopFixture {
   hand::FilterKind filter = hand::FilterKind::off;
   bool close_pinches = false;
   std::optional<CountScale> adapt = std::nullopt;
+  bool slips = false; ///< of what adapts, slips are learned
   flow::InputLog* input_log = nullptr;
   std::optional<deform::InjectiveOptions> injective = std::nullopt;
   const char* puppet = nullptr; ///< the text of its file; null: hands that touch the model
@@ -133,6 +143,7 @@ struct LoopUnderTest {
       inputs.back().filter.kind = fixture.filter;
       inputs.back().filter.close_pinches = fixture.close_pinches;
       inputs.back().wearer.adapt = fixture.adapt;
+      if (fixture.slips) inputs.back().wearer.ends = narrow_ends(side);
     }
     placement = flow::place_hands(model, tips);
     if (fixture.puppet != nullptr)

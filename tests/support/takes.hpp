@@ -64,13 +64,14 @@ struct RecordedLoop {
   explicit RecordedLoop(flow::Mode mode, hand::FilterKind filter = hand::FilterKind::off,
                         bool adapts = false, bool injective = false,
                         flow::SwitchAction action = flow::SwitchAction::none,
-                        const char* puppet = nullptr)
+                        const char* puppet = nullptr, bool slips = false)
       : test(mode,
              {.rings_of_ball = 16,
               .switch_action = action,
               .filter = filter,
               .close_pinches = filter == hand::FilterKind::one_euro,
               .adapt = adapts ? std::optional(CountScale{}) : std::nullopt,
+              .slips = slips,
               .input_log = &input_log,
               .injective = injective ? std::optional(deform::InjectiveOptions{}) : std::nullopt,
               .puppet = puppet}),

@@ -106,8 +106,7 @@ void DeformLoop::place_tips(Points& tips) noexcept {
 
 void DeformLoop::Hand::begin_anew() noexcept {
   input.first = latest;
-  const hand::RangeAdaptation* const adaptation = calibration.adaptation();
-  if (adaptation != nullptr) input.wearer.learned = adaptation->learned();
+  if (input.wearer.adapt) input.wearer.learned = calibration.learned();
   calibration = hand::ActiveCalibration(input.wearer);
   gate = {};
   filter = hand::JointFilter(filter.options());

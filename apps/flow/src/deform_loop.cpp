@@ -243,6 +243,10 @@ void DeformLoop::count(Hand& hand, std::size_t samples, HostTime now) noexcept {
   if (const auto* learned = hand.calibration.adaptation()) {
     stats_.ranges[hand.slot] = learned->ranges();
     stats_.range_sides[hand.slot] = learned->side().value_or(hand.input.side);
+  } else if (const auto* slips = hand.calibration.slips()) {
+    stats_.ranges[hand.slot] = slips->ranges();
+    stats_.range_sides[hand.slot] = slips->side();
+    stats_.slips_counts[hand.slot] = slips->slips_counts();
   }
 }
 

@@ -64,11 +64,36 @@ void read_learned(ByteReader& reader, CheckedReader& checked, hand::LearnedRange
   }
 }
 
-void read_filter(CheckedReader& checked, hand::FilterOptions& filter) {
-  checked.filter_kind(filter);
+/// Added to a hand's filter where its wearer's ends follow, so that readers of formats before 1.12
+/// refuse it.
+constexpr unsigned ends_bit = 64;
+
+/// Tells whether the wearer's ends follow.
+bool read_filter(CheckedReader& checked, hand::FilterOptions& filter) {
+  const bool ends_follow = checked.filter_kind(filter, ends_bit) != 0;
   filter.min_cutoff_hz = bounded_number(checked);
   filter.beta_hz_per_rad_s = bounded_number(checked);
   filter.derivative_cutoff_hz = bounded_number(checked);
+  return ends_follow;
+}
+
+void put_ends(ByteWriter& writer, const hand::WornEnds& ends) {
+  writer.u8(static_cast<std::uint8_t>(ends.side));
+  writer.u32_le(ends.counts.present.bits);
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    writer.f64_le(ends.counts.low_counts[slot]);
+    writer.f64_le(ends.counts.high_counts[slot]);
+  }
+}
+
+/// SlipAdaptation judges whether sensors can have such ends.
+void read_ends(ByteReader& reader, CheckedReader& checked, hand::WornEnds& ends) {
+  ends.side = checked.one_of(Side::right);
+  ends.counts.present.bits = reader.u32_le();
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    ends.counts.low_counts[slot] = bounded_number(checked);
+    ends.counts.high_counts[slot] = bounded_number(checked);
+  }
 }
 
 void put_size(ByteWriter& writer, const hand::HandSize& size) {
@@ -79,6 +104,14 @@ void put_size(ByteWriter& writer, const hand::HandSize& size) {
 void read_size(CheckedReader& checked, hand::HandSize& size) {
   size.length_m = checked.number(least_hand_m, most_hand_m);
   size.breadth_m = checked.number(least_hand_m, most_hand_m);
+}
+
+void put_shapes(ByteWriter& writer, const hand::WearerShape& own, const hand::WearerShape& other) {
+  for (const auto& [begin, end] : {std::pair{std::size_t{0}, hand::early_shape_terms},
+                                   std::pair{hand::early_shape_terms, hand::shape_terms}})
+    for (const hand::WearerShape* shape : {&own, &other})
+      for (std::size_t k = begin; k < end; ++k)
+        writer.f64_le(shape->terms[k]);
 }
 
 /// The terms behind the early ones, which format 1.9 brought, follow both hands' early ones.
@@ -144,7 +177,7 @@ void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& ha
   put_size(writer, own.size);
   driver::put_sample_body(writer, {number, hand.first});
   writer.u8(static_cast<std::uint8_t>(hand.gated));
-  put_filter_kind(writer, hand.filter);
+  put_filter_kind(writer, hand.filter, hand.wearer.ends ? ends_bit : 0);
   writer.f64_le(hand.filter.min_cutoff_hz);
   writer.f64_le(hand.filter.beta_hz_per_rad_s);
   writer.f64_le(hand.filter.derivative_cutoff_hz);
@@ -160,12 +193,8 @@ void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& ha
   if (hand.layer) put_layer(writer, *hand.layer);
   const bool average = own.size.shape.is_average() && other.size.shape.is_average();
   writer.u8(static_cast<std::uint8_t>(!average));
-  if (average) return;
-  for (const auto& [begin, end] : {std::pair{std::size_t{0}, hand::early_shape_terms},
-                                   std::pair{hand::early_shape_terms, hand::shape_terms}})
-    for (const hand::HandSize* size : {&own.size, &other.size})
-      for (std::size_t k = begin; k < end; ++k)
-        writer.f64_le(size->shape.terms[k]);
+  if (!average) put_shapes(writer, own.size.shape, other.size.shape);
+  if (hand.wearer.ends) put_ends(writer, *hand.wearer.ends);
 }
 
 bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
@@ -178,7 +207,7 @@ bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
   if (!first || first->glove != hands.size()) return false;
   hand.first = first->sample;
   hand.gated = reader.u8() != 0;
-  read_filter(checked, hand.filter);
+  const bool ends_follow = read_filter(checked, hand.filter);
   const bool adapts = reader.u8() != 0;
   const CountScale counts{reader.u16_le(), reader.u8() != 0};
   if (adapts) hand.wearer.adapt = counts;
@@ -197,6 +226,7 @@ bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
       read_shape(checked, hand::early_shape_terms, hand::shape_terms, other.size.shape);
     }
   }
+  if (ends_follow) read_ends(reader, checked, hand.wearer.ends.emplace());
   if (!checked.fine()) return false;
   hand.wearer.of(hand.first.side) = own;
   hand.wearer.of(opposite(hand.first.side)) = other;

@@ -27,8 +27,9 @@ constexpr bool is_setup_chunk(driver::ChunkType type) noexcept {
 /// Added to a filter's kind where pinches are closed.
 inline constexpr std::uint8_t pinches_bit = 128;
 
-inline void put_filter_kind(ByteWriter& writer, const hand::FilterOptions& filter) {
-  writer.u8(static_cast<std::uint8_t>(static_cast<unsigned>(filter.kind) |
+inline void put_filter_kind(ByteWriter& writer, const hand::FilterOptions& filter,
+                            unsigned more = 0) {
+  writer.u8(static_cast<std::uint8_t>(static_cast<unsigned>(filter.kind) | more |
                                       (filter.close_pinches ? pinches_bit : 0U)));
 }
 
@@ -60,13 +61,14 @@ public:
     return fine_ ? counted : 0;
   }
   void require(bool fine) { fine_ = fine_ && fine; }
-  /// What put_filter_kind() writes.
-  void filter_kind(hand::FilterOptions& filter) {
+  /// What put_filter_kind() writes, of whose bits `more` are told apart and returned.
+  unsigned filter_kind(hand::FilterOptions& filter, unsigned more = 0) {
     const unsigned value = reader_->u8();
     filter.close_pinches = (value & pinches_bit) != 0;
-    const unsigned kind = value & ~unsigned{pinches_bit};
+    const unsigned kind = value & ~(unsigned{pinches_bit} | more);
     require(kind <= static_cast<unsigned>(hand::FilterKind::one_euro));
     filter.kind = static_cast<hand::FilterKind>(kind);
+    return value & more;
   }
   bool fine() const { return fine_ && !reader_->overrun(); }
 

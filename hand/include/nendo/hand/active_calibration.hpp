@@ -1,6 +1,7 @@
 #pragma once
 // Chooses the calibration for each of a glove's samples: that of the wearer's left or right hand,
-// whichever glove sent the sample, or the one that adaptation learns from how the hand moves.
+// whichever glove sent the sample, or what adaptation learns from how the hand moves: the whole
+// calibration, or how far it has slipped.
 
 #include <optional>
 
@@ -13,34 +14,46 @@ public:
   explicit ActiveCalibration(const Wearer& wearer) noexcept
       : left_(wearer.left.calibration), right_(wearer.right.calibration) {
     if (!wearer.adapt) return;
-    if (wearer.learned) {
-      adaptation_.emplace(*wearer.adapt, *wearer.learned);
+    if (wearer.ends) {
+      const Calibration& made = wearer.of(wearer.ends->side).calibration;
+      slips_.emplace(made, *wearer.ends, *wearer.adapt);
+      if (wearer.learned) slips_.emplace(made, *wearer.ends, *wearer.adapt, *wearer.learned);
+    } else if (wearer.learned) {
+      ranges_.emplace(*wearer.adapt, *wearer.learned);
     } else {
-      adaptation_.emplace(*wearer.adapt);
+      ranges_.emplace(*wearer.adapt);
     }
   }
 
   /// Returns the calibration for this sample, which must be the next in time. The reference is
   /// valid until the next call. Wait-free, no allocation.
   const Calibration& follow(const GloveSample& sample) noexcept {
-    if (adaptation_) adaptation_->push(sample);
+    if (ranges_) ranges_->push(sample);
+    if (slips_) slips_->push(sample);
     return of(sample.side);
   }
   /// Returns the calibration for a sample of that side without learning from one.
   const Calibration& of(Side side) const noexcept {
-    if (adaptation_) return adaptation_->calibration();
+    if (ranges_) return ranges_->calibration();
+    if (slips_ && slips_->side() == side) return slips_->calibration();
     return side == Side::left ? left_ : right_;
   }
 
-  /// Returns what is being learned, or null if the wearer's calibrations are used.
-  const RangeAdaptation* adaptation() const noexcept {
-    return adaptation_ ? &*adaptation_ : nullptr;
+  /// Returns what is being learned in place of a calibration, or null if nothing is.
+  const RangeAdaptation* adaptation() const noexcept { return ranges_ ? &*ranges_ : nullptr; }
+  /// Returns what is being learned of a calibration's slips, or null if nothing is.
+  const SlipAdaptation* slips() const noexcept { return slips_ ? &*slips_ : nullptr; }
+  /// Returns the state from which learning can go on; nullopt if nothing is being learned yet.
+  std::optional<LearnedRanges> learned() const noexcept {
+    if (slips_) return slips_->learned();
+    return ranges_ ? ranges_->learned() : std::nullopt;
   }
 
 private:
   Calibration left_;
   Calibration right_;
-  std::optional<RangeAdaptation> adaptation_;
+  std::optional<RangeAdaptation> ranges_;
+  std::optional<SlipAdaptation> slips_;
 };
 
 } // namespace nendo::hand

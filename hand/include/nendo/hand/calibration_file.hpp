@@ -24,6 +24,8 @@ struct SensorQuality {
   double confidence = 0.0;   ///< 0 to 1
   friend bool operator==(const SensorQuality&, const SensorQuality&) = default;
 };
+/// Moves the ends that the wearer reached, as the sensor slips, within what the glove can count.
+void move_ends(SensorQuality& quality, double by_counts, CountScale glove) noexcept;
 
 /// A wearer's calibration with its origin. Texts are one line of UTF-8, at most 200 bytes. A sensor
 /// whose gain is 0 is not calibrated.

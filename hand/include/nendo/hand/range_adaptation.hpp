@@ -17,6 +17,7 @@
 
 #include <nendo/driver/sample.hpp>
 #include <nendo/hand/calibration.hpp>
+#include <nendo/hand/swing_finder.hpp>
 
 namespace nendo::hand {
 
@@ -82,23 +83,15 @@ public:
   std::optional<LearnedRanges> learned() const noexcept;
 
 private:
-  static constexpr std::size_t window = 5; ///< of the median that takes out spikes
-
   /// What is learned about one sensor.
   struct Learner {
-    std::array<std::uint16_t, window> recent{};
-    std::size_t seen = 0;           ///< of `recent`, since it was absent
-    SensorCalibration usual;        ///< the joint's usual range, its angles at counts of 0 and 1
-    double usual_span = 0.0;        ///< in the default's counts; 0: nothing can be learned
-    double low = 0.0, high = 0.0;   ///< the bounds, counts
-    double bottom = 0.0, top = 0.0; ///< the swing under way, counts
-    bool rises = false, falls = false;
+    SwingFinder swings;
+    SensorCalibration usual;      ///< the joint's usual range, its angles at counts of 0 and 1
+    double usual_span = 0.0;      ///< in the default's counts; 0: nothing can be learned
+    double low = 0.0, high = 0.0; ///< the bounds, counts
     std::uint32_t bottoms = 0, tops = 0; ///< that were learned from
 
-    void follow(double count) noexcept;
-    void learn_top(double amplitude) noexcept;
-    void learn_bottom(double amplitude) noexcept;
-    bool median(std::uint16_t count, double& result) noexcept;
+    void learn(const SwingFinder::End& end) noexcept;
     bool can_have_learned(const LearnedRanges::Sensor& sensor, CountScale counts) const noexcept;
   };
   /// Turns the sensor's line towards its bounds.

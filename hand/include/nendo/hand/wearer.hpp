@@ -10,6 +10,7 @@
 #include <nendo/hand/calibration.hpp>
 #include <nendo/hand/range_adaptation.hpp>
 #include <nendo/hand/skeleton.hpp>
+#include <nendo/hand/slip_adaptation.hpp>
 
 namespace nendo::hand {
 
@@ -23,10 +24,13 @@ struct Wearer {
   WearerHand left;
   WearerHand right;
   /// If it is set, the ranges of the sensors are learned from a glove with such counts, and the
-  /// calibrations of `left` and `right` are not used.
+  /// calibrations of `left` and `right` are not used, unless there are `ends`.
   std::optional<CountScale> adapt{};
   /// What an earlier adaptation has learned; learning goes on from there.
   std::optional<LearnedRanges> learned{};
+  /// If it is set, too, only slips from the calibration of that side are learned. The other side's
+  /// stays as it is.
+  std::optional<WornEnds> ends{};
 
   const WearerHand& of(Side side) const noexcept { return side == Side::left ? left : right; }
   WearerHand& of(Side side) noexcept { return side == Side::left ? left : right; }

@@ -38,23 +38,25 @@ struct LoopStats {
   std::array<std::array<std::uint64_t, sensor_slots>, 2> spikes{}; ///< kept out, by sensor
   std::array<hand::SensorRanges, 2> ranges{}; ///< learned; zeros if not adapting
   std::array<Side, 2> range_sides{};          ///< of the gloves that taught them
-  std::uint64_t grabs = 0;                    ///< times the hands took hold again
-  std::uint64_t commits = 0;                  ///< times the shape became the rest shape
-  std::uint64_t undos = 0;                    ///< times it became an earlier one
-  std::uint64_t redos = 0;                    ///< times it became what it had been before an undo
-  std::uint64_t resets = 0;                   ///< times it became what it was at first
-  std::uint64_t changes = 0;                  ///< of settings
-  std::uint64_t undo_steps = 0;               ///< as many commits can be undone
-  std::uint64_t forgotten_steps = 0;          ///< could not any more, for want of memory
-  int most_links = 0;                         ///< of a tick; 0 unless the sculptor is injective
-  double most_bound = 0.0;                    ///< Lipschitz bound of a tick, had it been one link
-  double least_determinant = 1.0;             ///< ChainReport::least_determinant of any tick
-  std::uint64_t held_apart_ticks = 0;         ///< in which fingertips were held apart
-  std::uint64_t touching_ticks = 0;           ///< in which hands touched clay
-  double most_penetration_mm = 0.0;           ///< of clay in a hand, before it was set right
-  ClayState clay{};                           ///< of the last tick in which hands shaped clay
-  Histogram wake_latency;                     ///< from TickRecord::scheduled to the loop's running
-  Histogram work;                             ///< from there to the published frame
+  /// By how many counts sensors have slipped; zeros if that is not learned.
+  std::array<hand::SensorAngles, 2> slips_counts{};
+  std::uint64_t grabs = 0;            ///< times the hands took hold again
+  std::uint64_t commits = 0;          ///< times the shape became the rest shape
+  std::uint64_t undos = 0;            ///< times it became an earlier one
+  std::uint64_t redos = 0;            ///< times it became what it had been before an undo
+  std::uint64_t resets = 0;           ///< times it became what it was at first
+  std::uint64_t changes = 0;          ///< of settings
+  std::uint64_t undo_steps = 0;       ///< as many commits can be undone
+  std::uint64_t forgotten_steps = 0;  ///< could not any more, for want of memory
+  int most_links = 0;                 ///< of a tick; 0 unless the sculptor is injective
+  double most_bound = 0.0;            ///< Lipschitz bound of a tick, had it been one link
+  double least_determinant = 1.0;     ///< ChainReport::least_determinant of any tick
+  std::uint64_t held_apart_ticks = 0; ///< in which fingertips were held apart
+  std::uint64_t touching_ticks = 0;   ///< in which hands touched clay
+  double most_penetration_mm = 0.0;   ///< of clay in a hand, before it was set right
+  ClayState clay{};                   ///< of the last tick in which hands shaped clay
+  Histogram wake_latency;             ///< from TickRecord::scheduled to the loop's running
+  Histogram work;                     ///< from there to the published frame
   Histogram end_to_end; ///< from a sample's last byte to the published frame that shows it
   /// The hand::FilterLatency of each hand at each tick with samples. end_to_end does not contain
   /// it.

@@ -1,0 +1,136 @@
+#include <nendo/hand/slip_adaptation.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nendo::hand {
+namespace {
+
+// How far the end of a swing draws a bound: outwards half of the way, but never by more than a part
+// of the range, lest a tug at the glove pass for a slip; inwards so little that it takes some two
+// hundred full swings. Chosen with synthetic wearers, seeds 1 to 20: five times as fast inwards,
+// slips are followed less far; half as fast, wearers whose gloves do not slip are worse off.
+constexpr double out_share = 0.5;
+constexpr double in_share = 0.004;
+constexpr double most_step = 0.02;
+
+// A sensor that moved less when the calibration was made is not one whose ends are known.
+constexpr double least_span = 0.1; ///< of the glove's counts
+
+// How far the sensor between two fingers goes depends on how both are bent, so it tells nothing.
+bool is_gap(Sensor sensor) noexcept {
+  return sensor == Sensor::index_middle_abduction || sensor == Sensor::middle_ring_abduction ||
+         sensor == Sensor::ring_pinky_abduction;
+}
+
+// A pause is no time for the lines to move: they would jump.
+constexpr double longest_pause_s = 0.1;
+
+} // namespace
+
+SlipAdaptation::SlipAdaptation(const Calibration& made, const WornEnds& ends,
+                               CountScale counts) noexcept
+    : made_(made), calibration_(made), ends_(ends), counts_(counts) {
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    const double low = ends.counts.low_counts[slot], high = ends.counts.high_counts[slot];
+    // Written so that a NaN is not followed; ends may come from a file.
+    if (ends.counts.present.has(sensor) && !is_gap(sensor) && low >= 0.0 && high <= counts.most &&
+        high - low >= least_span * counts.most && made.sensors[slot].gain_rad_per_count != 0.0)
+      followed_.add(sensor);
+    learners_[slot].low = ends.counts.low_counts[slot];
+    learners_[slot].high = ends.counts.high_counts[slot];
+  }
+}
+
+SlipAdaptation::SlipAdaptation(const Calibration& made, const WornEnds& ends, CountScale counts,
+                               const LearnedRanges& learned) noexcept
+    : SlipAdaptation(made, ends, counts) {
+  if (learned.side != ends.side) return;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const LearnedRanges::Sensor& sensor = learned.sensors[slot];
+    const double span = ends.counts.high_counts[slot] - ends.counts.low_counts[slot];
+    const double slipped = sensor.line.offset_counts - made.sensors[slot].offset_counts;
+    const bool can_be = followed_.has(static_cast<Sensor>(slot)) && sensor.low_counts >= 0.0 &&
+                        sensor.high_counts <= counts.most &&
+                        sensor.low_counts <= sensor.high_counts &&
+                        std::abs(slipped) <= most_slip * span;
+    if (!can_be) continue;
+    learners_[slot].low = sensor.low_counts;
+    learners_[slot].high = sensor.high_counts;
+    learners_[slot].bottoms = sensor.bottoms;
+    learners_[slot].tops = sensor.tops;
+    calibration_.sensors[slot].offset_counts = sensor.line.offset_counts;
+  }
+}
+
+double SlipAdaptation::slip_counts(std::size_t slot) const noexcept {
+  if (!followed_.has(static_cast<Sensor>(slot))) return 0.0;
+  const double low = ends_.counts.low_counts[slot], high = ends_.counts.high_counts[slot];
+  const double of_low = learners_[slot].low - low, of_high = learners_[slot].high - high;
+  if (of_low * of_high <= 0.0) return 0.0; // it moves less, or more, or as it did
+  const double most = most_slip * (high - low);
+  return std::copysign(std::min({std::abs(of_low), std::abs(of_high), most}), of_high);
+}
+
+void SlipAdaptation::push(const GloveSample& sample) noexcept {
+  const bool own = sample.side == ends_.side;
+  const HostTime time = sample.has_device_time ? sample.measured : sample.arrival;
+  const double interval_s =
+      begun_ ? std::clamp(seconds_between(last_time_, time), 0.0, longest_pause_s) : 0.0;
+  begun_ = true;
+  last_time_ = time;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    if (!followed_.has(static_cast<Sensor>(slot))) continue;
+    Learner& learner = learners_[slot];
+    if (!own || !sample.present.has(static_cast<Sensor>(slot))) {
+      learner.swings.begin_anew();
+      continue;
+    }
+    const double span = ends_.counts.high_counts[slot] - ends_.counts.low_counts[slot];
+    const std::uint16_t count = std::min(sample.raw[slot].value, counts_.most);
+    if (const auto end = learner.swings.push(count, RangeAdaptation::least_swing * span)) {
+      double& bound = end->is_top ? learner.high : learner.low;
+      const double part = std::min(end->amplitude / span, 1.0);
+      const double off = end->counts - bound,
+                   share = (end->is_top == (off > 0.0)) ? out_share : in_share * part * part;
+      bound += std::clamp(share * off, -most_step * span, most_step * span);
+      ++(end->is_top ? learner.tops : learner.bottoms);
+    }
+    auto& [gain_rad, offset] = calibration_.sensors[slot];
+    const double most = most_drift_rad_s * interval_s / std::abs(gain_rad);
+    const double left = made_.sensors[slot].offset_counts + slip_counts(slot) - offset;
+    offset += std::clamp(left, -most, most);
+  }
+}
+
+SensorAngles SlipAdaptation::slips_counts() const noexcept {
+  SensorAngles slips{};
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    slips[slot] = slip_counts(slot);
+  return slips;
+}
+
+SensorRanges SlipAdaptation::ranges() const noexcept {
+  SensorRanges ranges;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const Learner& learner = learners_[slot];
+    if (followed_.has(static_cast<Sensor>(slot)))
+      ranges[slot] = {learner.low, learner.high,
+                      std::uint64_t{learner.bottoms} + std::uint64_t{learner.tops}};
+  }
+  return ranges;
+}
+
+LearnedRanges SlipAdaptation::learned() const noexcept {
+  LearnedRanges learned{ends_.side, {}};
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const Learner& learner = learners_[slot];
+    if (followed_.has(static_cast<Sensor>(slot)))
+      learned.sensors[slot] = {learner.low, learner.high, learner.bottoms, learner.tops,
+                               calibration_.sensors[slot]};
+  }
+  return learned;
+}
+
+} // namespace nendo::hand
