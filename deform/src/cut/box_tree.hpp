@@ -74,12 +74,13 @@ public:
   template <class Visit>
   void visit_pairs(const BoxTree& other, const Visit& visit) const {
     if (empty() || other.empty()) return;
-    for (std::size_t leaf = 0; leaf < nodes_.size(); ++leaf) {
-      const Node& node = nodes_[leaf];
-      if (node.count == 0 || !meet(node.box, other.box())) continue;
-      for (std::uint32_t at = node.first; at < node.first + node.count; ++at)
-        other.visit([&](const SpaceBox& box) { return meet(box, boxes_[at]); },
-                    [&](std::uint32_t theirs) { visit(order_[at], theirs); });
+    for (const Node& node : nodes_) {
+      if (node.count == 0) continue;
+      other.visit_leaves(node.box, [&](const Node& leaf) {
+        for (std::uint32_t at = node.first; at < node.first + node.count; ++at)
+          for (std::uint32_t theirs = leaf.first; theirs < leaf.first + leaf.count; ++theirs)
+            if (meet(boxes_[at], other.boxes_[theirs])) visit(order_[at], other.order_[theirs]);
+      });
     }
   }
 
@@ -89,13 +90,25 @@ private:
     std::uint32_t first; ///< a leaf's first triangle in order_, or the first of two children
     std::uint32_t count; ///< 0: no leaf
   };
+  /// Calls visit(leaf) for each leaf whose box meets this one.
+  template <class Visit>
+  void visit_leaves(const SpaceBox& box, const Visit& visit) const {
+    std::uint32_t stack[64];
+    std::size_t depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+      const Node& node = nodes_[stack[--depth]];
+      if (!meet(node.box, box)) continue;
+      if (node.count > 0) {
+        visit(node);
+        continue;
+      }
+      stack[depth++] = node.first;
+      stack[depth++] = node.first + 1;
+    }
+  }
   void build(std::span<const SpacePoint> places, std::span<const Corners> triangles);
-  /// Of a triangle's box, together, because they are compared much more often than they are moved.
-  struct Middle {
-    SpacePoint at;
-    std::uint32_t number; ///< of the triangle among those that were chosen
-  };
-  void split(std::uint32_t node, std::uint32_t begin, std::span<Middle> middles);
+  void split(std::uint32_t node, std::uint32_t begin, std::uint32_t count);
   SpaceBox box_of(const Node& node) const noexcept;
 
   std::vector<Node> nodes_;
