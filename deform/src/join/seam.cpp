@@ -109,7 +109,8 @@ double longest_edge(const LiveSurface& surface, std::span<const SeamEdge> edges,
 }
 
 /// Makes the triangles near the seam even, and returns the points that are on the seam then. What
-/// is far enough away to keep its detail also keeps its points.
+/// is far enough away to keep its detail also keeps its points. Distances are found once: new
+/// points are as coarse as their edge's ends are on average.
 std::vector<std::uint32_t> even_out(LiveSurface& surface, std::span<const SeamEdge> edges,
                                     double width, RefineZone& zone) {
   std::vector<std::uint32_t> on_seam = split_seam(surface, edges, infinitely_far);
@@ -122,17 +123,16 @@ std::vector<std::uint32_t> even_out(LiveSurface& surface, std::span<const SeamEd
   on_seam = split_seam(surface, edges, limits.longest);
   zone.hold.assign(surface.point_count(), 2);
   zone.coarseness.assign(surface.point_count(), 0.0f);
+  const std::vector<double> distances = distances_from(surface, on_seam, zone_widths * width);
+  for (std::uint32_t point = 0; point < distances.size(); ++point) {
+    const double beyond = std::max(distances[point] / width - 1.0, 0.0);
+    const bool is_far = distances[point] >= infinitely_far;
+    zone.coarseness[point] = is_far ? 0.0f : static_cast<float>(1.0 + coarser * beyond);
+    if (distances[point] < 0.5 * width) zone.hold[point] = 0;
+  }
+  for (const std::uint32_t point : on_seam)
+    zone.hold[point] = 1;
   for (int round = 0; round < most_rounds; ++round) {
-    const std::vector<double> distances = distances_from(surface, on_seam, zone_widths * width);
-    for (std::uint32_t point = 0; point < distances.size(); ++point) {
-      const double beyond = std::max(distances[point] / width - 1.0, 0.0);
-      const bool is_far = distances[point] >= infinitely_far;
-      zone.coarseness[point] = is_far ? 0.0f : static_cast<float>(1.0 + coarser * beyond);
-      if (distances[point] < 0.5 * width) zone.hold[point] = 0;
-    }
-    for (const std::uint32_t point : on_seam)
-      zone.hold[point] = 1;
-    zone.active.clear(); // coarseness has changed
     const RefineCounts done = refine(surface, zone, limits);
     limits.budget -= done.splits + done.collapses;
     if (done.splits + done.collapses + done.flips == 0) break;

@@ -11,8 +11,7 @@ namespace nendo::deform {
 
 /// Returns places for the free points, such that the sum over them and their neighbours of the
 /// squared distances to the mean of each one's neighbours, weighted by 1 / distance, is least.
-/// Solved by conjugate gradients from the present places, to 1e-5 or in 600 steps: the same bits
-/// for the same calls. Allocates.
+/// Solved by a sparse Cholesky factorisation: the same bits for the same calls. Allocates.
 std::vector<SpacePoint> thin_plate(const LiveSurface& surface, std::span<const std::uint32_t> free);
 
 } // namespace nendo::deform
