@@ -95,7 +95,7 @@ GroupErrors errors_of(const JudgedWearer& wearer, const JudgedSession& session,
     if (moment.touching == 0) return Told{angles, 0.0, 0.0};
     const auto pose = skeleton.pose(angles, Eigen::Isometry3d::Identity());
     JudgedWearer::Pads drawn;
-    drawn.fill({hand::pad_depth_m, hand::pad_behind_tip_m});
+    drawn.fill({-skeleton.pad().y(), skeleton.pad().z()});
     return Told{angles, pads_apart_mm(pose, wearer.pads, moment.touching),
                 pads_apart_mm(pose, drawn, moment.touching)};
   });

@@ -50,7 +50,7 @@ JointAngles assumed_angles(const hand::CalibrationPose& pose) {
 JointAngles touching(JointAngles angles, Joint with, bool straight,
                      const hand::HandSkeleton& skeleton) {
   const Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
-  const Eigen::Vector3d pad(0.0, -hand::pad_depth_m, hand::pad_behind_tip_m);
+  const Eigen::Vector3d& pad = skeleton.pad();
   const auto found = std::find(hand::fingertips.begin(), hand::fingertips.end(), with);
   const bool palm = found == hand::fingertips.end();
   const auto finger = palm ? 0 : static_cast<std::size_t>(found - hand::fingertips.begin());

@@ -129,7 +129,8 @@ std::optional<Side> side_named(std::string_view name) {
 void read_hand_shape(TomlReader& reader, const toml::table& table, hand::WearerShape& shape) {
   const toml::array* const terms = reader.array(table, "shape");
   if (terms == nullptr) return;
-  if (terms->size() != hand::shape_terms && terms->size() != hand::early_shape_terms)
+  if (terms->size() != hand::shape_terms && terms->size() != hand::second_shape_terms &&
+      terms->size() != hand::first_shape_terms)
     return reader.complain(table, "shape must have " + std::to_string(hand::shape_terms) +
                                       " numbers; leave it out for an average hand");
   for (std::size_t k = 0; k < terms->size(); ++k)

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include <nendo/hand/calibration_poses.hpp>
-
 #include "hand_shape.hpp"
 #include "turns.hpp"
 
@@ -53,9 +51,9 @@ FingerChain::FingerChain(const HandSkeleton& skeleton, std::size_t finger) noexc
 // Seen from the last joint, the pad is as a shorter bone's end that is bent a little.
 FingerChain FingerChain::to_pad(const HandSkeleton& skeleton, std::size_t finger) noexcept {
   FingerChain chain(skeleton, finger);
-  const double ahead_m = chain.bones_m_[2] - pad_behind_tip_m;
-  chain.last_turn_rad_ = std::atan2(pad_depth_m, ahead_m);
-  chain.bones_m_[2] = std::hypot(pad_depth_m, ahead_m);
+  const double depth_m = -skeleton.pad().y(), ahead_m = chain.bones_m_[2] - skeleton.pad().z();
+  chain.last_turn_rad_ = std::atan2(depth_m, ahead_m);
+  chain.bones_m_[2] = std::hypot(depth_m, ahead_m);
   return chain;
 }
 

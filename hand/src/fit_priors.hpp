@@ -20,7 +20,7 @@ inline constexpr double offset_deviation_of_range = 40.0 / 255.0;
 inline constexpr double thumb_mix_deviation = 0.5;
 inline constexpr double gap_mix_deviation = 0.2;
 
-// How pads differ between wearers.
+// How the flesh differs between wearers.
 inline constexpr double pad_depth_deviation_m = 0.002;
 inline constexpr double pad_behind_deviation_m = 0.003;
 inline constexpr double palm_depth_deviation_m = 0.003;
@@ -39,6 +39,8 @@ inline constexpr double breadth_deviation = 0.05;
 constexpr double shape_deviation(ShapeTerm term) noexcept {
   if (term <= ShapeTerm::little_distal) return 0.06;
   if (term <= ShapeTerm::thumb_base_z) return 0.006;
+  if (term == ShapeTerm::pad_depth) return pad_depth_deviation_m;
+  if (term == ShapeTerm::pad_behind) return pad_behind_deviation_m;
   if (term >= ShapeTerm::thumb_pronation_by_roll) return 0.8;
   constexpr double degree = 0.017453292519943295;
   if (term == ShapeTerm::thumb_pronation) return 20.0 * degree;

@@ -13,11 +13,12 @@ namespace nendo::hand {
 
 /// The unknowns, in units of their prior's standard deviation and 0 at its mean. The first are the
 /// calibration: for each slot the gain's logarithm and the angle at the mean of its counts, then
-/// the couplings. The others are the wearer's: how deep the pads are, how far behind the tips, how
-/// deep the palm's flesh is; the hand's length, breadth and shape; and for each slot the habit, by
-/// which the joint differs from every asked angle.
+/// the couplings. The others are the wearer's: how deep the palm's flesh is; the hand's length,
+/// breadth and shape; and for each slot the habit, by which the joint differs from every asked
+/// angle.
 inline constexpr std::size_t line_unknowns = 2 * sensor_slots + couplings.size();
-inline constexpr std::size_t hand_unknowns = line_unknowns + 3;
+inline constexpr std::size_t palm_unknown = line_unknowns;
+inline constexpr std::size_t hand_unknowns = palm_unknown + 1;
 inline constexpr std::size_t shape_unknowns = hand_unknowns + 2;
 inline constexpr std::size_t habit_unknowns = shape_unknowns + shape_terms;
 inline constexpr std::size_t unknown_count = habit_unknowns + sensor_slots;
@@ -89,13 +90,10 @@ public:
 
 private:
   bool usable(const Touch& touch) const noexcept;
-  struct Flesh {
-    double pad_depth, pad_behind, palm_depth;
-  };
-  static Flesh flesh_m(const Unknowns& at) noexcept;
-  Eigen::Vector3d gap_m(const SensorAngles& angles, const Touch& touch, const Flesh& flesh_m,
+  static double palm_m(const Unknowns& at) noexcept;
+  Eigen::Vector3d gap_m(const SensorAngles& angles, const Touch& touch, double palm_m,
                         const HandSkeleton& skeleton) const;
-  Eigen::Vector3d gap_m(const JointAngles& joints, const Touch& touch, const Flesh& flesh_m,
+  Eigen::Vector3d gap_m(const JointAngles& joints, const Touch& touch, double palm_m,
                         const HandSkeleton& skeleton) const;
   bool fits_hand(std::size_t unknown) const noexcept;
   /// The hand's unknowns, each with a hand in which it alone is a little greater.

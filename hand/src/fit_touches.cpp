@@ -130,36 +130,31 @@ bool FitProblem::usable(const Touch& touch) const noexcept {
   }
 }
 
-FitProblem::Flesh FitProblem::flesh_m(const Unknowns& at) noexcept {
-  constexpr auto first = static_cast<Eigen::Index>(line_unknowns);
-  return {pad_depth_m + pad_depth_deviation_m * at[first],
-          pad_behind_tip_m + pad_behind_deviation_m * at[first + 1],
-          palm_depth_m + palm_depth_deviation_m * at[first + 2]};
+double FitProblem::palm_m(const Unknowns& at) noexcept {
+  return palm_depth_m + palm_depth_deviation_m * at[static_cast<Eigen::Index>(palm_unknown)];
 }
 
-Eigen::Vector3d FitProblem::gap_m(const SensorAngles& angles, const Touch& touch,
-                                  const Flesh& flesh_m, const HandSkeleton& skeleton) const {
-  return gap_m(joints_of(angles, sensors_), touch, flesh_m, skeleton);
+Eigen::Vector3d FitProblem::gap_m(const SensorAngles& angles, const Touch& touch, double palm_m,
+                                  const HandSkeleton& skeleton) const {
+  return gap_m(joints_of(angles, sensors_), touch, palm_m, skeleton);
 }
 
-Eigen::Vector3d FitProblem::gap_m(const JointAngles& joints, const Touch& touch,
-                                  const Flesh& flesh_m, const HandSkeleton& skeleton) const {
+Eigen::Vector3d FitProblem::gap_m(const JointAngles& joints, const Touch& touch, double palm_m,
+                                  const HandSkeleton& skeleton) const {
   const HandPose pose = skeleton.pose(joints, Eigen::Isometry3d::Identity());
-  const Eigen::Vector3d pad(0.0, -flesh_m.pad_depth, flesh_m.pad_behind);
-  const Eigen::Vector3d thumb = pose[Joint::thumb_tip] * pad;
+  const Eigen::Vector3d thumb = pose[Joint::thumb_tip] * skeleton.pad();
   const bool finger =
       std::find(fingertips.begin(), fingertips.end(), touch.with) != fingertips.end();
-  if (finger) return thumb - pose[touch.with] * pad;
+  if (finger) return thumb - pose[touch.with] * skeleton.pad();
   const auto metacarpal = static_cast<Joint>(index_of(touch.with) - 1);
-  return thumb - pose[touch.with].translation() +
-         flesh_m.palm_depth * pose[metacarpal].linear().col(1);
+  return thumb - pose[touch.with].translation() + palm_m * pose[metacarpal].linear().col(1);
 }
 
 double FitProblem::gap_m(const Unknowns& at, std::size_t reading) const {
   const auto [begin, touch, end] = rows_[reading];
   if (end == touch) return 0.0;
   return gap_m(angles_rad(at, reading, nullptr), *pose_of(readings_[reading].pose).touch,
-               flesh_m(at), hands(at, false).now)
+               palm_m(at), hands(at, false).now)
       .norm();
 }
 
@@ -168,9 +163,9 @@ void FitProblem::add_touch(std::size_t reading, const Unknowns& at, SensorAngles
                            Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) const {
   const Eigen::Index row = rows_[reading].touch;
   const Touch& touch = *pose_of(readings_[reading].pose).touch;
-  const Flesh flesh = flesh_m(at);
+  const double palm = palm_m(at);
   const JointAngles joints = joints_of(angles, sensors_);
-  const Eigen::Vector3d off_m = gap_m(joints, touch, flesh, hands.now);
+  const Eigen::Vector3d off_m = gap_m(joints, touch, palm, hands.now);
   const double weight = (touch_is_set_aside_[reading] ? set_aside_weight : 1.0) /
                         std::hypot(touch.deviation_m, form_deviation_m);
   Eigen::Vector3d slopes;
@@ -185,23 +180,21 @@ void FitProblem::add_touch(std::size_t reading, const Unknowns& at, SensorAngles
     if (!sensors_.has(static_cast<Sensor>(slot))) continue;
     const double angle = angles[slot];
     angles[slot] = angle + step_rad;
-    const Eigen::Vector3d above = gap_m(angles, touch, flesh, hands.now);
+    const Eigen::Vector3d above = gap_m(angles, touch, palm, hands.now);
     angles[slot] = angle - step_rad;
     const Eigen::Vector3d slope =
-        (above - gap_m(angles, touch, flesh, hands.now)) / (2.0 * step_rad);
+        (above - gap_m(angles, touch, palm, hands.now)) / (2.0 * step_rad);
     angles[slot] = angle;
     jacobian->block<3, line_unknowns>(row, 0) +=
         slopes.cwiseProduct(slope) * by_unknowns.row(static_cast<Eigen::Index>(slot));
   }
-  for (std::size_t k = line_unknowns; k < hand_unknowns; ++k) { // linear: any step will do
-    Unknowns next = at;
-    next[static_cast<Eigen::Index>(k)] += 1.0;
-    jacobian->block<3, 1>(row, static_cast<Eigen::Index>(k)) =
-        slopes.cwiseProduct(gap_m(joints, touch, flesh_m(next), hands.now) - off_m);
-  }
+  Unknowns deeper = at;
+  deeper[static_cast<Eigen::Index>(palm_unknown)] += 1.0; // linear: any step will do
+  jacobian->block<3, 1>(row, static_cast<Eigen::Index>(palm_unknown)) =
+      slopes.cwiseProduct(gap_m(joints, touch, palm_m(deeper), hands.now) - off_m);
   for (const auto& [unknown, skeleton] : hands.moved) {
     jacobian->block<3, 1>(row, unknown) =
-        slopes.cwiseProduct(gap_m(joints, touch, flesh, skeleton) - off_m) / hand_step;
+        slopes.cwiseProduct(gap_m(joints, touch, palm, skeleton) - off_m) / hand_step;
   }
 }
 

@@ -204,7 +204,9 @@ HandSkeleton::HandSkeleton(Side side, const HandSize& size)
     : HandSkeleton(side, offsets_of(size), size.shape) {}
 
 HandSkeleton::HandSkeleton(Side side, const Offsets& offsets_m, const WearerShape& shape)
-    : side_(side), offsets_m_(offsets_m), axes_(axes_of(shape)) {
+    : side_(side), offsets_m_(offsets_m), axes_(axes_of(shape)),
+      pad_m_(0.0, -pad_depth_m - shape[ShapeTerm::pad_depth],
+             pad_behind_tip_m + shape[ShapeTerm::pad_behind]) {
   offsets_m_[index_of(Joint::palm)] =
       rest_offset(Joint::middle_metacarpal) + 0.5 * rest_offset(Joint::middle_proximal);
   // A left hand is the mirror image of a right one: with M = diag(-1, 1, 1), places become M p and

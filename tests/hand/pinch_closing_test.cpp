@@ -25,8 +25,7 @@ namespace {
 /// By the whole hand's forward kinematics.
 double gap_m(const HandSkeleton& skeleton, const JointAngles& angles, std::size_t finger) {
   const HandPose pose = skeleton.pose(angles, Isometry3d::Identity());
-  const Vector3d pad(0.0, -pad_depth_m, pad_behind_tip_m);
-  return (pose[fingertips[0]] * pad - pose[fingertips[finger]] * pad).norm();
+  return (pose[fingertips[0]] * skeleton.pad() - pose[fingertips[finger]] * skeleton.pad()).norm();
 }
 
 double least_gap_m(const HandSkeleton& skeleton, const JointAngles& angles) {
@@ -85,7 +84,10 @@ TEST_SUITE("pinch_closing") {
     std::mt19937 random(1);
     int free = 0;
     for (int round = 0; round < 400; ++round) {
-      const HandSkeleton skeleton(round % 2 == 0 ? Side::left : Side::right);
+      HandSize size; // pads differ
+      size.shape[ShapeTerm::pad_depth] = 0.001 * (round % 3 - 1);
+      size.shape[ShapeTerm::pad_behind] = 0.002 * (round % 5 - 2);
+      const HandSkeleton skeleton(round % 2 == 0 ? Side::left : Side::right, size);
       const auto finger = 1 + static_cast<std::size_t>(round / 2) % 4;
       const JointAngles open = near_pinch(skeleton, finger, random);
       const JointAngles closed = close_pinches(open, skeleton, sensors_22);

@@ -91,6 +91,12 @@ TEST_SUITE("wearer_shape") {
     CHECK((moved[Joint::thumb_tip].translation() - average[Joint::thumb_tip].translation() -
            Vector3d(0.0, 0.005, 0.0))
               .norm() < 1e-15);
+    HandSize padded;
+    padded.shape[ShapeTerm::pad_depth] = 0.002;
+    padded.shape[ShapeTerm::pad_behind] = -0.001;
+    CHECK(HandSkeleton(Side::left, padded)
+              .pad()
+              .isApprox(Vector3d(0.0, -pad_depth_m - 0.002, pad_behind_tip_m - 0.001)));
     JointAngles bent;
     bent[Finger::index].mcp_flexion_rad = 1.2;
     const double straight_x =

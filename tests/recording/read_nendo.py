@@ -63,8 +63,9 @@ def hand(b):
             h["layer"]["below"] = b.take("23d")
     if b.take("B"):
         h["shape"], h["swapped_shape"] = b.take("26d"), b.take("26d")
-        later = b.take("2d"), b.take("2d")
-        h["shape"], h["swapped_shape"] = h["shape"] + later[0], h["swapped_shape"] + later[1]
+        for _ in range(2):
+            later = b.take("2d"), b.take("2d")
+            h["shape"], h["swapped_shape"] = h["shape"] + later[0], h["swapped_shape"] + later[1]
     if has_ends:
         h["ends"] = {"side": b.take("B"), "sensors": b.take("I"), "counts": [b.take("dd") for _ in range(24)]}
     return h

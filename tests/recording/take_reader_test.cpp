@@ -310,23 +310,29 @@ TEST_SUITE("take_reader") {
     CHECK(setup.hands.size() == 2);
   }
 
-  TEST_CASE("a hand of format 1.8, whose shape had two terms less, is read with zeros for them") {
+  TEST_CASE(
+      "a hand of format 1.8 or 1.11, whose shape had fewer terms, is read with zeros for them") {
     auto source = test::setup_of(test::LoopUnderTest(Mode::type1));
     for (flow::HandInput& hand : source.hands)
       for (const Side side : {Side::left, Side::right})
-        hand.wearer.of(side).size.shape.terms.fill(0.02);
+        hand.wearer.of(side).size.shape.terms.fill(0.004);
     constexpr auto type = driver::chunk_type("HAND");
     Setup setup;
     for (const auto& payload : payloads_of(source, type)) {
       const std::span whole(payload);
-      constexpr std::size_t later_bytes = 2 * 2 * 8;
-      Setup cut = setup;
+      constexpr std::size_t later_bytes = 2 * 2 * 8; // of two terms of two hands
+      Setup cut = setup, of_1_11 = setup;
       CHECK_FALSE(read_setup_chunk(type, whole.first(whole.size() - 8), cut));
-      REQUIRE(read_setup_chunk(type, whole.first(whole.size() - later_bytes), setup));
-      const auto& terms = setup.hands.back().wearer.of(Side::left).size.shape.terms;
-      CHECK(terms[25] == 0.02);
-      CHECK(terms[26] == 0.0);
-      CHECK(terms[27] == 0.0);
+      REQUIRE(read_setup_chunk(type, whole.first(whole.size() - later_bytes), of_1_11));
+      REQUIRE(read_setup_chunk(type, whole.first(whole.size() - 2 * later_bytes), setup));
+      const auto terms_of = [](const Setup& of) {
+        return of.hands.back().wearer.of(Side::left).size.shape.terms;
+      };
+      CHECK(terms_of(of_1_11)[27] == 0.004);
+      CHECK(terms_of(of_1_11)[28] == 0.0);
+      CHECK(terms_of(setup)[25] == 0.004);
+      CHECK(terms_of(setup)[26] == 0.0);
+      CHECK(terms_of(setup)[29] == 0.0);
     }
     CHECK(setup.hands.size() == 2);
   }

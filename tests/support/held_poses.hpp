@@ -140,9 +140,8 @@ inline SensorAngles touching(PoseId id, const HandSkeleton& skeleton) {
     for (std::size_t f = 0; f < 4; ++f)
       joints.fingers[f] = {at[4 * f + 4], 0.0, at[4 * f + 5], at[4 * f + 6]};
     const HandPose pose = skeleton.pose(joints, Eigen::Isometry3d::Identity());
-    const Eigen::Vector3d pad(0, -pad_depth_m, pad_behind_tip_m);
-    const Eigen::Vector3d thumb = pose[Joint::thumb_tip] * pad;
-    if (!palm) return thumb - pose[touch.with] * pad;
+    const Eigen::Vector3d thumb = pose[Joint::thumb_tip] * skeleton.pad();
+    if (!palm) return thumb - pose[touch.with] * skeleton.pad();
     return thumb - pose[touch.with].translation() -
            pose[Joint::little_metacarpal].linear() * Eigen::Vector3d(0, -palm_depth_m, 0);
   };

@@ -110,14 +110,20 @@ TEST_SUITE("timeline_file") {
     terms.fill(0.02);
     terms[26] = 0.125;
     terms[27] = 0.25;
+    terms[28] = 0.00125;
+    terms[29] = 0.0025;
     const std::string text = text_of(made);
-    const auto early = parse_timeline(without(text, ", 0.125, 0.25"), "early");
-    REQUIRE(early);
-    const auto& read = early->hands[0].size.shape.terms;
+    const auto second = parse_timeline(without(text, ", 0.00125, 0.0025"), "second");
+    REQUIRE(second);
+    CHECK(second->hands[0].size.shape.terms[27] == 0.25);
+    CHECK(second->hands[0].size.shape.terms[28] == 0.0);
+    const auto first = parse_timeline(without(text, ", 0.125, 0.25, 0.00125, 0.0025"), "first");
+    REQUIRE(first);
+    const auto& read = first->hands[0].size.shape.terms;
     CHECK(read[25] == 0.02);
     CHECK(read[26] == 0.0);
-    CHECK(read[27] == 0.0);
-    CHECK_FALSE(parse_timeline(without(text, ", 0.25"), "between"));
+    CHECK(read[29] == 0.0);
+    CHECK_FALSE(parse_timeline(without(text, ", 0.0025"), "between"));
   }
 
   TEST_CASE("what is wrong is said with its line") {

@@ -106,15 +106,19 @@ void read_size(CheckedReader& checked, hand::HandSize& size) {
   size.breadth_m = checked.number(least_hand_m, most_hand_m);
 }
 
+/// The terms of the first formats, those that 1.9 brought, and those of 1.12: of both hands each.
+constexpr std::pair<std::size_t, std::size_t> shape_ranges[] = {
+    {0, hand::first_shape_terms},
+    {hand::first_shape_terms, hand::second_shape_terms},
+    {hand::second_shape_terms, hand::shape_terms}};
+
 void put_shapes(ByteWriter& writer, const hand::WearerShape& own, const hand::WearerShape& other) {
-  for (const auto& [begin, end] : {std::pair{std::size_t{0}, hand::early_shape_terms},
-                                   std::pair{hand::early_shape_terms, hand::shape_terms}})
+  for (const auto& [begin, end] : shape_ranges)
     for (const hand::WearerShape* shape : {&own, &other})
       for (std::size_t k = begin; k < end; ++k)
         writer.f64_le(shape->terms[k]);
 }
 
-/// The terms behind the early ones, which format 1.9 brought, follow both hands' early ones.
 void read_shape(CheckedReader& checked, std::size_t begin, std::size_t end,
                 hand::WearerShape& shape) {
   for (std::size_t k = begin; k < end; ++k) {
@@ -219,11 +223,10 @@ bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
   if (reader.remaining() > 0 && reader.u8() != 0) // formats before 1.6 end before it
     read_layer(reader, checked, hand.layer.emplace());
   if (reader.remaining() > 0 && reader.u8() != 0) { // formats before 1.7 end before it
-    read_shape(checked, 0, hand::early_shape_terms, own.size.shape);
-    read_shape(checked, 0, hand::early_shape_terms, other.size.shape);
-    if (reader.remaining() > 0) { // formats before 1.9 end before them
-      read_shape(checked, hand::early_shape_terms, hand::shape_terms, own.size.shape);
-      read_shape(checked, hand::early_shape_terms, hand::shape_terms, other.size.shape);
+    for (const auto& [begin, end] : shape_ranges) {
+      if (begin > 0 && reader.remaining() == 0) break; // in formats before 1.9, or before 1.12
+      read_shape(checked, begin, end, own.size.shape);
+      read_shape(checked, begin, end, other.size.shape);
     }
   }
   if (ends_follow) read_ends(reader, checked, hand.wearer.ends.emplace());

@@ -57,15 +57,13 @@ struct AssumedAngle {
 
 /// A touch of the pad of the thumb with the pad of a finger, or with the palm at the base of a
 /// finger. Bones end at the skeleton's tips, and soft pads lie between them: pads meet
-/// `pad_depth_m` to the palmar side of either tip and `pad_behind_tip_m` behind it. At a finger's
+/// to the palmar side of either tip and behind it (HandSkeleton::pad()). At a finger's
 /// base, which is a proximal joint, the flesh is `palm_depth_m` deep to the palmar side, by the
 /// axes of the finger's metacarpal.
 struct Touch {
   Joint with = Joint::index_tip;
   double deviation_m = 0.002; ///< of each coordinate, between touches of one wearer
 };
-inline constexpr double pad_depth_m = 0.006;
-inline constexpr double pad_behind_tip_m = 0.003;
 inline constexpr double palm_depth_m = 0.012;
 
 struct CalibrationPose {

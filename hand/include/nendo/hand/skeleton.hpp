@@ -70,6 +70,8 @@ public:
     std::array<double, 4> knuckle_tilts_rad; ///< turns of the fingers about themselves
   };
   const Axes& axes() const noexcept { return axes_; }
+  /// Returns where the middle of a digit's pad is, in the frame of its tip; metres.
+  const Eigen::Vector3d& pad() const noexcept { return pad_m_; }
 
   Side side() const noexcept { return side_; }
   /// Returns the lengths of the bones in this skeleton, whatever it was made from.
@@ -101,6 +103,7 @@ private:
   Offsets offsets_m_;
   Axes axes_;
   Eigen::Matrix3d own_thumb_axes_; ///< of this side's own hand
+  Eigen::Vector3d pad_m_;
   Eigen::Vector3d palm_m_;
   Eigen::Vector3d thumb_base_m_;
   std::array<FingerRoot, 4> fingers_;

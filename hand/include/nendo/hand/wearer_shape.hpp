@@ -1,7 +1,7 @@
 #pragma once
 // How one wearer's hand differs from the proportions of an average hand of its size: the bones, the
-// base and the axes of the thumb, and how the knuckles' axes are tilted. A calibration finds it,
-// because pads that touch tell it.
+// base and the axes of the thumb, how the knuckles' axes are tilted, and the pads. A calibration
+// finds it, because pads that touch tell it.
 
 #include <array>
 #include <cstddef>
@@ -40,11 +40,17 @@ enum class ShapeTerm : std::uint8_t {
   little_tilt,
   thumb_pronation_by_roll,      ///< how much more the thumb turns about itself for each radian of
   thumb_pronation_by_abduction, ///< roll, or of abduction
+  pad_depth,                    ///< how much deeper below the bone a digit's pad is, metres,
+  pad_behind,                   ///< and how much farther behind its end
 };
 
-inline constexpr std::size_t shape_terms = 28;
+inline constexpr std::size_t shape_terms = 30;
 /// Of the shapes that earlier programs wrote.
-inline constexpr std::size_t early_shape_terms = 26;
+inline constexpr std::size_t first_shape_terms = 26, second_shape_terms = 28;
+
+// Of an average hand. A pad is the middle of what touches another pad.
+inline constexpr double pad_depth_m = 0.006;
+inline constexpr double pad_behind_tip_m = 0.003;
 
 inline constexpr std::array<std::string_view, shape_terms> shape_term_names{
     "thumb_metacarpal",
@@ -75,15 +81,18 @@ inline constexpr std::array<std::string_view, shape_terms> shape_term_names{
     "little_tilt",
     "thumb_pronation_by_roll",
     "thumb_pronation_by_abduction",
+    "pad_depth",
+    "pad_behind",
 };
 
 constexpr std::string_view name_of(ShapeTerm term) noexcept {
   return shape_term_names[static_cast<std::size_t>(term)];
 }
 
-/// Returns the most that a term may be, either way: half as long again, 30 mm, 60 degrees. No hand
-/// differs that much.
+/// Returns the most that a term may be, either way: half as long again, 30 mm, 60 degrees, pads 5
+/// mm. No hand differs that much.
 constexpr double most_of(ShapeTerm term) noexcept {
+  if (term >= ShapeTerm::pad_depth) return 0.005;
   if (term <= ShapeTerm::little_distal) return 0.4;
   return term <= ShapeTerm::thumb_base_z ? 0.03 : 1.05;
 }
