@@ -250,7 +250,8 @@ Result<void> check(RunArguments& options) {
                               "as --refine 100000"};
   if (run.changes_topology && run.puppet)
     return Error{Errc::usage,
-                 "--topology: a puppet's model stays as it is; leave out this or --puppet"};
+                 "--topology: with a puppet, key O does it when it is wanted; leave out this or "
+                 "--puppet"};
   if (run.puppet && *hold == flow::Hold::hand)
     return Error{Errc::usage, "--hold hand: a puppet's own points move it; leave it out"};
   if (run.puppet && csrbf->keep_volume > 0.0 && run.puppet->distance != puppet::Distance::air &&

@@ -100,7 +100,6 @@ std::string complaint_about_parts(const flow::Command& command, const Timeline& 
   if (change == nullptr && edit == nullptr && join == nullptr &&
       !std::holds_alternative<flow::ChangeTopology>(command))
     return {};
-  if (timeline.rig) return "a puppet's model stays as it is";
   if (change != nullptr && change->source != flow::ModelSource::cut)
     return "is none that a timeline can have";
   if (change != nullptr && change->number >= timeline.wires.size())

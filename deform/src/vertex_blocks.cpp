@@ -79,9 +79,10 @@ std::vector<std::uint32_t> BlockLayout::places() const {
   return places;
 }
 
-BlockShape BlockLayout::pack() const {
+BlockShape BlockLayout::pack(const Points& places) const {
+  assert(places.cols() == original_.cols());
   return filled(order_, block_count(), [&](Eigen::Index vertex) -> Eigen::Vector3f {
-    const auto column = original_.col(vertex);
+    const auto column = places.col(vertex);
     return {packed(column[0], 0), packed(column[1], 1), packed(column[2], 2)};
   });
 }

@@ -35,7 +35,8 @@ WirePlace place_at(double z) {
 /// Both hands beside a ball, with index fingers that draw a wire through it along z.
 class Drawing {
 public:
-  Drawing() {
+  explicit Drawing(Mode mode = Mode::parts, const char* puppet = nullptr)
+      : test_(mode, {.rings_of_ball = 16, .puppet = puppet}) {
     for (const Side side : {Side::left, Side::right}) {
       Eigen::Isometry3d& wrist = test_.placement.T_stage_wrist[Placement::index_of(side)];
       wrist.translation().x() += side == Side::left ? -0.4 : 0.4;
@@ -83,6 +84,7 @@ public:
     }
     return ask(DrawWire{false});
   }
+  void bend(int left, int right) { bent_ = {left, right}; }
   void bend_other_than(Side side) {
     bent_[Placement::index_of(side)] = 0;
     bent_[1 - Placement::index_of(side)] = 60;
@@ -125,7 +127,7 @@ public:
   }
 
 private:
-  test::LoopUnderTest test_{Mode::parts, {.rings_of_ball = 16}};
+  test::LoopUnderTest test_;
   std::array<Eigen::Isometry3d, 2> wrists_;
   std::array<int, 2> bent_{};
   HostTime now_ = HostClock::now();
@@ -332,21 +334,39 @@ TEST_SUITE("wire") {
     CHECK(hands.go().parts.count == 2);
   }
 
-  TEST_CASE("a puppet's model is neither cut nor joined") {
-    test::LoopUnderTest test(Mode::type1, {.rings_of_ball = 16, .puppet = test::ball_puppet});
-    test.frame_after_tick(0);
-    auto finer = FinerModel::make(test.loop->newest_model(), {0, ModelSource::joined});
-    REQUIRE(finer);
-    REQUIRE(test.loop->hold_still());
-    test.frame_after_tick(1);
-    REQUIRE(test.loop->is_still());
-    const auto refused = test.loop->change_model(*finer);
-    REQUIRE_FALSE(refused);
-    CHECK(refused.error().message ==
-          "a puppet's model is neither cut nor joined (nendo cut and nendo join do so before), and "
-          "its parts stay");
-    CHECK(test.frame_after_tick(2).model == 0);
-    CHECK_FALSE(test.loop->is_still());
+  TEST_CASE("a puppet's model is cut as the puppet holds it, plays on, and rests as before") {
+    Drawing hands(Mode::type1, test::ball_puppet);
+    const deform::Points rest = hands.loop().newest_model().mesh.vertices;
+    hands.bend(40, 40);
+    hands.go(20);
+    hands.draw();
+    const deform::Points played = hands.test().vertices_of(hands.go(20));
+    REQUIRE((played - rest).cwiseAbs().maxCoeff() > 0.01);
+    REQUIRE(hands.change(cut));
+    const Frame& frame = hands.go(5);
+    const ModelVersion& version = hands.loop().newest_model();
+    REQUIRE(frame.model == version.number);
+    CHECK(deform::separate(version.mesh).size() == 2);
+    CHECK(deform::check_closed_manifold(version.mesh));
+    // Old vertices keep their rest, and are where the puppet had them.
+    CHECK(version.mesh.vertices.leftCols(rest.cols()) == rest);
+    const deform::Points now = hands.test().vertices_of(frame);
+    CHECK(now.leftCols(rest.cols()) == played);
+    // New ones rest among the old: as far from the shape as these.
+    const deform::Points ways = version.mesh.vertices - now;
+    CHECK(ways.cwiseAbs().maxCoeff() <= ways.leftCols(rest.cols()).cwiseAbs().maxCoeff() + 1e-3);
+    const auto again = made_again(version.before->mesh, *version.origin);
+    REQUIRE(again);
+    CHECK(again->vertices == version.mesh.vertices);
+    hands.go_back(Request::undo);
+    CHECK(hands.test().vertices_of(hands.go()) == played);
+    hands.go_back(Request::redo);
+    CHECK(hands.test().vertices_of(hands.go()) == now);
+
+    hands.bend(0, 60);
+    const deform::Points moved = hands.test().vertices_of(hands.go(30));
+    CHECK((moved - now).cwiseAbs().maxCoeff() > 0.01);
+    CHECK(moved.allFinite());
   }
 
   TEST_CASE("a knife leads from the index finger that points more on, and cuts what it sweeps") {

@@ -337,6 +337,27 @@ TEST_SUITE("take_reader") {
     CHECK(setup.hands.size() == 2);
   }
 
+  TEST_CASE("how a model was cut is read back, and whether it rests as before") {
+    for (const bool keeps_rest : {false, true}) {
+      auto source = test::setup_of(test::LoopUnderTest(Mode::type1));
+      flow::ModelOrigin origin;
+      origin.source = flow::ModelSource::cut;
+      origin.wire = {{{-1.0, 0.5, 0.25}, {1.0, 0.5, 0.25}}, {{-1.0, 0.5, 2.0}, {1.0, 0.5, 2.0}}};
+      origin.shape = deform::Points::Random(3, 40'000); // some chunks of them
+      origin.keeps_rest = keeps_rest;
+      source.loop->origins = {std::make_shared<const flow::ModelOrigin>(origin)};
+      std::uint32_t chunks = 0;
+      const Setup read = read_back(setup_bytes(source, chunks));
+      REQUIRE(read.loop->origins.size() == 1);
+      const flow::ModelOrigin& back = *read.loop->origins[0];
+      CHECK(back.source == origin.source);
+      CHECK(back.keeps_rest == keeps_rest);
+      CHECK(back.shape == origin.shape);
+      REQUIRE(back.wire.size() == 2);
+      CHECK(back.wire[1].to == origin.wire[1].to);
+    }
+  }
+
   TEST_CASE("a loop of format 1.4 undoes pulls by the rule of its time") {
     constexpr auto type = driver::chunk_type("LOOP");
     int loops = 0;

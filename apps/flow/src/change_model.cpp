@@ -30,13 +30,8 @@ Result<void>
 DeformLoop::change_model(FinerModel& finer,
                          const std::function<Result<void>(const ModelVersion&)>& accepts) {
   assert(is_still() && finer.is_of(*asked_model_));
-  // What a puppet does would be part of its rest.
-  if (finer.is_of_shape() && is_played(puppets_[asked_puppet_].get())) {
-    keep_model();
-    return Error{Errc::bad_input, "a puppet's model is neither cut nor joined (nendo cut and nendo "
-                                  "join do so before), and its parts stay"};
-  }
-  auto made = finer.finish(last_number_ + 1, undo_room());
+  const bool is_puppets = is_played(puppets_[asked_puppet_].get());
+  auto made = finer.finish(last_number_ + 1, undo_room(), is_puppets);
   SculptorOptions sculptor = asked_.options;
   const auto check = [&]() -> Result<void> {
     if (!made) return Error{made.error().code, "the model " + made.error().message};

@@ -1,5 +1,6 @@
 #include <nendo/flow/model_version.hpp>
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include <nendo/deform/edit_part.hpp>
 #include <nendo/deform/join.hpp>
 #include <nendo/deform/topology.hpp>
+#include <nendo/flow/kept_rest.hpp>
 
 namespace nendo::flow {
 namespace {
@@ -81,7 +83,9 @@ Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& o
       return Error{Errc::bad_input, "is another one than was changed"};
     deform::Mesh shaped = before;
     shaped.vertices = origin.shape;
-    return made_of_shape(shaped, origin);
+    auto made = made_of_shape(shaped, origin);
+    if (made && origin.keeps_rest) made->vertices = kept_rest(*made, origin.shape, before.vertices);
+    return made;
   }
   if (auto fine = check_subdividable(before); !fine) return fine.error();
   return deform::subdivide(before).mesh;
@@ -113,25 +117,32 @@ Result<FinerModel> FinerModel::make(const ModelVersion& from, const ChangeModel&
   return FinerModel(from);
 }
 
-/// With the shape of now as its rest.
 Result<std::unique_ptr<ModelVersion>> FinerModel::remade(Remaking& remaking, std::uint32_t number,
-                                                         const UndoRoom& undo) {
+                                                         const UndoRoom& undo, bool keeps_rest) {
   ModelOrigin& origin = remaking.origin;
   from_->layout().unpack(from_->shape.shape(), origin.shape);
-  auto mesh = made_again(from_->mesh, origin);
+  origin.keeps_rest = keeps_rest;
+  deform::Mesh shaped = from_->mesh;
+  shaped.vertices = origin.shape;
+  auto mesh = made_of_shape(shaped, origin);
   found_nothing_ = !mesh && origin.source == ModelSource::topology;
   if (!mesh) return mesh.error();
+  std::optional<deform::Points> shape;
+  if (keeps_rest)
+    shape = std::exchange(mesh->vertices, kept_rest(*mesh, origin.shape, from_->mesh.vertices));
   deform::BlockLayout layout(mesh->vertices);
-  auto made =
-      std::make_unique<ModelVersion>(number, *std::move(mesh), std::move(layout), undo, nullptr);
+  std::optional<deform::BlockShape> first;
+  if (shape) first = layout.pack(*shape);
+  auto made = std::make_unique<ModelVersion>(number, *std::move(mesh), std::move(layout), undo,
+                                             first ? &*first : nullptr);
   made->origin = std::make_shared<ModelOrigin>(std::move(origin));
   return made;
 }
 
-Result<std::unique_ptr<ModelVersion>> FinerModel::finish(std::uint32_t number,
-                                                         const UndoRoom& undo) {
+Result<std::unique_ptr<ModelVersion>> FinerModel::finish(std::uint32_t number, const UndoRoom& undo,
+                                                         bool keeps_rest) {
   if (auto* const remaking = std::get_if<Remaking>(&making_))
-    return remade(*remaking, number, undo);
+    return remade(*remaking, number, undo, keeps_rest);
   const deform::BlockShape& shape = from_->shape.shape();
   if (auto* const finer = std::get_if<Subdividing>(&making_)) {
     const deform::BlockShape first =

@@ -87,7 +87,7 @@ std::size_t origin_chunks(const ModelOrigin& origin) noexcept {
 
 void put_origin(ByteWriter& writer, const ModelOrigin& origin, std::size_t chunk) {
   writer.u8(static_cast<std::uint8_t>(origin.source));
-  writer.u8(static_cast<std::uint8_t>(chunk > 0));
+  writer.u8(chunk > 0 ? 1 : origin.keeps_rest ? 2 : 0);
   const std::size_t first = chunk * most_operations_of_chunk;
   const std::size_t end = first + most_operations_of_chunk;
   if (is_of_shape(origin.source)) {
@@ -109,12 +109,15 @@ bool read_origin(std::span<const std::byte> payload, std::optional<LoopSetup>& l
   ByteReader reader(payload);
   CheckedReader checked(reader);
   const auto source = checked.one_of(ModelSource::topology);
-  const bool goes_on = reader.u8() != 0;
+  const std::uint8_t kind = reader.u8();
+  const bool goes_on = kind == 1;
+  checked.require(kind < 2 || (kind == 2 && is_of_shape(source)));
   if (!loop || !checked.fine() || source == ModelSource::kept) return false;
   if (goes_on && (loop->origins.empty() || loop->origins.back()->source != source)) return false;
   ModelOrigin origin;
   if (goes_on) origin = *loop->origins.back();
   origin.source = source;
+  origin.keeps_rest = origin.keeps_rest || kind == 2;
   if (is_of_shape(source)) {
     if (!goes_on) read_change(reader, checked, origin);
     read_vertices(reader, checked, origin);

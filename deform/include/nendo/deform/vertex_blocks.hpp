@@ -91,7 +91,9 @@ public:
   std::vector<std::uint32_t> places() const;
 
   /// Returns the original in blocks. The rest of the last block repeats its last vertex. Allocates.
-  BlockShape pack() const;
+  BlockShape pack() const { return pack(original_); }
+  /// Returns other places of these vertices in blocks: what unpack() reads back, but for rounding.
+  BlockShape pack(const Points& places) const;
   /// Computes out = origin + unit * shape, 3 by #vertices; but a coordinate that nothing moved is
   /// the original's, bit for bit. So faces that do not meet in the blocks do not meet in `out`, but
   /// for what nothing moved. `out` is resized only if its size differs.

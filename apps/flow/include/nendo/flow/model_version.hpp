@@ -35,8 +35,9 @@ struct ModelOrigin {
   std::vector<deform::WirePlace> wire{}; ///< that cut it
   double seam_width = 0.0;               ///< of a joined one
   std::uint32_t part = 0;                ///< that was copied or removed
+  bool keeps_rest = false; ///< a puppet's, whose shape does not become the rest (kept_rest())
 };
-/// Makes that version of a mesh again. Error: bad_input, without the mesh's name.
+/// Makes that version of a mesh again, as it rests. Error: bad_input, without the mesh's name.
 Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& origin);
 
 /// A version does not move in memory. What is const may be read from any thread.
@@ -80,12 +81,14 @@ public:
 
   bool is_of(const ModelVersion& version) const noexcept { return &version == from_; }
   /// Makes the version, with the shape that `from` has now: the loop must hold still. May be called
-  /// once. Allocates. Errors, which go behind "the model": bad_input (nothing is left to refine, or
-  /// thin: found_nothing()), and those of deform::cut_model(), join(), copied_part(),
-  /// removed_part() and change_topology().
-  Result<std::unique_ptr<ModelVersion>> finish(std::uint32_t number, const UndoRoom& undo);
+  /// once. If it is_of_shape() and `keeps_rest`, a reset of the version goes back to the rest of
+  /// `from`, and otherwise to the shape of now. Allocates. Errors, which go behind "the model":
+  /// bad_input (nothing is left to refine, or thin: found_nothing()), and those of
+  /// deform::cut_model(), join(), copied_part(), removed_part() and change_topology().
+  Result<std::unique_ptr<ModelVersion>> finish(std::uint32_t number, const UndoRoom& undo,
+                                               bool keeps_rest = false);
   bool found_nothing() const noexcept { return found_nothing_; } ///< finish() did
-  /// Tells whether it is made of the shape, which becomes its rest.
+  /// Tells whether it is made of the shape.
   bool is_of_shape() const noexcept { return std::holds_alternative<Remaking>(making_); }
   /// Returns the change to that version.
   ChangeModel change_to(const ModelVersion& version) const noexcept;
@@ -112,7 +115,7 @@ private:
   using Making = std::variant<Subdividing, Refining, Remaking>;
   FinerModel(const ModelVersion& from, Making making) : from_(&from), making_(std::move(making)) {}
   Result<std::unique_ptr<ModelVersion>> remade(Remaking& remaking, std::uint32_t number,
-                                               const UndoRoom& undo);
+                                               const UndoRoom& undo, bool keeps_rest);
 
   const ModelVersion* from_;
   Making making_;
