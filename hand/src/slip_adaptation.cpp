@@ -10,9 +10,9 @@ namespace {
 // of the range, lest a tug at the glove pass for a slip; inwards so little that it takes some two
 // hundred full swings. Chosen with synthetic wearers, seeds 1 to 20: five times as fast inwards,
 // slips are followed less far; half as fast, wearers whose gloves do not slip are worse off.
-constexpr double out_share = 0.5;
-constexpr double in_share = 0.004;
-constexpr double most_step = 0.02;
+constexpr double slip_out_share = 0.5;
+constexpr double slip_in_share = 0.004;
+constexpr double slip_most_step = 0.02;
 
 // A sensor that moved less when the calibration was made is not one whose ends are known.
 constexpr double least_span = 0.1; ///< of the glove's counts
@@ -92,9 +92,10 @@ void SlipAdaptation::push(const GloveSample& sample) noexcept {
     if (const auto end = learner.swings.push(count, RangeAdaptation::least_swing * span)) {
       double& bound = end->is_top ? learner.high : learner.low;
       const double part = std::min(end->amplitude / span, 1.0);
-      const double off = end->counts - bound,
-                   share = (end->is_top == (off > 0.0)) ? out_share : in_share * part * part;
-      bound += std::clamp(share * off, -most_step * span, most_step * span);
+      const double off = end->counts - bound, share = (end->is_top == (off > 0.0))
+                                                          ? slip_out_share
+                                                          : slip_in_share * part * part;
+      bound += std::clamp(share * off, -slip_most_step * span, slip_most_step * span);
       ++(end->is_top ? learner.tops : learner.bottoms);
     }
     auto& [gain_rad, offset] = calibration_.sensors[slot];
