@@ -171,14 +171,16 @@ TEST_SUITE("deform_loop") {
   }
 
   TEST_CASE("the loop keeps its grid: every deadline is either a tick or counted as missed") {
-    // 100 kHz on a mesh of 320,000 vertices cannot be kept: ticks overrun, deadlines are skipped
-    // and not caught up.
-    LoopUnderTest test(Mode::type1, {.rings_of_ball = 400, .rate_hz = 100'000.0});
+    // 10 kHz on a mesh of 320,000 vertices cannot be kept while hands move far, in several links:
+    // ticks overrun, deadlines are skipped and not caught up.
+    LoopUnderTest test(
+        Mode::type1,
+        {.rings_of_ball = 400, .rate_hz = 10'000.0, .injective = deform::InjectiveOptions{}});
     std::atomic<bool> stop{false};
-    constexpr std::uint64_t deadlines = 20'000;
+    constexpr std::uint64_t deadlines = 2000;
     std::thread glove([&] {
       for (int n = 0; n < 20; ++n) {
-        test.bend(n, HostClock::now());
+        test.bend(n % 2 == 0 ? 80 : 0, HostClock::now());
         std::this_thread::sleep_for(5ms);
       }
     });
