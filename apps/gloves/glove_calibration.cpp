@@ -85,15 +85,25 @@ std::optional<hand::Wearer> recorded_wearer(const driver::GloveInfo& glove, Side
   return std::nullopt;
 }
 
+/// Gives the wearer the best calibration that is stored for a glove of the other hand, which may be
+/// plugged in later, so that its serial number is not known. Returns it, if there is one.
+std::optional<hand::CalibrationChoice> set_other(const driver::GloveInfo& glove, Side side,
+                                                 const std::string& user,
+                                                 const hand::CalibrationList& stored,
+                                                 hand::Wearer& wearer) {
+  const Side other = opposite(side);
+  const auto choice =
+      hand::choose_calibration(stored.files, {user, glove.model, "", other, glove.counts});
+  if (choice) wearer.of(other) = hand_of(choice->file->wearer, glove.counts);
+  return choice;
+}
+
 /// Returns `wearer` with the best calibration that is stored for either side.
 Result<hand::Wearer> stored_wearer(const driver::GloveInfo& glove, Side side, hand::Wearer wearer,
                                    const std::string& user) {
   const auto stored = stored_calibrations();
-  const auto choose = [&](Side wanted, const std::string& serial) {
-    return hand::choose_calibration(stored.files,
-                                    {user, glove.model, serial, wanted, glove.counts});
-  };
-  const auto own = choose(side, serial_of(glove));
+  const auto own = hand::choose_calibration(
+      stored.files, {user, glove.model, serial_of(glove), side, glove.counts});
   if (own) {
     report_choice(glove, *own->file, doubt_about(*own));
     wearer.of(side) = hand_of(own->file->wearer, glove.counts);
@@ -106,11 +116,8 @@ Result<hand::Wearer> stored_wearer(const driver::GloveInfo& glove, Side side, ha
     report_none(glove, side);
   }
   if (glove.kind == driver::GloveKind::simulated) return wearer; // its hand does not change
-  // The serial number of a glove that may be plugged in later is not known.
-  if (const auto other = choose(opposite(side), "")) {
-    if (own) report_other(glove, *own->file, *other->file);
-    wearer.of(opposite(side)) = hand_of(other->file->wearer, glove.counts);
-  }
+  const auto other = set_other(glove, side, user, stored, wearer);
+  if (own && other) report_other(glove, *own->file, *other->file);
   return wearer;
 }
 
@@ -130,6 +137,7 @@ Result<hand::Wearer> adapting_wearer(const driver::GloveInfo& glove, Side side, 
     if (choice && !is_kept_ranges(choice->file->wearer)) {
       made = *choice->file;
       report_choice(glove, *made, doubt_about(*choice));
+      set_other(glove, side, options.user, stored, wearer);
     }
   }
   if (made) {

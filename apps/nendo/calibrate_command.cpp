@@ -169,6 +169,26 @@ fs::path unfinished_path(const Wearer& wearer) {
   return wearer.path.string() + (wearer.known ? ".touch-up.unfinished" : ".unfinished");
 }
 
+/// How well a sensor's line is known, and how far the wearer went, in poses or in free motion. A
+/// touch-up changes only where that lies.
+void note_quality(Wearer& wearer, const hand::CalibrationFit& fit,
+                  const hand::CountRanges& free_motion, std::size_t slot) {
+  auto& quality = wearer.about.quality[slot];
+  const hand::SensorFit& sensor = fit.sensors[slot];
+  if (wearer.known) {
+    const double slipped = fit.calibration.sensors[slot].offset_counts -
+                           wearer.known->calibration.sensors[slot].offset_counts;
+    if (quality) hand::move_ends(*quality, slipped, wearer.about.counts);
+    return;
+  }
+  const bool known = sensor.gain_determined && sensor.offset_determined;
+  quality = hand::SensorQuality{sensor.residual_rad, sensor.low_counts, sensor.high_counts,
+                                known ? 1.0 : 0.0};
+  if (!free_motion.present.has(static_cast<Sensor>(slot))) return;
+  quality->least_counts = std::min(quality->least_counts, free_motion.low_counts[slot]);
+  quality->most_counts = std::max(quality->most_counts, free_motion.high_counts[slot]);
+}
+
 int fit_and_write(const Options& options, Wearer& wearer,
                   const calibrate::CalibrationGuide& guide) {
   const auto readings = guide.readings();
@@ -180,26 +200,10 @@ int fit_and_write(const Options& options, Wearer& wearer,
   wearer.about.calibration = fit->calibration;
   wearer.about.size = fit->size;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const hand::SensorFit& sensor = fit->sensors[slot];
-    if (!wearer.sensors.has(static_cast<Sensor>(slot))) {
+    if (wearer.sensors.has(static_cast<Sensor>(slot)))
+      note_quality(wearer, *fit, fitting.free_motion, slot);
+    else
       wearer.about.calibration.sensors[slot] = {};
-      continue;
-    }
-    auto& quality = wearer.about.quality[slot];
-    if (wearer.known) { // how well its line is known has not changed
-      if (quality)
-        hand::move_ends(*quality,
-                        fit->calibration.sensors[slot].offset_counts -
-                            wearer.known->calibration.sensors[slot].offset_counts,
-                        wearer.about.counts);
-      continue;
-    }
-    const bool known = sensor.gain_determined && sensor.offset_determined;
-    quality = hand::SensorQuality{sensor.residual_rad, sensor.low_counts, sensor.high_counts,
-                                  known ? 1.0 : 0.0};
-    if (!fitting.free_motion.present.has(static_cast<Sensor>(slot))) continue;
-    quality->least_counts = std::min(quality->least_counts, fitting.free_motion.low_counts[slot]);
-    quality->most_counts = std::max(quality->most_counts, fitting.free_motion.high_counts[slot]);
   }
   const auto earlier = hand::write_calibration(wearer.path, wearer.about);
   if (!earlier) return cli::report(earlier.error());

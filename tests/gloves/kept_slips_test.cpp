@@ -66,6 +66,14 @@ TEST_SUITE("kept_slips") {
       CHECK(wearer->ends->counts.low_counts[pip] == 60.0);
       CHECK(wearer->ends->counts.high_counts[mcp] == 160.0);
     }
+    hand::WearerCalibration left = home.made;
+    left.side = Side::left;
+    left.calibration.sensors[pip].offset_counts = 77.0;
+    REQUIRE(hand::write_calibration(*hand::own_calibration_path("vera", "", Side::left), left));
+    const auto both = home.wearer({"vera", "", true}); // a left glove may take its place
+    REQUIRE(both);
+    CHECK(both->left.calibration == left.calibration);
+    CHECK(both->ends->side == Side::right);
     const auto visitor = home.wearer({"", "", true});
     REQUIRE(visitor);
     CHECK_FALSE(visitor->ends);
