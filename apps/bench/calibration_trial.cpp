@@ -66,7 +66,8 @@ Watched watch(reference::Wearer& wearer, std::uint64_t seed) {
   const reference::FreeMotion motion(seed, wearer.ranges());
   hand::RangeCapture capture;
   hand::RangeAdaptation adaptation;
-  for (double time_s = 0.0; time_s < 30.0; time_s += 1.0 / rate_hz) {
+  for (int n = 0; n < 30 * rate_hz; ++n) {
+    const double time_s = n / rate_hz;
     GloveSample sample = wearer.read(motion.angles_rad(time_s));
     sample.arrival = sample.measured = at_time(time_s);
     capture.push(sample);
@@ -109,7 +110,8 @@ Worn wear(reference::Wearer& wearer, const Calibration& calibration,
       high_rad -= unused(random) * span_rad;
     }
     const reference::FreeMotion motion(random(), used);
-    for (double time_s = 0.0; time_s < 60.0; time_s += 1.0 / rate_hz) {
+    for (int n = 0; n < 60 * rate_hz; ++n) {
+      const double time_s = n / rate_hz;
       const double part = (minute + time_s / 60.0) / minutes;
       GloveSample sample = slipped(wearer.read(motion.angles_rad(time_s)), worn.slips_counts, part);
       sample.arrival = sample.measured = at_time(60.0 * minute + time_s);
@@ -186,7 +188,8 @@ Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors) {
       watched.adaptive,  wearer.truth(),        full->calibration,
       worn.followed};
   const reference::FreeMotion motion(random(), wearer.ranges());
-  for (double time_s = 0.0; time_s < 60.0; time_s += 0.2) {
+  for (int n = 0; n < 300; ++n) {
+    const double time_s = 0.2 * n;
     const hand::SensorAngles angles = motion.angles_rad(time_s);
     const GloveSample sample = wearer.read(angles);
     const GloveSample later = slipped(sample, worn.slips_counts, 1.0);

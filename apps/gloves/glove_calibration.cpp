@@ -58,7 +58,7 @@ hand::WearerHand average_hand(CountScale counts) {
 
 Result<hand::StoredCalibration> asked_for(const driver::GloveInfo& glove, Side side,
                                           const std::string& name) {
-  const auto file = named_calibration(name);
+  auto file = named_calibration(name);
   if (!file) return file.error();
   const auto refused = [&](const std::string& why) {
     return Error{Errc::bad_input, printable(file->path.string()) + ": " + why +
@@ -201,7 +201,7 @@ void add_hand_length(cli::Command& command, HandLength& length) {
 Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
                                  const CalibrationOptions& options) {
   hand::Wearer wearer{average_hand(glove.counts), average_hand(glove.counts)};
-  if (options.adapt) return adapting_wearer(glove, side, std::move(wearer), options);
+  if (options.adapt) return adapting_wearer(glove, side, wearer, options);
   if (options.calibration == "none") return wearer;
   if (!options.calibration.empty()) {
     const auto own = asked_for(glove, side, options.calibration);

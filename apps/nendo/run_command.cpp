@@ -12,6 +12,7 @@
 #include <nendo/deform/supports.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/output_place.hpp"
 #include "gloves/kept_ranges.hpp"
 #include "gloves/kept_slips.hpp"
 #include "nendo/commands.hpp"

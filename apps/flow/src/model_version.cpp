@@ -46,6 +46,7 @@ Result<deform::Mesh> joined(const deform::Mesh& shaped, const ModelOrigin& origi
   const std::vector<deform::Mesh> meshes = deform::separate(shaped);
   if (meshes.size() < 2) return Error{Errc::bad_input, "is one part, which is whole"};
   std::vector<deform::JoinPart> parts;
+  parts.reserve(meshes.size());
   for (const deform::Mesh& mesh : meshes)
     parts.push_back({&mesh, "part " + std::to_string(parts.size() + 1)});
   auto made = deform::join(parts, {.seam_width = origin.seam_width});

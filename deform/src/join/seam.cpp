@@ -194,7 +194,7 @@ Seam smear_seam(TriangleSurface surface, std::span<const SeamEdge> seam_edges, d
   for (std::size_t point = 0; point < numbers.size(); ++point)
     if (numbers[point] != no_entry)
       is_changed[numbers[point]] =
-          point >= old_points || moves[point] || zone.coarseness[point] > 0.0f;
+          point >= old_points || moves[point] || zone.coarseness[point] > 0.0f ? 1 : 0;
   for (std::uint32_t face = 0; face < seam.surface.faces.size(); ++face) {
     const Corners& corner = seam.surface.faces[face];
     if (is_changed[corner[0]] || is_changed[corner[1]] || is_changed[corner[2]])
