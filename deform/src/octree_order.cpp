@@ -1,9 +1,10 @@
 #include "octree_order.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <numeric>
 
 namespace nendo::deform {
 
@@ -43,15 +44,38 @@ std::uint64_t morton_code(const Eigen::Vector3d& point, const Cube& cube) noexce
   return code;
 }
 
+struct CodedPoint {
+  std::uint64_t code;
+  std::uint32_t index;
+};
+
+/// Digit by digit, the last one first, so that points of one code keep their order. A model has so
+/// many triangles that comparing them takes twice as long.
+void sort_by_code(std::vector<CodedPoint>& points) {
+  constexpr unsigned digit_bits = 11;
+  constexpr std::size_t digits = std::size_t{1} << digit_bits;
+  std::vector<CodedPoint> sorted(points.size());
+  for (unsigned shift = 0; shift < 64; shift += digit_bits) {
+    const auto digit = [&](const CodedPoint& point) { return point.code >> shift & (digits - 1); };
+    std::array<std::uint32_t, digits + 1> begins{};
+    for (const CodedPoint& point : points)
+      ++begins[digit(point) + 1];
+    std::partial_sum(begins.begin(), begins.end(), begins.begin());
+    for (const CodedPoint& point : points)
+      sorted[begins[digit(point)]++] = point;
+    points.swap(sorted);
+  }
+}
+
 } // namespace
 
 std::vector<std::uint32_t> octree_order(const Points& points) {
   const Cube cube = bounding_cube(points);
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> codes;
+  std::vector<CodedPoint> codes;
   codes.reserve(static_cast<std::size_t>(points.cols()));
   for (Eigen::Index i = 0; i < points.cols(); ++i)
-    codes.emplace_back(morton_code(points.col(i), cube), static_cast<std::uint32_t>(i));
-  std::sort(codes.begin(), codes.end());
+    codes.push_back({morton_code(points.col(i), cube), static_cast<std::uint32_t>(i)});
+  sort_by_code(codes);
   std::vector<std::uint32_t> order;
   order.reserve(codes.size());
   for (const auto& [code, index] : codes)

@@ -43,22 +43,11 @@ public:
   /// those around it, until visit returns true. Returns whether it did.
   template <class Enters, class Visit>
   bool any(const Enters& enters, const Visit& visit) const {
-    if (empty()) return false;
-    std::uint32_t stack[64];
-    std::size_t depth = 0;
-    stack[depth++] = 0;
-    while (depth > 0) {
-      const Node& node = nodes_[stack[--depth]];
-      if (!enters(node.box)) continue;
-      if (node.count == 0) {
-        stack[depth++] = node.first;
-        stack[depth++] = node.first + 1;
-        continue;
-      }
-      for (std::uint32_t at = node.first; at < node.first + node.count; ++at)
+    return any_leaf(enters, [&](const Node& leaf) {
+      for (std::uint32_t at = leaf.first; at < leaf.first + leaf.count; ++at)
         if (enters(boxes_[at]) && visit(order_[at])) return true;
-    }
-    return false;
+      return false;
+    });
   }
 
   /// Calls visit(triangle) for all of them.
@@ -73,14 +62,15 @@ public:
   /// Calls visit(own triangle, other's triangle) for each two whose boxes meet.
   template <class Visit>
   void visit_pairs(const BoxTree& other, const Visit& visit) const {
-    if (empty() || other.empty()) return;
-    for (const Node& node : nodes_) {
-      if (node.count == 0) continue;
-      other.visit_leaves(node.box, [&](const Node& leaf) {
-        for (std::uint32_t at = node.first; at < node.first + node.count; ++at)
-          for (std::uint32_t theirs = leaf.first; theirs < leaf.first + leaf.count; ++theirs)
-            if (meet(boxes_[at], other.boxes_[theirs])) visit(order_[at], other.order_[theirs]);
-      });
+    for (const Node& own : nodes_) {
+      if (own.count == 0) continue;
+      other.any_leaf([&](const SpaceBox& box) { return meet(box, own.box); },
+                     [&](const Node& leaf) {
+                       for (std::uint32_t at = own.first; at < own.first + own.count; ++at)
+                         other.visit_met(leaf, boxes_[at],
+                                         [&](std::uint32_t theirs) { visit(order_[at], theirs); });
+                       return false;
+                     });
     }
   }
 
@@ -90,22 +80,31 @@ private:
     std::uint32_t first; ///< a leaf's first triangle in order_, or the first of two children
     std::uint32_t count; ///< 0: no leaf
   };
-  /// Calls visit(leaf) for each leaf whose box meets this one.
-  template <class Visit>
-  void visit_leaves(const SpaceBox& box, const Visit& visit) const {
+  /// Calls visit(leaf) for each leaf of which enters(box) is true, for its box and for those around
+  /// it, until visit returns true. Returns whether it did.
+  template <class Enters, class Visit>
+  bool any_leaf(const Enters& enters, const Visit& visit) const {
+    if (empty()) return false;
     std::uint32_t stack[64];
     std::size_t depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
       const Node& node = nodes_[stack[--depth]];
-      if (!meet(node.box, box)) continue;
-      if (node.count > 0) {
-        visit(node);
-        continue;
+      if (!enters(node.box)) continue;
+      if (node.count == 0) {
+        stack[depth++] = node.first;
+        stack[depth++] = node.first + 1;
+      } else if (visit(node)) {
+        return true;
       }
-      stack[depth++] = node.first;
-      stack[depth++] = node.first + 1;
     }
+    return false;
+  }
+  /// Calls visit(triangle) for each triangle of the leaf whose box meets that one.
+  template <class Visit>
+  void visit_met(const Node& leaf, const SpaceBox& box, const Visit& visit) const {
+    for (std::uint32_t at = leaf.first; at < leaf.first + leaf.count; ++at)
+      if (meet(boxes_[at], box)) visit(order_[at]);
   }
   void build(std::span<const SpacePoint> places, std::span<const Corners> triangles);
   void split(std::uint32_t node, std::uint32_t begin, std::uint32_t count);
