@@ -102,8 +102,7 @@ std::optional<hand::CalibrationChoice> set_other(const driver::GloveInfo& glove,
 Result<hand::Wearer> stored_wearer(const driver::GloveInfo& glove, Side side, hand::Wearer wearer,
                                    const std::string& user) {
   const auto stored = stored_calibrations();
-  const auto own = hand::choose_calibration(
-      stored.files, {user, glove.model, serial_of(glove), side, glove.counts});
+  const auto own = best_calibration(stored, glove, side, user);
   if (own) {
     report_choice(glove, *own->file, doubt_about(*own));
     wearer.of(side) = hand_of(own->file->wearer, glove.counts);
@@ -132,8 +131,7 @@ Result<hand::Wearer> adapting_wearer(const driver::GloveInfo& glove, Side side, 
     made = *file;
   } else if (!options.user.empty()) {
     const auto stored = stored_calibrations();
-    const auto choice = hand::choose_calibration(
-        stored.files, {options.user, glove.model, serial_of(glove), side, glove.counts});
+    const auto choice = best_calibration(stored, glove, side, options.user);
     if (choice && !is_kept_ranges(choice->file->wearer)) {
       made = *choice->file;
       report_choice(glove, *made, doubt_about(*choice));
@@ -159,6 +157,13 @@ std::string serial_of(const driver::GloveInfo& glove) {
   const auto fact = std::find_if(glove.facts.begin(), glove.facts.end(),
                                  [](const auto& known) { return known.name == "serial"; });
   return fact == glove.facts.end() ? "" : fact->value;
+}
+
+std::optional<hand::CalibrationChoice> best_calibration(const hand::CalibrationList& stored,
+                                                        const driver::GloveInfo& glove, Side side,
+                                                        const std::string& user) {
+  return hand::choose_calibration(stored.files,
+                                  {user, glove.model, serial_of(glove), side, glove.counts});
 }
 
 void add_calibration_options(cli::Command& command, CalibrationOptions& options) {

@@ -7,6 +7,7 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/driver/glove.hpp>
+#include <nendo/hand/calibration_store.hpp>
 #include <nendo/hand/wearer.hpp>
 
 #include "cli/command.hpp"
@@ -21,6 +22,12 @@ struct CalibrationOptions {
 
 /// Returns the serial number that the glove reports, or an empty text.
 std::string serial_of(const driver::GloveInfo& glove);
+
+/// Returns the best of the stored calibrations for this user (empty: any), glove and hand. It
+/// points into `stored`.
+std::optional<hand::CalibrationChoice> best_calibration(const hand::CalibrationList& stored,
+                                                        const driver::GloveInfo& glove, Side side,
+                                                        const std::string& user);
 
 /// Adds the options --user, --calibration and --adapt.
 void add_calibration_options(cli::Command& command, CalibrationOptions& options);

@@ -33,19 +33,16 @@ Result<hand::WornEnds> ends_of(const hand::StoredCalibration& file,
 Result<KeptSlips> keep_slips(const driver::GloveInfo& glove, Side side, const std::string& user,
                              const hand::SensorAngles& slips_counts) {
   const auto stored = hand::list_calibrations(hand::calibration_folders());
-  const auto choice = hand::choose_calibration(
-      stored.files, {user, glove.model, serial_of(glove), side, glove.counts});
+  const auto choice = best_calibration(stored, glove, side, user);
   if (!choice)
     return Error{Errc::bad_input, "--user " + printable(user) +
-                                      ": the calibration is gone, so "
-                                      "that its slips are not kept"};
+                                      ": the calibration is gone, so that its slips are not kept"};
   hand::WearerCalibration wearer = choice->file->wearer;
   const auto own = hand::own_calibration_path(user, wearer.glove_serial, side);
   if (!own) return own.error();
-  const double least = 0.5 * glove.counts.most / 255.0;
   KeptSlips kept{choice->file->path, false};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    if (!(std::abs(slips_counts[slot]) >= least)) continue;
+    if (!(std::abs(slips_counts[slot]) >= hand::least_slip_counts(glove.counts))) continue;
     kept.is_changed = true;
     wearer.calibration.sensors[slot].offset_counts += slips_counts[slot];
     if (auto& quality = wearer.quality[slot])

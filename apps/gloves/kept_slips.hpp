@@ -19,7 +19,7 @@ Result<hand::WornEnds> ends_of(const hand::StoredCalibration& file, const driver
 /// What became of slips.
 struct KeptSlips {
   std::filesystem::path path; ///< of the calibration
-  bool is_changed = false;    ///< false: none of the sensors has slipped by half a count or more
+  bool is_changed = false;    ///< false: no sensor has slipped by hand::least_slip_counts()
 };
 
 /// Writes the user's calibration, from which slips were learned, with the sensors' offsets and ends

@@ -113,11 +113,11 @@ void print_ranges(const hand::SensorRanges& ranges, SensorMask sensors) {
   }
 }
 
-void print_slips(const hand::SensorAngles& slips_counts, const hand::SensorRanges& ranges) {
-  constexpr double least_shown = 0.5;
+void print_slips(const hand::SensorAngles& slips_counts, const hand::SensorRanges& ranges,
+                 CountScale counts) {
   bool any = false;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    if (!(std::abs(slips_counts[slot]) >= least_shown)) continue;
+    if (!(std::abs(slips_counts[slot]) >= hand::least_slip_counts(counts))) continue;
     if (!std::exchange(any, true))
       print_row("", "slips learned, in counts, from so many turns of the joint:");
     print_row("", fmt::format("{:22} {:+5.1f}  {}", sensor_names[slot], slips_counts[slot],
@@ -138,7 +138,7 @@ void print_hand(const gloves::OpenHand& hand, const RunOutcome& outcome) {
   if (hand.uncalibrated)
     print_row("", "uncalibrated: its angles are an average hand's; see `nendo calibrate`");
   if (hand.wearer.ends) {
-    print_slips(stats.slips_counts[slot], stats.ranges[slot]);
+    print_slips(stats.slips_counts[slot], stats.ranges[slot], info.counts);
   } else if (hand.wearer.adapt) {
     print_ranges(stats.ranges[slot], info.sensors);
   }

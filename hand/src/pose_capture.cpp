@@ -136,7 +136,7 @@ CaptureState PoseCapture::state_at_rest(double still_s) noexcept {
 
 CaptureState PoseCapture::push(const GloveSample& sample) noexcept {
   if (state_ == CaptureState::held) return state_;
-  const HostTime now = sample.has_device_time ? sample.measured : sample.arrival;
+  const HostTime now = sample.time();
   const double elapsed_s = to_seconds(now - last_time_);
   last_time_ = now;
   last_troubled_ = troubled_;

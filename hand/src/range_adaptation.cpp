@@ -16,9 +16,6 @@ constexpr double last_in_share = 0.005;
 /// After so many ends of swings the first share, and the first step, have come down by a half.
 constexpr double half_after = 4.0;
 
-// A pause is no time for the lines to move: they would jump.
-constexpr double longest_interval_s = 0.1;
-
 double decline(std::uint32_t ends, double first, double last) noexcept {
   return last + (first - last) / (1.0 + ends / half_after);
 }
@@ -145,12 +142,8 @@ void RangeAdaptation::drift(std::size_t slot, double interval_s) noexcept {
 
 void RangeAdaptation::push(const GloveSample& sample) noexcept {
   if (side_ && sample.side != *side_) *this = RangeAdaptation(counts_);
-  const HostTime time = sample.has_device_time ? sample.measured : sample.arrival;
-  const double interval_s =
-      begun_ ? std::clamp(seconds_between(last_time_, time), 0.0, longest_interval_s) : 0.0;
-  begun_ = true;
+  const double interval_s = interval_.push(sample);
   side_ = sample.side;
-  last_time_ = time;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     Learner& learner = learners_[slot];
     if (learner.usual_span == 0.0) continue;

@@ -21,7 +21,7 @@ bool is_movement(double jump_rad, double elapsed_s) noexcept {
 GloveSample SensorGate::pass(const GloveSample& sample, const Calibration& calibration) noexcept {
   const bool same_hand = sample.side == side_;
   side_ = sample.side;
-  const HostTime time = sample.has_device_time ? sample.measured : sample.arrival;
+  const HostTime time = sample.time();
   const double least_s = sample.has_device_time ? 0.0 : least_arrival_interval_s;
   GloveSample passed = sample;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {

@@ -23,9 +23,6 @@ bool is_gap(Sensor sensor) noexcept {
          sensor == Sensor::ring_pinky_abduction;
 }
 
-// A pause is no time for the lines to move: they would jump.
-constexpr double longest_pause_s = 0.1;
-
 } // namespace
 
 SlipAdaptation::SlipAdaptation(const Calibration& made, const WornEnds& ends,
@@ -38,8 +35,8 @@ SlipAdaptation::SlipAdaptation(const Calibration& made, const WornEnds& ends,
     if (ends.counts.present.has(sensor) && !is_gap(sensor) && low >= 0.0 && high <= counts.most &&
         high - low >= least_span * counts.most && made.sensors[slot].gain_rad_per_count != 0.0)
       followed_.add(sensor);
-    learners_[slot].low = ends.counts.low_counts[slot];
-    learners_[slot].high = ends.counts.high_counts[slot];
+    learners_[slot].low = low;
+    learners_[slot].high = high;
   }
 }
 
@@ -75,11 +72,7 @@ double SlipAdaptation::slip_counts(std::size_t slot) const noexcept {
 
 void SlipAdaptation::push(const GloveSample& sample) noexcept {
   const bool own = sample.side == ends_.side;
-  const HostTime time = sample.has_device_time ? sample.measured : sample.arrival;
-  const double interval_s =
-      begun_ ? std::clamp(seconds_between(last_time_, time), 0.0, longest_pause_s) : 0.0;
-  begun_ = true;
-  last_time_ = time;
+  const double interval_s = interval_.push(sample);
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     if (!followed_.has(static_cast<Sensor>(slot))) continue;
     Learner& learner = learners_[slot];

@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "support/restraint.hpp"
+#include "support/swinging_glove.hpp"
 
 namespace range_adaptation_test {
 
@@ -30,24 +31,16 @@ struct Visitor {
   CountScale counts{};
   RangeAdaptation adaptation{counts};
   HostTime now{1h};
-  HostClock::duration period = std::chrono::nanoseconds(11'111'111);
+  HostClock::duration period = test::swinging_period;
 
-  GloveSample sample(double count) const {
-    GloveSample sample;
-    sample.present = sensors_22;
-    sample.has_device_time = true;
-    sample.measured = sample.arrival = now;
-    sample.raw.fill(RawCount{static_cast<std::uint16_t>(std::lround(count))});
-    return sample;
-  }
+  GloveSample sample(double count) const { return test::swinging_sample(now, count); }
   void push(double count) {
     now += period;
     adaptation.push(sample(count));
   }
   /// To and fro between two counts, a swing a second.
   void swing(double low, double high, int times) {
-    for (int n = 0; n < 90 * times; ++n)
-      push(low + (high - low) * (0.5 - 0.5 * std::cos(tau * n / 90.0)));
+    test::swing_between(low, high, times, [this](double count) { push(count); });
   }
   void hold(double count, double seconds) {
     for (int n = 0; n < 90.0 * seconds; ++n)

@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "support/restraint.hpp"
+#include "support/swinging_glove.hpp"
 
 namespace slip_adaptation_test {
 
@@ -20,7 +21,6 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr double tau = 6.283185307179586;
 constexpr auto pip = static_cast<std::size_t>(Sensor::index_pip);
 constexpr auto gap = static_cast<std::size_t>(Sensor::middle_ring_abduction);
 constexpr double low = 60.0, high = 200.0;
@@ -40,22 +40,14 @@ struct Wearer {
   SlipAdaptation adaptation{made, ends, CountScale{}};
   HostTime now{1h};
 
-  GloveSample sample(double count) const {
-    GloveSample sample;
-    sample.present = sensors_22;
-    sample.has_device_time = true;
-    sample.measured = sample.arrival = now;
-    sample.raw.fill(RawCount{static_cast<std::uint16_t>(std::lround(count))});
-    return sample;
-  }
+  GloveSample sample(double count) const { return test::swinging_sample(now, count); }
   void push(double count) {
-    now += std::chrono::nanoseconds(11'111'111);
+    now += test::swinging_period;
     adaptation.push(sample(count));
   }
   /// To and fro between two counts, a swing a second.
   void swing(double from, double to, int times) {
-    for (int n = 0; n < 90 * times; ++n)
-      push(from + (to - from) * (0.5 - 0.5 * std::cos(tau * n / 90.0)));
+    test::swing_between(from, to, times, [this](double count) { push(count); });
   }
   double slip(std::size_t slot = pip) const { return adaptation.slips_counts()[slot]; }
   double moved(std::size_t slot = pip) const {
@@ -105,11 +97,11 @@ TEST_SUITE("slip_adaptation") {
     Wearer wearer;
     wearer.swing(low + 20.0, high + 20.0, 500);
     double before = wearer.moved(), fastest = 0.0;
-    for (int n = 0; n < 90 * 300; ++n) {
-      wearer.push(low - 25.0 + (high - low) * (0.5 - 0.5 * std::cos(tau * n / 90.0)));
+    test::swing_between(low - 25.0, high - 25.0, 300, [&](double count) {
+      wearer.push(count);
       fastest = std::max(fastest, std::abs(wearer.moved() - before));
       before = wearer.moved();
-    }
+    });
     const double most = SlipAdaptation::most_drift_rad_s / 90.0;
     CHECK(fastest * wearer.made.sensors[pip].gain_rad_per_count <= most * 1.001);
     CHECK(fastest > 0.0);

@@ -122,6 +122,8 @@ struct GloveSample {
   HostTime recorded_arrival{};
   HostTime recorded_measured{};
 
+  /// Returns when it was measured, as exactly as it is known.
+  constexpr HostTime time() const noexcept { return has_device_time ? measured : arrival; }
   constexpr RawCount operator[](Sensor sensor) const noexcept {
     return raw[static_cast<std::size_t>(sensor)];
   }

@@ -16,8 +16,8 @@ public:
     if (!wearer.adapt) return;
     if (wearer.ends) {
       const Calibration& made = wearer.of(wearer.ends->side).calibration;
-      slips_.emplace(made, *wearer.ends, *wearer.adapt);
-      if (wearer.learned) slips_.emplace(made, *wearer.ends, *wearer.adapt, *wearer.learned);
+      slips_ = wearer.learned ? SlipAdaptation(made, *wearer.ends, *wearer.adapt, *wearer.learned)
+                              : SlipAdaptation(made, *wearer.ends, *wearer.adapt);
     } else if (wearer.learned) {
       ranges_.emplace(*wearer.adapt, *wearer.learned);
     } else {

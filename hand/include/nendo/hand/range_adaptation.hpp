@@ -17,6 +17,7 @@
 
 #include <nendo/driver/sample.hpp>
 #include <nendo/hand/calibration.hpp>
+#include <nendo/hand/sample_interval.hpp>
 #include <nendo/hand/swing_finder.hpp>
 
 namespace nendo::hand {
@@ -100,9 +101,8 @@ private:
   CountScale counts_;
   Calibration calibration_;
   std::array<Learner, sensor_slots> learners_{};
-  HostTime last_time_{};
+  SampleInterval interval_;
   std::optional<Side> side_; ///< of the samples so far
-  bool begun_ = false;       ///< last_time_ is one
 };
 
 } // namespace nendo::hand

@@ -11,6 +11,7 @@
 #include <nendo/hand/calibration.hpp>
 #include <nendo/hand/range_adaptation.hpp>
 #include <nendo/hand/range_capture.hpp>
+#include <nendo/hand/sample_interval.hpp>
 #include <nendo/hand/swing_finder.hpp>
 
 namespace nendo::hand {
@@ -20,6 +21,11 @@ struct WornEnds {
   Side side = Side::right;
   CountRanges counts; ///< only the sensors in `present` are followed, and none of gaps
 };
+
+/// Returns the least slip that is worth telling: half a count of a glove that counts to 255.
+constexpr double least_slip_counts(CountScale counts) noexcept {
+  return 0.5 * counts.most / 255.0;
+}
 
 class SlipAdaptation {
 public:
@@ -62,8 +68,7 @@ private:
   CountScale counts_;
   SensorMask followed_;
   std::array<Learner, sensor_slots> learners_{};
-  HostTime last_time_{};
-  bool begun_ = false; ///< last_time_ is one
+  SampleInterval interval_;
 };
 
 } // namespace nendo::hand
