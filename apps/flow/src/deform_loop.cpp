@@ -167,7 +167,7 @@ void DeformLoop::Hand::follow(const GloveSample& sample) noexcept {
 }
 
 void DeformLoop::Hand::pose_by(const hand::Calibration& active) noexcept {
-  angles = filter.pass(hand::joint_angles(latest, active), time());
+  angles = filter.pass(hand::joint_angles(latest, active), latest.time());
   if (closes_pinches) angles = hand::close_pinches(angles, skeleton(), latest.present);
 }
 
@@ -223,31 +223,6 @@ void DeformLoop::take_samples(TickRecord& record) noexcept {
   }
   if (options_.policy == OverrunPolicy::sample && record.samples > 0) record.scheduled = newest;
   follow_switches();
-}
-
-void DeformLoop::count(Hand& hand, std::size_t samples, HostTime now) noexcept {
-  const bool silent = now - hand.latest.arrival > options_.silent_after;
-  const bool fell_silent = silent && !std::exchange(hand.silent, silent);
-  hand.silent = silent;
-  if (!hand.is_topmost) return;
-  if (fell_silent) ++stats_.silences[hand.slot];
-  stats_.samples[hand.slot] += samples;
-  SampleRate& rate = stats_.rates[hand.slot];
-  if (stats_.ticks == 0) {
-    rate = {0, hand.latest.arrival, hand.latest.arrival};
-  } else if (hand.fresh) {
-    rate.samples += samples;
-    rate.last = hand.latest.arrival;
-  }
-  stats_.spikes[hand.slot] = hand.gate.spikes();
-  if (const auto* learned = hand.calibration.adaptation()) {
-    stats_.ranges[hand.slot] = learned->ranges();
-    stats_.range_sides[hand.slot] = learned->side().value_or(hand.input.side);
-  } else if (const auto* slips = hand.calibration.slips()) {
-    stats_.ranges[hand.slot] = slips->ranges();
-    stats_.range_sides[hand.slot] = slips->side();
-    stats_.slips_counts[hand.slot] = slips->slips_counts();
-  }
 }
 
 /// By the times at which ticks are due, so that a replay does the same.
@@ -321,14 +296,6 @@ void DeformLoop::apply(const Command& command) noexcept {
     if (hand.slot == Placement::index_of(move->side)) hand.T_stage_wrist = move->pose();
 }
 
-void DeformLoop::set_rig(const Command& command) noexcept {
-  if (const auto* clutch = std::get_if<SetClutch>(&command))
-    rig_->set_clutch(clutch->side, clutch->finger, clutch->holds, hands_now());
-  if (const auto* role = std::get_if<SetRole>(&command))
-    rig_->set_input(role->function, role->input, hands_now());
-  if (const auto* symmetry = std::get_if<SetSymmetry>(&command)) rig_->set_symmetric(symmetry->on);
-}
-
 void DeformLoop::compute_hands(Frame& frame) noexcept {
   Eigen::Index column = 0;
   const Eigen::Index points = points_of_hand(tips_);
@@ -364,50 +331,6 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
 /// Hands that hold still press where they stopped, until they go on.
 void DeformLoop::place_body(const Hand& hand, const hand::HandPose& pose) noexcept {
   if (!shaping_.is_still()) bodies_->follow(bodies_->count() == 2 ? hand.slot : 0, pose);
-}
-
-void DeformLoop::tell_rig(Frame& frame) const noexcept {
-  if (!rig_) {
-    frame.let_go = {};
-    frame.symmetric = mirror_.has_value();
-    frame.function_count = 0;
-    return;
-  }
-  for (const Side side : {Side::left, Side::right})
-    frame.let_go[Placement::index_of(side)] = rig_->has_let_go(side);
-  frame.symmetric = rig_->state().symmetric;
-  frame.function_count = static_cast<std::uint32_t>(rig_->values().size());
-  for (std::size_t at = 0; at < rig_->values().size(); ++at)
-    frame.functions[at] = static_cast<float>(rig_->values()[at]);
-}
-
-puppet::RigPlayer::Hands DeformLoop::played_hands() const noexcept {
-  puppet::RigPlayer::Hands states{};
-  for (const Hand& hand : hands_)
-    states[hand.slot] = &hand_states_[hand.slot];
-  return states;
-}
-
-/// The same, where they are now, and not when the tick computed them.
-puppet::RigPlayer::Hands DeformLoop::hands_now() noexcept {
-  for (const Hand& hand : hands_)
-    if (hand.is_lowest)
-      hand_states_[hand.slot] = {angles_of(hand), pose_of(hand), hand.T_stage_wrist};
-  return played_hands();
-}
-
-/// Hands that have let go move nothing, and take hold again where they are then, as one lifts a
-/// mouse.
-void DeformLoop::play_rig() noexcept {
-  const auto hands = played_hands();
-  if (shaping_.is_held()) {
-    if (due_) gestures_->watch(*rig_, hands, *due_);
-    rig_->follow(hands);
-  } else {
-    gestures_->reset(*rig_);
-    rig_->take_hold(hands);
-  }
-  rig_->write(tips_);
 }
 
 void DeformLoop::tick(const Pacer::Due& due) noexcept {
@@ -464,20 +387,6 @@ void DeformLoop::describe(const TickRecord& record, Frame& frame) noexcept {
   frame.since_last =
       last_woke_ == HostTime{} ? HostClock::duration::zero() : record.woke - last_woke_;
   last_woke_ = record.woke;
-}
-
-void DeformLoop::record_latencies(const TickRecord& record) noexcept {
-  const HostTime done = record.published();
-  stats_.wake_latency.record(record.woke - record.scheduled);
-  stats_.work.record(done - record.woke);
-  for (const auto& hand : hands_) {
-    if (!hand.fresh) continue;
-    stats_.end_to_end.record(done - hand.latest.arrival);
-    if (hand.filter.options().kind == hand::FilterKind::off) continue;
-    const hand::FilterLatency latency = hand.filter.latency();
-    stats_.filter_moving.record(from_seconds(latency.moving_s));
-    stats_.filter_worst.record(from_seconds(latency.worst_s));
-  }
 }
 
 void DeformLoop::run(const std::atomic<bool>& stop, std::uint64_t most_ticks) noexcept {

@@ -16,21 +16,25 @@ using Eigen::Index;
 constexpr int most_sweeps = 500;
 constexpr double enough = 1e-7; ///< of the longest way: a sweep that changes less is the last
 
-/// For each vertex that was made, the shape's vertex at the same place, or -1. Vertices that were
-/// before keep their numbers as long as none is taken away.
+/// For each vertex that was made, the shape's vertex that it was, or -1. Vertices keep their
+/// numbers as long as none is taken away; then they are known by their places.
 std::vector<Index> vertices_before(const Points& made, const Points& shape) {
+  const auto is_as_before = [&](Index vertex) {
+    return vertex < made.cols() && vertex < shape.cols() && made.col(vertex) == shape.col(vertex);
+  };
   std::map<std::array<double, 3>, Index> at_place;
   for (Index vertex = shape.cols(); vertex-- > 0;) // of several at one place the first counts
-    at_place[{shape(0, vertex), shape(1, vertex), shape(2, vertex)}] = vertex;
-  std::vector<Index> before(static_cast<std::size_t>(made.cols()), -1);
+    if (!is_as_before(vertex))
+      at_place[{shape(0, vertex), shape(1, vertex), shape(2, vertex)}] = vertex;
+  std::vector<Index> before;
+  before.reserve(static_cast<std::size_t>(made.cols()));
   for (Index vertex = 0; vertex < made.cols(); ++vertex) {
-    Index& found = before[static_cast<std::size_t>(vertex)];
-    if (vertex < shape.cols() && made.col(vertex) == shape.col(vertex)) {
-      found = vertex;
+    if (is_as_before(vertex)) {
+      before.push_back(vertex);
       continue;
     }
     const auto same = at_place.find({made(0, vertex), made(1, vertex), made(2, vertex)});
-    if (same != at_place.end()) found = same->second;
+    before.push_back(same == at_place.end() ? -1 : same->second);
   }
   return before;
 }

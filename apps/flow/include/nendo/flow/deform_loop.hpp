@@ -311,10 +311,6 @@ private:
   struct Hand {
     /// Updates `latest` and `angles` by the next sample.
     void follow(const GloveSample& sample) noexcept;
-    /// Returns when `latest` was measured, as exactly as it is known.
-    HostTime time() const noexcept {
-      return latest.has_device_time ? latest.measured : latest.arrival;
-    }
     /// Sets `angles` by `latest` and this calibration.
     void pose_by(const hand::Calibration& active) noexcept;
     /// Forgets all that came before `latest` but what adaptation has learned.

@@ -8,10 +8,11 @@
 namespace nendo::flow {
 
 /// Returns the rest of `made`, which was made of a mesh with these vertices and this rest (3 by
-/// #vertices each). A vertex whose place is one of the shape's bit for bit gets the rest of that
-/// one; by the others the way from the shape to the rest is spread evenly, each being the mean of
-/// its neighbours', and a part without any vertex of the shape rests where it is. Takes some ten
-/// milliseconds and allocates. The same bits for the same arguments.
+/// #vertices each). A vertex of the shape, which is known by its number and place, or by its place
+/// where its number has changed, gets its rest; by the others the way from the shape to the rest is
+/// spread evenly, each being the mean of its neighbours', and a part without any vertex of the
+/// shape rests where it is. Takes up to twice as long as a cut, and allocates. The same bits for
+/// the same arguments.
 deform::Points kept_rest(const deform::Mesh& made, const deform::Points& shape,
                          const deform::Points& rest);
 
