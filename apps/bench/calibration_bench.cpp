@@ -96,7 +96,7 @@ void print_table(const TrialErrors& errors, bool markdown) {
   row(
       "joints", [](std::size_t method) { return std::string(method_names[method]); },
       std::string("full / two_pose"));
-  if (markdown) std::printf("|---|---:|---:|---:|---:|---:|---:|\n");
+  if (markdown) std::puts(judge_bench::markdown_rule(method_names.size() + 2).c_str());
   for (std::size_t at = 0; at < row_count; ++at) {
     std::array<Figures, method_names.size()> deg;
     for (std::size_t method = 0; method < method_names.size(); ++method)

@@ -101,9 +101,7 @@ void print_judged_table(const Verdict& verdict, bool markdown) {
     std::printf("%s%13s", between, std::string(judged_names[method]).c_str());
   std::printf("%s%13s%sworse than two_pose%s%s\n", between, "goal for full", between,
               has_floor(verdict) ? " (floor)" : "", end);
-  if (markdown)
-    std::printf("|---|---:|---:|---:|---:|---:|---:|---:|%s\n",
-                has_floor(verdict) ? "---:|---:|" : "");
+  if (markdown) std::puts(markdown_rule(columns + 3).c_str());
   for (std::size_t group = 0; group < judged_groups.size(); ++group) {
     std::printf("%s%-16s", bar, std::string(judged_groups[group]).c_str());
     char cell[48];
@@ -122,6 +120,13 @@ void print_judged_table(const Verdict& verdict, bool markdown) {
 }
 
 } // namespace
+
+std::string markdown_rule(std::size_t columns) {
+  std::string rule = "|---|";
+  for (std::size_t column = 1; column < columns; ++column)
+    rule += "---:|";
+  return rule;
+}
 
 int judge_file(const std::string& path, const Output& output) {
   auto wearers = JudgedWearers::open(path);

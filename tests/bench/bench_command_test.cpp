@@ -2,6 +2,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <set>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -12,11 +14,13 @@
 #include <nlohmann/json.hpp>
 
 #include "support/program.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace bench_command_test {
 
 using nendo::test::is_one_line_about;
 using nendo::test::lines_of;
+using nendo::test::TemporaryFolder;
 
 TEST_SUITE("bench") {
   TEST_CASE("bench driver tells both latencies and their ratio, on a terminal and on sockets") {
@@ -366,6 +370,31 @@ TEST_SUITE("bench") {
         nendo::test::nendo({"bench", "calibration", "--wearers", "8", "--seed", "2001", "--json"});
     const auto repeated = nlohmann::json::parse(lines_of(again.out).at(0));
     CHECK(repeated["groups"] == told["groups"]); // the same seed is the same wearer
+  }
+
+  TEST_CASE("tables in Markdown have as many columns in each line") {
+    const TemporaryFolder folder;
+    const std::string file = folder.path() / "wearers.jsonl";
+    const auto made =
+        nendo::test::nendo({"bench", "wearers", "--wearers", "1", "--seed", "9007", "--out", file});
+    REQUIRE_MESSAGE(made.exit_code == 0, made.err);
+    const std::vector<std::vector<std::string>> tables{
+        {"--wearers", "1"}, {"--judge", file}, {"--judge", file, "--floor"}};
+    for (const auto& table : tables) {
+      std::vector<std::string> arguments{"bench", "calibration", "--markdown"};
+      arguments.insert(arguments.end(), table.begin(), table.end());
+      const auto done = nendo::test::nendo(arguments);
+      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+      std::set<std::ptrdiff_t> columns;
+      std::size_t rows = 0;
+      for (const std::string& line : lines_of(done.out)) {
+        if (!line.starts_with('|')) continue;
+        ++rows;
+        columns.insert(std::count(line.begin(), line.end(), '|') - 1);
+      }
+      CHECK(rows > 10);
+      CHECK(columns.size() == 1);
+    }
   }
 
   TEST_CASE("bench rt tells the throughput of rings and the cost of publishing, beside baselines") {
