@@ -178,8 +178,11 @@ constexpr auto full = [] {
   return ids;
 }();
 
-constexpr std::array again{PoseId::fist, PoseId::thumb_bent, PoseId::edge_index,
-                           PoseId::edge_little};
+// A thumb's roll and abduction are asked for by few poses, and people scatter by five degrees.
+constexpr std::array again{PoseId::fist,        PoseId::thumb_bent, PoseId::edge_index,
+                           PoseId::edge_little, PoseId::flat,       PoseId::thumb_out,
+                           PoseId::thumb_up,    PoseId::spread,     PoseId::thumb_out,
+                           PoseId::thumb_up};
 constexpr auto takes = [] {
   std::array<PoseId, full.size() + again.size()> ids{};
   std::copy(again.begin(), again.end(), std::copy(full.begin(), full.end(), ids.begin()));

@@ -47,13 +47,13 @@ TEST_SUITE("calibration_poses") {
   TEST_CASE("a full calibration takes every pose, then some once more, but never at once") {
     const auto full = full_poses(), takes = full_takes();
     REQUIRE(takes.size() > full.size());
-    CHECK(takes.size() <=
-          30); // at five seconds each, and half a minute of free motion: three minutes
+    // At five seconds each, and half a minute of free motion: three minutes and a half.
+    CHECK(takes.size() <= 36);
     CHECK(std::equal(full.begin(), full.end(), takes.begin()));
     for (std::size_t k = 1; k < takes.size(); ++k)
       CHECK(takes[k] != takes[k - 1]);
     for (const PoseId id : full)
-      CHECK(std::count(takes.begin(), takes.end(), id) <= 2);
+      CHECK(std::count(takes.begin(), takes.end(), id) <= 3);
   }
 
   TEST_CASE(

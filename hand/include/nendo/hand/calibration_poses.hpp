@@ -86,8 +86,9 @@ std::span<const PoseId> full_poses() noexcept;
 /// Returns the poses that tell how far sensors have slipped, in some twenty seconds: flat, fist and
 /// the four pinches.
 std::span<const PoseId> touch_up_poses() noexcept;
-/// Returns the poses that a full calibration asks for: all of them, then some once more, because
-/// they tell most, or alone, about a joint. No take asks for the same pose as the take before it.
+/// Returns the poses that a full calibration asks for: all of them, then some once or twice more,
+/// because they tell most, or alone, about a joint. No take asks for the same pose as the take
+/// before it.
 std::span<const PoseId> full_takes() noexcept;
 
 } // namespace nendo::hand
