@@ -31,11 +31,24 @@ GloveSample judged_sample(const CountRow& counts, const JudgedWearer& wearer) {
   return sample;
 }
 
-hand::CountRanges ranges_of(const JudgedWearer& wearer) {
+hand::CountRanges ranges_of(const JudgedSession& session, const JudgedWearer& wearer) {
   hand::RangeCapture capture;
-  for (const CountRow& row : wearer.free_motion)
+  for (const CountRow& row : session.free_motion)
     capture.push(judged_sample(row, wearer));
   return capture.seen();
+}
+
+/// What a calibration keeps: the ends of the free motion, or of the poses where these went farther.
+hand::CountRanges ends_reached(const JudgedSession& session, const JudgedWearer& wearer) {
+  hand::CountRanges ends = ranges_of(session, wearer);
+  for (const hand::PoseReading& take : session.takes) {
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+      const double counts = take.held.mean_counts[slot];
+      ends.low_counts[slot] = std::min(ends.low_counts[slot], counts);
+      ends.high_counts[slot] = std::max(ends.high_counts[slot], counts);
+    }
+  }
+  return ends;
 }
 
 /// The group of an angle; nullopt of the middle finger's abduction and the palm's arch.
@@ -230,7 +243,7 @@ void judge(const JudgedWearer& wearer, Verdict& verdict, const StrangerHand* han
     if (found != takes.end()) two.push_back(*found);
   }
   hand::FitOptions full_options, quick_options;
-  full_options.free_motion = ranges_of(wearer);
+  full_options.free_motion = ranges_of(wearer.fresh, wearer);
   quick_options.mode = hand::FitMode::quick;
   const auto begin = std::chrono::steady_clock::now();
   const auto full =
@@ -262,6 +275,8 @@ void judge(const JudgedWearer& wearer, Verdict& verdict, const StrangerHand* han
     again.mode = hand::FitMode::touch_up;
     again.size = full->size;
     again.start = full->calibration;
+    again.start_ends = ends_reached(wearer.fresh, wearer);
+    again.free_motion = ranges_of(wearer.again, wearer);
     const auto touched_up =
         hand::fit_calibration(wearer.again.takes, wearer.side, wearer.sensors, again);
     if (!touched_up) {

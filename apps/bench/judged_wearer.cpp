@@ -37,7 +37,10 @@ Json session_json(const JudgedSession& session, SensorMask sensors) {
                       {"angles_deg", angles},
                       {"touching", digits[static_cast<std::size_t>(moment.touching)]}});
   }
-  return {{"takes", takes}, {"motion", motion}};
+  Json free_motion = Json::array();
+  for (const CountRow& row : session.free_motion)
+    free_motion.push_back(counts_json(row, sensors));
+  return {{"free_motion", free_motion}, {"takes", takes}, {"motion", motion}};
 }
 
 /// What a line says that cannot be.
@@ -88,8 +91,12 @@ std::string text_of(const Json& object, const char* key) {
   return object[key].get<std::string>();
 }
 
-JudgedSession session_of(const Json& object, SensorMask sensors) {
+JudgedSession session_of(const Json& object, SensorMask sensors, bool is_again) {
   JudgedSession session;
+  const Json none = Json::array();
+  const bool may_lack = object.is_object() && !object.contains("free_motion") && is_again;
+  for (const Json& row : may_lack ? none : list(object, "free_motion", 1'000'000))
+    session.free_motion.push_back(row_of(row, sensors));
   for (const Json& take : list(object, "takes", 1000)) {
     const auto pose = hand::pose_named(text_of(take, "pose"));
     if (!pose) throw Wrong{"no pose is called \"" + text_of(take, "pose") + "\""};
@@ -137,10 +144,8 @@ JudgedWearer wearer_of(const Json& object) {
     wearer.pads[n] = {1e-3 * number(pads[n][0], -50.0, 50.0, "pads_mm"),
                       1e-3 * number(pads[n][1], -50.0, 50.0, "pads_mm")};
   }
-  for (const Json& row : list(object, "free_motion", 1'000'000))
-    wearer.free_motion.push_back(row_of(row, wearer.sensors));
-  wearer.fresh = session_of(object, wearer.sensors);
-  if (object.contains("again")) wearer.again = session_of(object["again"], wearer.sensors);
+  wearer.fresh = session_of(object, wearer.sensors, false);
+  if (object.contains("again")) wearer.again = session_of(object["again"], wearer.sensors, true);
   return wearer;
 }
 
@@ -149,22 +154,17 @@ JudgedWearer wearer_of(const Json& object) {
 
 std::string line_of(const JudgedWearer& wearer) {
   using judged_file::Json;
-  Json sensors = Json::array(), pads = Json::array(), free_motion = Json::array();
+  Json sensors = Json::array(), pads = Json::array();
   for (std::size_t slot = 0; slot < sensor_slots; ++slot)
     if (wearer.sensors.has(static_cast<Sensor>(slot))) sensors.push_back(sensor_names[slot]);
   for (const JudgedWearer::Pad& pad : wearer.pads)
     pads.push_back(Json::array(
         {std::round(1e5 * pad.depth_m) / 100.0, std::round(1e5 * pad.behind_m) / 100.0}));
-  for (const CountRow& row : wearer.free_motion)
-    free_motion.push_back(judged_file::counts_json(row, wearer.sensors));
   Json object{{"name", wearer.name},
               {"hand", wearer.side == Side::left ? "left" : "right"},
               {"sensors", sensors},
-              {"pads_mm", pads},
-              {"free_motion", free_motion}};
-  const Json session = judged_file::session_json(wearer.fresh, wearer.sensors);
-  object["takes"] = session["takes"];
-  object["motion"] = session["motion"];
+              {"pads_mm", pads}};
+  object.update(judged_file::session_json(wearer.fresh, wearer.sensors));
   if (!wearer.again.takes.empty())
     object["again"] = judged_file::session_json(wearer.again, wearer.sensors);
   return object.dump() + "\n";

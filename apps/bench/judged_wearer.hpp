@@ -30,6 +30,7 @@ struct JudgedMoment {
 
 /// Poses that were held, and a motion afterwards, all with the glove on and not moved.
 struct JudgedSession {
+  std::vector<CountRow> free_motion; ///< before the poses; every joint from end to end
   std::vector<hand::PoseReading> takes;
   std::vector<JudgedMoment> motion;
 };
@@ -38,7 +39,6 @@ struct JudgedWearer {
   std::string name;
   Side side = Side::right;
   SensorMask sensors;
-  std::vector<CountRow> free_motion;
   JudgedSession fresh;
   /// The same after the glove has been put on again: three kinds of poses, flat, fist and pinches.
   JudgedSession again;

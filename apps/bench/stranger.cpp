@@ -62,12 +62,16 @@ public:
     for (std::size_t n = 0; n < wearer.pads.size(); ++n)
       wearer.pads[n] = {hand_.pads()[n].depth, hand_.pads()[n].behind};
     now_ = relaxed();
-    move_freely(30.0,
-                [&](const SensorAngles& angles) { wearer.free_motion.push_back(read(angles)); });
+    move_freely(30.0, [&](const SensorAngles& angles) {
+      wearer.fresh.free_motion.push_back(read(angles));
+    });
     wearer.fresh.takes = hold(hand::full_takes());
     slip(0.6);
     wearer.fresh.motion = move();
     slip(1.6); // off, and on again
+    move_freely(10.0, [&](const SensorAngles& angles) {
+      wearer.again.free_motion.push_back(read(angles));
+    });
     wearer.again.takes = hold(hand::touch_up_poses());
     wearer.again.motion = move();
     return wearer;
@@ -153,6 +157,12 @@ private:
 
   template <class Show>
   void move_freely(double seconds, Show&& show) {
+    SensorAngles low{}, high{}; // as far as it goes this time
+    for (std::size_t n = 0; n < sensor_slots; ++n) {
+      const double short_rad = from_degrees(StrangerSpread::short_deg);
+      low[n] = low_[n] + std::abs(normal(0.0, short_rad));
+      high[n] = high_[n] - std::abs(normal(0.0, short_rad));
+    }
     std::array<std::array<double, 4>, sensor_slots> waves{};
     for (auto& wave : waves)
       wave = {uniform(0.08, 0.2), uniform(0.3, 0.7), uniform(0.0, 6.28), uniform(0.0, 6.28)};
@@ -164,7 +174,8 @@ private:
         const auto [slow, fast, a, b] = waves[n];
         const double swing = 0.62 * std::sin(2.0 * std::numbers::pi * slow * time + a) +
                              0.42 * std::sin(2.0 * std::numbers::pi * fast * time + b);
-        const double to = clamped(n, low_[n] + (0.5 + 0.5 * swing) * (high_[n] - low_[n]));
+        const double to =
+            std::clamp(low[n] + (0.5 + 0.5 * swing) * (high[n] - low[n]), low[n], high[n]);
         now_[n] = start[n] + begin * (to - start[n]);
       }
       show(now_);
@@ -228,8 +239,7 @@ private:
       const double asked = pose.assumed[n].angle_rad;
       const double habit = std::abs(asked) > from_degrees(8) ? habit_[n] : 0.0;
       // Fingers that lie side by side hold each other.
-      const bool side_by_side =
-          n >= slot(Sensor::index_middle_abduction) && n % 4 == 3 && asked < from_degrees(5);
+      const bool side_by_side = is_gap(static_cast<Sensor>(n)) && asked < from_degrees(5);
       const double off =
           errors_.scatter * from_degrees(normal(0.0, side_by_side ? StrangerSpread::side_by_side_deg
                                                                   : StrangerSpread::scatter_deg));

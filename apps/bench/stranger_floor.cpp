@@ -96,8 +96,8 @@ StrangerFloor::StrangerFloor(const JudgedWearer& wearer, const StrangerHand* han
     : hand_is_known_(hand != nullptr), hand_(hand != nullptr ? *hand : StrangerHand::usual()),
       sensors_(wearer.sensors) {
   SensorAngles before{};
-  for (std::size_t slot = 0; slot < sensor_slots && !wearer.free_motion.empty(); ++slot)
-    before[slot] = wearer.free_motion.back()[slot];
+  for (std::size_t slot = 0; slot < sensor_slots && !wearer.fresh.free_motion.empty(); ++slot)
+    before[slot] = wearer.fresh.free_motion.back()[slot];
   for (const hand::PoseReading& reading : wearer.fresh.takes) {
     add_take(reading, before);
     before = reading.held.mean_counts;
@@ -141,9 +141,8 @@ StrangerFloor::Expected StrangerFloor::expected_of(hand::PoseId id, std::size_t 
   if (mover == touching.end() && pose.assumed[slot].known()) {
     asked_deg = to_degrees(pose.assumed[slot].angle_rad);
     has_habit = std::abs(asked_deg) > 8.0;
-    const bool gap = slot >= 11 && slot < 20 && slot % 4 == 3;
-    scatter_deg =
-        gap && asked_deg < 5.0 ? StrangerSpread::side_by_side_deg : StrangerSpread::scatter_deg;
+    const bool side_by_side = is_gap(static_cast<Sensor>(slot)) && asked_deg < 5.0;
+    scatter_deg = side_by_side ? StrangerSpread::side_by_side_deg : StrangerSpread::scatter_deg;
   }
   const bool flat_pads = id == hand::PoseId::pinch_index_flat;
   if (flat_pads && (slot == 5 || slot == 6)) { // which the touch then bends somewhat
@@ -160,7 +159,7 @@ StrangerFloor::Expected StrangerFloor::expected_of(hand::PoseId id, std::size_t 
 }
 
 void StrangerFloor::add_ends(const JudgedWearer& wearer) {
-  if (wearer.free_motion.empty()) return;
+  if (wearer.fresh.free_motion.empty()) return;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     if (!has_joint(slot, sensors_)) continue;
     double pulled_rad = 0.0; // by joints that go their own ways meanwhile
@@ -168,12 +167,14 @@ void StrangerFloor::add_ends(const JudgedWearer& wearer) {
       if (static_cast<std::size_t>(read.of) == slot)
         pulled_rad += 0.35 * floor_range_rad(static_cast<std::size_t>(read.by)) *
                       std::hypot(read.mean, read.spread);
-    double least = wearer.free_motion.front()[slot], most = least;
-    for (const CountRow& row : wearer.free_motion) {
+    double least = wearer.fresh.free_motion.front()[slot], most = least;
+    for (const CountRow& row : wearer.fresh.free_motion) {
       least = std::min<double>(least, row[slot]);
       most = std::max<double>(most, row[slot]);
     }
-    const double deviation_rad = std::hypot(pulled_rad, unmodelled_rad);
+    const double deviation_rad = std::hypot(pulled_rad, unmodelled_rad,
+                                            from_degrees(StrangerSpread::short_deg) *
+                                                std::sqrt(1.0 - 2.0 / std::numbers::pi));
     ends_.push_back({slot, false, least, deviation_rad});
     ends_.push_back({slot, true, most, deviation_rad});
   }
@@ -245,7 +246,10 @@ Eigen::VectorXd StrangerFloor::residuals(const Eigen::VectorXd& at) const {
   }
   for (const End& end : ends_) {
     const double reached = floor_line_rad(at, end.slot, end.counts, end.high ? 1.0 : -1.0);
-    const double there = end.high ? floor_high_rad(at, end.slot) : floor_low_rad(at, end.slot);
+    const double short_rad =
+        from_degrees(StrangerSpread::short_deg) * std::sqrt(2.0 / std::numbers::pi);
+    const double there = end.high ? floor_high_rad(at, end.slot) - short_rad
+                                  : floor_low_rad(at, end.slot) + short_rad;
     rows.push_back((reached - there) / end.deviation_rad);
   }
   return Eigen::Map<const Eigen::VectorXd>(rows.data(), static_cast<Index>(rows.size()));

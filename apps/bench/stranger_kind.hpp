@@ -55,6 +55,8 @@ inline constexpr std::array<StrangerJoint, sensor_slots> stranger_joints = [] {
 /// uniform distributions.
 struct StrangerSpread {
   static constexpr double low = 0.03, high = 0.06; ///< of a joint's range
+  /// How far short of a joint's end a free motion stops: a normal variable's size.
+  static constexpr double short_deg = 2.5;
   static constexpr double habit_deg = 2.5;
   static constexpr double scatter_deg = 5.0;
   static constexpr double side_by_side_deg = 1.5;

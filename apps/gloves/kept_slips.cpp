@@ -15,14 +15,7 @@ Result<hand::WornEnds> ends_of(const hand::StoredCalibration& file,
   if (file.wearer.counts != glove.counts)
     return Error{Errc::bad_input, path + ": counts otherwise than " + printable(glove.source) +
                                       ", so that its slips cannot be learned; leave out --adapt"};
-  hand::WornEnds ends{file.wearer.side, {}};
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto& quality = file.wearer.quality[slot];
-    if (!quality || !(quality->most_counts > quality->least_counts)) continue;
-    ends.counts.present.add(static_cast<Sensor>(slot));
-    ends.counts.low_counts[slot] = quality->least_counts;
-    ends.counts.high_counts[slot] = quality->most_counts;
-  }
+  const hand::WornEnds ends{file.wearer.side, hand::reached_ends(file.wearer)};
   if (ends.counts.present.bits == 0)
     return Error{Errc::bad_input, path + ": does not tell how far its sensors went, so that slips "
                                          "cannot be learned; leave out --adapt, or make one by "

@@ -105,6 +105,7 @@ hand::FitOptions fit_options(const Options& options, CountScale counts,
     fitting.mode = hand::FitMode::touch_up;
     fitting.size = known->size;
     fitting.start = hand::calibration_for(*known, counts);
+    fitting.start_ends = hand::reached_ends(*known);
     return fitting;
   }
   fitting.scale = counts;
@@ -310,8 +311,8 @@ void add(cli::Command& program) {
   command.add_option("--user", options->user, "Whose hand it is");
   command.add_flag("--quick", options->quick, "Two poses only: the flat hand and the fist");
   command.add_flag("--touch-up", options->touch_up,
-                   "Mends the calibration that there is after the glove was put on anew: flat "
-                   "hand, fist and pinches");
+                   "Mends the calibration that there is after the glove was put on anew: a free "
+                   "motion, flat hand, fist and pinches");
   command.add_option("--stiff", options->stiff,
                      "Fingers that cannot go as far as the poses ask, e.g. thumb,index, or wrist: "
                      "they do what they can, and of them only the flat hand is believed");

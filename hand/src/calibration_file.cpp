@@ -261,6 +261,18 @@ void move_ends(SensorQuality& quality, double by_counts, CountScale glove) noexc
     *end = std::clamp(*end + by_counts, 0.0, static_cast<double>(glove.most));
 }
 
+CountRanges reached_ends(const WearerCalibration& wearer) noexcept {
+  CountRanges ends;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto& quality = wearer.quality[slot];
+    if (!quality || !(quality->most_counts > quality->least_counts)) continue;
+    ends.present.add(static_cast<Sensor>(slot));
+    ends.low_counts[slot] = quality->least_counts;
+    ends.high_counts[slot] = quality->most_counts;
+  }
+  return ends;
+}
+
 Calibration calibration_for(const WearerCalibration& wearer, CountScale glove) noexcept {
   Calibration calibration = default_calibration(glove);
   const bool comparable =

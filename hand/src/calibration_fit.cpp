@@ -277,9 +277,8 @@ void find_fingers_that_went_less_far(CalibrationFit& fit, SensorMask sensors,
   std::vector<double> all;
   std::array<double, finger_count> sum{}, counted{};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const bool is_gap = slot >= 4 && slot % 4 == 3;
-    if (!sensors.has(static_cast<Sensor>(slot)) || !fit.sensors[slot].gain_determined || is_gap)
-      continue;
+    const auto sensor = static_cast<Sensor>(slot);
+    if (!sensors.has(sensor) || !fit.sensors[slot].gain_determined || is_gap(sensor)) continue;
     const double beyond = std::log(fit.calibration.sensors[slot].gain_rad_per_count /
                                    start.sensors[slot].gain_rad_per_count);
     all.push_back(beyond);

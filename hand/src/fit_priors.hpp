@@ -56,6 +56,10 @@ inline constexpr double form_deviation_m = 0.0045;
 inline constexpr double least_slip_rad = 0.009;
 inline constexpr double most_slip_rad = 0.11;
 
+// How surely a wearer who goes to both ends of a joint's range comes to the middle between them
+// again: either end differs by some two degrees from one time to the next.
+inline constexpr double middle_of_ends_deviation_rad = 0.02;
+
 // Beyond this many deviations a residual counts by its size and no longer by its square. So a pose
 // that was held badly, or another pose than was asked for, does not spoil what the other poses
 // agree on.

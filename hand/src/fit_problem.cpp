@@ -69,29 +69,69 @@ FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorM
     height_ = rows_.back().end;
   }
   if (mode_ == FitMode::full) find_range_ends(options.free_motion);
-  if (mode_ == FitMode::touch_up) find_slips();
+  if (mode_ == FitMode::touch_up) {
+    compare_ends(options.free_motion, options.start_ends);
+    find_slips();
+  }
 }
 
-/// Of each sensor the poses say how far it is off, and how surely. What is more than that is slip.
-void FitProblem::find_slips() {
-  double sum = 0.0;
-  int counted = 0;
+/// A slip moves both ends of a sensor's range by the same. A hand that goes less far, or farther,
+/// than it did moves them against each other, and tells the slip the less surely. How far gaps
+/// between fingers go depends on how the fingers are bent.
+void FitProblem::compare_ends(CountRanges now, const CountRanges& then) {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    double off = 0.0, variance = 0.0, n = 0.0;
-    for (std::size_t reading = 0; reading < readings_.size(); ++reading) {
-      for (const Assumption& assumption : assumptions_[reading]) {
-        if (assumption.slot != slot) continue;
-        off += angles_rad(Unknowns::Zero(), reading, nullptr)[slot] - assumption.assumed.angle_rad;
-        variance += assumption.assumed.deviation_rad * assumption.assumed.deviation_rad;
-        n += 1.0;
-      }
+    const auto sensor = static_cast<Sensor>(slot);
+    if (!sensors_.has(sensor) || !now.present.has(sensor) || !then.present.has(sensor) ||
+        is_gap(sensor))
+      continue;
+    for (const auto& reading : readings_) {
+      now.low_counts[slot] = std::min(now.low_counts[slot], reading.held.mean_counts[slot]);
+      now.high_counts[slot] = std::max(now.high_counts[slot], reading.held.mean_counts[slot]);
     }
-    if (n == 0.0) continue;
-    sum += std::clamp((off * off - variance) / (n * n), -most_slip_rad * most_slip_rad,
-                      most_slip_rad * most_slip_rad);
-    ++counted;
+    const double low = now.low_counts[slot] - then.low_counts[slot],
+                 high = now.high_counts[slot] - then.high_counts[slot];
+    if (!std::isfinite(low + high)) continue;
+    const Line& line = lines_[slot];
+    const double middle_counts = 0.5 * (then.low_counts[slot] + then.high_counts[slot]),
+                 was_rad = line.level + line.gain * (middle_counts - line.mean_counts),
+                 against_rad = 0.5 * line.gain * (high - low);
+    range_ends_.push_back({slot,
+                           middle_counts + 0.5 * (low + high),
+                           {was_rad, std::hypot(middle_of_ends_deviation_rad, against_rad)}});
   }
-  const double slip_rad = std::clamp(std::sqrt(std::max(sum, 0.0) / std::max(counted, 1)),
+  height_ += static_cast<Eigen::Index>(range_ends_.size());
+}
+
+/// Of each sensor poses and ends say how far it is off, and how surely. What is more than that is
+/// slip.
+void FitProblem::find_slips() {
+  struct Said {
+    double off = 0.0, weight = 0.0; ///< the weighted sum of what is said, and of the weights
+    void add(double off_rad, double deviation_rad) {
+      weight += 1.0 / (deviation_rad * deviation_rad);
+      off += off_rad / (deviation_rad * deviation_rad);
+    }
+  };
+  std::array<Said, sensor_slots> said{};
+  for (std::size_t reading = 0; reading < readings_.size(); ++reading) {
+    const SensorAngles angles = angles_rad(Unknowns::Zero(), reading, nullptr);
+    for (const auto& [slot, assumed, is_set_aside] : assumptions_[reading])
+      said[slot].add(angles[slot] - assumed.angle_rad, assumed.deviation_rad);
+  }
+  for (const auto& [slot, counts, end] : range_ends_)
+    said[slot].add(lines_[slot].level + lines_[slot].gain * (counts - lines_[slot].mean_counts) -
+                       end.angle_rad,
+                   end.deviation_rad);
+  double sum = 0.0, weights = 0.0;
+  for (const Said& of_sensor : said) {
+    if (of_sensor.weight == 0.0) continue;
+    const double off = of_sensor.off / of_sensor.weight;
+    const double weight = of_sensor.weight * of_sensor.weight; // of a square
+    sum += weight * std::clamp(off * off - 1.0 / of_sensor.weight, -most_slip_rad * most_slip_rad,
+                               most_slip_rad * most_slip_rad);
+    weights += weight;
+  }
+  const double slip_rad = std::clamp(std::sqrt(std::max(sum, 0.0) / std::max(weights, 1.0)),
                                      least_slip_rad, most_slip_rad);
   for (Line& line : lines_)
     line.level_unit = slip_rad;

@@ -116,6 +116,7 @@ private:
   void add_range_ends(const Unknowns& at, Eigen::VectorXd& residuals,
                       Eigen::MatrixXd* jacobian) const;
   void find_range_ends(const CountRanges& free_motion);
+  void compare_ends(CountRanges now, const CountRanges& then);
   /// Calls visit(row, gain) for each residual of an angle, with the index of its sensor's gain.
   template <class Visit>
   void for_each_line(Visit&& visit) const;

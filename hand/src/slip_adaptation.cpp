@@ -17,12 +17,6 @@ constexpr double slip_most_step = 0.02;
 // A sensor that moved less when the calibration was made is not one whose ends are known.
 constexpr double least_span = 0.1; ///< of the glove's counts
 
-// How far the sensor between two fingers goes depends on how both are bent, so it tells nothing.
-bool is_gap(Sensor sensor) noexcept {
-  return sensor == Sensor::index_middle_abduction || sensor == Sensor::middle_ring_abduction ||
-         sensor == Sensor::ring_pinky_abduction;
-}
-
 } // namespace
 
 SlipAdaptation::SlipAdaptation(const Calibration& made, const WornEnds& ends,
@@ -31,6 +25,7 @@ SlipAdaptation::SlipAdaptation(const Calibration& made, const WornEnds& ends,
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
     const double low = ends.counts.low_counts[slot], high = ends.counts.high_counts[slot];
+    // How far gaps between fingers go depends on how the fingers are bent, so they tell nothing.
     // Written so that a NaN is not followed; ends may come from a file.
     if (ends.counts.present.has(sensor) && !is_gap(sensor) && low >= 0.0 && high <= counts.most &&
         high - low >= least_span * counts.most && made.sensors[slot].gain_rad_per_count != 0.0)

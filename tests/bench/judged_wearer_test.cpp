@@ -38,6 +38,23 @@ TEST_SUITE("judged_wearer") {
     CHECK_FALSE(end->has_value());
   }
 
+  TEST_CASE("the free motion may be left out of what comes after the glove was put on again") {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "wearers.jsonl";
+    JudgedWearer made = make_stranger(1, sensors_22, {});
+    CHECK(made.again.free_motion.size() >= 300);
+    made.again.free_motion.clear();
+    std::string line = line_of(made);
+    const std::string empty = "\"free_motion\":[],";
+    line.erase(line.find(empty), empty.size());
+    std::ofstream(path) << line << line_of(made);
+    auto wearers = JudgedWearers::open(path);
+    REQUIRE(wearers);
+    const auto without = wearers->next();
+    REQUIRE_MESSAGE(without, without.error().message);
+    CHECK(line_of(**without) == line_of(made));
+  }
+
   TEST_CASE("what is no wearer is refused with its line") {
     const TemporaryFolder folder;
     const auto path = folder.path() / "wearers.jsonl";
@@ -53,6 +70,7 @@ TEST_SUITE("judged_wearer") {
          {std::string("\n"), std::string("[]\n"), std::string("{}\n"), good.substr(0, 5000),
           with("\"thumb_roll\"", "\"thumb_rolls\""), with("\"flat\"", "\"flatt\""),
           with("\"angles_deg\":[", "\"angles_deg\":[1e9,"), with("\"right\"", "\"middle\""),
+          with("\"free_motion\"", "\"free_motions\""),
           with("\"mean_counts\":[", "\"mean_counts\":[300,")}) {
       CAPTURE(bad.substr(0, 200));
       std::ofstream(path) << good << bad;

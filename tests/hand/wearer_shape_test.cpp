@@ -208,6 +208,68 @@ TEST_SUITE("wearer_shape") {
     const auto scattered = taken(truth, 4.0 * rad);
     CHECK(largest_difference_rad(fitted(scattered, options), truth, scattered) < 4.0 * rad);
   }
+
+  TEST_CASE("a touch-up believes ends that have moved together, and none that moved otherwise") {
+    const Calibration truth = some_truth(38);
+    std::mt19937 random(39);
+    std::normal_distribution<double> off(0.0, 4.0 * rad);
+    const HandSkeleton skeleton(Side::right);
+    Calibration slipped = truth;
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+      slipped.sensors[slot].offset_counts += slot % 2 == 0 ? 9.0 : -9.0;
+    std::vector<PoseReading> readings;
+    for (const PoseId id : touch_up_poses()) {
+      SensorAngles angles = pose_of(id).touch ? touching(id, skeleton) : exact(id, random);
+      if (!pose_of(id).touch)
+        for (double& angle : angles)
+          angle += off(random);
+      readings.push_back({id, held(angles, slipped)});
+    }
+    FitOptions options;
+    options.mode = FitMode::touch_up;
+    options.start = truth;
+    const auto ends_of = [&](const Calibration& of, double narrower_rad) {
+      CountRanges ends;
+      ends.present = sensors_22;
+      for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+        const auto [gain, offset] = of.sensors[slot];
+        if (gain == 0.0) continue;
+        ends.low_counts[slot] = offset + (-40.0 * rad + narrower_rad) / gain;
+        ends.high_counts[slot] = offset + (110.0 * rad - narrower_rad) / gain;
+      }
+      return ends;
+    };
+    const auto largest_slip_left = [&](const Calibration& mended) {
+      double largest = 0.0;
+      for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+        if (truth.sensors[slot].gain_rad_per_count == 0.0 || is_gap(static_cast<Sensor>(slot)))
+          continue;
+        largest = std::max(largest, std::abs(mended.sensors[slot].offset_counts -
+                                             slipped.sensors[slot].offset_counts));
+      }
+      return largest;
+    };
+    const Calibration by_poses = fitted(readings, options);
+    CHECK(largest_slip_left(by_poses) > 4.0); // which no pose of these tells, as of a wrist
+    options.start_ends = ends_of(truth, 0.0);
+    CHECK(fitted(readings, options).sensors == by_poses.sensors);
+    options.free_motion = ends_of(slipped, 0.0);
+    CHECK(largest_slip_left(fitted(readings, options)) < 2.0);
+    options.free_motion = ends_of(slipped, 2.0 * rad);
+    CHECK(largest_slip_left(fitted(readings, options)) < 3.0);
+
+    // Half of the range, somewhere in it, says nothing.
+    options.free_motion = ends_of(slipped, 40.0 * rad);
+    const Calibration by_less = fitted(readings, options);
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+      CHECK(std::abs(by_less.sensors[slot].offset_counts - by_poses.sensors[slot].offset_counts) <
+            1.5);
+    for (const double bad : {std::nan(""), HUGE_VAL}) {
+      options.free_motion = ends_of(slipped, 0.0);
+      options.free_motion.low_counts.fill(bad);
+      CHECK(largest_difference_rad(fitted(readings, options), by_poses, readings) < 1.0 * rad);
+    }
+  }
 }
 
 } // namespace wearer_shape_test

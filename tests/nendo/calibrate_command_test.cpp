@@ -1,5 +1,6 @@
 // nendo calibrate, as a wearer uses it: from a capture of the poses, and at a terminal.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -29,9 +30,16 @@ constexpr double rate_hz = 90.0;
 constexpr int samples_between = 40; ///< from pose to pose
 constexpr int samples_held = 270;   // three seconds
 
+/// What precedes the poses, and what has become of the glove.
+struct Before {
+  double free_motion_s = 0.0;
+  std::uint64_t free_motion_seed = 1;
+  int slip_counts = 0; ///< of slots with even numbers; the others slip the other way
+};
+
 /// A wearer doing the poses one after another, recorded as nendo monitor --json --raw prints it.
 void record(reference::Wearer& wearer, std::span<const hand::PoseId> poses,
-            const std::filesystem::path& path) {
+            const std::filesystem::path& path, const Before& before = {}) {
   std::ofstream file(path);
   hand::SensorAngles from = wearer.perform(hand::PoseId::flat);
   double time_s = 100.0;
@@ -41,8 +49,17 @@ void record(reference::Wearer& wearer, std::span<const hand::PoseId> poses,
     sample.arrival = HostTime(from_seconds(time_s));
     sample.measured = sample.arrival;
     sample.side = wearer.side();
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+      const int slip = slot % 2 == 0 ? before.slip_counts : -before.slip_counts;
+      if (sample.present.has(static_cast<Sensor>(slot)))
+        sample.raw[slot].value = static_cast<std::uint16_t>(
+            std::clamp(static_cast<int>(sample.raw[slot].value) + slip, 0, 255));
+    }
     file << gloves::sample_json(sample, nullptr) << '\n';
   };
+  const reference::FreeMotion free_motion(before.free_motion_seed, wearer.ranges());
+  for (int k = 0; k < before.free_motion_s * rate_hz; ++k)
+    put(from = free_motion.angles_rad(k / rate_hz));
   for (const auto pose : poses) {
     const hand::SensorAngles to = wearer.perform(pose);
     for (int k = 1; k <= samples_between; ++k) {
@@ -115,6 +132,38 @@ TEST_SUITE("calibrate") {
     CHECK(written->calibration[Sensor::ring_pip].gain_rad_per_count !=
           usual[Sensor::ring_pip].gain_rad_per_count);
     CHECK(done.out.find("gain is the default's") != std::string::npos);
+  }
+
+  TEST_CASE("a touch-up finds how far sensors have slipped, by poses and by a free motion") {
+    const TemporaryFolder folder;
+    REQUIRE(::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1) == 0);
+    reference::Wearer wearer(2006);
+    const auto capture = folder.path() / "capture.jsonl";
+    record(wearer, hand::full_takes(), capture, {30.0, 1, 0});
+    const auto full = nendo::test::nendo({"calibrate", "--from", capture, "--user", "ida"});
+    REQUIRE_MESSAGE(full.exit_code == 0, full.err);
+    const auto path = hand::own_calibration_path("ida", "", wearer.side());
+    REQUIRE(path);
+    const auto made = hand::read_calibration(*path);
+    REQUIRE_MESSAGE(made, made.error().message);
+    constexpr int slip = 6;
+    record(wearer, hand::touch_up_poses(), capture, {30.0, 2, slip});
+    const auto done =
+        nendo::test::nendo({"calibrate", "--from", capture, "--user", "ida", "--touch-up"});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto mended = hand::read_calibration(*path);
+    REQUIRE_MESSAGE(mended, mended.error().message);
+    CHECK(mended->method == "full, touched up");
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+      const auto sensor = static_cast<Sensor>(slot);
+      if (!sensors_22.has(sensor) || is_gap(sensor)) continue;
+      CAPTURE(name_of(sensor));
+      const double found = mended->calibration.sensors[slot].offset_counts -
+                           made->calibration.sensors[slot].offset_counts;
+      CHECK(mended->calibration.sensors[slot].gain_rad_per_count ==
+            made->calibration.sensors[slot].gain_rad_per_count);
+      CHECK(std::abs(found - (slot % 2 == 0 ? slip : -slip)) < 4.0);
+    }
   }
 
   TEST_CASE("two poses are enough for the quick way, and less is an error that names what lacks") {

@@ -67,6 +67,12 @@ constexpr std::optional<Sensor> sensor_named(std::string_view name) noexcept {
   return std::nullopt;
 }
 
+/// Tells whether the sensor measures the gap between two neighbouring fingers.
+constexpr bool is_gap(Sensor sensor) noexcept {
+  return sensor == Sensor::index_middle_abduction || sensor == Sensor::middle_ring_abduction ||
+         sensor == Sensor::ring_pinky_abduction;
+}
+
 /// A set of sensor slots; bit k is slot k, as in the glove's own masks.
 struct SensorMask {
   std::uint32_t bits = 0;

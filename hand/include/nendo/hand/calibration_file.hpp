@@ -12,6 +12,7 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/hand/calibration.hpp>
+#include <nendo/hand/range_capture.hpp>
 #include <nendo/hand/skeleton.hpp>
 
 namespace nendo::hand {
@@ -41,6 +42,9 @@ struct WearerCalibration {
   Calibration calibration;
   std::array<std::optional<SensorQuality>, sensor_slots> quality{}; ///< of calibrated sensors
 };
+
+/// Returns the counts that the wearer reached, of the sensors of which the calibration tells them.
+CountRanges reached_ends(const WearerCalibration& wearer) noexcept;
 
 /// Reads the text of a calibration file. The reader is strict: every key must be known, of the
 /// right type, and present. `name` is what errors call the text. Fails with bad_input, "NAME:LINE:

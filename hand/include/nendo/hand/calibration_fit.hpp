@@ -40,8 +40,8 @@ enum class FitMode : std::uint8_t {
   quick,
   full,
   /// Fits only how far each sensor has slipped since FitOptions::start was made, from a flat hand,
-  /// a fist and touches. How far sensors slip on the whole is found first, so that poses held
-  /// badly do not pass for slips.
+  /// a fist and touches, and from how the ends of a free motion have moved. How far sensors slip on
+  /// the whole is found first, so that poses held badly do not pass for slips.
   touch_up,
 };
 
@@ -57,6 +57,8 @@ struct FitOptions {
   SensorMask stiff{};
   /// The calibration that is touched up; needed for that alone.
   std::optional<Calibration> start{};
+  /// The ends that its sensors reached then (reached_ends()); empty where they are not known.
+  CountRanges start_ends{};
   /// Compares the full fit with the quick one by poses that are held out (see
   /// CalibrationFit::by_two_poses). It takes as long again as the fit.
   bool hold_out = true;
