@@ -93,10 +93,10 @@ std::string text_of(const Json& object, const char* key) {
 
 JudgedSession session_of(const Json& object, SensorMask sensors, bool is_again) {
   JudgedSession session;
-  const Json none = Json::array();
-  const bool may_lack = object.is_object() && !object.contains("free_motion") && is_again;
-  for (const Json& row : may_lack ? none : list(object, "free_motion", 1'000'000))
-    session.free_motion.push_back(row_of(row, sensors));
+  const bool moves = !is_again || (object.is_object() && object.contains("free_motion"));
+  if (moves)
+    for (const Json& row : list(object, "free_motion", 1'000'000))
+      session.free_motion.push_back(row_of(row, sensors));
   for (const Json& take : list(object, "takes", 1000)) {
     const auto pose = hand::pose_named(text_of(take, "pose"));
     if (!pose) throw Wrong{"no pose is called \"" + text_of(take, "pose") + "\""};

@@ -84,13 +84,16 @@ void FitProblem::compare_ends(CountRanges now, const CountRanges& then) {
     if (!sensors_.has(sensor) || !now.present.has(sensor) || !then.present.has(sensor) ||
         is_gap(sensor))
       continue;
+    const double moves = now.high_counts[slot] - now.low_counts[slot],
+                 moved = then.high_counts[slot] - then.low_counts[slot];
+    // Written so that a NaN is no motion.
+    if (!(moved > 0.0 && moves >= least_part_of_range * moved && moves <= most_counts_)) continue;
     for (const auto& reading : readings_) {
       now.low_counts[slot] = std::min(now.low_counts[slot], reading.held.mean_counts[slot]);
       now.high_counts[slot] = std::max(now.high_counts[slot], reading.held.mean_counts[slot]);
     }
     const double low = now.low_counts[slot] - then.low_counts[slot],
                  high = now.high_counts[slot] - then.high_counts[slot];
-    if (!std::isfinite(low + high)) continue;
     const Line& line = lines_[slot];
     const double middle_counts = 0.5 * (then.low_counts[slot] + then.high_counts[slot]),
                  was_rad = line.level + line.gain * (middle_counts - line.mean_counts),
