@@ -41,13 +41,10 @@ hand::CountRanges ranges_of(const JudgedSession& session, const JudgedWearer& we
 /// What a calibration keeps: the ends of the free motion, or of the poses where these went farther.
 hand::CountRanges ends_reached(const JudgedSession& session, const JudgedWearer& wearer) {
   hand::CountRanges ends = ranges_of(session, wearer);
-  for (const hand::PoseReading& take : session.takes) {
-    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-      const double counts = take.held.mean_counts[slot];
-      ends.low_counts[slot] = std::min(ends.low_counts[slot], counts);
-      ends.high_counts[slot] = std::max(ends.high_counts[slot], counts);
-    }
-  }
+  for (const hand::PoseReading& take : session.takes)
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+      if (ends.present.has(static_cast<Sensor>(slot)))
+        ends.widen(static_cast<Sensor>(slot), take.held.mean_counts[slot]);
   return ends;
 }
 

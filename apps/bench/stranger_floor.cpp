@@ -36,6 +36,12 @@ constexpr double unmodelled_rad = from_degrees(0.5);
 constexpr double unmodelled_m = 0.0003;
 constexpr double beyond_end_rad = 0.03; ///< to which a stranger's poses may overstep a range
 constexpr double hidden_deviation_deg = 12.0;
+// How far short of an end a free motion stops: the mean and the deviation of a normal variable's
+// size.
+const double short_mean_rad =
+    from_degrees(StrangerSpread::short_deg) * std::sqrt(2.0 / std::numbers::pi);
+const double short_deviation_rad =
+    from_degrees(StrangerSpread::short_deg) * std::sqrt(1.0 - 2.0 / std::numbers::pi);
 
 bool has_joint(std::size_t slot, SensorMask sensors) {
   return stranger_joints[slot].gain != 0.0 && sensors.has(static_cast<Sensor>(slot));
@@ -172,9 +178,7 @@ void StrangerFloor::add_ends(const JudgedWearer& wearer) {
       least = std::min<double>(least, row[slot]);
       most = std::max<double>(most, row[slot]);
     }
-    const double deviation_rad = std::hypot(pulled_rad, unmodelled_rad,
-                                            from_degrees(StrangerSpread::short_deg) *
-                                                std::sqrt(1.0 - 2.0 / std::numbers::pi));
+    const double deviation_rad = std::hypot(pulled_rad, unmodelled_rad, short_deviation_rad);
     ends_.push_back({slot, false, least, deviation_rad});
     ends_.push_back({slot, true, most, deviation_rad});
   }
@@ -246,10 +250,8 @@ Eigen::VectorXd StrangerFloor::residuals(const Eigen::VectorXd& at) const {
   }
   for (const End& end : ends_) {
     const double reached = floor_line_rad(at, end.slot, end.counts, end.high ? 1.0 : -1.0);
-    const double short_rad =
-        from_degrees(StrangerSpread::short_deg) * std::sqrt(2.0 / std::numbers::pi);
-    const double there = end.high ? floor_high_rad(at, end.slot) - short_rad
-                                  : floor_low_rad(at, end.slot) + short_rad;
+    const double there = end.high ? floor_high_rad(at, end.slot) - short_mean_rad
+                                  : floor_low_rad(at, end.slot) + short_mean_rad;
     rows.push_back((reached - there) / end.deviation_rad);
   }
   return Eigen::Map<const Eigen::VectorXd>(rows.data(), static_cast<Index>(rows.size()));

@@ -88,19 +88,16 @@ void FitProblem::compare_ends(CountRanges now, const CountRanges& then) {
                  moved = then.high_counts[slot] - then.low_counts[slot];
     // Written so that a NaN is no motion.
     if (!(moved > 0.0 && moves >= least_part_of_range * moved && moves <= most_counts_)) continue;
-    for (const auto& reading : readings_) {
-      now.low_counts[slot] = std::min(now.low_counts[slot], reading.held.mean_counts[slot]);
-      now.high_counts[slot] = std::max(now.high_counts[slot], reading.held.mean_counts[slot]);
-    }
+    for (const auto& reading : readings_)
+      now.widen(sensor, reading.held.mean_counts[slot]);
     const double low = now.low_counts[slot] - then.low_counts[slot],
                  high = now.high_counts[slot] - then.high_counts[slot];
-    const Line& line = lines_[slot];
     const double middle_counts = 0.5 * (then.low_counts[slot] + then.high_counts[slot]),
-                 was_rad = line.level + line.gain * (middle_counts - line.mean_counts),
-                 against_rad = 0.5 * line.gain * (high - low);
+                 against_rad = 0.5 * lines_[slot].gain * (high - low);
     range_ends_.push_back({slot,
                            middle_counts + 0.5 * (low + high),
-                           {was_rad, std::hypot(middle_of_ends_deviation_rad, against_rad)}});
+                           {lines_[slot].angle_rad(middle_counts),
+                            std::hypot(middle_of_ends_deviation_rad, against_rad)}});
   }
   height_ += static_cast<Eigen::Index>(range_ends_.size());
 }
@@ -122,9 +119,7 @@ void FitProblem::find_slips() {
       said[slot].add(angles[slot] - assumed.angle_rad, assumed.deviation_rad);
   }
   for (const auto& [slot, counts, end] : range_ends_)
-    said[slot].add(lines_[slot].level + lines_[slot].gain * (counts - lines_[slot].mean_counts) -
-                       end.angle_rad,
-                   end.deviation_rad);
+    said[slot].add(lines_[slot].angle_rad(counts) - end.angle_rad, end.deviation_rad);
   double sum = 0.0, weights = 0.0;
   for (const Said& of_sensor : said) {
     if (of_sensor.weight == 0.0) continue;
@@ -189,11 +184,11 @@ SensorAngles FitProblem::angles_rad(const Unknowns& at, std::size_t reading,
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     if (!sensors_.has(static_cast<Sensor>(slot))) continue;
     const Line now = line(at, slot);
-    own[slot] = now.level + now.gain * (counts[slot] - now.mean_counts);
+    own[slot] = now.angle_rad(counts[slot]);
     if (jacobian == nullptr) continue;
     const auto row = static_cast<Eigen::Index>(slot);
     (*jacobian)(row, static_cast<Eigen::Index>(gain_of(slot))) =
-        gain_deviation * now.gain * (counts[slot] - now.mean_counts);
+        gain_deviation * now.turn_rad(counts[slot]);
     (*jacobian)(row, static_cast<Eigen::Index>(level_of(slot))) = now.level_unit;
   }
   SensorAngles angles = own;
@@ -243,13 +238,12 @@ void FitProblem::add_range_ends(const Unknowns& at, Eigen::VectorXd& residuals,
   Eigen::Index row = height_ - static_cast<Eigen::Index>(range_ends_.size());
   for (const auto& [slot, counts, end] : range_ends_) {
     const Line now = line(at, slot);
-    const double turn_rad = now.gain * (counts - now.mean_counts);
-    const Robust result = robust((now.level + turn_rad - end.angle_rad) / end.deviation_rad);
+    const Robust result = robust((now.angle_rad(counts) - end.angle_rad) / end.deviation_rad);
     residuals[row] = result.residual;
     if (jacobian != nullptr) {
       const double slope = result.slope / end.deviation_rad;
       (*jacobian)(row, static_cast<Eigen::Index>(gain_of(slot))) =
-          slope * gain_deviation * turn_rad;
+          slope * gain_deviation * now.turn_rad(counts);
       (*jacobian)(row, static_cast<Eigen::Index>(level_of(slot))) = slope * now.level_unit;
     }
     ++row;

@@ -125,6 +125,9 @@ private:
     double gain, level; ///< of the default, in radians
     double level_unit;
     double mean_counts;
+
+    double turn_rad(double counts) const noexcept { return gain * (counts - mean_counts); }
+    double angle_rad(double counts) const noexcept { return level + turn_rad(counts); }
   };
   Line line(const Unknowns& at, std::size_t slot) const noexcept;
 

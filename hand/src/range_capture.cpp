@@ -4,6 +4,14 @@
 
 namespace nendo::hand {
 
+void CountRanges::widen(Sensor sensor, double counts) noexcept {
+  const auto slot = static_cast<std::size_t>(sensor);
+  const bool first = !present.has(sensor);
+  present.add(sensor);
+  low_counts[slot] = first ? counts : std::min(low_counts[slot], counts);
+  high_counts[slot] = first ? counts : std::max(high_counts[slot], counts);
+}
+
 void RangeCapture::push(const GloveSample& sample) noexcept {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
@@ -19,12 +27,9 @@ void RangeCapture::push(const GloveSample& sample) noexcept {
       ++last.known;
       continue;
     }
-    const double middle =
-        std::max(std::min(earlier, before), std::min(std::max(earlier, before), now));
-    const bool first = !seen_.present.has(sensor);
-    seen_.present.add(sensor);
-    seen_.low_counts[slot] = first ? middle : std::min(seen_.low_counts[slot], middle);
-    seen_.high_counts[slot] = first ? middle : std::max(seen_.high_counts[slot], middle);
+    // The middle one by size.
+    seen_.widen(sensor,
+                std::max(std::min(earlier, before), std::min(std::max(earlier, before), now)));
   }
 }
 

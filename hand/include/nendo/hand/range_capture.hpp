@@ -13,6 +13,9 @@ struct CountRanges {
   std::array<double, sensor_slots> low_counts{};
   std::array<double, sensor_slots> high_counts{};
   SensorMask present; ///< the slots for which the two are set; none: nothing is known
+
+  /// Makes the sensor's range contain these counts; sets it to them if there was none. Wait-free.
+  void widen(Sensor sensor, double counts) noexcept;
 };
 
 /// Watches samples and keeps the ranges. Wait-free, no allocation; for use by one thread.
