@@ -12,10 +12,12 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
 
 #include "bench/bench.hpp"
 #include "bench/calibration_trial.hpp"
 #include "bench/judge_bench.hpp"
+#include "bench/text_table.hpp"
 #include "cli/cli.hpp"
 
 namespace nendo::bench::calibration_bench {
@@ -84,33 +86,18 @@ void print_json(const TrialErrors& errors, std::uint64_t refused, const Options&
 }
 
 void print_table(const TrialErrors& errors, bool markdown) {
-  const char* bar = markdown ? "| " : "";
-  const char* between = markdown ? " | " : "  ";
-  const char* end = markdown ? " |" : "";
-  const auto row = [&](std::string_view first, auto&& cell, auto&& ratio) {
-    std::printf("%s%-16s", bar, std::string(first).c_str());
-    for (std::size_t method = 0; method < method_names.size(); ++method)
-      std::printf("%s%13s", between, cell(method).c_str());
-    std::printf("%s%15s%s\n", between, ratio.c_str(), end);
-  };
-  row(
-      "joints", [](std::size_t method) { return std::string(method_names[method]); },
-      std::string("full / two_pose"));
-  if (markdown) std::puts(judge_bench::markdown_rule(method_names.size() + 2).c_str());
+  std::vector<std::string> cells(method_names.begin(), method_names.end());
+  cells.emplace_back("full / two_pose");
+  print_head("joints", cells, markdown);
   for (std::size_t at = 0; at < row_count; ++at) {
     std::array<Figures, method_names.size()> deg;
-    for (std::size_t method = 0; method < method_names.size(); ++method)
+    cells.clear();
+    for (std::size_t method = 0; method < method_names.size(); ++method) {
       deg[method] = row_figures(errors, method, at);
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2f", deg[0].median / std::max(deg[1].median, 1e-9));
-    const std::string ratio = text;
-    row(
-        row_name(at),
-        [&](std::size_t method) {
-          std::snprintf(text, sizeof text, "%.2f / %.2f", deg[method].median, deg[method].p95);
-          return std::string(text);
-        },
-        ratio);
+      cells.push_back(fmt::format("{:.2f} / {:.2f}", deg[method].median, deg[method].p95));
+    }
+    cells.push_back(fmt::format("{:15.2f}", deg[0].median / std::max(deg[1].median, 1e-9)));
+    print_row(row_name(at), cells, markdown);
   }
 }
 

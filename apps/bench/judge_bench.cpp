@@ -12,10 +12,12 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
 
 #include "bench/bench.hpp"
 #include "bench/calibration_judge.hpp"
 #include "bench/stranger.hpp"
+#include "bench/text_table.hpp"
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 
@@ -92,41 +94,29 @@ void print_judged_json(const Verdict& verdict) {
 }
 
 void print_judged_table(const Verdict& verdict, bool markdown) {
-  const char* bar = markdown ? "| " : "";
-  const char* between = markdown ? " | " : "  ";
-  const char* end = markdown ? " |" : "";
-  std::printf("%s%-16s", bar, "group");
   const std::size_t columns = columns_of(verdict);
-  for (std::size_t method = 0; method < columns; ++method)
-    std::printf("%s%13s", between, std::string(judged_names[method]).c_str());
-  std::printf("%s%13s%sworse than two_pose%s%s\n", between, "goal for full", between,
-              has_floor(verdict) ? " (floor)" : "", end);
-  if (markdown) std::puts(markdown_rule(columns + 3).c_str());
+  std::vector<std::string> cells(judged_names.begin(),
+                                 judged_names.begin() + static_cast<std::ptrdiff_t>(columns));
+  cells.emplace_back("goal for full");
+  cells.emplace_back(has_floor(verdict) ? "worse than two_pose (floor)" : "worse than two_pose");
+  print_head("group", cells, markdown);
   for (std::size_t group = 0; group < judged_groups.size(); ++group) {
-    std::printf("%s%-16s", bar, std::string(judged_groups[group]).c_str());
-    char cell[48];
+    cells.clear();
+    const auto add_figures = [&](double median, double p95) {
+      cells.push_back(fmt::format("{:.2f} / {:.1f}", median, p95));
+    };
     for (std::size_t method = 0; method < columns; ++method) {
       const auto& errors = verdict.errors[method][group];
-      std::snprintf(cell, sizeof cell, "%.2f / %.1f", percentile(errors, 0.5),
-                    percentile(errors, 0.95));
-      std::printf("%s%13s", between, cell);
+      add_figures(percentile(errors, 0.5), percentile(errors, 0.95));
     }
-    std::snprintf(cell, sizeof cell, "%.1f / %.1f", goals[group][0], goals[group][1]);
-    std::printf("%s%13s%s%12d of %d", between, cell, between, verdict.worse[group],
-                verdict.wearers);
-    if (has_floor(verdict)) std::printf(" (%d)", verdict.floor_worse[group]);
-    std::printf("%s\n", end);
+    cells.push_back(fmt::format("{:.1f} / {:.1f}", goals[group][0], goals[group][1]));
+    cells.push_back(fmt::format("{:12} of {}", verdict.worse[group], verdict.wearers));
+    if (has_floor(verdict)) cells.back() += fmt::format(" ({})", verdict.floor_worse[group]);
+    print_row(judged_groups[group], cells, markdown);
   }
 }
 
 } // namespace
-
-std::string markdown_rule(std::size_t columns) {
-  std::string rule = "|---|";
-  for (std::size_t column = 1; column < columns; ++column)
-    rule += "---:|";
-  return rule;
-}
 
 int judge_file(const std::string& path, const Output& output) {
   auto wearers = JudgedWearers::open(path);

@@ -1,7 +1,6 @@
 #pragma once
 // nendo bench calibration --judge: what the judge found, as text.
 
-#include <cstddef>
 #include <string>
 
 namespace nendo::bench::judge_bench {
@@ -11,9 +10,6 @@ struct Output {
   bool markdown = false;
   bool floor = false; ///< judges the floor, too; the wearers must be strangers
 };
-
-/// Returns the line below the head of a Markdown table: texts in the first column, then numbers.
-std::string markdown_rule(std::size_t columns);
 
 /// Judges the calibration of every wearer of a file, and prints the table. Returns the exit code.
 int judge_file(const std::string& path, const Output& output);
