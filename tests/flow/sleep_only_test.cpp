@@ -3,14 +3,11 @@
 
 #include <atomic>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 #include <numbers>
 #include <optional>
 #include <random>
-#include <stdexcept>
 #include <thread>
-#include <variant>
 
 #include <doctest/doctest.h>
 #include <sys/mman.h>
@@ -19,7 +16,7 @@
 #include <unistd.h>
 
 #include <nendo/flow/realtime.hpp>
-#include <nendo/recording/take_reader.hpp>
+#include <nendo/recording/take_tools.hpp>
 
 #include "support/any_puppet.hpp"
 #include "support/late_maker.hpp"
@@ -102,18 +99,6 @@ void move_and_tick(LoopUnderTest& test, std::uint64_t first, std::uint64_t ticks
     if (test.options.sculptor.mode == Mode::clay) press(test, tick);
     test.loop->tick(tick, HostClock::now()); // its frames are the viewer's to take
   }
-}
-
-/// Returns how many moved wrists and requests a recording has.
-std::uint64_t commands_in(const std::filesystem::path& path) {
-  auto take = recording::TakeReader::open(path);
-  if (!take) throw std::runtime_error(take.error().message);
-  std::uint64_t commands = 0;
-  while (const auto entry = take->next()) {
-    if (std::holds_alternative<WristMove>(*entry) || std::holds_alternative<Request>(*entry))
-      ++commands;
-  }
-  return commands;
 }
 
 /// Asks for everything that a run can be asked for, at random, on a thread of its own, as who runs
@@ -232,7 +217,10 @@ TEST_SUITE("sleep_only" * doctest::skip(!nendo::test::restraint_is_counted)) {
       CHECK(taken->ticks > 0);
       // Clay has two moved wrists a tick, too, and 201 resets.
       const std::uint64_t offered = mode == Mode::clay ? 5 * 100'300 + 201 : 3 * 100'300;
-      CHECK(taken->ticks + taken->samples + commands_in(recorded.path) + taken->lost == offered);
+      const auto summary = recording::summarise(recorded.path);
+      REQUIRE(summary);
+      CHECK(taken->ticks + taken->samples + taken->requests + summary->wrist_moves + taken->lost ==
+            offered);
     }
   }
 

@@ -114,11 +114,11 @@ TEST_SUITE("touch_up") {
     options.free_motion = ends_of(slipped, 40.0 * rad);
     CHECK(fitted(readings, options).sensors == by_poses.sensors);
     for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+      options.start_ends = ends_of(truth, 0.0);
       options.free_motion = ends_of(slipped, 0.0);
       options.free_motion.low_counts.fill(bad);
       CHECK(fitted(readings, options).sensors == by_poses.sensors);
       options.free_motion = ends_of(slipped, 0.0);
-      options.start_ends = ends_of(truth, 0.0);
       options.start_ends.high_counts.fill(bad);
       CHECK(fitted(readings, options).sensors == by_poses.sensors);
     }
