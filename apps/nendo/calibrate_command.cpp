@@ -239,7 +239,8 @@ int calibrate_from_capture(const Options& options) {
   }
   if (!guide.is_done())
     cli::note(options.from + ": ends before the pose " +
-              std::string(hand::pose_of(guide.asked()).name) + " was held");
+              std::string(hand::pose_of(guide.asked()).name) + " was held" +
+              (guide.is_again() ? " once more" : ""));
   Wearer wearer = describe(options, capture->side, capture->counts, sensors);
   if (const auto fine = find_files(wearer, options); !fine) return cli::report(fine.error());
   return fit_and_write(options, wearer, guide);

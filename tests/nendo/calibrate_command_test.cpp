@@ -134,6 +134,18 @@ TEST_SUITE("calibrate") {
     CHECK(done.out.find("gain is the default's") != std::string::npos);
   }
 
+  TEST_CASE("a capture that ends before poses are asked for again is a calibration, and says so") {
+    const TemporaryFolder folder;
+    reference::Wearer wearer(2007);
+    const auto capture = folder.path() / "capture.jsonl";
+    record(wearer, hand::full_takes().first(28), capture); // as earlier guides asked for them
+    const auto done = nendo::test::nendo(
+        {"calibrate", "--from", capture, "--user", "anna", "--out", folder.path() / "anna.toml"});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    CHECK(is_one_line_about(done.err, "ends before the pose flat was held once more"));
+    CHECK(done.out.find("28 poses") != std::string::npos);
+  }
+
   TEST_CASE("a touch-up finds how far sensors have slipped, by poses and by a free motion") {
     const TemporaryFolder folder;
     REQUIRE(::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1) == 0);
