@@ -13,6 +13,7 @@
 #include "session/open_hands.hpp"
 #include "session/run_report.hpp"
 #include "session/run_session.hpp"
+#include "takes/model_files.hpp"
 
 namespace nendo::app::clay_demo {
 namespace {
@@ -53,16 +54,16 @@ session::RunOptions options_for(const Work& work, const std::string& out) {
 Result<deform::Mesh> shape_of(const Work& work, const std::string& out) {
   session::RunOptions run = options_for(work, out);
   if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine.error();
-  auto model = deform::read_mesh(run.mesh);
-  if (!model) return model;
+  auto model = takes::read_model(run.mesh);
+  if (!model) return model.error();
   std::cout << work.glove << " for " << work.duration_s << " s\n" << std::flush;
   EventCount event_count;
-  auto opened = session::open_hands(run, *model, event_count);
+  auto opened = session::open_hands(run, model->mesh, event_count);
   if (!opened) return opened.error();
   session::RunParticipants participants;
   participants.progress = session::progress_for(run, opened->hands);
-  const auto outcome =
-      session::run_session(run, opened->hands, *std::move(model), participants, opened->grants);
+  const auto outcome = session::run_session(run, opened->hands, std::move(model->mesh),
+                                            participants, opened->grants);
   if (!outcome) return outcome.error();
   session::print_summary(run, opened->hands, *outcome);
   return deform::read_mesh(run.out);

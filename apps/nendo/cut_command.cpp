@@ -20,6 +20,7 @@
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
+#include "takes/model_files.hpp"
 
 namespace nendo::app::cut_command {
 namespace {
@@ -114,14 +115,14 @@ Result<void> check(const Options& options) {
 }
 
 Result<Mesh> closed_model(const std::string& file, bool repair) {
-  auto mesh = read_mesh(file);
-  if (!mesh) return mesh;
-  const ManifoldCheck closed = check_closed_manifold(*mesh);
-  if (closed) return mesh;
+  auto model = takes::read_model(file);
+  if (!model) return model.error();
+  Mesh& mesh = model->mesh;
+  const ManifoldCheck closed = check_closed_manifold(mesh);
+  if (closed) return std::move(mesh);
   if (!repair)
-    return Error{Errc::bad_input,
-                 file + ": " + describe(closed, *mesh) + "; --repair may close it"};
-  auto repaired = deform::repair(*mesh);
+    return Error{Errc::bad_input, file + ": " + describe(closed, mesh) + "; --repair may close it"};
+  auto repaired = deform::repair(mesh);
   if (!repaired) return Error{repaired.error().code, file + ": " + repaired.error().message};
   cli::note(file + ": " + describe(*repaired));
   return std::move(repaired->mesh);

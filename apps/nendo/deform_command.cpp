@@ -17,6 +17,7 @@
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
 #include "session/loop_options.hpp"
+#include "takes/model_files.hpp"
 
 namespace nendo::app::deform_command {
 namespace {
@@ -156,12 +157,9 @@ Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vect
   return status;
 }
 
-/// Tells what is hardly meant: a model that has no surface or size, or radii in another unit than
-/// the model's.
+/// Tells what is hardly meant: radii in another unit than the model's.
 void note_oddities(const Mesh& mesh, const ControlVectors& vectors, const Supports& supports,
                    const Options& options) {
-  if (const auto remark = remark_on(mesh); !remark.empty())
-    cli::note(options.mesh + ": " + std::string(remark));
   const Box box = finite_box_of(mesh.vertices);
   if (!reach_all_of(box, vectors.starts, supports)) return;
   std::ostringstream size;
@@ -184,32 +182,33 @@ Result<void> deform_file(const Options& options) {
   if (options.injective && csrbf->keep_volume > 0.0)
     return Error{Errc::usage, std::string(session::keep_volume_or_injective)};
   if (const auto fine = check_out(options); !fine) return fine.error();
-  auto mesh = read_mesh(options.mesh);
-  if (!mesh) return mesh.error();
+  auto model = takes::read_model(options.mesh);
+  if (!model) return model.error();
+  Mesh& mesh = model->mesh;
   const auto vectors = read_control_vectors(options.vectors);
   if (!vectors) return vectors.error();
   const auto supports = supports_for(*vectors, options);
   if (!supports) return supports.error();
-  note_oddities(*mesh, *vectors, *supports, options);
+  note_oddities(mesh, *vectors, *supports, options);
 
-  const Points before = mesh->vertices;
+  const Points before = mesh.vertices;
   const auto by = csrbf->keep_volume > 0.0 ? deform_keeping_volume
                   : options.injective      ? deform_in_links
                                            : deform_at_once;
-  const auto status = by(mesh->vertices, *vectors, *supports, *csrbf, options);
+  const auto status = by(mesh.vertices, *vectors, *supports, *csrbf, options);
   if (!status) return status.error();
   if (*status == FieldStatus::merged) {
     cli::note(options.vectors +
               ": some start points coincide; they share the mean of their displacements");
   }
-  if (!mesh->vertices.allFinite()) {
+  if (!mesh.vertices.allFinite()) {
     return Error{Errc::bad_input,
                  options.vectors + ": " + std::string(describe(FieldStatus::not_finite))};
   }
-  if (mesh->vertices == before)
+  if (mesh.vertices == before)
     cli::note(options.vectors + ": moves no vertex; all displacements are 0, or no start point is "
                                 "nearer to a vertex than its radius");
-  return write_mesh(options.out, *mesh);
+  return write_mesh(options.out, mesh);
 }
 
 } // namespace

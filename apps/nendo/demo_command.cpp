@@ -6,7 +6,6 @@
 #include <memory>
 #include <string>
 
-#include <nendo/deform/mesh_file.hpp>
 #include <nendo/emulator/served_emulator.hpp>
 
 #include "cli/cli.hpp"
@@ -16,6 +15,7 @@
 #include "session/open_hands.hpp"
 #include "session/run_report.hpp"
 #include "session/run_session.hpp"
+#include "takes/model_files.hpp"
 
 namespace nendo::app::demo_command {
 namespace {
@@ -94,7 +94,7 @@ int demonstrate(const Options& options) {
   auto run = run_options(options);
   if (!run) return cli::report(run.error());
   if (options.what == "clay") return clay_demo::demonstrate(options.out, options.picture);
-  auto model = deform::read_mesh(run->mesh);
+  auto model = takes::read_model(run->mesh);
   if (!model) return cli::report(model.error());
   cli::install_stop_signals();
   const auto left = emulate(Side::left, options);
@@ -110,15 +110,15 @@ int demonstrate(const Options& options) {
             << run->duration_s << " s.\n"
             << std::flush;
   EventCount event_count;
-  auto opened = session::open_hands(*run, *model, event_count);
+  auto opened = session::open_hands(*run, model->mesh, event_count);
   if (!opened) return cli::report(opened.error());
   // The emulated hands are those that the default calibration is for.
   for (auto& hand : opened->hands)
     hand.uncalibrated = false;
   session::RunParticipants participants;
   participants.progress = session::progress_for(*run, opened->hands);
-  auto outcome =
-      session::run_session(*run, opened->hands, *std::move(model), participants, opened->grants);
+  auto outcome = session::run_session(*run, opened->hands, std::move(model->mesh), participants,
+                                      opened->grants);
   if (!outcome) return cli::report(outcome.error());
   session::print_summary(*run, opened->hands, *outcome);
   std::cout << "\nBefore and after, with the hands: " << options.picture

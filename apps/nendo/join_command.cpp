@@ -13,6 +13,7 @@
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
+#include "takes/model_files.hpp"
 
 namespace nendo::app::join_command {
 namespace {
@@ -51,9 +52,9 @@ struct NamedMesh {
 Result<std::vector<NamedMesh>> read_parts(const std::vector<std::string>& files) {
   std::vector<NamedMesh> parts;
   for (const std::string& file : files) {
-    auto mesh = read_mesh(file);
-    if (!mesh) return mesh.error();
-    parts.push_back({*std::move(mesh), file});
+    auto model = takes::read_model(file);
+    if (!model) return model.error();
+    parts.push_back({std::move(model->mesh), file});
   }
   if (parts.size() > 1) return parts;
   std::vector<Mesh> separated = separate(parts.front().mesh);

@@ -14,7 +14,6 @@
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/base/units.hpp>
-#include <nendo/deform/mesh_file.hpp>
 #include <nendo/puppet/make_puppet.hpp>
 #include <nendo/puppet/rig_check.hpp>
 
@@ -23,6 +22,7 @@
 #include "nendo/commands.hpp"
 #include "nendo/puppet_file.hpp"
 #include "render/picture.hpp"
+#include "takes/model_files.hpp"
 
 namespace nendo::app::puppet_command {
 namespace {
@@ -52,10 +52,10 @@ struct OpenRig {
 Result<OpenRig> open_rig(const std::string& name) {
   auto file = open_puppet(name);
   if (!file) return file.error();
-  auto model = deform::read_mesh(file->model);
+  auto model = takes::read_model(file->model);
   if (!model) return model.error();
-  if (const auto fits = puppet::check_fits(file->puppet, *model); !fits) return fits.error();
-  OpenRig open{*std::move(file), *std::move(model), nullptr};
+  if (const auto fits = puppet::check_fits(file->puppet, model->mesh); !fits) return fits.error();
+  OpenRig open{*std::move(file), std::move(model->mesh), nullptr};
   auto shapes = puppet::RigShapes::make(
       std::make_shared<const puppet::Rig>(open.file.puppet, open.model), open.model);
   if (!shapes) return Error{shapes.error().code, open.file.path + ": " + shapes.error().message};
@@ -309,9 +309,9 @@ Result<void> make(const Options& options) {
     return Error{Errc::usage, "--out " + options.out + ": exists; --force replaces it"};
   const auto name = cli::name_beside(options.file, options.out);
   if (!name) return name.error();
-  const auto model = deform::read_mesh(options.file);
+  const auto model = takes::read_model(options.file);
   if (!model) return model.error();
-  const auto made = puppet::make_face_puppet(*model, *name);
+  const auto made = puppet::make_face_puppet(model->mesh, *name);
   if (!made) return Error{made.error().code, options.file + ": " + made.error().message};
   for (const std::string& line : made->found)
     fmt::print("{}\n", line);

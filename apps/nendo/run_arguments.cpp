@@ -276,9 +276,9 @@ Result<deform::Mesh> read_model(RunArguments& options) {
   session::RunOptions& run = options.run;
   if (!run.over) {
     auto model = takes::read_models(run.mesh);
-    if (!model) return model;
-    if (auto fine = check_refinable(*model, options); !fine) return fine.error();
-    return model;
+    if (!model) return model.error();
+    if (auto fine = check_refinable(model->mesh, options); !fine) return fine.error();
+    return std::move(model->mesh);
   }
   const recording::LoopSetup& loop = *run.over->take.setup.loop;
   auto model = takes::find_recorded_model(loop, run.mesh);

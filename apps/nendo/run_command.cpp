@@ -50,11 +50,8 @@ Result<Views> open_views(const RunArguments& options) {
   return views;
 }
 
-/// Tells what is hardly meant: a model that has no surface or size, or a radius in another unit
-/// than the model's.
+/// Tells what is hardly meant: a radius in another unit than the model's.
 void note_oddities(const deform::Mesh& model, const RunArguments& options) {
-  if (const auto remark = deform::remark_on(model); !remark.empty())
-    cli::note(options.run.mesh + ": " + std::string(remark));
   if (!options.run.supports) return;
   const deform::Supports& supports = *options.run.supports;
   double reach = supports.own.empty() ? 0.0 : supports.own.front().support.radius;

@@ -9,7 +9,6 @@
 
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
-#include <nendo/deform/mesh_file.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
@@ -17,6 +16,7 @@
 #include "nendo/commands.hpp"
 #include "session/live_view.hpp"
 #include "stress/report.hpp"
+#include "takes/model_files.hpp"
 
 namespace nendo::app::stress_command {
 namespace {
@@ -74,7 +74,7 @@ int run(const stress::StressArguments& arguments) {
   if (const auto fine = check_files(arguments); !fine) return cli::report(fine.error());
   const auto earlier = read_earlier(arguments.compare);
   if (!earlier) return cli::report(earlier.error());
-  const auto model = deform::read_mesh(options->run.mesh);
+  const auto model = takes::read_models(options->run.mesh);
   if (!model) return cli::report(model.error());
   cli::install_stop_signals();
   std::unique_ptr<session::Observer> window;
@@ -83,7 +83,8 @@ int run(const stress::StressArguments& arguments) {
     if (!opened) return cli::report(opened.error());
     window = *std::move(opened);
   }
-  const auto outcome = stress::run_stress(*options, *model, progress_for(*options), window.get());
+  const auto outcome =
+      stress::run_stress(*options, model->mesh, progress_for(*options), window.get());
   if (isatty(STDERR_FILENO) != 0) std::cerr << "\r\x1b[K";
   if (!outcome) return cli::report(outcome.error());
   const ordered_json results = stress::stress_json(*options, **outcome);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <nendo/base/text.hpp>
-#include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/side_by_side.hpp>
 
 #include "cli/cli.hpp"
@@ -38,19 +37,36 @@ void note_other_units(const std::vector<std::string>& files,
 
 } // namespace
 
-Result<deform::Mesh> read_models(const std::string& name) {
+Result<deform::ReadModel> read_model(const std::string& file, const deform::ReadOptions& options) {
+  auto model = deform::read_model(file, options);
+  if (!model) return model;
+  for (const std::string& what : model->notes)
+    cli::note(file + ": " + printable(what));
+  if (const auto remark = deform::remark_on(model->mesh); !remark.empty())
+    cli::note(file + ": " + std::string(remark));
+  return model;
+}
+
+Result<deform::ReadModel> read_models(const std::string& name, const deform::ReadOptions& options) {
   std::vector<deform::Mesh> models;
+  deform::ReadModel all;
   const std::vector<std::string> files = cli::files_of_name(name);
   for (const std::string& file : files) {
-    auto model = deform::read_mesh(file);
+    auto model = read_model(file, options);
     if (!model) return model;
-    models.push_back(*std::move(model));
+    models.push_back(std::move(model->mesh));
+    for (const std::string& what : model->notes)
+      all.notes.push_back(files.size() == 1 ? what : file + ": " + what);
   }
-  if (models.size() == 1) return std::move(models.front());
+  if (models.size() == 1) {
+    all.mesh = std::move(models.front());
+    return all;
+  }
   note_other_units(files, models);
   auto both = deform::side_by_side(models);
   if (!both) return Error{both.error().code, name + ": " + both.error().message};
-  return both;
+  all.mesh = *std::move(both);
+  return all;
 }
 
 } // namespace nendo::takes

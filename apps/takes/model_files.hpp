@@ -4,12 +4,18 @@
 #include <string>
 
 #include <nendo/base/result.hpp>
-#include <nendo/deform/mesh.hpp>
+#include <nendo/deform/mesh_file.hpp>
 
 namespace nendo::takes {
 
+/// Reads one file, and notes on standard error what its reader notes and what is strange about it.
+/// Errors: those of deform::read_model().
+Result<deform::ReadModel> read_model(const std::string& file,
+                                     const deform::ReadOptions& options = {});
+
 /// Reads that file, or those of cli::files_of_name(), which then stand side by side
 /// (deform::side_by_side()). Errors: those of deform::read_mesh(); bad_input (too large together).
-Result<deform::Mesh> read_models(const std::string& name);
+Result<deform::ReadModel> read_models(const std::string& name,
+                                      const deform::ReadOptions& options = {});
 
 } // namespace nendo::takes

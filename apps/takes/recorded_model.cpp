@@ -16,14 +16,15 @@ Result<RecordedModel> model_of_file(const recording::LoopSetup& loop, const std:
     return Error{Errc::bad_input, printable(model.error().message) +
                                       "; that is the model that was recorded, name it with --mesh"};
   }
-  if (recording::sum_of(model->vertices) == loop.mesh_sum) return RecordedModel{*std::move(model)};
+  if (recording::sum_of(model->mesh.vertices) == loop.mesh_sum)
+    return RecordedModel{std::move(model->mesh)};
   if (named.empty()) {
     return Error{Errc::bad_input, printable(loop.mesh) +
                                       ": is not as it was when it was recorded; name the model of "
                                       "then with --mesh, or another"};
   }
   cli::note(named + ": another model than was recorded; its shape will be another, too");
-  return RecordedModel{*std::move(model), false};
+  return RecordedModel{std::move(model->mesh), false};
 }
 
 } // namespace

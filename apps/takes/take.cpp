@@ -8,11 +8,10 @@
 #include <memory>
 #include <utility>
 
-#include <nendo/deform/mesh_file.hpp>
 #include <nendo/driver/chunk_file.hpp>
 #include <nendo/recording/take_tools.hpp>
 
-#include "cli/cli.hpp"
+#include "takes/model_files.hpp"
 #include "takes/recorded_frames.hpp"
 #include "takes/recorded_model.hpp"
 #include "takes/timeline_frames.hpp"
@@ -149,12 +148,10 @@ bool is_recording(const std::filesystem::path& path) {
 Result<Take> read_take(const std::filesystem::path& path) {
   if (timeline::is_timeline(path)) return read_edited(path);
   if (is_recording(path)) return read_recording(path);
-  auto mesh = deform::read_mesh(path);
-  if (!mesh) return mesh.error();
-  if (const auto remark = deform::remark_on(*mesh); !remark.empty())
-    cli::note(path.string() + ": " + std::string(remark));
+  auto model = read_model(path.string());
+  if (!model) return model.error();
   Take take;
-  take.rest = *std::move(mesh);
+  take.rest = std::move(model->mesh);
   take.frame_at = [vertices = take.rest.vertices](double) -> Result<render::SceneFrame> {
     render::SceneFrame scene_frame;
     scene_frame.vertices = vertices;

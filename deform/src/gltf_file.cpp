@@ -267,7 +267,8 @@ private:
 
 } // namespace
 
-Result<Mesh> parse_gltf(std::string_view text, std::string_view name, const ModelFolder* folder) {
+Result<Mesh> parse_gltf(std::string_view text, std::string_view name, const ModelFolder* folder,
+                        ReadNotes&) {
   try {
     return GltfReader(text, folder).read();
   } catch (const GltfRefusal& refusal) {

@@ -26,25 +26,43 @@ bool is_ply(std::string_view text) noexcept {
   return text.starts_with("ply\n") || text.starts_with("ply\r");
 }
 
-Result<Mesh> parse_obj_in(std::string_view text, std::string_view name, const ModelFolder* folder) {
-  auto model = parse_obj(text, name);
+/// What all readers are given.
+struct Source {
+  std::string_view text;
+  std::string_view name;
+  const ModelFolder* folder; ///< has the other files that the model names; null: none is read
+};
+
+Result<Mesh> parse_obj_of(const Source& source, ReadNotes& notes) {
+  auto model = parse_obj(source.text, source.name, notes);
   if (!model) return model.error();
-  if (folder != nullptr && !model->mesh.look.materials.empty())
-    read_materials(*folder, model->libraries, model->mesh.look);
+  if (source.folder != nullptr && !model->mesh.look.materials.empty())
+    read_materials(*source.folder, model->libraries, model->mesh.look, notes);
   return std::move(model->mesh);
 }
 
-/// `folder` has the other files that the model names; null: they are not read.
-Result<Mesh> parse_text(std::string_view text, std::string_view name, const ModelFolder* folder) {
-  if (text.empty()) return bad_file(name, "is empty");
-  if (text.size() > most_file_bytes) return bad_file(name, "is larger than 4 GiB");
-  text = without_mark(text);
-  auto mesh = is_gltf(text)  ? parse_gltf(text, name, folder)
-              : is_ply(text) ? parse_ply(text, name)
-                             : parse_obj_in(text, name, folder);
-  if (mesh && mesh->vertices.cols() == 0)
-    return bad_file(name, "has no vertices, so it is no OBJ, PLY or glTF mesh");
-  return mesh;
+Result<Mesh> parse(const Source& source, ReadNotes& notes) {
+  if (is_gltf(source.text)) return parse_gltf(source.text, source.name, source.folder, notes);
+  if (is_ply(source.text)) return parse_ply(source.text, source.name, notes);
+  return parse_obj_of(source, notes);
+}
+
+Result<ReadModel> parse_text(Source source, const ReadOptions&) {
+  if (source.text.empty()) return bad_file(source.name, "is empty");
+  if (source.text.size() > most_file_bytes) return bad_file(source.name, "is larger than 4 GiB");
+  source.text = without_mark(source.text);
+  ReadModel model;
+  auto mesh = parse(source, model.notes);
+  if (!mesh) return mesh.error();
+  if (mesh->vertices.cols() == 0)
+    return bad_file(source.name, "has no vertices, so it is no OBJ, PLY or glTF mesh");
+  model.mesh = *std::move(mesh);
+  return model;
+}
+
+Result<Mesh> mesh_of(Result<ReadModel> model) {
+  if (!model) return model.error();
+  return std::move(model->mesh);
 }
 
 Eigen::Index first_unusable_vertex(const Points& vertices) noexcept {
@@ -56,19 +74,30 @@ Eigen::Index first_unusable_vertex(const Points& vertices) noexcept {
 
 } // namespace
 
-Result<Mesh> parse_mesh(std::span<const std::byte> bytes, std::string_view name) {
-  return parse_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name, nullptr);
+Result<ReadModel> parse_model(std::span<const std::byte> bytes, std::string_view name,
+                              const ReadOptions& options) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return parse_text({text, name, nullptr}, options);
 }
 
-Result<Mesh> read_mesh(const std::filesystem::path& path) {
+Result<Mesh> parse_mesh(std::span<const std::byte> bytes, std::string_view name) {
+  return mesh_of(parse_model(bytes, name));
+}
+
+Result<ReadModel> read_model(const std::filesystem::path& path, const ReadOptions& options) {
   try {
     const auto text = read_file(path, most_file_bytes, "mesh");
     if (!text) return text.error();
     const ModelFolder folder(target_of(path));
-    return parse_text(*text, path.string(), &folder);
+    const std::string name = path.string();
+    return parse_text({*text, name, &folder}, options);
   } catch (const std::bad_alloc&) {
     return bad_file(path.string(), "is too large for the memory of this machine");
   }
+}
+
+Result<Mesh> read_mesh(const std::filesystem::path& path) {
+  return mesh_of(read_model(path));
 }
 
 Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh,

@@ -13,17 +13,21 @@
 
 namespace nendo::deform {
 
+/// What a reader left out, changed or guessed (ReadModel::notes).
+using ReadNotes = std::vector<std::string>;
+
 struct ObjModel {
   Mesh mesh;                          ///< its materials have names only
   std::vector<std::string> libraries; ///< what each mtllib says: one file, or several
 };
 
-Result<ObjModel> parse_obj(std::string_view text, std::string_view name);
-Result<Mesh> parse_ply(std::string_view text, std::string_view name);
+Result<ObjModel> parse_obj(std::string_view text, std::string_view name, ReadNotes& notes);
+Result<Mesh> parse_ply(std::string_view text, std::string_view name, ReadNotes& notes);
 
 class ModelFolder;
 /// Reads a glTF, binary or JSON. `folder` has the other files that it names; null: there are none.
-Result<Mesh> parse_gltf(std::string_view text, std::string_view name, const ModelFolder* folder);
+Result<Mesh> parse_gltf(std::string_view text, std::string_view name, const ModelFolder* folder,
+                        ReadNotes& notes);
 
 /// Returns the mesh as OBJ. `library` names the file with its materials; it is left out if empty.
 std::string obj_text(const Mesh& mesh, std::string_view library);

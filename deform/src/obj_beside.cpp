@@ -65,7 +65,7 @@ Result<void> write_texture(const fs::path& obj, Texture& texture) {
 } // namespace
 
 void read_materials(const ModelFolder& folder, const std::vector<std::string>& libraries,
-                    Appearance& look) {
+                    Appearance& look, std::vector<std::string>&) {
   const auto apply = [&](std::string_view named) {
     const auto name = name_in_folder(named);
     const auto text = name ? folder.read(*name, ModelFolder::most_material_bytes) : std::nullopt;

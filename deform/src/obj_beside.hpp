@@ -15,7 +15,7 @@ namespace nendo::deform {
 /// Reads what `libraries` name, as each mtllib has it, into the look's materials, and then their
 /// textures. What is missing stays unknown. Blocks.
 void read_materials(const ModelFolder& folder, const std::vector<std::string>& libraries,
-                    Appearance& look);
+                    Appearance& look, std::vector<std::string>& notes);
 
 /// Writes the materials of the OBJ in the file `obj`, and their textures, and returns the name for
 /// its mtllib; empty, and nothing is written, if there are none. `wanted` is the materials' file;

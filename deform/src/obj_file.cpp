@@ -235,7 +235,7 @@ void ObjParser::finish_look() {
 
 } // namespace
 
-Result<ObjModel> parse_obj(std::string_view text, std::string_view name) {
+Result<ObjModel> parse_obj(std::string_view text, std::string_view name, ReadNotes&) {
   return ObjParser(text, name).parse();
 }
 

@@ -310,7 +310,7 @@ void append_colour(std::string& text, const Eigen::Vector4f& colour) {
 
 } // namespace
 
-Result<Mesh> parse_ply(std::string_view text, std::string_view name) {
+Result<Mesh> parse_ply(std::string_view text, std::string_view name, ReadNotes&) {
   const auto header = parse_ply_header(text, name);
   if (!header) return header.error();
   return PlyParser(text, *header, name).parse();

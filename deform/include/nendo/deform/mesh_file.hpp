@@ -5,12 +5,31 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <nendo/base/result.hpp>
 #include <nendo/deform/mesh.hpp>
 
 namespace nendo::deform {
+
+/// The axis of the file that points up. Nendo's own is y.
+enum class UpAxis { y, z };
+
+struct ReadOptions {
+  UpAxis up = UpAxis::y; ///< z: the model is turned about x by -90 degrees
+  /// Whether vertices in one place become one vertex where the format cannot say that they are one.
+  bool weld = true;
+};
+
+/// A model, and what its reader left out, changed or guessed: one sentence for each, without a
+/// full stop. A sentence names the thing and the remedy, and goes behind the file's name and a
+/// colon.
+struct ReadModel {
+  Mesh mesh;
+  std::vector<std::string> notes;
+};
 
 /// Parses a PLY, which begins with "ply", a glTF, which begins with "glTF" or "{", or else an OBJ.
 /// It keeps vertices, faces of any size and vertices' colours, and of an OBJ texture coordinates,
@@ -21,12 +40,17 @@ namespace nendo::deform {
 /// because they change. `name` is what error messages call the file. Error: bad_input with the
 /// line, the byte offset or the part of the document, for example if there are no vertices, a
 /// coordinate is not finite, an index is wrong, or the file is cut off.
+Result<ReadModel> parse_model(std::span<const std::byte> bytes, std::string_view name,
+                              const ReadOptions& options = {});
+/// The same, without the notes.
 Result<Mesh> parse_mesh(std::span<const std::byte> bytes, std::string_view name);
 
 /// Reads and parses a file, and the materials (MTL), textures and buffers that it names. Those are
 /// read from the file's own folder and below it, and from nowhere else; a model may lack materials
 /// and textures. Blocks for as long as the disk does. Error: bad_input, also when the file is
 /// missing or cannot be read.
+Result<ReadModel> read_model(const std::filesystem::path& path, const ReadOptions& options = {});
+/// The same, without the notes.
 Result<Mesh> read_mesh(const std::filesystem::path& path);
 
 /// Writes OBJ or PLY (binary little-endian), by the ending of the path. It writes a temporary file
