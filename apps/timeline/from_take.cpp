@@ -354,8 +354,8 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
     if (const auto* request = std::get_if<flow::Request>(&*entry)) follower.hear(*request);
     hear_told(*entry, (*replay)->loop(), follower);
     if (const auto* still = std::get_if<flow::HoldStill>(&*entry)) follower.hear(*still);
-    if (const auto* change = std::get_if<flow::ChangeModel>(&*entry))
-      follower.hear(*change, (*replay)->loop().drawn_wire());
+    if (const auto* model_change = std::get_if<flow::ChangeModel>(&*entry))
+      follower.hear(*model_change, (*replay)->loop().drawn_wire());
     const auto* settings = std::get_if<flow::LoopSettings>(&*entry);
     if (settings != nullptr && !follower.hear(*settings, (*replay)->loop().settings()))
       return bad("changes the filter of the hands on the way, which a timeline cannot; cut out the "
