@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <nendo/base/result.hpp>
 
 #include "takes/frame_source.hpp"
@@ -49,6 +51,8 @@ struct Exported {
   std::optional<double> rate_hz{};     ///< nothing means that each frame is at its own time
   bool exact = true;                   ///< nothing was missing in the take up to the last frame
   std::vector<double> begin_s{};       ///< of each file, if the model differs from file to file
+  /// deform::Mesh::offset, where the files' places count from there: in model units.
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 };
 
 /// Opens the same frames again from the beginning. An export may have to read them twice.

@@ -12,6 +12,16 @@ Error not_finite(double time_s) {
                                "model down, or leave the hands out with --no-hands"};
 }
 
+/// Moves the nodes of the scene there. A node's place is a decimal number, so the floats of
+/// vertices need not hold it. A skin is where its joints are.
+void put_at(const Eigen::Vector3d& place_m, const GlbFile::Json& roots, GlbFile& file) {
+  if (place_m.isZero(0.0)) return;
+  for (const auto& root : roots) {
+    auto& node = file["nodes"][root.get<GlbFile::Index>()];
+    if (!node.contains("skin")) node["translation"] = {place_m.x(), place_m.y(), place_m.z()};
+  }
+}
+
 bool follow_hands(const flow::Frame& frame, Played& played) {
   for (const Side side : {Side::left, Side::right}) {
     const std::size_t slot = flow::Placement::index_of(side);
@@ -56,6 +66,7 @@ Result<Exported> finish_take(GltfTake& document, GlbFile::Json roots, const Play
   if (has_hands) times = file.add_scalars(played.times_s, true);
   for (const auto& hand : played.hands)
     if (hand) add_hand(*hand, times, file, document.animation, roots);
+  put_at(frames.source().model(0).offset / played.units_per_metre, roots, file);
   file["scene"] = 0;
   file.add("scenes", {{"name", "stage"}, {"nodes", std::move(roots)}});
   if (!document.animation["channels"].empty())

@@ -128,11 +128,16 @@ Result<Mesh> closed_model(const std::string& file, bool repair) {
   return std::move(repaired->mesh);
 }
 
+/// The blade is in the file's coordinates.
 Result<CutModel> cut_by(const Mesh& mesh, const AnyBlade& blade, const Options& options) {
   CutOptions cut;
   cut.edge = options.edge.value_or(0.0);
-  if (const auto* plane = std::get_if<CutPlane>(&blade)) return cut_model(mesh, *plane, cut);
-  return cut_model(mesh, std::get<CutWire>(blade), cut);
+  if (const auto* plane = std::get_if<CutPlane>(&blade))
+    return cut_model(mesh, CutPlane{plane->point - mesh.offset, plane->normal}, cut);
+  CutWire wire = std::get<CutWire>(blade);
+  for (WirePlace& place : wire.places)
+    place = {place.from - mesh.offset, place.to - mesh.offset};
+  return cut_model(mesh, wire, cut);
 }
 
 /// What of a cut model is written: each part, or all of them as one model.
@@ -164,9 +169,12 @@ Result<void> write_parts(const std::string& file, const CutModel& cut, const Opt
 
 std::string box_text(const Mesh& mesh) {
   const Box box = finite_box_of(mesh.vertices);
+  const Eigen::Vector3d low = box.lowest + mesh.offset, high = box.highest + mesh.offset;
+  const int digits = mesh.offset.isZero(0.0) ? 6 : 10; // far from zero the first ones say nothing
   char text[160];
-  std::snprintf(text, sizeof text, "(%g, %g, %g) to (%g, %g, %g)", box.lowest.x(), box.lowest.y(),
-                box.lowest.z(), box.highest.x(), box.highest.y(), box.highest.z());
+  std::snprintf(text, sizeof text, "(%.*g, %.*g, %.*g) to (%.*g, %.*g, %.*g)", digits, low.x(),
+                digits, low.y(), digits, low.z(), digits, high.x(), digits, high.y(), digits,
+                high.z());
   return text;
 }
 

@@ -185,8 +185,9 @@ Result<void> deform_file(const Options& options) {
   auto model = takes::read_model(options.mesh);
   if (!model) return model.error();
   Mesh& mesh = model->mesh;
-  const auto vectors = read_control_vectors(options.vectors);
+  auto vectors = read_control_vectors(options.vectors);
   if (!vectors) return vectors.error();
+  vectors->starts.colwise() -= mesh.offset;
   const auto supports = supports_for(*vectors, options);
   if (!supports) return supports.error();
   note_oddities(mesh, *vectors, *supports, options);

@@ -209,15 +209,34 @@ Result<exporting::Exported> export_take(const Take& take, const std::string& for
     gltf->generator = "Nendo " NENDO_VERSION;
     return exporting::export_gltf(take.open, choice, *gltf, options.out);
   }
+  const Eigen::Vector3d offset = (*source)->model(0).offset;
+  const auto counted_from = [&](Result<exporting::Exported> done) {
+    if (done) done->offset = offset;
+    return done;
+  };
   using exporting::PointCache;
   if (format == "pc2" || format == "mdd")
-    return exporting::export_point_caches(
-        take.open, choice, format == "pc2" ? PointCache::pc2 : PointCache::mdd, options.out);
+    return counted_from(exporting::export_point_caches(
+        take.open, choice, format == "pc2" ? PointCache::pc2 : PointCache::mdd, options.out));
   auto frames = exporting::ChosenFrames::make(**source, choice);
   if (!frames) return frames.error();
-  if (format == "bvh") return exporting::export_hands_bvh(*frames, take.skeletons, options.out);
-  if (format == "csv") return exporting::export_motion_csv(*frames, options.out);
+  if (format == "bvh")
+    return counted_from(exporting::export_hands_bvh(*frames, take.skeletons, options.out));
+  if (format == "csv") return counted_from(exporting::export_motion_csv(*frames, options.out));
   return exporting::export_mesh_sequence(*frames, options.out);
+}
+
+/// Of a model far from zero the places of the files are near zero, and this is what they lack.
+void note_offset(const std::string& format, const exporting::Exported& done) {
+  if (done.offset.isZero(0.0)) return;
+  const std::string place =
+      fmt::format("({}, {}, {})", done.offset.x(), done.offset.y(), done.offset.z());
+  if (format == "pc2" || format == "mdd")
+    cli::note(done.files.front() + ": its vertices count from " + place +
+              " in model units, because 32-bit floats are coarse so far from zero; move the mesh "
+              "that it is put on there");
+  else
+    cli::note(done.files.front() + ": the middle of the stage is " + place + " in model units");
 }
 
 void print_json(const std::string& format, const exporting::Exported& done) {
@@ -227,6 +246,8 @@ void print_json(const std::string& format, const exporting::Exported& done) {
                               {"files", done.files.size()}, {"exact", done.exact}};
   if (done.rate_hz) line["rate_hz"] = *done.rate_hz;
   if (!done.begin_s.empty()) line["begin_s"] = done.begin_s;
+  if (!done.offset.isZero(0.0))
+    line["offset"] = {done.offset.x(), done.offset.y(), done.offset.z()};
   line["result"] = done.files.empty() ? std::string() : done.files.front();
   if (done.morphs) {
     line["morphs"] = {{"by", name_of(done.morphs->basis)},
@@ -300,6 +321,7 @@ int export_command(const Options& options) {
   for (const std::string& note : take->notes)
     cli::note(note);
   if (!done->exact) takes::note_missing(options.file);
+  note_offset(*format, *done);
   if (options.json)
     print_json(*format, *done);
   else

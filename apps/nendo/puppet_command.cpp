@@ -55,6 +55,7 @@ Result<OpenRig> open_rig(const std::string& name) {
   auto model = takes::read_model(file->model);
   if (!model) return model.error();
   if (const auto fits = puppet::check_fits(file->puppet, model->mesh); !fits) return fits.error();
+  puppet::count_from(model->mesh.offset, file->puppet);
   OpenRig open{*std::move(file), std::move(model->mesh), nullptr};
   auto shapes = puppet::RigShapes::make(
       std::make_shared<const puppet::Rig>(open.file.puppet, open.model), open.model);
@@ -63,8 +64,15 @@ Result<OpenRig> open_rig(const std::string& name) {
   return open;
 }
 
-std::string place_text(const Eigen::Vector3d& place) {
-  return fmt::format("{:9.4g} {:9.4g} {:9.4g}", place.x(), place.y(), place.z());
+std::string vector_text(const Eigen::Vector3d& vector) {
+  return fmt::format("{:9.4g} {:9.4g} {:9.4g}", vector.x(), vector.y(), vector.z());
+}
+
+/// In the file's coordinates. Far from zero the first digits say nothing.
+std::string place_text(const Eigen::Vector3d& place, const Eigen::Vector3d& offset) {
+  if (offset.isZero(0.0)) return vector_text(place);
+  const Eigen::Vector3d in_file = place + offset;
+  return fmt::format("{:9.10g} {:9.10g} {:9.10g}", in_file.x(), in_file.y(), in_file.z());
 }
 
 std::string limits_text(const Function& function) {
@@ -86,7 +94,7 @@ void print_function(const OpenRig& open, std::size_t at) {
     const Eigen::Vector3d vector = vectors.col(static_cast<Eigen::Index>(point));
     if (vector.isZero(0.0)) continue;
     fmt::print("  {:<20} by {}  ({:.4g})\n", open.rig().puppet().points[point].name,
-               place_text(vector), vector.norm());
+               vector_text(vector), vector.norm());
   }
 }
 
@@ -104,9 +112,10 @@ void print_points(const OpenRig& open) {
   fmt::print("points\n");
   for (std::size_t at = 0; at < open.rig().puppet().points.size(); ++at) {
     const puppet::PuppetPoint& point = open.rig().puppet().points[at];
-    fmt::print("  {:<20} at {}  radius {}{}\n", point.name,
-               place_text(open.rig().starts().col(static_cast<Eigen::Index>(at))),
-               radii_text(point), point.is_pin ? ", pin" : "");
+    fmt::print(
+        "  {:<20} at {}  radius {}{}\n", point.name,
+        place_text(open.rig().starts().col(static_cast<Eigen::Index>(at)), open.model.offset),
+        radii_text(point), point.is_pin ? ", pin" : "");
   }
 }
 
@@ -315,7 +324,11 @@ Result<void> make(const Options& options) {
   if (!made) return Error{made.error().code, options.file + ": " + made.error().message};
   for (const std::string& line : made->found)
     fmt::print("{}\n", line);
-  return replace_file(options.out, made->text);
+  if (model->mesh.offset.isZero(0.0)) return replace_file(options.out, made->text);
+  auto puppet = puppet::parse_puppet(made->text, options.out);
+  if (!puppet) return puppet.error();
+  puppet::count_from(-model->mesh.offset, *puppet);
+  return replace_file(options.out, puppet->text);
 }
 
 int done(const Result<void>& result) {

@@ -278,6 +278,8 @@ Result<deform::Mesh> read_model(RunArguments& options) {
     auto model = takes::read_models(run.mesh);
     if (!model) return model.error();
     if (auto fine = check_refinable(model->mesh, options); !fine) return fine.error();
+    for (auto* const puppet : {&run.puppet, &run.masks})
+      if (*puppet) puppet::count_from(model->mesh.offset, **puppet);
     return std::move(model->mesh);
   }
   const recording::LoopSetup& loop = *run.over->take.setup.loop;

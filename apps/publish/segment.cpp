@@ -155,6 +155,7 @@ void SegmentPublisher::write_setup(const LoopOutline& outline) {
   setup.unit = layout.unit();
   setup.rate_hz = outline.rate_hz;
   setup.units_per_metre = outline.units_per_metre;
+  std::memcpy(setup.offset, outline.model->offset.data(), sizeof setup.offset);
   setup.mode = static_cast<std::uint32_t>(1 + static_cast<int>(outline.mode));
   std::array<std::uint64_t, sizeof setup / 8> words{};
   std::memcpy(words.data(), &setup, sizeof setup);

@@ -70,6 +70,7 @@ std::string RunSaving::save_puppet(const flow::DeformLoop& loop) {
     puppet.model = *name;
     puppet.text = puppet::text_of(puppet);
   }
+  puppet::count_from(-loop.model(0)->mesh.offset, puppet);
   const auto written = replace_file(out_puppet_.file, puppet.text);
   if (!written) return written.error().message;
   out_puppet_.may_be_replaced = true;

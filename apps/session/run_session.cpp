@@ -243,7 +243,11 @@ private:
   }
 
   void dispatch(const flow::Command& command) noexcept {
-    if (const auto* move = std::get_if<flow::WristMove>(&command)) {
+    const auto* const move = std::get_if<flow::WristMove>(&command);
+    if (move != nullptr && !move->is_usable()) {
+      if (!std::exchange(move_refused_, true)) report(std::string(flow::WristMove::refusal));
+    } else if (move != nullptr) {
+      move_refused_ = false;
       wrists_[flow::Placement::index_of(move->side)] = *move; // only the newest counts
     } else if (const auto* request = std::get_if<flow::Request>(&command)) {
       if (loop_commands_.try_push(command)) {
@@ -402,6 +406,7 @@ private:
   std::array<std::optional<flow::WristMove>, 2> wrists_; ///< not passed on yet
   std::optional<flow::Request> refused_;                 ///< the loop had no room for it
   bool refusal_reported_ = false;                        ///< and no request was accepted since
+  bool move_refused_ = false;                            ///< the latest, of a wrist; it was said
   bool ends_ = false;                                    ///< somebody has asked for the end
   std::optional<flow::LoopSettings> settings_;           ///< not passed on yet
   std::shared_ptr<const puppet::Rig> puppet_;            ///< not passed on yet

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <nendo/base/text.hpp>
+#include <nendo/deform/offset.hpp>
 #include <nendo/deform/side_by_side.hpp>
 
 #include "cli/cli.hpp"
@@ -35,9 +36,12 @@ void note_other_units(const std::vector<std::string>& files,
             name(least) + ", which is a speck beside it; if their units differ, scale one of them");
 }
 
-} // namespace
+void count_from_usual(deform::Mesh& mesh) {
+  deform::count_from(deform::usual_offset(mesh), mesh);
+}
 
-Result<deform::ReadModel> read_model(const std::string& file, const deform::ReadOptions& options) {
+Result<deform::ReadModel> read_from_zero(const std::string& file,
+                                         const deform::ReadOptions& options) {
   auto model = deform::read_model(file, options);
   if (!model) return model;
   for (const std::string& what : model->notes)
@@ -47,12 +51,27 @@ Result<deform::ReadModel> read_model(const std::string& file, const deform::Read
   return model;
 }
 
+} // namespace
+
+Result<deform::ReadModel> read_model(const std::string& file, const deform::ReadOptions& options) {
+  auto model = read_from_zero(file, options);
+  if (model) count_from_usual(model->mesh);
+  return model;
+}
+
 Result<deform::ReadModel> read_models(const std::string& name, const deform::ReadOptions& options) {
+  auto model = read_models_from_zero(name, options);
+  if (model) count_from_usual(model->mesh);
+  return model;
+}
+
+Result<deform::ReadModel> read_models_from_zero(const std::string& name,
+                                                const deform::ReadOptions& options) {
   std::vector<deform::Mesh> models;
   deform::ReadModel all;
   const std::vector<std::string> files = cli::files_of_name(name);
   for (const std::string& file : files) {
-    auto model = read_model(file, options);
+    auto model = read_from_zero(file, options);
     if (!model) return model;
     models.push_back(std::move(model->mesh));
     for (const std::string& what : model->notes)

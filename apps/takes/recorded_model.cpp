@@ -1,6 +1,7 @@
 #include "takes/recorded_model.hpp"
 
 #include <nendo/base/text.hpp>
+#include <nendo/deform/offset.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
 #include "cli/cli.hpp"
@@ -10,12 +11,16 @@ namespace nendo::takes {
 namespace {
 
 Result<RecordedModel> model_of_file(const recording::LoopSetup& loop, const std::string& named) {
-  auto model = read_models(named.empty() ? loop.mesh : named);
+  auto model = read_models_from_zero(named.empty() ? loop.mesh : named);
   if (!model) {
     if (!named.empty()) return model.error();
     return Error{Errc::bad_input, printable(model.error().message) +
                                       "; that is the model that was recorded, name it with --mesh"};
   }
+  // The loop of an old recording of a model far from zero had it there.
+  if (recording::sum_of(model->mesh.vertices) == loop.mesh_sum)
+    return RecordedModel{std::move(model->mesh)};
+  deform::count_from(deform::usual_offset(model->mesh), model->mesh);
   if (recording::sum_of(model->mesh.vertices) == loop.mesh_sum)
     return RecordedModel{std::move(model->mesh)};
   if (named.empty()) {

@@ -309,7 +309,7 @@ std::string complaint_about(const Key& key) {
   for (std::size_t at = 0; at < hand::angle_count; ++at)
     if (!within(key.angles[hand::angle_at(at)], -most_angle_rad, most_angle_rad))
       return std::string(hand::angle_names[at]) + " must lie within a full turn either way";
-  if (!is_place(key.wrist_m)) return "the wrist must be within 1000 m";
+  if (!is_place(key.wrist_m)) return "the wrist must be within 1000 m of the stage's middle";
   if (!within(key.wrist_turn.norm(), 0.99, 1.01))
     return "wrist_turn must be a quaternion of unit length";
   return {};

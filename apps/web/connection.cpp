@@ -146,9 +146,9 @@ void Connection::send_control(std::string frame, HostTime now) {
   flush(now);
 }
 
-void Connection::close(CloseCode code, HostTime now) {
+void Connection::close(CloseCode code, HostTime now, std::string_view reason) {
   if (closing_) return;
-  queue(shared_bytes(close_frame(code)), false, now);
+  queue(shared_bytes(close_frame(code, reason)), false, now);
   closing_ = true;
   flush(now);
 }

@@ -58,7 +58,7 @@ public:
   /// Queues a control frame, unless the queue is too long.
   void send_control(std::string frame, HostTime now);
   /// Queues a close frame, after which the connection ends.
-  void close(CloseCode code, HostTime now);
+  void close(CloseCode code, HostTime now, std::string_view reason = {});
 
   /// Takes one message from the client's allowance. Returns false if there was none left.
   bool within_message_rate(HostTime now) noexcept;

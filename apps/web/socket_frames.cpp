@@ -100,11 +100,11 @@ std::string control_frame(Opcode opcode, std::string_view payload) {
   return server_head(opcode, payload.size()) + std::string(payload);
 }
 
-std::string close_frame(CloseCode code) {
+std::string close_frame(CloseCode code, std::string_view reason) {
   const auto number = static_cast<unsigned>(code);
-  const std::array<char, 2> payload{static_cast<char>(number >> 8U),
-                                    static_cast<char>(number & 0xFFU)};
-  return control_frame(Opcode::close, {payload.data(), payload.size()});
+  std::string payload{static_cast<char>(number >> 8U), static_cast<char>(number & 0xFFU)};
+  payload += reason.substr(0, most_close_reason);
+  return control_frame(Opcode::close, payload);
 }
 
 } // namespace nendo::web

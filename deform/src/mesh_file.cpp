@@ -5,6 +5,7 @@
 
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
+#include <nendo/deform/offset.hpp>
 
 #include "gltf_document.hpp"
 #include "mesh_formats.hpp"
@@ -102,6 +103,11 @@ Result<Mesh> read_mesh(const std::filesystem::path& path) {
 
 Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh,
                         const std::filesystem::path& materials) {
+  if (!mesh.offset.isZero(0.0)) {
+    Mesh from_zero = mesh;
+    count_from(Eigen::Vector3d::Zero(), from_zero);
+    return write_mesh(path, from_zero, materials);
+  }
   const std::string ending = path.extension().string();
   if (ending != ".obj" && ending != ".ply")
     return Error{Errc::usage, path.string() + ": the name must end in .obj or .ply"};

@@ -56,9 +56,11 @@ std::pair<LiveSurface, Appearance> surface_of(const Mesh& mesh) {
 }
 
 /// The mesh before the hands.
-Mesh mesh_at_rest(TriangleSurface surface, const Appearance& look) {
+Mesh mesh_at_rest(TriangleSurface surface, const Appearance& look, const Eigen::Vector3d& offset) {
   surface.points = std::move(surface.rest);
-  return mesh_of(surface, look);
+  Mesh mesh = mesh_of(surface, look);
+  mesh.offset = offset;
+  return mesh;
 }
 
 /// The vertices that bound the box: where they stay, the layout's numbers mean the same.
@@ -79,6 +81,7 @@ struct Refiner::Parts {
   Appearance look;
   LiveSurface surface;      ///< of the mesh before the hands
   std::vector<char> bounds; ///< of each point whether the bounding box needs it
+  Eigen::Vector3d offset;   ///< Mesh::offset
   double target = 1.0;      ///< the limits' measure; Mesh::detail says what part or multiple of it
 
   /// The surface as the shape has it, in the numbers of blocks.
@@ -138,8 +141,8 @@ Result<void> Refiner::check(const Mesh& mesh) {
 Result<Refiner> Refiner::make(const Mesh& mesh) {
   if (const auto fine = check(mesh); !fine) return fine.error();
   auto [surface, look] = surface_of(mesh);
-  auto parts =
-      std::make_unique<Parts>(Parts{std::move(look), std::move(surface), bounding(mesh.vertices)});
+  auto parts = std::make_unique<Parts>(
+      Parts{std::move(look), std::move(surface), bounding(mesh.vertices), mesh.offset});
   double sum = 0.0;
   for (const VertexDetail& of : parts->surface.detail())
     sum += static_cast<double>(of.edge);
@@ -256,7 +259,7 @@ Refinement Refiner::refine(const BlockShape& shape, const BlockLayout& layout,
   Refinement result;
   result.operations = std::move(made.operations);
   result.shape = std::move(made.shape);
-  result.mesh = mesh_at_rest(std::move(made.surface), parts_->look);
+  result.mesh = mesh_at_rest(std::move(made.surface), parts_->look, parts_->offset);
   return result;
 }
 
@@ -266,7 +269,7 @@ Result<Mesh> refined(const Mesh& mesh, std::span<const EdgeOperation> operations
   for (const EdgeOperation& operation : operations)
     if (!live.repeat(operation))
       return Error{Errc::bad_input, "cannot be refined as it was when it was recorded"};
-  return mesh_at_rest(live.take(), look);
+  return mesh_at_rest(live.take(), look, mesh.offset);
 }
 
 BlockShape shape_in_blocks(const Eigen::Matrix3Xf& shape, const BlockLayout& layout) {

@@ -168,6 +168,7 @@ Subdivision subdivide(const Mesh& mesh) {
   Subdivision result;
   Mesh& finer = result.mesh;
   finer.vertices = mesh.vertices;
+  finer.offset = mesh.offset;
   Middles middles(mesh, mesh.face_corners, static_cast<std::uint32_t>(mesh.vertices.cols()));
   append_means(middles, finer.vertices);
   append_faces(mesh, mesh.face_corners, middles, finer.face_corners, [&] {

@@ -51,6 +51,37 @@ std::vector<driver::RecordCounts> sent_in(const std::filesystem::path& path) {
 } // namespace
 
 TEST_SUITE("recorder") {
+  TEST_CASE("what a reader would refuse is refused before anything is recorded, with the reason") {
+    const auto refused = [](const char* reason, const auto& change) {
+      RecordedLoop live(Mode::type1);
+      Setup setup = live.setup;
+      change(setup);
+      std::uint32_t chunks = 0;
+      const auto bytes = setup_bytes(setup, chunks);
+      const auto fine = check_readable(setup, bytes);
+      REQUIRE_FALSE(fine);
+      CAPTURE(fine.error().message);
+      CHECK(fine.error().message.starts_with("this run cannot be recorded: "));
+      CHECK(fine.error().message.find(reason) != std::string::npos);
+      RecorderOptions options;
+      options.file = live.path;
+      CHECK_FALSE(Recorder::begin(setup, live.input_log, std::move(options)));
+      CHECK_FALSE(std::filesystem::exists(live.path));
+      std::uint32_t as_many = 0;
+      CHECK(check_readable(live.setup, setup_bytes(live.setup, as_many)));
+    };
+    refused("more than 1000 km",
+            [](Setup& setup) { setup.loop->placement.T_stage_wrist[1].translation().x() = 2e6; });
+    refused("the model's size", [](Setup& setup) { setup.loop->placement.units_per_metre = 0.0; });
+    refused("--radius", [](Setup& setup) {
+      setup.loop->options.sculptor.deformer.supports.shared.assign(1, {1e101, 1.0});
+    });
+    refused("--radius", [](Setup& setup) { setup.loop->options.sculptor.piece_length = 1e-120; });
+    refused("names are too long", [](Setup& setup) { setup.loop->mesh.assign(70000, 'm'); });
+    refused("calibrate again", [](Setup& setup) { setup.hands[0].filter.min_cutoff_hz = 1e7; });
+    refused("1 MiB", [](Setup& setup) { setup.loop->puppet.text.assign(2 << 20, '#'); });
+  }
+
   TEST_CASE("all that the loop took is in the file, and the ending says how much that is") {
     RecordedLoop live(Mode::type1);
     live.record();

@@ -425,6 +425,17 @@ TEST_SUITE("run_session") {
     REQUIRE(take);
     CHECK(take->setup().loop->placement.T_stage_wrist[0].translation() == asker.wrist);
   }
+
+  TEST_CASE("a hand that cannot be moved there stays, and the reason is said once") {
+    Run run;
+    const flow::WristMove too_far{Side::left, {-0.5, 4000.0, 0.0}, {0, 0, 0, 1}};
+    const flow::WristMove near{Side::left, {-0.5, 0.25, 0.125}, {0, 0, 0, 1}};
+    Asker asker(Changes{{near}, {too_far}, {too_far}});
+    run.follow({&asker});
+    CHECK(asker.wrist == Eigen::Vector3d(-0.5, 0.25, 0.125));
+    REQUIRE(asker.reports.size() == 1);
+    CHECK(asker.reports[0].find("within 100 m of the stage's middle") != std::string::npos);
+  }
 }
 
 } // namespace run_session_test

@@ -50,6 +50,8 @@ TEST_SUITE("socket_frames") {
     CHECK(server_head(Opcode::binary, 126).size() == 4);
     CHECK(server_head(Opcode::binary, 65535).size() == 4);
     CHECK(close_frame(CloseCode::normal) == "\x88\x02\x03\xE8");
+    CHECK(close_frame(CloseCode::policy, "too far") == "\x88\x09\x03\xF0too far");
+    CHECK(close_frame(CloseCode::policy, std::string(500, 'w')).size() == 2 + 125);
   }
 
   TEST_CASE("a message in parts is one, with a ping between, however the bytes are cut") {

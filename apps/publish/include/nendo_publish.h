@@ -59,7 +59,8 @@ struct nendo_publish_setup {
   double units_per_metre; /* from the stage, on which the hands are, to the model */
   uint32_t mode;          /* at the beginning; 1: type-1, 2: type-2, 3: clay */
   uint32_t reserved0;
-  uint64_t reserved1[7];
+  double offset[3]; /* of a model far from zero: what all places lack to those of its file */
+  uint64_t reserved1[4];
 };
 
 struct nendo_publish_joint {

@@ -204,4 +204,24 @@ std::string text_of(const Puppet& puppet) {
   return text;
 }
 
+void count_from(const Vector3d& offset, Puppet& puppet) {
+  if (offset.isZero(0.0)) return;
+  for (PuppetPoint& point : puppet.points)
+    if (!point.vertex) point.at -= offset;
+  const auto twin_place = [](const Vector3d& at) { return Vector3d(-at.x(), at.y(), at.z()); };
+  for (Function& function : puppet.functions) {
+    if (!function.turn) continue;
+    Vector3d& through = function.turn->through;
+    through =
+        function.is_twin ? twin_place(twin_place(through) - offset) : Vector3d(through - offset);
+  }
+  for (PuppetPart& part : puppet.parts)
+    if (part.inside)
+      part.inside = deform::Box{part.inside->lowest - offset, part.inside->highest - offset};
+  for (Mask& mask : puppet.masks)
+    mask.at -= offset;
+  if (puppet.mirror_at != 0.0) puppet.mirror_at -= offset.x();
+  puppet.text = text_of(puppet);
+}
+
 } // namespace nendo::puppet

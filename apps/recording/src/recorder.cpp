@@ -259,6 +259,7 @@ Result<std::unique_ptr<Recorder>> Recorder::begin(const Setup& setup, flow::Inpu
                                                   RecorderOptions options) {
   std::uint32_t chunks = 0;
   auto bytes = setup_bytes(setup, chunks);
+  if (const auto fine = check_readable(setup, bytes); !fine) return fine.error();
   std::optional<TakeFile> file;
   if (!options.file.empty()) {
     auto created = TakeFile::create(options.file, bytes, chunks, TakeFile::Kind::live);

@@ -79,17 +79,26 @@ void read_vertices(ByteReader& reader, CheckedReader& checked, ModelOrigin& orig
 
 } // namespace
 
+namespace {
+
+std::size_t most_of_chunk(const ModelOrigin& origin) noexcept {
+  return is_of_shape(origin.source) ? most_vertices_of_chunk : most_operations_of_chunk;
+}
+
+} // namespace
+
 std::size_t origin_chunks(const ModelOrigin& origin) noexcept {
   const std::size_t all = is_of_shape(origin.source) ? static_cast<std::size_t>(origin.shape.cols())
                                                      : origin.refining.size();
-  return std::max<std::size_t>(1, (all + most_operations_of_chunk - 1) / most_operations_of_chunk);
+  const std::size_t most = most_of_chunk(origin);
+  return std::max<std::size_t>(1, (all + most - 1) / most);
 }
 
 void put_origin(ByteWriter& writer, const ModelOrigin& origin, std::size_t chunk) {
   writer.u8(static_cast<std::uint8_t>(origin.source));
   writer.u8(chunk > 0 ? 1 : origin.keeps_rest ? 2 : 0);
-  const std::size_t first = chunk * most_operations_of_chunk;
-  const std::size_t end = first + most_operations_of_chunk;
+  const std::size_t first = chunk * most_of_chunk(origin);
+  const std::size_t end = first + most_of_chunk(origin);
   if (is_of_shape(origin.source)) {
     if (chunk == 0) put_change(writer, origin);
     const auto count = static_cast<std::size_t>(origin.shape.cols());

@@ -92,10 +92,12 @@ inline constexpr std::size_t most_blocks_of_chunk = std::size_t{1} << 14;
 std::size_t plain_origins(const LoopSetup& loop) noexcept;
 inline constexpr std::size_t most_plain_origins = 16;
 /// Writes that of so many chunks of an origin. Each has at most most_operations_of_chunk of its
-/// operations, or of the vertices of the shape that it was made of.
+/// operations, or most_vertices_of_chunk of the vertices of the shape that it was made of.
 void put_origin(ByteWriter& writer, const flow::ModelOrigin& origin, std::size_t chunk);
 std::size_t origin_chunks(const flow::ModelOrigin& origin) noexcept;
 inline constexpr std::size_t most_operations_of_chunk = std::size_t{1} << 20;
+/// Of 24 bytes each: more would not go into a chunk.
+inline constexpr std::size_t most_vertices_of_chunk = std::size_t{1} << 19;
 
 /// Writes settings, as they stand in a loop's chunk and in entries.
 void put_settings(ByteWriter& writer, const flow::LoopSettings& settings);

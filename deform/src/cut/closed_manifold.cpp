@@ -84,10 +84,11 @@ void check_fans(std::span<const std::uint32_t> starts, const HalfEdges& edges, F
 }
 
 std::string place_of(const Mesh& mesh, std::uint32_t vertex) {
-  const auto at = static_cast<Eigen::Index>(vertex);
+  const Eigen::Vector3d at = mesh.vertices.col(static_cast<Eigen::Index>(vertex)) + mesh.offset;
+  const int digits = mesh.offset.isZero(0.0) ? 6 : 10; // far from zero the first ones say nothing
   char text[96];
-  std::snprintf(text, sizeof text, "(%g, %g, %g)", mesh.vertices(0, at), mesh.vertices(1, at),
-                mesh.vertices(2, at));
+  std::snprintf(text, sizeof text, "(%.*g, %.*g, %.*g)", digits, at.x(), digits, at.y(), digits,
+                at.z());
   return text;
 }
 

@@ -119,6 +119,7 @@ void Assembler::write_vertices() {
   Points& vertices = result_.mesh.vertices;
   vertices.resize(3, static_cast<Eigen::Index>(count));
   std::copy_n(cut_.mesh.vertices.data(), 3 * std::size_t{first_added_}, vertices.data());
+  result_.mesh.offset = cut_.mesh.offset;
   double* to = vertices.data() + 3 * std::size_t{first_added_};
   const auto put = [&](const SpacePoint& point) { to = std::copy(point.begin(), point.end(), to); };
   for (std::uint32_t vertex = first_added_; vertex < surface_.vertex_count(); ++vertex)

@@ -94,6 +94,7 @@ std::vector<Mesh> separated(const Mesh& mesh, const std::vector<std::uint32_t>& 
     for (std::uint32_t at = faces.starts[part]; at < faces.starts[part + 1]; ++at)
       copy_face(mesh, faces.members[at], vertex, texcoord, own);
     take_columns(mesh.vertices, vertex.used(), own.vertices);
+    own.offset = mesh.offset;
     take_columns(mesh.texcoords, texcoord.used(), own.texcoords);
     if (mesh.look.vertex_colours.cols() > 0)
       take_columns(mesh.look.vertex_colours, vertex.used(), own.look.vertex_colours);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <utility>
 
 #include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/offset.hpp>
 
 #include "join/mesh_surface.hpp"
 #include "join/seam.hpp"
@@ -35,18 +37,33 @@ Result<void> check_part(const JoinPart& part) {
   return {};
 }
 
-std::string place_text(const SpacePoint& place) {
+std::string place_text(const SpacePoint& place, const Eigen::Vector3d& offset) {
+  const int digits = offset.isZero(0.0) ? 6 : 10; // far from zero the first ones say nothing
   char text[96];
-  std::snprintf(text, sizeof text, "(%g, %g, %g)", place[0], place[1], place[2]);
+  std::snprintf(text, sizeof text, "(%.*g, %.*g, %.*g)", digits, place[0] + offset[0], digits,
+                place[1] + offset[1], digits, place[2] + offset[2]);
   return text;
 }
 
+/// The parts, counted from where the first one is. `moved` owns those that counted from elsewhere.
+std::vector<const Mesh*> counted_alike(std::span<const JoinPart> parts, std::deque<Mesh>& moved) {
+  std::vector<const Mesh*> meshes;
+  for (const JoinPart& part : parts) {
+    meshes.push_back(part.mesh);
+    if (part.mesh->offset == parts[0].mesh->offset) continue;
+    meshes.back() = &moved.emplace_back(*part.mesh);
+    count_from(parts[0].mesh->offset, moved.back());
+  }
+  return meshes;
+}
+
 /// Why no union was found: usually because a part cuts itself.
-Error explained(Error error, const TriangleSurface& surface, const JoinPart& part) {
+Error explained(Error error, const TriangleSurface& surface, const Eigen::Vector3d& offset,
+                const JoinPart& part) {
   const auto pairs = self_intersections(surface.points, surface.faces, 1);
   if (!pairs.empty())
     error.message += "; " + part.name + " cuts itself near " +
-                     place_text(surface.points[surface.faces[pairs[0].first][0]]) +
+                     place_text(surface.points[surface.faces[pairs[0].first][0]], offset) +
                      ", so mend it first";
   return error;
 }
@@ -76,12 +93,11 @@ Result<void> check_options(const JoinOptions& options) {
 Result<Joined> join(std::span<const JoinPart> parts, const JoinOptions& options) {
   if (const auto fine = check_options(options); !fine) return fine.error();
   if (parts.size() < 2) return Error{Errc::usage, "two parts at least are needed"};
-  std::vector<const Mesh*> meshes;
-  for (const JoinPart& part : parts) {
+  for (const JoinPart& part : parts)
     if (const auto fine = check_part(part); !fine) return fine.error();
-    meshes.push_back(part.mesh);
-  }
-  SharedSurfaces shared = surfaces_of(meshes);
+  std::deque<Mesh> moved;
+  const Eigen::Vector3d& offset = parts[0].mesh->offset;
+  SharedSurfaces shared = surfaces_of(counted_alike(parts, moved));
   for (std::size_t at = 0; at < parts.size(); ++at)
     if (!(volume_of(shared.surfaces[at].points, shared.surfaces[at].faces) > 0.0))
       return Error{Errc::bad_input, parts[at].name + ": faces inwards; turn its faces round"};
@@ -94,8 +110,8 @@ Result<Joined> join(std::span<const JoinPart> parts, const JoinOptions& options)
         (at == 1 ? parts[0].name : "what was joined") + " and " + parts[at].name + ": ";
     auto both = union_of(whole, next);
     if (!both) {
-      Error error = explained(both.error(), next, parts[at]);
-      if (at == 1) error = explained(std::move(error), whole, parts[0]);
+      Error error = explained(both.error(), next, offset, parts[at]);
+      if (at == 1) error = explained(std::move(error), whole, offset, parts[0]);
       return Error{error.code, names + error.message};
     }
     JoinStep step{both->crossings, both->swallowed};
@@ -105,6 +121,7 @@ Result<Joined> join(std::span<const JoinPart> parts, const JoinOptions& options)
     joined.steps.push_back(step);
   }
   joined.mesh = mesh_of(whole, shared.look);
+  joined.mesh.offset = offset;
   return joined;
 }
 

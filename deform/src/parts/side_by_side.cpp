@@ -81,6 +81,7 @@ std::vector<Eigen::Vector3d> ways_of(std::span<const Mesh> models) {
 
 Result<Mesh> side_by_side(std::span<const Mesh> models) {
   Mesh all;
+  if (!models.empty()) all.offset = models.front().offset;
   Appearance look;
   LookCollector looks(look);
   const Shared shared = shared_by(models);

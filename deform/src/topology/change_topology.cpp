@@ -159,6 +159,7 @@ Result<ChangedTopology> change_topology(const Mesh& mesh) {
     const std::set<Triple> meeting = attempt.meeting();
     if (meeting.empty()) {
       ChangedTopology changed{mesh_of(attempt.kept, look), attempt.counts};
+      changed.mesh.offset = mesh.offset;
       if (Refiner::check(changed.mesh)) return changed;
       break;
     }

@@ -35,6 +35,9 @@ struct Mesh {
   Appearance look; ///< materials, colours and names
   /// One for each vertex of a refined mesh, or none at all. No file has them.
   std::vector<VertexDetail> detail;
+  /// The place in the file's coordinates that the vertices count from (offset.hpp). A file's
+  /// coordinates of a vertex are offset + vertex.
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 
   std::size_t face_count() const noexcept { return face_starts.size() - 1; }
 };

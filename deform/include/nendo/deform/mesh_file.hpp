@@ -55,11 +55,11 @@ Result<Mesh> read_mesh(const std::filesystem::path& path);
 
 /// Writes OBJ or PLY (binary little-endian), by the ending of the path. It writes a temporary file
 /// beside `path`, syncs and renames it, so that a file of that name is always whole. Coordinates
-/// survive a round trip exactly. An OBJ has all that the mesh has; its materials go beside it into
-/// `materials`, or into a file of its name with .mtl if that is empty, and textures too. They never
-/// replace a file that was not written by this function. A PLY has colours of vertices alone.
-/// Blocks for as long as the disk does. Errors: usage (unknown ending), failed (a file cannot be
-/// written).
+/// survive a round trip exactly; Mesh::offset is added to them. An OBJ has all that the mesh has;
+/// its materials go beside it into `materials`, or into a file of its name with .mtl if that is
+/// empty, and textures too. They never replace a file that was not written by this function. A PLY
+/// has colours of vertices alone. Blocks for as long as the disk does. Errors: usage (unknown
+/// ending), failed (a file cannot be written).
 Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh,
                         const std::filesystem::path& materials = {});
 

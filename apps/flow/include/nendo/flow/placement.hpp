@@ -27,8 +27,8 @@ struct Table {
   double half_side = 0.0;
 };
 
-/// The stage has the model's axes and origin, in metres: x to the operator's right, y up, z towards
-/// the operator. Models are taken to have y up and z to the front, as most OBJ files have.
+/// The stage has the model's axes, in metres: x to the operator's right, y up, z towards the
+/// operator, and its origin is where vertices count from (deform::Mesh::offset). Models have y up.
 struct Placement {
   double units_per_metre = 1.0; ///< model units on a metre of the stage
   std::array<Eigen::Isometry3d, 2> T_stage_wrist{Eigen::Isometry3d::Identity(),

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include <Eigen/Geometry>
 
@@ -22,6 +23,10 @@ struct WristMove {
   /// Tells whether the position is within farthest_m of the stage's middle and the quaternion is
   /// not zero. The loop refuses a move that is not usable.
   bool is_usable() const noexcept;
+  /// What is said where a move is refused.
+  static constexpr std::string_view refusal =
+      "a hand cannot be moved there: it must stay within 100 m of the stage's middle on each axis, "
+      "and its turn must be a quaternion that is not zero";
   /// Returns T_stage_wrist. The move must be usable.
   Eigen::Isometry3d pose() const noexcept;
 

@@ -155,6 +155,11 @@ Result<Puppet> read_puppet(const std::filesystem::path& path);
 /// `mirror`. Of the comments of `puppet.text`, those at its beginning are kept.
 std::string text_of(const Puppet& puppet);
 
+/// Makes the places of a puppet, and those in its text, count from there: deform::Mesh::offset of
+/// its model, or, back to the file's coordinates, minus that. A mirror of x = 0 stays as it is: of
+/// a model far from zero it is the plane x = offset, its middle. Without an offset nothing changes.
+void count_from(const Eigen::Vector3d& offset, Puppet& puppet);
+
 /// Error: bad_input (the model has no face, or not the vertex of a point).
 Result<void> check_fits(const Puppet& puppet, const deform::Mesh& model);
 /// Returns where the points are on that model, in their order. It must fit (check_fits()).

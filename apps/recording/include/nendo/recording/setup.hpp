@@ -71,6 +71,10 @@ void continue_from(const flow::LoopState& state, const deform::BlockLayout& layo
 /// number of these chunks.
 std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks);
 
+/// Tells whether setup_bytes() of a setup can be read again. Error: failed, with what is out of its
+/// range, and what to do. A recorder refuses such a setup before anything is recorded.
+Result<void> check_readable(const Setup& setup, std::span<const std::byte> bytes);
+
 /// Reads a chunk into `setup`. Returns false if the chunk is of a setup, but holds something that
 /// nendo does not write. Chunks of other types are ignored and give true. The result is finite and
 /// usable without further checks, because enumerators, counts and sizes are checked here.

@@ -1,0 +1,19 @@
+#pragma once
+// Models far from zero: surveyed ground, a part in its assembly, a scan in world coordinates. A
+// float holds a place to a share of its distance from zero. So that nothing depends on that
+// distance, the vertices of such a model count from a place beside it (Mesh::offset).
+
+#include <nendo/deform/mesh.hpp>
+
+namespace nendo::deform {
+
+/// Returns from where the vertices of a mesh should count. On an axis on which the middle of its
+/// faces is at most four times its size from zero, this is 0, so that most models stay as their
+/// files have them. On another axis it is that middle: the difference to a vertex of a face is
+/// then exact, and so is the sum (Sterbenz 1974). In file coordinates.
+Eigen::Vector3d usual_offset(const Mesh& mesh) noexcept;
+
+/// Makes the vertices count from that place. The model stays where it is.
+void count_from(const Eigen::Vector3d& offset, Mesh& mesh) noexcept;
+
+} // namespace nendo::deform
