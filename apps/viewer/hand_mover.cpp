@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Of the wrist from the stage's middle: as far as arms reach, and in the picture.
-constexpr double most_m = 2.0;
+// Of the wrist from the middle of the picture, on each axis: as far as arms reach.
+constexpr double max_reach_m = 2.0;
 constexpr double degrees_a_pixel = 0.35; // as the camera turns
 
 } // namespace
@@ -34,10 +34,15 @@ void HandMover::take(const render::Camera& camera, const flow::Frame& frame,
       wrist_ = hand.T_stage_wrist;
     }
   }
+  // About what is looked at: a model need not stand in the stage's middle. A hand that is farther
+  // away already stays where it is.
+  const Vector3d reach_m = Vector3d::Constant(max_reach_m);
+  lowest_m_ = wrist_.translation().cwiseMin(camera.target - reach_m);
+  highest_m_ = wrist_.translation().cwiseMax(camera.target + reach_m);
 }
 
 void HandMover::go_by(const Vector3d& way_m) noexcept {
-  wrist_.translation() = (wrist_.translation() + way_m).cwiseMax(-most_m).cwiseMin(most_m);
+  wrist_.translation() = (wrist_.translation() + way_m).cwiseMax(lowest_m_).cwiseMin(highest_m_);
 }
 
 void HandMover::shift(const render::Camera& camera, double dx, double dy, double height) noexcept {

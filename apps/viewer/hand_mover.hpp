@@ -40,6 +40,8 @@ private:
 
   std::optional<std::size_t> slot_;                         ///< flow::Placement::index_of(side)
   Eigen::Isometry3d wrist_ = Eigen::Isometry3d::Identity(); ///< T_stage_wrist
+  Eigen::Vector3d lowest_m_ = Eigen::Vector3d::Zero();      ///< where it may go, on the stage
+  Eigen::Vector3d highest_m_ = Eigen::Vector3d::Zero();
 };
 
 } // namespace nendo::viewer

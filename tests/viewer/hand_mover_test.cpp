@@ -98,6 +98,23 @@ TEST_SUITE("hand_mover") {
     CHECK(std::abs(turn.axis().dot(camera.axes().row(1).transpose())) == doctest::Approx(1.0));
   }
 
+  TEST_CASE("beside a model that is not in the stage's middle a hand moves as anywhere") {
+    test::LoopUnderTest test(flow::Mode::type1);
+    flow::Frame frame = test.frame_after_tick(0);
+    const Vector3d away(0.0, 3.2, -3.2);
+    for (auto& joint : frame.hands[0].pose.joints)
+      joint.translation() += away;
+    frame.hands[0].T_stage_wrist.translation() += away;
+    const Camera camera = looking_at(frame);
+    const Vector3d wrist = frame.hands[0].T_stage_wrist.translation();
+    HandMover mover;
+    mover.take(camera, frame, pixel_of(camera, wrist), size);
+    mover.push(camera, 3.0);
+    CHECK((place_of(mover.move()) - wrist).norm() == doctest::Approx(0.03));
+    mover.push(camera, 1e6);
+    CHECK((place_of(mover.move()) - wrist).norm() <= 2.0 * std::sqrt(3.0) + 1e-9);
+  }
+
   TEST_CASE("however wildly the mouse moves, the move is usable") {
     test::LoopUnderTest test(flow::Mode::type1);
     const flow::Frame& frame = test.frame_after_tick(0);

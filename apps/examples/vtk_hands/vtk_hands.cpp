@@ -15,6 +15,7 @@
 #include <vtkRenderWindowInteractor.h>
 
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/deform/offset.hpp>
 
 #include "live_shaping.hpp"
 #include "stage.hpp"
@@ -125,8 +126,9 @@ int main(int argc, char** argv) {
     std::cerr << usage;
     return 2;
   }
-  const auto model = deform::read_mesh(arguments->model);
+  auto model = deform::read_mesh(arguments->model);
   if (!model) return fail(model.error());
+  deform::count_from(deform::usual_offset(*model), *model);
   const auto shaping = LiveShaping::begin(*model, arguments->shaping);
   if (!shaping) return fail(shaping.error());
   Stage stage((*shaping)->loop(), *model);

@@ -1,7 +1,7 @@
 // The mouse as what tells where a hand is, for gloves that have no tracker: the window's HandMover.
 // From a right press near a hand to its release, which the camera then hears nothing of.
 const HAND_REACH = 60 // pixels from a joint
-const FARTHEST = 2 // metres from the stage's middle: as far as arms reach
+const MAX_REACH = 2 // metres from the middle of the picture, on each axis: as far as arms reach
 const PUSH = 0.01, RADIANS_A_PIXEL = 0.35 * Math.PI / 180
 
 class HandMover {
@@ -33,7 +33,13 @@ class HandMover {
         nearest = distance
         this.held = { slot, pointer: event.pointerId, place: hand.joints[1].place, turn: hand.forearm, at: event, origin: seen.origin }
       }
-    if (this.held) this.canvas.setPointerCapture(event.pointerId)
+    if (this.held) {
+      // A hand that is farther away already stays where it is.
+      const middle = add(this.camera.target, seen.origin)
+      this.held.range = this.held.place.map((axis, at) =>
+        [Math.min(axis, middle[at] - MAX_REACH), Math.max(axis, middle[at] + MAX_REACH)])
+      this.canvas.setPointerCapture(event.pointerId)
+    }
     return this.held !== null
   }
   letGo() {
@@ -67,7 +73,8 @@ class HandMover {
     return true
   }
   go(way) {
-    this.held.place = add(this.held.place, way).map(axis => Math.min(FARTHEST, Math.max(-FARTHEST, axis)))
+    this.held.place = add(this.held.place, way).map((axis, at) =>
+      Math.min(this.held.range[at][1], Math.max(this.held.range[at][0], axis)))
     this.moved = true
   }
 
