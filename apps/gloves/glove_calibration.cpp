@@ -1,6 +1,7 @@
 #include "gloves/glove_calibration.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include <nendo/base/text.hpp>
@@ -25,6 +26,32 @@ void report_none(const driver::GloveInfo& glove, Side side) {
   cli::note(source + ": not calibrated for this " + std::string(name_of(side)) +
             " hand, so angles are an average hand's; `nendo calibrate " + source +
             " --user NAME` makes them the wearer's");
+}
+
+/// Of a user who has calibrations, but none for this glove and hand.
+void report_none_of(const driver::GloveInfo& glove, Side side, const std::string& user) {
+  const std::string source = printable(glove.source);
+  cli::note(source + ": " + printable(user) + " has no calibration of a " +
+            std::string(name_of(side)) +
+            " hand for this glove, so angles are an average hand's; `nendo "
+            "calibrate " +
+            source + " --user " + printable(user) + "` makes one");
+}
+
+/// Fails if nothing at all is stored for the user, and names the users that there are.
+Result<void> check_user(const hand::CalibrationList& stored, const std::string& user) {
+  std::set<std::string> users;
+  for (const hand::StoredCalibration& file : stored.files)
+    users.insert(file.wearer.user);
+  if (users.contains(user)) return {};
+  std::string known;
+  for (const std::string& one : users)
+    known.append(known.empty() ? "" : ", ").append(printable(one));
+  return Error{Errc::bad_input,
+               "--user " + printable(user) + ": no calibration of " + printable(user) +
+                   " is stored; " +
+                   (known.empty() ? "there is none of anybody" : "there are those of " + known) +
+                   "; `nendo calibrate GLOVE --user " + printable(user) + "` makes one"};
 }
 
 /// Tells of the calibration that a glove of the other hand would get in place of `glove`, if it is
@@ -98,44 +125,50 @@ std::optional<hand::CalibrationChoice> set_other(const driver::GloveInfo& glove,
   return choice;
 }
 
+FoundCalibration found_in(const hand::StoredCalibration& file) {
+  return {FoundCalibration::Kind::stored, file.wearer.user, file.path};
+}
+
 /// Returns `wearer` with the best calibration that is stored for either side.
 Result<hand::Wearer> stored_wearer(const driver::GloveInfo& glove, Side side, hand::Wearer wearer,
-                                   const std::string& user) {
+                                   const CalibrationOptions& options, FoundCalibration& found) {
+  const std::string& user = options.user_of(side);
   const auto stored = stored_calibrations();
   const auto own = best_calibration(stored, glove, side, user);
   if (own) {
     report_choice(glove, *own->file, doubt_about(*own));
     wearer.of(side) = hand_of(own->file->wearer, glove.counts);
+    found = found_in(*own->file);
   } else if (!user.empty()) {
-    return Error{Errc::bad_input, "--user " + printable(user) + ": no calibration of a " +
-                                      std::string(name_of(side)) + " hand for " +
-                                      printable(glove.source) +
-                                      " is stored; `nendo calibration list` shows what is"};
+    if (auto known = check_user(stored, user); !known) return known.error();
+    report_none_of(glove, side, user);
   } else if (is_uncalibrated(glove, wearer, side)) {
     report_none(glove, side);
   }
   if (glove.kind == driver::GloveKind::simulated) return wearer; // its hand does not change
-  const auto other = set_other(glove, side, user, stored, wearer);
-  if (own && other) report_other(glove, *own->file, *other->file);
+  const auto other = set_other(glove, side, options.user_of(opposite(side)), stored, wearer);
+  const bool is_named = !options.user_of(opposite(side)).empty(); // then it is no surprise
+  if (own && other && !is_named) report_other(glove, *own->file, *other->file);
   return wearer;
 }
 
 /// Of a hand that was calibrated by poses, slips are learned; of others, ranges.
 Result<hand::Wearer> adapting_wearer(const driver::GloveInfo& glove, Side side, hand::Wearer wearer,
-                                     const CalibrationOptions& options) {
+                                     const CalibrationOptions& options, FoundCalibration& found) {
+  const std::string& user = options.user_of(side);
   wearer.adapt = glove.counts;
   std::optional<hand::StoredCalibration> made;
   if (!options.calibration.empty()) {
     const auto file = asked_for(glove, side, options.calibration);
     if (!file) return file.error();
     made = *file;
-  } else if (!options.user.empty()) {
+  } else if (!user.empty()) {
     const auto stored = stored_calibrations();
-    const auto choice = best_calibration(stored, glove, side, options.user);
+    const auto choice = best_calibration(stored, glove, side, user);
     if (choice && !is_kept_ranges(choice->file->wearer)) {
       made = *choice->file;
       report_choice(glove, *made, doubt_about(*choice));
-      set_other(glove, side, options.user, stored, wearer);
+      set_other(glove, side, options.user_of(opposite(side)), stored, wearer);
     }
   }
   if (made) {
@@ -143,11 +176,13 @@ Result<hand::Wearer> adapting_wearer(const driver::GloveInfo& glove, Side side, 
     if (!ends) return ends.error();
     wearer.ends = *ends;
     wearer.of(side) = hand_of(made->wearer, glove.counts);
+    found = found_in(*made);
     return wearer;
   }
-  const auto learned = kept_ranges(glove, side, options.user);
+  const auto learned = kept_ranges(glove, side, user);
   if (!learned) return learned.error();
   wearer.learned = *learned;
+  found = {FoundCalibration::Kind::learned, user, {}};
   return wearer;
 }
 
@@ -166,8 +201,27 @@ std::optional<hand::CalibrationChoice> best_calibration(const hand::CalibrationL
                                   {user, glove.model, serial_of(glove), side, glove.counts});
 }
 
-void add_calibration_options(cli::Command& command, CalibrationOptions& options) {
+const std::string& CalibrationOptions::user_of(Side side) const noexcept {
+  const std::string& own = side == Side::left ? left_user : right_user;
+  return own.empty() ? user : own;
+}
+
+std::string CalibrationOptions::users() const {
+  const std::string& left = user_of(Side::left);
+  const std::string& right = user_of(Side::right);
+  if (left == right) return left;
+  if (left.empty()) return right;
+  if (right.empty()) return left;
+  return "left " + left + ", right " + right;
+}
+
+void add_calibration_options(cli::Command& command, CalibrationOptions& options, bool two_gloves) {
   command.add_option("--user", options.user, "The wearer, whose stored calibration is used");
+  if (two_gloves) {
+    command.add_option("--left-user", options.left_user,
+                       "The wearer of the left glove, if it is another one");
+    command.add_option("--right-user", options.right_user, "Likewise, of the right glove");
+  }
   command.add_option("--calibration", options.calibration,
                      "A file or stored name to use instead (see nendo calibration), or none");
   command.add_flag("--adapt", options.adapt,
@@ -204,22 +258,29 @@ void add_hand_length(cli::Command& command, HandLength& length) {
 }
 
 Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
-                                 const CalibrationOptions& options) {
+                                 const CalibrationOptions& options, FoundCalibration* found) {
+  FoundCalibration unwanted;
+  FoundCalibration& result = found == nullptr ? unwanted : *found;
   hand::Wearer wearer{average_hand(glove.counts), average_hand(glove.counts)};
-  if (options.adapt) return adapting_wearer(glove, side, wearer, options);
+  if (options.adapt) return adapting_wearer(glove, side, wearer, options, result);
   if (options.calibration == "none") return wearer;
   if (!options.calibration.empty()) {
     const auto own = asked_for(glove, side, options.calibration);
     if (!own) return own.error();
     wearer.of(side) = hand_of(own->wearer, glove.counts);
+    result = found_in(*own);
     return wearer;
   }
+  const bool is_anybody = options.user_of(side).empty();
   // The simulated wearer has the hand that the default is for.
-  if (options.user.empty() && glove.kind == driver::GloveKind::simulated) return wearer;
-  if (options.user.empty()) {
-    if (const auto recorded = recorded_wearer(glove, side)) return *recorded;
+  if (is_anybody && glove.kind == driver::GloveKind::simulated) return wearer;
+  if (is_anybody) {
+    if (const auto recorded = recorded_wearer(glove, side)) {
+      result.kind = FoundCalibration::Kind::recorded;
+      return *recorded;
+    }
   }
-  return stored_wearer(glove, side, wearer, options.user);
+  return stored_wearer(glove, side, wearer, options, result);
 }
 
 bool is_uncalibrated(const driver::GloveInfo& glove, const hand::Wearer& wearer, Side side) {

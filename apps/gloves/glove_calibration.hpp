@@ -2,6 +2,8 @@
 // Chooses the wearer of a glove: the calibration that is asked for, the stored one, the default, or
 // what is learned while the glove is used; and the size of the hand. The options for both are here.
 
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -15,9 +17,28 @@
 namespace nendo::gloves {
 
 struct CalibrationOptions {
-  std::string user;        ///< empty: any
-  std::string calibration; ///< a NAME of `nendo calibration`, or "none"; empty: what is stored
-  bool adapt = false;      ///< learn the wearer's ranges, or the slips of such a calibration
+  std::string user;         ///< empty: any
+  std::string calibration;  ///< a NAME of `nendo calibration`, or "none"; empty: what is stored
+  bool adapt = false;       ///< learn the wearer's ranges, or the slips of such a calibration
+  std::string left_user{};  ///< of the left hand, in place of `user`
+  std::string right_user{}; ///< likewise
+
+  /// The wearer of that hand; empty: any.
+  const std::string& user_of(Side side) const noexcept;
+  /// All that were given, as "anna", or "left anna, right bob"; empty: none.
+  std::string users() const;
+};
+
+/// Whose hand a glove shows.
+struct FoundCalibration {
+  enum class Kind : std::uint8_t {
+    average,  ///< nobody's
+    stored,   ///< a file's
+    recorded, ///< that of the recording which is replayed
+    learned,  ///< what --adapt learns
+  } kind = Kind::average;
+  std::string user;           ///< of a file
+  std::filesystem::path path; ///< likewise
 };
 
 /// Returns the serial number that the glove reports, or an empty text.
@@ -29,8 +50,9 @@ std::optional<hand::CalibrationChoice> best_calibration(const hand::CalibrationL
                                                         const driver::GloveInfo& glove, Side side,
                                                         const std::string& user);
 
-/// Adds the options --user, --calibration and --adapt.
-void add_calibration_options(cli::Command& command, CalibrationOptions& options);
+/// Adds the options --user, --calibration and --adapt; for commands that take two gloves also
+/// --left-user and --right-user.
+void add_calibration_options(cli::Command& command, CalibrationOptions& options, bool two_gloves);
 
 /// Fails with usage if the options contradict each other. Call it before a glove is opened.
 Result<void> check(const CalibrationOptions& options);
@@ -51,10 +73,13 @@ void add_hand_length(cli::Command& command, HandLength& length);
 /// is asked for, stored, or recorded (if the glove replays); one line on standard error says which
 /// file it is, and whether it may be that of another glove, or that there is none. A simulated
 /// glove gets a stored hand only if it is asked for. For the other side the wearer gets the stored
-/// hand or an average one, and nothing is printed. Blocks. Errors: bad_input (no such file, another
-/// hand's, not readable), usage.
+/// hand or an average one, and nothing is printed. A user who has calibrations, but none for this
+/// hand and glove, gets an average hand, too, and a line says so. `found`, if given, is set to what
+/// the wearer of `side` has. Blocks. Errors: bad_input (no such file, another hand's, not readable,
+/// a user without any calibration), usage.
 Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
-                                 const CalibrationOptions& options);
+                                 const CalibrationOptions& options,
+                                 FoundCalibration* found = nullptr);
 
 /// Tells whether angles of that side are an average hand's, though a person wears the glove: it is
 /// neither simulated nor recorded, has the default calibration, and learns none.

@@ -34,7 +34,7 @@ void add_counts(ordered_json& object, const driver::RecordCounts& counts) {
 }
 
 std::string sample_json(const GloveSample& sample, const hand::Calibration* calibration,
-                        bool with_sources) {
+                        bool with_sources, const FoundCalibration* found) {
   ordered_json raw = ordered_json::object();
   ordered_json angles = ordered_json::object();
   const auto angles_rad =
@@ -59,7 +59,33 @@ std::string sample_json(const GloveSample& sample, const hand::Calibration* cali
   if (sample.has_device_time) line["device_time_s"] = to_seconds(sample.device_time);
   if (calibration != nullptr) line["angle_rad"] = std::move(angles);
   if (calibration != nullptr && with_sources) line["angles"] = angle_sources_json(sample.present);
+  if (calibration != nullptr && with_sources && found != nullptr)
+    line["calibration"] = calibration_json(*found);
   return cli::json_text(line);
+}
+
+ordered_json calibration_json(const FoundCalibration& found) {
+  const auto text_or_null = [](const std::string& text) {
+    return text.empty() ? ordered_json() : ordered_json(text);
+  };
+  std::string_view kind;
+  switch (found.kind) {
+  case FoundCalibration::Kind::average:
+    kind = "average";
+    break;
+  case FoundCalibration::Kind::stored:
+    kind = "stored";
+    break;
+  case FoundCalibration::Kind::recorded:
+    kind = "recorded";
+    break;
+  case FoundCalibration::Kind::learned:
+    kind = "learned";
+    break;
+  }
+  return {{"kind", kind},
+          {"user", text_or_null(found.user)},
+          {"path", text_or_null(found.path.string())}};
 }
 
 } // namespace nendo::gloves

@@ -10,6 +10,8 @@
 #include <nendo/driver/sample.hpp>
 #include <nendo/hand/calibration.hpp>
 
+#include "gloves/glove_calibration.hpp"
+
 namespace nendo::gloves {
 
 /// Returns an object with the name of each angle's hand::AngleSource: "measured", the rule that
@@ -40,8 +42,13 @@ private:
 /// sensor), device_time_s if the glove has a clock, and angle_rad (by sensor) unless `calibration`
 /// is null. It contains only sensors that the sample has, and only angles that the calibration
 /// knows. With `with_sources`, unless `calibration` is null, there is also the key angles, with
-/// what angle_sources_json() returns.
+/// what angle_sources_json() returns, and calibration, with what calibration_json() returns, unless
+/// `found` is null.
 std::string sample_json(const GloveSample& sample, const hand::Calibration* calibration,
-                        bool with_sources = false);
+                        bool with_sources = false, const FoundCalibration* found = nullptr);
+
+/// Returns an object with the keys kind ("average", "stored", "recorded", "learned"), user and path
+/// (null if there is none): whose hand the angles are.
+nlohmann::ordered_json calibration_json(const FoundCalibration& found);
 
 } // namespace nendo::gloves

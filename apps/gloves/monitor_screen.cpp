@@ -63,6 +63,7 @@ std::string glove_line(const MonitorPicture& picture, int width) {
   const auto position =
       picture.sample != nullptr ? picture.sample->wrist_switch : WristSwitch::unknown;
   std::string right = std::string(name_of(side)) + " hand";
+  if (!picture.wearer.empty()) right += " of " + cut(printable(picture.wearer), name_width);
   if (picture.uncalibrated) right += ", uncalibrated";
   if (position != WristSwitch::unknown)
     right += ", switch " + on_or_off(position == WristSwitch::on);

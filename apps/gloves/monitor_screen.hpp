@@ -46,6 +46,7 @@ struct MonitorPicture {
   bool keys = false; ///< the user can press keys
   /// The angles are an average hand's: the first line says so, and each has a '~' before it.
   bool uncalibrated = false;
+  std::string wearer{}; ///< whose calibration the angles are of; empty: not said
 };
 
 /// Returns `width` characters, of which the one at the place of `count` is '#'. '[' and ']' are at

@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include <nendo/base/text.hpp>
 #include <nendo/flow/touching_hand.hpp>
 
 #include "cli/cli.hpp"
@@ -21,6 +22,13 @@ void note_idle_fingers(const std::string& spec, const flow::TouchingHand& hand) 
     if (!hand.touches(finger)) idle.append(idle.empty() ? "" : ", ").append(name_of(finger));
   }
   if (!idle.empty()) cli::note(spec + ": keeps still what does not reach the model: " + idle);
+}
+
+/// Of a table that is replayed.
+void note_columns_not_read(const driver::GloveInfo& info) {
+  for (const driver::GloveFact& fact : info.facts)
+    if (info.kind == driver::GloveKind::recorded && fact.name == "columns_not_read")
+      cli::note(printable(info.source) + ": not read: " + fact.value);
 }
 
 Result<void> wait_for_first_sample(OpenHand& hand) {
@@ -45,6 +53,7 @@ Result<std::unique_ptr<driver::Glove>> open_glove(const std::string& spec, std::
   auto glove = driver::open_glove(spec, side, context);
   if (cli::stop_requested())
     return Error{Errc::failed, spec + ": interrupted while its glove was being identified"};
+  if (glove) note_columns_not_read((*glove)->info());
   return glove;
 }
 
@@ -96,10 +105,31 @@ bool have_ended(std::span<const OpenHand> hands) noexcept {
                      [](const OpenHand& hand) { return hand.glove->has_ended(); });
 }
 
+namespace {
+
+/// A wearer was named for a hand that no glove has.
+Result<void> check_users(std::span<const OpenHand> hands, const CalibrationOptions& options) {
+  for (const Side side : {Side::left, Side::right}) {
+    const std::string& user = side == Side::left ? options.left_user : options.right_user;
+    const bool is_worn = std::any_of(hands.begin(), hands.end(), [side](const OpenHand& hand) {
+      return hand.first.side == side;
+    });
+    if (!user.empty() && !is_worn)
+      return Error{Errc::usage, "--" + std::string(name_of(side)) + "-user " + printable(user) +
+                                    ": no glove here is of a " + std::string(name_of(side)) +
+                                    " hand; leave it out"};
+  }
+  return {};
+}
+
+} // namespace
+
 Result<void> calibrate(std::span<OpenHand> hands, const CalibrationOptions& options,
                        const HandLength& length) {
-  for (OpenHand& hand : hands) {
+  for (OpenHand& hand : hands)
     if (auto came = wait_for_first_sample(hand); !came) return came;
+  if (auto fine = check_users(hands, options); !fine) return fine;
+  for (OpenHand& hand : hands) {
     // A sample tells the side of the glove that sent it, which need not be the identified one.
     auto wearer = find_wearer(hand.glove->info(), hand.first.side, options);
     if (!wearer) return wearer.error();

@@ -79,12 +79,28 @@ Result<Side> side_of(const ImportOptions& options, std::optional<Side> told) {
   return wanted;
 }
 
+Result<hand::ImportedCalibration> parsed(const std::string& text, const std::string& file,
+                                         hand::CalibrationFormat format) {
+  using hand::CalibrationFormat;
+  switch (format) {
+  case CalibrationFormat::two_point:
+    return hand::parse_two_point(text, file);
+  case CalibrationFormat::csv:
+    return hand::parse_calibration_csv(text, file);
+  case CalibrationFormat::ros_yaml:
+    return hand::parse_ros_yaml(text, file);
+  case CalibrationFormat::ros_xml:
+    return hand::parse_ros_xml(text, file);
+  case CalibrationFormat::virtualhand:
+  case CalibrationFormat::toml: // has a reader of its own
+    break;
+  }
+  return hand::parse_virtualhand(text, file);
+}
+
 Result<WearerCalibration> converted(const ImportOptions& options, const std::string& text,
                                     hand::CalibrationFormat format) {
-  using hand::CalibrationFormat;
-  auto read = format == CalibrationFormat::two_point ? hand::parse_two_point(text, options.file)
-              : format == CalibrationFormat::csv ? hand::parse_calibration_csv(text, options.file)
-                                                 : hand::parse_virtualhand(text, options.file);
+  auto read = parsed(text, options.file, format);
   if (!read) return read.error();
   const auto side = side_of(options, read->side);
   if (!side) return side.error();
@@ -135,6 +151,8 @@ Result<hand::ExportedCalibration> exported(const WearerCalibration& wearer,
                                            const std::string& format) {
   if (format == "cal") return hand::virtualhand_text(wearer.calibration, wearer.counts);
   if (format == "csv") return hand::calibration_csv_text(wearer.calibration);
+  if (format == "yaml") return hand::ros_yaml_text(wearer.calibration, wearer.counts);
+  if (format == "xml") return hand::ros_xml_text(wearer.calibration, wearer.counts);
   auto text = hand::calibration_text(wearer);
   if (!text) return text.error();
   return hand::ExportedCalibration{*std::move(text), {}};
@@ -167,7 +185,8 @@ void add(cli::Command& calibration) {
       calibration.add_command("import", "Stores another program's calibration");
   importing.set_footer(
       "Reads TOML, VirtualHand's .cal (also of the Device Configuration Utility and\n"
-      "of MotorControl), asr_cyberglove's two-point .cal, and CSV.");
+      "of MotorControl), asr_cyberglove's two-point .cal, CSV, and the YAML and XML of ROS\n"
+      "drivers (cyberglove_calibration).");
   importing.add_option("FILE", in->file, "The file to read").required();
   importing.add_option("--user", in->user, "The wearer; TOML tells it");
   importing.add_option("--hand", in->hand, "left or right; TOML tells it")
@@ -180,7 +199,9 @@ void add(cli::Command& calibration) {
   auto out = std::make_shared<ExportOptions>();
   cli::Command exporting = calibration.add_command("export", "Writes a calibration for others");
   exporting.add_option("NAME", out->name, "Path, stored name or wearer").required();
-  exporting.add_option("--format", out->format, "cal, csv or toml").one_of({"cal", "csv", "toml"});
+  exporting
+      .add_option("--format", out->format, "cal, csv, toml, or as ROS drivers keep them: yaml, xml")
+      .one_of({"cal", "csv", "toml", "yaml", "xml"});
   exporting.add_option("--out", out->out, "Where to write it; without it, standard output");
   exporting.on_chosen([out] { return export_calibration(*out); });
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <nendo/base/files.hpp>
+#include <nendo/base/table.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/cut.hpp>
@@ -69,14 +70,22 @@ Result<AnyBlade> wire_of(const std::string& file) {
   const auto text = read_file(file, largest_wire_file, "wire");
   if (!text) return text.error();
   CutWire wire;
-  LineReader lines(*text);
-  while (const auto line = lines.next()) {
-    if (line->starts_with('#')) continue;
-    const auto numbers = six_numbers(*line);
-    if (!numbers)
-      return bad_line(file, lines.line(), "use six numbers, the wire's two ends: X,Y,Z,X,Y,Z");
-    wire.places.push_back({Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]),
-                           Eigen::Vector3d((*numbers)[3], (*numbers)[4], (*numbers)[5])});
+  TableReader table(*text, file);
+  if (const auto fine = table.begin_without_head(6); !fine) return fine.error();
+  for (;;) {
+    const auto any = table.next();
+    if (!any) return any.error();
+    if (!*any) break;
+    std::array<double, 6> numbers{};
+    for (std::size_t at = 0; at < numbers.size(); ++at) {
+      const auto number = table.number(at);
+      if (!number)
+        return table.bad_cell(at, "is no finite number; a row has six, the wire's two ends: "
+                                  "X,Y,Z,X,Y,Z");
+      numbers[at] = *number;
+    }
+    wire.places.push_back({Eigen::Vector3d(numbers[0], numbers[1], numbers[2]),
+                           Eigen::Vector3d(numbers[3], numbers[4], numbers[5])});
   }
   if (wire.places.size() < 2)
     return Error{Errc::bad_input, file + ": has fewer than two places of the wire"};

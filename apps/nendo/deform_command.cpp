@@ -188,6 +188,8 @@ Result<void> deform_file(const Options& options) {
   auto vectors = read_control_vectors(options.vectors);
   if (!vectors) return vectors.error();
   vectors->starts.colwise() -= mesh.offset;
+  if (!vectors->columns_not_read.empty())
+    cli::note(options.vectors + ": not read: " + vectors->columns_not_read);
   const auto supports = supports_for(*vectors, options);
   if (!supports) return supports.error();
   note_oddities(mesh, *vectors, *supports, options);

@@ -4,7 +4,9 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <unistd.h>
 
@@ -38,6 +40,7 @@ struct Monitored {
   SampleRing& ring;
   const hand::Wearer* wearer;                ///< null: counts only
   hand::ActiveCalibration* calibrations;     ///< of `wearer`
+  const gloves::FoundCalibration& found;     ///< of the glove's own hand
   std::uint64_t most;                        ///< samples to show; 0: no end
   const hand::Calibration* active = nullptr; ///< for the latest sample; null: none
   std::uint64_t shown = 0;
@@ -48,6 +51,19 @@ struct Monitored {
     if (calibrations != nullptr) active = &calibrations->follow(sample);
     ++shown;
     return true;
+  }
+  /// Whose hand a sample of that side shows; null: not known, for another glove was plugged in.
+  const gloves::FoundCalibration* found_for(Side side) const {
+    return side == glove.info().side ? &found : nullptr;
+  }
+  std::string wearer_of(Side side) const {
+    const auto* known = found_for(side);
+    if (wearer == nullptr || known == nullptr) return {};
+    using Kind = gloves::FoundCalibration::Kind;
+    if (known->kind == Kind::recorded) return "the wearer who was recorded";
+    if (known->kind == Kind::average)
+      return glove.info().kind == driver::GloveKind::recorded ? "nobody, an average one" : "";
+    return known->user;
   }
   bool is_uncalibrated(Side side) const {
     return wearer != nullptr && gloves::is_uncalibrated(glove.info(), *wearer, side);
@@ -63,7 +79,8 @@ void show_lines(Monitored& monitored) {
     bool any = false;
     for (; monitored.next(sample); any = true) {
       const bool first = gloves.is_first(sample.side, sample.present);
-      std::cout << gloves::sample_json(sample, monitored.active, first) << '\n';
+      const auto* found = monitored.found_for(sample.side);
+      std::cout << gloves::sample_json(sample, monitored.active, first, found) << '\n';
     }
     if (any) std::cout.flush();
     if (!ended) std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -107,7 +124,8 @@ void show_screen(Monitored& monitored) {
                                          to_seconds(now - sample.arrival),
                                          light.is_lit(),
                                          terminal.has_keys(),
-                                         any && monitored.is_uncalibrated(sample.side)};
+                                         any && monitored.is_uncalibrated(sample.side),
+                                         any ? monitored.wearer_of(sample.side) : ""};
     lines = gloves::monitor_lines(picture, terminal.size());
     terminal.draw(lines);
     while (goes_on && !ended && !cli::stop_requested() && !terminal.is_gone() &&
@@ -130,9 +148,10 @@ int monitor(const Options& options) {
   if (!glove) return cli::report(glove.error());
   std::optional<hand::Wearer> wearer;
   std::optional<hand::ActiveCalibration> calibrations;
+  gloves::FoundCalibration whose;
   if (!options.raw) {
     const auto found =
-        gloves::find_wearer((*glove)->info(), (*glove)->info().side, options.calibration);
+        gloves::find_wearer((*glove)->info(), (*glove)->info().side, options.calibration, &whose);
     if (!found) return cli::report(found.error());
     wearer = *found;
     calibrations.emplace(*wearer);
@@ -141,8 +160,9 @@ int monitor(const Options& options) {
   cli::install_stop_signals();
   if (const auto started = (*glove)->start(ring); !started) return cli::report(started.error());
 
-  Monitored monitored{**glove, ring, wearer ? &*wearer : nullptr,
-                      calibrations ? &*calibrations : nullptr, options.count};
+  Monitored monitored{
+      **glove, ring,         wearer ? &*wearer : nullptr, calibrations ? &*calibrations : nullptr,
+      whose,   options.count};
   const bool lines = options.json || isatty(STDOUT_FILENO) == 0;
   if (lines) {
     show_lines(monitored);
@@ -170,7 +190,7 @@ void add(cli::Command& program) {
   command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
   command.add_flag("--json", options->json, "One JSON object a line, also in a terminal");
   command.add_flag("--raw", options->raw, "Raw counts only, no angles");
-  gloves::add_calibration_options(command, options->calibration);
+  gloves::add_calibration_options(command, options->calibration, false);
   command.add_option("--count", options->count, "End after so many samples");
   command.on_chosen([options] { return monitor(*options); });
 }

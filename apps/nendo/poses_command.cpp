@@ -1,10 +1,15 @@
-// nendo poses: the poses of a glove's hand, as JSON lines or as a BVH file.
+// nendo poses: the poses of one or two gloves' hands, as JSON lines or as a BVH file.
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/tick_grid.hpp>
@@ -24,7 +29,7 @@ constexpr double default_bvh_rate_hz = 90.0;
 constexpr double most_duration_s = 1e7;
 
 struct Options {
-  std::string glove;
+  std::vector<std::string> gloves;
   std::string bvh;
   double rate_hz = 0.0;
   double duration_s = 0.0;
@@ -49,6 +54,7 @@ Result<void> check(const Options& options) {
   if (!(options.duration_s >= 0.0 && options.duration_s <= most_duration_s)) {
     return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
   }
+  if (options.gloves.size() > 2) return Error{Errc::usage, "GLOVE: give one or two gloves"};
   if (auto fine = options.length.check(); !fine) return fine;
   return gloves::check(options.calibration);
 }
@@ -60,97 +66,155 @@ hand::HandSkeleton skeleton_for(Side side, const gloves::OpenHand& hand) {
 /// Makes poses of samples and puts them into an output, until there are enough.
 class PoseStream {
 public:
-  PoseStream(const gloves::OpenHand& hand, const Options& options, gloves::PoseOutput& output)
-      : options_(options), output_(output), start_(hand.first.arrival), calibration_(hand.wearer),
+  /// `written` counts the poses of all gloves.
+  PoseStream(gloves::OpenHand& hand, const Options& options, gloves::PoseOutput& output,
+             std::uint64_t& written)
+      : hand_(hand), options_(options), output_(output), written_(written),
+        start_(hand.first.arrival), calibration_(hand.wearer),
         left_(skeleton_for(Side::left, hand)), right_(skeleton_for(Side::right, hand)),
         grid_(start_, rate_of(options)) {}
 
-  /// Returns false if no more is wanted or the output has failed.
+  /// Takes what has come, and then the time. Returns false if no more will come or is wanted, or if
+  /// the output has failed.
+  bool advance() {
+    const bool ended = hand_.glove->has_ended(); // then all that it sent is in the ring
+    const HostTime now = HostClock::now();       // what came before it is in the ring
+    bool goes_on = is_first_taken_ || take(hand_.first);
+    is_first_taken_ = true;
+    for (GloveSample sample; goes_on && hand_.ring->try_pop(sample);)
+      goes_on = take(sample);
+    return goes_on && pass_time(now) && !ended;
+  }
+  const Result<void>& state() const noexcept { return state_; }
+  gloves::PoseOutput& output() const noexcept { return output_; }
+
+private:
   bool take(const GloveSample& sample) {
     const GloveSample passed = gate_.pass(sample, calibration_.follow(sample));
     return grid_.take(
         passed, [this](HostTime time, const GloveSample& newest) { return put(time, newest); });
   }
-  /// Returns false if no more is wanted or the output has failed.
   bool pass_time(HostTime now) {
     const bool goes_on = grid_.pass_time(
         now, [this](HostTime time, const GloveSample& newest) { return put(time, newest); });
     return goes_on && !is_over(now);
   }
-  const Result<void>& state() const noexcept { return state_; }
-
-private:
   bool is_over(HostTime time) const {
     return options_.duration_s > 0.0 && time - start_ >= from_seconds(options_.duration_s);
   }
   bool put(HostTime time, const GloveSample& sample) {
-    if (is_over(time) || cli::stop_requested()) return false;
+    if (is_over(time) || is_enough() || cli::stop_requested()) return false;
     const Side side = output_.only_side().value_or(sample.side);
     const auto& skeleton = side == Side::left ? left_ : right_;
     const auto angles = hand::joint_angles(sample, calibration_.of(sample.side));
     // A glove does not know where it is: the forearm ends at the origin.
     state_ = output_.put(time, side, skeleton.pose(angles, Eigen::Isometry3d::Identity()), angles,
                          sample.present);
-    return state_ && ++written_ != options_.count;
+    ++written_;
+    return state_ && !is_enough();
   }
+  bool is_enough() const { return options_.count != 0 && written_ >= options_.count; }
 
+  gloves::OpenHand& hand_;
   const Options& options_;
   gloves::PoseOutput& output_;
+  std::uint64_t& written_;
+  bool is_first_taken_ = false;
   HostTime start_;
   hand::ActiveCalibration calibration_;
   hand::SensorGate gate_;
   hand::HandSkeleton left_;
   hand::HandSkeleton right_;
   gloves::SampleGrid grid_;
-  std::uint64_t written_ = 0;
   Result<void> state_;
 };
 
-Result<void> stream(gloves::OpenHand& hand, const Options& options, gloves::PoseOutput& output) {
-  PoseStream poses(hand, options, output);
-  GloveSample sample;
-  bool goes_on = poses.take(hand.first);
-  while (goes_on && !cli::stop_requested()) {
-    const bool ended = hand.glove->has_ended(); // then all that it sent is in the ring
-    const HostTime now = HostClock::now();      // what came before it is in the ring
-    while (goes_on && hand.ring->try_pop(sample))
-      goes_on = poses.take(sample);
-    goes_on = goes_on && poses.pass_time(now);
-    if (auto flushed = output.flush(); !flushed) return flushed;
-    goes_on = goes_on && !ended;
-    if (goes_on) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+Result<void> stream(std::span<PoseStream> streams) {
+  std::vector<bool> goes_on(streams.size(), true);
+  const auto any = [&] { return std::find(goes_on.begin(), goes_on.end(), true) != goes_on.end(); };
+  while (any() && !cli::stop_requested()) {
+    for (std::size_t at = 0; at < streams.size(); ++at) {
+      if (!goes_on[at]) continue;
+      goes_on[at] = streams[at].advance();
+      if (!streams[at].state()) return streams[at].state();
+      if (auto flushed = streams[at].output().flush(); !flushed) return flushed;
+    }
+    if (any()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  return poses.state();
+  return {};
 }
 
-Result<std::unique_ptr<gloves::PoseOutput>> open_output(const Options& options,
-                                                        const gloves::OpenHand& hand) {
-  if (options.bvh.empty()) return gloves::json_pose_output();
-  return gloves::bvh_pose_output(options.bvh, skeleton_for(hand.side, hand), rate_of(options));
+/// One file a hand, as `nendo export` names them.
+std::string bvh_name(const Options& options, Side side) {
+  if (options.gloves.size() == 1) return options.bvh;
+  const std::filesystem::path path(options.bvh);
+  return (path.parent_path() / path.stem()).string() + "-" + std::string(name_of(side)) +
+         path.extension().string();
+}
+
+using Outputs = std::vector<std::unique_ptr<gloves::PoseOutput>>;
+
+/// One for all gloves, or one for each.
+Result<Outputs> open_outputs(const Options& options, const std::vector<gloves::OpenHand>& hands) {
+  Outputs outputs;
+  if (options.bvh.empty()) outputs.push_back(gloves::json_pose_output());
+  for (const gloves::OpenHand& hand : hands) {
+    if (options.bvh.empty()) break;
+    auto file = gloves::bvh_pose_output(bvh_name(options, hand.side), skeleton_for(hand.side, hand),
+                                        rate_of(options));
+    if (!file) return file.error();
+    outputs.push_back(*std::move(file));
+  }
+  return outputs;
+}
+
+Result<std::vector<gloves::OpenHand>> open_gloves(const Options& options) {
+  std::vector<gloves::OpenHand> hands;
+  for (const std::string& spec : options.gloves) {
+    auto hand = gloves::open_hand(spec);
+    if (!hand) return hand.error();
+    hands.push_back(*std::move(hand));
+  }
+  if (hands.size() == 2 && hands[0].side == hands[1].side)
+    return Error{Errc::usage, options.gloves[0] + " and " + options.gloves[1] + " are both " +
+                                  std::string(name_of(hands[0].side)) +
+                                  "-hand gloves; give one of each hand"};
+  return hands;
+}
+
+void note_losses(const gloves::OpenHand& hand) {
+  const auto counts = driver::counts_of(hand.glove->stats());
+  if (counts.refused > 0)
+    cli::note(std::to_string(counts.refused) +
+              " samples were refused: the poses were not taken fast enough");
+  if (counts.missed > 0) cli::note(hand.glove->info().source + ": " + driver::in_words(counts));
 }
 
 int poses(const Options& options) {
   if (const auto fine = check(options); !fine) return cli::report(fine.error());
-  auto hand = gloves::open_hand(options.glove);
-  if (!hand) return cli::report(hand.error());
+  auto hands = open_gloves(options);
+  if (!hands) return cli::report(hands.error());
   cli::install_stop_signals();
-  const std::span hands(&*hand, 1);
-  if (const auto started = gloves::start(hands); !started) return cli::report(started.error());
-  if (const auto done = gloves::calibrate(hands, options.calibration, options.length); !done)
+  if (const auto started = gloves::start(*hands); !started) return cli::report(started.error());
+  if (const auto done = gloves::calibrate(*hands, options.calibration, options.length); !done)
     return cli::report(done.error());
-  const auto output = open_output(options, *hand); // a BVH file begins with the wearer's bones
-  if (!output) return cli::report(output.error());
+  const auto outputs = open_outputs(options, *hands); // a BVH file begins with the wearer's bones
+  if (!outputs) return cli::report(outputs.error());
 
-  const auto streamed = stream(*hand, options, **output);
-  hand->glove->stop();
-  const auto counts = driver::counts_of(hand->glove->stats());
-  if (counts.refused > 0)
-    cli::note(std::to_string(counts.refused) +
-              " samples were refused: the poses were not taken fast enough");
-  if (counts.missed > 0) cli::note(hand->glove->info().source + ": " + driver::in_words(counts));
+  std::uint64_t written = 0;
+  std::vector<PoseStream> streams;
+  for (std::size_t at = 0; at < hands->size(); ++at)
+    streams.emplace_back((*hands)[at], options, *(*outputs)[std::min(at, outputs->size() - 1)],
+                         written);
+  const auto streamed = stream(streams);
+  for (const gloves::OpenHand& hand : *hands) {
+    hand.glove->stop();
+    note_losses(hand);
+  }
   if (!streamed) return cli::report(streamed.error());
-  const auto finished = (*output)->finish();
-  return finished ? 0 : cli::report(finished.error());
+  for (const auto& output : *outputs)
+    if (const auto finished = output->finish(); !finished) return cli::report(finished.error());
+  return 0;
 }
 
 } // namespace
@@ -158,24 +222,27 @@ int poses(const Options& options) {
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
-      "poses", "Writes a hand's poses: OpenXR's 26 joints as JSON lines, or a BVH file");
+      "poses", "Writes hands' poses: OpenXR's 26 joints as JSON lines, or a BVH file");
   command.set_footer(
       "A glove measures no position: the forearm ends at the origin, -Z goes to the fingertips, "
       "+Y\nout of the back of the hand. JSON is in metres, with quaternions x, y, z, w; BVH in "
       "centimetres\nand degrees, FILE.part until it is complete. time_s is when the sample came, "
       "with --rate "
       "when\nthe pose was due.");
-  command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
-  command.add_option("--bvh", options->bvh, "Write this file instead of JSON lines");
+  command.add_option("GLOVE", options->gloves, "One or two: serial:/dev/ttyUSB0, sim, auto, ...")
+      .required();
+  command.add_option("--bvh", options->bvh,
+                     "Write this file instead of JSON lines; of two gloves, FILE-left.bvh and "
+                     "FILE-right.bvh");
   command.add_option("--rate", options->rate_hz,
                      "Poses a second, 1 to 10000, each of the newest sample; without it, one a "
                      "sample, in a BVH file 90 a second");
   command.add_duration("--duration", options->duration_s,
                        "How long, e.g. 30s or 10m; 0: until Ctrl-C, or until a "
                        "recording (replay:FILE) ends");
-  command.add_option("--count", options->count, "End after so many poses");
+  command.add_option("--count", options->count, "End after so many poses, of both gloves together");
   gloves::add_hand_length(command, options->length);
-  gloves::add_calibration_options(command, options->calibration);
+  gloves::add_calibration_options(command, options->calibration, true);
   command.on_chosen([options] { return poses(*options); });
 }
 

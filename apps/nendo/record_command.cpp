@@ -68,7 +68,7 @@ Result<std::vector<gloves::OpenHand>> open_gloves(const Options& options) {
 }
 
 recording::Setup setup_for(const std::vector<gloves::OpenHand>& hands, const Options& options) {
-  recording::Setup setup = session::begin_setup(hands, options.calibration.user);
+  recording::Setup setup = session::begin_setup(hands, options.calibration.users());
   for (const auto& hand : hands)
     setup.hands.push_back({nullptr, hand.side, hand.wearer, hand.first});
   return setup;
@@ -161,7 +161,7 @@ void add(cli::Command& program) {
       "--duration", options->duration,
       "How long, e.g. 30s or 10m; without it, until Ctrl-C, or until the gloves end, "
       "as replay:FILE does");
-  gloves::add_calibration_options(command, options->calibration);
+  gloves::add_calibration_options(command, options->calibration, true);
   gloves::add_hand_length(command, options->length);
   command.add_flag("--json", options->json, "A summary as one JSON object");
   command.on_chosen([options] { return record(*options); });

@@ -86,8 +86,8 @@ void choose_injective(const deform::Mesh& model, RunArguments& options) {
 Result<void> keep_learned(const session::RunOptions& options,
                           const std::vector<gloves::OpenHand>& hands,
                           const flow::LoopStats& stats) {
-  const std::string& user = options.calibration.user;
   for (const gloves::OpenHand& hand : hands) {
+    const std::string& user = options.calibration.user_of(hand.first.side);
     if (!hand.wearer.adapt || user.empty()) continue;
     const std::size_t slot = flow::Placement::index_of(hand.side);
     if (hand.wearer.ends) {
@@ -209,7 +209,7 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
   command.add_flag("--symmetry", run_options.symmetric,
                    "Fingertips, or hands in clay, shape both sides of the model's plane of "
                    "symmetry, or of x = 0");
-  gloves::add_calibration_options(command, run_options.calibration);
+  gloves::add_calibration_options(command, run_options.calibration, true);
   gloves::add_hand_length(command, run_options.length);
   session::add_kernel_options(command, options.kernel);
   command.add_option("--hold", options.hold,

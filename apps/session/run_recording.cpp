@@ -81,7 +81,7 @@ std::string RunRecorder::next_name() {
 }
 
 recording::Setup RunRecorder::setup_now() const {
-  recording::Setup setup = begin_setup(hands_, options_.calibration.user);
+  recording::Setup setup = begin_setup(hands_, options_.calibration.users());
   setup.hands = placed_.setup.inputs;
   if (options_.over) {
     const auto& gloves = options_.over->take.setup.gloves;

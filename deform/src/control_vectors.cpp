@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <nendo/base/files.hpp>
-#include <nendo/base/text.hpp>
+#include <nendo/base/table.hpp>
 
 #include "text_scanner.hpp"
 #include "usable.hpp"
@@ -19,83 +19,85 @@ namespace {
 /// Far beyond what can be solved for in a minute.
 constexpr std::size_t most_rows = 1'000'000;
 
+constexpr std::string_view head_example = "x,y,z,dx,dy,dz or x,y,z,dx,dy,dz,radius";
 constexpr std::array<std::string_view, 7> column_names{"x", "y", "z", "dx", "dy", "dz", "radius"};
+constexpr std::size_t radius_at = 6;
 
-class CsvParser {
+class VectorTable {
 public:
-  CsvParser(std::string_view text, std::string_view name) : lines_(text), name_(name) {}
+  VectorTable(std::string_view text, std::string_view name)
+      : table_(text, std::string(name)), name_(name) {}
 
   Result<ControlVectors> parse();
 
 private:
-  Result<void> header(std::string_view row);
-  Result<void> numbers(std::string_view row);
+  Result<void> find_columns();
+  Result<void> read_row();
+  Result<void> read_radius(std::size_t column);
   ControlVectors vectors() const;
 
-  Error bad(const std::string& what) const { return bad_line(name_, lines_.line(), what); }
-
-  LineReader lines_;
+  TableReader table_;
   std::string_view name_;
-  std::size_t columns_ = 0;     ///< 6 or 7; 0 before the header
-  std::vector<double> numbers_; ///< six a row
+  std::array<std::optional<std::size_t>, 7> columns_; ///< by column_names
+  std::vector<double> numbers_;                       ///< six a row
   std::vector<OwnSupport> own_;
 };
 
-Result<ControlVectors> CsvParser::parse() {
-  while (const auto row = lines_.next()) {
-    if (row->front() == '#') continue;
-    const auto done = columns_ == 0 ? header(*row) : numbers(*row);
-    if (!done) return done.error();
+Result<ControlVectors> VectorTable::parse() {
+  if (auto fine = find_columns(); !fine) return fine.error();
+  for (;;) {
+    const auto any = table_.next();
+    if (!any) return any.error();
+    if (!*any) break;
+    if (auto fine = read_row(); !fine) return fine.error();
   }
   if (numbers_.empty())
-    return Error{Errc::bad_input, std::string(name_) + ": has no control vectors"};
-  return vectors();
+    return Error{Errc::bad_input,
+                 std::string(name_) + ": has no control vectors; add a row for each"};
+  ControlVectors result = vectors();
+  result.columns_not_read = table_.columns_not_read();
+  return result;
 }
 
-Result<void> CsvParser::header(std::string_view row) {
-  std::size_t column = 0;
-  while (!row.empty()) {
-    const std::string_view name = trimmed(cut(row, ','));
-    if (column == column_names.size() || name != column_names[column])
-      return bad("column " + std::to_string(column + 1) + ": " + in_quotes(name) +
-                 ", but the header must be x,y,z,dx,dy,dz or x,y,z,dx,dy,dz,radius");
-    ++column;
+Result<void> VectorTable::find_columns() {
+  if (auto fine = table_.read_head(head_example); !fine) return fine;
+  for (std::size_t at = 0; at < column_names.size(); ++at) {
+    const std::string name(column_names[at]);
+    columns_[at] = table_.find(name);
+    if (table_.is_double(name))
+      return table_.bad("there are two columns " + name + "; leave one out");
+    if (!columns_[at] && at != radius_at)
+      return table_.bad("there is no column " + name +
+                        "; name the columns in the first line, like " + std::string(head_example));
   }
-  if (column < 6)
-    return bad("column " + std::to_string(column + 1) +
-               ": missing, the header must be x,y,z,dx,dy,dz or x,y,z,dx,dy,dz,radius");
-  columns_ = column;
   return {};
 }
 
-Result<void> CsvParser::numbers(std::string_view row) {
-  const std::size_t rows = numbers_.size() / 6;
-  if (rows == most_rows) return bad("more than " + std::to_string(most_rows) + " control vectors");
-  const auto fields = static_cast<std::size_t>(std::count(row.begin(), row.end(), ',')) + 1;
-  if (fields != columns_)
-    return bad("column " + std::to_string(std::min(fields, columns_) + 1) + ": has " +
-               std::to_string(fields) + " columns, the header " + std::to_string(columns_));
-  for (std::size_t column = 0; column < columns_; ++column) {
-    const std::string_view field = trimmed(cut(row, ','));
-    const std::string place =
-        "column " + std::to_string(column + 1) + " (" + std::string(column_names[column]) + "): ";
-    if (column == 6) {
-      const auto supports = parse_supports(field);
-      if (!supports)
-        return bad(place + in_quotes(field) + " is not a radius > 0, or several like 10+40:0.5");
-      for (const Support& support : *supports)
-        own_.push_back({static_cast<Eigen::Index>(rows), support});
-      continue;
-    }
-    const auto number = to_number(field);
+Result<void> VectorTable::read_row() {
+  if (numbers_.size() / 6 == most_rows)
+    return table_.bad("more than " + std::to_string(most_rows) + " control vectors");
+  for (std::size_t at = 0; at < radius_at; ++at) {
+    const auto number = table_.number(*columns_[at]);
     if (!number || !is_usable(*number))
-      return bad(place + in_quotes(field) + " is not a finite number of at most 1e100");
+      return table_.bad_cell(*columns_[at], "is not a finite number of at most 1e100; mend it, or "
+                                            "leave the row out");
     numbers_.push_back(*number);
   }
+  return columns_[radius_at] ? read_radius(*columns_[radius_at]) : Result<void>();
+}
+
+Result<void> VectorTable::read_radius(std::size_t column) {
+  std::string cell(table_.cell(column));
+  std::replace(cell.begin(), cell.end(), ',', '.'); // a decimal comma, as one radius has no other
+  const auto supports = parse_supports(cell);
+  if (!supports) return table_.bad_cell(column, "is not a radius > 0, or several like 10+40:0.5");
+  const auto row = static_cast<Eigen::Index>(numbers_.size() / 6) - 1;
+  for (const Support& support : *supports)
+    own_.push_back({row, support});
   return {};
 }
 
-ControlVectors CsvParser::vectors() const {
+ControlVectors VectorTable::vectors() const {
   const Eigen::Map<const Eigen::MatrixXd> table(numbers_.data(), 6,
                                                 static_cast<Eigen::Index>(numbers_.size()) / 6);
   ControlVectors result;
@@ -108,7 +110,7 @@ ControlVectors CsvParser::vectors() const {
 } // namespace
 
 Result<ControlVectors> parse_control_vectors(std::string_view text, std::string_view name) {
-  return CsvParser(text, name).parse();
+  return VectorTable(text, name).parse();
 }
 
 Result<ControlVectors> read_control_vectors(const std::filesystem::path& path) {

@@ -51,7 +51,7 @@ constexpr std::array drivers{
            "a simulated glove", open_simulated},
     Driver{"replay", "replay:FILE[?hand=left|right&speed=X&loop=yes|end=hold&rate=HZ]",
            "a glove as `nendo record` or `nendo run --record` recorded it, or a table of counts "
-           "(.csv)",
+           "(.csv, .tsv, .txt)",
            alone<open_replay>},
 };
 

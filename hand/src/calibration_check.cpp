@@ -77,9 +77,9 @@ std::string complaint_about_gain(Sensor sensor, double gain, CountScale counts) 
   if (!lies_within(std::abs(gain), 0.0, most))
     return "a gain of " + decimal_text(gain) + " is absurd; it must lie within " +
            decimal_text(most) + " rad a count";
-  if (gain < 0.0 && rises_with_angle(sensor))
+  if (gain < 0.0 && rises_with_angle(sensor) && !is_gap(sensor))
     return "a gain of " + decimal_text(gain) +
-           " has the wrong sign; counts rise when the joint bends or the fingers spread";
+           " has the wrong sign; counts rise when the joint bends";
   return {};
 }
 

@@ -3,7 +3,9 @@
 #include <string>
 
 #include <nendo/base/files.hpp>
+#include <nendo/base/table.hpp>
 #include <nendo/base/text.hpp>
+#include <nendo/base/units.hpp>
 #include <nendo/hand/calibration_exchange.hpp>
 
 #include "calibration_check.hpp"
@@ -12,22 +14,100 @@
 namespace nendo::hand {
 namespace {
 
+constexpr std::size_t most_head_bytes = 1000;
 constexpr std::string_view header = "sensor,gain_rad_per_count,offset_counts";
 
-std::string without_blanks(std::string_view line) {
-  std::string text(line);
-  std::erase_if(text, [](char c) { return c == ' ' || c == '\t'; });
-  return text;
+constexpr std::string_view gain_rad = "gain_rad_per_count";
+constexpr std::string_view gain_deg = "gain_deg_per_count";
+
+/// TOML's lines may begin with [, too, but no line of ours has a joint's name of a ROS driver.
+bool looks_like_yaml(std::string_view line) noexcept {
+  const auto has = [&](std::string_view what) { return line.find(what) != std::string_view::npos; };
+  return line.starts_with('{') || line.starts_with('%') || line.starts_with("---") ||
+         line.starts_with("- ") || line == "[" || has("G_");
 }
+
+class CsvCalibration {
+public:
+  CsvCalibration(std::string_view text, std::string_view name)
+      : table_(text, std::string(name)), name_(name) {}
+
+  Result<ImportedCalibration> parse() {
+    if (auto fine = find_columns(); !fine) return fine.error();
+    std::size_t sensors = 0;
+    for (;; ++sensors) {
+      const auto any = table_.next();
+      if (!any) return any.error();
+      if (!*any) break;
+      if (auto fine = read_row(); !fine) return fine.error();
+    }
+    if (sensors == 0) return table_.bad("has a header but no sensors; add a row a sensor");
+    auto result = imported(lines_, name_, false);
+    if (const std::string others = table_.columns_not_read(); result && !others.empty())
+      result->notes.push_back("not read: " + others);
+    return result;
+  }
+
+private:
+  Result<void> find_columns() {
+    if (auto fine = table_.read_head(header); !fine) return fine;
+    const auto sensor = table_.find("sensor");
+    auto gain = table_.find(gain_rad);
+    if (const auto degrees = table_.find(gain_deg)) {
+      if (gain) return table_.bad("there are gains in radians and in degrees; leave one out");
+      gain = degrees;
+      unit_rad_ = from_degrees(1.0);
+    }
+    const auto offset = table_.find("offset_counts");
+    if (!sensor || !gain || !offset)
+      return table_.bad("the header must have the columns " + std::string(header));
+    for (const std::string_view name :
+         {std::string_view("sensor"), gain_rad, gain_deg, std::string_view("offset_counts")})
+      if (table_.is_double(name))
+        return table_.bad("there are two columns " + std::string(name) + "; leave one out");
+    sensor_ = *sensor;
+    gain_ = *gain;
+    offset_ = *offset;
+    return {};
+  }
+
+  Result<void> read_row() {
+    const auto found = sensor_named(TableReader::plain(table_.cell(sensor_)));
+    if (!found) return table_.bad_cell(sensor_, "is no sensor; use names like index_mcp");
+    const std::string name(name_of(*found));
+    const auto gain = table_.number(gain_);
+    const auto offset = table_.number(offset_);
+    if (!gain || !offset)
+      return table_.bad_cell(gain ? offset_ : gain_,
+                             "of " + name + " is no finite number; mend it");
+    const auto slot = static_cast<std::size_t>(*found);
+    if (lines_.line[slot] != 0)
+      return table_.bad("'" + name + "' stands here twice; leave one out");
+    if (*gain == 0.0) return table_.bad("'" + name + "' has a gain of 0; leave it out");
+    lines_.sensors[slot] = {*gain * unit_rad_, *offset};
+    lines_.line[slot] = table_.line();
+    return {};
+  }
+
+  TableReader table_;
+  std::string_view name_;
+  ReadLines lines_;
+  std::size_t sensor_ = 0, gain_ = 0, offset_ = 0; ///< columns
+  double unit_rad_ = 1.0;                          ///< of the gains
+};
 
 } // namespace
 
 CalibrationFormat format_of(std::string_view text) noexcept {
   LineReader lines(text);
+  const bool is_named = text.find("cyberglove_calibration") != std::string_view::npos;
   while (const auto line = lines.next()) {
-    if (line->starts_with('#')) continue;
-    if (line->starts_with("sensor,") || line->starts_with("sensor ,"))
+    const std::string plain = TableReader::plain(line->substr(0, most_head_bytes));
+    if (plain.find(gain_rad) != std::string::npos || plain.find(gain_deg) != std::string::npos)
       return CalibrationFormat::csv;
+    if (line->starts_with('#') || plain.starts_with("sep=")) continue;
+    if (line->starts_with('<')) return CalibrationFormat::ros_xml;
+    if (is_named || looks_like_yaml(*line)) return CalibrationFormat::ros_yaml;
     if (line->starts_with("version") || line->starts_with('[')) return CalibrationFormat::toml;
     const std::string_view first = line->substr(0, line->find_first_of(" \t"));
     const std::size_t colon = first.find(':');
@@ -41,38 +121,7 @@ CalibrationFormat format_of(std::string_view text) noexcept {
 }
 
 Result<ImportedCalibration> parse_calibration_csv(std::string_view text, std::string_view name) {
-  LineReader lines(text);
-  const auto bad = [&](const std::string& what) { return bad_line(name, lines.line(), what); };
-  ReadLines read;
-  bool has_header = false;
-  std::size_t sensors = 0;
-  while (const auto line = lines.next()) {
-    if (line->starts_with('#')) continue;
-    if (!has_header) {
-      if (without_blanks(*line) != header)
-        return bad("the header must be " + std::string(header) + ", not " + in_quotes(*line));
-      has_header = true;
-      continue;
-    }
-    if (std::count(line->begin(), line->end(), ',') != 2)
-      return bad(in_quotes(*line) + " must have three columns, " + std::string(header));
-    std::string_view rest = *line;
-    const std::string_view sensor = trimmed(cut(rest, ','));
-    const auto gain = to_finite_number(trimmed(cut(rest, ',')));
-    const auto offset = to_finite_number(trimmed(rest));
-    const auto found = sensor_named(sensor);
-    if (!found) return bad("no sensor is called " + in_quotes(sensor));
-    if (!gain || !offset) return bad(in_quotes(sensor) + " needs two finite numbers; mend the row");
-    const auto slot = static_cast<std::size_t>(*found);
-    if (read.line[slot] != 0) return bad(in_quotes(sensor) + " stands here twice; leave one out");
-    if (*gain == 0.0) return bad(in_quotes(sensor) + " has a gain of 0; leave it out");
-    read.sensors[slot] = {*gain, *offset};
-    read.line[slot] = lines.line();
-    ++sensors;
-  }
-  if (!has_header) return bad("is empty; the header must be " + std::string(header));
-  if (sensors == 0) return bad("has a header but no sensors; add a row a sensor");
-  return imported(read, name, false);
+  return CsvCalibration(text, name).parse();
 }
 
 Result<ExportedCalibration> calibration_csv_text(const Calibration& calibration) {

@@ -44,7 +44,7 @@ void turn(ReadLines& lines, Group group) noexcept {
 // The others' signs are free, so they are turned only where all of the text is in the other frame.
 void turn_other_frames(ReadLines& lines, std::vector<std::string>& notes) {
   const bool bend = signs_of(lines, Group::bend).all_negative();
-  const bool pair = signs_of(lines, Group::pair).all_negative();
+  const bool pair = !lines.gaps_may_fall && signs_of(lines, Group::pair).all_negative();
   if (bend) turn(lines, Group::bend);
   if (pair) turn(lines, Group::pair);
   if (bend && signs_of(lines, Group::other).all_negative()) turn(lines, Group::other);
@@ -62,7 +62,11 @@ Result<ImportedCalibration> imported(ReadLines lines, std::string_view name, boo
     const SensorCalibration& line = lines.sensors[slot];
     const bool needed = complete && sensors_18.has(sensor);
     if (line.gain_rad_per_count == 0.0 && !needed) continue;
-    const std::string complaint = complaint_about(sensor, line, CountScale{});
+    std::string complaint = complaint_about(sensor, line, CountScale{});
+    if (complaint.empty() && !lines.gaps_may_fall && line.gain_rad_per_count < 0.0 &&
+        is_gap(sensor))
+      complaint = "a gain of " + decimal_text(line.gain_rad_per_count) +
+                  " has the wrong sign; the other gaps' rise when the fingers spread";
     if (!complaint.empty())
       return bad_line(name, lines.line[slot], std::string(name_of(sensor)) + ": " + complaint);
     result.calibration.sensors[slot] = line;

@@ -14,6 +14,9 @@ namespace nendo::hand {
 struct ReadLines {
   std::array<SensorCalibration, sensor_slots> sensors{};
   std::array<std::size_t, sensor_slots> line{}; ///< its line number in the text; 0: none
+  /// Signs of gaps between fingers are kept as they are: the text says for certain that spreading
+  /// is positive.
+  bool gaps_may_fall = false;
 };
 
 /// Turns the signs of what is written in the other frame (calibration_exchange.hpp) and checks

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <random>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -100,6 +101,55 @@ TEST_SUITE("sample_table") {
     REQUIRE(read);
     CHECK(to_seconds(read->samples[2].arrival - read->samples[0].arrival) == doctest::Approx(0.04));
     CHECK(read->info.rate_hz == doctest::Approx(50.0));
+  }
+
+  TEST_CASE("times have any origin and unit, and their differences are exact") {
+    const auto differences_us = [](const std::string& text) {
+      const auto table = Table(text).read();
+      REQUIRE_MESSAGE(table, (table ? "" : table.error().message));
+      REQUIRE(table->samples.size() == 3);
+      std::vector<double> us;
+      for (const std::size_t at : {1U, 2U})
+        us.push_back(1e6 * to_seconds(table->samples[at].arrival - table->samples[at - 1].arrival));
+      return us;
+    };
+    const std::vector<double> expected{11100.0, 11101.0};
+    CHECK(differences_us("time_s,index_mcp\n1700000000.0,1\n1700000000.0111,2\n"
+                         "1700000000.022201,3\n") == expected);
+    CHECK(differences_us("Time (ms);index_mcp\n-11,1;1\n0,0;2\n11,101;3\n") == expected);
+    CHECK(differences_us("timestamp_us\tindex_mcp\n1700000000000000\t1\n1700000000011100\t2\n"
+                         "1700000000022201\t3\n") == expected);
+    CHECK(differences_us("# t_ns index_mcp\n1700000000000000000 1\n1700000000011100000 2\n"
+                         "1700000000022201000 3\n") == expected);
+    const auto epoch = Table("time_s,index_mcp\n1700000000.5,1\n").read();
+    REQUIRE(epoch);
+    CHECK(to_seconds(epoch->samples[0].arrival.time_since_epoch()) == 1700000000.5);
+    CHECK(says(Table("time,index_mcp\n0,1\n").complaint(), "name it time_s, time_ms"));
+    CHECK(Table("time,index_mcp\n0,1\n").read({.rate_hz = 50.0}));
+    CHECK(says(Table("time_s,time_ms,index_mcp\n0,0,1\n").complaint(), "two columns of times"));
+  }
+
+  TEST_CASE("times fall between hands, but not within one") {
+    const Table stacked("hand,time_s,index_mcp\n0,0,1\n0,1,2\n1,0,3\nRight,1,4\n");
+    const auto right = stacked.read({.side = Side::right});
+    REQUIRE_MESSAGE(right, (right ? "" : right.error().message));
+    REQUIRE(right->samples.size() == 2);
+    CHECK(right->samples[1][Sensor::index_mcp].value == 4);
+    CHECK(says(Table("hand,time_s,index_mcp\nleft,1,1\nleft,0,2\n").complaint(),
+               ":3: column 2 (time_s): '0' is less than in the row before"));
+  }
+
+  TEST_CASE("a count that is missing is none; other columns are named, but not our own") {
+    const auto table = Table("time_s,index_mcp,index_pip,index_mcp_deg,measured_s,note\n"
+                             "0,nan,4,,0,x\n1,N/A,nan,,0,y\n2,3,,,0,z\n")
+                           .read();
+    REQUIRE_MESSAGE(table, (table ? "" : table.error().message));
+    REQUIRE(table->samples.size() == 2);
+    CHECK_FALSE(table->samples[0].present.has(Sensor::index_mcp));
+    CHECK(table->samples[1][Sensor::index_mcp].value == 3);
+    REQUIRE(table->info.facts.size() == 1);
+    CHECK(table->info.facts[0].name == columns_not_read_fact);
+    CHECK(table->info.facts[0].value == "note");
   }
 
   TEST_CASE("what is wrong is told with its line") {

@@ -83,6 +83,11 @@ TEST_SUITE("monitor_screen") {
     Glove glove;
     CHECK(glove.lines()[0].find("serial:/dev/ttyUSB0: CyberGlove, 22 sensors") == 0);
     CHECK(glove.lines()[0].ends_with("right hand"));
+    glove.picture.wearer = "anna";
+    CHECK(glove.lines()[0].ends_with("right hand of anna"));
+    glove.picture.wearer = std::string(200, 'a');
+    CHECK(glove.lines()[0].ends_with("aaa~"));
+    glove.picture.wearer.clear();
     glove.picture.stats.records = 359;
     CHECK(glove.lines()[1].find("11 ms old, 359 delivered, nothing lost") == 0);
     CHECK(glove.lines()[1].ends_with("q quit, r ranges"));

@@ -408,11 +408,23 @@ TEST_SUITE("calibration exchange") {
     const std::string head = "# by hand\nsensor,gain_rad_per_count,offset_counts\n";
     const auto read = [&](const std::string& text) { return parse_calibration_csv(text, "x.csv"); };
     REQUIRE(read(head + " index_mcp , 0.0125 , 60 \r\n"));
-    is_refused(read(""), "x.csv:", "header");
+    const auto same = read(head + "index_mcp,0.0125,60\n");
+    for (const std::string text : {"Sensor;Gain_rad_per_count;Offset_counts\nIndex MCP;0,0125;60\n",
+                                   "offset_counts\tnote\tgain_deg_per_count\tsensor\n60\tx\t0."
+                                   "716197243913529\tindex_mcp\n"}) {
+      CHECK(format_of(text) == CalibrationFormat::csv);
+      const auto other = read(text);
+      if (!other) FAIL(other.error().message);
+      CHECK(other->calibration[Sensor::index_mcp].gain_rad_per_count ==
+            doctest::Approx(same->calibration[Sensor::index_mcp].gain_rad_per_count));
+      CHECK(other->calibration[Sensor::index_mcp].offset_counts == 60.0);
+      CHECK(other->notes.size() == (text.find("note") == std::string::npos ? 0U : 1U));
+    }
+    is_refused(read(""), "x.csv:", "name the columns");
     is_refused(read("gain,sensor\n"), "x.csv:1:", "header");
     is_refused(read(head), "x.csv:2:", "no sensors");
-    is_refused(read(head + "index_mcp,0.0125\n"), "x.csv:3:", "three columns");
-    is_refused(read(head + "index_mcp,0.0125,60,1\n"), "x.csv:3:", "three columns");
+    is_refused(read(head + "index_mcp,0.0125\n"), "x.csv:3:", "has 2 cells");
+    is_refused(read(head + "index_mcp,0.0125,60,1\n"), "x.csv:3:", "has 4 cells");
     is_refused(read(head + "index,0.0125,60\n"), "x.csv:3:", "index");
     is_refused(read(head + "index_mcp,,60\n"), "x.csv:3:", "index_mcp");
     is_refused(read(head + "index_mcp,inf,60\n"), "x.csv:3:", "index_mcp");

@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -328,7 +329,14 @@ TEST_SUITE("calibration command") {
     CHECK(is_one_line_about(other_hand.err, "not calibrated for this left hand"));
     CHECK(other_hand.err.find("nendo calibrate serial:" + link.string()) != std::string::npos);
     CHECK(gain(other_hand) == doctest::Approx(0.0125)); // the default
-    CHECK(monitor({"--user", "anna"}).exit_code == 5);
+    const auto without = monitor({"--user", "anna"});
+    CHECK(without.exit_code == 0);
+    CHECK(is_one_line_about(without.err, "anna has no calibration of a left hand"));
+    CHECK(gain(without) == doctest::Approx(0.0125));
+    CHECK(json::parse(lines_of(without.out)[0])["calibration"]["kind"] == "average");
+    const auto nobody = monitor({"--user", "nobody"});
+    CHECK(nobody.exit_code == 5);
+    CHECK(is_one_line_about(nobody.err, "there are those of anna"));
     CHECK(is_one_line_about(monitor({"--calibration", "anna"}).err, "right hand"));
 
     take_in("anna", "left", "0.03");
@@ -336,6 +344,11 @@ TEST_SUITE("calibration command") {
     CHECK(is_one_line_about(own.err, "anna, left hand"));
     CHECK(own.err.find("does not tell with which glove it was made") != std::string::npos);
     CHECK(gain(own) == doctest::Approx(0.03));
+    const json whose = json::parse(lines_of(own.out)[0])["calibration"];
+    CHECK(whose["kind"] == "stored");
+    CHECK(whose["user"] == "anna");
+    CHECK(fs::exists(whose["path"].get<std::string>()));
+    CHECK_FALSE(json::parse(lines_of(own.out)[1]).contains("calibration"));
     take_in("berta", "left", "0.01");
     CHECK(gain(monitor({"--user", "anna"})) == doctest::Approx(0.03));
     CHECK(gain(monitor({"--user", "berta"})) == doctest::Approx(0.01));
@@ -349,6 +362,86 @@ TEST_SUITE("calibration command") {
                                          home.file("shape.obj").string()});
     CHECK(run.exit_code == 0);
     CHECK(run.err.find("berta, left hand") != std::string::npos);
+  }
+
+  TEST_CASE("two gloves have two wearers, and one that is not calibrated goes on") {
+    const Home home;
+    for (const auto& [user, hand, index_gain] :
+         {std::tuple{"anna", "right", "0.02"}, {"berta", "left", "0.03"}}) {
+      write_file(home.file("x.csv"), with_gain(index_gain));
+      REQUIRE(calibration({"import", home.file("x.csv").string(), "--user", user, "--hand", hand})
+                  .exit_code == 0);
+    }
+    int takes = 0;
+    // The gains by which the angles of the left and the right hand in the table were made.
+    const auto record = [&](std::vector<std::string> more) {
+      const std::string take = home.file(std::to_string(++takes) + ".nendo").string();
+      more.insert(more.begin(), {"record", "sim?hand=left", "sim?hand=right", "--duration", "200ms",
+                                 "--out", take});
+      return nendo::test::nendo(more);
+    };
+    const auto both = record({"--left-user", "berta", "--right-user", "anna"});
+    CHECK(both.exit_code == 0);
+    CHECK(both.err.find("calibrated for berta, left hand") != std::string::npos);
+    CHECK(both.err.find("calibrated for anna, right hand") != std::string::npos);
+    const auto one = record({"--user", "anna"});
+    CHECK(one.exit_code == 0);
+    CHECK(one.err.find("calibrated for anna, right hand") != std::string::npos);
+    CHECK(one.err.find("anna has no calibration of a left hand") != std::string::npos);
+    const auto mixed = record({"--user", "anna", "--left-user", "berta"});
+    CHECK(mixed.exit_code == 0);
+    CHECK(mixed.err.find("calibrated for berta, left hand") != std::string::npos);
+    const auto nobody = record({"--left-user", "bert", "--right-user", "anna"});
+    CHECK(nobody.exit_code == 5);
+    CHECK(nobody.err.find("there are those of anna, berta") != std::string::npos);
+    const auto run = nendo::test::nendo({"run", "--left", "sim", "--right", "sim", "--left-user",
+                                         "berta", "--right-user", "anna", "--duration", "0.2",
+                                         "--out", home.file("x.obj").string()});
+    CHECK(run.exit_code == 0);
+    CHECK(run.err.find("berta, left hand") != std::string::npos);
+    const auto no_left = nendo::test::nendo(
+        {"poses", "sim", "--count", "1", "--left-user", "berta", "--right-user", "anna"});
+    CHECK(no_left.exit_code == 2);
+    CHECK(is_one_line_about(no_left.err, "no glove here is of a left hand"));
+  }
+
+  TEST_CASE("a calibration of a ROS driver comes in, and goes out in both forms") {
+    const Home home;
+    write_file(home.file("theirs.yaml"),
+               "{'cyberglove_calibration': [\n"
+               "['G_IndexMPJ', [[0.200000,0.000000],[0.600000,90.000000]]],\n"
+               "['G_IndexPIJ', [[0.200000,0.000000],[0.400000,30.000000],[0.600000,90.000000]]],\n"
+               "['G_WristYaw', [[0.300000,-30.000000],[0.700000,10.000000]]],\n]}\n");
+    const auto import = [&](const std::string& file, const std::string& user) {
+      return calibration({"import", home.file(file).string(), "--user", user, "--hand", "right"});
+    };
+    const auto in = import("theirs.yaml", "anna");
+    CHECK(in.exit_code == 0);
+    CHECK(in.err.find("G_IndexPIJ (index_pip): a line replaces its 3 points, and is off by up to "
+                      "7.5 degrees") != std::string::npos);
+    CHECK(in.err.find("G_ThumbRotate") != std::string::npos); // not there
+    const auto sensors = [&](const std::string& user) {
+      return json::parse(calibration({"show", user, "--json"}).out)["sensors"];
+    };
+    const json theirs = sensors("anna");
+    CHECK(theirs.size() == 3);
+    // 0.2 and 0.6 of 1 to 255 are counts 51.8 and 153.4.
+    CHECK(theirs["index_mcp"]["offset_counts"].get<double>() == doctest::Approx(51.8));
+    CHECK(theirs["index_mcp"]["gain_rad_per_count"].get<double>() ==
+          doctest::Approx(1.5707963267948966 / 101.6));
+    for (const std::string format : {"yaml", "xml"}) {
+      const auto out = calibration(
+          {"export", "anna", "--format", format, "--out", home.file("out." + format).string()});
+      CHECK(out.exit_code == 0);
+      CHECK(out.err.find("not calibrated, so left out") != std::string::npos);
+      REQUIRE(import("out." + format, "of_" + format).exit_code == 0);
+      const json again = sensors("of_" + format);
+      REQUIRE(again.size() == 3);
+      for (const auto& [name, line] : theirs.items())
+        for (const char* key : {"gain_rad_per_count", "offset_counts"})
+          CHECK(again[name][key].get<double>() ==
+                doctest::Approx(line[key].get<double>()).epsilon(1e-6));
+    }
   }
 
   TEST_CASE("a calibration that may be another glove's says so, and one that is this one's not") {

@@ -2,7 +2,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <map>
 #include <set>
+#include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -111,6 +115,28 @@ TEST_SUITE("poses") {
         CHECK(deviation.get<double>() > 1.0);
       }
     }
+  }
+
+  TEST_CASE("two gloves give lines that tell their hand, and a BVH file for each") {
+    const auto poses = poses_of({"poses", "sim:wave?hand=left", "sim:pinch", "--count", "60"});
+    REQUIRE(poses.size() == 60);
+    std::map<std::string, int> lines;
+    for (const auto& pose : poses)
+      ++lines[pose["hand"].get<std::string>()];
+    CHECK(lines["left"] > 10);
+    CHECK(lines["right"] > 10);
+    const nendo::test::TemporaryFolder folder;
+    const auto path = [&](const std::string& name) { return (folder.path() / name).string(); };
+    const auto done = nendo::test::nendo(
+        {"poses", "sim:wave?hand=left", "sim", "--bvh", path("both.bvh"), "--duration", "0.5"});
+    CHECK(done.exit_code == 0);
+    CHECK(done.out.find("poses of a left hand") != std::string::npos);
+    CHECK(std::filesystem::exists(path("both-left.bvh")));
+    CHECK(std::filesystem::exists(path("both-right.bvh")));
+    CHECK_FALSE(std::filesystem::exists(path("both.bvh")));
+    CHECK(nendo::test::nendo({"poses", "sim", "sim", "--count", "1"}).exit_code == 2);
+    CHECK(nendo::test::nendo({"poses", "sim", "sim?hand=left", "sim", "--count", "1"}).exit_code ==
+          2);
   }
 
   TEST_CASE("--adapt poses the hand by what it learns") {

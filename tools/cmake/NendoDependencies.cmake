@@ -9,6 +9,8 @@ pkg_check_modules(libserialport REQUIRED IMPORTED_TARGET libserialport)
 pkg_check_modules(libudev REQUIRED IMPORTED_TARGET libudev)
 pkg_check_modules(libusb REQUIRED IMPORTED_TARGET libusb-1.0)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
+pkg_check_modules(libyaml REQUIRED IMPORTED_TARGET yaml-0.1)
+pkg_check_modules(expat REQUIRED IMPORTED_TARGET expat)
 find_package(nlohmann_json 3.11 REQUIRED) # headers alone: programs that use the libraries do without
 if(NENDO_APPS)
   find_package(CLI11 REQUIRED)

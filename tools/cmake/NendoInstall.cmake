@@ -10,7 +10,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/nendoConfig.cmake ${CMAKE_CURRENT_BINA
 
 # For what is built without CMake. What a static library needs of others, its user must link; what a shared one does, not.
 if(NOT BUILD_SHARED_LIBS)
-  set(NENDO_REQUIRES " libserialport libudev libusb-1.0 spdlog libhwy tomlplusplus")
+  set(NENDO_REQUIRES " libserialport libudev libusb-1.0 spdlog libhwy tomlplusplus yaml-0.1 expat")
 endif()
 file(RELATIVE_PATH NENDO_PC_TO_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/nendo.pc.in ${CMAKE_CURRENT_BINARY_DIR}/nendo.pc @ONLY)

@@ -241,7 +241,8 @@ Result<RecordedGlove> choose(const GloveSpec& spec, std::vector<RecordedGlove> g
 Result<std::unique_ptr<Glove>> open_recording(const GloveSpec& spec, const Settings& settings,
                                               std::optional<Side> asked, std::optional<Side> side) {
   if (spec.options.contains("rate"))
-    return error_of(spec, Errc::usage, "rate is for tables (.csv); a recording has its times");
+    return error_of(spec, Errc::usage,
+                    "rate is for tables (.csv, .tsv, .txt); a recording has its times");
   auto reader = ChunkReader::open(spec.target);
   if (!reader) return reader.error();
   auto glove = choose(spec, gloves_of(*std::move(reader)), asked, side);
@@ -256,6 +257,13 @@ Result<std::unique_ptr<Glove>> open_recording(const GloveSpec& spec, const Setti
     return error_of(spec, Errc::bad_input, "holds no sample of this glove");
   return std::unique_ptr<Glove>(
       std::make_unique<ReplayedGlove>(spec, settings, std::move(glove->info), open));
+}
+
+bool is_table(const std::string& name) {
+  std::string ending = std::filesystem::path(name).extension().string();
+  for (char& c : ending)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return ending == ".csv" || ending == ".tsv" || ending == ".txt";
 }
 
 Result<std::unique_ptr<Glove>> open_table(const GloveSpec& spec, const Settings& settings,
@@ -286,9 +294,8 @@ Result<std::unique_ptr<Glove>> open_replay(const GloveSpec& spec, std::optional<
   if (!settings) return settings.error();
   const auto asked = hand_option(spec);
   if (!asked) return asked.error();
-  return std::filesystem::path(spec.target).extension() == ".csv"
-             ? open_table(spec, *settings, {*asked, side, std::nullopt})
-             : open_recording(spec, *settings, *asked, side);
+  return is_table(spec.target) ? open_table(spec, *settings, {*asked, side, std::nullopt})
+                               : open_recording(spec, *settings, *asked, side);
 }
 
 } // namespace nendo::driver

@@ -1,157 +1,209 @@
 #include "replay/sample_table.hpp"
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
-#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <nendo/base/files.hpp>
-#include <nendo/base/text.hpp>
+#include <nendo/base/table.hpp>
 #include <nendo/base/units.hpp>
-
-#include "spec/number_in.hpp"
 
 namespace nendo::driver {
 namespace {
 
 constexpr double most_count = 65535.0;
-constexpr double most_time_s = 1e9;             // 30 years
+constexpr double most_time_s = 4.5e9;           // 142 years: differences fit into nanoseconds
 constexpr std::size_t most_samples = 5'000'000; // 15 hours of a CyberGlove; some 160 bytes each
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
 constexpr std::string_view count_ending = "_count";
+constexpr std::string_view head_example = "time_s,thumb_roll,thumb_mcp";
 
-/// What stands in a cell, in quotes or not.
-std::string_view content_of(std::string_view cell) {
-  cell = trimmed(cell);
-  const bool is_quoted = cell.size() > 1 && cell.starts_with('"') && cell.ends_with('"');
-  return is_quoted ? trimmed(cell.substr(1, cell.size() - 2)) : cell;
-}
-
-std::vector<std::string_view> cells_of(std::string_view line, char separator) {
-  std::vector<std::string_view> cells;
-  for (bool is_last = false; !is_last;) {
-    is_last = line.find(separator) == std::string_view::npos;
-    cells.push_back(content_of(cut(line, separator)));
-  }
-  return cells;
-}
+struct TimeUnit {
+  std::string_view ending;
+  std::string_view word;
+  int digits; ///< of a nanosecond
+};
+constexpr std::array<TimeUnit, 4> time_units{{{"s", "seconds", 9},
+                                              {"ms", "milliseconds", 6},
+                                              {"us", "microseconds", 3},
+                                              {"ns", "nanoseconds", 0}}};
+constexpr std::array<std::string_view, 3> time_words{"time", "timestamp", "t"};
 
 std::optional<Sensor> sensor_of(std::string_view name) {
   if (name.ends_with(count_ending)) name.remove_suffix(count_ending.size());
   return sensor_named(name);
 }
 
+/// What `nendo export` writes beside counts and times: known, and not needed.
+bool is_exported_beside(std::string_view name) {
+  if (name.ends_with("_deg")) return sensor_named(name.substr(0, name.size() - 4)).has_value();
+  return name == "measured_s" || name == "device_time_s" || name == "switch" ||
+         name == "calibrated";
+}
+
+std::optional<Side> side_of(std::string_view cell) {
+  std::string word(cell);
+  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) {
+    return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  });
+  if (word == "left" || word == "l") return Side::left;
+  if (word == "right" || word == "r") return Side::right;
+  return std::nullopt;
+}
+
 /// Which column has what.
 struct Columns {
-  char separator = ',';
-  std::size_t count = 0;
   std::optional<std::size_t> time, hand, sequence;
+  TimeUnit unit{};
   std::vector<std::pair<std::size_t, Sensor>> sensors;
 };
 
-class TableReader {
+class SampleReader {
 public:
-  TableReader(std::string name, const TableWishes& wishes)
-      : name_(std::move(name)), wishes_(wishes) {}
+  SampleReader(std::string_view text, std::string name, const TableWishes& wishes)
+      : table_(text, name), name_(std::move(name)), wishes_(wishes) {}
 
-  Result<SampleTable> read(std::string_view text) {
-    text = without_mark(text);
-    if (text.empty()) return Error{Errc::bad_input, name_ + ": is empty"};
-    if (auto fine = read_head(cut(text, '\n')); !fine) return fine.error();
-    while (!text.empty()) {
-      const std::string_view line = cut(text, '\n');
-      ++line_;
-      if (trimmed(line).empty()) continue;
-      if (auto fine = read_row(line); !fine) return fine.error();
-      if (rows_.size() > most_samples) return wrong("there are more than 5 million rows");
+  Result<SampleTable> read() {
+    if (auto fine = read_head(); !fine) return fine.error();
+    for (;;) {
+      const auto any = table_.next();
+      if (!any) return any.error();
+      if (!*any) break;
+      if (auto fine = read_row(); !fine) return fine.error();
+      if (rows_.size() > most_samples) return table_.bad("there are more than 5 million rows");
     }
     return finish();
   }
 
 private:
-  Error wrong(const std::string& what) const { return bad_line(name_, line_, what); }
+  Result<void> read_head() {
+    if (auto fine = table_.read_head(head_example); !fine) return fine;
+    if (auto fine = find_sensors(); !fine) return fine;
+    if (auto fine = find_time(); !fine) return fine;
+    for (const std::string name : {"hand", "sequence"})
+      if (table_.is_double(name)) return two_columns(name);
+    columns_.hand = table_.find("hand");
+    columns_.sequence = table_.find("sequence");
+    return {};
+  }
 
-  Result<void> read_head(std::string_view line) {
-    for (const char separator : {',', ';', '\t'})
-      if (line.find(separator) != std::string_view::npos) {
-        columns_.separator = separator;
-        break;
-      }
-    std::set<std::string_view> seen;
-    for (const std::string_view name : cells_of(line, columns_.separator)) {
-      const std::size_t column = columns_.count++;
+  Error two_columns(std::string_view name) const {
+    return table_.bad("there are two columns of " + std::string(name) + "; leave one out");
+  }
+
+  Result<void> find_sensors() {
+    SensorMask seen;
+    for (std::size_t column = 0; column < table_.names().size(); ++column) {
+      const std::string& name = table_.names()[column];
+      if (is_exported_beside(name)) table_.mark_as_read(column);
       const auto sensor = sensor_of(name);
-      const bool is_known = sensor || name == "time_s" || name == "hand" || name == "sequence";
-      if (is_known && !seen.insert(sensor ? name_of(*sensor) : name).second)
-        return wrong("there are two columns of " + std::string(name));
-      if (sensor) columns_.sensors.emplace_back(column, *sensor);
-      if (name == "time_s") columns_.time = column;
-      if (name == "hand") columns_.hand = column;
-      if (name == "sequence") columns_.sequence = column;
+      if (!sensor) continue;
+      if (seen.has(*sensor)) return two_columns(name);
+      seen.add(*sensor);
+      table_.mark_as_read(column);
+      columns_.sensors.emplace_back(column, *sensor);
     }
-    if (columns_.sensors.empty())
-      return wrong("no column is a sensor's; name them thumb_roll, thumb_mcp, ... as `nendo "
-                   "monitor --raw` does");
-    if (!columns_.time && !wishes_.rate_hz)
-      return wrong("there is no column time_s, so add ?rate=HZ, the rows a second");
-    return {};
+    if (!columns_.sensors.empty()) return {};
+    return table_.bad("no column is a sensor's; name them thumb_roll, thumb_mcp, ... as `nendo "
+                      "monitor --raw` does");
   }
 
-  Result<void> read_row(std::string_view line) {
-    const auto cells = cells_of(line, columns_.separator);
-    if (cells.size() != columns_.count)
-      return wrong("has " + std::to_string(cells.size()) + " cells, and the head " +
-                   std::to_string(columns_.count));
+  Result<void> find_time() {
+    std::string without_unit;
+    for (const std::string_view word : time_words) {
+      for (const TimeUnit& unit : time_units) {
+        const std::string name = std::string(word) + "_" + std::string(unit.ending);
+        const auto column = table_.find(name);
+        if (!column) continue;
+        if (columns_.time || table_.is_double(name))
+          return table_.bad("there are two columns of times, the second one " + name +
+                            "; leave one out");
+        columns_.time = column;
+        columns_.unit = unit;
+      }
+      const auto& names = table_.names();
+      if (std::find(names.begin(), names.end(), word) != names.end()) without_unit = word;
+    }
+    if (columns_.time || wishes_.rate_hz) return {};
+    if (!without_unit.empty())
+      return table_.bad("column " + without_unit +
+                        " does not tell its unit; name it time_s, time_ms, "
+                        "time_us or time_ns, or add ?rate=HZ, the rows a second");
+    return table_.bad(
+        "there is no column time_s (or time_ms, time_us, time_ns), so add ?rate=HZ, the "
+        "rows a second");
+  }
+
+  Result<void> read_row() {
     GloveSample sample;
-    if (auto fine = read_counts(cells, sample); !fine) return fine.error();
-    if (auto fine = read_hand(cells, sample); !fine) return fine.error();
-    if (auto fine = read_time(cells, sample); !fine) return fine.error();
-    if (sample.present.bits != 0) rows_.push_back(sample);
+    if (auto fine = read_counts(sample); !fine) return fine.error();
+    if (auto fine = read_hand(sample); !fine) return fine.error();
+    if (sample.present.bits == 0) return {};
+    if (auto fine = read_time(sample); !fine) return fine.error();
+    rows_.push_back(sample);
     return {};
   }
 
-  Result<void> read_counts(const std::vector<std::string_view>& cells, GloveSample& sample) {
+  Result<void> read_counts(GloveSample& sample) {
     for (const auto& [column, sensor] : columns_.sensors) {
-      if (cells[column].empty()) continue;
-      const auto count = number_in<double>(cells[column]);
+      if (table_.is_missing(column)) continue;
+      const auto count = table_.number(column);
       if (!count || !(*count >= 0.0 && *count <= most_count))
-        return wrong(std::string(name_of(sensor)) + " is " + in_quotes(cells[column]) +
-                     "; use a count from 0 to 65535, or nothing");
+        return table_.bad_cell(column, "is no count; use 0 to 65535, or leave the cell empty");
       sample.set(sensor, RawCount{static_cast<std::uint16_t>(std::lround(*count))});
     }
     return {};
   }
 
-  Result<void> read_hand(const std::vector<std::string_view>& cells, GloveSample& sample) {
+  Result<void> read_hand(GloveSample& sample) {
     if (!columns_.hand) {
       sample.side = wishes_.hand.value_or(wishes_.side.value_or(Side::right));
       return {};
     }
-    const std::string_view word = cells[*columns_.hand];
-    if (word != "left" && word != "right")
-      return wrong("hand is " + in_quotes(word) + "; use left or right");
-    sample.side = word == "left" ? Side::left : Side::right;
+    auto side = side_of(table_.cell(*columns_.hand));
+    const auto code = table_.number(*columns_.hand);
+    if (code && (*code == 0.0 || *code == 1.0)) side = *code == 0.0 ? Side::left : Side::right;
+    if (!side)
+      return table_.bad_cell(*columns_.hand,
+                             "is no hand; use left or right, or 0 (left) or 1 (right)");
+    sample.side = *side;
     return {};
   }
 
-  Result<void> read_time(const std::vector<std::string_view>& cells, GloveSample& sample) {
-    double time_s = columns_.time ? 0.0 : static_cast<double>(rows_.size()) / *wishes_.rate_hz;
+  Result<void> read_time(GloveSample& sample) {
+    auto& before = latest_[sample.side == Side::left ? 0 : 1];
     if (columns_.time) {
-      const auto told = number_in<double>(cells[*columns_.time]);
-      if (!told || !(std::abs(*told) <= most_time_s))
-        return wrong("time_s is " + in_quotes(cells[*columns_.time]) + "; use seconds");
-      time_s = *told;
+      const TimeUnit& unit = columns_.unit;
+      const auto time_ns =
+          table_.scaled(*columns_.time, unit.digits, most_time_s * std::pow(10.0, 9 - unit.digits));
+      if (!time_ns)
+        return table_.bad_cell(*columns_.time, "is no time; use " + std::string(unit.word) +
+                                                   ", counted from any moment");
+      sample.arrival = HostTime(std::chrono::nanoseconds(*time_ns));
+      if (before && sample.arrival < *before)
+        return table_.bad_cell(*columns_.time,
+                               "is less than in the row before of this hand; sort the "
+                               "rows by time");
+    } else {
+      sample.arrival = HostTime(from_seconds(static_cast<double>(rows_.size()) / *wishes_.rate_hz));
     }
-    sample.arrival = sample.measured = HostTime(from_seconds(time_s));
-    if (!rows_.empty() && sample.arrival < rows_.back().arrival)
-      return wrong("time_s is less than in the row before");
-    if (columns_.sequence) {
-      const std::string_view text = cells[*columns_.sequence];
-      const auto sequence = number_in<std::uint64_t>(text);
-      if (!sequence) return wrong("sequence is " + in_quotes(text) + "; use a whole number");
-      sample.sequence = *sequence;
-    }
+    before = sample.measured = sample.arrival;
+    return read_sequence(sample);
+  }
+
+  Result<void> read_sequence(GloveSample& sample) {
+    if (!columns_.sequence) return {};
+    const auto sequence = table_.scaled(*columns_.sequence, 0, 9e18);
+    const auto number = table_.number(*columns_.sequence);
+    if (!sequence || *sequence < 0 || *number != static_cast<double>(*sequence))
+      return table_.bad_cell(*columns_.sequence,
+                             "is no whole number from 0; leave the column out if "
+                             "you do not have it");
+    sample.sequence = static_cast<std::uint64_t>(*sequence);
     return {};
   }
 
@@ -161,7 +213,7 @@ private:
   }
 
   Result<SampleTable> finish() {
-    if (rows_.empty()) return wrong("there is no row with a count");
+    if (rows_.empty()) return table_.bad("there is no row with a count; add one for each sample");
     if (wishes_.hand && !has(*wishes_.hand))
       return Error{Errc::no_device, name_ + ": has no row of a " +
                                         std::string(name_of(*wishes_.hand)) +
@@ -176,7 +228,9 @@ private:
       GloveSample& row = rows_[at];
       if (!columns_.sequence) row.sequence = at;
       if (at > 0 && row.sequence <= rows_[at - 1].sequence)
-        return Error{Errc::bad_input, name_ + ": sequence does not rise from row to row"};
+        return Error{Errc::bad_input,
+                     name_ + ": sequence does not rise from row to row; sort the rows, "
+                             "or leave the column out"};
       table.info.sensors.bits |= row.present.bits;
       for (const RawCount& count : row.raw)
         while (count.value > table.info.counts.most)
@@ -187,14 +241,17 @@ private:
     table.info.kind = GloveKind::recorded;
     table.info.source = name_;
     table.info.model = "a table of " + std::to_string(columns_.sensors.size()) + " sensors";
+    if (const std::string others = table_.columns_not_read(); !others.empty())
+      table.info.facts.push_back({std::string(columns_not_read_fact), others});
     table.samples = std::move(rows_);
     return table;
   }
 
+  TableReader table_;
   std::string name_;
   TableWishes wishes_;
   Columns columns_;
-  std::size_t line_ = 1;
+  std::array<std::optional<HostTime>, 2> latest_; ///< of the left and of the right hand
   std::vector<GloveSample> rows_;
 };
 
@@ -202,7 +259,7 @@ private:
 
 Result<SampleTable> parse_sample_table(std::string_view text, const std::string& name,
                                        const TableWishes& wishes) {
-  return TableReader(name, wishes).read(text);
+  return SampleReader(text, name, wishes).read();
 }
 
 Result<SampleTable> read_sample_table(const std::filesystem::path& path,

@@ -25,10 +25,15 @@ struct TableWishes {
   std::optional<double> rate_hz{}; ///< of a table without times
 };
 
-/// Columns are parted by commas, semicolons or tabs, and cells may stand in quotes. They are:
-/// SENSOR_count or SENSOR, for any of sensor_names, counts from 0 to 65535, rounded, an empty cell
-/// being none; time_s; hand, left or right; sequence. Others are passed over, as are rows without
-/// any count. Times may begin anywhere, and do not fall; without them there must be a rate, and
+/// The fact of a table's GloveInfo that names the columns which were not read.
+inline constexpr std::string_view columns_not_read_fact = "columns_not_read";
+
+/// A table (nendo/base/table.hpp) with a row for each sample. Its columns are, in any order:
+/// SENSOR_count or SENSOR, for any of sensor_names, counts from 0 to 65535, rounded, a missing one
+/// being none; time_s, time_ms, time_us or time_ns (also timestamp_, t_); hand, left (0) or right
+/// (1); sequence. Others are named in a fact, unless `nendo export` writes them. Rows without any
+/// count are passed over. Times may begin anywhere, also with the epoch of Unix, are read to the
+/// nanosecond, and do not fall from row to row of one hand; without them there must be a rate, and
 /// without hands it is a right one. Errors call the text by `name`: bad_input, with the line and
 /// what is wrong there; no_device (no row of that hand).
 Result<SampleTable> parse_sample_table(std::string_view text, const std::string& name,

@@ -6,7 +6,8 @@
 // Its positive gains are therefore also positive in our frame, where flexion and spreading are
 // positive: a CyberGlove's counts rise with both. If all bend sensors (or all pair sensors) of a
 // text have the other sign, the text means the other frame, and their signs are turned. A text that
-// has both signs among them is refused.
+// has both signs among them is refused. The ROS forms say for certain that spreading is positive,
+// so their gaps' signs are kept.
 
 #include <cstdint>
 #include <filesystem>
@@ -31,7 +32,14 @@ struct ExportedCalibration {
   std::vector<std::string> notes; ///< what the format cannot hold, one line each
 };
 
-enum class CalibrationFormat : std::uint8_t { toml, virtualhand, two_point, csv };
+enum class CalibrationFormat : std::uint8_t {
+  toml,
+  virtualhand,
+  two_point,
+  csv,
+  ros_yaml,
+  ros_xml
+};
 
 /// Guesses the format of a text; virtualhand if it looks like no known format.
 CalibrationFormat format_of(std::string_view text) noexcept;
@@ -55,11 +63,24 @@ Result<ExportedCalibration> virtualhand_text(const Calibration& calibration, Cou
 /// abduction second. It has a line for the palm arch, which is not used.
 Result<ImportedCalibration> parse_two_point(std::string_view text, std::string_view name);
 
-/// Reads lines `sensor,gain_rad_per_count,offset_counts`, which follow a header line of these
-/// words. # begins a comment.
+/// Reads a table (nendo/base/table.hpp) with the columns sensor, gain_rad_per_count (or
+/// gain_deg_per_count) and offset_counts. A note names other columns.
 Result<ImportedCalibration> parse_calibration_csv(std::string_view text, std::string_view name);
 /// Writes the calibrated sensors only, in numbers that read back to the same bits.
 Result<ExportedCalibration> calibration_csv_text(const Calibration& calibration);
+
+/// Reads what ROS drivers for this glove keep (parameter cyberglove_calibration, in YAML's flow or
+/// block style): for each joint G_... two to 4096 points [raw, degrees], a piecewise linear curve.
+/// Raw 0 to 1 is count 1 to 255. The line that is off the curve the least replaces it, and a note
+/// says by how many degrees it is off, and where. Notes name joints that are not known, not there,
+/// or that measure nothing, which are left out. Gaps between fingers keep their signs.
+Result<ImportedCalibration> parse_ros_yaml(std::string_view text, std::string_view name);
+/// Reads the older XML form of the same, in the same way.
+Result<ImportedCalibration> parse_ros_xml(std::string_view text, std::string_view name);
+/// Writes these forms, with two points for each calibrated sensor, at raw 0 and 1, in nine
+/// decimals. Refuses self-calibrating gloves.
+Result<ExportedCalibration> ros_yaml_text(const Calibration& calibration, CountScale counts);
+Result<ExportedCalibration> ros_xml_text(const Calibration& calibration, CountScale counts);
 
 /// Reads a regular file of at most 1 MiB; a pipe or a device is refused. Blocks. Error: bad_input.
 Result<std::string> read_calibration_text(const std::filesystem::path& path);
