@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,20 +14,21 @@ namespace {
 
 constexpr std::array<Side, 2> sides{Side::left, Side::right};
 
-std::string_view word_for(deform::FieldStatus status) {
+/// As the page of exports has it.
+std::uint64_t code_of(deform::FieldStatus status) {
   switch (status) {
   case deform::FieldStatus::ok:
-    return "ok";
+    return 0;
   case deform::FieldStatus::merged:
-    return "merged";
+    return 1;
   case deform::FieldStatus::singular:
-    return "singular";
+    return 2;
   case deform::FieldStatus::too_dense:
-    return "too_dense";
+    return 3;
   case deform::FieldStatus::not_finite:
-    return "not_finite";
+    return 4;
   }
-  return "";
+  return 5;
 }
 
 const flow::HandFrame& hand_of(const flow::Frame& frame, Side side) {
@@ -38,7 +40,7 @@ std::string head_for(const flow::Frame& frame) {
   for (const Side side : sides) {
     if (!hand_of(frame, side).present) continue;
     const std::string hand = "," + std::string(name_of(side)) + "_";
-    head += hand + "samples" + hand + "silent";
+    head += hand + "samples" + hand + "silent" + hand + "calibrated";
     for (const auto angle : hand::angle_names)
       head += hand + std::string(angle) + "_deg";
     for (const hand::Joint tip : hand::fingertips)
@@ -48,9 +50,13 @@ std::string head_for(const flow::Frame& frame) {
   return head + "\n";
 }
 
-void put_hand(const flow::HandFrame& hand, CsvRow& row) {
+void put_hand(const flow::HandFrame& hand, std::optional<bool> is_calibrated, CsvRow& row) {
   row.put(hand.samples);
-  row.put(std::uint64_t{hand.silent});
+  row.put_flag(hand.silent);
+  if (is_calibrated)
+    row.put_flag(*is_calibrated);
+  else
+    row.put_nothing();
   for (std::size_t at = 0; at < hand::angle_count; ++at)
     row.put(to_degrees(hand.angles[hand::angle_at(at)]), 4);
   const auto tips_m = hand.pose.fingertip_positions();
@@ -58,15 +64,17 @@ void put_hand(const flow::HandFrame& hand, CsvRow& row) {
     row.put(metres, 7);
 }
 
-std::string row_for(const flow::Frame& frame, double time_s, const std::array<bool, 2>& present) {
+std::string row_for(const ChosenFrames& frames, const std::array<bool, 2>& present) {
+  const flow::Frame& frame = frames.frame();
   CsvRow row;
-  row.put(time_s, 6);
+  row.put(frames.time_s(), 6);
   for (const std::uint64_t count :
        {frame.tick, std::uint64_t{frame.held}, frame.commits, frame.undos})
     row.put(count);
-  row.put(word_for(frame.status));
-  for (std::size_t slot = 0; slot < present.size(); ++slot)
-    if (present[slot]) put_hand(frame.hands[slot], row);
+  row.put(code_of(frame.status));
+  for (const Side side : sides)
+    if (present[flow::Placement::index_of(side)])
+      put_hand(hand_of(frame, side), frames.source().is_calibrated(side), row);
   return row.take();
 }
 
@@ -82,7 +90,7 @@ Result<Exported> export_motion_csv(ChosenFrames& frames, const std::filesystem::
       for (std::size_t slot = 0; slot < present.size(); ++slot)
         present[slot] = frame.hands[slot].present;
     }
-    return file.write(text + row_for(frame, frames.time_s(), present));
+    return file.write(text + row_for(frames, present));
   });
 }
 

@@ -26,7 +26,8 @@ public:
       : samples_(samples), sensors_(samples.sensors()) {}
 
   std::string head() {
-    for (const char* name : {"time_s", "measured_s", "device_time_s", "hand", "sequence", "switch"})
+    for (const char* name :
+         {"time_s", "measured_s", "device_time_s", "hand", "sequence", "switch", "calibrated"})
       row_.put(std::string_view(name));
     for (const char* kind : {"_count", "_deg"})
       for_each_sensor([&](Sensor sensor) { row_.put(std::string(name_of(sensor)) + kind); });
@@ -41,9 +42,10 @@ public:
     row_.put(sample.has_device_time ? to_seconds(sample.device_time)
                                     : std::numeric_limits<double>::quiet_NaN(),
              time_decimals);
-    row_.put(name_of(sample.side));
+    row_.put_flag(sample.side == Side::right);
     row_.put(sample.sequence);
     put_switch(sample.wrist_switch);
+    row_.put_flag(samples_.is_calibrated());
     for_each_sensor([&](Sensor sensor) {
       if (!sample.present.has(sensor)) return row_.put_nothing();
       row_.put(std::uint64_t{sample[sensor].value});
@@ -66,7 +68,7 @@ private:
 
   void put_switch(WristSwitch position) {
     if (position == WristSwitch::unknown) return row_.put_nothing();
-    row_.put(std::string_view(position == WristSwitch::on ? "on" : "off"));
+    row_.put_flag(position == WristSwitch::on);
   }
 
   void put_angles(const GloveSample& sample, const hand::Calibration* calibration) {

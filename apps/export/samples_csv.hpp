@@ -1,14 +1,8 @@
 #pragma once
 // Exports what gloves sent as a table, with one row for each recorded sample, in the order of the
-// recording. The columns are:
-//
-// - time_s and measured_s: when the sample came and when the glove took it, by the host's clock,
-//   since the recording began. The first samples came a little before that.
-// - device_time_s: the glove's own clock, if it has one.
-// - hand, sequence, and switch (on, off, or empty if the glove does not tell).
-// - SENSOR_count for each sensor that any of the gloves has, and then SENSOR_deg. Angles are those
-//   of the calibration with which the hand was recorded. They are empty for a hand that was not
-//   calibrated (takes::is_calibrated) and for sensors that the calibration does not know.
+// recording. README.md describes the columns. All cells are numbers; what a glove does not tell is
+// nan, and so are the angles of a hand that was not calibrated (takes::is_calibrated) and of
+// sensors that the calibration does not know.
 
 #include <filesystem>
 

@@ -14,6 +14,7 @@
 #include <nendo/recording/take_reader.hpp>
 
 #include "takes/frame_source.hpp"
+#include "takes/glove_samples.hpp"
 
 namespace nendo::takes {
 
@@ -36,6 +37,9 @@ public:
   bool next() override;
   const flow::Frame& frame() const override { return frame_; }
   double time_s() const override { return time_s_; }
+  std::optional<bool> is_calibrated(Side side) const override {
+    return takes::is_calibrated(reader_.setup(), side);
+  }
   bool is_exact() const override { return exact_ && reader_.chunks().damage_count() == 0; }
 
 private:

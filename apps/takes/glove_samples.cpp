@@ -35,6 +35,12 @@ bool is_calibrated(const recording::Setup& setup, std::size_t glove) {
          !(hand.wearer.of(hand.first.side).calibration == hand::default_calibration(info.counts));
 }
 
+std::optional<bool> is_calibrated(const recording::Setup& setup, Side side) {
+  for (std::size_t glove = 0; glove < setup.hands.size(); ++glove)
+    if (setup.hands[glove].side == side) return is_calibrated(setup, glove);
+  return std::nullopt;
+}
+
 Result<GloveSamples> GloveSamples::open(const std::filesystem::path& path) {
   auto reader = recording::TakeReader::open(path);
   if (!reader) return reader.error();

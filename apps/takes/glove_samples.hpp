@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include <nendo/base/result.hpp>
@@ -15,6 +16,8 @@ namespace nendo::takes {
 /// Tells whether a recorded hand has angles of its own: its calibration is not the default one of
 /// such a glove, or is learned, or the hand is a simulated one, which the default is made for.
 bool is_calibrated(const recording::Setup& setup, std::size_t glove);
+/// Tells the same of the hand that is shaped as one of that side; nothing if there is none.
+std::optional<bool> is_calibrated(const recording::Setup& setup, Side side);
 
 class GloveSamples {
 public:

@@ -3,11 +3,13 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <nendo/base/result.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
 #include "takes/frame_source.hpp"
+#include "takes/glove_samples.hpp"
 
 namespace nendo::takes {
 
@@ -35,6 +37,9 @@ public:
   bool next() override;
   const flow::Frame& frame() const override { return replay_->loop().frames().front(); }
   double time_s() const override { return time_s_; }
+  std::optional<bool> is_calibrated(Side side) const override {
+    return takes::is_calibrated(reader_.setup(), side);
+  }
   bool is_exact() const override {
     return replay_->is_exact() && reader_.chunks().damage_count() == 0;
   }

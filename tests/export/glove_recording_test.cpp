@@ -163,20 +163,21 @@ TEST_SUITE("glove_recording") {
       CHECK(std::stod(row["time_s"]) == doctest::Approx(time_s).epsilon(1e-12));
       CHECK(std::stod(row["measured_s"]) ==
             doctest::Approx(left ? time_s - 0.0023 : time_s).epsilon(1e-12));
-      CHECK(row["device_time_s"].empty() == !left);
+      CHECK((row["device_time_s"] == "nan") == !left);
       if (left)
         CHECK(std::stod(row["device_time_s"]) ==
               doctest::Approx(42.0 + 0.01 * static_cast<double>(at / 2)).epsilon(1e-12));
-      CHECK(row["hand"] == (left ? "left" : "right"));
+      CHECK(row["hand"] == (left ? "0" : "1"));
+      CHECK(row["calibrated"] == (left ? "1" : "0"));
       CHECK(row["sequence"] == std::to_string(7 + at / 2));
-      CHECK(row["switch"] == (!left ? "" : at / 2 % 2 == 0 ? "on" : "off"));
+      CHECK(row["switch"] == (!left ? "nan" : at / 2 % 2 == 0 ? "1" : "0"));
       for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
         const auto sensor = static_cast<Sensor>(slot);
         const std::string name(name_of(sensor));
         CHECK(row.contains(name + "_count") == sensors_22.has(sensor));
         if (!sensors_22.has(sensor)) continue;
         CHECK(row[name + "_count"] ==
-              (sample.present.has(sensor) ? std::to_string(100 + slot + at / 2) : ""));
+              (sample.present.has(sensor) ? std::to_string(100 + slot + at / 2) : "nan"));
       }
     }
   }
@@ -189,10 +190,10 @@ TEST_SUITE("glove_recording") {
     for (std::size_t at = 0; at < rows.size(); ++at) {
       Row row = rows[at];
       const bool left = gloves.samples[at].side == Side::left;
-      CHECK(row["palm_arch_deg"].empty());
+      CHECK(row["palm_arch_deg"] == "nan");
       for (const Sensor sensor : {Sensor::index_mcp, Sensor::thumb_ip, Sensor::wrist_yaw}) {
         const std::string cell = row[std::string(name_of(sensor)) + "_deg"];
-        CHECK(cell.empty() == !left);
+        CHECK((cell == "nan") == !left);
         if (left)
           CHECK(std::abs(std::stod(cell) -
                          degrees * gain *
