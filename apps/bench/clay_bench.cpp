@@ -154,7 +154,8 @@ void add(cli::Command& bench) {
       bench.add_command("clay", "Pressing clay with whole hands, beside a plain program");
   command.add_option("--make", options->thing,
                      "Knead a ball into a thing instead: cake, bowl, nose or sausage");
-  command.add_option("--save", options->save, "Where to write what --make made: .obj or .ply");
+  command.add_option("--save", options->save,
+                     "Where to write what --make made: .obj, .ply or .stl");
   command.add_flag("--refine", options->refines,
                    "Let the triangles of what --make makes follow its shape");
   command.add_option("--simd", options->simd,

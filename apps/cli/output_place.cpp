@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/base/text.hpp>
 
 #include "cli/model_files.hpp"
@@ -12,7 +13,7 @@
 namespace nendo::cli {
 namespace {
 
-std::string either(std::initializer_list<std::string_view> endings) {
+std::string either(std::span<const std::string_view> endings) {
   std::string words;
   for (const auto ending : endings)
     words += (words.empty() ? "" : " or ") + std::string(ending);
@@ -22,12 +23,11 @@ std::string either(std::initializer_list<std::string_view> endings) {
 } // namespace
 
 Result<void> check_place(std::string_view option, const std::string& path,
-                         std::initializer_list<std::string_view> endings) {
+                         std::span<const std::string_view> endings) {
   if (path.empty()) return {};
   const std::filesystem::path file(path);
   const std::string given = std::string(option) + " " + path;
-  const auto ends_in = [&](std::string_view ending) { return path.ends_with(ending); };
-  if (endings.size() > 0 && std::none_of(endings.begin(), endings.end(), ends_in))
+  if (!endings.empty() && ending_of(path, endings).empty())
     return Error{Errc::usage, given + ": end the name in " + either(endings)};
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
@@ -37,6 +37,11 @@ Result<void> check_place(std::string_view option, const std::string& path,
   return Error{Errc::failed,
                given + ": " + folder.string() +
                    " is not a folder that you may write to; make it or choose another"};
+}
+
+Result<void> check_place(std::string_view option, const std::string& path,
+                         std::initializer_list<std::string_view> endings) {
+  return check_place(option, path, std::span(endings.begin(), endings.size()));
 }
 
 Result<void>

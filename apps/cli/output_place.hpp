@@ -3,6 +3,7 @@
 // that cannot be written. Existing files stay.
 
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,8 +13,10 @@
 namespace nendo::cli {
 
 /// Checks the path given with `option`. An empty path means that no file is wanted, and is right.
-/// The name must end in one of `endings` (".png"), if any are given. Errors: usage (wrong ending,
-/// or a folder), failed (the folder is missing or not writable).
+/// The name must end in one of `endings` (".png"), in any case, if any are given. Errors: usage
+/// (wrong ending, or a folder), failed (the folder is missing or not writable).
+Result<void> check_place(std::string_view option, const std::string& path,
+                         std::span<const std::string_view> endings);
 Result<void> check_place(std::string_view option, const std::string& path,
                          std::initializer_list<std::string_view> endings = {});
 

@@ -65,11 +65,11 @@ int make_timeline(const MakeOptions& options) {
   if (!reader) return cli::report(reader.error());
   const auto model = takes::recorded_model(options.take, reader->setup(), options.mesh);
   if (!model) return cli::report(model.error());
-  auto made = timeline::timeline_of_take(options.take, *model, *tolerance);
+  auto made = timeline::timeline_of_take(options.take, model->mesh, *tolerance);
   if (!made) return cli::report(made.error());
   if (!options.mesh.empty()) {
     made->timeline.mesh = std::filesystem::absolute(options.mesh).string();
-    made->timeline.mesh_sum = recording::sum_of(model->vertices);
+    made->timeline.mesh_sum = recording::sum_of(model->mesh.vertices);
   }
   if (const auto written = timeline::write_timeline(options.out, made->timeline); !written)
     return cli::report(written.error());

@@ -13,6 +13,7 @@
 #include "cli/json_line.hpp"
 #include "cli/output_place.hpp"
 #include "edit/edit_actions.hpp"
+#include "takes/model_files.hpp"
 #include "takes/timeline_frames.hpp"
 
 namespace nendo::edit {
@@ -35,7 +36,7 @@ void wait_for(double time_s, double speed, HostTime start) {
 } // namespace
 
 int play_timeline(const PlayOptions& options) {
-  if (const auto fine = cli::check_place("--out", options.out, {".obj", ".ply"}); !fine)
+  if (const auto fine = cli::check_place("--out", options.out, deform::mesh_endings); !fine)
     return cli::report(fine.error());
   if (!(options.speed >= 0.0 && options.speed <= most_speed))
     return cli::report({Errc::usage, "--speed: use 0 to 1000 times real time"});
@@ -58,7 +59,7 @@ int play_timeline(const PlayOptions& options) {
   deform::Mesh shape = (*frames)->model((*frames)->frame().model);
   shape.vertices = (*frames)->player().final_shape();
   if (!options.out.empty())
-    if (const auto written = deform::write_mesh(options.out, shape); !written)
+    if (const auto written = takes::write_model(options.out, shape, (*frames)->up()); !written)
       return cli::report(written.error());
   const auto& stats = (*frames)->player().stats();
   const auto sum = recording::sum_of(shape.vertices);

@@ -72,7 +72,8 @@ Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& p
     // One file of materials for all of them.
     const auto materials = std::filesystem::path(done.files.empty() ? file : done.files.front())
                                .replace_extension(".mtl");
-    if (const auto written = deform::write_mesh(file, mesh, materials); !written)
+    if (const auto written = deform::write_mesh(file, mesh, materials, frames.source().up());
+        !written)
       return so_far(written.error());
     std::error_code unknown;
     const auto bytes = std::filesystem::file_size(file, unknown);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include <nendo/deform/up_axis.hpp>
+
 #include "export/one_file.hpp"
 
 namespace nendo::exporting {
@@ -86,6 +88,7 @@ Result<Exported> export_part(ChosenFrames& frames, const Part& part, PointCache 
     const std::uint64_t number = frames.made();
     if (number < part.first || number >= part.first + part.count) return {};
     frames.vertices(vertices);
+    if (frames.source().up() == deform::UpAxis::z) deform::lay_z_up(vertices); // as the file is
     if (vertices.cols() > std::numeric_limits<std::int32_t>::max() / 3)
       return Error{Errc::bad_input, path.string() + ": too many vertices for a point cache"};
     words.clear();

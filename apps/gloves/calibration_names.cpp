@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/base/text.hpp>
 
 #include "cli/cli.hpp"
@@ -26,7 +27,7 @@ hand::CalibrationList stored_calibrations() {
 }
 
 Result<StoredCalibration> named_calibration(const std::string& name) {
-  if (name.find('/') != std::string::npos || name.ends_with(".toml")) {
+  if (name.find('/') != std::string::npos || ends_in(name, ".toml")) {
     auto wearer = hand::read_calibration(name);
     if (!wearer) return wearer.error();
     return StoredCalibration{name, false, *std::move(wearer)};

@@ -15,6 +15,7 @@
 #include <nendo/base/text.hpp>
 #include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/cut.hpp>
+#include <nendo/deform/face_box.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/repair.hpp>
 
@@ -33,6 +34,7 @@ struct Options {
   std::string plane;
   std::string wire;
   std::string out;
+  std::string up; ///< empty: y
   std::optional<double> edge;
   bool repair = false;
 };
@@ -120,16 +122,16 @@ Result<void> check(const Options& options) {
   if (options.edge && !(*options.edge > 0.0))
     return Error{Errc::usage, "--edge: use a length greater than 0, in the models' units"};
   return cli::check_place("--out", part_name(options.out, options.models.front(), 1),
-                          {".obj", ".ply"});
+                          deform::mesh_endings);
 }
 
-Result<Mesh> closed_model(const std::string& file, bool repair) {
-  auto model = takes::read_model(file);
+Result<Mesh> closed_model(const std::string& file, const Options& options) {
+  auto model = takes::read_model(file, takes::reading(options.up));
   if (!model) return model.error();
   Mesh& mesh = model->mesh;
   const ManifoldCheck closed = check_closed_manifold(mesh);
   if (closed) return std::move(mesh);
-  if (!repair)
+  if (!options.repair)
     return Error{Errc::bad_input, file + ": " + describe(closed, mesh) + "; --repair may close it"};
   auto repaired = deform::repair(mesh);
   if (!repaired) return Error{repaired.error().code, file + ": " + repaired.error().message};
@@ -165,7 +167,10 @@ Result<void> write_parts(const std::string& file, const CutModel& cut, const Opt
         return fine;
   for (std::size_t at = 0; at < meshes.size(); ++at) {
     const std::string name = part_name(options.out, file, at + 1);
-    if (auto done = write_mesh(name, meshes[at]); !done) return done;
+    if (auto done =
+            takes::write_model(name, meshes[at], takes::axis_of(takes::reading(options.up)));
+        !done)
+      return done;
     char sizes[128];
     std::snprintf(sizes, sizeof sizes, ": %td vertices, %zu faces, volume %.9g",
                   meshes[at].vertices.cols(), meshes[at].face_count(), volume_of(meshes[at]));
@@ -177,7 +182,7 @@ Result<void> write_parts(const std::string& file, const CutModel& cut, const Opt
 }
 
 std::string box_text(const Mesh& mesh) {
-  const Box box = finite_box_of(mesh.vertices);
+  const Box box = box_of_faces(mesh);
   const Eigen::Vector3d low = box.lowest + mesh.offset, high = box.highest + mesh.offset;
   const int digits = mesh.offset.isZero(0.0) ? 6 : 10; // far from zero the first ones say nothing
   char text[160];
@@ -188,7 +193,7 @@ std::string box_text(const Mesh& mesh) {
 }
 
 Result<void> cut_file(const std::string& file, const AnyBlade& blade, const Options& options) {
-  const auto mesh = closed_model(file, options.repair);
+  const auto mesh = closed_model(file, options);
   if (!mesh) return mesh.error();
   const auto cut = cut_by(*mesh, blade, options);
   if (!cut) {
@@ -226,16 +231,18 @@ void add(cli::Command& program) {
   cli::Command command = program.add_command(
       "cut",
       "Cuts closed models apart, by a plane or by what a wire sweeps; both sides are closed");
-  command.add_option("MODEL", options->models, "OBJ, PLY or glTF files").required();
+  command.add_option("MODEL", options->models, "OBJ, PLY, STL or glTF files").required();
+  takes::add_up_option(command, options->up);
   command.add_option("--plane", options->plane,
                      "X,Y,Z,NX,NY,NZ: a point of the plane and its normal, in the model's units");
   command.add_option("--wire", options->wire,
                      "Text file with the places of a wire, one a line, in order: X,Y,Z,X,Y,Z of "
                      "its two ends, in the model's units; lines that begin with # are skipped");
   command
-      .add_option("--out", options->out,
-                  "Where to write the parts, .obj or .ply: %d becomes the part's number, from 1, "
-                  "and %s the model's name; without %d all parts become one file")
+      .add_option(
+          "--out", options->out,
+          "Where to write the parts, .obj, .ply or .stl: %d becomes the part's number, from 1, "
+          "and %s the model's name; without %d all parts become one file")
       .required();
   command.add_option("--edge", options->edge,
                      "Length of the cut faces' edges; without it, about that of the faces which "

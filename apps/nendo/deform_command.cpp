@@ -9,6 +9,7 @@
 
 #include <nendo/deform/control_vectors.hpp>
 #include <nendo/deform/csrbf.hpp>
+#include <nendo/deform/face_box.hpp>
 #include <nendo/deform/injective_chain.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/midpoint_chain.hpp>
@@ -28,6 +29,7 @@ struct Options {
   std::string mesh;
   std::string vectors;
   std::string out;
+  std::string up; ///< empty: y
   std::string radius;
   std::string common_radius;
   bool injective = false;
@@ -160,7 +162,7 @@ Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vect
 /// Tells what is hardly meant: radii in another unit than the model's.
 void note_oddities(const Mesh& mesh, const ControlVectors& vectors, const Supports& supports,
                    const Options& options) {
-  const Box box = finite_box_of(mesh.vertices);
+  const Box box = box_of_faces(mesh);
   if (!reach_all_of(box, vectors.starts, supports)) return;
   std::ostringstream size;
   size.precision(3);
@@ -172,7 +174,7 @@ void note_oddities(const Mesh& mesh, const ControlVectors& vectors, const Suppor
 }
 
 Result<void> check_out(const Options& options) {
-  if (auto fine = cli::check_place("--out", options.out, {".obj", ".ply"}); !fine) return fine;
+  if (auto fine = cli::check_place("--out", options.out, deform::mesh_endings); !fine) return fine;
   return cli::check_spares(options.mesh, "--out", options.out, options.force);
 }
 
@@ -182,7 +184,7 @@ Result<void> deform_file(const Options& options) {
   if (options.injective && csrbf->keep_volume > 0.0)
     return Error{Errc::usage, std::string(session::keep_volume_or_injective)};
   if (const auto fine = check_out(options); !fine) return fine.error();
-  auto model = takes::read_model(options.mesh);
+  auto model = takes::read_model(options.mesh, takes::reading(options.up));
   if (!model) return model.error();
   Mesh& mesh = model->mesh;
   auto vectors = read_control_vectors(options.vectors);
@@ -211,7 +213,7 @@ Result<void> deform_file(const Options& options) {
   if (mesh.vertices == before)
     cli::note(options.vectors + ": moves no vertex; all displacements are 0, or no start point is "
                                 "nearer to a vertex than its radius");
-  return write_mesh(options.out, mesh);
+  return takes::write_model(options.out, mesh, takes::axis_of(takes::reading(options.up)));
 }
 
 } // namespace
@@ -220,7 +222,8 @@ void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "deform", "Deforms a mesh by control vectors from a file, without gloves or clock");
-  command.add_option("MESH", options->mesh, "OBJ, PLY or glTF file").required();
+  command.add_option("MESH", options->mesh, "OBJ, PLY, STL or glTF file").required();
+  takes::add_up_option(command, options->up);
   command
       .add_option("--vectors", options->vectors,
                   "CSV file: x,y,z,dx,dy,dz[,radius], a control vector a line")
@@ -236,7 +239,8 @@ void add(cli::Command& program) {
   command.add_flag("--injective", options->injective,
                    "Never fold: in links that each stay injective; vectors that cross are held "
                    "apart");
-  command.add_option("--out", options->out, "Where to write the result, .obj or .ply").required();
+  command.add_option("--out", options->out, "Where to write the result, .obj, .ply or .stl")
+      .required();
   command.add_flag("--force", options->force, cli::force_summary);
   command.on_chosen([options] {
     const auto done = deform_file(*options);

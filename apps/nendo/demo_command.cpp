@@ -65,7 +65,7 @@ Result<session::RunOptions> run_options(const Options& options) {
   if (options.what != "face" && options.what != "moai" && options.what != "clay")
     return Error{Errc::usage, options.what + ": there is no such demo; use face, moai or clay"};
   if (auto fine = cli::check_place("--record", options.record); !fine) return fine.error();
-  if (auto fine = cli::check_place("--out", options.out, {".obj", ".ply"}); !fine)
+  if (auto fine = cli::check_place("--out", options.out, deform::mesh_endings); !fine)
     return fine.error();
   if (auto fine = cli::check_place("--picture", options.picture, {".png"}); !fine)
     return fine.error();
@@ -139,7 +139,7 @@ void add(cli::Command& program) {
   command.add_option("--mode", options->mode,
                      "type1: the rest shape follows the fingertips; type2: strokes");
   command.add_duration("--duration", options->duration_s, "How long, e.g. 30s or 2m, up to 1h");
-  command.add_option("--out", options->out, "Where the shape goes, .obj or .ply");
+  command.add_option("--out", options->out, "Where the shape goes, .obj, .ply or .stl");
   command.add_option("--picture", options->picture, "Where the picture goes, .png");
   command.add_option("--record", options->record, "Where a recording goes; without it, none");
   command.on_chosen([options] { return demonstrate(*options); });

@@ -98,7 +98,7 @@ int mirror(const Options& options) {
     if (options.plane) return timeline::mirror(timeline, *options.plane / timeline.units_per_metre);
     const auto model = takes::timeline_model(timeline);
     if (!model) return model.error();
-    return timeline::mirror(timeline, takes::middle_plane_m(timeline, *model));
+    return timeline::mirror(timeline, takes::middle_plane_m(timeline, model->mesh));
   });
 }
 
@@ -180,7 +180,7 @@ void add_reading(cli::Command& edit, const std::shared_ptr<Options>& options) {
   playing.add_option("FILE", options->play.file, "A timeline").required();
   playing.add_duration("--until", options->play.until_s, "Seconds at which it stops; else the end");
   playing.add_option("--mesh", options->play.mesh, "Another model than the timeline's");
-  playing.add_option("--out", options->play.out, "Where to write the shape, .obj or .ply");
+  playing.add_option("--out", options->play.out, "Where to write the shape, .obj, .ply or .stl");
   playing.add_flag("--json", options->play.json, "A summary as JSON");
   playing.add_option("--speed", options->play.speed,
                      "Times real time; 0 or without it: as fast as it can");

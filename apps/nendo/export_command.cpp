@@ -1,11 +1,16 @@
 // nendo export: a recorded run as files for animators and for plots.
 
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
+
+#include <nendo/base/endings.hpp>
+#include <nendo/deform/mesh_file.hpp>
+#include <nendo/deform/up_axis.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
@@ -43,18 +48,19 @@ struct Options {
   bool json = false;
 };
 
+constexpr std::array<std::string_view, 8> export_endings{".glb", ".pc2", ".mdd", ".obj",
+                                                         ".ply", ".stl", ".bvh", ".csv"};
+
 bool is_sequence(const std::string& format) {
-  return format == "obj" || format == "ply";
+  return !ending_of("." + format, deform::mesh_endings).empty();
 }
 
 /// Returns the format of the files, or an error if they cannot go where --out says.
 Result<std::string> format_of(const Options& options) {
   if (options.format.empty()) {
-    if (const auto fine = cli::check_place(
-            "--out", options.out, {".glb", ".pc2", ".mdd", ".obj", ".ply", ".bvh", ".csv"});
-        !fine)
+    if (const auto fine = cli::check_place("--out", options.out, export_endings); !fine)
       return fine.error();
-    return std::filesystem::path(options.out).extension().string().substr(1);
+    return std::string(ending_of(options.out, export_endings).substr(1));
   }
   const std::string ending = "." + options.format;
   const auto fine = is_sequence(options.format) ? cli::check_place("--out", options.out, {ending})
@@ -159,10 +165,11 @@ Result<Take> read_recorded(const Options& options, const std::string& format) {
   }
   auto model = takes::recorded_model(options.file, setup, options.mesh);
   if (!model) return model.error();
-  take.open = [path = options.file,
-               mesh = *std::move(model)]() -> Result<std::unique_ptr<takes::FrameSource>> {
+  take.open = [path = options.file, mesh = std::move(model->mesh),
+               up = model->up()]() -> Result<std::unique_ptr<takes::FrameSource>> {
     auto frames = takes::RecordedFrames::open(path, mesh);
     if (!frames) return frames.error();
+    (*frames)->set_up(up);
     return std::unique_ptr<takes::FrameSource>(*std::move(frames));
   };
   return take;
@@ -209,7 +216,9 @@ Result<exporting::Exported> export_take(const Take& take, const std::string& for
     gltf->generator = "Nendo " NENDO_VERSION;
     return exporting::export_gltf(take.open, choice, *gltf, options.out);
   }
-  const Eigen::Vector3d offset = (*source)->model(0).offset;
+  deform::Points offset = (*source)->model(0).offset;
+  if ((*source)->up() == deform::UpAxis::z && (format == "pc2" || format == "mdd"))
+    deform::lay_z_up(offset);
   const auto counted_from = [&](Result<exporting::Exported> done) {
     if (done) done->offset = offset;
     return done;
@@ -223,7 +232,11 @@ Result<exporting::Exported> export_take(const Take& take, const std::string& for
   if (format == "bvh")
     return counted_from(exporting::export_hands_bvh(*frames, take.skeletons, options.out));
   if (format == "csv") return counted_from(exporting::export_motion_csv(*frames, options.out));
-  return exporting::export_mesh_sequence(*frames, options.out);
+  auto done = exporting::export_mesh_sequence(*frames, options.out);
+  if (!done) return done;
+  for (const std::string& lost : deform::lost_in_file("." + format, (*source)->model(0)))
+    cli::note(options.out + ": " + lost);
+  return done;
 }
 
 /// Of a model far from zero the places of the files are near zero, and this is what they lack.
@@ -344,13 +357,14 @@ void add(cli::Command& program) {
           "What `nendo run --record` or `nendo record` recorded, or a timeline of `nendo edit`")
       .required();
   command
-      .add_option("--out", options->out,
-                  "Where to write: .glb (model and hands), .pc2 or .mdd (the model's vertices), "
-                  "NAME-%04d.obj or .ply (a mesh a frame), .bvh (a file a hand), .csv (angles and "
-                  "fingertips)")
+      .add_option(
+          "--out", options->out,
+          "Where to write: .glb (model and hands), .pc2 or .mdd (the model's vertices), "
+          "NAME-%04d.obj, .ply or .stl (a mesh a frame), .bvh (a file a hand), .csv (angles and "
+          "fingertips)")
       .required();
   command.add_option("--format", options->format, "In place of the name's ending")
-      .one_of({"glb", "pc2", "mdd", "obj", "ply", "bvh", "csv"});
+      .one_of({"glb", "pc2", "mdd", "obj", "ply", "stl", "bvh", "csv"});
   command.add_option("--rate", options->rate_hz,
                      "Frames a second, each the nearest that was made; without it .csv has every "
                      "frame at its own time, .bvh the take's rate, and the others have 24");

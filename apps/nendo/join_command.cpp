@@ -24,13 +24,14 @@ struct Options {
   std::vector<std::string> parts;
   double seam = 0.0;
   std::string out;
+  std::string up; ///< empty: y
   bool force = false;
 };
 
 Result<void> check(const Options& options) {
   if (!(options.seam >= 0.0) || !std::isfinite(options.seam))
     return Error{Errc::usage, "--seam: use a width in the models' units, 0 or more"};
-  if (auto fine = cli::check_place("--out", options.out, {".obj", ".ply"}); !fine) return fine;
+  if (auto fine = cli::check_place("--out", options.out, deform::mesh_endings); !fine) return fine;
   for (const std::string& part : options.parts)
     if (auto fine = cli::check_spares(part, "--out", options.out, options.force); !fine)
       return fine;
@@ -49,10 +50,11 @@ struct NamedMesh {
 };
 
 /// Of several files, each is a part. Of one, its parts are.
-Result<std::vector<NamedMesh>> read_parts(const std::vector<std::string>& files) {
+Result<std::vector<NamedMesh>> read_parts(const std::vector<std::string>& files,
+                                          const deform::ReadOptions& reading) {
   std::vector<NamedMesh> parts;
   for (const std::string& file : files) {
-    auto model = takes::read_model(file);
+    auto model = takes::read_model(file, reading);
     if (!model) return model.error();
     parts.push_back({std::move(model->mesh), file});
   }
@@ -87,7 +89,7 @@ void note_step(const std::string& name, const Options& options, const JoinStep& 
 
 Result<void> join_files(const Options& options) {
   if (const auto fine = check(options); !fine) return fine.error();
-  const auto named = read_parts(options.parts);
+  const auto named = read_parts(options.parts, takes::reading(options.up));
   if (!named) return named.error();
   std::vector<JoinPart> parts;
   for (const NamedMesh& part : *named)
@@ -96,7 +98,7 @@ Result<void> join_files(const Options& options) {
   if (!joined) return joined.error();
   for (std::size_t at = 0; at < joined->steps.size(); ++at)
     note_step((*named)[at + 1].name, options, joined->steps[at]);
-  return write_mesh(options.out, joined->mesh);
+  return takes::write_model(options.out, joined->mesh, takes::axis_of(takes::reading(options.up)));
 }
 
 } // namespace
@@ -106,12 +108,14 @@ void add(cli::Command& program) {
   cli::Command command = program.add_command("join", "Joins models that overlap into one, exactly");
   command
       .add_option("PART", options->parts,
-                  "OBJ, PLY or glTF files of closed models; of one file, its parts are joined")
+                  "OBJ, PLY, STL or glTF files of closed models; of one file, its parts are joined")
       .required();
+  takes::add_up_option(command, options->up);
   command.add_option("--seam", options->seam,
                      "How far the seam is smeared to each side, in the models' units; 0 leaves it "
                      "sharp");
-  command.add_option("--out", options->out, "Where to write the result, .obj or .ply").required();
+  command.add_option("--out", options->out, "Where to write the result, .obj, .ply or .stl")
+      .required();
   command.add_flag("--force", options->force, cli::force_summary);
   command.on_chosen([options] {
     const auto done = join_files(*options);

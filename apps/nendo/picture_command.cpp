@@ -18,6 +18,7 @@
 #include "render/distance_paint.hpp"
 #include "render/picture.hpp"
 #include "takes/key_poses.hpp"
+#include "takes/model_files.hpp"
 #include "takes/take.hpp"
 
 namespace nendo::app::picture_command {
@@ -26,6 +27,7 @@ namespace {
 using namespace nendo::render;
 
 struct Options {
+  std::string up; ///< empty: y
   std::string file;
   std::string out;
   std::string view = "30,12";
@@ -216,7 +218,7 @@ void colour_by_distance(const takes::Take& take, const std::vector<SceneFrame>& 
 Result<void> make_picture(const Options& options) {
   const auto wanted = check(options);
   if (!wanted) return wanted.error();
-  const auto take = takes::read_take(options.file);
+  const auto take = takes::read_take(options.file, takes::reading(options.up));
   if (!take) return take.error();
   const auto times = times_of(options, *take);
   if (!times) return times.error();
@@ -254,9 +256,10 @@ void add(cli::Command& program) {
       program.add_command("picture", "Draws a model or a recording as a PNG, without a screen");
   command
       .add_option("FILE", options->file,
-                  "OBJ, PLY or glTF file, or what `nendo run --record` recorded")
+                  "OBJ, PLY, STL or glTF file, or what `nendo run --record` recorded")
       .required();
   command.add_option("--out", options->out, "Where to write the picture, .png").required();
+  takes::add_up_option(command, options->up);
   command.add_option("--view", options->view,
                      "front, back, left, right, side, top, or AZIMUTH,ELEVATION in degrees");
   command.add_option("--size", options->size, "WIDTHxHEIGHT in pixels, of each picture");

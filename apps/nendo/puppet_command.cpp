@@ -32,6 +32,7 @@ using puppet::Function;
 
 struct Options {
   std::string file;
+  std::string up; ///< of the model's file; empty: y
   std::string picture;
   std::string out;
   bool force = false;
@@ -49,10 +50,10 @@ struct OpenRig {
   const std::vector<Function>& functions() const noexcept { return rig().puppet().functions; }
 };
 
-Result<OpenRig> open_rig(const std::string& name) {
+Result<OpenRig> open_rig(const std::string& name, const std::string& up) {
   auto file = open_puppet(name);
   if (!file) return file.error();
-  auto model = takes::read_model(file->model);
+  auto model = takes::read_model(file->model, takes::reading(up));
   if (!model) return model.error();
   if (const auto fits = puppet::check_fits(file->puppet, model->mesh); !fits) return fits.error();
   puppet::count_from(model->mesh.offset, file->puppet);
@@ -232,7 +233,7 @@ Result<void> show(const Options& options) {
                                   ": use WIDTHxHEIGHT in pixels, 16 or more each, at most a "
                                   "million together"};
   if (auto fine = cli::check_place("--picture", options.picture, {".png"}); !fine) return fine;
-  auto open = open_rig(options.file);
+  auto open = open_rig(options.file, options.up);
   if (!open) return open.error();
   print_head(*open);
   for (std::size_t at = 0; at < open->functions().size(); ++at)
@@ -294,7 +295,7 @@ void print_twins(const OpenRig& open, const puppet::RigCheck& check) {
 }
 
 Result<void> check(const Options& options) {
-  auto open = open_rig(options.file);
+  auto open = open_rig(options.file, options.up);
   if (!open) return open.error();
   print_head(*open);
   if (open->shapes->condition() > 0.0)
@@ -318,12 +319,14 @@ Result<void> make(const Options& options) {
     return Error{Errc::usage, "--out " + options.out + ": exists; --force replaces it"};
   const auto name = cli::name_beside(options.file, options.out);
   if (!name) return name.error();
-  const auto model = takes::read_model(options.file);
+  const auto model = takes::read_model(options.file, takes::reading(options.up));
   if (!model) return model.error();
   const auto made = puppet::make_face_puppet(model->mesh, *name);
   if (!made) return Error{made.error().code, options.file + ": " + made.error().message};
   for (const std::string& line : made->found)
     fmt::print("{}\n", line);
+  if (options.up == "z")
+    cli::note(options.out + ": play it with --up z, too, because its model has z up");
   if (model->mesh.offset.isZero(0.0)) return replace_file(options.out, made->text);
   auto puppet = puppet::parse_puppet(made->text, options.out);
   if (!puppet) return puppet.error();
@@ -347,6 +350,7 @@ void add(cli::Command& program) {
 
   cli::Command showing = command.add_command("show", "A puppet's functions and points");
   showing.add_option("FILE", options->file, "Puppet file, or the name of a shipped one").required();
+  takes::add_up_option(showing, options->up);
   showing.add_option("--picture", options->picture,
                      "Where to draw the model at rest and each function at its most, .png");
   showing.add_option("--view", options->view,
@@ -358,12 +362,15 @@ void add(cli::Command& program) {
       "check", "Whether triangles turn over at the functions' limits, and the sides are alike");
   checking.add_option("FILE", options->file, "Puppet file, or the name of a shipped one")
       .required();
+  takes::add_up_option(checking, options->up);
   checking.on_chosen([options] { return done(check(*options)); });
 
   cli::Command making =
       command.add_command("make", "Writes a puppet for a face, by the shape of the model alone");
-  making.set_footer("The face must look along +z, with y up, and be symmetric about x = 0.");
-  making.add_option("MODEL", options->file, "OBJ or PLY file").required();
+  making.set_footer("The face must look along +z, with y up (--up z lays a model with z up), and "
+                    "be symmetric about x = 0.");
+  making.add_option("MODEL", options->file, "OBJ, PLY, STL or glTF file").required();
+  takes::add_up_option(making, options->up);
   making.add_option("--out", options->out, "Where to write the puppet, .toml, beside the model")
       .required();
   making.add_flag("--force", options->force, "Replace a file that is there");

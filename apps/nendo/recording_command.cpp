@@ -115,7 +115,7 @@ int shapes(const Options& options) {
   if (!reader) return cli::report(reader.error());
   const auto model = takes::recorded_model(options.file, reader->setup(), options.mesh);
   if (!model) return cli::report(model.error());
-  const auto made = recording::add_shapes(options.file, options.out, *model, options.rate_hz);
+  const auto made = recording::add_shapes(options.file, options.out, model->mesh, options.rate_hz);
   if (!made) return cli::report(made.error());
   print_made(options, made->shapes, "shapes", made->bytes);
   return 0;

@@ -18,6 +18,7 @@
 #include "cli/json_line.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
+#include "takes/model_files.hpp"
 #include "takes/recorded_model.hpp"
 
 namespace nendo::app::replay_command {
@@ -58,7 +59,7 @@ Result<void> check(const Options& options) {
     return Error{Errc::usage, "--from, --to: use seconds from the beginning, --from before --to"};
   if (options.loops && options.no_clock)
     return Error{Errc::usage, "--loop and --no-clock: give one of them"};
-  return cli::check_place("--out", options.out, {".obj", ".ply"});
+  return cli::check_place("--out", options.out, deform::mesh_endings);
 }
 
 HostTime host_time(const recording::Setup& setup, double seconds) {
@@ -193,7 +194,7 @@ int replay(const Options& options) {
     print(options, *done);
     if (options.loops && !cli::stop_requested()) continue;
     if (!options.out.empty()) {
-      if (const auto written = deform::write_mesh(options.out, done->shape); !written)
+      if (const auto written = takes::write_model(options.out, done->shape, model->up()); !written)
         return cli::report(written.error());
     }
     return done->same_shape.value_or(true) ? 0 : static_cast<int>(Errc::failed);
@@ -214,7 +215,7 @@ void add(cli::Command& program) {
                        "Seconds from the beginning; what was before is made without a clock");
   command.add_duration("--to", options->to_s, "Seconds from the beginning where it ends");
   command.add_option("--mesh", options->mesh, "The model, if it is no longer where it was");
-  command.add_option("--out", options->out, "Where to write the shape, .obj or .ply");
+  command.add_option("--out", options->out, "Where to write the shape, .obj, .ply or .stl");
   command.add_flag("--json", options->json, "A summary as JSON");
   command.on_chosen([options] { return replay(*options); });
 }

@@ -7,6 +7,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/refinement.hpp>
 #include <nendo/flow/tick_grid.hpp>
@@ -50,7 +51,7 @@ Result<void> check_outputs(const RunArguments& options) {
   const session::ViewOptions& view = options.view;
   if (!view.window && (view.frames > 0 || view.contact || !view.screenshot.empty()))
     return Error{Errc::usage, "--frames, --screenshot and --contact are the window's; add --view"};
-  if (auto fine = cli::check_place("--out", run.out, {".obj", ".ply"}); !fine) return fine;
+  if (auto fine = cli::check_place("--out", run.out, deform::mesh_endings); !fine) return fine;
   const std::string& model = run.over ? run.over->take.setup.loop->mesh : run.mesh;
   if (auto fine = cli::check_spares(model, "--out", run.out, options.force); !fine) return fine;
   if (auto fine = cli::check_place("--picture", run.picture, {".png"}); !fine) return fine;
@@ -76,7 +77,7 @@ Result<void> read_puppet(RunArguments& options) {
   const bool is_named =
       !run.puppet_file.empty() && std::filesystem::exists(run.puppet_file, ignored);
   if (options.view.window && !run.puppet_file.empty() && !run.mesh.empty() && !is_named &&
-      run.puppet_file.ends_with(".toml")) { // one that is to be made
+      ends_in(run.puppet_file, ".toml")) { // one that is to be made
     if (run.out_puppet.file.empty()) run.out_puppet.file = run.puppet_file;
     run.loop.held = false;
     return {};
@@ -244,6 +245,7 @@ Result<void> check(RunArguments& options) {
   if (auto fine = check(run.calibration); !fine) return fine;
   if (run.out.empty()) run.out = dated_name();
   if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
+  run.reading = takes::reading(options.up);
   if (auto fine = read_puppet(options); !fine) return fine;
   if (run.changes_topology && !options.refine_to)
     return Error{Errc::usage, "--topology: triangles must follow what becomes thin; add --refine, "
@@ -275,7 +277,7 @@ Result<void> check(RunArguments& options) {
 Result<deform::Mesh> read_model(RunArguments& options) {
   session::RunOptions& run = options.run;
   if (!run.over) {
-    auto model = takes::read_models(run.mesh);
+    auto model = takes::read_models(run.mesh, run.reading);
     if (!model) return model.error();
     if (auto fine = check_refinable(model->mesh, options); !fine) return fine.error();
     for (auto* const puppet : {&run.puppet, &run.masks})
@@ -285,6 +287,7 @@ Result<deform::Mesh> read_model(RunArguments& options) {
   const recording::LoopSetup& loop = *run.over->take.setup.loop;
   auto model = takes::find_recorded_model(loop, run.mesh);
   if (!model) return model.error();
+  run.reading = model->reading;
   if (!model->is_recorded)
     return Error{Errc::bad_input, run.mesh + ": is not the model of " + run.over->file +
                                       "; a layer is played over the model that was recorded"};

@@ -19,6 +19,7 @@ struct RunArguments {
   session::RunOptions run;
   std::vector<std::string> models; ///< files; several stand side by side
   std::string radius;
+  std::string up;   ///< empty: y
   std::string mode; ///< empty: type1, or type2 with a brush
   std::string hold = "tips";
   std::string wire, knife; ///< FROM:TO, when it is drawn; empty: when asked for

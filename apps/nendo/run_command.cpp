@@ -8,6 +8,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <nendo/base/text.hpp>
+#include <nendo/deform/face_box.hpp>
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/supports.hpp>
 
@@ -22,6 +23,7 @@
 #include "session/open_hands.hpp"
 #include "session/run_publishing.hpp"
 #include "session/run_report.hpp"
+#include "takes/model_files.hpp"
 
 namespace nendo::app::run_command {
 namespace {
@@ -59,7 +61,7 @@ void note_oddities(const deform::Mesh& model, const RunArguments& options) {
     reach = std::min(reach, own.support.radius);
   for (const auto& shared : supports.shared)
     reach = std::max(reach, shared.radius);
-  const deform::Box box = deform::finite_box_of(model.vertices);
+  const deform::Box box = deform::box_of_faces(model);
   deform::Points corners(3, 2); // no fingertip that touches the model is farther from all of it
   corners << box.lowest, box.highest;
   if (!deform::reach_all_of(box, corners, deform::one_radius(reach))) return;
@@ -170,8 +172,9 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
   command.add_option("--left", run_options.left, "GLOVE on the left hand");
   command.add_option("--right", run_options.right, "GLOVE on the right hand");
   command.add_option("MODEL,--mesh", options.models,
-                     "OBJ, PLY or glTF file to shape, or several, which stand side by side; "
+                     "OBJ, PLY, STL or glTF file to shape, or several, which stand side by side; "
                      "without it, the shipped Moai");
+  takes::add_up_option(command, options.up);
   command.add_option(
       "--puppet", run_options.puppet_file,
       "A puppet file, or face, moai or spot: what each finger does to the model, in place of "
@@ -242,8 +245,9 @@ void add_run_options(cli::Command& command, const std::shared_ptr<RunArguments>&
   command.add_option("--undo-memory", run_options.undo_memory_mb,
                      "Megabytes that undo and redo may take at most; without it, half of what the "
                      "program may use. Then the oldest steps go");
-  command.add_option("--out", run_options.out,
-                     "Where to write the shape, .obj or .ply; without it, nendo-<date>-<time>.obj");
+  command.add_option(
+      "--out", run_options.out,
+      "Where to write the shape, .obj, .ply or .stl; without it, nendo-<date>-<time>.obj");
   command.add_flag("--force", options->force, cli::force_summary);
   command.add_option("--picture", run_options.picture,
                      "Where to draw the model and the hands before and after, .png");

@@ -74,7 +74,7 @@ int run(const stress::StressArguments& arguments) {
   if (const auto fine = check_files(arguments); !fine) return cli::report(fine.error());
   const auto earlier = read_earlier(arguments.compare);
   if (!earlier) return cli::report(earlier.error());
-  const auto model = takes::read_models(options->run.mesh);
+  const auto model = takes::read_models(options->run.mesh, takes::reading(arguments.up));
   if (!model) return cli::report(model.error());
   cli::install_stop_signals();
   std::unique_ptr<session::Observer> window;
@@ -152,7 +152,8 @@ void add(cli::Command& program) {
   command.add_option("--left", arguments->run.left, "GLOVE on the left hand; without any, two sim");
   command.add_option("--right", arguments->run.right, "GLOVE on the right hand");
   command.add_option("MODEL,--mesh", arguments->run.mesh,
-                     "OBJ, PLY or glTF file; without it, the shipped Moai");
+                     "OBJ, PLY, STL or glTF file; without it, the shipped Moai");
+  takes::add_up_option(command, arguments->up);
   command.add_option("--mode", arguments->mode, std::string(flow::mode_names));
   command.add_option("--changes", arguments->changes_a_minute,
                      "Changes the radius so many times a minute, in every other second, and counts "

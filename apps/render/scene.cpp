@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <nendo/deform/face_box.hpp>
+
 namespace nendo::render {
 
 using Eigen::Vector3d;
@@ -51,7 +53,7 @@ std::vector<Vector3f> Scene::outline() const {
 
 SceneBuilder::SceneBuilder(const deform::Mesh& rest, double units_per_metre)
     : units_per_metre_(units_per_metre) {
-  const auto box = deform::finite_box_of(rest.vertices);
+  const auto box = deform::box_of_faces(rest);
   const bool any = box.lowest[0] <= box.highest[0];
   // Halves, so that a model of any size has a finite one.
   const Vector3d half = any ? Vector3d(box.highest / 2 - box.lowest / 2) : Vector3d::Zero();
@@ -66,6 +68,8 @@ SceneBuilder::SceneBuilder(const deform::Mesh& rest, double units_per_metre)
     origin_m_.y() = box.lowest.y() / units_per_metre_;
   }
   paint_ = std::make_shared<const Paint>(rest, corners_);
+  if (!rest.face_corners.empty()) any_corner_ = rest.face_corners.front();
+  strays_ = deform::stray_vertices(rest);
 }
 
 void SceneBuilder::build(const SceneFrame& scene_frame, const SceneParts& parts,
@@ -76,6 +80,8 @@ void SceneBuilder::build(const SceneFrame& scene_frame, const SceneParts& parts,
     scene.model.places[at] =
         (scene_frame.vertices.col(static_cast<Eigen::Index>(at)) / units_per_metre_ - origin_m_)
             .cast<float>();
+  for (const std::uint32_t stray : strays_)
+    scene.model.places[stray] = scene.model.places[any_corner_];
   scene.model.corners = corners_;
   compute_normals(scene.model.places, corners_, scene.model.normals);
   build_beside(scene_frame, parts, scene);

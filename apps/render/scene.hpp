@@ -66,6 +66,10 @@ private:
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d size_m_ = Eigen::Vector3d::Zero();
   std::vector<std::uint32_t> corners_;
+  /// Vertices without a face. Nobody sees them, so they stand where a corner is: a camera that
+  /// shows all of the model need not show them.
+  std::vector<std::uint32_t> strays_;
+  std::uint32_t any_corner_ = 0;
   std::shared_ptr<const Paint> paint_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <nendo/deform/face_box.hpp>
 #include <nendo/driver/devices.hpp>
 
 #include "cli/cli.hpp"
@@ -53,7 +54,9 @@ Result<std::vector<gloves::OpenHand>> open_any(const RunOptions& options, EventC
 }
 
 Result<std::vector<gloves::OpenHand>>
-open_named(const RunOptions& options, const deform::Mesh& model, EventCount* event_count) {
+open_named(const RunOptions& options, const deform::Mesh& whole, EventCount* event_count) {
+  const auto faces = deform::without_stray_vertices(whole);
+  const deform::Mesh& model = faces ? *faces : whole;
   std::vector<gloves::OpenHand> hands;
   for (const auto& [spec, side] :
        {std::pair{&options.left, Side::left}, {&options.right, Side::right}}) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include <nendo/deform/face_box.hpp>
 #include <nendo/deform/midpoint_chain.hpp>
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/flow/rig_setup.hpp>
@@ -51,8 +52,10 @@ void stand_beside(const std::vector<flow::HandInput>& inputs, const deform::Mesh
 }
 
 flow::Placement placement_for(const std::vector<gloves::OpenHand>& open,
-                              const std::vector<flow::HandInput>& inputs, const deform::Mesh& model,
+                              const std::vector<flow::HandInput>& inputs, const deform::Mesh& whole,
                               const RunOptions& options) {
+  const auto faces = deform::without_stray_vertices(whole);
+  const deform::Mesh& model = faces ? *faces : whole;
   std::array<std::optional<flow::Fingertips>, 2> tips;
   for (const auto& hand : inputs) {
     const Side glove = hand.first.side;
@@ -73,7 +76,8 @@ flow::Placement placement_for(const std::vector<gloves::OpenHand>& open,
 }
 
 double longest_side(const deform::Mesh& model) {
-  return (model.vertices.rowwise().maxCoeff() - model.vertices.rowwise().minCoeff()).maxCoeff();
+  const deform::Box box = deform::box_of_faces(model);
+  return (box.highest - box.lowest).maxCoeff();
 }
 
 Error bad_radius(const std::string& text, const std::string& why) {

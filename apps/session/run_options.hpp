@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include <nendo/deform/mesh_file.hpp>
 #include <nendo/flow/deform_loop.hpp>
 #include <nendo/flow/realtime.hpp>
 
@@ -29,6 +30,7 @@ struct RunOptions {
   std::string left;                       ///< GLOVE; empty: not asked for
   std::string right;                      ///< GLOVE; empty: not asked for
   std::string mesh;                       ///< empty: the shipped model, or a puppet's
+  deform::ReadOptions reading{};          ///< of the model; what is written has its axes
   std::string puppet_file;                ///< empty: none
   std::optional<puppet::Puppet> puppet{}; ///< of that file
   PuppetPlace out_puppet{};               ///< where a window saves it

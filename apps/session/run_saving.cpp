@@ -6,6 +6,7 @@
 #include <nendo/base/files.hpp>
 #include <nendo/deform/mesh_file.hpp>
 
+#include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 
 namespace nendo::session {
@@ -15,23 +16,27 @@ constexpr std::chrono::milliseconds least_between_saves(250);
 
 } // namespace
 
-Result<void> write_shape(const std::string& out, const deform::Mesh& shape) {
-  const auto written = deform::write_mesh(out, shape);
-  if (written) return {};
+Result<void> write_shape(const std::string& out, const deform::Mesh& shape, deform::UpAxis up) {
+  const auto written = deform::write_mesh(out, shape, {}, up);
+  if (written) {
+    for (const std::string& lost : deform::lost_in_file(out, shape))
+      cli::note(out + ": " + lost);
+    return {};
+  }
   const std::filesystem::path wanted(out);
   std::error_code ignored, no_folder;
   auto folder = std::filesystem::temp_directory_path(no_folder);
   if (no_folder) folder = "/tmp"; // TMPDIR may name a place that is not there
   const auto elsewhere = folder / wanted.filename();
-  if (std::filesystem::exists(elsewhere, ignored) || !deform::write_mesh(elsewhere, shape))
+  if (std::filesystem::exists(elsewhere, ignored) || !deform::write_mesh(elsewhere, shape, {}, up))
     return written.error();
   return Error{Errc::failed,
                written.error().message + "; the shape is in " + elsewhere.string() + " instead"};
 }
 
 RunSaving::RunSaving(const RunOptions& options, RunRecorder& recorder)
-    : out_(options.out), model_(options.mesh), out_puppet_(options.out_puppet),
-      recorder_(recorder) {}
+    : out_(options.out), up_(options.reading.up.value_or(deform::UpAxis::y)), model_(options.mesh),
+      out_puppet_(options.out_puppet), recorder_(recorder) {}
 
 void RunSaving::add(const flow::Command& command) noexcept {
   shape_ = shape_ || std::holds_alternative<flow::SaveShape>(command);
@@ -83,7 +88,7 @@ std::string RunSaving::save_shape(flow::DeformLoop& loop) {
   const flow::Frame& frame = loop.frames().front();
   deform::Mesh shape = loop.model(frame.model)->mesh;
   loop.layout(frame.model).unpack(frame.shape, shape.vertices);
-  const auto written = deform::write_mesh(file, shape);
+  const auto written = deform::write_mesh(file, shape, {}, up_);
   return written ? "saved as " + file : written.error().message;
 }
 

@@ -10,10 +10,12 @@
 
 namespace nendo::session {
 
-/// Writes the shape to `out`. If that is impossible, on a full disk for example, it writes to the
+/// Writes the shape to `out`, with the axis `up` of the file up, and notes on standard error what
+/// such a file cannot keep. If that is impossible, on a full disk for example, it writes to the
 /// folder for temporary files, so that the shape is not lost. Blocks. Error: failed, also if the
 /// shape is in the other folder; the message says where.
-Result<void> write_shape(const std::string& out, const deform::Mesh& shape);
+Result<void> write_shape(const std::string& out, const deform::Mesh& shape,
+                         deform::UpAxis up = deform::UpAxis::y);
 
 /// Saves a few times a second at most, even if it is asked more often.
 class RunSaving {
@@ -38,6 +40,7 @@ private:
   std::string save_puppet(const flow::DeformLoop& loop);
 
   std::string out_;
+  deform::UpAxis up_;
   std::string model_; ///< its file
   PuppetPlace out_puppet_;
   RunRecorder& recorder_;

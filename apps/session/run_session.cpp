@@ -78,7 +78,10 @@ public:
       feedback.put_out();
     for (const auto& hand : hands_)
       hand.glove->stop();
-    if (const auto written = write_shape(options_.out, model_); !written) return written.error();
+    if (const auto written =
+            write_shape(options_.out, model_, options_.reading.up.value_or(deform::UpAxis::y));
+        !written)
+      return written.error();
     if (const auto drawn = picture.write(model_); !drawn) return drawn.error();
     for (Observer* observer : observers_)
       if (const auto ended = observer->end(); !ended) return ended.error();

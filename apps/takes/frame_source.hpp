@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include <nendo/deform/mesh_file.hpp>
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/sculptor.hpp>
 #include <nendo/puppet/rig.hpp>
@@ -19,6 +20,9 @@ struct PlayedPuppet {
 class FrameSource {
 public:
   virtual ~FrameSource() = default;
+  /// The axis that points up in the model's file, in whose axes meshes are written.
+  deform::UpAxis up() const noexcept { return up_; }
+  void set_up(deform::UpAxis up) noexcept { up_ = up; }
   /// Returns the model before the hands, in model units: the first one, or that of a version that
   /// the latest frame, or one before it, has (Frame::model).
   virtual const deform::Mesh& model(std::uint32_t version) const = 0;
@@ -43,6 +47,9 @@ public:
   /// Returns true while nothing was missing in the source, so that the frames equal the original
   /// ones.
   virtual bool is_exact() const { return true; }
+
+private:
+  deform::UpAxis up_ = deform::UpAxis::y;
 };
 
 } // namespace nendo::takes

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <nendo/base/text.hpp>
+#include <nendo/deform/face_box.hpp>
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/side_by_side.hpp>
 
@@ -16,13 +17,13 @@ namespace nendo::takes {
 namespace {
 
 double size_of(const deform::Mesh& model) {
-  const deform::Box box = deform::finite_box_of(model.vertices);
+  const deform::Box box = deform::box_of_faces(model);
   return (box.highest - box.lowest).maxCoeff();
 }
 
 /// One in millimetres beside one in metres is not to be seen.
-void note_other_units(const std::vector<std::string>& files,
-                      const std::vector<deform::Mesh>& models) {
+void add_other_units(const std::vector<std::string>& files, const std::vector<deform::Mesh>& models,
+                     std::vector<std::string>& notes) {
   constexpr double too_many = 30.0;
   const auto [least, most] =
       std::minmax_element(models.begin(), models.end(),
@@ -32,37 +33,43 @@ void note_other_units(const std::vector<std::string>& files,
   const auto name = [&](auto model) {
     return printable(files[static_cast<std::size_t>(model - models.begin())]);
   };
-  cli::note(name(most) + " is " + std::to_string(std::lround(times)) + " times as large as " +
-            name(least) + ", which is a speck beside it; if their units differ, scale one of them");
+  notes.push_back(name(most) + " is " + std::to_string(std::lround(times)) + " times as large as " +
+                  name(least) +
+                  ", which is a speck beside it; if their units differ, scale one of them");
 }
 
-void count_from_usual(deform::Mesh& mesh) {
-  deform::count_from(deform::usual_offset(mesh), mesh);
-}
-
-Result<deform::ReadModel> read_from_zero(const std::string& file,
-                                         const deform::ReadOptions& options) {
+/// One file, with all that is to be said of it as notes.
+Result<deform::ReadModel> read_alone(const std::string& file, const deform::ReadOptions& options) {
   auto model = deform::read_model(file, options);
   if (!model) return model;
-  for (const std::string& what : model->notes)
-    cli::note(file + ": " + printable(what));
   if (const auto remark = deform::remark_on(model->mesh); !remark.empty())
-    cli::note(file + ": " + std::string(remark));
+    model->notes.emplace_back(remark);
   return model;
+}
+
+/// Says what is to be said, and counts from the usual place.
+void finish(const std::string& name, deform::ReadModel& model) {
+  note_all(name, model.notes);
+  deform::count_from(deform::usual_offset(model.mesh), model.mesh);
 }
 
 } // namespace
 
 Result<deform::ReadModel> read_model(const std::string& file, const deform::ReadOptions& options) {
-  auto model = read_from_zero(file, options);
-  if (model) count_from_usual(model->mesh);
+  auto model = read_alone(file, options);
+  if (model) finish(file, *model);
   return model;
 }
 
 Result<deform::ReadModel> read_models(const std::string& name, const deform::ReadOptions& options) {
   auto model = read_models_from_zero(name, options);
-  if (model) count_from_usual(model->mesh);
+  if (model) finish(name, *model);
   return model;
+}
+
+void note_all(const std::string& name, const std::vector<std::string>& notes) {
+  for (const std::string& what : notes)
+    cli::note(printable(name + ": " + what));
 }
 
 Result<deform::ReadModel> read_models_from_zero(const std::string& name,
@@ -71,7 +78,7 @@ Result<deform::ReadModel> read_models_from_zero(const std::string& name,
   deform::ReadModel all;
   const std::vector<std::string> files = cli::files_of_name(name);
   for (const std::string& file : files) {
-    auto model = read_from_zero(file, options);
+    auto model = read_alone(file, options);
     if (!model) return model;
     models.push_back(std::move(model->mesh));
     for (const std::string& what : model->notes)
@@ -81,11 +88,33 @@ Result<deform::ReadModel> read_models_from_zero(const std::string& name,
     all.mesh = std::move(models.front());
     return all;
   }
-  note_other_units(files, models);
+  add_other_units(files, models, all.notes);
   auto both = deform::side_by_side(models);
   if (!both) return Error{both.error().code, name + ": " + both.error().message};
   all.mesh = *std::move(both);
   return all;
+}
+
+Result<void> write_model(const std::string& file, const deform::Mesh& mesh, deform::UpAxis up) {
+  if (auto written = deform::write_mesh(file, mesh, {}, up); !written) return written;
+  for (const std::string& lost : deform::lost_in_file(file, mesh))
+    cli::note(file + ": " + lost);
+  return {};
+}
+
+void add_up_option(cli::Command& command, std::string& up) {
+  command
+      .add_option("--up", up,
+                  "The model's axis that points up: y, or z as in files of many CAD programs and "
+                  "scanners. What is written has the same axes as the model; other options and "
+                  "tables of coordinates have y up")
+      .one_of({"y", "z"});
+}
+
+deform::ReadOptions reading(const std::string& up) {
+  deform::ReadOptions options;
+  if (!up.empty()) options.up = up == "z" ? deform::UpAxis::z : deform::UpAxis::y;
+  return options;
 }
 
 } // namespace nendo::takes

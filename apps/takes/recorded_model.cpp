@@ -1,5 +1,8 @@
 #include "takes/recorded_model.hpp"
 
+#include <array>
+#include <span>
+
 #include <nendo/base/text.hpp>
 #include <nendo/deform/offset.hpp>
 #include <nendo/recording/loop_replay.hpp>
@@ -10,26 +13,57 @@
 namespace nendo::takes {
 namespace {
 
+/// The ways to read a file of which a recording does not say which one it was: the usual one first.
+/// Each says which axis is up, so no note asks.
+constexpr std::array<deform::ReadOptions, 4> readings{{{deform::UpAxis::y, true},
+                                                       {deform::UpAxis::z, true},
+                                                       {deform::UpAxis::y, false},
+                                                       {deform::UpAxis::z, false}}};
+
+/// Whether the vertices are the recorded ones: from zero, as the loop of an old recording had them,
+/// or from the usual place, from where they count afterwards.
+bool has_recorded_vertices(const recording::ShapeSum& sum, deform::Mesh& mesh) {
+  if (recording::sum_of(mesh.vertices) == sum) return true;
+  deform::count_from(deform::usual_offset(mesh), mesh);
+  return recording::sum_of(mesh.vertices) == sum;
+}
+
+/// Returns the model as the first of these ways reads it, or as that which gives the recorded
+/// vertices.
+Result<deform::ReadModel> read_as_recorded(const std::string& name, const recording::ShapeSum& sum,
+                                           RecordedModel& recorded) {
+  recorded.reading = readings.front();
+  auto usual = read_models_from_zero(name, recorded.reading);
+  if (!usual || has_recorded_vertices(sum, usual->mesh)) return usual;
+  for (const deform::ReadOptions& other : std::span(readings).subspan(1)) {
+    auto model = read_models_from_zero(name, other);
+    if (!model || !has_recorded_vertices(sum, model->mesh)) continue;
+    recorded.reading = other;
+    return model;
+  }
+  recorded.is_recorded = false;
+  return usual;
+}
+
 Result<RecordedModel> model_of_file(const recording::LoopSetup& loop, const std::string& named) {
-  auto model = read_models_from_zero(named.empty() ? loop.mesh : named);
+  const std::string& name = named.empty() ? loop.mesh : named;
+  RecordedModel recorded;
+  auto model = read_as_recorded(name, loop.mesh_sum, recorded);
   if (!model) {
     if (!named.empty()) return model.error();
     return Error{Errc::bad_input, printable(model.error().message) +
                                       "; that is the model that was recorded, name it with --mesh"};
   }
-  // The loop of an old recording of a model far from zero had it there.
-  if (recording::sum_of(model->mesh.vertices) == loop.mesh_sum)
-    return RecordedModel{std::move(model->mesh)};
-  deform::count_from(deform::usual_offset(model->mesh), model->mesh);
-  if (recording::sum_of(model->mesh.vertices) == loop.mesh_sum)
-    return RecordedModel{std::move(model->mesh)};
+  note_all(name, model->notes);
+  recorded.mesh = std::move(model->mesh);
+  if (recorded.is_recorded) return recorded;
   if (named.empty()) {
     return Error{Errc::bad_input, printable(loop.mesh) +
                                       ": is not as it was when it was recorded; name the model of "
                                       "then with --mesh, or another"};
   }
   cli::note(named + ": another model than was recorded; its shape will be another, too");
-  return RecordedModel{std::move(model->mesh), false};
+  return recorded;
 }
 
 } // namespace
@@ -49,17 +83,11 @@ Result<RecordedModel> find_recorded_model(const recording::LoopSetup& loop,
   return model;
 }
 
-Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop, const std::string& named) {
-  auto model = find_recorded_model(loop, named);
-  if (!model) return model.error();
-  return std::move(model->mesh);
-}
-
-Result<deform::Mesh> recorded_model(const std::string& file, const recording::Setup& setup,
-                                    const std::string& named) {
+Result<RecordedModel> recorded_model(const std::string& file, const recording::Setup& setup,
+                                     const std::string& named) {
   if (!setup.loop)
     return Error{Errc::bad_input, file + ": " + std::string(recording::without_loop)};
-  return recorded_model(*setup.loop, named);
+  return find_recorded_model(*setup.loop, named);
 }
 
 void note_missing(const std::string& file) {

@@ -101,10 +101,11 @@ Result<Take> read_recording(const std::filesystem::path& path) {
   if (!model) return model.error();
   const recording::LoopSetup& loop = *summary->setup.loop;
   Take take;
-  take.rest = *model;
+  take.rest = model->mesh;
   take.units_per_metre = loop.placement.units_per_metre;
   take.duration_s = std::max(0.0, to_seconds(summary->duration()));
-  const auto open = [path, model = *std::move(model)]() -> Result<std::unique_ptr<FrameSource>> {
+  const auto open = [path,
+                     model = std::move(model->mesh)]() -> Result<std::unique_ptr<FrameSource>> {
     auto frames = RecordedFrames::open(path, model);
     if (!frames) return frames.error();
     return std::unique_ptr<FrameSource>(*std::move(frames));
@@ -145,10 +146,10 @@ bool is_recording(const std::filesystem::path& path) {
 
 } // namespace
 
-Result<Take> read_take(const std::filesystem::path& path) {
+Result<Take> read_take(const std::filesystem::path& path, const deform::ReadOptions& reading) {
   if (timeline::is_timeline(path)) return read_edited(path);
   if (is_recording(path)) return read_recording(path);
-  auto model = read_model(path.string());
+  auto model = read_model(path.string(), reading);
   if (!model) return model.error();
   Take take;
   take.rest = std::move(model->mesh);

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include <nendo/base/result.hpp>
+#include <nendo/deform/mesh_file.hpp>
 
 #include "render/scene_frame.hpp"
 #include "takes/frame_source.hpp"
@@ -25,8 +26,9 @@ struct Take {
 };
 
 /// Reads a take from a file. A timeline is known by its name, a mesh or a recording by its content.
-/// The loop of a recording runs again without a clock. Errors: bad_input, as from
-/// deform::read_mesh(), TakeReader::open(), recorded_model() and TimelineFrames::open().
-Result<Take> read_take(const std::filesystem::path& path);
+/// `reading` is of a mesh alone. The loop of a recording runs again without a clock. Errors:
+/// bad_input, as from deform::read_mesh(), TakeReader::open(), recorded_model() and
+/// TimelineFrames::open().
+Result<Take> read_take(const std::filesystem::path& path, const deform::ReadOptions& reading = {});
 
 } // namespace nendo::takes

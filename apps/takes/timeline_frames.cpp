@@ -7,11 +7,11 @@
 
 namespace nendo::takes {
 
-Result<deform::Mesh> timeline_model(const timeline::Timeline& timeline, const std::string& mesh) {
+Result<RecordedModel> timeline_model(const timeline::Timeline& timeline, const std::string& mesh) {
   recording::LoopSetup of_take;
   of_take.mesh = timeline.mesh;
   of_take.mesh_sum = timeline.mesh_sum;
-  return recorded_model(of_take, mesh);
+  return find_recorded_model(of_take, mesh);
 }
 
 Result<std::unique_ptr<TimelineFrames>> TimelineFrames::open(const std::filesystem::path& path,
@@ -20,8 +20,9 @@ Result<std::unique_ptr<TimelineFrames>> TimelineFrames::open(const std::filesyst
   if (!timeline) return timeline.error();
   auto model = timeline_model(*timeline, mesh);
   if (!model) return model.error();
-  auto frames = make(*std::move(timeline), *model);
+  auto frames = make(*std::move(timeline), model->mesh);
   if (!frames) return Error{frames.error().code, path.string() + ": " + frames.error().message};
+  (*frames)->set_up(model->up());
   return frames;
 }
 

@@ -11,6 +11,7 @@
 #include <nendo/base/result.hpp>
 
 #include "takes/frame_source.hpp"
+#include "takes/recorded_model.hpp"
 #include "timeline/player.hpp"
 
 namespace nendo::takes {
@@ -60,8 +61,8 @@ private:
 };
 
 /// Reads the model as TimelineFrames::open() does, with the same errors.
-Result<deform::Mesh> timeline_model(const timeline::Timeline& timeline,
-                                    const std::string& mesh = {});
+Result<RecordedModel> timeline_model(const timeline::Timeline& timeline,
+                                     const std::string& mesh = {});
 
 /// Returns the x coordinate of the model's middle on the stage, in metres. It is the default plane
 /// of timeline::mirror().

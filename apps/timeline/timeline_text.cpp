@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 
@@ -259,7 +260,7 @@ Result<void> write_timeline(const std::filesystem::path& path, const Timeline& t
 }
 
 bool is_timeline(const std::filesystem::path& path) {
-  return path.filename().string().ends_with(file_ending);
+  return ends_in(path.filename().string(), file_ending);
 }
 
 } // namespace nendo::timeline

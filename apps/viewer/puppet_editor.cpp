@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include <nendo/deform/face_box.hpp>
+
 namespace nendo::viewer {
 
 using Eigen::Index;
@@ -318,7 +320,7 @@ Vector3d PuppetEditor::pivot_of(std::size_t point) const {
   const auto& starts = rig_->starts();
   const auto& points = rig_->puppet().points;
   const Vector3d from = starts.col(static_cast<Index>(point));
-  const deform::Box box = deform::finite_box_of(loaded_.vertices);
+  const deform::Box box = deform::box_of_faces(loaded_);
   Vector3d pivot = 0.5 * (box.lowest + box.highest);
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t at = 0; at < points.size(); ++at) {

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include <Eigen/Geometry>
+#include <nendo/deform/face_box.hpp>
 
 namespace nendo::deform {
 
@@ -25,8 +26,10 @@ double diagonal_of(const Points& points) noexcept {
 }
 
 std::string_view remark_on(const Mesh& mesh) noexcept {
-  if (mesh.face_count() == 0) return "has no faces, only vertices, so there is no surface to see";
-  const Box box = finite_box_of(mesh.vertices);
+  if (mesh.face_count() == 0)
+    return "has no faces, only vertices: it is a point cloud, of which there is no surface to see; "
+           "make one in MeshLab or CloudCompare (Poisson surface reconstruction)";
+  const Box box = box_of_faces(mesh);
   if (box.lowest == box.highest) return "has all its vertices in one place, so it has no size";
   return {};
 }

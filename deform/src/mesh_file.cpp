@@ -3,15 +3,21 @@
 #include <new>
 #include <string>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
+#include <nendo/deform/face_box.hpp>
 #include <nendo/deform/offset.hpp>
+#include <nendo/deform/up_axis.hpp>
 
+#include "face_tidying.hpp"
+#include "foreign_format.hpp"
 #include "gltf_document.hpp"
 #include "mesh_formats.hpp"
 #include "model_folder.hpp"
 #include "mtl_file.hpp"
 #include "obj_beside.hpp"
+#include "stl_file.hpp"
 #include "text_scanner.hpp"
 #include "usable.hpp"
 
@@ -24,7 +30,9 @@ Error bad_file(std::string_view name, const std::string& what) {
 }
 
 bool is_ply(std::string_view text) noexcept {
-  return text.starts_with("ply\n") || text.starts_with("ply\r");
+  if (!text.starts_with("ply")) return false;
+  const std::size_t end = text.find_first_not_of(" \t", 3);
+  return end != std::string_view::npos && (text[end] == '\n' || text[end] == '\r');
 }
 
 /// What all readers are given.
@@ -42,22 +50,83 @@ Result<Mesh> parse_obj_of(const Source& source, ReadNotes& notes) {
   return std::move(model->mesh);
 }
 
-Result<Mesh> parse(const Source& source, ReadNotes& notes) {
-  if (is_gltf(source.text)) return parse_gltf(source.text, source.name, source.folder, notes);
-  if (is_ply(source.text)) return parse_ply(source.text, source.name, notes);
+enum class Format { gltf, ply, stl, obj };
+
+Format format_of(const Source& source) noexcept {
+  if (is_gltf(source.text)) return Format::gltf;
+  if (is_ply(source.text)) return Format::ply;
+  return is_stl(source.text, source.name) ? Format::stl : Format::obj;
+}
+
+Result<Mesh> parse(const Source& source, Format format, ReadNotes& notes) {
+  switch (format) {
+  case Format::gltf:
+    return parse_gltf(source.text, source.name, source.folder, notes);
+  case Format::ply:
+    return parse_ply(source.text, source.name, notes);
+  case Format::stl:
+    return parse_stl(source.text, source.name, notes);
+  case Format::obj:
+    break;
+  }
   return parse_obj_of(source, notes);
 }
 
-Result<ReadModel> parse_text(Source source, const ReadOptions&) {
-  if (source.text.empty()) return bad_file(source.name, "is empty");
+/// The first bytes of an OBJ are text. What a program left behind its end may be anything.
+bool is_binary(std::string_view text) noexcept {
+  const std::string_view head = text.substr(0, 4096);
+  const std::size_t zero = head.find('\0');
+  return zero != text.npos && head.find_first_not_of('\0', zero) != text.npos;
+}
+
+/// Programs write z up into STL and PLY as often as y, and no file says it. Nendo writes y up.
+bool may_have_other_axis_up(Format format, std::string_view text) noexcept {
+  if (format == Format::stl) return !text.starts_with(stl_mark);
+  return format == Format::ply && text.substr(0, 400).find("nendo") == text.npos;
+}
+
+void lay(const Source& source, Format format, std::optional<UpAxis> up, ReadModel& model) {
+  if (!up && may_have_other_axis_up(format, source.text))
+    model.notes.push_back("y is taken to point up, because the file does not say which axis does; "
+                          "if the model lies on its side, add --up z");
+  if (up != UpAxis::z) return;
+  if (format == Format::gltf)
+    model.notes.push_back("--up z does not turn it, because y points up in each glTF");
+  else
+    lay_from_z_up(model.mesh.vertices);
+}
+
+void note_strays(const Mesh& mesh, ReadNotes& notes) {
+  const std::size_t strays = stray_vertices(mesh).size();
+  if (strays > 0)
+    notes.push_back(std::to_string(strays) +
+                    (strays == 1 ? " vertex belongs to no face; it is"
+                                 : " vertices belong to no face; they are") +
+                    " kept, and do not count for the model's size");
+}
+
+Result<ReadModel> parse_text(Source source, const ReadOptions& options) {
+  if (source.text.empty()) return bad_file(source.name, "is empty; give the file of a model");
   if (source.text.size() > most_file_bytes) return bad_file(source.name, "is larger than 4 GiB");
+  if (const auto foreign = foreign_format(source.text)) return bad_file(source.name, *foreign);
   source.text = without_mark(source.text);
+  // Some programs end a text with zeros.
+  if (!is_gltf(source.text) && !is_stl(source.text, source.name) && !is_ply(source.text))
+    source.text = source.text.substr(0, source.text.find_last_not_of('\0') + 1);
+  const Format format = format_of(source);
+  if (format == Format::obj && is_binary(source.text))
+    return bad_file(source.name, why_no_model(source.text));
   ReadModel model;
-  auto mesh = parse(source, model.notes);
+  auto mesh = parse(source, format, model.notes);
   if (!mesh) return mesh.error();
   if (mesh->vertices.cols() == 0)
-    return bad_file(source.name, "has no vertices, so it is no OBJ, PLY or glTF mesh");
+    return bad_file(source.name, format == Format::obj ? why_no_model(source.text)
+                                                       : "has no vertices, so there is no model");
   model.mesh = *std::move(mesh);
+  if (format == Format::stl && options.weld) weld_stl(model.mesh);
+  tidy_faces(model.mesh, model.notes);
+  note_strays(model.mesh, model.notes);
+  lay(source, format, options.up, model);
   return model;
 }
 
@@ -71,6 +140,35 @@ Eigen::Index first_unusable_vertex(const Points& vertices) noexcept {
   while (at < vertices.cols() && all_usable(vertices.col(at)))
     ++at;
   return at;
+}
+
+bool has_polygons(const Mesh& mesh) noexcept {
+  for (std::size_t face = 0; face < mesh.face_count(); ++face)
+    if (mesh.face_starts[face + 1] - mesh.face_starts[face] > 3) return true;
+  return false;
+}
+
+/// Only what has y up says that Nendo wrote it, so that a reader asks of the other.
+std::string with_mark_of(UpAxis up, std::string text, std::string_view mark,
+                         std::string_view mark_of_z) {
+  if (up == UpAxis::z) text.replace(text.find(mark), mark.size(), mark_of_z);
+  return text;
+}
+
+Result<void> write_laid(const std::filesystem::path& path, const Mesh& mesh,
+                        const std::filesystem::path& materials, UpAxis up) {
+  const std::string_view ending = ending_of(path.string(), mesh_endings);
+  if (ending == ".ply")
+    return replace_file(path, with_mark_of(up, ply_text(mesh), "comment nendo", "comment z up"));
+  if (ending == ".stl") {
+    auto text = stl_text(mesh);
+    if (!text) return Error{text.error().code, path.string() + ": " + text.error().message};
+    return replace_file(path, with_mark_of(up, *std::move(text), stl_mark, "binary STL, z is up"));
+  }
+  // Before the OBJ, so that it never names what is not there.
+  auto library = write_materials(path, mesh.look, materials);
+  if (!library) return library.error();
+  return replace_file(path, obj_text(mesh, *library));
 }
 
 } // namespace
@@ -101,25 +199,52 @@ Result<Mesh> read_mesh(const std::filesystem::path& path) {
   return mesh_of(read_model(path));
 }
 
+std::vector<std::string> lost_in_file(const std::filesystem::path& path, const Mesh& mesh) {
+  constexpr double visible = 1e-6; // of the model's size
+  const bool is_stl = ends_in(path.string(), ".stl");
+  if (!is_stl && !ends_in(path.string(), ".ply")) return {};
+  std::vector<std::string> notes;
+  const Appearance& look = mesh.look;
+  std::string lost;
+  const auto add = [&](bool has, const char* what) {
+    if (has) lost += (lost.empty() ? "" : ", ") + std::string(what);
+  };
+  add(is_stl && has_polygons(mesh),
+      "faces of more than three corners (they are cut into triangles)");
+  add(is_stl && look.vertex_colours.cols() > 0, "colours");
+  add(!look.materials.empty(), "materials");
+  add(mesh.texcoords.cols() > 0, "texture coordinates");
+  add(!look.groups.names.empty(), "groups");
+  add(!look.objects.names.empty(), "objects");
+  if (!lost.empty())
+    notes.push_back(std::string(is_stl ? "an STL" : "a PLY") + " cannot keep " + lost +
+                    "; an OBJ can");
+  if (is_stl && rounding_in_floats(mesh) > visible)
+    notes.push_back("the floats of an STL round this model, which is far from the origin for its "
+                    "size; an OBJ or PLY keeps it exactly");
+  return notes;
+}
+
 Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh,
-                        const std::filesystem::path& materials) {
+                        const std::filesystem::path& materials, UpAxis up) {
   if (!mesh.offset.isZero(0.0)) {
     Mesh from_zero = mesh;
     count_from(Eigen::Vector3d::Zero(), from_zero);
-    return write_mesh(path, from_zero, materials);
+    return write_mesh(path, from_zero, materials, up);
   }
-  const std::string ending = path.extension().string();
-  if (ending != ".obj" && ending != ".ply")
-    return Error{Errc::usage, path.string() + ": the name must end in .obj or .ply"};
+  const std::string_view ending = ending_of(path.string(), mesh_endings);
+  if (ending.empty())
+    return Error{Errc::usage, path.string() + ": the name must end in " + mesh_endings_text};
   const Eigen::Index bad = first_unusable_vertex(mesh.vertices);
   if (bad < mesh.vertices.cols())
     return Error{Errc::failed, path.string() + ": not written, vertex " + std::to_string(bad) +
                                    " is not finite or beyond 1e100"};
-  if (ending == ".ply") return replace_file(path, ply_text(mesh));
-  // Before the OBJ, so that it never names what is not there.
-  auto library = write_materials(path, mesh.look, materials);
-  if (!library) return library.error();
-  return replace_file(path, obj_text(mesh, *library));
+  if (up == UpAxis::z) {
+    Mesh laid = mesh;
+    lay_z_up(laid.vertices);
+    return write_laid(path, laid, materials, up);
+  }
+  return write_laid(path, mesh, materials, up);
 }
 
 } // namespace nendo::deform

@@ -1,5 +1,5 @@
-// Wavefront OBJ: v with colours, vt, f, usemtl, mtllib, g and o. All else (normals, lines, curves)
-// is skipped.
+// Wavefront OBJ: v with colours, vt, f, usemtl, mtllib, g and o. All else is left out: normals,
+// which are computed, and lines, points and curves, which are noted.
 
 #include <algorithm>
 #include <limits>
@@ -10,6 +10,8 @@
 #include <nendo/base/text.hpp>
 
 #include "mesh_formats.hpp"
+#include "obj_left_out.hpp"
+#include "polypaint.hpp"
 #include "srgb.hpp"
 #include "text_scanner.hpp"
 #include "usable.hpp"
@@ -58,8 +60,8 @@ FaceNames CurrentName::take() && {
 
 class ObjParser {
 public:
-  ObjParser(std::string_view text, std::string_view name)
-      : scanner_(text, TextScanner::Dialect::obj), name_(name) {}
+  ObjParser(std::string_view text, std::string_view name, ReadNotes& notes)
+      : scanner_(text, TextScanner::Dialect::obj), name_(name), notes_(notes) {}
 
   Result<ObjModel> parse();
 
@@ -79,10 +81,13 @@ private:
 
   TextScanner scanner_;
   std::string_view name_;
+  ReadNotes& notes_;
+  ObjLeftOut left_out_;
   std::vector<double> vertices_;  ///< three numbers each
   std::vector<double> texcoords_; ///< two numbers each
   std::vector<float> colours_;    ///< of the first vertices, four numbers each
   CurrentName material_, group_, object_;
+  std::vector<std::uint32_t> painted_; ///< by ZBrush, of the first vertices
   HighestIndex highest_vertex_;
   HighestIndex highest_texcoord_;
   Mesh mesh_;
@@ -97,6 +102,7 @@ Result<ObjModel> ObjParser::parse() {
   mesh_.vertices = columns_of<3>(vertices_);
   finish_texcoords();
   finish_look();
+  if (!vertices_.empty()) left_out_.add_to(notes_);
   return ObjModel{std::move(mesh_), std::move(libraries_)};
 }
 
@@ -104,12 +110,23 @@ Result<void> ObjParser::statement() {
   const std::string_view keyword = scanner_.field();
   if (keyword == "v") return vertex();
   if (keyword == "vt") return coordinates(texcoords_, 1, 2);
-  if (keyword == "f") return face();
+  if (keyword == "f" || keyword == "fo") return face();
   if (keyword == "usemtl") material_.set(joined_fields(scanner_));
   if (keyword == "g") group_.set(joined_fields(scanner_));
   if (keyword == "o") object_.set(joined_fields(scanner_));
   if (keyword == "mtllib") libraries_.push_back(joined_fields(scanner_));
+  if (keyword.empty())
+    read_polypaint(scanner_.rest_of_line(), painted_);
+  else
+    left_out_.statement(keyword, scanner_.line());
   return {};
+}
+
+/// What to do if a program has counted from 0.
+std::string if_from_zero(std::string_view field) {
+  return to_integer(field.substr(0, field.find('/'))) == 0
+             ? ", because an OBJ counts vertices from 1; add 1 to all, if they count from 0"
+             : "";
 }
 
 /// Three coordinates, and three parts of a colour behind them where a program wrote those. Vertices
@@ -117,9 +134,12 @@ Result<void> ObjParser::statement() {
 Result<void> ObjParser::vertex() {
   if (auto done = coordinates(vertices_, 3, 3); !done) return done;
   Eigen::Vector4f colour = Eigen::Vector4f::Ones();
+  double alone = 1.0; // a fourth number without more is w
   for (Eigen::Index channel = 0; channel < 3; ++channel) {
     const auto number = to_finite_number(scanner_.field());
+    if (!number && channel == 1) left_out_.weight(alone);
     if (!number) return {};
+    alone = *number;
     colour[channel] = linear_of(static_cast<float>(std::clamp(*number, 0.0, 1.0)));
   }
   colours_.resize(4 * (vertices_.size() / 3 - 1), 1.0F);
@@ -135,18 +155,15 @@ Result<void> ObjParser::coordinates(std::vector<double>& list, int needed, int k
       return bad("needs " + std::to_string(needed) + " numbers, has " + std::to_string(i));
     const auto number = field.empty() ? 0.0 : to_number(field);
     if (!number || !is_usable(*number))
-      return bad(in_quotes(field) + " is not a finite number of at most 1e100");
+      return bad(in_quotes(field) + std::string(not_usable(field)));
     list.push_back(*number);
   }
   return {};
 }
 
 Result<void> ObjParser::face() {
-  const std::size_t before = mesh_.face_corners.size();
   for (auto field = scanner_.field(); !field.empty(); field = scanner_.field())
     if (auto done = corner(field); !done) return done;
-  const std::size_t corners = mesh_.face_corners.size() - before;
-  if (corners < 3) return bad("a face needs 3 corners, has " + std::to_string(corners));
   mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
   for (CurrentName* name : {&material_, &group_, &object_})
     name->ends_face();
@@ -157,7 +174,7 @@ Result<void> ObjParser::face() {
 Result<void> ObjParser::corner(std::string_view field) {
   const std::size_t slash = field.find('/');
   const auto vertex = index(field.substr(0, slash), vertices_.size() / 3, highest_vertex_);
-  if (!vertex) return bad(in_quotes(field) + " names no vertex");
+  if (!vertex) return bad(in_quotes(field) + " names no vertex" + if_from_zero(field));
   mesh_.face_corners.push_back(*vertex);
   std::string_view texcoord;
   if (slash != std::string_view::npos) {
@@ -227,6 +244,8 @@ void ObjParser::finish_look() {
     look.materials.push_back({std::move(name), std::nullopt, no_index, true});
   look.groups = std::move(group_).take();
   look.objects = std::move(object_).take();
+  if (colours_.empty() && !painted_.empty())
+    look.vertex_colours = colours_of_polypaint(painted_, mesh_.vertices.cols());
   if (colours_.empty()) return;
   colours_.resize(4 * static_cast<std::size_t>(mesh_.vertices.cols()), 1.0F);
   look.vertex_colours =
@@ -235,8 +254,8 @@ void ObjParser::finish_look() {
 
 } // namespace
 
-Result<ObjModel> parse_obj(std::string_view text, std::string_view name, ReadNotes&) {
-  return ObjParser(text, name).parse();
+Result<ObjModel> parse_obj(std::string_view text, std::string_view name, ReadNotes& notes) {
+  return ObjParser(text, name, notes).parse();
 }
 
 } // namespace nendo::deform

@@ -2,23 +2,12 @@
 
 #include <cmath>
 
+#include <nendo/deform/face_box.hpp>
+
 namespace nendo::deform {
 namespace {
 
 constexpr double near_sizes = 4.0; // from zero: a float then has two bits less for the size
-
-/// Of the vertices that faces have: a stray one may lie anywhere. Of all, if there are no faces.
-Box box_of_faces(const Mesh& mesh) noexcept {
-  if (mesh.face_corners.empty()) return finite_box_of(mesh.vertices);
-  Box box = finite_box_of(Points(3, 0));
-  for (const std::uint32_t corner : mesh.face_corners) {
-    const auto place = mesh.vertices.col(static_cast<Eigen::Index>(corner));
-    if (!place.allFinite()) continue;
-    box.lowest = box.lowest.cwiseMin(place);
-    box.highest = box.highest.cwiseMax(place);
-  }
-  return box;
-}
 
 } // namespace
 

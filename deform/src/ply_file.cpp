@@ -106,13 +106,33 @@ private:
   std::size_t at_ = 0;    ///< binary
 };
 
+/// A strip of triangles, corner by corner.
+class TriangleStrip {
+public:
+  void reset() noexcept { count_ = 0; }
+  /// Returns the triangle that this corner completes, unless it has a corner twice.
+  std::optional<std::array<std::uint32_t, 3>> add(std::uint32_t corner) noexcept {
+    const std::array<std::uint32_t, 3> triangle{count_ % 2 == 0 ? before_[0] : before_[1],
+                                                count_ % 2 == 0 ? before_[1] : before_[0], corner};
+    const bool is_one = count_ >= 2 && triangle[0] != triangle[1] && triangle[1] != triangle[2] &&
+                        triangle[2] != triangle[0];
+    before_ = {before_[1], corner};
+    ++count_;
+    return is_one ? std::optional(triangle) : std::nullopt;
+  }
+
+private:
+  std::array<std::uint32_t, 2> before_{};
+  std::size_t count_ = 0;
+};
+
 /// What a value is used for.
-enum class Use { skip, x, y, z, corners, red, green, blue, alpha };
+enum class Use { skip, x, y, z, corners, strips, red, green, blue, alpha };
 
 class PlyParser {
 public:
-  PlyParser(std::string_view text, const PlyHeader& header, std::string_view name)
-      : header_(header), name_(name), body_(text, header, name) {}
+  PlyParser(std::string_view text, const PlyHeader& header, std::string_view name, ReadNotes& notes)
+      : header_(header), name_(name), notes_(notes), body_(text, header, name) {}
 
   Result<Mesh> parse();
 
@@ -120,12 +140,15 @@ private:
   Result<std::vector<Use>> uses_of(const PlyElement& element) const;
   Result<void> read_element(const PlyElement& element);
   Result<void> read_list(const PlyProperty& property, Use use);
-  Result<void> read_corner(PlyType type);
+  Result<std::optional<std::uint32_t>> read_index(PlyType type, Use use);
+  void add_corner(std::optional<std::uint32_t> index, Use use);
+  void note_left_out(const PlyElement& element, const std::vector<Use>& uses);
   Result<void> read_value(const PlyProperty& property, Use use);
   void keep_vertex();
 
   const PlyHeader& header_;
   std::string_view name_;
+  ReadNotes& notes_;
   PlyBody body_;
   std::vector<double> coordinates_;
   double vertex_[3] = {};
@@ -133,6 +156,7 @@ private:
   bool has_colours_ = false;
   std::array<float, 4> colour_{};
   HighestIndex highest_;
+  TriangleStrip strip_;
   Mesh mesh_;
 };
 
@@ -149,21 +173,36 @@ Result<Mesh> PlyParser::parse() {
   return std::move(mesh_);
 }
 
+/// Red, green, blue and opacity, by the names that programs give them.
+using ColourNames = std::array<std::string_view, 4>;
+constexpr std::array<ColourNames, 4> known_colours{
+    {{"red", "green", "blue", "alpha"},
+     {"diffuse_red", "diffuse_green", "diffuse_blue", "alpha"},
+     {"r", "g", "b", "a"},
+     {"ambient_red", "ambient_green", "ambient_blue", "alpha"}}};
+
+bool has_property(const PlyElement& element, std::string_view name) noexcept {
+  return std::any_of(element.properties.begin(), element.properties.end(),
+                     [&](const PlyProperty& property) { return property.name == name; });
+}
+
+/// The names of the colours that the element has: the first of which all three are there.
+ColourNames colours_in(const PlyElement& element) noexcept {
+  for (const ColourNames& names : known_colours)
+    if (std::all_of(names.begin(), names.begin() + 3,
+                    [&](std::string_view name) { return has_property(element, name); }))
+      return names;
+  return known_colours.front();
+}
+
 /// What a property of a vertex is used for.
-Use use_in_vertex(std::string_view name) noexcept {
-  constexpr std::array<std::pair<std::string_view, Use>, 10> uses{{{"x", Use::x},
-                                                                   {"y", Use::y},
-                                                                   {"z", Use::z},
-                                                                   {"red", Use::red},
-                                                                   {"green", Use::green},
-                                                                   {"blue", Use::blue},
-                                                                   {"alpha", Use::alpha},
-                                                                   {"diffuse_red", Use::red},
-                                                                   {"diffuse_green", Use::green},
-                                                                   {"diffuse_blue", Use::blue}}};
-  for (const auto& [known, use] : uses)
-    if (known == name) return use;
-  return Use::skip;
+Use use_in_vertex(std::string_view name, const ColourNames& colours) noexcept {
+  constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+  if (const auto* const axis = std::find(axes.begin(), axes.end(), name); axis != axes.end())
+    return static_cast<Use>(static_cast<int>(Use::x) + static_cast<int>(axis - axes.begin()));
+  const auto* const channel = std::find(colours.begin(), colours.end(), name);
+  if (channel == colours.end()) return Use::skip;
+  return static_cast<Use>(static_cast<int>(Use::red) + static_cast<int>(channel - colours.begin()));
 }
 
 /// Whether the colours are whole, and nothing is said twice.
@@ -188,12 +227,15 @@ float part_of_colour(PlyType type, double value, bool is_alpha) noexcept {
 Result<std::vector<Use>> PlyParser::uses_of(const PlyElement& element) const {
   std::vector<Use> uses;
   int wanted = 0;
+  const bool is_strips = element.name == "tristrips";
+  const ColourNames colours = colours_in(element);
   for (const auto& property : element.properties) {
     Use use = Use::skip;
     if (element.name == "vertex" && !property.count_type) {
-      use = use_in_vertex(property.name);
-    } else if (element.name == "face" && property.count_type) {
-      if (property.name == "vertex_indices" || property.name == "vertex_index") use = Use::corners;
+      use = use_in_vertex(property.name, colours);
+    } else if ((element.name == "face" || is_strips) && property.count_type) {
+      if (property.name == "vertex_indices" || property.name == "vertex_index")
+        use = is_strips ? Use::strips : Use::corners;
     }
     wanted += use != Use::skip && use < Use::red ? 1 : 0;
     uses.push_back(use);
@@ -201,15 +243,44 @@ Result<std::vector<Use>> PlyParser::uses_of(const PlyElement& element) const {
   const std::string name(name_);
   if (element.name == "vertex" && wanted != 3)
     return Error{Errc::bad_input, name + ": a PLY vertex needs one x, one y and one z"};
-  if (element.name == "face" && wanted != 1)
-    return Error{Errc::bad_input, name + ": a PLY face needs one list vertex_indices"};
+  const bool is_list = element.name == "face" || is_strips;
+  if (is_list && element.count > 0 && wanted != 1)
+    return Error{Errc::bad_input, name + ": a PLY " + (is_strips ? "tristrips" : "face") +
+                                      " needs one list vertex_indices"};
   return uses;
+}
+
+/// Normals are computed, because they change.
+bool is_computed(const PlyProperty& property) noexcept {
+  return property.name == "nx" || property.name == "ny" || property.name == "nz";
+}
+
+void PlyParser::note_left_out(const PlyElement& element, const std::vector<Use>& uses) {
+  if (element.count == 0) return;
+  const std::string name = in_quotes(element.name);
+  if (element.name != "vertex" && element.name != "face" && element.name != "tristrips") {
+    notes_.push_back(std::to_string(element.count) + " of the element " + name + " are left out");
+    return;
+  }
+  constexpr std::size_t max_named = 12;
+  std::string names;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    if (uses[i] != Use::skip || is_computed(element.properties[i])) continue;
+    if (++count <= max_named)
+      names += (names.empty() ? "" : ", ") + printable(element.properties[i].name.substr(0, 40));
+  }
+  if (count > max_named) names += ", and " + std::to_string(count - max_named) + " more";
+  if (count > 0)
+    notes_.push_back((count == 1 ? "the property " : "the properties ") + names + " of each " +
+                     name + (count == 1 ? " is" : " are") + " left out");
 }
 
 Result<void> PlyParser::read_element(const PlyElement& element) {
   const auto uses = uses_of(element);
   if (!uses) return uses.error();
   if (element.properties.empty()) return {};
+  note_left_out(element, *uses);
   std::uint64_t least_bytes = 0;
   for (const auto& property : element.properties)
     least_bytes += size_of(property.count_type.value_or(property.type));
@@ -247,27 +318,51 @@ Result<void> PlyParser::read_list(const PlyProperty& property, Use use) {
   const auto length = static_cast<std::uint64_t>(*count);
   if (!body_.has_room_for(length, size_of(property.type)))
     return body_.bad("a list of " + std::to_string(length) + " reaches beyond the end of the file");
-  if (use == Use::corners && length < 3)
-    return body_.bad("a face needs 3 corners, has " + std::to_string(length));
+  const bool is_corners = use == Use::corners || use == Use::strips;
   for (std::uint64_t i = 0; i < length; ++i) {
-    auto done = use == Use::corners ? read_corner(property.type) : read_value(property, use);
-    if (!done) return done;
+    if (!is_corners) {
+      if (auto done = read_value(property, use); !done) return done;
+      continue;
+    }
+    const auto index = read_index(property.type, use);
+    if (!index) return index.error();
+    add_corner(*index, use);
   }
+  strip_.reset();
   if (use == Use::corners)
     mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
   return {};
 }
 
-Result<void> PlyParser::read_corner(PlyType type) {
+/// Nothing where a strip ends: at a negative number, which unsigned types show as their greatest.
+Result<std::optional<std::uint32_t>> PlyParser::read_index(PlyType type, Use use) {
+  constexpr std::uint32_t greatest = std::numeric_limits<std::uint32_t>::max();
   const auto value = body_.number(type);
   if (!value) return body_.no_number();
-  if (!(*value >= 0.0) || *value != std::floor(*value) ||
-      *value > std::numeric_limits<std::uint32_t>::max())
+  if (use == Use::strips && (*value < 0.0 || *value == greatest))
+    return std::optional<std::uint32_t>();
+  if (!(*value >= 0.0) || *value != std::floor(*value) || *value > greatest)
     return body_.bad("a vertex index is not a whole number from 0 on");
   const auto index = static_cast<std::uint32_t>(*value);
   highest_.note(index, body_.place());
-  mesh_.face_corners.push_back(index);
-  return {};
+  return std::optional(index);
+}
+
+/// Of a strip, each corner makes a triangle with the two before it. Every other one is turned over.
+/// A corner that comes twice only leads the strip elsewhere.
+void PlyParser::add_corner(std::optional<std::uint32_t> index, Use use) {
+  if (use == Use::corners) {
+    mesh_.face_corners.push_back(*index);
+    return;
+  }
+  if (!index) {
+    strip_.reset();
+    return;
+  }
+  const auto triangle = strip_.add(*index);
+  if (!triangle) return;
+  mesh_.face_corners.insert(mesh_.face_corners.end(), triangle->begin(), triangle->end());
+  mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
 }
 
 Result<void> PlyParser::read_value(const PlyProperty& property, Use use) {
@@ -310,10 +405,10 @@ void append_colour(std::string& text, const Eigen::Vector4f& colour) {
 
 } // namespace
 
-Result<Mesh> parse_ply(std::string_view text, std::string_view name, ReadNotes&) {
+Result<Mesh> parse_ply(std::string_view text, std::string_view name, ReadNotes& notes) {
   const auto header = parse_ply_header(text, name);
   if (!header) return header.error();
-  return PlyParser(text, *header, name).parse();
+  return PlyParser(text, *header, name, notes).parse();
 }
 
 std::string ply_text(const Mesh& mesh) {

@@ -18,11 +18,15 @@ std::size_t TextScanner::line_end_length(std::size_t at) const noexcept {
   return at + 1 < text_.size() && text_[at + 1] == '\n' ? 2 : 1;
 }
 
-/// The length of a backslash and the line end after it; 0 if there is none at this place.
+/// The length of a backslash, and of the blanks and the line end after it; 0 if there is none at
+/// this place.
 std::size_t TextScanner::continuation_length() const noexcept {
   if (dialect_ != Dialect::obj || text_[at_] != '\\') return 0;
-  const std::size_t ending = line_end_length(at_ + 1);
-  return ending > 0 ? 1 + ending : 0;
+  std::size_t at = at_ + 1;
+  while (at < text_.size() && is_blank(text_[at]))
+    ++at;
+  const std::size_t ending = line_end_length(at);
+  return ending > 0 ? at - at_ + ending : 0;
 }
 
 std::string_view TextScanner::field() noexcept {
@@ -50,6 +54,11 @@ std::string_view TextScanner::field_on_any_line() noexcept {
     const std::string_view found = field();
     if (!found.empty() || !next_line()) return found;
   }
+}
+
+std::string_view TextScanner::rest_of_line() const noexcept {
+  const std::size_t end = text_.find_first_of("\r\n", at_);
+  return text_.substr(at_, end == std::string_view::npos ? end : end - at_);
 }
 
 std::string joined_fields(TextScanner& scanner) {

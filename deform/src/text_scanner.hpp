@@ -17,7 +17,7 @@ class TextScanner {
 public:
   enum class Dialect {
     plain,
-    obj ///< a backslash at the end of a line continues it, # begins a comment
+    obj ///< a backslash at the end of a line continues it, also before blanks; # begins a comment
   };
   TextScanner(std::string_view text, Dialect dialect) noexcept : text_(text), dialect_(dialect) {}
 
@@ -26,6 +26,8 @@ public:
   /// Returns the next field of this line, or the first field of a later line; empty at the end of
   /// the text.
   std::string_view field_on_any_line() noexcept;
+  /// Returns what is left of this line, a comment too, and does not go on.
+  std::string_view rest_of_line() const noexcept;
   /// Goes to the start of the next line; returns false at the end of the text.
   bool next_line() noexcept;
 

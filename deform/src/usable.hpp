@@ -1,6 +1,8 @@
 #pragma once
 // The bound of numbers that are accepted from outside.
 
+#include <string_view>
+
 #include <Eigen/Core>
 
 namespace nendo::deform {
@@ -11,6 +13,13 @@ inline constexpr double largest_number = 1e100;
 /// Returns true if the magnitude is at most largest_number. It is false for NaN.
 constexpr bool is_usable(double value) noexcept {
   return value <= largest_number && value >= -largest_number;
+}
+
+/// Why a field of a text is no usable number, behind that field.
+constexpr std::string_view not_usable(std::string_view field) noexcept {
+  return field.find(',') == std::string_view::npos
+             ? " is not a finite number of at most 1e100"
+             : " is not a finite number of at most 1e100; write decimals with a point";
 }
 
 template <class Derived>

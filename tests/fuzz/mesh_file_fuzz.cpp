@@ -55,32 +55,42 @@ void read_as_materials(std::string_view text) {
     require(nendo::deform::name_in_folder(texture.file) == texture.file);
 }
 
+void read_as_model(std::span<const std::byte> bytes, std::string_view name) {
+  const nendo::deform::ReadOptions options{nendo::deform::UpAxis::z, true};
+  const auto model = nendo::deform::parse_model(bytes, name, options);
+  if (!model) {
+    const auto& message = model.error().message;
+    require(!message.empty() && message.find('\n') == std::string::npos);
+    return;
+  }
+  for (const std::string& note : model->notes)
+    require(!note.empty() && note.find('\n') == std::string::npos);
+  const nendo::deform::Mesh& mesh = model->mesh;
+  require(mesh.vertices.cols() > 0 && mesh.vertices.allFinite() && mesh.texcoords.allFinite());
+  // Nothing takes more than a small multiple of the file, but where a glTF shows a mesh in many
+  // places. A corner of a strip makes a triangle.
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const bool repeats = text.find("\"nodes\"") != std::string_view::npos;
+  require(repeats || static_cast<std::size_t>(mesh.vertices.cols()) <= bytes.size());
+  require(repeats || mesh.face_corners.size() <= 3 * bytes.size());
+  require(are_below(mesh.face_corners, mesh.vertices.cols()));
+  require(are_below(mesh.corner_texcoords, mesh.texcoords.cols()));
+  require(mesh.corner_texcoords.empty() ||
+          mesh.corner_texcoords.size() == mesh.face_corners.size());
+  require(mesh.face_starts.front() == 0 && mesh.face_starts.back() == mesh.face_corners.size());
+  for (std::size_t face = 0; face < mesh.face_count(); ++face)
+    require(mesh.face_starts[face + 1] >= mesh.face_starts[face] + 3);
+  require_usable(mesh.look, mesh.face_count(), mesh.vertices.cols());
+  require(nendo::deform::vertex_normals(mesh).allFinite());
+}
+
 } // namespace
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   read_as_materials({reinterpret_cast<const char*>(data), size});
-  const auto mesh = nendo::deform::parse_mesh(std::as_bytes(std::span(data, size)), "fuzz");
-  if (!mesh) {
-    const auto& message = mesh.error().message;
-    require(!message.empty() && message.find('\n') == std::string::npos);
-    return 0;
-  }
-  require(mesh->vertices.cols() > 0 && mesh->vertices.allFinite() && mesh->texcoords.allFinite());
-  // Nothing takes more than a small multiple of the file, but where a glTF shows a mesh in many
-  // places.
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const bool repeats = text.find("\"nodes\"") != std::string_view::npos;
-  require(repeats || static_cast<std::size_t>(mesh->vertices.cols()) <= size);
-  require(repeats || mesh->face_corners.size() <= size);
-  require(are_below(mesh->face_corners, mesh->vertices.cols()));
-  require(are_below(mesh->corner_texcoords, mesh->texcoords.cols()));
-  require(mesh->corner_texcoords.empty() ||
-          mesh->corner_texcoords.size() == mesh->face_corners.size());
-  require(mesh->face_starts.front() == 0 && mesh->face_starts.back() == mesh->face_corners.size());
-  for (std::size_t face = 0; face < mesh->face_count(); ++face)
-    require(mesh->face_starts[face + 1] >= mesh->face_starts[face] + 3);
-  require_usable(mesh->look, mesh->face_count(), mesh->vertices.cols());
-  require(nendo::deform::vertex_normals(*mesh).allFinite());
+  // What is binary and ends in .stl is taken as an STL, whatever its size.
+  for (const std::string_view name : {"fuzz", "fuzz.stl"})
+    read_as_model(std::as_bytes(std::span(data, size)), name);
   return 0;
 }

@@ -1,9 +1,11 @@
 #pragma once
-// Reads OBJ, PLY (ASCII, or binary of either byte order) and glTF, and writes OBJ and PLY. Files
-// are not trusted: every count is checked against the bytes that are there before anything is
-// allocated.
+// Reads OBJ, PLY (ASCII, or binary of either byte order), STL (text or binary) and glTF, and writes
+// OBJ, PLY and STL. Files are not trusted: every count is checked against the bytes that are there
+// before anything is allocated.
 
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,8 +19,15 @@ namespace nendo::deform {
 /// The axis of the file that points up. Nendo's own is y.
 enum class UpAxis { y, z };
 
+/// The endings of what write_mesh() can write.
+inline constexpr std::array<std::string_view, 3> mesh_endings{".obj", ".ply", ".stl"};
+/// What --help says of them.
+inline constexpr const char* mesh_endings_text = ".obj, .ply or .stl";
+
 struct ReadOptions {
-  UpAxis up = UpAxis::y; ///< z: the model is turned about x by -90 degrees
+  /// z: the model is turned about x by -90 degrees, unless it is a glTF, whose y is up. Nothing: y
+  /// is up, and a note says so if the format cannot say which axis is.
+  std::optional<UpAxis> up{};
   /// Whether vertices in one place become one vertex where the format cannot say that they are one.
   bool weld = true;
 };
@@ -31,7 +40,9 @@ struct ReadModel {
   std::vector<std::string> notes;
 };
 
-/// Parses a PLY, which begins with "ply", a glTF, which begins with "glTF" or "{", or else an OBJ.
+/// Parses a PLY, which begins with "ply", a glTF, which begins with "glTF" or "{", an STL, which
+/// begins with "solid" or has as many bytes as its count says, or else an OBJ. What is known to be
+/// of another format is refused with the format's name and a remedy.
 /// It keeps vertices, faces of any size and vertices' colours, and of an OBJ texture coordinates,
 /// materials' names, groups and objects. Of a glTF (Khronos specification 2.0) it takes all meshes
 /// of the default scene in the places of their nodes, with materials, textures and texture
@@ -53,14 +64,19 @@ Result<ReadModel> read_model(const std::filesystem::path& path, const ReadOption
 /// The same, without the notes.
 Result<Mesh> read_mesh(const std::filesystem::path& path);
 
-/// Writes OBJ or PLY (binary little-endian), by the ending of the path. It writes a temporary file
+/// Returns what a file of that ending cannot keep of the mesh, as notes (ReadModel::notes).
+std::vector<std::string> lost_in_file(const std::filesystem::path& path, const Mesh& mesh);
+
+/// Writes OBJ, PLY (binary little-endian) or STL (binary), by the ending of the path, in any case.
+/// It turns the model so that the axis `up` of the file points up. It writes a temporary file
 /// beside `path`, syncs and renames it, so that a file of that name is always whole. Coordinates
-/// survive a round trip exactly; Mesh::offset is added to them. An OBJ has all that the mesh has;
+/// survive a round trip exactly, but in an STL, which has floats; Mesh::offset is added to
+/// them. An OBJ has all that the mesh has;
 /// its materials go beside it into `materials`, or into a file of its name with .mtl if that is
 /// empty, and textures too. They never replace a file that was not written by this function. A PLY
-/// has colours of vertices alone. Blocks for as long as the disk does. Errors: usage (unknown
-/// ending), failed (a file cannot be written).
+/// has colours of vertices alone, an STL has triangles alone. Blocks for as long as the disk does.
+/// Errors: usage (unknown ending), failed (a file cannot be written).
 Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh,
-                        const std::filesystem::path& materials = {});
+                        const std::filesystem::path& materials = {}, UpAxis up = UpAxis::y);
 
 } // namespace nendo::deform
