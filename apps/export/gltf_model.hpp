@@ -12,14 +12,15 @@
 #include "export/function_morphs.hpp"
 #include "export/glb_file.hpp"
 #include "export/gltf_materials.hpp"
+#include "export/gltf_parts.hpp"
+#include "export/morph_normals.hpp"
 
 namespace nendo::exporting {
 
 class GltfModel {
 public:
-  /// Puts the rest shape into `file`, with a primitive for each material. The mesh must have a
-  /// vertex, and its vertices must fit in floats. A vertex with several texture coordinates is put
-  /// behind all others once more for each further one, for glTF has one for each vertex.
+  /// Puts the rest shape into `file`, in the parts that parts_of() returns. The mesh must have a
+  /// vertex, and its vertices must fit in floats.
   GltfModel(const deform::Mesh& mesh, GlbFile& file);
 
   /// Adds two targets for each axis of each influence that reaches a vertex: one along the axis and
@@ -42,7 +43,7 @@ public:
   /// is 1, all others are 0.
   GlbFile::Index add_key_weights(GlbFile& file) const;
 
-  std::size_t target_count() const noexcept { return targets_.size(); }
+  std::size_t target_count() const noexcept { return names_.size(); }
   /// Returns the index of the model's node.
   GlbFile::Index node() const noexcept { return node_; }
   /// Adds node and mesh to the document. Call it once, after everything else.
@@ -50,21 +51,15 @@ public:
               const MorphReport& report) const;
 
 private:
-  struct Primitive {
-    std::uint32_t material; ///< of the look
-    GlbFile::Json json;
-  };
-  std::vector<std::uint32_t> split_at_seams(const deform::Mesh& mesh,
-                                            std::vector<float>& texcoords);
-  Eigen::Matrix3Xf with_copies(const Eigen::Matrix3Xf& of_vertices) const;
-  void add_primitives(const deform::Mesh& mesh, const std::vector<std::uint32_t>& corner_vertices,
-                      const GlbFile::Json& attributes, GlbFile& file);
-  void add_target(const Eigen::Matrix3Xf& way, std::string name, GlbFile& file);
+  /// `way` and `turn`: how far the target moves each vertex and its normal, 3 by #vertices.
+  void add_target(const Eigen::Matrix3Xf& way, const Eigen::Matrix3Xf& turn, std::string name,
+                  GlbFile& file);
 
   GlbFile::Index node_ = 0;
-  std::vector<Primitive> primitives_;
-  std::vector<std::uint32_t> copies_; ///< of each vertex behind the mesh's, which one it is
-  GlbFile::Json targets_ = GlbFile::Json::array();
+  std::vector<GltfPart> parts_;
+  MorphNormals normals_;
+  std::vector<GlbFile::Json> primitives_; ///< one for each part
+  std::vector<GlbFile::Json> targets_;    ///< the lists of the parts' targets
   GlbFile::Json names_ = GlbFile::Json::array();
   std::vector<float> target_values_;                      ///< of functions
   Eigen::Matrix3Xf latest_;                               ///< of the targets

@@ -1,7 +1,10 @@
 #include "export/gltf_export.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
+#include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
 #include "render/hand_skin.hpp"
@@ -47,6 +50,15 @@ double way(const RecordedMotion& motion) {
   for (const auto& shape : motion.shapes)
     most = std::max(most, test::farthest(shape, motion.played.test.model.vertices));
   return most / motion.diagonal();
+}
+
+/// The largest angle between two unit vectors of the same number.
+double farthest_turn_deg(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+  double farthest = 0.0;
+  for (Eigen::Index at = 0; at < a.cols(); ++at)
+    farthest =
+        std::max(farthest, std::atan2(a.col(at).cross(b.col(at)).norm(), a.col(at).dot(b.col(at))));
+  return farthest * 180.0 / 3.14159265358979;
 }
 
 } // namespace
@@ -174,6 +186,30 @@ TEST_SUITE("gltf_export") {
       const auto same = export_it(motion, {}, {.tolerance = length_m / diagonal_m});
       REQUIRE(same);
       CHECK(same->morphs->keys == done->morphs->keys);
+    }
+  }
+
+  TEST_CASE("a viewer that mixes the targets' normals lights the shape as its own normals do") {
+    for (const auto& [mode, most_degrees] :
+         {std::pair(flow::Mode::type1, 6.0), std::pair(flow::Mode::type2, 3.0)}) {
+      const RecordedMotion motion(Motion{.mode = mode, .bend_counts = 60.0});
+      REQUIRE(export_it(motion));
+      const Glb glb = read(motion);
+      const auto node = glb.node_named("model");
+      deform::Mesh shape = motion.played.test.model;
+      double worst = 0.0, worst_at_rest = 0.0;
+      for (std::size_t at = 0; at < motion.shapes.size(); at += 5) {
+        const double time_s = motion.times_s[at] - motion.times_s[0];
+        const Eigen::Matrix3Xd mixed = glb.vertices(node, time_s, "NORMAL").colwise().normalized();
+        shape.vertices = motion.shapes[at];
+        const deform::Points wanted = deform::vertex_normals(shape);
+        worst = std::max(worst, farthest_turn_deg(mixed, wanted));
+        worst_at_rest =
+            std::max(worst_at_rest, farthest_turn_deg(glb.vertices(node, 0.0, "NORMAL"), wanted));
+      }
+      MESSAGE(name_of(mode) << ": off by " << worst << " degrees, at rest by " << worst_at_rest);
+      CHECK(worst < most_degrees);
+      CHECK(worst_at_rest > 5.0 * worst); // otherwise the motion would prove nothing
     }
   }
 

@@ -91,13 +91,15 @@ public:
     return still;
   }
 
-  /// Returns the morphed vertices of a node's mesh, in its own units. 3 by #vertices.
-  Eigen::Matrix3Xd vertices(std::size_t node, double time_s) const {
+  /// Returns the morphed vertices of a node's mesh, or another attribute of its first primitive, in
+  /// its own units. 3 by #vertices.
+  Eigen::Matrix3Xd vertices(std::size_t node, double time_s,
+                            const char* attribute = "POSITION") const {
     const auto& primitive = json.at("meshes")
                                 .at(json.at("nodes").at(node).at("mesh").get<std::size_t>())
                                 .at("primitives")
                                 .at(0);
-    Eigen::Matrix3Xd places = accessor(primitive.at("attributes").at("POSITION"));
+    Eigen::Matrix3Xd places = accessor(primitive.at("attributes").at(attribute));
     if (!primitive.contains("targets")) return places;
     const auto& targets = primitive.at("targets");
     const Eigen::VectorXd weights =
@@ -106,7 +108,7 @@ public:
       throw std::runtime_error("not a weight a target");
     for (std::size_t at = 0; at < targets.size(); ++at) {
       const double weight = weights[static_cast<Eigen::Index>(at)];
-      if (weight != 0.0) places += weight * accessor(targets.at(at).at("POSITION"));
+      if (weight != 0.0) places += weight * accessor(targets.at(at).at(attribute));
     }
     return places;
   }
