@@ -107,7 +107,7 @@ void FrameRecord::describe(const flow::Frame& frame, std::uint64_t number,
   head.ticks = frame.ticks_run;
   head.missed = frame.missed;
   head.commits = frame.commits;
-  head.undos = frame.undos;
+  head.shape_jumps = frame.shape_jumps;
   head.scheduled_ns = nanoseconds(frame.scheduled.time_since_epoch());
   head.woke_ns = nanoseconds(frame.woke.time_since_epoch());
   head.since_last_ns = nanoseconds(frame.since_last);

@@ -16,7 +16,7 @@ struct FrameStream::RecordHead {
   std::uint64_t number = 0;
   double drift = 0.0;
   std::uint64_t weights = 0;
-  std::uint8_t undone = 0;
+  std::uint8_t jumped = 0;
   std::uint8_t bakes = 0;
   std::uint8_t spare[6]{};
 };
@@ -58,16 +58,17 @@ FrameStream::FrameStream(const deform::BlockLayout& layout, const Capacity& capa
 
 void FrameStream::show(const flow::Frame& frame) noexcept {
   ++number_;
-  const std::uint64_t undos = frame.undos - frame.leaps; // clients follow along the surface
-  const bool undone = undos != undos_;
+  // Clients can follow along the surface.
+  const std::uint64_t jumps = frame.shape_jumps - frame.surface_moves;
+  const bool jumped = jumps != jumps_;
   const bool committed = frame.commits != commits_;
-  undos_ = undos;
+  jumps_ = jumps;
   commits_ = frame.commits;
   // In both cases this frame's shape is the rest shape from now on: a commit makes it so, as does a
   // change of settings, and after an undo the hands have not moved it yet.
-  if (undone || committed) rest_.follow(frame.shape);
+  if (jumped || committed) rest_.follow(frame.shape);
   copy_shape(frame); // before the record is pushed: see take_shape()
-  if (active_.load(std::memory_order_relaxed)) push(frame, undone, committed);
+  if (active_.load(std::memory_order_relaxed)) push(frame, jumped, committed);
 }
 
 void FrameStream::copy_shape(const flow::Frame& frame) noexcept {
@@ -95,7 +96,7 @@ double FrameStream::drift_of(const flow::Frame& frame) const noexcept {
   return drift;
 }
 
-void FrameStream::push(const flow::Frame& frame, bool undone, bool committed) noexcept {
+void FrameStream::push(const flow::Frame& frame, bool jumped, bool committed) noexcept {
   const bool bakes = !is_type1(frame) || committed;
   RecordHead head;
   UpdateHead update = head_of(frame);
@@ -108,7 +109,7 @@ void FrameStream::push(const flow::Frame& frame, bool undone, bool committed) no
   head.head_bytes = static_cast<std::uint32_t>(out.used() - sizeof head);
   write_step(bakes ? StepKind::bake : StepKind::draw, frame, origin_, unit_, out);
   head.bytes = static_cast<std::uint32_t>(out.used());
-  head.undone = undone ? 1 : 0;
+  head.jumped = jumped ? 1 : 0;
   head.drift = bakes ? drift_of(frame) : 0.0;
   head.weights = frame.surface.field;
   head.bakes = bakes ? 1 : 0;
@@ -136,7 +137,7 @@ void FrameStream::take(std::vector<Record>& records) {
     if (incoming_.size() < wanted) return;
     Record record;
     record.number = head.number;
-    record.discontinuous = head.undone != 0 || head.number != taken_ + 1;
+    record.discontinuous = head.jumped != 0 || head.number != taken_ + 1;
     record.drift = head.drift;
     record.weights = head.weights;
     record.bakes = head.bakes != 0;

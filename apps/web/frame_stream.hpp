@@ -74,7 +74,7 @@ private:
   enum class ShapeRequest : std::uint8_t { none, pending, ready };
 
   void copy_shape(const flow::Frame& frame) noexcept;
-  void push(const flow::Frame& frame, bool undone, bool committed) noexcept;
+  void push(const flow::Frame& frame, bool jumped, bool committed) noexcept;
   double drift_of(const flow::Frame& frame) const noexcept;
 
   const Eigen::Vector3d origin_;
@@ -86,7 +86,7 @@ private:
                             ///< the last commit or undo
   std::uint64_t number_ = 0;
   std::uint64_t commits_ = 0;
-  std::uint64_t undos_ = 0;
+  std::uint64_t jumps_ = 0;
   std::vector<std::byte> record_;
   // Shared.
   SpscRing<Chunk> ring_;

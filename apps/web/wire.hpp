@@ -47,7 +47,7 @@ struct UpdateHead {
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0;
   std::uint32_t commits = 0;
-  std::uint32_t undos = 0;
+  std::uint32_t jumps = 0;
   float late_us = 0.0F;
   float most_late_us = 0.0F;
   float since_last_us = 0.0F;

@@ -224,13 +224,13 @@ TEST_SUITE("exchange") {
     for (int tick = 0; tick < 5; ++tick) {
       loop.tick();
       CHECK(loop.frame().awaited == Awaited{first, 0, 0});
-      CHECK(loop.frame().undos == 0);
+      CHECK(loop.frame().shape_jumps == 0);
     }
     loop.change(first);
     loop.tick();
-    CHECK(loop.frame().undos == 1);
+    CHECK(loop.frame().shape_jumps == 1);
     CHECK(gap(loop.tick(), loop.test.model.vertices) == 0.0);
-    CHECK(loop.frame().undos == 2);
+    CHECK(loop.frame().shape_jumps == 2);
     // Somebody else's change while an undo waits is a step of its own, which the undo then means.
     loop.now += 2s;
     loop.change(with_radius(first, 0.25));
@@ -240,7 +240,7 @@ TEST_SUITE("exchange") {
     loop.now += 2s;
     loop.change(with_radius(first, 0.15));
     loop.tick();
-    CHECK(loop.frame().undos == 2);
+    CHECK(loop.frame().shape_jumps == 2);
     loop.tick();
     CHECK(loop.frame().awaited == Awaited{with_radius(first, 0.25), 0, 0});
   }
@@ -394,7 +394,7 @@ TEST_SUITE("exchange") {
       }
       changes += test.loop->stats().changes;
       models += maker.made();
-      CHECK(test.loop->stats().undos + test.loop->stats().resets > 25);
+      CHECK(test.loop->stats().shape_jumps + test.loop->stats().resets > 25);
     }
     CHECK(sum.allocations == 0);
     CHECK(sum.frees == 0);

@@ -161,7 +161,7 @@ TEST_SUITE("request") {
       CHECK(person.test.loop->stats().commits == 1);
       const Frame& undone = person.ask(Request::undo, 15);
       CHECK(undone.held);
-      CHECK(undone.undos == 1);
+      CHECK(undone.shape_jumps == 1);
       CHECK(person.shape() == person.test.model.vertices);
       person.move(15, 25);
       CHECK((person.shape() - person.test.model.vertices).cwiseAbs().maxCoeff() > 0.02);
@@ -287,8 +287,8 @@ TEST_SUITE("request") {
           CHECK(person.shape() == shapes[at]);
         }
         for (std::size_t at = last - back; at++ < last;) {
-          const std::uint64_t steps = person.test.loop->frames().front().undos;
-          CHECK(person.ask(Request::redo, 0).undos == steps + 1);
+          const std::uint64_t steps = person.test.loop->frames().front().shape_jumps;
+          CHECK(person.ask(Request::redo, 0).shape_jumps == steps + 1);
           CHECK(person.shape() == shapes[at]);
         }
       }

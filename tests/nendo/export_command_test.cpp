@@ -14,6 +14,7 @@
 
 #include <nendo/deform/mesh_file.hpp>
 
+#include "support/csv_table.hpp"
 #include "support/glb_reader.hpp"
 #include "support/program.hpp"
 
@@ -47,6 +48,21 @@ struct RecordedRun {
 } // namespace
 
 TEST_SUITE("export_command") {
+  TEST_CASE("a brush that moves the shape without fields counts as no undo") {
+    const test::TemporaryFolder folder;
+    const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+    const auto run = test::nendo({"run", "--left", "sim:grasp", "--mode", "type2", "--brush",
+                                  "inflate", "--duration", "0.5", "--out", at("clay.ply"),
+                                  "--record", at("take.nendo"), "--json"});
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    REQUIRE(test::nendo({"export", at("take.nendo"), "--out", at("take.csv")}).exit_code == 0);
+    auto table = test::csv_columns(contents(at("take.csv")));
+    REQUIRE(table["undos"].size() > 10);
+    for (const std::string& undos : table["undos"])
+      CHECK(undos == "0");
+  }
+
   TEST_CASE("every format of a run comes out, and the last frame is the run's own shape") {
     const RecordedRun run("type1");
     const auto shape = deform::read_mesh(run.path("clay.ply"));
@@ -167,6 +183,10 @@ TEST_SUITE("export_command") {
     CHECK((again->vertices - written->vertices).cwiseAbs().maxCoeff() <
           1e-4 * deform::diagonal_of(written->vertices)); // nobody has moved a part yet
     CHECK(again->look.materials.back().name == "cut");
+    const auto late =
+        test::nendo({"run", "--wire", "5:6", "--duration", "1", "--out", path("none.obj")});
+    CHECK(late.exit_code == 2);
+    CHECK(is_one_line_about(late.err, "--wire 5:6: ends after the run"));
     for (const char* wrong : {"1s", "2s:1s", "x:2s", ":2s", "-1s:2s"}) {
       CAPTURE(wrong);
       const auto bad = test::nendo({"run", "--wire", wrong, "--out", path("none.obj")});

@@ -41,7 +41,7 @@ TEST_SUITE("segment") {
         CHECK(head.number == number);
         CHECK(head.tick == frame.tick);
         CHECK(head.commits == frame.commits);
-        CHECK(head.undos == frame.undos);
+        CHECK(head.shape_jumps == frame.shape_jumps);
         CHECK(head.woke_ns == frame.woke.time_since_epoch() / std::chrono::nanoseconds(1));
         CHECK(segment.header().heartbeat_ns == head.woke_ns);
         CHECK(((head.flags & NENDO_PUBLISH_HELD) != 0) == frame.held);

@@ -82,14 +82,14 @@ Points through_fields(const std::vector<std::uint64_t>& record, const Points& fr
 struct Follower {
   Points rest, shape;
   bool knows_rest = true;
-  std::uint64_t number = 0, commits = 0, undos = 0;
+  std::uint64_t number = 0, commits = 0, jumps = 0;
   int followed = 0, taken = 0;
 
   void follow(const std::vector<std::uint64_t>& record, const Points& published) {
     const auto& head = test::head_of(record);
     const bool missed = head.number != number + 1;
     const bool committed = head.commits != commits;
-    const bool undid = head.undos != undos;
+    const bool undid = head.shape_jumps != jumps;
     if (head.mode == 2) {
       step(!missed && !undid, record, shape, published);
       rest = shape; // from which type-1 goes on, should the mode change
@@ -108,7 +108,7 @@ struct Follower {
     }
     number = head.number;
     commits = head.commits;
-    undos = head.undos;
+    jumps = head.shape_jumps;
   }
 
 private:
@@ -141,7 +141,7 @@ TEST_SUITE("updates") {
         furthest = std::max(furthest, (published - test.model.vertices).cwiseAbs().maxCoeff());
       }
       CHECK(furthest > 1e-2);
-      CHECK(follower.undos > 2);
+      CHECK(follower.jumps > 2);
       CHECK(follower.commits > 2);
     }
   }

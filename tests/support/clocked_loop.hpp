@@ -31,16 +31,16 @@ struct Clocked {
   }
   /// Asks for it, and ticks until it is done, as who runs the loop does.
   deform::Points step(flow::Request request) {
-    const std::uint64_t before = frame().undos;
+    const std::uint64_t before = frame().shape_jumps;
     REQUIRE(test.commands.try_push(request));
     deform::Points shape = tick();
     if (frame().awaited) {
-      CHECK(frame().undos == before);
+      CHECK(frame().shape_jumps == before);
       REQUIRE(test.loop->change_to(*frame().awaited));
       shape = tick();
       CHECK_FALSE(frame().awaited);
     }
-    CHECK(frame().undos == before + 1);
+    CHECK(frame().shape_jumps == before + 1);
     return shape;
   }
   std::vector<flow::StepKind> kinds() {

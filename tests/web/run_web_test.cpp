@@ -191,11 +191,11 @@ TEST_SUITE("run_web") {
     CHECK(seen.radius_m[4] == doctest::Approx(0.05));
     browser.ask("record", [](const auto& now) { return now.recorded; });
     CHECK(test::eventually([&] { return fs::exists(folder.path() / "clay.nendo"); }));
-    const auto undos = seen.undos;
-    browser.ask("reset", [&](const auto& now) { return now.undos > undos; });
+    const auto jumps = seen.jumps;
+    browser.ask("reset", [&](const auto& now) { return now.jumps > jumps; });
     browser.follow_until([&] { return !seen.steps.empty() && seen.steps.back().first == 1; });
     CHECK(seen.undoable == seen.steps.size()); // the reset is the last of them
-    browser.ask("undo", [&](const auto& now) { return now.undos > undos + 1; });
+    browser.ask("undo", [&](const auto& now) { return now.jumps > jumps + 1; });
     browser.follow_until([&] { return seen.undoable + 1 == seen.steps.size(); });
     browser.ask("end recording", [](const auto& now) { return !now.recorded; });
     browser.ask("settings type1 c2 free off 0.2 0.2 0.2 0.2 0.2 pull pull pull pull pull 0.5",

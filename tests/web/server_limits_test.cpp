@@ -186,7 +186,7 @@ TEST_SUITE("server_limits") {
     const auto shapes = counters().shapes;
     for (std::uint64_t turn = 1; turn <= 20; ++turn) {
       viewer.client.send_text(turn % 2 == 1 ? "undo" : "redo");
-      REQUIRE(eventually([&] { return newest_frame(served).undos >= turn; }));
+      REQUIRE(eventually([&] { return newest_frame(served).jumps >= turn; }));
       const auto updates = counters().updates + 3;
       REQUIRE(eventually([&] { return counters().updates >= updates; }));
     }
@@ -195,7 +195,7 @@ TEST_SUITE("server_limits") {
     const int taken = viewer.shapes;
     CHECK(viewer.follow_until([&] { return viewer.shapes > taken; }));
     CHECK(
-        viewer.follow_until([&] { return viewer.undos == 20 && viewer.number == viewer.newest; }));
+        viewer.follow_until([&] { return viewer.jumps == 20 && viewer.number == viewer.newest; }));
   }
 
   TEST_CASE("when the last viewer has gone, the tick makes no records") {

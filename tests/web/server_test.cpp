@@ -144,7 +144,7 @@ TEST_SUITE("server") {
     viewer.client.send_text("commit");
     CHECK(viewer.follow_until([&] { return viewer.commits == 2; }));
     viewer.client.send_text("undo");
-    CHECK(viewer.follow_until([&] { return viewer.undos == 1; }));
+    CHECK(viewer.follow_until([&] { return viewer.jumps == 1; }));
     viewer.client.send(client_frame(0x89, "")); // ping
     bool answered = false;
     while (!answered) {

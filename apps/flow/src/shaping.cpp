@@ -101,7 +101,7 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
   sculptor_->tell(frame.surface);
   frame.chain = sculptor_->report();
   count_chain(frame.chain, stats);
-  if (!sculptor_->is_told_by_fields()) ++(frame.surface.field == 0 ? jumps_ : leaps_);
+  if (!sculptor_->is_told_by_fields()) ++(frame.surface.field == 0 ? jumps_ : surface_moves_);
   shaped_ = sculptor_->moves_anything() ||
             (shaped_ && sculptor_->mode() != Mode::type1); // type 1 begins at the rest
   tell_hands(frame);
@@ -174,8 +174,9 @@ void Shaping::tell(Frame& frame, LoopStats& stats) noexcept {
   stats.undo_steps = steps_to_undo();
   stats.forgotten_steps = sculptor_->forgotten_steps();
   frame.commits = stats.commits + otherwise_ended_;
-  frame.undos = stats.undos + stats.redos + stats.resets + leaps_ + jumps_;
-  frame.leaps = leaps_;
+  frame.undos = stats.undos;
+  frame.shape_jumps = stats.undos + stats.redos + stats.resets + surface_moves_ + jumps_;
+  frame.surface_moves = surface_moves_;
   frame.undo_steps = undo_steps();
   frame.redo_steps = steps_to_redo();
   frame.awaited = awaited_;

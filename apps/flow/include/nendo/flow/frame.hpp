@@ -69,13 +69,15 @@ struct Frame {
   /// How often the shape became the rest shape: a commit, or a change of settings, which ends a
   /// stroke. One in this frame comes after its fields.
   std::uint64_t commits = 0;
-  /// How often the shape became an earlier one (undo), or that one's successor again (redo), or
-  /// what it was at first (reset), or was moved by distances along its surface, which no field
-  /// tells. One in this frame comes before its fields, so that they do not lead here from the frame
-  /// before. A reader that applies fields must then copy the whole shape.
+  /// How often somebody undid a step, as LoopStats counts it.
   std::uint64_t undos = 0;
-  /// How many of `undos` only were moves along the surface. Who applies `surface` needs no copy.
-  std::uint64_t leaps = 0;
+  /// How often the fields did not lead from the previous frame's shape to this one's: at an undo, a
+  /// redo or a reset, and in frames that a brush, clay, parts or a puppet shaped without fields. In
+  /// the frame that counts one, a reader that applies fields must copy the whole shape.
+  std::uint64_t shape_jumps = 0;
+  /// How many of `shape_jumps` were moves along the surface, which a reader can follow by
+  /// `surface`, without a copy.
+  std::uint64_t surface_moves = 0;
   /// How often one can undo, and how often redo, after this frame. At 0 it changes nothing. What
   /// hands that hold the model have shaped since the last commit is a step, too.
   std::uint64_t undo_steps = 0;

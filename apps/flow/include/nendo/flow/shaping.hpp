@@ -175,7 +175,7 @@ private:
   bool anew_due_ = false;             ///< Request::take_hold
   bool shaped_ = false;               ///< since the hands took hold, or since the last commit
   std::uint64_t otherwise_ended_ = 0; ///< strokes, by a change, without a commit
-  std::uint64_t leaps_ = 0;           ///< frames in which the shape was led along the surface
+  std::uint64_t surface_moves_ = 0;   ///< frames that moved the shape along its surface
   std::uint64_t jumps_ = 0;           ///< frames that a brush changed, less undos over puppets
   bool in_step_ = false;              ///< shaped before the last change, and not a step yet
   LoopSettings settings_;             ///< in force
