@@ -1,7 +1,9 @@
 // nendo demo: two emulated CyberGloves and the real serial driver. They play a face, or shape a
 // Moai.
 
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -10,12 +12,15 @@
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "export/gltf_export.hpp"
 #include "nendo/clay_demo.hpp"
 #include "nendo/commands.hpp"
+#include "nendo/picture.hpp"
 #include "session/open_hands.hpp"
 #include "session/run_report.hpp"
 #include "session/run_session.hpp"
 #include "takes/model_files.hpp"
+#include "takes/take.hpp"
 
 namespace nendo::app::demo_command {
 namespace {
@@ -29,7 +34,7 @@ struct Options {
   double duration_s = 10.0;
   std::string out = "nendo-demo.obj";
   std::string picture = "nendo-demo.png";
-  std::string record; ///< empty: not
+  std::string record; ///< empty: beside `out`; an earlier demo's recording is replaced
 
   bool is_face() const noexcept { return what == "face"; }
 };
@@ -54,6 +59,25 @@ Result<DemoGlove> emulate(Side side, const Options& demo) {
   return glove;
 }
 
+/// An expression of the motion "faces", and a moment at which both hands hold it.
+struct Expression {
+  const char* caption;
+  double time_s; ///< since the gloves' first samples
+};
+constexpr std::array expressions{Expression{"at rest", 1.0}, Expression{"smile", 2.24},
+                                 Expression{"frown", 3.84},  Expression{"surprise", 5.44},
+                                 Expression{"wink", 7.04},   Expression{"pout", 8.64}};
+constexpr double min_strip_s = 4.5; ///< from here on, there are expressions to show
+
+/// Whether the picture shows the face's expressions. Otherwise it shows the model before and after.
+bool makes_strip(const Options& options) {
+  return options.is_face() && options.duration_s >= min_strip_s;
+}
+
+std::string beside(const std::string& out, const char* ending) {
+  return std::filesystem::path(out).replace_extension(ending).string();
+}
+
 Result<session::RunOptions> run_options(const Options& options) {
   const auto mode = flow::mode_named(options.mode);
   if (!mode || flow::is_by_hands(*mode))
@@ -64,7 +88,8 @@ Result<session::RunOptions> run_options(const Options& options) {
     return Error{Errc::usage, "--duration: use a number of seconds above 0, up to 3600"};
   if (options.what != "face" && options.what != "moai" && options.what != "clay")
     return Error{Errc::usage, options.what + ": there is no such demo; use face, moai or clay"};
-  if (auto fine = cli::check_place("--record", options.record); !fine) return fine.error();
+  if (!options.record.empty())
+    if (auto fine = cli::check_place("--record", options.record); !fine) return fine.error();
   if (auto fine = cli::check_place("--out", options.out, deform::mesh_endings); !fine)
     return fine.error();
   if (auto fine = cli::check_place("--picture", options.picture, {".png"}); !fine)
@@ -72,12 +97,17 @@ Result<session::RunOptions> run_options(const Options& options) {
   session::RunOptions run;
   run.mesh = cli::shipped_model(options.what + ".obj").string();
   run.out = options.out;
-  run.picture = options.picture;
+  if (!makes_strip(options)) run.picture = options.picture;
   run.duration_s = options.duration_s;
   run.calibration.calibration = "none"; // what is stored is a real hand's
   run.loop.rate_hz = rate_hz;
   run.loop.sculptor.mode = *mode;
   run.recording.file = options.record;
+  if (options.record.empty()) {
+    run.recording.file = beside(options.out, ".nendo");
+    std::error_code ignored; // if it stays, the recording's own check says so
+    std::filesystem::remove(run.recording.file, ignored);
+  }
   if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine.error();
   if (!options.is_face()) {
     run.loop.sculptor.deformer.injective.emplace();
@@ -88,6 +118,49 @@ Result<session::RunOptions> run_options(const Options& options) {
   if (!puppet) return puppet.error();
   run.puppet = *std::move(puppet);
   return run;
+}
+
+/// Draws the face's expressions of a recording on one sheet.
+Result<void> draw_strip(const Options& options, const std::string& recording) {
+  picture_command::PictureOptions picture;
+  picture.file = recording;
+  picture.out = options.picture;
+  picture.view = "5,4";
+  picture.size = "520x420";
+  picture.by_glove_time = true;
+  for (const auto& [caption, time_s] : expressions) {
+    if (time_s > options.duration_s - 1.0) break; // the gloves may have begun before the recording
+    picture.times += (picture.times.empty() ? "" : ",") + std::to_string(time_s);
+    picture.captions += (picture.captions.empty() ? "" : ",") + std::string(caption);
+  }
+  return picture_command::draw_picture(picture);
+}
+
+/// Exports a recording as an animation for Blender.
+Result<void> animate(const session::RunOptions& run, const std::string& out) {
+  auto model = takes::read_take(run.recording.file);
+  if (!model) return model.error();
+  exporting::GltfOptions gltf;
+  gltf.generator = "Nendo " NENDO_VERSION;
+  exporting::Choice choice;
+  choice.rate_hz = exporting::animators_rate_hz;
+  const auto done = exporting::export_gltf(model->open, choice, gltf, out);
+  if (!done) return done.error();
+  return {};
+}
+
+/// Makes pictures and the animation, and says where everything is.
+Result<void> show(const Options& options, const session::RunOptions& run) {
+  if (makes_strip(options))
+    if (auto drawn = draw_strip(options, run.recording.file); !drawn) return drawn;
+  const std::string animation = beside(options.out, ".glb");
+  if (auto done = animate(run, animation); !done) return done;
+  std::cout << (makes_strip(options) ? "\nTen fingers, six faces: "
+                                     : "\nBefore and after, with the hands: ")
+            << options.picture << "\nThe animation, for Blender: " << animation
+            << "\nThe last shape, for any 3-D viewer: " << options.out
+            << "\nThe recording: " << run.recording.file << '\n';
+  return {};
 }
 
 int demonstrate(const Options& options) {
@@ -121,8 +194,7 @@ int demonstrate(const Options& options) {
                                       opened->grants);
   if (!outcome) return cli::report(outcome.error());
   session::print_summary(*run, opened->hands, *outcome);
-  std::cout << "\nBefore and after, with the hands: " << options.picture
-            << "\nThe shape, for any 3-D viewer: " << options.out << '\n';
+  if (const auto shown = show(options, *run); !shown) return cli::report(shown.error());
   return 0;
 }
 
@@ -132,7 +204,7 @@ void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "demo", "Two emulated CyberGloves play a face, or shape a Moai, through the real driver, or "
-              "simulated hands knead clay; leaves a picture");
+              "simulated hands knead clay; leaves a picture, a recording and an animation");
   command.add_option("DEMO", options->what,
                      "face: ten fingers make it live; moai: hands shape it; clay: whole hands make "
                      "a cake, a bowl and ears, in some 30 s, whatever the other options say");
@@ -141,7 +213,9 @@ void add(cli::Command& program) {
   command.add_duration("--duration", options->duration_s, "How long, e.g. 30s or 2m, up to 1h");
   command.add_option("--out", options->out, "Where the shape goes, .obj, .ply or .stl");
   command.add_option("--picture", options->picture, "Where the picture goes, .png");
-  command.add_option("--record", options->record, "Where a recording goes; without it, none");
+  command.add_option(
+      "--record", options->record,
+      "Where the recording goes; without it, beside --out, in place of an earlier demo's");
   command.on_chosen([options] { return demonstrate(*options); });
 }
 

@@ -1,4 +1,5 @@
 // nendo picture: a PNG of a model, without a screen.
+#include "nendo/picture.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,6 +15,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "cli/quantities.hpp"
 #include "nendo/commands.hpp"
 #include "render/distance_paint.hpp"
 #include "render/picture.hpp"
@@ -26,23 +28,7 @@ namespace {
 
 using namespace nendo::render;
 
-struct Options {
-  std::string up; ///< empty: y
-  std::string file;
-  std::string out;
-  std::string view = "30,12";
-  std::string size = "960x720";
-  std::uint32_t turntable = 0;
-  std::uint32_t strip = 0;
-  std::optional<double> time_s;
-  std::uint32_t key_poses = 0;
-  std::string captions;      ///< with commas; empty: none
-  std::uint32_t columns = 0; ///< 0: as many as make the sheet nearly square
-  bool numbered = false;
-  std::string colour = "model";
-  SceneParts parts{};
-  bool no_hands = false;
-};
+using Options = PictureOptions;
 
 constexpr std::uint32_t most_panels = 64;
 
@@ -63,6 +49,27 @@ std::vector<std::string> parts_of(const std::string& text) {
   return parts;
 }
 
+/// Returns how many pictures there will be.
+Result<std::uint32_t> panels_of(const Options& options) {
+  const std::array counts{
+      std::pair{"--turntable", options.turntable}, std::pair{"--strip", options.strip},
+      std::pair{"--key-poses", options.key_poses},
+      std::pair{"--time", static_cast<std::uint32_t>(parts_of(options.times).size())}};
+  std::uint32_t panels = 1;
+  std::string_view by;
+  for (const auto& [name, count] : counts) {
+    if (count == 0) continue;
+    if (!by.empty()) return bad("--turntable, --strip, --key-poses and --time", "give one of them");
+    by = name;
+    panels = count;
+    const std::uint32_t min_panels = by == "--time" ? 1 : 2;
+    if (count < min_panels || count > most_panels)
+      return bad(name, "use " + std::to_string(min_panels) + " to " + std::to_string(most_panels) +
+                           " pictures");
+  }
+  return panels;
+}
+
 Result<Wanted> check(const Options& options) {
   const auto view = view_named(options.view);
   if (!view)
@@ -70,24 +77,17 @@ Result<Wanted> check(const Options& options) {
                "use front, back, left, right, side, top or AZIMUTH,ELEVATION in degrees");
   const auto size = size_named(options.size);
   if (!size) return bad("--size " + options.size, "use WIDTHxHEIGHT in pixels, 16 to 8192 each");
-  const std::array counts{std::pair{"--turntable", options.turntable},
-                          std::pair{"--strip", options.strip},
-                          std::pair{"--key-poses", options.key_poses}};
-  std::uint32_t panels = 1;
-  for (const auto& [name, count] : counts) {
-    if (count == 0) continue;
-    if (count < 2 || count > most_panels)
-      return bad(name, "use 2 to " + std::to_string(most_panels) + " pictures");
-    if (panels > 1) return bad("--turntable, --strip and --key-poses", "give one of them");
-    panels = count;
-  }
+  const auto counted = panels_of(options);
+  if (!counted) return counted.error();
+  const std::uint32_t panels = *counted;
   if (!options.captions.empty() && parts_of(options.captions).size() != panels)
     return bad("--captions", "use as many texts as there are pictures, with commas between them");
   if (options.columns > panels)
     return bad("--columns " + std::to_string(options.columns),
                "use at most as many as there are pictures");
   if (options.numbered && panels == 1)
-    return bad("--numbered", "is for --turntable, --strip and --key-poses; leave it out");
+    return bad("--numbered",
+               "is for several pictures: --turntable, --strip, --key-poses or several times");
   const double pixels = 1.0 * size->width * size->height * panels;
   if (!options.numbered && pixels > 6e7)
     return bad("--size " + options.size, "too large for " + std::to_string(panels) +
@@ -97,6 +97,12 @@ Result<Wanted> check(const Options& options) {
   if (const auto fine = cli::check_place("--out", options.out, {".png"}); !fine)
     return fine.error();
   return Wanted{*view, *size};
+}
+
+std::string seconds_text(double time_s) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f s", time_s);
+  return text;
 }
 
 Result<std::vector<double>> key_poses_of(const Options& options, const takes::Take& take) {
@@ -109,29 +115,34 @@ Result<std::vector<double>> key_poses_of(const Options& options, const takes::Ta
   return times;
 }
 
-// Returns the times of the take that are asked for.
-Result<std::vector<double>> times_of(const Options& options, const takes::Take& take) {
-  if ((options.time_s || options.strip > 0 || options.key_poses > 0) && !(take.duration_s > 0.0))
-    return bad(options.file, "a mesh has no times; leave --time, --strip and --key-poses out");
-  if (options.key_poses > 0) return key_poses_of(options, take);
-  if (options.strip > 0) {
-    std::vector<double> times;
-    for (std::uint32_t at = 0; at < options.strip; ++at)
-      times.push_back(take.duration_s * at / (options.strip - 1));
-    return times;
+Result<std::vector<double>> named_times_of(const Options& options, const takes::Take& take) {
+  std::vector<double> times;
+  for (const std::string& text : parts_of(options.times)) {
+    const auto time = cli::seconds_of(text);
+    if (!time) return bad("--time " + text, "use " + std::string(cli::duration_words));
+    times.push_back(*time + (options.by_glove_time ? take.first_sample_s : 0.0));
+    if (!(times.back() >= 0.0 && times.back() <= take.duration_s))
+      return bad(
+          "--time " + text,
+          "use a moment of " + options.file + ", which lasts from " +
+              seconds_text(options.by_glove_time ? -take.first_sample_s : 0.0) + " to " +
+              seconds_text(take.duration_s - (options.by_glove_time ? take.first_sample_s : 0.0)));
   }
-  const double time = options.time_s.value_or(0.0);
-  if (!(time >= 0.0 && time <= take.duration_s)) {
-    return bad("--time", "use 0 to " + std::to_string(take.duration_s) + " s, which is how long " +
-                             options.file + " lasts");
-  }
-  return std::vector<double>{time};
+  return times;
 }
 
-std::string seconds_text(double time_s) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f s", time_s);
-  return text;
+// Returns the times of the take that are asked for.
+Result<std::vector<double>> times_of(const Options& options, const takes::Take& take) {
+  const bool has_times = !options.times.empty() || options.strip > 0 || options.key_poses > 0;
+  if (has_times && !(take.duration_s > 0.0))
+    return bad(options.file, "a mesh has no times; leave --time, --strip and --key-poses out");
+  if (options.key_poses > 0) return key_poses_of(options, take);
+  if (!options.times.empty()) return named_times_of(options, take);
+  if (options.strip == 0) return std::vector<double>{0.0};
+  std::vector<double> times;
+  for (std::uint32_t at = 0; at < options.strip; ++at)
+    times.push_back(take.duration_s * at / (options.strip - 1));
+  return times;
 }
 
 // Returns a camera that shows all scenes, so that a strip does not jump.
@@ -215,7 +226,9 @@ void colour_by_distance(const takes::Take& take, const std::vector<SceneFrame>& 
   cli::note(text);
 }
 
-Result<void> make_picture(const Options& options) {
+} // namespace
+
+Result<void> draw_picture(const PictureOptions& options) {
   const auto wanted = check(options);
   if (!wanted) return wanted.error();
   const auto take = takes::read_take(options.file, takes::reading(options.up));
@@ -248,8 +261,6 @@ Result<void> make_picture(const Options& options) {
                           : draw_strip(scenes, *times, parts_of(options.captions), *wanted));
 }
 
-} // namespace
-
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command =
@@ -264,7 +275,11 @@ void add(cli::Command& program) {
                      "front, back, left, right, side, top, or AZIMUTH,ELEVATION in degrees");
   command.add_option("--size", options->size, "WIDTHxHEIGHT in pixels, of each picture");
   command.add_option("--turntable", options->turntable, "So many pictures all round, on one sheet");
-  command.add_duration("--time", options->time_s, "Of a recording: the moment, in seconds");
+  command.add_option("--time", options->times,
+                     "Of a recording: the moment, or moments T,T,..., in seconds, on one sheet");
+  command.add_flag("--glove-time", options->by_glove_time,
+                   "--time counts from the first sample of the gloves, where their motion began, "
+                   "and not from the begin of the recording");
   command.add_option("--key-poses", options->key_poses,
                      "Of a recording: so many moments that differ the most, on one sheet");
   command.add_option("--captions", options->captions,
@@ -281,7 +296,7 @@ void add(cli::Command& program) {
                    "Of a recording: draws where hands touch clay, and how hard");
   command.add_flag("--no-hands", options->no_hands, "Of a recording: leaves the hands out");
   command.on_chosen([options] {
-    const auto done = make_picture(*options);
+    const auto done = draw_picture(*options);
     return done ? 0 : cli::report(done.error());
   });
 }

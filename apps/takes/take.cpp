@@ -94,6 +94,15 @@ private:
   std::shared_ptr<const deform::Mesh> mesh_; ///< of that version; null: Take::rest
 };
 
+/// The mean time of the first samples of all gloves. It is negative where they came before the
+/// recording began.
+double first_sample_s(const recording::Setup& setup) {
+  double sum_s = 0.0;
+  for (const auto& hand : setup.hands)
+    sum_s += seconds_between(setup.begun_host, hand.first.time());
+  return setup.hands.empty() ? 0.0 : sum_s / static_cast<double>(setup.hands.size());
+}
+
 Result<Take> read_recording(const std::filesystem::path& path) {
   const auto summary = recording::summarise(path);
   if (!summary) return summary.error();
@@ -104,6 +113,7 @@ Result<Take> read_recording(const std::filesystem::path& path) {
   take.rest = model->mesh;
   take.units_per_metre = loop.placement.units_per_metre;
   take.duration_s = std::max(0.0, to_seconds(summary->duration()));
+  take.first_sample_s = first_sample_s(summary->setup);
   const auto open = [path,
                      model = std::move(model->mesh)]() -> Result<std::unique_ptr<FrameSource>> {
     auto frames = RecordedFrames::open(path, model);

@@ -29,9 +29,34 @@ TEST_SUITE("demo") {
       REQUIRE(shaped->vertices.cols() == model->vertices.cols());
       CHECK((shaped->vertices - model->vertices).cwiseAbs().maxCoeff() > 0.001);
       CHECK(render::read_png(picture));
+      CHECK(std::filesystem::exists(folder.path() / "shape.nendo"));
+      CHECK(std::filesystem::file_size(folder.path() / "shape.glb") > 100'000);
       CHECK(done.out.find("left hand") != std::string::npos);
       CHECK(done.out.find("right hand") != std::string::npos);
     }
+  }
+
+  TEST_CASE("a face's picture has an expression for each that was played, which differ") {
+    const TemporaryFolder folder;
+    const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+    const auto done = test::nendo(
+        {"demo", "--duration", "4.9", "--out", at("shape.obj"), "--picture", at("shape.png")});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto sheet = render::read_png(at("shape.png"));
+    REQUIRE(sheet);
+    CHECK(sheet->size().width > 2 * 520); // at rest and smile, frown below
+    const auto panel_differs = [&](int one, int other) {
+      int differing = 0;
+      for (int y = 100; y < 400; ++y)
+        for (int x = 100; x < 420; ++x)
+          differing += sheet->at(x + one * 530, y) != sheet->at(x + other * 530, y) ? 1 : 0;
+      return differing;
+    };
+    CHECK(panel_differs(0, 1) > 2000);
+    // A second demo takes the place of the first.
+    const auto again = test::nendo(
+        {"demo", "--duration", "1", "--out", at("shape.obj"), "--picture", at("shape.png")});
+    CHECK_MESSAGE(again.exit_code == 0, again.err);
   }
 
   TEST_CASE("wrong words are refused in one line before anything runs") {

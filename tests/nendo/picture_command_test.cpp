@@ -81,6 +81,8 @@ TEST_SUITE("picture") {
     refused({"--key-poses", "3"}, "no times", 2);
     refused({"--turntable", "2", "--captions", "one"}, "--captions", 2);
     refused({"--time", "1"}, "no times", 2);
+    refused({"--time", "1", "--strip", "3"}, "give one of them", 2);
+    refused({"--time", "0,1", "--captions", "one"}, "--captions", 2);
     refused({"--numbered"}, "--numbered", 2);
     const auto missing = test::nendo({"picture", "no.obj", "--out", with.out});
     CHECK(missing.exit_code == 5);
@@ -107,6 +109,12 @@ TEST_SUITE("picture") {
     const auto first = drawn({"--time", "0"});
     CHECK(drawn({"--time", "1.4"}) != first);
     CHECK(drawn({"--time", "0"}) == first);
+    drawn({"--time", "0,1.4"});
+    const auto both = read_png(with.out);
+    REQUIRE(both);
+    CHECK(both->size().width >= 192);
+    // The simulated glove's first sample came before the run began, or at its begin.
+    CHECK(drawn({"--time", "0.5", "--glove-time"}) != first);
     drawn({"--strip", "3"});
     const auto strip = read_png(with.out);
     REQUIRE(strip);
@@ -128,7 +136,10 @@ TEST_SUITE("picture") {
     CHECK(red < 96 * 96 / 4);
     const auto late = test::nendo({"picture", take, "--out", with.out, "--time", "9"});
     CHECK(late.exit_code == 2);
-    CHECK(is_one_line_about(late.err, "--time"));
+    CHECK(is_one_line_about(late.err, "--time 9"));
+    const auto word = test::nendo({"picture", take, "--out", with.out, "--time", "0,soon"});
+    CHECK(word.exit_code == 2);
+    CHECK(is_one_line_about(word.err, "--time soon"));
     std::filesystem::remove(with.mesh);
     const auto gone = test::nendo({"picture", take, "--out", with.out});
     CHECK(gone.exit_code == 5);
