@@ -278,20 +278,21 @@ void print_turned(const OpenRig& open, const puppet::RigCheck& check) {
 void print_twins(const OpenRig& open, const puppet::RigCheck& check) {
   if (check.twins.empty()) return;
   if (check.lone_vertices > 0)
-    fmt::print("the model itself is not symmetric: {} of its vertices have no mirror image\n",
-               check.lone_vertices);
+    fmt::print("the model itself is not symmetric: {} of {} vertices have no mirror image\n",
+               check.lone_vertices, open.model.vertices.cols());
   if (check.lone_vertices == static_cast<std::size_t>(open.model.vertices.cols())) return;
   double apart = 0.0;
   for (const puppet::TwinCheck& twins : check.twins) {
     apart = std::max(apart, twins.apart);
-    if (twins.apart > puppet::RigCheck::symmetric_within)
+    if (!check.are_symmetric(twins))
       fmt::print("{} and {} are not symmetric: {:.2g} of the diagonal apart\n",
                  open.functions()[twins.left].name, open.functions()[twins.right].name,
                  twins.apart);
   }
-  if (apart <= puppet::RigCheck::symmetric_within)
-    fmt::print("{} are symmetric within {:.2g} of the diagonal\n",
-               count_text(check.twins.size(), "pair") + " of twins", apart);
+  if (std::all_of(check.twins.begin(), check.twins.end(),
+                  [&](const auto& twins) { return check.are_symmetric(twins); }))
+    fmt::print("{} are symmetric within {:.2g} of the diagonal, and the model within {:.2g}\n",
+               count_text(check.twins.size(), "pair") + " of twins", apart, check.model_apart);
 }
 
 Result<void> check(const Options& options) {

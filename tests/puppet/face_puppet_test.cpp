@@ -98,6 +98,21 @@ TEST_SUITE("face puppet") {
       CHECK(twins.apart < RigCheck::symmetric_within);
   }
 
+  TEST_CASE("the check of a puppet finds as many mirror images as its maker has found") {
+    const deform::Mesh model = model_named("spot"); // symmetric but for its triangles
+    const auto made = make_face_puppet(model, "spot.obj");
+    REQUIRE(made);
+    const RigCheck check = checked(*parse_puppet(made->text, "made"), model);
+    const auto vertices = static_cast<std::size_t>(model.vertices.cols());
+    CHECK(check.lone_vertices < vertices / 10);
+    const std::string found = std::to_string(vertices - check.lone_vertices) + " of " +
+                              std::to_string(vertices) + " vertices have a mirror image";
+    CHECK_MESSAGE(made->found.front().find(found) != std::string::npos, made->found.front());
+    REQUIRE_FALSE(check.twins.empty());
+    for (const TwinCheck& twins : check.twins)
+      CHECK(twins.apart < 0.02);
+  }
+
   TEST_CASE("a face without openings gets what remains, and the file says so") {
     const deform::Mesh model = model_named("moai");
     const auto made = make_face_puppet(model, "moai.obj");

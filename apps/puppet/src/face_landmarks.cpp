@@ -160,8 +160,8 @@ private:
   }
 
   void find_symmetry() {
-    const auto images =
-        mirror_images(model_.vertices, 0.005 * deform::diagonal_of(model_.vertices));
+    const auto images = mirror_images(model_.vertices, RigCheck::image_within *
+                                                           deform::diagonal_of(model_.vertices));
     found_.lone_vertices = static_cast<std::size_t>(std::count_if(
         images.begin(), images.end(), [](const auto& image) { return image.empty(); }));
     std::vector<double> differences;

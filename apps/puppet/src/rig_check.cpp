@@ -91,9 +91,29 @@ double apart(const Points& shape, const std::vector<std::vector<std::uint32_t>>&
   return most;
 }
 
+/// Of the mirror images of each vertex, those that are the nearest at rest: there are several where
+/// parts of the model touch.
+std::vector<std::vector<std::uint32_t>> nearest_images(const Points& rest, double diagonal) {
+  auto images = mirror_images(rest, RigCheck::image_within * diagonal);
+  for (std::size_t v = 0; v < images.size(); ++v) {
+    const auto gap = [&](std::uint32_t at) {
+      Vector3d image = rest.col(at);
+      image.x() = -image.x();
+      return (rest.col(static_cast<Index>(v)) - image).norm();
+    };
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t at : images[v])
+      least = std::min(least, gap(at));
+    const double most = least + 0.5 * RigCheck::symmetric_within * diagonal;
+    std::erase_if(images[v], [&](std::uint32_t at) { return gap(at) > most; });
+  }
+  return images;
+}
+
 void check_twins(RigShapes& shapes, const deform::Mesh& model, RigCheck& check) {
   const double diagonal = deform::diagonal_of(model.vertices);
-  const auto images = mirror_images(model.vertices, 0.5 * RigCheck::symmetric_within * diagonal);
+  const auto images = nearest_images(model.vertices, diagonal);
+  if (diagonal > 0.0) check.model_apart = apart(model.vertices, images) / diagonal;
   check.lone_vertices = static_cast<std::size_t>(
       std::count_if(images.begin(), images.end(), [](const auto& image) { return image.empty(); }));
   const auto& functions = shapes.rig().puppet().functions;

@@ -36,16 +36,24 @@ struct TwinCheck {
 struct RigCheck {
   /// Of the moved triangles of one function alone, so many may turn over: rolling lips do.
   static constexpr double most_turned = 0.005;
-  /// Where sides are alike, they are so within this part of the diagonal.
+  /// Twins are symmetric within this part of the diagonal, and what the model itself lacks.
   static constexpr double symmetric_within = 1e-6;
+  /// A vertex has a mirror image if there is a vertex within this part of the diagonal.
+  static constexpr double image_within = 0.005;
 
   std::vector<LimitCheck> alone;
   std::vector<LimitCheck> pairs; ///< of functions whose signals differ
   std::vector<TwinCheck> twins;
-  std::size_t lone_vertices = 0; ///< of the model, without a vertex where their mirror image is
+  std::size_t lone_vertices = 0; ///< of the model, without a mirror image
+  /// The farthest that a vertex of the model at rest is from the mirror image of its own image, as
+  /// a part of the diagonal.
+  double model_apart = 0.0;
 
   static bool folds(const LimitCheck& limit) noexcept {
     return static_cast<double>(limit.turned) > most_turned * static_cast<double>(limit.moved);
+  }
+  bool are_symmetric(const TwinCheck& pair) const noexcept {
+    return pair.apart <= symmetric_within + 2.0 * model_apart;
   }
   bool passes() const noexcept; ///< no function alone folds
 };
