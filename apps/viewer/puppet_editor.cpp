@@ -231,8 +231,12 @@ void PuppetEditor::place(const SurfaceHit& hit) {
   pending_ = hit;
   point_name_.clear();
   bends_.begin();
-  told_ = "Bend the finger that shall move this place, or choose one below.";
+  ask_for_finger();
   ++version_;
+}
+
+void PuppetEditor::ask_for_finger() {
+  told_ = "Bend the finger that shall move this place, or choose one below; then drag the place.";
 }
 
 void PuppetEditor::forget_place() {

@@ -52,6 +52,8 @@ public:
   void place(const SurfaceHit& hit);
   const std::optional<SurfaceHit>& pending() const noexcept { return pending_; }
   void forget_place();
+  /// Says that the place that was clicked needs a finger before it can be dragged.
+  void ask_for_finger();
   /// Lets that finger move the place that was clicked, or the chosen function.
   void choose_input(const puppet::HandSignal& input, double travel);
   /// Pins the place that was clicked, or pins the chosen point or lets it go.

@@ -163,6 +163,13 @@ std::size_t point_at(const PuppetEditor& editor, const render::Camera& stage_cam
   return nearest;
 }
 
+bool is_at_pending(const PuppetEditor& editor, const render::Camera& stage_camera,
+                   render::Size size, double units_per_metre, const Vector2d& pointer) {
+  if (!editor.pending()) return false;
+  const auto pixel = pixel_of(stage_camera, editor.pending()->at / units_per_metre, size);
+  return pixel && (*pixel - pointer).norm() < reach_px;
+}
+
 void draw_points(const PuppetEditor& editor, const render::Camera& stage_camera, render::Size size,
                  double units_per_metre, std::size_t hovered) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();

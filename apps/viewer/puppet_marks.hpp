@@ -45,4 +45,8 @@ void draw_points(const PuppetEditor& editor, const render::Camera& stage_camera,
 std::size_t point_at(const PuppetEditor& editor, const render::Camera& stage_camera,
                      render::Size size, double units_per_metre, const Eigen::Vector2d& pointer);
 
+/// Returns true if the mark of the place that waits for its finger is under the pointer.
+bool is_at_pending(const PuppetEditor& editor, const render::Camera& stage_camera,
+                   render::Size size, double units_per_metre, const Eigen::Vector2d& pointer);
+
 } // namespace nendo::viewer

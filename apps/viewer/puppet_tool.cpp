@@ -83,6 +83,10 @@ bool PuppetTool::follow(const SceneWindow& window, double units_per_metre, Puppe
     return true;
   }
   hovered_ = PuppetEditor::none;
+  if (holds_pending_) {
+    holds_pending_ = ImGui::IsMouseDown(ImGuiMouseButton_Left);
+    return true;
+  }
   if (io.WantCaptureMouse && !paints_) return false;
   if (editor.brushes()) {
     if (io.MouseWheel != 0.0F) editor.scale_radius(static_cast<double>(io.MouseWheel));
@@ -102,6 +106,12 @@ bool PuppetTool::follow(const SceneWindow& window, double units_per_metre, Puppe
         editor.begin_turn(hovered_, camera.axes().row(2).transpose());
       else
         editor.begin_drag(hovered_);
+      return true;
+    }
+    if (is_at_pending(editor, camera, size, units_per_metre, pointer_now())) {
+      // It cannot go anywhere yet, and the camera is not meant.
+      holds_pending_ = true;
+      editor.ask_for_finger();
       return true;
     }
     pressed_at_ = pointer_now();

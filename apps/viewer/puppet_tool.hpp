@@ -25,6 +25,7 @@ private:
 
   std::size_t hovered_ = PuppetEditor::none;
   std::optional<Eigen::Vector2d> pressed_at_; ///< not on a point
+  bool holds_pending_ = false;                ///< the mark of a place that waits for its finger
   bool paints_ = false;
 };
 
