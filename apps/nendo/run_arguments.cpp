@@ -172,6 +172,10 @@ Result<void> set_wire(RunArguments& options) {
   const auto span =
       cli::parse_time_span(text, is_knife ? "--knife" : "--wire", cli::SpanEnds::both);
   if (!span) return span.error();
+  if (options.run.duration_s > 0.0 && span->to_s > options.run.duration_s)
+    return Error{Errc::usage,
+                 std::string(is_knife ? "--knife " : "--wire ") + text +
+                     ": ends after the run; use times within --duration, or a longer one"};
   options.run.loop.wire_time = {span->from_s, span->to_s,
                                 is_knife ? flow::Blade::knife : flow::Blade::wire};
   return {};

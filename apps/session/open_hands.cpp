@@ -40,13 +40,14 @@ Result<std::vector<gloves::OpenHand>> open_any(const RunOptions& options, EventC
       cli::note(reason);
   if (!hands.empty()) return hands;
   const bool both = plays(options, Side::left) && plays(options, Side::right);
+  const std::string simulated = options.puppet_file.empty() ? "sim" : "sim:faces";
   cli::note("no glove found, so " + std::string(both ? "both hands are" : "the hand is") +
-            " simulated (sim); to use a glove name its port, "
+            " simulated (" + simulated +
+            "); to use a glove name its port, "
             "e.g. --right serial:/dev/ttyUSB0 (`nendo devices` lists them)");
   for (const Side side : {Side::left, Side::right}) {
     if (!plays(options, side)) continue;
-    auto hand =
-        gloves::open_hand(options.puppet_file.empty() ? "sim" : "sim:faces", side, event_count);
+    auto hand = gloves::open_hand(simulated, side, event_count);
     if (!hand) return hand.error();
     hands.push_back(*std::move(hand));
   }
