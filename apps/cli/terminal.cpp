@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <string_view>
 #include <thread>
+#include <utility>
 
 #include <poll.h>
 #include <sys/ioctl.h>
@@ -26,7 +30,17 @@ std::string move_to_row(int row) {
 
 } // namespace
 
-Keys::Keys() noexcept {
+bool obeys_codes(int descriptor) noexcept {
+  const char* const name = std::getenv("TERM");
+  const std::string_view term = name != nullptr ? name : "";
+  return ::isatty(descriptor) != 0 && !term.empty() && term != "dumb";
+}
+
+Keys::Keys(Page* page) noexcept : page_(page) {
+  take();
+}
+
+void Keys::take() noexcept {
   termios settings{};
   if (tcgetattr(STDIN_FILENO, &settings) != 0) return;
   const pid_t foreground = tcgetpgrp(STDIN_FILENO); // -1: a terminal that controls nobody
@@ -35,11 +49,23 @@ Keys::Keys() noexcept {
   saved_ = settings;
   settings.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   settings.c_iflag &= ~static_cast<tcflag_t>(IXON); // a stopped terminal could not be restored
-  settings.c_cc[VSUSP] = _POSIX_VDISABLE;           // nor that of a suspended program
+  settings.c_cc[VSUSP] = _POSIX_VDISABLE;           // suspend() restores the terminal before
   settings.c_cc[VQUIT] = _POSIX_VDISABLE;
   settings.c_cc[VMIN] = 1;
   settings.c_cc[VTIME] = 0;
   tcsetattr(STDIN_FILENO, TCSADRAIN, &settings);
+  if (!std::exchange(suspended_, false) || page_ == nullptr) return;
+  page_->show();
+}
+
+/// The signal goes to the whole job, as from the terminal. A process without a shell that could
+/// continue it is not stopped by it.
+void Keys::suspend() noexcept {
+  if (page_ != nullptr) page_->hide();
+  restore();
+  suspended_ = true;
+  ::kill(0, SIGTSTP);
+  take();
 }
 
 Keys::~Keys() {
@@ -52,6 +78,7 @@ void Keys::restore() noexcept {
 }
 
 std::optional<char> Keys::next(std::chrono::milliseconds timeout) noexcept {
+  if (suspended_) take();
   if (!saved_ || gone_) {
     std::this_thread::sleep_for(timeout);
     return std::nullopt;
@@ -60,13 +87,18 @@ std::optional<char> Keys::next(std::chrono::milliseconds timeout) noexcept {
   if (::poll(&input, 1, static_cast<int>(timeout.count())) <= 0) return std::nullopt;
   char pressed = 0;
   const ssize_t got = ::read(STDIN_FILENO, &pressed, 1);
-  if (got == 1) return pressed;
+  if (got == 1) {
+    const cc_t suspending = saved_->c_cc[VSUSP];
+    if (suspending == _POSIX_VDISABLE || pressed != static_cast<char>(suspending)) return pressed;
+    suspend();
+    return std::nullopt;
+  }
   if (got == 0 || errno != EINTR) gone_ = true;
   return std::nullopt;
 }
 
-Terminal::Terminal() {
-  write_all(enter_sequence);
+Terminal::Terminal() : keys_(this), plain_(!obeys_codes(STDOUT_FILENO)) {
+  if (!plain_) write_all(enter_sequence);
 }
 
 Terminal::~Terminal() {
@@ -76,8 +108,19 @@ Terminal::~Terminal() {
 void Terminal::leave() noexcept {
   if (!entered_) return;
   entered_ = false;
-  write_all(leave_sequence);
+  if (!plain_ && !hidden_) write_all(leave_sequence);
   keys_.restore();
+}
+
+void Terminal::hide() noexcept {
+  hidden_ = true;
+  if (!plain_) write_all(leave_sequence);
+}
+
+void Terminal::show() noexcept {
+  hidden_ = false;
+  drawn_ = {0, 0};
+  if (!plain_) write_all(enter_sequence);
 }
 
 ScreenSize Terminal::size() const noexcept {
@@ -93,6 +136,8 @@ ScreenSize screen_size(int descriptor) noexcept {
 }
 
 void Terminal::draw(const std::vector<std::string>& lines) {
+  if (hidden_) return;
+  if (plain_) return print_changed(lines);
   const ScreenSize now = size();
   const auto columns = static_cast<std::size_t>(now.columns);
   const int rows = std::min(now.rows, static_cast<int>(lines.size()));
@@ -108,6 +153,19 @@ void Terminal::draw(const std::vector<std::string>& lines) {
   }
   if (rows < now.rows) page += move_to_row(rows + 1) + clear_below;
   write_all(page);
+}
+
+void Terminal::print_changed(const std::vector<std::string>& lines) {
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_print_) return;
+  next_print_ = now + std::chrono::seconds(1);
+  std::string text;
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    if (k < printed_.size() && printed_[k] == lines[k]) continue;
+    text += lines[k] + "\n";
+  }
+  printed_ = lines;
+  write_all(text);
 }
 
 void Terminal::write_all(const std::string& text) noexcept {

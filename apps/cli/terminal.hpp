@@ -1,6 +1,6 @@
 #pragma once
 // Keys that need no Return, and a terminal that shows a page, which is drawn repeatedly. However
-// the command ends, the terminal is then as it was before.
+// the command ends, and while it is suspended (Ctrl-Z), the terminal is as it was before.
 
 #include <chrono>
 #include <optional>
@@ -11,11 +11,24 @@
 
 namespace nendo::cli {
 
+/// Returns whether the file descriptor is a terminal that obeys control codes: one that TERM calls
+/// neither "dumb" nor nothing at all.
+bool obeys_codes(int descriptor) noexcept;
+
 class Keys {
 public:
+  /// What is shown while keys can come.
+  class Page {
+  public:
+    virtual void hide() noexcept = 0; ///< before the program is suspended
+    virtual void show() noexcept = 0; ///< once it is in the foreground again
+  protected:
+    ~Page() = default;
+  };
+
   /// Takes standard input if it is a terminal whose foreground this process is in: no echo, no
-  /// Return, no suspending. Ctrl-C stays a signal.
-  Keys() noexcept;
+  /// Return. Ctrl-C stays a signal. Ctrl-Z is obeyed in next(). `page`, if any, must outlive this.
+  explicit Keys(Page* page = nullptr) noexcept;
   ~Keys(); ///< restore()
   Keys(const Keys&) = delete;
   Keys& operator=(const Keys&) = delete;
@@ -23,7 +36,9 @@ public:
   /// Tells whether keys can come.
   bool are_available() const noexcept { return saved_.has_value(); }
   /// Returns the next key, or nothing if none comes within `timeout` or a signal ends the wait. If
-  /// no keys can come, it sleeps for that time.
+  /// no keys can come, it sleeps for that time. Ctrl-Z suspends the program and all of its job, as
+  /// the terminal would: this returns when the job goes on. If it goes on in the background, the
+  /// terminal is left alone until it is in the foreground.
   std::optional<char> next(std::chrono::milliseconds timeout) noexcept;
   /// Returns true once standard input has ended, as when the window was closed.
   bool have_ended() const noexcept { return gone_; }
@@ -31,7 +46,12 @@ public:
   void restore() noexcept;
 
 private:
+  void take() noexcept;
+  void suspend() noexcept;
+
+  Page* const page_;
   std::optional<termios> saved_; ///< its settings, while it is taken
+  bool suspended_ = false;       ///< it was taken, and is to be taken again in the foreground
   bool gone_ = false;
 };
 
@@ -44,10 +64,10 @@ struct ScreenSize {
 /// unknown.
 ScreenSize screen_size(int descriptor) noexcept;
 
-class Terminal {
+class Terminal final : private Keys::Page {
 public:
   /// Takes standard output, which must be a terminal, with its alternate screen and a hidden
-  /// cursor. Takes keys, too, if they can come.
+  /// cursor. Takes keys, too, if they can come. If it does not obey control codes, it gets none.
   Terminal();
   ~Terminal(); ///< leave()
   Terminal(const Terminal&) = delete;
@@ -55,8 +75,11 @@ public:
 
   /// Returns the present size of the terminal, or 80 by 24 if that is unknown.
   ScreenSize size() const noexcept;
+  /// Returns true if the terminal does not obey control codes.
+  bool is_plain() const noexcept { return plain_; }
   /// Replaces the page, in one write. Lines must be printable ASCII; what exceeds the screen is
-  /// cut. Blocks while the terminal does not read. An interrupted write stays unfinished.
+  /// cut. Blocks while the terminal does not read. An interrupted write stays unfinished. On a
+  /// plain terminal, prints the lines that have changed, at most once a second.
   void draw(const std::vector<std::string>& lines);
   bool has_keys() const noexcept { return keys_.are_available(); }
   /// Returns the next key. See Keys::next().
@@ -70,12 +93,19 @@ public:
   void leave() noexcept;
 
 private:
+  void hide() noexcept override;
+  void show() noexcept override;
+  void print_changed(const std::vector<std::string>& lines);
   void write_all(const std::string& text) noexcept;
 
   Keys keys_;
+  const bool plain_;
   ScreenSize drawn_{0, 0}; ///< the size at the last draw()
   bool entered_ = true;
+  bool hidden_ = false; ///< the program is suspended, or was and is in the background
   bool gone_ = false;
+  std::vector<std::string> printed_; ///< on a plain terminal, the last lines
+  std::chrono::steady_clock::time_point next_print_{};
 };
 
 } // namespace nendo::cli

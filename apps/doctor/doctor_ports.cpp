@@ -32,6 +32,15 @@ void check_presence(const PortFacts& facts, Findings& found) {
        "needs its device handed in"});
 }
 
+void check_nodes(const PortFacts& facts, Findings& found) {
+  for (const GloveCandidate& candidate : facts.candidates) {
+    if (!candidate.node_missing || candidate.kind == DeviceKind::portless_adapter) continue;
+    found.push_back({severity_for(candidate, candidate.usb.has_value()), "node", candidate.device,
+                     "the kernel has it, but there is no node for it here, so nothing can open it",
+                     candidate.remedy});
+  }
+}
+
 void check_permission(const PortFacts& facts, Findings& found) {
   for (const GloveCandidate& candidate : facts.candidates) {
     if (candidate.may_open || candidate.access.empty()) continue;
@@ -108,8 +117,8 @@ void check_latency(const PortFacts& facts, Findings& found) {
   }
 }
 
-constexpr std::array port_checks{check_presence, check_permission, check_portless,
-                                 check_holders,  check_grabbers,   check_latency};
+constexpr std::array port_checks{check_presence, check_nodes,    check_permission, check_portless,
+                                 check_holders,  check_grabbers, check_latency};
 
 } // namespace
 

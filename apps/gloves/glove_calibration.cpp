@@ -8,6 +8,7 @@
 #include <nendo/recording/take_reader.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/shell_word.hpp"
 #include "gloves/calibration_names.hpp"
 #include "gloves/kept_ranges.hpp"
 #include "gloves/kept_slips.hpp"
@@ -24,7 +25,7 @@ void report_choice(const driver::GloveInfo& glove, const hand::StoredCalibration
 void report_none(const driver::GloveInfo& glove, Side side) {
   const std::string source = printable(glove.source);
   cli::note(source + ": not calibrated for this " + std::string(name_of(side)) +
-            " hand, so angles are an average hand's; `nendo calibrate " + source +
+            " hand, so angles are an average hand's; `nendo calibrate " + cli::shell_word(source) +
             " --user NAME` makes them the wearer's");
 }
 

@@ -29,8 +29,10 @@ ordered_json angle_sources_json(SensorMask sensors) {
 }
 
 void add_counts(ordered_json& object, const driver::RecordCounts& counts) {
-  for (const auto& [name, count] : driver::by_name(counts))
-    object[std::string(name)] = count;
+  for (const auto& [name, count] : driver::by_name(counts)) {
+    ordered_json& value = object[std::string(name)];
+    if (count) value = *count; // otherwise null: nobody knows
+  }
 }
 
 std::string sample_json(const GloveSample& sample, const hand::Calibration* calibration,

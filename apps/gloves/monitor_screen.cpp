@@ -72,7 +72,7 @@ std::string glove_line(const MonitorPicture& picture, int width) {
 }
 
 // Losses on the line and losses in the program have names of their own, as everywhere.
-std::string losses(const driver::GloveStats& stats) {
+std::string losses(const driver::GloveInfo& info, const driver::GloveStats& stats) {
   const driver::RecordCounts counts = driver::counts_of(stats);
   std::string text;
   const auto add = [&](std::uint64_t count, std::string_view what) {
@@ -82,12 +82,18 @@ std::string losses(const driver::GloveStats& stats) {
     if (count > 0) add(count, what);
   };
   const bool any_lost = counts.missed > 0 || counts.refused > 0 || counts.bad > 0;
-  if (any_lost) add(counts.sent(), "sent");
-  add(counts.delivered, any_lost ? "delivered" : "delivered, nothing lost");
+  const bool nothing_lost = !any_lost && counts.tells_missed;
+  if (any_lost && counts.tells_missed) add(counts.sent(), "sent");
+  add(counts.delivered, nothing_lost ? "delivered, nothing lost" : "delivered");
+  if (any_lost && counts.tells_missed) add(counts.missed, "missed");
   if (any_lost) {
-    add(counts.missed, "missed");
     add(counts.refused, "refused");
     add_any(counts.bad, "bad");
+  }
+  add_any(counts.clamped, "values out of range");
+  if (!counts.tells_missed) {
+    const bool slow = !driver::rate_shortfall(info, stats).empty();
+    text += slow ? ", losses on the line: some" : ", losses on the line unknown";
   }
   add_any(stats.silences, "silences");
   add_any(stats.reopened, "reopened");
@@ -98,6 +104,10 @@ std::string stream_line(const MonitorPicture& picture, const std::string& keys, 
   constexpr double silent_after_s = 0.5;
   std::string text;
   if (picture.stats.rate_hz > 0.0) text = fixed(picture.stats.rate_hz, 1) + "/s, ";
+  if (!driver::rate_shortfall(*picture.info, picture.stats).empty()) {
+    text = "only " + fixed(picture.stats.rate_hz, 1) + " of " + fixed(picture.info->rate_hz, 1) +
+           "/s, ";
+  }
   if (picture.sample == nullptr) {
     text += "no sample yet";
   } else if (picture.age_s > silent_after_s) {
@@ -105,7 +115,7 @@ std::string stream_line(const MonitorPicture& picture, const std::string& keys, 
   } else {
     text += fixed(1000.0 * std::max(picture.age_s, 0.0), 0) + " ms old";
   }
-  text += ", " + losses(picture.stats);
+  text += ", " + losses(*picture.info, picture.stats);
   // --help tells the keys, too, but nothing else tells what was lost.
   const bool keys_fit = text.size() + 2 + keys.size() <= static_cast<std::size_t>(width);
   return both_ends(text, keys_fit ? keys : "", width);

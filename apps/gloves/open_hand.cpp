@@ -9,6 +9,7 @@
 #include <nendo/flow/touching_hand.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/shell_word.hpp"
 
 namespace nendo::gloves {
 namespace {
@@ -32,17 +33,19 @@ void note_columns_not_read(const driver::GloveInfo& info) {
 }
 
 Result<void> wait_for_first_sample(OpenHand& hand) {
-  constexpr auto patience = milliseconds(2000);
+  const double rate_hz = hand.glove->info().rate_hz;
+  // A glove whose rate is not known may send one record a second.
+  const double patience_s = rate_hz > 0.0 ? std::clamp(3.0 / rate_hz, 2.0, 60.0) : 4.0;
+  const auto patience = from_seconds(patience_s);
   const HostTime end = HostClock::now() + patience;
   while (HostClock::now() < end && !cli::stop_requested()) {
     if (hand.ring->try_pop(hand.first)) return {};
     std::this_thread::sleep_for(milliseconds(5));
   }
   if (cli::stop_requested()) return Error{Errc::failed, "stopped before the first sample came"};
-  return Error{Errc::no_device,
-               hand.glove->info().source +
-                   ": opened, but no sample came within 2 s; is the glove plugged into "
-                   "its interface unit?"};
+  return Error{Errc::no_device, hand.glove->info().source + ": opened, but no sample came within " +
+                                    std::to_string(static_cast<int>(patience_s)) +
+                                    " s; is the glove plugged into its interface unit?"};
 }
 
 } // namespace
@@ -77,6 +80,23 @@ OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
   hand.ring = std::make_unique<SampleRing>(1024, event_count);
   hand.glove = std::move(glove);
   return hand;
+}
+
+Error same_hand(const OpenHand& one, const OpenHand& other) {
+  const driver::GloveInfo& info = other.glove->info();
+  const std::string both = one.glove->info().source + " and " + info.source + " are both " +
+                           std::string(name_of(other.side)) + "-hand gloves; ";
+  if (info.kind == driver::GloveKind::recorded)
+    return {Errc::usage, both + "a recording has one of each: leave one of them out"};
+  const std::string wish = other.side == Side::left ? "hand=right" : "hand=left";
+  std::string name = info.source;
+  if (const std::size_t at = name.find("hand="); at != std::string::npos) {
+    name.replace(at, name.find('&', at) - at, wish);
+  } else {
+    name += (name.find('?') == std::string::npos ? "?" : "&") + wish;
+  }
+  return {Errc::usage, both + "leave one out, or, if that one is on the other hand, say " +
+                           cli::shell_word(name)};
 }
 
 Result<void> start(std::span<OpenHand> hands) {

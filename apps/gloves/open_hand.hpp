@@ -45,6 +45,10 @@ Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = s
 OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
                  EventCount* event_count);
 
+/// Returns the error that two gloves are of the same hand, with the name by which one of them would
+/// be the other hand's.
+Error same_hand(const OpenHand& one, const OpenHand& other);
+
 /// Starts the gloves. Blocks and fails as Glove::start() does.
 Result<void> start(std::span<OpenHand> hands);
 
@@ -59,7 +63,8 @@ Result<void> begin_again(std::span<OpenHand> hands);
 bool have_ended(std::span<const OpenHand> hands) noexcept;
 
 /// Takes the first sample of each started glove out of its ring, and finds the wearer. Both hands
-/// of the wearer get `length` if it is given. Waits for a sample for 2 s at most. Errors: no_device
+/// of the wearer get `length` if it is given. Waits for a sample for 2 s, or longer if its rate is
+/// low or unknown. Errors: no_device
 /// if no sample comes, failed if a stop signal comes, and those of find_wearer().
 Result<void> calibrate(std::span<OpenHand> hands, const CalibrationOptions& options,
                        const HandLength& length);

@@ -48,12 +48,17 @@ ordered_json json_of(const GloveCandidate& candidate) {
   ordered_json holders = ordered_json::array();
   for (const auto& holder : candidate.holders)
     holders.push_back({{"pid", holder.pid}, {"name", holder.name}});
-  ordered_json line{
-      {"device", candidate.device},           {"kind", driver::name_of(candidate.kind)},
-      {"stable_name", candidate.stable_name}, {"glove", candidate.spec},
-      {"description", candidate.description}, {"reason", candidate.reason},
-      {"identified", candidate.identified},   {"may_open", candidate.may_open},
-      {"access", candidate.access},           {"remedy", candidate.remedy}};
+  ordered_json line{{"device", candidate.device},
+                    {"kind", driver::name_of(candidate.kind)},
+                    {"stable_name", candidate.stable_name},
+                    {"glove", candidate.spec},
+                    {"description", candidate.description},
+                    {"reason", candidate.reason},
+                    {"identified", candidate.identified},
+                    {"may_open", candidate.may_open},
+                    {"access", candidate.access},
+                    {"remedy", candidate.remedy},
+                    {"node_missing", candidate.node_missing}};
   line["usb"] = candidate.usb ? json_of(*candidate.usb) : ordered_json(nullptr);
   line["latency_timer_ms"] =
       candidate.latency_timer ? ordered_json(candidate.latency_timer->count()) : nullptr;
@@ -67,8 +72,13 @@ void print_text(const GloveCandidate& candidate) {
   std::cout << candidate.device << ": " << candidate.description << "\n  why        "
             << candidate.reason << "\n  use it as  "
             << (candidate.spec.empty() ? "nothing yet" : candidate.spec);
-  const std::string who = candidate.access.empty() ? "nobody, it is gone" : candidate.access;
-  std::cout << "\n  may open   " << (candidate.may_open ? "" : "only ") << who;
+  if (candidate.node_missing) {
+    std::cout << "\n  may open   nobody: the kernel has it, but there is no node for it here";
+  } else {
+    const std::string who = candidate.access.empty() ? "nobody, it is gone" : candidate.access;
+    std::cout << "\n  may open   "
+              << (candidate.may_open || candidate.access.empty() ? "" : "only ") << who;
+  }
   if (!candidate.remedy.empty()) std::cout << "\n  mend it    " << candidate.remedy;
   for (const auto& holder : candidate.holders) {
     std::cout << "\n  held by    " << holder.name;

@@ -182,7 +182,10 @@ void add_cyberglove_options(cli::Command& command, Options& options) {
       .one_of({"hardware", "terminated"})
       .under(heading);
   command
-      .add_duration("--restart-time", glove.restart_s, "How long a restart of its firmware takes")
+      .add_duration(
+          "--restart-time", glove.restart_s,
+          "How long a restart of its firmware takes: 0.2s, with which the maker's own library "
+          "works, or 1.75s as in the manual")
       .under(heading);
   command
       .add_flag("--overrun", glove.overrun,

@@ -89,9 +89,12 @@ void show_lines(Monitored& monitored) {
 
 /// The lines are samples and nothing else, so what never became one is told beside them.
 void note_losses(const driver::Glove& glove) {
-  const auto counts = driver::counts_of(glove.stats());
-  if (counts.missed + counts.refused + counts.bad > 0)
+  const auto stats = glove.stats();
+  const auto counts = driver::counts_of(stats);
+  if (counts.missed + counts.refused + counts.bad + counts.clamped > 0)
     cli::note(glove.info().source + ": " + driver::in_words(counts));
+  if (const auto shortfall = driver::rate_shortfall(glove.info(), stats); !shortfall.empty())
+    cli::note(glove.info().source + ": " + shortfall + "; the others did not arrive");
 }
 
 /// Returns false if the user wants to end.
@@ -127,7 +130,11 @@ void show_screen(Monitored& monitored) {
                                          any && monitored.is_uncalibrated(sample.side),
                                          any ? monitored.wearer_of(sample.side) : ""};
     lines = gloves::monitor_lines(picture, terminal.size());
-    terminal.draw(lines);
+    if (terminal.is_plain() && lines.size() > 2) { // the bars would be some twenty lines a second
+      terminal.draw({lines[0], lines[1]});
+    } else {
+      terminal.draw(lines);
+    }
     while (goes_on && !ended && !cli::stop_requested() && !terminal.is_gone() &&
            HostClock::now() < now + frame_time) {
       const auto left =
@@ -186,7 +193,9 @@ void add(cli::Command& program) {
       "A ~ before degrees: the glove is uncalibrated, and they are an average hand's.\n"
       "Keys: q quit, r forget the ranges seen, l light on and off.\n"
       "It ends with Ctrl-C, with --count, and when a recording (replay:FILE) ends. Records that "
-      "got lost\non the line are missed; those that this program had no room for are refused.");
+      "got lost\non the line are missed; those that this program had no room for are refused. A "
+      "glove whose\nrecords do not let its losses be counted is shown with its rate, where that is "
+      "too low. Values\nout of range count as the nearer end of it.");
   command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
   command.add_flag("--json", options->json, "One JSON object a line, also in a terminal");
   command.add_flag("--raw", options->raw, "Raw counts only, no angles");

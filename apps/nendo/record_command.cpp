@@ -55,12 +55,8 @@ Result<std::vector<gloves::OpenHand>> open_gloves(const Options& options) {
     if (!hand) return hand.error();
     hands.push_back(*std::move(hand));
   }
-  if (hands.size() == 2 && hands[0].side == hands[1].side) {
-    return Error{Errc::usage,
-                 options.gloves[0] + " and " + options.gloves[1] + " are both " +
-                     std::string(name_of(hands[0].side)) +
-                     "-hand gloves; where that is wrong, add ?hand=left or ?hand=right"};
-  }
+  if (hands.size() == 2 && hands[0].side == hands[1].side)
+    return gloves::same_hand(hands[0], hands[1]);
   if (const auto started = gloves::start(hands); !started) return started.error();
   if (const auto done = gloves::calibrate(hands, options.calibration, options.length); !done)
     return done.error();

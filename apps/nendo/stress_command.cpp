@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
-#include <unistd.h>
 
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
@@ -13,6 +12,7 @@
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
 #include "cli/output_place.hpp"
+#include "cli/terminal.hpp"
 #include "nendo/commands.hpp"
 #include "session/live_view.hpp"
 #include "stress/report.hpp"
@@ -37,7 +37,7 @@ Result<ordered_json> read_earlier(const std::string& path) {
 }
 
 stress::StressProgress progress_for(const stress::StressOptions& options) {
-  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const bool terminal = cli::obeys_codes(STDERR_FILENO);
   return [terminal, next_s = 2.0, duration_s = options.run.duration_s](
              const stress::TickTally& tally, double elapsed_s) mutable {
     if (!terminal && elapsed_s < next_s) return;
@@ -85,7 +85,7 @@ int run(const stress::StressArguments& arguments) {
   }
   const auto outcome =
       stress::run_stress(*options, model->mesh, progress_for(*options), window.get());
-  if (isatty(STDERR_FILENO) != 0) std::cerr << "\r\x1b[K";
+  if (cli::obeys_codes(STDERR_FILENO)) std::cerr << "\r\x1b[K";
   if (!outcome) return cli::report(outcome.error());
   const ordered_json results = stress::stress_json(*options, **outcome);
   if (arguments.json) {

@@ -277,7 +277,7 @@ Progress progress_for(const RunOptions& options, const std::vector<gloves::OpenH
   Uncalibrated uncalibrated{};
   for (const auto& hand : hands)
     uncalibrated[flow::Placement::index_of(hand.side)] = hand.uncalibrated;
-  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const bool terminal = cli::obeys_codes(STDERR_FILENO);
   return [terminal, uncalibrated, next_s = 2.0,
           duration_s = options.duration_s](const flow::Frame& frame, double elapsed_s) mutable {
     if (!terminal && elapsed_s < next_s) return;

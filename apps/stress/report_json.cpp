@@ -10,6 +10,7 @@
 
 #include "session/loop_options.hpp"
 #include "stress/report.hpp"
+#include "stress/verdict.hpp"
 
 namespace nendo::stress {
 namespace {
@@ -87,11 +88,25 @@ ordered_json gloves_json(const StressOutcome& outcome) {
   auto lines = ordered_json::array();
   for (std::size_t at = 0; at < outcome.glove_records.size(); ++at) {
     ordered_json line{{"source", outcome.gloves[at]}};
-    for (const auto& [name, count] : driver::by_name(outcome.glove_records[at]))
-      line[std::string(name)] = count;
+    for (const auto& [name, count] : driver::by_name(outcome.glove_records[at])) {
+      ordered_json& value = line[std::string(name)];
+      if (count) value = *count; // otherwise null: nobody knows
+    }
     lines.push_back(std::move(line));
   }
   return lines;
+}
+
+ordered_json verdict_json(const Verdict& verdict, const StressOptions& options,
+                          const StressOutcome& outcome) {
+  return {{"text", in_words(verdict, options, outcome)},
+          {"punctual", verdict.judged ? ordered_json(verdict.punctual) : ordered_json(nullptr)},
+          {"rate_hz", options.run.loop.rate_hz},
+          {"due_ticks", verdict.due},
+          {"late_ticks", verdict.late},
+          {"max_late_us", verdict.max_late_us},
+          {"reason", verdict.reason},
+          {"remedy", verdict.remedy}};
 }
 
 ordered_json floor_json(const PlatformFloor& floor) {
@@ -150,7 +165,9 @@ std::string wall_time(const StressOutcome& outcome, HostTime time) {
 
 ordered_json stress_json(const StressOptions& options, const StressOutcome& outcome) {
   const TickTally& tally = outcome.tally;
+  const Verdict verdict = judge(options, outcome);
   ordered_json line{{"event", "stress"},
+                    {"verdict", verdict_json(verdict, options, outcome)},
                     {"environment", environment_json(options, outcome)},
                     {"elapsed_s", outcome.elapsed_s},
                     {"ticks", tally.ticks()},

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -9,6 +11,7 @@
 #include <nendo/driver/record_counts.hpp>
 
 #include "stress/report.hpp"
+#include "stress/verdict.hpp"
 
 namespace nendo::stress {
 namespace {
@@ -26,6 +29,12 @@ std::string words(std::string_view name) {
   std::replace(text.begin(), text.end(), '_', ' ');
   return text;
 }
+
+/// What each measure is, where its figures stand.
+constexpr std::array<std::string_view, measure_names.size()> meanings{
+    "from a tick's deadline until it began", "what its length differs from the period by",
+    "from its beginning until its frame was published", "how long a sample waited for the tick",
+    "from a sample's last byte to the frame that shows it"};
 
 /// Returns a part of the earlier report, or null if it has none.
 ordered_json part(const ordered_json& whole, const std::string& key) {
@@ -51,6 +60,10 @@ void print_row(std::FILE* out, const std::string& name, const flow::Histogram& h
 
 void print_table(std::FILE* out, const StressOutcome& outcome, const ordered_json& earlier) {
   const TickTally& tally = outcome.tally;
+  std::fprintf(out,
+               "\n  p50: half of the values are no greater; p99: 99 %% of them, and so on. The "
+               "first row counts the ticks\n  that ran, \"per scheduled tick\" each tick that "
+               "was due, so that a long stall counts for all it prevented.\n");
   std::fprintf(out, "\n  %-26s", "microseconds");
   for (const auto column : Figures::names) {
     std::string heading(column);
@@ -61,18 +74,21 @@ void print_table(std::FILE* out, const StressOutcome& outcome, const ordered_jso
   for (std::size_t k = 0; k < measure_names.size(); ++k) {
     const Distribution& of = tally[static_cast<Measure>(k)];
     const std::string key = std::string(measure_names[k]) + "_us";
+    std::fprintf(out, "  %s: %s\n", words(measure_names[k]).c_str(), meanings[k].data());
     print_row(out, words(measure_names[k]), of.raw, part(earlier, key));
     print_row(out, "  per scheduled tick", of.corrected, part(part(earlier, "corrected"), key));
   }
-  std::fprintf(out, "  the work, by stage:\n");
+  std::fprintf(out, "  the work, by stage of the tick:\n");
   for (std::size_t k = 1; k < phase_names.size(); ++k) {
     const std::string stage(phase_names[k]);
     print_row(out, "  " + stage, tally.stage(static_cast<Phase>(k)),
               part(part(earlier, "stages_us"), stage));
   }
-  if (outcome.floor.spun_s > 0.0)
-    print_row(out, "the machine's own gaps", outcome.floor.gaps,
-              part(part(earlier, "floor"), "gaps_us"));
+  if (outcome.floor.spun_s <= 0.0) return;
+  std::fprintf(out, "  the machine's own gaps: those of a thread that does nothing but read the "
+                    "clock; no program can be better\n");
+  print_row(out, "the machine's own gaps", outcome.floor.gaps,
+            part(part(earlier, "floor"), "gaps_us"));
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -113,14 +129,16 @@ void print_counts(std::FILE* out, const StressOutcome& outcome) {
   const TickTally& tally = outcome.tally;
   const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
   std::fprintf(out,
-               "\n  %llu ticks, %llu overruns, %llu deadlines missed; longest from tick to tick "
-               "%s us\n",
+               "\n  %llu ticks, %llu overruns (ticks after which a deadline had passed), %llu "
+               "deadlines missed\n  (at which no tick began); longest from tick to tick %s us\n",
                number(tally.ticks()), number(outcome.overruns), number(outcome.missed),
                shown(static_cast<double>(tally.longest_outage().count()) / 1e3).c_str());
   for (std::size_t at = 0; at < outcome.glove_records.size(); ++at)
     std::fprintf(out, "  %s: %s\n", outcome.gloves[at].c_str(),
                  driver::in_words(outcome.glove_records[at]).c_str());
-  std::fprintf(out, "  %ld page faults (%ld from disk), %ld involuntary switches, %.1f %% of a CPU",
+  std::fprintf(out,
+               "  %ld page faults: memory that had to be fetched (%ld from disk); %ld involuntary "
+               "switches: other\n  threads took the CPU; %.1f %% of a CPU used",
                outcome.costs.minor_faults + outcome.costs.major_faults, outcome.costs.major_faults,
                outcome.costs.involuntary_switches,
                100.0 * outcome.costs.cpu_s / std::max(outcome.elapsed_s, 1e-9));
@@ -172,6 +190,8 @@ void print_incidents(std::FILE* out, const StressOutcome& outcome) {
   if (!line.empty()) {
     std::fprintf(out, "\n  later than 1 ms: %s; %.1f %% of that lateness is explained\n",
                  line.c_str(), 100.0 * tally.explained());
+    std::fprintf(out, "  (host gap: nothing here ran; own work: the tick's; input: the gloves'; "
+                      "preemption: another thread ran)\n");
   }
   std::fprintf(out, "\n  the worst\n  %-28s %10s %7s  %-8s %-10s\n", "time (UTC)", "late us",
                "missed", "phase", "cause");
@@ -187,6 +207,7 @@ void print_incidents(std::FILE* out, const StressOutcome& outcome) {
 
 void print_stress(std::FILE* out, const StressOptions& options, const StressOutcome& outcome,
                   const ordered_json& earlier) {
+  std::fprintf(out, "%s\n\n", in_words(judge(options, outcome), options, outcome).c_str());
   print_environment(out, options, outcome);
   print_counts(out, outcome);
   print_table(out, outcome, earlier);

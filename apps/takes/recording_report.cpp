@@ -95,7 +95,7 @@ ordered_json gloves_json(const TakeSummary& summary) {
     const auto counts = driver::by_name(glove.sent.value_or(driver::RecordCounts{}));
     for (const auto& [name, count] : counts) {
       ordered_json& value = line[std::string(name)];
-      if (glove.sent) value = count; // otherwise null: nobody knows
+      if (glove.sent && count) value = *count; // otherwise null: nobody knows
     }
     const auto& hands = summary.setup.hands;
     line["layer"] = nullptr; // of the whole hand

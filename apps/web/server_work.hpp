@@ -38,6 +38,8 @@ public:
   /// Has room for what 16 clients may send in half a second. Commands that find no room are
   /// dropped.
   flow::CommandRing commands{1024};
+  /// For `missed` of a glove that does not tell: all bits are set, also of the 32 that are sent.
+  static constexpr std::uint64_t unknown_count = ~std::uint64_t{0};
   /// Each number is right by itself; they need not be all of the same moment.
   struct SharedGloveState {
     std::atomic<std::uint64_t> delivered{0}, missed{0}, refused{0}, bad{0};

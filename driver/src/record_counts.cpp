@@ -1,31 +1,52 @@
 #include <nendo/driver/record_counts.hpp>
 
+#include <cstdio>
+
 namespace nendo::driver {
 
 RecordCounts counts_of(const GloveStats& stats) noexcept {
-  return {stats.records, stats.missed, stats.ring_refused, stats.bad_records};
+  return {stats.records,     stats.missed,  stats.ring_refused,
+          stats.bad_records, stats.clamped, stats.tells_missed};
 }
 
 RecordCounts since(const RecordCounts& earlier, const RecordCounts& now) noexcept {
   return {now.delivered - earlier.delivered, now.missed - earlier.missed,
-          now.refused - earlier.refused, now.bad - earlier.bad};
+          now.refused - earlier.refused,     now.bad - earlier.bad,
+          now.clamped - earlier.clamped,     now.tells_missed};
 }
 
-std::array<std::pair<std::string_view, std::uint64_t>, 5>
+std::array<std::pair<std::string_view, std::optional<std::uint64_t>>, 6>
 by_name(const RecordCounts& counts) noexcept {
-  return {{{"sent", counts.sent()},
+  const auto if_told = [&](std::uint64_t count) {
+    return counts.tells_missed ? std::optional(count) : std::nullopt;
+  };
+  return {{{"sent", if_told(counts.sent())},
            {"delivered", counts.delivered},
-           {"missed", counts.missed},
+           {"missed", if_told(counts.missed)},
            {"refused", counts.refused},
-           {"bad_records", counts.bad}}};
+           {"bad_records", counts.bad},
+           {"clamped_values", counts.clamped}}};
 }
 
 std::string in_words(const RecordCounts& counts) {
   std::string text;
   for (const auto& [name, count] : by_name(counts)) {
-    text += (text.empty() ? "" : ", ") + std::to_string(count) + " ";
-    text += name == "bad_records" ? "bad records" : name;
+    const bool clamped = name == "clamped_values";
+    if (!count || (clamped && *count == 0)) continue;
+    text += (text.empty() ? "" : ", ") + std::to_string(*count) + " ";
+    text += name == "bad_records" ? "bad records" : clamped ? "values out of range" : name;
   }
+  if (!counts.tells_missed) text += "; this glove does not tell how many were lost on the line";
+  return text;
+}
+
+std::string rate_shortfall(const GloveInfo& info, const GloveStats& stats) {
+  constexpr double tolerance = 0.05;
+  const bool known = !stats.tells_missed && info.rate_hz > 0.0 && stats.rate_hz > 0.0;
+  if (!known || stats.rate_hz > (1.0 - tolerance) * info.rate_hz) return {};
+  char text[96];
+  std::snprintf(text, sizeof text, "%.1f records a second of the %.1f that were asked for",
+                stats.rate_hz, info.rate_hz);
   return text;
 }
 

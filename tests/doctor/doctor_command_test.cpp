@@ -73,6 +73,20 @@ TEST_SUITE("doctor") {
     CHECK(only_finding(port).severity == Severity::failure);
   }
 
+  TEST_CASE("a port without a node is a failure, with how to hand it in") {
+    GloveCandidate candidate = good_adapter();
+    candidate.may_open = false;
+    candidate.access = "";
+    candidate.node_missing = true;
+    candidate.remedy = "hand it in";
+    const Finding finding = only_finding(candidate);
+    CHECK(finding.severity == Severity::failure);
+    CHECK(finding.check == "node");
+    CHECK(finding.remedy == "hand it in");
+    candidate.usb.reset(); // one of the computer's own, which containers see as well
+    CHECK(only_finding(candidate).severity == Severity::warning);
+  }
+
   TEST_CASE("a port that vanished meanwhile is no finding") {
     GloveCandidate port = good_adapter();
     port.may_open = false;

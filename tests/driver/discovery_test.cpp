@@ -1,6 +1,8 @@
 // What find_gloves() says of emulated machines.
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -10,7 +12,9 @@
 #include <nendo/driver/open_glove.hpp>
 
 #include "support/mocked_machine.hpp"
+#include "support/temporary_folder.hpp"
 #include "transport/ftdi_latency.hpp"
+#include "transport/missing_node.hpp"
 
 namespace discovery_test {
 
@@ -223,8 +227,54 @@ TEST_SUITE("discovery") {
     const GloveCandidate& port = at(found, "/dev/ttyUSB0");
     CHECK_FALSE(port.usb);
     CHECK_FALSE(port.may_open);
+    CHECK(port.node_missing);
     CHECK(std::none_of(found.begin(), found.end(),
                        [](const auto& c) { return c.device == "/dev/ttyUSB7"; }));
+  }
+
+  TEST_CASE("a port without a node is told so, with how to hand it into a container") {
+    MockedMachine machine;
+    machine.plug({});
+    CHECK_FALSE(at(find_gloves(), "/dev/ttyUSB0").node_missing);
+    std::filesystem::remove(machine.real("/dev/ttyUSB0"));
+    const auto found = find_gloves();
+    const GloveCandidate& port = at(found, "/dev/ttyUSB0");
+    CHECK(port.node_missing);
+    CHECK_FALSE(port.may_open);
+    CHECK(port.access.empty());
+    for (const char* way :
+         {"docker run --device=/dev/ttyUSB0", "podman run --device=/dev/ttyUSB0",
+          "systemd-nspawn --bind=/dev/ttyUSB0", "lxc-device", "mknod -m 660 /dev/ttyUSB0 c 188 0"})
+      CHECK_MESSAGE(port.remedy.find(way) != std::string::npos, port.remedy);
+    const auto glove = open_glove("serial:/dev/ttyUSB0");
+    REQUIRE_FALSE(glove);
+    CHECK(glove.error().code == Errc::no_device);
+    CHECK(glove.error().message.find("no node") != std::string::npos);
+    CHECK(glove.error().message.find("--device=/dev/ttyUSB0") != std::string::npos);
+  }
+
+  TEST_CASE("which container it is, its maker's marks tell, and only its way is told then") {
+    MockedMachine machine;
+    machine.plug({});
+    CHECK_FALSE(missing_node("/dev/ttyUSB0")); // it is there
+    CHECK_FALSE(missing_node("/dev/ttyUSB9")); // the kernel does not have it
+    std::filesystem::remove(machine.real("/dev/ttyUSB0"));
+    const TemporaryFolder root;
+    const auto remedy = [&] { return missing_node("/dev/ttyUSB0", root.path()).value_or(""); };
+    CHECK(remedy().find("docker") != std::string::npos);
+    CHECK(remedy().find("lxc-device") != std::string::npos);
+    std::filesystem::create_directories(root.path() / "run/systemd");
+    const auto marked = [&](const std::string& kind) {
+      std::ofstream(root.path() / "run/systemd/container") << kind << '\n';
+      return remedy();
+    };
+    CHECK(marked("lxc").find("lxc-device -n NAME add /dev/ttyUSB0") != std::string::npos);
+    CHECK(marked("lxc").find("docker") == std::string::npos);
+    CHECK(marked("systemd-nspawn").find("--bind=/dev/ttyUSB0") != std::string::npos);
+    CHECK(marked("podman").find("podman run --device=/dev/ttyUSB0") != std::string::npos);
+    std::ofstream(root.path() / ".dockerenv") << "";
+    CHECK(remedy().find("docker run --device=/dev/ttyUSB0") != std::string::npos);
+    CHECK(remedy().find("podman") == std::string::npos);
   }
 
   TEST_CASE("a port is left alone if udev tells ModemManager so, by the port or the device") {

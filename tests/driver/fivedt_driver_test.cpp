@@ -91,8 +91,8 @@ TEST_SUITE("fivedt_driver") {
   TEST_CASE("a wired glove says who it is, of either hand") {
     for (const Side side : {Side::left, Side::right}) {
       const PtyUnit port(wired().make(side));
-      // Its own word goes before what the user says.
-      const auto glove = required(open_glove("5dt:" + port.path() + "?hand=right", Side::right));
+      // Its own word goes before what the caller wishes.
+      const auto glove = required(open_glove("5dt:" + port.path(), Side::right));
       const GloveInfo& info = glove->info();
       CHECK(info.side == side);
       CHECK(info.model == "DataGlove 5, 5 sensors");
@@ -104,6 +104,13 @@ TEST_SUITE("fivedt_driver") {
       CHECK(fact(info, "link") == "wired");
       CHECK(fact(info, "hand_source") == "glove");
     }
+  }
+
+  TEST_CASE("the option goes before the glove's own word") {
+    const PtyUnit port(wired().make(Side::right));
+    const auto glove = required(open_glove("5dt:" + port.path() + "?hand=left"));
+    CHECK(glove->info().side == Side::left);
+    CHECK(fact(glove->info(), "hand_source") == "option");
   }
 
   TEST_CASE("a wireless glove is known by its samples, and its hand by what the user says") {

@@ -38,6 +38,8 @@ TEST_SUITE("fivedt_usb_parser") {
       const int expected = value < 0 ? 0 : value > 4095 ? 4095 : value;
       for (const int read : report->values)
         REQUIRE(read == expected);
+      for (const bool clamped : report->clamped)
+        REQUIRE(clamped == (value != expected));
     }
   }
 

@@ -109,14 +109,24 @@ TEST_SUITE("forte_parser") {
     CHECK(outcome.counters.bad_records == 1);
   }
 
-  TEST_CASE("a frame with a bad end, beginning, kind, length or count is dropped alone") {
+  TEST_CASE("counts above 127 count as 127, are counted, and the frame is read") {
+    Bytes high = frame_of(9);
+    high[3] = std::byte{128};
+    high[12] = std::byte{0xFF};
+    const Outcome outcome = parse(joined({frame_of(1), high, frame_of(50)}));
+    CHECK(outcome.firsts() == Firsts{1, 127, 50});
+    CHECK(outcome.counters.clamped == 2);
+    CHECK(outcome.counters.bad_records == 0);
+  }
+
+  TEST_CASE("a frame with a bad end, beginning, kind or length is dropped alone") {
     struct Damage {
       std::size_t at;
       int to;
     };
     for (const Damage& damage :
          {Damage{14, 0x00}, Damage{14, 0x77}, Damage{0, 0x70}, Damage{1, 0x03}, Damage{2, 0x0C},
-          Damage{3, 128}, Damage{12, 0xFF}, Damage{7, 0xF7}, Damage{7, 0xF0}}) {
+          Damage{7, 0xF7}, Damage{7, 0xF0}}) {
       CAPTURE(damage.at);
       CAPTURE(damage.to);
       Bytes bad = frame_of(9);

@@ -66,6 +66,9 @@ TEST_SUITE("hi_res_record") {
     REQUIRE(outcome.records.size() == 1);
     for (std::size_t k = 0; k < 22; ++k)
       CHECK(outcome.records[0].values[k] == 1 + 100 * k);
+    CHECK(outcome.records[0].second == 10U * 3600 + 20 * 60 + 30);
+    CHECK(outcome.records[0].frame == 15);
+    CHECK(outcome.records[0].sub_frame == 2);
     CHECK(outcome.records[0].stamp == Stamp::none);
     CHECK(outcome.counters.discarded_bytes == 0);
   }
@@ -122,17 +125,34 @@ TEST_SUITE("hi_res_record") {
     }
   }
 
-  TEST_CASE("values of 0 and of more than 12 bits cannot be delivered") {
+  TEST_CASE("a sensor that sends 0 has failed: it counts as 1, and the others are read") {
     Bytes none = one;
     none[14] = none[15] = std::byte{0};
-    CHECK(parse(none).records.empty());
+    none[56] = none[57] = std::byte{0};
+    const Outcome outcome = parse(none);
+    REQUIRE(outcome.records.size() == 1);
+    CHECK(outcome.records[0].values[0] == 1);
+    CHECK(outcome.records[0].values[1] == 101);
+    CHECK(outcome.records[0].values[21] == 1);
+    CHECK(outcome.records[0].clamped == 2);
+    CHECK(outcome.counters.clamped == 2);
+    CHECK(outcome.counters.bad_records == 0);
+  }
+
+  TEST_CASE("a record in which all sensors have failed is that of no glove") {
+    const Outcome outcome = parse(joined({one, hi_res("10:20:30:15:2S", 0, 0), two}));
+    CHECK(outcome.records.size() == 2);
+    CHECK(outcome.counters.unplugged == 1);
+    CHECK(outcome.counters.bad_records == 0);
+  }
+
+  TEST_CASE("values of more than 12 bits cannot be delivered") {
     Bytes large = one;
     large[20] = std::byte{0x10};
     CHECK(parse(joined({large, two})).records.size() == 1);
     const Bytes most = hi_res("00:00:00:00:0S", 4095, 0);
     REQUIRE(parse(most).records.size() == 1);
     CHECK(decode_record(most, shape)->values[21] == 4095);
-    CHECK_FALSE(decode_record(none, shape));
     CHECK_FALSE(decode_record(std::span(most).first(60), shape));
   }
 

@@ -37,15 +37,16 @@ class Listener final : public EmulatedUnit {
 public:
   explicit Listener(std::string line) : line_(std::move(line)) {}
   void receive(std::span<const std::byte> bytes, Time /*now*/) override {
-    received_ += bytes.size();
+    for (const std::byte byte : bytes)
+      heard_.push_back(std::to_integer<char>(byte));
   }
-  std::size_t received() const { return received_; } ///< bytes
+  std::string heard() const { return heard_; }
   void advance(Time /*now*/) override { send(std::as_bytes(std::span(line_))); }
   std::optional<Time> next_due() const noexcept override { return std::nullopt; }
 
 private:
   const std::string line_;
-  std::size_t received_ = 0;
+  std::string heard_;
 };
 
 /// What happens at a scripted port, and how it behaves.
@@ -152,9 +153,8 @@ TEST_SUITE("lucidgloves_driver") {
   TEST_CASE("a glove that answers says who it is, of either hand") {
     for (const Side side : {Side::left, Side::right}) {
       const PtyUnit port(lucidgloves().make(side));
-      // Its own word goes before what the user says.
-      const auto glove =
-          required(open_glove("lucidgloves:" + port.path() + "?hand=right", Side::right));
+      // Its own word goes before what the caller wishes.
+      const auto glove = required(open_glove("lucidgloves:" + port.path(), Side::right));
       const GloveInfo& info = glove->info();
       CHECK(info.side == side);
       CHECK(info.model == "LucidGloves, 9 sensors");
@@ -191,6 +191,19 @@ TEST_SUITE("lucidgloves_driver") {
     const auto assumed = required(open_one_line(line, ""));
     CHECK(assumed->info().side == Side::right);
     CHECK(fact(assumed->info(), "hand_source") == "assumed");
+  }
+
+  TEST_CASE("the option goes before the glove's own word, early or late") {
+    const PtyUnit port(lucidgloves().make(Side::right));
+    SampleRing ring(1U << 14U);
+    auto glove = required(open_glove("lucidgloves:" + port.path() + "?hand=left"));
+    CHECK(glove->info().side == Side::left);
+    CHECK(fact(glove->info(), "hand_source") == "option");
+    test::require_ok(glove->start(ring));
+    GloveSample sample;
+    REQUIRE(eventually([&] { return ring.try_pop(sample); }));
+    CHECK(sample.side == Side::left);
+    glove->stop();
   }
 
   TEST_CASE("a glove that tells its hand late is that hand from then on") {
@@ -244,8 +257,8 @@ TEST_SUITE("lucidgloves_driver") {
     CHECK(glove->info().side == Side::left);
   }
 
-  TEST_CASE("a legacy firmware is told nothing, since it takes any line for brakes") {
-    const auto unit = [](const Listener& listener) { return listener.received(); };
+  TEST_CASE("a legacy firmware gets empty lines only, since it takes any other for brakes") {
+    const auto unit = [](const Listener& listener) { return listener.heard(); };
     PtyUnit port(std::make_unique<Listener>("1&2&3&4&5&6&7&0&0&0&0&0&0\n"));
     SampleRing ring(1U << 14U);
     auto glove = required(open_glove("lucidgloves:" + port.path()));
@@ -258,7 +271,74 @@ TEST_SUITE("lucidgloves_driver") {
     glove->set_feedback(feedback);
     CHECK(eventually([&] { return ring.size() > 100; }));
     glove->stop();
-    CHECK(port.look<Listener>(unit) == 0);
+    const std::string heard = port.look<Listener>(unit);
+    CHECK(heard.find_first_not_of('\n') == std::string::npos);
+  }
+
+  TEST_CASE("a legacy firmware that waits for an answer to each line gets one at once") {
+    PtyUnit port(unit_with(LucidGlovesFirmware::legacy_waiting));
+    SampleRing ring(1U << 14U);
+    auto glove = required(open_glove("lucidgloves:" + port.path()));
+    CHECK(fact(glove->info(), "encoding") == "legacy");
+    test::require_ok(glove->start(ring));
+    const auto start = HostClock::now();
+    REQUIRE(eventually([&] { return glove->stats().records >= 300; }));
+    CHECK(HostClock::now() - start < 5s); // a host that says nothing needs 25 minutes
+    glove->set_feedback(resistance({1, 2, 3, 4, 5}));
+    const std::uint64_t before = glove->stats().records;
+    REQUIRE(eventually([&] { return glove->stats().records >= before + 100; }));
+    CHECK(brakes_of(port) == std::array{0, 0, 0, 0, 0});
+    glove->stop();
+    CHECK(glove->stats().silences == 0);
+    CHECK(glove->stats().bad_records == 0);
+  }
+
+  TEST_CASE("a glove that waits for an answer to a line that nobody read is woken") {
+    for (const auto firmware :
+         {LucidGlovesFirmware::legacy_waiting, LucidGlovesFirmware::waiting}) {
+      PtyUnit port(unit_with(firmware));
+      std::this_thread::sleep_for(200ms); // it has sent its line, which opening throws away
+      const auto start = HostClock::now();
+      const auto glove = required(open_glove("lucidgloves:" + port.path()));
+      CHECK(HostClock::now() - start < 4s);
+      CHECK(brakes_of(port) == std::array{0, 0, 0, 0, 0});
+    }
+  }
+
+  TEST_CASE("a glove of one line a second is read, in both encodings") {
+    for (const auto firmware : {LucidGlovesFirmware::streaming, LucidGlovesFirmware::legacy}) {
+      LucidGlovesUnitOptions options;
+      options.firmware = firmware;
+      options.rate_hz = 1.0;
+      PtyUnit port(make_lucidgloves_unit(options));
+      SampleRing ring(1U << 14U);
+      auto glove = required(open_glove("lucidgloves:" + port.path()));
+      test::require_ok(glove->start(ring));
+      CHECK(eventually([&] { return glove->stats().records >= 3; }));
+      glove->stop();
+      CHECK(glove->stats().silences == 0);
+      CHECK(glove->stats().bad_records == 0);
+      CHECK_FALSE(glove->stats().tells_missed);
+    }
+  }
+
+  TEST_CASE("an unclamped firmware is read, and what was out of range is counted") {
+    for (const auto firmware :
+         {LucidGlovesFirmware::unclamped, LucidGlovesFirmware::legacy_unclamped}) {
+      LucidGlovesUnitOptions options;
+      options.firmware = firmware;
+      options.motion = Motion::grasp;
+      PtyUnit port(make_lucidgloves_unit(options));
+      SampleRing ring(1U << 14U);
+      auto glove = required(open_glove("lucidgloves:" + port.path()));
+      test::require_ok(glove->start(ring));
+      CHECK(
+          eventually([&] { return glove->stats().clamped > 0 && glove->stats().records >= 300; }));
+      glove->stop();
+      CHECK(glove->stats().bad_records == 0);
+      CHECK(glove->stats().clamped > 0);
+      CHECK(glove->stats().clamped <= 10 * glove->stats().records);
+    }
   }
 
   TEST_CASE("what the first lines show is what it has") {
@@ -285,6 +365,14 @@ TEST_SUITE("lucidgloves_driver") {
     CHECK(glove->stats().bad_records == 0);
     const auto within = required(open_one_line("A1023B2C3D4E5\n", "?range=1023"));
     CHECK(fact(within->info(), "above_range").empty());
+  }
+
+  TEST_CASE("negative numbers count as 0, and the glove's facts tell of them") {
+    const auto below = required(open_one_line("A-5B2C3D4E5\n", ""));
+    CHECK(fact(below->info(), "below_range").find("0") != std::string::npos);
+    CHECK(fact(below->info(), "above_range").empty());
+    const auto within = required(open_one_line("A1B2C3D4E5\n", ""));
+    CHECK(fact(within->info(), "below_range").empty());
   }
 
   TEST_CASE("a LucidGlove's options that are none are usage errors that name what there is") {

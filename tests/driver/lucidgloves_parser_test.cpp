@@ -1,9 +1,12 @@
 #include "lucidgloves/lucidgloves_parser.hpp"
 
+#include <array>
 #include <cctype>
 #include <random>
+#include <span>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -152,7 +155,8 @@ TEST_SUITE("lucidgloves_parser") {
         const auto line = decode_line("A" + std::to_string(number) + "(AB)7", range);
         REQUIRE(line);
         CHECK(line->curl[0] == number);
-        CHECK_FALSE(line->clamped);
+        CHECK(line->above_range == 0);
+        CHECK(line->below_range == 0);
       }
       for (const unsigned number : {range + 1U, 2U * range, 65'535U}) {
         const std::string text = std::to_string(number);
@@ -162,20 +166,83 @@ TEST_SUITE("lucidgloves_parser") {
         CHECK(line->curl[1] == 5);
         CHECK(line->splay[2] == range);
         CHECK(line->joint[3][1] == range);
-        CHECK(line->clamped);
+        CHECK(line->above_range == 3);
+        CHECK(line->below_range == 0);
       }
     }
     const auto legacy = decode_line("1&5000&3&4&5&6&7&8&9&10&11&12&13", 4095);
     REQUIRE(legacy);
     CHECK(legacy->curl[1] == 4095);
-    CHECK(legacy->clamped);
+    CHECK(legacy->above_range == 1);
+  }
+
+  TEST_CASE("negative values become 0, and the rest of the line is read") {
+    const auto alpha = decode_line("A-37B2C-1D4E5F-9G2P3(AB)-4095(BB)9(CAB)-1", 4095);
+    REQUIRE(alpha);
+    CHECK(alpha->below_range == 4);
+    CHECK(alpha->above_range == 0);
+    CHECK(alpha->curl == std::array<Line::Value, 5>{0, 2, 0, 4, 5});
+    CHECK(alpha->splay[0] == 0);
+    CHECK(alpha->splay[1] == 9);
+    CHECK(alpha->joint[2][1] == 0);
+    const auto legacy = decode_line("-1&2&-300&4&5000&2048&-2048&0&0&0&0&0&0", 4095);
+    REQUIRE(legacy);
+    CHECK(legacy->legacy);
+    CHECK(legacy->below_range == 2);
+    CHECK(legacy->above_range == 1);
+    CHECK(legacy->curl == std::array<Line::Value, 5>{0, 2, 0, 4, 4095});
+    const auto zero = decode_line("A-0", 4095);
+    REQUIRE(zero);
+    CHECK(zero->below_range == 0);
+    for (const char* text : {"A-", "A--1", "A-B2", "-A1", "A1-", "1&-&3&4&5&6&7&8&9&10&11&12&13",
+                             "A1(ZV)-5", "A1(ZH)-1"}) {
+      CAPTURE(text);
+      CHECK_FALSE(decode_line(text, 4095));
+    }
+  }
+
+  TEST_CASE("values very far out of range are read where no other value is missing beside them") {
+    for (const char* number : {"65536", "409500", "-65536", "-409500", "2147483647"}) {
+      CAPTURE(number);
+      const std::string far(number);
+      const bool negative = far.starts_with('-');
+      const auto curls = decode_line("A1B2C" + far + "D4E5", 4095);
+      REQUIRE(curls);
+      CHECK(curls->curl[2] == (negative ? 0 : 4095));
+      CHECK(curls->above_range + curls->below_range == 1);
+      CHECK(decode_line("A1B2C3D4E5(AB)1(BB)" + far + "(CB)3(DB)4(EB)5", 4095));
+      CHECK(decode_line("1&2&3&4&" + far + "&6&7&8&9&10&11&12&13", 4095));
+      CHECK_FALSE(decode_line("A1C" + far + "D4E5", 4095)); // B's letter may have been lost
+      CHECK_FALSE(decode_line("A1B2C3D4E5(AB)" + far + "(CB)3(DB)4(EB)5", 4095));
+      CHECK_FALSE(decode_line("A1B2C3D4E5(CAB)" + far, 4095));
+    }
+  }
+
+  TEST_CASE("the first piece counts if it is a whole line, for those who want it") {
+    const auto first_of = [](std::string_view text) {
+      Parser parser(4095, FirstPiece::take_if_whole);
+      int lines = 0;
+      parser.push(std::as_bytes(std::span(text)), [&](const Line&) { ++lines; });
+      CHECK(parser.counters().bad_records == 0);
+      CHECK(parser.counters().bytes ==
+            parser.counters().record_bytes + parser.counters().discarded_bytes + parser.pending());
+      return lines;
+    };
+    CHECK(first_of("A1B2C3D4E5\n") == 1);
+    CHECK(first_of("1&2&3&4&5&6&7&8&9&10&11&12&13\r\n") == 1);
+    CHECK(first_of("B2C3D4E5F6\n") == 0);
+    CHECK(first_of("2B3C4D5E6\n") == 0);
+    CHECK(first_of("&2&3&4&5&6&7&8&9&10&11&12&13\n") == 0);
+    CHECK(first_of("rst:0x1 (POWERON_RESET)\nA1B2C3D4E5\n") == 1);
+    CHECK(first_of(std::string(300, '1') + "\nA1\n") == 1);
+    CHECK(first_of("(ZV)5\n") == 0);
   }
 
   TEST_CASE("numbers that no firmware sends are refused") {
     CHECK(decode_line("A00004095", 4095));
     for (const char* text :
          {"A65536", "A65537", "A40954095", "A4294967296", "A4294967297", "A99999999999999999999",
-          "(AB)65536", "(BAB)65536", "A-1", "A1.5", "A", "(AB)", "(BAB)", "A1B"}) {
+          "(AB)65536", "(BAB)65536", "A-65536", "A1.5", "A", "(AB)", "(BAB)", "A1B"}) {
       CAPTURE(text);
       CHECK_FALSE(decode_line(text, 4095));
     }
@@ -232,7 +299,7 @@ TEST_SUITE("lucidgloves_parser") {
     for (const char* text :
          {"1&2&3&4&5", "1&2&3&4&5&6&7&8&9&10&11&12", "1&2&3&4&5&6&7&8&9&10&11&12&13&14",
           "1&2&3&4&5&6&7&8&9&10&11&12&", "1&2&3&4&5&6&7&8&9&10&11&12&13&",
-          "1&&3&4&5&6&7&8&9&0&1&2&3", "1&2&3&4&65536&6&7&8&9&10&11&12&13",
+          "1&&3&4&5&6&7&8&9&0&1&2&3", "1&2&3&4&4294967296&6&7&8&9&10&11&12&13",
           "1&2&3&4&5&6&7&8&9&10&11&12&13A1"}) {
       CAPTURE(text);
       CHECK_FALSE(decode_line(text, 4095));

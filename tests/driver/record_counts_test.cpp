@@ -35,18 +35,55 @@ TEST_SUITE("record_counts") {
     stats.ring_refused = 7;
     stats.too_fast = 1000; // delivered, and nothing that was lost
     stats.unplugged = 2000;
+    stats.clamped = 31;
+    stats.tells_missed = true;
     const RecordCounts counts = counts_of(stats);
     const std::map<std::string, std::uint64_t> expected{
-        {"sent", 457}, {"delivered", 359}, {"missed", 98}, {"refused", 7}, {"bad_records", 12}};
+        {"sent", 457},  {"delivered", 359},  {"missed", 98},
+        {"refused", 7}, {"bad_records", 12}, {"clamped_values", 31}};
     const auto named = by_name(counts);
     REQUIRE(named.size() == expected.size());
     for (const auto& [name, count] : named)
       CHECK(expected.at(std::string(name)) == count);
     auto in_text = numbers_in(in_words(counts));
     CHECK(in_text.at("bad records") == 12);
-    in_text["bad_records"] = in_text.at("bad records");
-    in_text.erase("bad records");
-    CHECK(in_text == expected);
+    CHECK(in_text.at("values out of range") == 31);
+    for (const char* name : {"sent", "delivered", "missed", "refused"})
+      CHECK(in_text.at(name) == expected.at(name));
+    CHECK(in_text.size() == expected.size());
+    stats.clamped = 0;
+    CHECK(in_words(counts_of(stats)).find("range") == std::string::npos);
+  }
+
+  TEST_CASE("what nobody knows is not said: neither sent nor missed") {
+    GloveStats stats;
+    stats.records = 357;
+    const RecordCounts counts = counts_of(stats);
+    for (const auto& [name, count] : by_name(counts))
+      CHECK(count.has_value() == (name != "sent" && name != "missed"));
+    const std::string words = in_words(counts);
+    CAPTURE(words);
+    CHECK(words.starts_with("357 delivered, 0 refused, 0 bad records"));
+    CHECK(words.find(" sent") == std::string::npos);
+    CHECK(words.find("missed") == std::string::npos);
+  }
+
+  TEST_CASE("a rate below what was asked for is told where losses cannot be counted") {
+    GloveInfo info;
+    info.rate_hz = 90.0;
+    GloveStats stats;
+    stats.rate_hz = 72.0;
+    CHECK(rate_shortfall(info, stats) == "72.0 records a second of the 90.0 that were asked for");
+    stats.tells_missed = true; // it has told already
+    CHECK(rate_shortfall(info, stats).empty());
+    stats.tells_missed = false;
+    stats.rate_hz = 89.0;
+    CHECK(rate_shortfall(info, stats).empty());
+    stats.rate_hz = 0.0; // nothing was measured yet
+    CHECK(rate_shortfall(info, stats).empty());
+    info.rate_hz = 0.0; // nobody asked for any
+    stats.rate_hz = 1.0;
+    CHECK(rate_shortfall(info, stats).empty());
   }
 
   TEST_CASE("what was counted since some moment is the difference of each count") {

@@ -391,17 +391,40 @@ TEST_SUITE("cyberglove_unit") {
     CHECK(bench.ask("?P") == Bytes{0x3F, 0x50, 0x81, 0xD8, 0x00, 0x00});
   }
 
-  TEST_CASE("a restart takes 1.75 s, during which it is deaf, and undoes every setting") {
+  TEST_CASE("a restart takes 0.2 s, during which it is deaf, and undoes every setting") {
     Bench bench;
     bench.ask(Bytes{'U', 1});
     bench.ask("t 11520 1\r");
     CHECK(bench.ask(Bytes{0x12}).empty());
     CHECK(bench.ask("?S").empty());
-    CHECK(bench.after(1749ms).empty());
+    CHECK(bench.after(199ms).empty());
     CHECK(bench.after(1ms) == Bytes{0x12, 0x0D, 0x0A, 0x00});
     CHECK(bench.ask("?U")[2] == 0);
     CHECK(bench.ask("?T")[3] == 0);
     CHECK(bench.ask(Bytes{0x09}) == Bytes{0x09, 0x00});
+  }
+
+  TEST_CASE("a client with the delays of the maker's library reads the restart's answer") {
+    Bench bench;
+    CHECK(bench.ask(Bytes{0x12}).empty());
+    CHECK(bench.after(250ms) == Bytes{0x12, 0x0D, 0x0A, 0x00});
+  }
+
+  TEST_CASE("?i names the maker, the model and the hand") {
+    for (const unsigned model : {1U, 2U, 3U}) {
+      UnitOptions options;
+      options.model = model;
+      Bench bench(options);
+      std::string text;
+      for (const auto byte : bench.ask("?i"))
+        text.push_back(static_cast<char>(byte));
+      CAPTURE(text);
+      CHECK(text.starts_with("?i \r\nCG"));
+      CHECK(text.ends_with(std::string("\r\n\0", 3)));
+      CHECK(text.find("CyberGlove") != std::string::npos);
+      CHECK(text.find(model == 1 ? "Virtual Technologies" : "CyberGlove Systems") !=
+            std::string::npos);
+    }
   }
 
   TEST_CASE("a restart takes as long as it is told to") {

@@ -158,6 +158,45 @@ TEST_SUITE("lucidgloves_unit") {
     CHECK(bench.unit.brakes() == std::array{0, 1000, 1000, 1000, 1000});
   }
 
+  TEST_CASE(
+      "a legacy firmware with force feedback waits for a line, and an empty one sets nothing") {
+    Bench bench(with(LucidGlovesFirmware::legacy_waiting));
+    CHECK(lines_in(bench.after(1ms)) == 1);
+    CHECK(lines_in(bench.after(4900ms)) == 0);
+    CHECK(lines_in(bench.after(200ms)) == 1);
+    std::size_t lines = 0;
+    for (int k = 0; k < 100; ++k) {
+      lines += lines_in(bench.ask("\n"));
+      lines += lines_in(bench.after(1ms));
+    }
+    CHECK(lines >= 99);
+    CHECK(bench.unit.brakes() == std::array{0, 0, 0, 0, 0});
+  }
+
+  TEST_CASE("an unclamped firmware goes beyond its range at both ends") {
+    for (const auto firmware :
+         {LucidGlovesFirmware::unclamped, LucidGlovesFirmware::legacy_unclamped}) {
+      LucidGlovesUnitOptions options = with(firmware);
+      options.motion = driver::Motion::grasp;
+      Bench bench(options);
+      int least = 0;
+      int greatest = 0;
+      for (int k = 0; k < 1000; ++k) {
+        std::istringstream text(text_of(bench.after(10ms)));
+        for (char c = 0; text.get(c);) {
+          if (c != '-' && (c < '0' || c > '9')) continue;
+          text.unget();
+          int value = 0;
+          if (!(text >> value)) break;
+          least = std::min(least, value);
+          greatest = std::max(greatest, value);
+        }
+      }
+      CHECK(least < 0);
+      CHECK(greatest > 4095);
+    }
+  }
+
   TEST_CASE("brakes handle whole lines, cut anywhere, and never go past locked") {
     Bench bench;
     bench.ask("A1B2C3");

@@ -1,6 +1,7 @@
 // High-resolution records. The first byte chooses how the rest, the stream, is cut into chunks.
 
 #include "cyberglove/cyberglove_parser.hpp"
+#include "cyberglove/hi_res_check.hpp"
 
 #include "parser_fuzz.hpp"
 
@@ -27,8 +28,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto stream = rest_of({data, size});
   Parser parser(shape);
   std::uint64_t records = 0;
+  HiResCheck check((*data & 0x80U) != 0 ? 90.0 : 0.0);
+  nendo::HostTime arrival{};
+  const auto count = [&](Record& record) {
+    arrival += std::chrono::milliseconds(record.values[0]);
+    const Verdict verdict = check(record, arrival);
+    require(verdict.plausible);
+    require(verdict.missed < std::uint64_t{10} * 86'400 * 300); // ten gaps of a day at most
+    return verdict;
+  };
   push_stream(parser, {stream, 1 + *data % 70U, hi_res_bytes}, [&](auto chunk) {
-    parser.push(chunk, [&](const Record& record) {
+    parser.push(chunk, count, [&](const Record& record) {
       check_record(record);
       ++records;
     });
@@ -40,8 +50,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // found, but where it overlaps one found earlier.
   std::uint64_t whole = 0;
   for (std::size_t at = 0; at + hi_res_bytes <= stream.size(); ++at) {
-    if (!decode_record(stream.subspan(at, hi_res_bytes), shape)) continue;
-    ++whole;
+    const auto record = decode_record(stream.subspan(at, hi_res_bytes), shape);
+    if (!record) continue;
+    whole += record->no_glove ? 0U : 1U;
     at += hi_res_bytes - 1;
   }
   require(whole == records);

@@ -26,7 +26,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const unsigned choice = *data;
   const std::uint16_t range = (choice & 0x80U) != 0 ? avr_range : esp32_range;
-  Parser parser(range);
+  const bool takes_first = (choice & 0x40U) != 0;
+  Parser parser(range, takes_first ? FirstPiece::take_if_whole : FirstPiece::skip);
   std::uint64_t records = 0;
   push_stream(parser, {rest_of({data, size}), 1 + choice % 7, most_line_bytes}, [&](auto chunk) {
     parser.push(chunk, [&](const Line& line) {

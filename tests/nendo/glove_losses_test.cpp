@@ -89,6 +89,117 @@ TEST_SUITE("glove_losses") {
     CHECK(text.out.find(" lost") == std::string::npos);
   }
 
+  TEST_CASE("12-bit records lose one in five, and their numbers tell it") {
+    const TemporaryFolder folder;
+    const std::string link = (folder.path() / "glove").string();
+    const std::string take = (folder.path() / "take.nendo").string();
+    const test::Program emulator(
+        {"emulate", "--model", "3", "--link", link, "--fault", "lose=20%"});
+    test::appears(link);
+    for (const std::string options : {"?hires=on", "?hires=on&rate=120"}) {
+      const auto done = test::nendo({"record", "serial:" + link + options, "--out",
+                                     take + options.substr(1), "--duration", "2s", "--json"});
+      CAPTURE(done.err);
+      REQUIRE(done.exit_code == 0);
+      check_losses(last_object(done)["gloves"][0]);
+    }
+    const auto shown = test::nendo(
+        {"monitor", "serial:" + link + "?hires=on", "--json", "--raw", "--count", "150"});
+    check_losses(counts_in(shown.err));
+  }
+
+  TEST_CASE("a glove that does not tell its losses is said to have sent nothing that nobody saw") {
+    const TemporaryFolder folder;
+    const std::string link = (folder.path() / "glove").string();
+    const std::string take = (folder.path() / "take.nendo").string();
+    const test::Program emulator(
+        {"emulate", "--rate", "100", "--link", link, "--fault", "lose=20%"});
+    test::appears(link);
+    const std::string spec = "serial:" + link + "?stamps=off&rate=100";
+    const auto done = test::nendo({"record", spec, "--out", take, "--duration", "3s", "--json"});
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    const json recorded = last_object(done)["gloves"][0];
+    CHECK(recorded["sent"].is_null());
+    CHECK(recorded["missed"].is_null());
+    CHECK(recorded["delivered"].get<int>() > 100);
+    const auto info = last_object(test::nendo({"recording", "info", take, "--json"}))["gloves"][0];
+    for (const std::string name : {"sent", "delivered", "missed", "refused", "bad_records"})
+      CHECK(info[name] == recorded[name]);
+    const auto told = test::nendo({"recording", "info", take});
+    CHECK(told.out.find(" sent") == std::string::npos);
+    // It is set to 100, and delivers 80.
+    const auto shown = test::nendo({"monitor", spec, "--json", "--raw", "--count", "250"});
+    CAPTURE(shown.err);
+    CHECK(shown.err.find(" sent") == std::string::npos);
+    CHECK(shown.err.find("of the 100.0 that were asked for") != std::string::npos);
+  }
+
+  TEST_CASE("values out of range are counted wherever losses are") {
+    const TemporaryFolder folder;
+    const std::string link = (folder.path() / "glove").string();
+    const std::string take = (folder.path() / "take.nendo").string();
+    const test::Program emulator({"emulate", "--glove", "lucidgloves", "--firmware",
+                                  "legacy-unclamped", "--motion", "grasp", "--link", link});
+    test::appears(link);
+    const auto done =
+        test::nendo({"record", "lucidgloves:" + link, "--out", take, "--duration", "2s", "--json"});
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    const json recorded = last_object(done)["gloves"][0];
+    CHECK(recorded["bad_records"] == 0);
+    CHECK(recorded["clamped_values"].get<int>() > 0);
+    const auto info = last_object(test::nendo({"recording", "info", take, "--json"}))["gloves"][0];
+    CHECK(info["clamped_values"] == recorded["clamped_values"]);
+    const auto shown =
+        test::nendo({"monitor", "lucidgloves:" + link, "--json", "--raw", "--count", "100"});
+    CHECK(shown.err.find("values out of range") != std::string::npos);
+  }
+
+  TEST_CASE("two right-hand gloves: the advice of the error works as it stands") {
+    const TemporaryFolder folder;
+    const std::string one = (folder.path() / "one").string();
+    const std::string two = (folder.path() / "two").string();
+    const std::string take = (folder.path() / "take.nendo").string();
+    const test::Program first({"emulate", "--link", one});
+    const test::Program second({"emulate", "--link", two});
+    test::appears(one);
+    test::appears(two);
+    for (const std::string options : {"", "?rate=60"}) {
+      const auto refused = test::nendo(
+          {"record", "serial:" + one, "serial:" + two + options, "--out", take, "--duration", "1"});
+      CHECK(refused.exit_code == 2);
+      const std::string mark = "say ";
+      const auto at = refused.err.find(mark);
+      REQUIRE(at != std::string::npos);
+      std::string advice = refused.err.substr(at + mark.size());
+      advice.erase(advice.find('\n'));
+      REQUIRE(advice.size() > 2); // in quotes, for the shell
+      CHECK(advice.front() == '\'');
+      advice = advice.substr(1, advice.size() - 2);
+      CAPTURE(advice);
+      const auto done = test::nendo({"record", "serial:" + one, advice, "--out", take + options,
+                                     "--duration", "1s", "--json"});
+      CAPTURE(done.err);
+      REQUIRE(done.exit_code == 0);
+      CHECK(done.err.find("says that it is a right-hand one") != std::string::npos);
+      const json gloves = last_object(done)["gloves"];
+      REQUIRE(gloves.size() == 2);
+      CHECK(gloves[0]["hand"] == "right");
+      CHECK(gloves[1]["hand"] == "left");
+    }
+    // The other commands take the same name.
+    for (const std::string command : {"info", "monitor", "poses"}) {
+      std::vector<std::string> words{command, "serial:" + two + "?hand=left"};
+      if (command == "monitor") words.insert(words.end(), {"--json"});
+      if (command != "info") words.insert(words.end(), {"--count", "3"});
+      const auto done = test::nendo(words);
+      CAPTURE(done.err);
+      CHECK(done.exit_code == 0);
+      CHECK(done.out.find("left") != std::string::npos);
+    }
+  }
+
   TEST_CASE("run and stress tell the same, as text and as JSON, and so does a run's recording") {
     const LossyGlove glove;
     const std::string take = glove.path("take.nendo");

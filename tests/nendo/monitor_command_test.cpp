@@ -225,6 +225,41 @@ TEST_SUITE("monitor") {
     CHECK(failed.is_restored());
   }
 
+  TEST_CASE("Ctrl-Z gives the terminal back, and fg brings the page and the keys again") {
+    const std::string script =
+        std::string(NENDO_PROGRAM) + " monitor sim; echo suspended-now; read x; fg; echo over-now";
+    TerminalProgram shell({"-mc", script}, 80, 24, "xterm", "/bin/bash");
+    REQUIRE(shell.sees("index_mcp"));
+    CHECK(shell.is_raw());
+    REQUIRE(shell.press('\x1a'));
+    REQUIRE(shell.tells("suspended-now"));
+    CHECK_FALSE(shell.screen().on_page());
+    CHECK(shell.screen().cursor_shown());
+    CHECK(shell.has_lines_and_echo());
+    REQUIRE(shell.press('\n'));
+    REQUIRE(shell.sees([](const VtScreen& screen) { return screen.on_page(); }));
+    REQUIRE(shell.sees("index_mcp"));
+    CHECK(shell.is_raw());
+    REQUIRE(shell.press('q'));
+    CHECK(shell.tells("over-now"));
+    CHECK(shell.wait() == 0);
+    CHECK(shell.is_restored());
+  }
+
+  TEST_CASE("a terminal that is dumb gets lines, and not one control code") {
+    for (const std::string term : {"dumb", ""}) {
+      TerminalProgram program({"monitor", "sim"}, 80, 24, term);
+      REQUIRE(program.tells("delivered"));
+      CHECK_FALSE(program.screen().on_page());
+      CHECK(program.screen().cursor_shown());
+      REQUIRE(program.press('q'));
+      CHECK(program.wait() == 0);
+      CHECK(program.screen().sequences() == 0);
+      CHECK(program.screen().faults().empty());
+      CHECK(program.is_restored());
+    }
+  }
+
   TEST_CASE("--json prints lines in a terminal too") {
     TerminalProgram program({"monitor", "sim", "--json", "--count", "3"}, 80, 24);
     CHECK(program.wait() == 0);

@@ -1,6 +1,7 @@
 // The text and the JSON of a stress report say the same figures.
 
 #include "stress/report.hpp"
+#include "stress/verdict.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -91,6 +92,74 @@ void check_equal(const std::vector<double>& shown, const std::vector<double>& ex
 } // namespace
 
 TEST_SUITE("stress report") {
+  TEST_CASE("the first line says whether the rate was kept, how far not, why, and what to try") {
+    StressOptions options;
+    options.run.loop.rate_hz = 1000.0;
+    StressOutcome outcome(options.run.loop);
+    fill(outcome); // ten of the ticks are 1.2 ms late and more
+    outcome.grants = {{"policy", "SCHED_FIFO 80", false, "Operation not permitted", "do this"}};
+    const Verdict verdict = judge(options, outcome);
+    CHECK_FALSE(verdict.punctual);
+    CHECK(verdict.late == 10);
+    CHECK(verdict.due >= 1000);
+    CHECK(verdict.max_late_us > 1200.0);
+    CHECK(verdict.reason.find("SCHED_FIFO 80 is refused") != std::string::npos);
+    CHECK(verdict.remedy == "do this");
+    const std::string line = test::lines_of(text_of(options, outcome, nullptr)).at(0);
+    CAPTURE(line);
+    CHECK(line.starts_with("1 kHz: no: 10 of 1,0"));
+    CHECK(line.find("by up to 1.3 ms, because ") != std::string::npos);
+    CHECK(line.ends_with("; try: do this."));
+    const ordered_json report = stress_json(options, outcome)["verdict"];
+    CHECK(report["text"] == line);
+    CHECK(report["punctual"] == false);
+    CHECK(report["late_ticks"] == 10);
+    CHECK(report["reason"] == verdict.reason);
+    CHECK(report["remedy"] == verdict.remedy);
+  }
+
+  TEST_CASE("a remedy is one for this machine: no right that is there, no second CPU that is not") {
+    StressOptions options;
+    options.run.loop.rate_hz = 1000.0;
+    options.run.realtime.priority = 80;
+    StressOutcome outcome(options.run.loop);
+    fill(outcome);
+    outcome.grants = {{"policy", "SCHED_FIFO 80", true, "", ""}};
+    CHECK(judge(options, outcome).reason.find("refused") == std::string::npos);
+    options.run.realtime.priority = 0;
+    outcome.grants.clear();
+    CHECK(judge(options, outcome).remedy == "-p 80");
+    // The usual work of a tick, 90 us and more, is what a rate of 12 kHz has no room for.
+    options.run.loop.rate_hz = 12'000.0;
+    outcome.environment.cpus = 1;
+    const Verdict alone = judge(options, outcome);
+    CHECK(alone.reason.find("the work of a tick takes") != std::string::npos);
+    CHECK(alone.remedy.find("--threads") == std::string::npos);
+    CHECK(alone.remedy.find(" (-i ") != std::string::npos);
+    outcome.environment.cpus = 4;
+    CHECK(judge(options, outcome).remedy.find("--threads 2") != std::string::npos);
+  }
+
+  TEST_CASE("a loop that kept its rate is told so, and one without a rate is not judged") {
+    StressOptions options;
+    options.run.loop.rate_hz = 90.0; // whose ticks have 11 ms
+    StressOutcome outcome(options.run.loop);
+    fill(outcome);
+    const Verdict verdict = judge(options, outcome);
+    CHECK(verdict.punctual);
+    CHECK(verdict.reason.empty());
+    CHECK(verdict.remedy.empty());
+    CHECK(in_words(verdict, options, outcome).starts_with("90 Hz: yes, with each of 1,0"));
+    options.run.loop.policy = flow::OverrunPolicy::sample;
+    CHECK_FALSE(judge(options, outcome).judged);
+    CHECK(stress_json(options, outcome)["verdict"]["punctual"].is_null());
+    const StressOutcome nothing(options.run.loop);
+    options.run.loop.policy = flow::OverrunPolicy::skip;
+    CHECK_FALSE(judge(options, nothing).punctual);
+    CHECK(in_words(judge(options, nothing), options, nothing).find("no tick ran") !=
+          std::string::npos);
+  }
+
   TEST_CASE("each figure of the text is that of the JSON, and an earlier report stands beside it") {
     StressOptions options;
     options.run.loop.rate_hz = 1000.0;

@@ -22,9 +22,18 @@ namespace nendo::test {
 
 class TerminalProgram {
 public:
-  TerminalProgram(std::vector<std::string> arguments, unsigned short columns, unsigned short rows)
+  /// `term` is the kind of terminal that the program is told of.
+  TerminalProgram(std::vector<std::string> arguments, unsigned short columns, unsigned short rows,
+                  const std::string& term = "xterm", const std::string& program = NENDO_PROGRAM)
       : screen_(columns, rows) {
-    arguments.insert(arguments.begin(), NENDO_PROGRAM);
+    arguments.insert(arguments.begin(), program);
+    std::vector<std::string> variables{"TERM=" + term};
+    for (char** at = environ; *at != nullptr; ++at)
+      if (!std::string(*at).starts_with("TERM=")) variables.emplace_back(*at);
+    std::vector<char*> environment;
+    for (auto& variable : variables)
+      environment.push_back(variable.data());
+    environment.push_back(nullptr);
     std::vector<char*> argv;
     for (auto& argument : arguments)
       argv.push_back(argument.data());
@@ -37,7 +46,7 @@ public:
     if (pid_ != 0) return;
     ::close(master_);
     ::login_tty(slave_);
-    ::execv(argv[0], argv.data());
+    ::execve(argv[0], argv.data(), environment.data());
     ::_exit(127);
   }
   ~TerminalProgram() {
@@ -101,6 +110,13 @@ public:
     return !screen_.on_page() && screen_.cursor_shown() && after.c_lflag == before_.c_lflag &&
            after.c_iflag == before_.c_iflag && after.c_oflag == before_.c_oflag &&
            std::equal(std::begin(after.c_cc), std::end(after.c_cc), std::begin(before_.c_cc));
+  }
+  /// Tells whether what a line editor changes is as it was before the program.
+  bool has_lines_and_echo() const {
+    termios now{};
+    tcgetattr(slave_, &now);
+    return (now.c_lflag & before_.c_lflag & static_cast<tcflag_t>(ICANON | ECHO)) ==
+           static_cast<tcflag_t>(ICANON | ECHO);
   }
   bool is_raw() const {
     termios now{};

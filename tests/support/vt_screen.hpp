@@ -58,6 +58,7 @@ public:
   bool cursor_shown() const { return cursor_shown_; }
   int pages() const { return pages_; } ///< times that drawing began at the top
   const std::string& faults() const { return faults_; }
+  int sequences() const { return sequences_; } ///< control sequences so far
 
 private:
   void fault(const std::string& what) { faults_ += what + "; "; }
@@ -77,6 +78,7 @@ private:
   }
 
   void handle(const std::string& parameters, char final) {
+    ++sequences_;
     if (parameters == "?1049" && (final == 'h' || final == 'l')) {
       on_page_ = final == 'h';
     } else if (parameters == "?25" && (final == 'h' || final == 'l')) {
@@ -107,6 +109,7 @@ private:
   bool on_page_ = false;
   bool cursor_shown_ = true;
   int pages_ = 0;
+  int sequences_ = 0;
 };
 
 } // namespace nendo::test

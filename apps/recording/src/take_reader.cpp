@@ -201,6 +201,12 @@ std::optional<std::vector<driver::RecordCounts>> sent_of(std::span<const std::by
     counts.refused = reader.u64_le();
     counts.bad = reader.u64_le();
   }
+  if (reader.remaining() > 0) { // earlier versions wrote no more
+    for (driver::RecordCounts& counts : gloves) {
+      counts.tells_missed = reader.u8() != 0;
+      counts.clamped = reader.u64_le();
+    }
+  }
   if (reader.overrun()) return std::nullopt;
   return gloves;
 }
@@ -226,6 +232,10 @@ void put_sent(ByteWriter& writer, std::span<const driver::RecordCounts> gloves) 
   for (const driver::RecordCounts& counts : gloves)
     for (const std::uint64_t count : {counts.delivered, counts.missed, counts.refused, counts.bad})
       writer.u64_le(count);
+  for (const driver::RecordCounts& counts : gloves) {
+    writer.u8(counts.tells_missed ? 1 : 0);
+    writer.u64_le(counts.clamped);
+  }
 }
 
 TakeReader::TakeReader(driver::ChunkReader chunks) : chunks_(std::move(chunks)) {

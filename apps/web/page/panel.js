@@ -242,7 +242,8 @@ class Panel {
     part.className = hand.silent ? 'glove silent' : 'glove'
     const { sent, delivered, missed, refused, bad } = hand.records
     part.firstChild.textContent = `${slot === 0 ? 'left' : 'right'}: ${hand.samples} samples${hand.silent ? ', silent' : ''}${hand.uncalibrated ? ', uncalibrated' : ''}; ` +
-      `${sent} sent, ${delivered} delivered, ${missed} missed, ${refused} refused, ${bad} bad records`
+      (missed === 0xFFFFFFFF ? `${delivered} delivered, losses on the line unknown`
+        : `${sent} sent, ${delivered} delivered, ${missed} missed`) + `, ${refused} refused, ${bad} bad records`
     drawBends(part.lastChild, hand)
   }
 }

@@ -14,6 +14,7 @@
 #include "cyberglove/cyberglove_options.hpp"
 #include "cyberglove/cyberglove_parameters.hpp"
 #include "cyberglove/cyberglove_parser.hpp"
+#include "cyberglove/hi_res_check.hpp"
 #include "cyberglove/record_check.hpp"
 #include "stream/device_clock.hpp"
 #include "transport/follow_port.hpp"
@@ -111,7 +112,7 @@ public:
     // After eg there may be another glove in the unit: what it measures is not known until it was
     // asked.
     const auto check = [&](Record& record) {
-      if (!pulled_) return check_(record);
+      if (!pulled_) return identity_.hires ? hires_check_(record, arrival) : check_(record);
       doubtful_ = true;
       return Verdict{false, 0};
     };
@@ -124,6 +125,11 @@ public:
   bool is_doubtful() const noexcept override { return doubtful_; }
 
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }
+
+  bool tells_missed() const noexcept override {
+    if (identity_.hires) return hires_check_.tells_missed();
+    return identity_.shape.time_stamp && check_.trusts_stamps();
+  }
 
 private:
   /// Greets the unit, at another line rate if need be, asks and sets up.
@@ -161,6 +167,7 @@ private:
     const bool keeps_period = identity_.rate_hz > 0.0 && !identity_.sync;
     const double period = keeps_period ? clock_hz / identity_.rate_hz : 0.0;
     check_ = RecordCheck(static_cast<std::uint64_t>(std::llround(period)));
+    hires_check_ = HiResCheck(identity_.rate_hz);
     same_clock_ = false;
   }
 
@@ -196,6 +203,7 @@ private:
   Identity identity_;
   Parser parser_{RecordShape{}};
   RecordCheck check_;
+  HiResCheck hires_check_;
   TickUnwrapper ticks_;
   DeviceClock clock_;
   bool same_clock_ = false; ///< the stream paused, but the glove's clock went on

@@ -6,6 +6,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "cyberglove/cyberglove_facts.hpp"
+#include "spec/glove_options.hpp"
 
 namespace nendo::driver::cyberglove {
 namespace {
@@ -186,8 +187,13 @@ Result<void> SetUp::ask_channels() {
 Result<void> SetUp::ask_hand() {
   const auto side = needed<Side>("?R", Side::right, [&] { return commands_.side(); });
   if (!side) return side.error();
-  identity_.side = *side;
+  const SideOptions wishes{options_.hand, std::nullopt};
+  const ChosenHand chosen = choose_hand(*side, wishes);
+  identity_.side = chosen.side;
   add("hand", std::string(name_of(*side)));
+  add("hand_source", std::string(chosen.source));
+  if (auto note = hand_override(*side, wishes); !note.empty())
+    identity_.notes.push_back(std::move(note));
   return {};
 }
 

@@ -8,6 +8,7 @@
 
 #include "cyberglove/cyberglove_line.hpp"
 #include "cyberglove/cyberglove_parser.hpp"
+#include "spec/glove_options.hpp"
 #include "spec/glove_spec.hpp"
 #include "spec/number_in.hpp"
 
@@ -89,7 +90,7 @@ Error too_fast(double rate_hz, std::size_t record_bytes, int baud, const std::st
 
 Result<Options> read_options(const GloveSpec& spec) {
   auto good = allow_options(
-      spec, {"baud", "rate", "mask", "stamps", "filter", "quantised", "sync", "hires"});
+      spec, {"baud", "rate", "mask", "stamps", "filter", "quantised", "sync", "hires", "hand"});
   Options options;
   const auto also = [&](const char* key, const char* known, auto& option, auto read) {
     if (good) good = take(spec, key, known, option, read);
@@ -102,6 +103,9 @@ Result<Options> read_options(const GloveSpec& spec) {
   also("quantised", "on or off", options.quantised, read_switch);
   also("sync", "on or off", options.sync, read_switch);
   also("hires", "on or off", options.hires, read_switch);
+  const auto hand = hand_option(spec);
+  if (good && !hand) good = hand.error();
+  if (hand) options.hand = *hand;
   if (good) good = check(spec, options);
   if (!good) return good.error();
   return options;

@@ -18,7 +18,7 @@ namespace nendo::driver::cyberglove {
 /// The grammar, for the table of drivers.
 inline constexpr std::string_view options_grammar =
     "serial:PATH[?baud=N&rate=HZ&mask=0xBITS&stamps=on|off&filter=on|off&quantised=on|off&"
-    "sync=on|off&hires=on|off]";
+    "sync=on|off&hires=on|off&hand=left|right]";
 
 /// Options that are not given leave the glove as it is.
 struct Options {
@@ -28,8 +28,9 @@ struct Options {
   std::optional<bool> stamps;     ///< time stamp and status byte; on where the line carries them
   std::optional<bool> filter;
   std::optional<bool> quantised;
-  bool sync = false;  ///< a record at each pulse of the sync input
-  bool hires = false; ///< 12-bit values (CyberGlove III)
+  bool sync = false;        ///< a record at each pulse of the sync input
+  bool hires = false;       ///< 12-bit values (CyberGlove III)
+  std::optional<Side> hand; ///< whatever the glove says of itself
 };
 
 /// Reads the options. Error: usage, naming the option and what it may be.

@@ -198,6 +198,7 @@ bool Parser::settle(const Record& record, const Verdict& verdict) noexcept {
     return false;
   }
   ++counters_.records;
+  counters_.clamped += record.clamped;
   counters_.too_fast += record.sampled_too_fast ? 1U : 0U;
   counters_.record_bytes += held_;
   held_ = 0;

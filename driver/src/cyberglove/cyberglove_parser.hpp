@@ -56,6 +56,13 @@ struct Record {
   /// s. No source says what a sub-frame is, so each counts a tenth of a frame. The order is right
   /// in any case, but the time only to within a frame, so it is not for a DeviceClock.
   std::chrono::nanoseconds time_of_day{};
+  std::uint32_t second = 0;   ///< of the hi_res form: since midnight
+  std::uint8_t frame = 0;     ///< of the hi_res form: within the second, 0 to 30
+  std::uint8_t sub_frame = 0; ///< of the hi_res form: 0 to 9
+  /// Of the hi_res form: sensors that sent 0, which a sensor sends that has failed. Their values
+  /// are
+  /// 1. If all have, no_glove is set.
+  unsigned clamped = 0;
 };
 
 /// Decodes one frame, which includes its NUL. Returns nothing if length, header or content are

@@ -1,5 +1,6 @@
 #include "cyberglove/hi_res_record.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 #include <nendo/base/byte_reader.hpp>
@@ -46,8 +47,7 @@ bool continues_hi_res(std::span<const std::byte> bytes) noexcept {
   if (last < hi_res_time_bytes) return continues_time(bytes, last);
   if (last >= values_end) return std::to_integer<char>(bytes[last]) == tail[last - values_end];
   const bool high = (last - hi_res_time_bytes) % 2 == 0;
-  if (high) return std::to_integer<unsigned>(bytes[last]) <= hi_res_most >> 8U;
-  return bytes[last] != std::byte{0} || bytes[last - 1] != std::byte{0};
+  return !high || std::to_integer<unsigned>(bytes[last]) <= hi_res_most >> 8U;
 }
 
 bool begins_hi_res(std::span<const std::byte> bytes) noexcept {
@@ -60,15 +60,23 @@ bool begins_hi_res(std::span<const std::byte> bytes) noexcept {
 Record read_hi_res(std::span<const std::byte> frame) noexcept {
   using namespace std::chrono;
   Record record;
-  const int frames = sub_frames * number_at(frame, 9) + std::to_integer<int>(frame[12]) - '0';
-  record.time_of_day = hours(number_at(frame, 0)) + minutes(number_at(frame, 3)) +
-                       seconds(number_at(frame, 6)) +
-                       nanoseconds(seconds(frames)) / (frames_per_second * sub_frames);
+  const auto whole =
+      hours(number_at(frame, 0)) + minutes(number_at(frame, 3)) + seconds(number_at(frame, 6));
+  const int frames = number_at(frame, 9);
+  const int sub_frame = std::to_integer<int>(frame[12]) - '0';
+  record.time_of_day = whole + nanoseconds(seconds(sub_frames * frames + sub_frame)) /
+                                   (frames_per_second * sub_frames);
+  record.second = static_cast<std::uint32_t>(whole.count());
+  record.frame = static_cast<std::uint8_t>(frames);
+  record.sub_frame = static_cast<std::uint8_t>(sub_frame);
   ByteReader reader(frame.subspan(hi_res_time_bytes));
   for (std::size_t k = 0; k < hi_res_values; ++k) {
     const unsigned high = reader.u8();
-    record.values[k] = static_cast<std::uint16_t>(high << 8U | reader.u8());
+    const auto value = static_cast<std::uint16_t>(high << 8U | reader.u8());
+    record.values[k] = std::max<std::uint16_t>(value, 1);
+    record.clamped += value == 0 ? 1U : 0U;
   }
+  record.no_glove = record.clamped == hi_res_values;
   return record;
 }
 

@@ -41,6 +41,8 @@ public:
 
   /// Returns the period that was given or learnt; 0 while it is unknown.
   std::uint32_t period_ticks() const noexcept { return period_; }
+  /// Returns whether the stamps make sense. If not, nobody knows what was missed.
+  bool trusts_stamps() const noexcept { return trusted_; }
 
 private:
   /// A record and how it follows the one before.

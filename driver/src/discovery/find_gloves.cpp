@@ -37,6 +37,7 @@ void check_access(GloveCandidate& candidate) {
   PortAccess access = port_access(candidate.device);
   candidate.may_open = access.granted;
   candidate.access = std::move(access.who);
+  candidate.node_missing = access.node_missing;
   candidate.remedy = std::move(access.remedy);
 }
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 #include "fivedt/fivedt_information.hpp"
 #include "fivedt/fivedt_parser.hpp"
 #include "spec/glove_options.hpp"
@@ -142,6 +144,9 @@ private:
     const auto information =
         heard == IoStatus::done ? decode_information(finder.answer()) : std::nullopt;
     if (!information) return stranger(source, parser_.counters().bytes - before);
+    if (const auto note = hand_override(information->side, hands_);
+        !note.empty() && !std::exchange(told_of_hand_, true))
+      spdlog::warn("device: {}: {}", source, note);
     GloveInfo info = describe(choose_hand(information->side, hands_));
     if (!information->name.empty()) info.model = information->name + ", 5 sensors";
     info.facts.push_back({"firmware", std::to_string(information->version_major) + "." +
@@ -194,6 +199,7 @@ private:
   const bool left_pinky_first_;
   const SideOptions hands_;
   Side side_ = Side::right;
+  bool told_of_hand_ = false;
   Parser parser_;
 };
 

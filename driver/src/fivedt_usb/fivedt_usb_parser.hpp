@@ -15,8 +15,9 @@ namespace nendo::driver::fivedt_usb {
 
 struct Report {
   /// Values from 0 to most_count, in the order of value_sensors. Values outside that range are set
-  /// to the nearer end.
+  /// to the nearer end, and marked.
   std::array<std::uint16_t, value_sensors.size()> values{};
+  std::array<bool, value_sensors.size()> clamped{};
 };
 
 /// Returns nullopt if the report has another length. Damaged values cannot be told from good ones.

@@ -1,5 +1,6 @@
 #include "forte/forte_parser.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <nendo/base/byte_reader.hpp>
@@ -13,8 +14,9 @@ std::optional<Record> decode_record(std::span<const std::byte> frame) noexcept {
   good = reader.u8() == record_length && good;
   Record record;
   for (std::uint8_t& count : record.flexion) {
-    count = reader.u8();
-    good = count <= most_count && good;
+    const std::uint8_t sent = reader.u8();
+    count = std::min(sent, most_count);
+    record.clamped += sent > most_count ? 1U : 0U;
   }
   record.battery = reader.u8();
   good = reader.u8() == std::to_integer<std::uint8_t>(frame_end) && good;
@@ -56,6 +58,7 @@ std::optional<Record> Parser::end_frame() noexcept {
     return std::nullopt;
   }
   ++counters_.records;
+  counters_.clamped += record->clamped;
   counters_.record_bytes += std::exchange(held_, 0);
   return record;
 }

@@ -18,10 +18,11 @@ namespace nendo::driver::forte {
 struct Record {
   std::array<std::uint8_t, sensor_count> flexion{}; ///< in the order of `slots`, 0 to most_count
   std::uint8_t battery = 0;                         ///< in an unknown unit
+  unsigned clamped = 0; ///< counts that were above most_count, and are set to it
 };
 
 /// Decodes a whole frame with its first and last byte. Returns nothing if it is no record: it has
-/// another kind or length, or a count above most_count.
+/// another kind or length.
 std::optional<Record> decode_record(std::span<const std::byte> frame) noexcept;
 
 class Parser {

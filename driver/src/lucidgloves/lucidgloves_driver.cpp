@@ -25,7 +25,9 @@ using namespace std::chrono_literals;
 
 constexpr auto write_timeout = 100ms;
 constexpr auto at_once = 0ms;          ///< for the reader, which must not wait
+constexpr auto slowest_lines = 3500ms; ///< of one line a second, the first of which is skipped
 constexpr auto starting_time = 2500ms; ///< a board that restarts at opening, boot loader included
+constexpr auto waking_time = 300ms;    ///< from the end of a wait to the next line
 constexpr auto learning_time = 300ms;  ///< for an answer, and for lines with all slots
 
 std::optional<Side> hand_told_by(const Line& line) noexcept {
@@ -41,14 +43,16 @@ struct Acquaintance {
   std::optional<std::uint32_t> firmware;
   std::optional<std::uint32_t> device;
   bool legacy = false;
-  bool clamped = false;
+  bool above_range = false;
+  bool below_range = false;
 
   void add(const Line& line, std::uint16_t range) noexcept {
     GloveSample sample;
     fill_slots(line, range, sample);
     sensors.bits |= sample.present.bits;
     legacy = legacy || line.legacy;
-    clamped = clamped || line.clamped;
+    above_range = above_range || line.above_range > 0;
+    below_range = below_range || line.below_range > 0;
     if (line.firmware) firmware = line.firmware;
     if (line.device) device = line.device;
     if (const auto told = hand_told_by(line)) hand = told;
@@ -62,7 +66,7 @@ public:
 
   Result<GloveInfo> identify(Transport& transport, const std::string& source,
                              IdentifyReason /*occasion*/, const ReplyDeadline& patience) override {
-    Parser parser(range_);
+    Parser parser(range_, FirstPiece::take_if_whole);
     Acquaintance glove;
     const auto take = [&](std::span<const std::byte> chunk) {
       parser.push(chunk, [&](const Line& line) { glove.add(line, range_); });
@@ -73,10 +77,12 @@ public:
       return take(chunk), glove.hand.has_value();
     };
     IoStatus heard = listen(transport, patience, starting_time, take);
-    const bool mute = heard == IoStatus::timeout && parser.counters().bytes == 0;
-    if (mute && !legacy_) { // another program may have stopped it
-      heard = send(transport, start_streaming);
+    const auto is_mute = [&] { return heard == IoStatus::timeout && parser.counters().bytes == 0; };
+    if (is_mute()) { // it may wait for an answer to a line that nobody read
+      heard = send(transport, empty_line);
+      if (heard != IoStatus::gone) heard = listen(transport, patience, waking_time, take);
     }
+    if (is_mute() && !legacy_) heard = send(transport, start_streaming); // somebody stopped it
     if (heard != IoStatus::gone && glove.sensors.bits == 0)
       heard = listen(transport, patience, open_budget, take);
     if (heard == IoStatus::done && !glove.legacy) {
@@ -91,12 +97,20 @@ public:
     if (heard == IoStatus::gone) return went_away(source);
     if (glove.sensors.bits == 0) return stranger(source, parser.counters());
     const ChosenHand hand = choose_hand(glove.hand, hands_);
+    if (const auto note = hand_override(glove.hand, hands_);
+        !note.empty() && !std::exchange(told_of_hand_, true))
+      spdlog::warn("device: {}: {}", source, note);
     side_ = hand.side;
     tells_hand_ = glove.hand.has_value();
     legacy_ = glove.legacy;
-    if (glove.clamped && !std::exchange(told_of_clamping_, true)) {
+    if (glove.above_range && !std::exchange(told_of_above_, true)) {
       spdlog::warn("device: {} sends numbers above {}, which count as {}{}", source, range_, range_,
                    range_ < esp32_range ? "; the boards with larger ones have range=4095" : "");
+    }
+    if (glove.below_range && !std::exchange(told_of_below_, true)) {
+      spdlog::warn("device: {} sends negative numbers, which count as 0; a firmware that was built "
+                   "with CLAMP_ANALOG_MAP does not",
+                   source);
     }
     return describe(glove, hand);
   }
@@ -119,7 +133,8 @@ public:
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
             SampleSink& sink) noexcept override {
     const auto take = [&](const Line& line) {
-      side_ = hand_told_by(line).value_or(side_); // an answer may be later than identify() waits
+      if (!hands_.option) // an answer may be later than identify() waits
+        side_ = hand_told_by(line).value_or(side_);
       if (!line.measures()) return;
       legacy_ = line.legacy; // another glove may have come to the same port
       GloveSample sample;
@@ -135,8 +150,8 @@ public:
   /// become fewer where the host was late, and brakes take effect soon. Damaged lines count, too,
   /// and a glove that says nothing for 0.1 s is waiting for an answer that was lost.
   void answer(Transport& transport) noexcept override {
-    if (legacy_ || !std::exchange(its_turn_, false)) return;
-    if (has_braked_) {
+    if (!std::exchange(its_turn_, false)) return;
+    if (has_braked_ && !legacy_) {
       show_brakes(transport, at_once);
     } else {
       send(transport, empty_line, at_once);
@@ -153,6 +168,8 @@ public:
   }
 
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }
+
+  HostClock::duration longest_pause() const noexcept override { return slowest_lines; }
 
 private:
   static IoStatus send(Transport& transport, std::string_view command,
@@ -186,8 +203,9 @@ private:
                   {"hand_source", std::string(hand.source)}};
     if (glove.firmware) info.facts.push_back({"firmware", std::to_string(*glove.firmware)});
     if (glove.device) info.facts.push_back({"device_type", std::to_string(*glove.device)});
-    if (glove.clamped)
+    if (glove.above_range)
       info.facts.push_back({"above_range", "some values; they count as " + std::to_string(range_)});
+    if (glove.below_range) info.facts.push_back({"below_range", "some values; they count as 0"});
     return info;
   }
 
@@ -198,7 +216,9 @@ private:
   bool tells_hand_ = false; ///< the glove that was here last did
   bool its_turn_ = false;   ///< the glove may be waiting for an answer
   bool has_braked_ = false; ///< since it was started
-  bool told_of_clamping_ = false;
+  bool told_of_hand_ = false;
+  bool told_of_above_ = false;
+  bool told_of_below_ = false;
   bool cut_off_ = false; ///< the glove took the last command only in part
   std::array<unsigned, fingers> brakes_{};
   Parser parser_;

@@ -8,7 +8,7 @@
 namespace nendo::driver::lucidgloves {
 namespace {
 
-using Number = std::optional<std::uint32_t>;
+using Number = std::optional<std::int64_t>;
 
 constexpr bool is_digit(char c) noexcept {
   return c >= '0' && c <= '9';
@@ -51,14 +51,17 @@ Key take_key(std::string_view& text) noexcept {
   return {letters, true};
 }
 
-/// False: more digits than a number has. A key without a number is a pressed button.
+/// Takes a number of 32 bits with or without a sign, which is all that a firmware can have. A key
+/// without a number is a pressed button. Returns false if it is no such number.
 bool take_number(std::string_view& text, Number& number) noexcept {
+  const bool negative = text.starts_with('-');
+  if (negative) text.remove_prefix(1);
   const auto digits = take_while(text, is_digit);
-  if (digits.empty()) return true;
+  if (digits.empty()) return !negative;
   std::uint32_t value = 0;
   const auto [stopped, error] =
       std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  number = value;
+  number = negative ? -std::int64_t{value} : std::int64_t{value};
   return error == std::errc{};
 }
 
@@ -67,7 +70,8 @@ public:
   explicit LineDecoder(std::uint16_t range) noexcept : range_(range) {}
 
   bool decode(std::string_view text) noexcept {
-    return is_digit(text.front()) ? decode_legacy(text) : decode_alpha(text);
+    const bool legacy = is_digit(text.front()) || text.front() == '-';
+    return legacy ? decode_legacy(text) : decode_alpha(text);
   }
   const Line& line() const noexcept { return line_; }
 
@@ -80,7 +84,17 @@ private:
       if (!(key.bracketed ? set_long(key.letters, number) : set_short(key.letters[0], number)))
         return false;
     }
-    return true;
+    return far_values_ == 0 || are_credible();
+  }
+
+  /// Where two numbers ran into one, the letter between them is missing, and with it a value of its
+  /// group. A legacy line would have too few numbers.
+  bool are_credible() const noexcept {
+    const auto is_set = [](const Line::Value& value) { return value.has_value(); };
+    const bool curls = (far_values_ & far_curl) == 0 || line_.is_whole();
+    const bool splays = (far_values_ & far_splay) == 0 ||
+                        std::all_of(line_.splay.begin(), line_.splay.end(), is_set);
+    return curls && splays && (far_values_ & far_joint) == 0;
   }
 
   bool decode_legacy(std::string_view text) noexcept {
@@ -88,7 +102,7 @@ private:
     for (std::size_t k = 0; k < legacy_values; ++k) {
       Number number;
       if (!take_number(text, number) || !number) return false;
-      if (k < fingers && !set(line_.curl[k], number)) return false;
+      if (k < fingers && !set(line_.curl[k], number, far_curl)) return false;
       if (k + 1 == legacy_values) break;
       if (text.empty() || text.front() != '&') return false;
       text.remove_prefix(1);
@@ -98,7 +112,7 @@ private:
 
   bool set_short(char letter, const Number& number) noexcept {
     if (const auto finger = index_of(letter); finger < fingers)
-      return set(line_.curl[finger], number);
+      return set(line_.curl[finger], number, far_curl);
     const std::uint32_t bit = 1U << index_of(letter);
     return (std::exchange(buttons_, buttons_ | bit) & bit) == 0;
   }
@@ -109,25 +123,29 @@ private:
     if (key == "ZH") return set_once(line_.hand, number);
     const auto finger = index_of(key[0]);
     if (finger >= fingers) return true; // a key of some other firmware
-    if (key.size() == 2 && key[1] == 'B') return set(line_.splay[finger], number);
+    if (key.size() == 2 && key[1] == 'B') return set(line_.splay[finger], number, far_splay);
     if (key.size() != 3 || key[1] != 'A' || index_of(key[2]) >= joints) return true;
-    return set(line_.joint[finger][index_of(key[2])], number);
+    return set(line_.joint[finger][index_of(key[2])], number, far_joint);
   }
 
-  bool set(Line::Value& value, const Number& number) noexcept {
-    if (value || !number || *number > most_above_range) return false;
-    line_.clamped = line_.clamped || *number > range_;
-    value = static_cast<std::uint16_t>(std::min<std::uint32_t>(*number, range_));
-    return true;
-  }
-  static bool set_once(Number& value, const Number& number) noexcept {
+  bool set(Line::Value& value, const Number& number, unsigned far_kind) noexcept {
     if (value || !number) return false;
-    value = number;
+    if (*number > most_beyond_range || *number < -most_beyond_range) far_values_ |= far_kind;
+    line_.above_range += *number > range_ ? 1U : 0U;
+    line_.below_range += *number < 0 ? 1U : 0U;
+    value = static_cast<std::uint16_t>(std::clamp<std::int64_t>(*number, 0, range_));
+    return true;
+  }
+  static bool set_once(std::optional<std::uint32_t>& value, const Number& number) noexcept {
+    if (value || !number || *number < 0) return false;
+    value = static_cast<std::uint32_t>(*number);
     return true;
   }
 
+  static constexpr unsigned far_curl = 1, far_splay = 2, far_joint = 4;
   const std::uint16_t range_;
   std::uint32_t buttons_ = 0; ///< that the line has told, by letter
+  unsigned far_values_ = 0;   ///< kinds of values that were very far out of range
   Line line_;
 };
 
@@ -142,6 +160,10 @@ bool Line::measures() const noexcept {
   return any(curl) || any(splay) || std::any_of(joint.begin(), joint.end(), [&](const auto& of) {
            return std::any_of(of.begin(), of.end(), has_value);
          });
+}
+
+bool Line::is_whole() const noexcept {
+  return std::all_of(curl.begin(), curl.end(), [](const Value& value) { return bool(value); });
 }
 
 bool Line::informs() const noexcept {
@@ -159,14 +181,14 @@ std::optional<Line> Parser::push_byte(std::byte byte) noexcept {
   ++counters_.bytes;
   const char c = std::to_integer<char>(byte);
   if (c == '\n') return end_line();
-  if (state_ != State::in_line) {
+  if (state_ != State::in_line && state_ != State::first_piece) {
     ++counters_.discarded_bytes;
     return std::nullopt;
   }
   line_[held_++] = c;
   if (held_ == line_.size()) { // there is no room for the LF
     discard_held();
-    state_ = State::overlong;
+    state_ = state_ == State::first_piece ? State::begin_unseen : State::overlong;
   }
   return std::nullopt;
 }
@@ -177,14 +199,18 @@ std::optional<Line> Parser::end_line() noexcept {
   std::string_view text(line_.data(), bytes - 1);
   if (text.ends_with('\r')) text.remove_suffix(1);
   const bool empty = before == State::in_line && text.empty();
-  const auto line = before == State::in_line ? decode_line(text, range_) : std::nullopt;
+  const bool readable = before == State::in_line || before == State::first_piece;
+  auto line = readable ? decode_line(text, range_) : std::nullopt;
+  if (before == State::first_piece && line && !line->is_whole()) line.reset();
   if (line && line->measures()) {
     ++counters_.records;
+    counters_.clamped += line->above_range + line->below_range;
     counters_.record_bytes += bytes;
     return line;
   }
   counters_.discarded_bytes += bytes;
-  if (!line && !empty && before != State::begin_unseen) count_bad();
+  const bool may_be_cut = before == State::begin_unseen || before == State::first_piece;
+  if (!line && !empty && !may_be_cut) count_bad();
   return line;
 }
 
@@ -195,7 +221,7 @@ void Parser::discard_held() noexcept {
 
 void Parser::reset() noexcept {
   discard_held();
-  state_ = State::begin_unseen;
+  state_ = first_ == FirstPiece::skip ? State::begin_unseen : State::first_piece;
 }
 
 } // namespace nendo::driver::lucidgloves

@@ -26,20 +26,32 @@ struct Line {
   std::optional<std::uint32_t> device;
   std::optional<std::uint32_t> hand;
   bool legacy = false;
-  bool clamped = false; ///< a value was above the range
+  unsigned above_range = 0; ///< values that were, and are set to the range
+  unsigned below_range = 0; ///< values that were negative, and are set to 0
 
   bool measures() const noexcept; ///< has a value of a finger
   bool informs() const noexcept;  ///< has a value of the glove itself
+  bool is_whole() const noexcept; ///< has the curls of all fingers
 };
 
-/// Decodes one line without its end. Values above `range` become `range`. Returns nothing if the
-/// line violates the encoding, holds a value above most_above_range, tells a value twice (as two
-/// lines that were joined do), or tells nothing of a hand.
+/// Decodes one line without its end. Values above `range` become `range`, negative ones 0. Returns
+/// nothing if the line violates the encoding, tells a value twice (as two lines that were joined
+/// do), tells nothing of a hand, or holds a value farther from 0 than most_beyond_range beside
+/// which others are missing (as two numbers that were joined are).
 std::optional<Line> decode_line(std::string_view text, std::uint16_t range) noexcept;
+
+/// What to do with the bytes before the first LF.
+enum class FirstPiece : std::uint8_t {
+  skip,
+  take_if_whole, ///< Line::is_whole(): enough to know the glove by, but its first number may be cut
+};
 
 class Parser {
 public:
-  explicit Parser(std::uint16_t range) noexcept : range_(range) {}
+  explicit Parser(std::uint16_t range, FirstPiece first = FirstPiece::skip) noexcept
+      : range_(range), first_(first) {
+    reset();
+  }
 
   /// Takes the next bytes of the stream, cut anywhere, and hands each good line to `sink(const
   /// Line&)`. Lines that measure count as records; replies do not.
@@ -63,7 +75,7 @@ public:
   std::size_t pending() const noexcept { return held_; }
 
 private:
-  enum class State : std::uint8_t { in_line, begin_unseen, overlong };
+  enum class State : std::uint8_t { in_line, begin_unseen, first_piece, overlong };
 
   std::optional<Line> push_byte(std::byte byte) noexcept;
   std::optional<Line> end_line() noexcept;
@@ -71,6 +83,7 @@ private:
   void count_bad() noexcept { ++counters_.bad_records, ++bad_; }
 
   const std::uint16_t range_;
+  const FirstPiece first_;
   State state_ = State::begin_unseen;
   std::array<char, most_line_bytes> line_{};
   std::size_t held_ = 0;

@@ -31,11 +31,10 @@ inline constexpr std::size_t legacy_values = 13;   ///< [F]
 inline constexpr std::uint16_t esp32_range = 4095; ///< the largest number; 12 bits [F, O]
 inline constexpr std::uint16_t avr_range = 1023;   ///< 10 bits [F]
 /// A firmware that was built with CLAMP_ANALOG_MAP false sends what its calibration makes of a
-/// finger that goes further than it did before, also above the range [F]. [O] takes such a line,
-/// and leaves that finger as it was. Here the finger is at the end of its range, where it really
-/// is, up to this number. Beyond that it is no finger: two numbers that ran into one, or damage
-/// [?]. The same firmware sends numbers below 0, too. [O] refuses lines with a sign, and so do we.
-inline constexpr std::uint32_t most_above_range = 65'535;
+/// finger that goes further than it did before: numbers above the range, and negative ones [F]. [O]
+/// leaves that finger as it was, or refuses the line. Here the finger is at the end of its range,
+/// where it really is. So far beyond it a number may also be two that ran into one [?].
+inline constexpr std::int64_t most_beyond_range = 65'535;
 inline constexpr std::size_t most_line_bytes = 256; ///< with LF; firmwares have 75 [F] to 256 [S]
 inline constexpr std::uint32_t hand_left = 0;       ///< (ZH) [S]
 inline constexpr std::uint32_t hand_right = 1;      ///< (ZH) [S]
@@ -43,18 +42,20 @@ inline constexpr std::uint32_t hand_right = 1;      ///< (ZH) [S]
 // To the glove. Firmwares that do not know a command look in it for the letters A to E and a
 // number: the first command has none, the second frees the thumb, unless they ignore lines of less
 // than five characters, as today's do [F]. Legacy firmwares take any line for five brakes joined by
-// &, and missing ones get undefined values [F]. So once such a firmware is recognised, nothing is
-// sent to it.
+// &, and missing ones get undefined values [F]. So once such a firmware is recognised, it gets
+// nothing but empty lines.
 //
 // With force feedback (USING_FORCE_FEEDBACK true, the default today) the firmware's loop sends a
-// line and then waits for one, for Arduino's 1 s [F]. [O] writes a line for each one that it reads.
-// A host that writes nothing gets one line a second. So each line is answered: by the brakes, if
-// anything has set them, or else by an empty line, which all firmwares ignore [F, S].
+// line and then waits for one: for Arduino's 1 s, or for as long as its version sets [F]. [O]
+// writes a line for each one that it reads. A host that writes nothing gets one line a second, or
+// one in all. So each line is answered: by the brakes, if anything has set them, or else by an
+// empty line. No serial firmware of LucidGloves, of any year and in either encoding, decodes an
+// empty line: it ends the wait and does nothing else [F, S].
 //
 // Nobody knows beforehand which firmware is there, so the glove has the first word, and its first
-// whole line tells: a legacy one begins with a digit, any other with a letter or a bracket. Legacy
-// firmwares with force feedback wait, too. They stay slow: an empty line would do them no harm
-// today, but that is the word of one version.
+// whole line tells: a legacy one begins with a number, any other with a letter or a bracket. One
+// that says nothing may be waiting: first an empty line ends that, and only if it does not help,
+// the glove is told to stream.
 inline constexpr std::string_view ask_information = "\nZ\n"; ///< answered by (ZV) (ZG) (ZH) [S]; LF
                                                              ///< ends what another host left
 inline constexpr std::byte line_end{'\n'};

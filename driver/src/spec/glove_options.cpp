@@ -46,10 +46,17 @@ Result<std::optional<Side>> hand_option(const GloveSpec& spec) {
 }
 
 ChosenHand choose_hand(std::optional<Side> glove, const SideOptions& wishes) noexcept {
-  if (glove) return {*glove, "glove"};
   if (wishes.option) return {*wishes.option, "option"};
+  if (glove) return {*glove, "glove"};
   if (wishes.wanted) return {*wishes.wanted, "caller"};
   return {Side::right, "assumed"};
+}
+
+std::string hand_override(std::optional<Side> glove, const SideOptions& wishes) {
+  if (!glove || !wishes.option || *glove == *wishes.option) return {};
+  return "the glove says that it is a " + std::string(name_of(*glove)) +
+         "-hand one; it is used as a " + std::string(name_of(*wishes.option)) +
+         "-hand one, as hand= asks";
 }
 
 Result<void> require_port(const GloveSpec& spec, std::string_view example) {

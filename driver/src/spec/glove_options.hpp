@@ -4,6 +4,7 @@
 
 #include <initializer_list>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include <nendo/base/result.hpp>
@@ -24,7 +25,7 @@ Result<std::string_view> word_option(const GloveSpec& spec, std::string_view key
 /// Returns the side of `hand=left|right`, or nothing if the option is missing. Error: usage.
 Result<std::optional<Side>> hand_option(const GloveSpec& spec);
 
-/// Decides which hand a glove is on: what the glove says, or else the option, or else the caller's
+/// Decides which hand a glove is on: what the option says, or else the glove, or else the caller's
 /// wish, or else right.
 struct SideOptions {
   std::optional<Side> option;
@@ -35,6 +36,9 @@ struct ChosenHand {
   std::string_view source; ///< glove, option, caller or assumed
 };
 ChosenHand choose_hand(std::optional<Side> glove, const SideOptions& wishes) noexcept;
+
+/// Returns a sentence for people where the option contradicts the glove, or an empty text.
+std::string hand_override(std::optional<Side> glove, const SideOptions& wishes);
 
 /// Fails with the error `usage` if `spec` names no port. `example` is a specification that names
 /// one.

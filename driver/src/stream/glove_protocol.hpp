@@ -81,6 +81,10 @@ public:
     (void)transport, (void)feedback, (void)patience;
   }
   virtual const StreamCounters& counters() const noexcept = 0;
+  /// Returns true while StreamCounters::missed is all that was lost of the stream.
+  virtual bool tells_missed() const noexcept { return false; }
+  /// Returns how long a working device may send no record, if it is one that takes its time.
+  virtual HostClock::duration longest_pause() const noexcept { return {}; }
 };
 
 } // namespace nendo::driver

@@ -24,6 +24,10 @@ public:
   }
   /// Counts bytes that were read while nobody wanted records.
   void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
+  /// Counts values of the last record that were out of their range.
+  void count_clamped(int values) noexcept {
+    counters_.clamped += static_cast<std::uint64_t>(values);
+  }
   const StreamCounters& counters() const noexcept { return counters_; }
 
 private:

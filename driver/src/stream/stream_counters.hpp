@@ -17,6 +17,7 @@ struct StreamCounters {
   std::uint64_t missed = 0;      ///< sent, as the device's clock tells, and not delivered
   std::uint64_t too_fast = 0;    ///< delivered, but not sampled when they should have been
   std::uint64_t unplugged = 0;   ///< whole records that say that no glove is plugged in
+  std::uint64_t clamped = 0;     ///< values of delivered records that were out of their range
 
   /// Counts bytes that somebody else read from the same stream and that were no records.
   void count_discarded(std::uint64_t count) noexcept {

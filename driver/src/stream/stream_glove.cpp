@@ -43,13 +43,15 @@ constexpr std::array counts{Count{&StreamCounters::bytes, &GloveStats::bytes},
                             Count{&StreamCounters::implausible, &GloveStats::implausible},
                             Count{&StreamCounters::missed, &GloveStats::missed},
                             Count{&StreamCounters::too_fast, &GloveStats::too_fast},
-                            Count{&StreamCounters::unplugged, &GloveStats::unplugged}};
+                            Count{&StreamCounters::unplugged, &GloveStats::unplugged},
+                            Count{&StreamCounters::clamped, &GloveStats::clamped}};
 
 /// GloveStats, written by the reader thread and read by any.
 struct SharedStats {
   std::array<std::atomic<std::uint64_t>, counts.size()> counted{};
   std::atomic<std::uint64_t> ring_refused{0}, silences{0}, reopened{0};
   std::atomic<double> rate_hz{0.0};
+  std::atomic<bool> tells_missed{false};
 
   /// `now` and `then` are the protocol's counters, which outlive a stop() and another start().
   void store(const StreamCounters& now, const StreamCounters& then) noexcept {
@@ -64,6 +66,7 @@ struct SharedStats {
     stats.silences = silences;
     stats.reopened = reopened;
     stats.rate_hz = rate_hz;
+    stats.tells_missed = tells_missed;
     return stats;
   }
 };
@@ -89,6 +92,7 @@ private:
   StreamEnd stream(const std::stop_token& token);
   void deliver(GloveSample& sample) noexcept override;
   void reject() noexcept override { ++bad_since_record_; }
+  void store_counts() noexcept;
   void show_feedback(const std::stop_token& token) noexcept;
   void skip_backlog(HostClock::duration waited) noexcept;
   void measure_rate(HostTime now);
@@ -133,7 +137,7 @@ Result<void> StreamGlove::start(SampleRing& ring) {
   if (auto ready = protocol_->start_stream(*transport_, info_.source, patience); !ready)
     return ready.error();
   at_start_ = protocol_->counters();
-  stats_.store(at_start_, at_start_);
+  store_counts();
   stats_.ring_refused = stats_.silences = stats_.reopened = 0;
   ring_ = &ring;
   sequence_ = 0;
@@ -162,7 +166,7 @@ void StreamGlove::run(const std::stop_token& token) {
     switch (stream(token)) {
     case StreamEnd::stopped:
       if (transport_) protocol_->end_stream(*transport_, {HostClock::now() + stop_budget, {}});
-      stats_.store(protocol_->counters(), at_start_);
+      store_counts();
       return;
     case StreamEnd::silent:
       revive(token);
@@ -187,7 +191,8 @@ StreamGlove::StreamEnd StreamGlove::stream(const std::stop_token& token) {
   // Who did not answer is asked again soon; meanwhile it may have begun to stream by itself.
   const auto longest_silence = unanswered_
                                    ? HostClock::duration(retry_interval)
-                                   : std::max<HostClock::duration>(shortest_silence, three_periods);
+                                   : std::max<HostClock::duration>({shortest_silence, three_periods,
+                                                                    protocol_->longest_pause()});
   last_record_ = HostClock::now();
   while (!token.stop_requested()) {
     if (!transport_) return StreamEnd::gone;
@@ -197,7 +202,7 @@ StreamGlove::StreamEnd StreamGlove::stream(const std::stop_token& token) {
     if (status == IoStatus::gone) return StreamEnd::gone;
     protocol_->push(std::span(buffer).first(count), arrival_, *this);
     protocol_->answer(*transport_);
-    stats_.store(protocol_->counters(), at_start_);
+    store_counts();
     if (!caught_up_) skip_backlog(arrival_ - asked);
     measure_rate(arrival_);
     if (protocol_->is_doubtful() || bad_since_record_ >= bad_in_a_row) return StreamEnd::doubtful;
@@ -215,6 +220,11 @@ void StreamGlove::deliver(GloveSample& sample) noexcept {
   if (!ring_->try_push(sample)) ++stats_.ring_refused;
   bad_since_record_ = 0;
   if (std::exchange(outage_, false)) spdlog::warn("device: {} streams again", info_.source);
+}
+
+void StreamGlove::store_counts() noexcept {
+  stats_.store(protocol_->counters(), at_start_);
+  stats_.tells_missed = protocol_->tells_missed();
 }
 
 void StreamGlove::show_feedback(const std::stop_token& token) noexcept {
@@ -302,7 +312,7 @@ bool StreamGlove::restart(const std::stop_token& token, IdentifyReason occasion)
     const std::lock_guard lock(feedback_mutex_);
     feedback_changed_ = !(feedback_ == Feedback{});
   }
-  stats_.store(protocol_->counters(), at_start_);
+  store_counts();
   // Each reason once, however often it is tried.
   const std::string why = streams ? std::string() : streams.error().message;
   if (why != std::exchange(complaint_, why) && !why.empty())

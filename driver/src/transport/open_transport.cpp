@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include "discovery/programs.hpp"
+#include "transport/missing_node.hpp"
 #include "transport/port_access.hpp"
 
 namespace nendo::driver {
@@ -26,6 +27,10 @@ Error open_error(const std::string& path, int error_number) {
                                  holder_of(resolve_port(path)) + "; close that one first"};
   case ENOENT:
   case ENOTDIR:
+    if (const auto remedy = missing_node(path)) {
+      return {Errc::no_device,
+              path + ": the kernel has this port, but there is no node for it here; " + *remedy};
+    }
     return {Errc::no_device,
             path + ": no such port; is the glove plugged in? `nendo devices` lists the ports"};
   case ENOTTY:

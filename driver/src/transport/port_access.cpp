@@ -10,6 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "transport/missing_node.hpp"
+
 namespace nendo::driver {
 namespace {
 
@@ -63,7 +65,10 @@ PortAccess port_access(const std::string& path) {
 
 PortAccess refused_access(const std::string& path) {
   struct stat status{};
-  if (::stat(path.c_str(), &status) != 0) return {false, "", "plug it in again"};
+  if (::stat(path.c_str(), &status) != 0) {
+    if (auto remedy = missing_node(path)) return {false, "", *std::move(remedy), true};
+    return {false, "", "plug it in again"};
+  }
   constexpr mode_t group_both = S_IRGRP | S_IWGRP;
   constexpr mode_t owner_both = S_IRUSR | S_IWUSR;
   if ((status.st_mode & group_both) == group_both && status.st_gid != 0) {

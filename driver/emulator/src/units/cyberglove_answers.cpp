@@ -18,12 +18,19 @@ namespace {
 constexpr std::array<std::string_view, 3> model_names{"CyberGlove", "CyberGlove II",
                                                       "CyberGlove III"};
 
-// A right glove's text begins with CG: one known host tells the hands apart by that.
+// What the firmware of each model says is not published. Known is that a right glove's text begins
+// with CG, by which one host tells the hands apart, and that hosts look in it for the model's name;
+// those that look for the glove's port among others also look for who made it.
+constexpr std::array<std::string_view, 3> makers{"Virtual Technologies, Inc.",
+                                                 "Immersion Corporation, CyberGlove Systems",
+                                                 "CyberGlove Systems LLC"};
+
 std::string information(unsigned model, const PluggedGlove& glove) {
   const std::string sensors = std::to_string(glove.sensors());
   return " \r\n" + std::string(glove.side == Side::right ? "CG" : "LG") + sensors + " " +
          std::string(model_names[model - 1]) + ", " + sensors + " sensors, " +
-         std::string(name_of(glove.side)) + " hand\r\nemulated by Nendo\r\n";
+         std::string(name_of(glove.side)) + " hand\r\n" + std::string(makers[model - 1]) +
+         "\r\nemulated by Nendo\r\n";
 }
 
 // It is known that there is such a text, but not what it says.

@@ -27,7 +27,7 @@ struct UnitOptions {
   unit::WordOrder period_order = unit::WordOrder::high_first;
   bool stamp_bit7 = true;
   unit::HiResForm hires_form = unit::HiResForm::hardware;
-  std::chrono::nanoseconds restart_time = std::chrono::milliseconds(1750);
+  std::chrono::nanoseconds restart_time = std::chrono::milliseconds(200);
   bool overrun = false;               ///< EmulatedCyberGlove::overrun
   bool streaming = false;             ///< it streams from the start, as after a host that died
   bool pattern = false;               ///< EmulatedCyberGlove::pattern

@@ -91,8 +91,9 @@ void CyberGloveUnit::read_glove() noexcept {
   settings_.values = static_cast<Byte>(known_.sensors());
 }
 
-// About 1.75 s until its answer (manual p. 45). The vendor's library meant to wait 2.5 s, but waits
-// 0.25 s before it reads the answer with time limits of 0.1 s: older units may have been quicker.
+// About 1.75 s until its answer (manual p. 45). But the maker's own library waits 0.25 s, and then
+// reads the answer with time limits of 0.1 s a byte: so its units must have been quicker, and the
+// usual time here is one with which it works.
 void CyberGloveUnit::begin_restart(bool answers, Time now) {
   stream_ = {};
   command_ = 0;

@@ -15,13 +15,9 @@ constexpr std::size_t line_room = 256;    // an ESP32's buffer of what it has re
 constexpr int most_brake = 1000;
 constexpr double splay_end_rad = from_degrees(20.0); // as OpenGloves shows it
 
-int clamped(double part) {
-  return static_cast<int>(std::lround(std::clamp(part, 0.0, 1.0) * analog_most));
-}
-
-int curl_of(const driver::JointAngles& angles, Sensor sensor) {
-  return clamped(driver::part_of_range(angles, sensor));
-}
+// What a calibration that saw less than the whole way makes of it.
+constexpr double seen_from = 0.25;
+constexpr double seen_part = 0.35;
 
 // Returns the number behind a letter, as the firmware's atoi reads it, or nothing if the letter is
 // missing.
@@ -41,9 +37,32 @@ LucidGlovesUnit::LucidGlovesUnit(const LucidGlovesUnitOptions& options)
   assert(options.rate_hz >= 1.0 && options.rate_hz <= most_rate_hz);
 }
 
+bool LucidGlovesUnit::is_legacy() const noexcept {
+  return options_.firmware == LucidGlovesFirmware::legacy ||
+         options_.firmware == LucidGlovesFirmware::legacy_waiting ||
+         options_.firmware == LucidGlovesFirmware::legacy_unclamped;
+}
+
+bool LucidGlovesUnit::is_unclamped() const noexcept {
+  return options_.firmware == LucidGlovesFirmware::unclamped ||
+         options_.firmware == LucidGlovesFirmware::legacy_unclamped;
+}
+
+bool LucidGlovesUnit::is_deaf() const noexcept {
+  return options_.firmware == LucidGlovesFirmware::streaming ||
+         options_.firmware == LucidGlovesFirmware::unclamped;
+}
+
+// `part` of the way from one end to the other, as the firmware sends it.
+int LucidGlovesUnit::number(double part) const {
+  if (is_unclamped())
+    return static_cast<int>(std::lround((part - seen_from) / seen_part * analog_most));
+  return static_cast<int>(std::lround(std::clamp(part, 0.0, 1.0) * analog_most));
+}
+
 void LucidGlovesUnit::receive(std::span<const std::byte> bytes, Time now) {
   advance(now);
-  if (options_.firmware == LucidGlovesFirmware::streaming) return;
+  if (is_deaf()) return;
   if (!bytes.empty()) last_heard_ = now;
   for (const std::byte byte : bytes) {
     const char c = std::to_integer<char>(byte);
@@ -61,7 +80,7 @@ void LucidGlovesUnit::receive(std::span<const std::byte> bytes, Time now) {
 
 void LucidGlovesUnit::handle(std::string_view command) {
   const bool answers = options_.firmware == LucidGlovesFirmware::senseshift;
-  if (options_.firmware == LucidGlovesFirmware::legacy) return set_legacy_brakes(command);
+  if (is_legacy()) return set_legacy_brakes(command);
   if (answers && command == "Z") {
     const std::string answer =
         "(ZV)5(ZG)0(ZH)" + std::to_string(options_.side == Side::right ? 1 : 0) + "\n";
@@ -129,15 +148,15 @@ std::optional<LucidGlovesUnit::Heard> LucidGlovesUnit::take_line(Time now) {
   const bool whole = end < command_room || heard_.size() >= command_room;
   // A line that came while the last one was handled was there when the wait began.
   const Time since = std::max(*waits_since_, last_heard_);
-  if (!whole && now - since < longest_wait) return std::nullopt;
+  if (!whole && now - since < patience()) return std::nullopt;
   const std::size_t length = std::min({end, heard_.size(), command_room});
-  Heard heard{heard_.substr(0, length), whole ? since : since + longest_wait};
+  Heard heard{heard_.substr(0, length), whole ? since : since + patience()};
   heard_.erase(0, length + (end == length && end < command_room ? 1 : 0));
   return heard;
 }
 
 std::optional<EmulatedUnit::Time> LucidGlovesUnit::next_due() const noexcept {
-  if (waits_since_) return std::max(*waits_since_, last_heard_) + longest_wait;
+  if (waits_since_) return std::max(*waits_since_, last_heard_) + patience();
   if (!streaming_) return std::nullopt;
   return next_line_;
 }
@@ -145,10 +164,11 @@ std::optional<EmulatedUnit::Time> LucidGlovesUnit::next_due() const noexcept {
 std::string LucidGlovesUnit::line(Time now) const {
   const auto angles = motion_.at(std::chrono::duration<double>(now - *motion_origin_).count());
   const auto angle_rad = [&](Sensor sensor) { return angles[static_cast<std::size_t>(sensor)]; };
-  const std::array curls{curl_of(angles, Sensor::thumb_mcp), curl_of(angles, Sensor::index_mcp),
-                         curl_of(angles, Sensor::middle_mcp), curl_of(angles, Sensor::ring_mcp),
-                         curl_of(angles, Sensor::pinky_mcp)};
-  if (options_.firmware == LucidGlovesFirmware::legacy) return legacy_line(curls);
+  const auto curl_of = [&](Sensor sensor) { return number(driver::part_of_range(angles, sensor)); };
+  const std::array curls{curl_of(Sensor::thumb_mcp), curl_of(Sensor::index_mcp),
+                         curl_of(Sensor::middle_mcp), curl_of(Sensor::ring_mcp),
+                         curl_of(Sensor::pinky_mcp)};
+  if (is_legacy()) return legacy_line(curls);
   // The middle finger points straight ahead; its neighbours are as far from it as the motion says.
   const double ring_rad = -angle_rad(Sensor::middle_ring_abduction);
   const std::array splays_rad{angle_rad(Sensor::thumb_abduction) - splay_end_rad,
@@ -163,7 +183,7 @@ std::string LucidGlovesUnit::line(Time now) const {
   if (*std::min_element(curls.begin(), curls.end()) > analog_most / 2) text += 'L';
   for (std::size_t finger = 0; finger < splays_rad.size(); ++finger) {
     text += std::string("(") + static_cast<char>('A' + finger) + "B)";
-    text += std::to_string(clamped(0.5 + 0.5 * splays_rad[finger] / splay_end_rad));
+    text += std::to_string(number(0.5 + 0.5 * splays_rad[finger] / splay_end_rad));
   }
   return text + "\n";
 }

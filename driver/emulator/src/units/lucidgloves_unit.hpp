@@ -21,10 +21,13 @@
 namespace nendo::emulator {
 
 enum class LucidGlovesFirmware : std::uint8_t {
-  senseshift, ///< knows Z, (ZA) and (ZZ), and takes brakes
-  streaming,  ///< LucidGloves without force feedback: hears nothing
-  waiting,    ///< LucidGloves with force feedback: after each of its lines it waits for one
-  legacy,     ///< 13 numbers joined by &; whatever line it hears sets its brakes
+  senseshift,       ///< knows Z, (ZA) and (ZZ), and takes brakes
+  streaming,        ///< LucidGloves without force feedback: hears nothing
+  waiting,          ///< LucidGloves with force feedback: after each of its lines it waits for one
+  legacy,           ///< 13 numbers joined by &; whatever line it hears sets its brakes
+  legacy_waiting,   ///< the same, with force feedback
+  unclamped,        ///< as streaming, but built with CLAMP_ANALOG_MAP false
+  legacy_unclamped, ///< as legacy, but so built
 };
 
 struct LucidGlovesUnitOptions {
@@ -42,6 +45,8 @@ public:
   static constexpr Time loop_time = std::chrono::milliseconds(1);
   /// Arduino's time limit for a line, from its beginning and from each of its bytes on.
   static constexpr Time longest_wait = std::chrono::seconds(1);
+  /// Old versions set a longer one, up to 1000 s; chosen here.
+  static constexpr Time longest_legacy_wait = std::chrono::seconds(5);
 
   explicit LucidGlovesUnit(const LucidGlovesUnitOptions& options);
 
@@ -58,7 +63,15 @@ private:
     Time at; ///< when the wait for it ended
   };
 
-  bool waits() const noexcept { return options_.firmware == LucidGlovesFirmware::waiting; }
+  bool waits() const noexcept {
+    return options_.firmware == LucidGlovesFirmware::waiting ||
+           options_.firmware == LucidGlovesFirmware::legacy_waiting;
+  }
+  bool is_legacy() const noexcept;
+  bool is_unclamped() const noexcept;
+  bool is_deaf() const noexcept;
+  Time patience() const noexcept { return is_legacy() ? longest_legacy_wait : longest_wait; }
+  int number(double part) const;
   void advance_loop(Time now);
   std::optional<Heard> take_line(Time now);
   void handle(std::string_view command);

@@ -44,8 +44,9 @@ struct GloveCandidate {
   std::string reason;      ///< why it may be a glove
   bool identified = false; ///< the device or a udev rule names it a glove; `auto` opens only these
   bool may_open = false;   ///< this user has the permission
-  std::string access;      ///< who has: "you", "group dialout", "user anna", "root"
-  std::string remedy;      ///< the command or action that makes it usable; empty if may_open
+  std::string access;      ///< who has: "you", "group dialout", "user anna", "root"; or nobody
+  bool node_missing = false; ///< the kernel has it, and /dev has no node: as in a container
+  std::string remedy;        ///< the command or action that makes it usable; empty if may_open
   std::optional<UsbIdentity> usb;
   /// How long an FTDI adapter keeps short replies back: 16 ms unless somebody changed it.
   std::optional<std::chrono::milliseconds> latency_timer;

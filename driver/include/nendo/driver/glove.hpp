@@ -56,8 +56,8 @@ struct GloveInfo {
 };
 
 /// Monotonic counts since start(). bytes = record_bytes + discarded_bytes + a remainder shorter
-/// than one record. For a glove with a clock of its own: records sent = records + missed, as soon
-/// as the next good record has arrived.
+/// than one record. For a glove that tells_missed: records sent = records + missed, as soon as the
+/// next good record has arrived (with 12-bit records: the next two).
 struct GloveStats {
   std::uint64_t bytes = 0;           ///< received from the device
   std::uint64_t record_bytes = 0;    ///< that were part of a delivered record
@@ -69,10 +69,13 @@ struct GloveStats {
                                ///< ones among them
   std::uint64_t too_fast = 0;  ///< delivered, but sampled off the period, as the glove says (`es`)
   std::uint64_t unplugged = 0; ///< records without a glove (`eg`), not delivered
+  std::uint64_t clamped = 0;   ///< values in delivered records that were out of range, and count as
+                               ///< the nearer end of it
   std::uint64_t ring_refused = 0; ///< samples that found the ring full
   std::uint64_t silences = 0;     ///< times the stream stopped and was started again
   std::uint64_t reopened = 0;     ///< times the device vanished and was opened again
   double rate_hz = 0.0;           ///< records a second over the last second or two; 0 at first
+  bool tells_missed = false;      ///< its records let `missed` be counted
 };
 
 class Glove {

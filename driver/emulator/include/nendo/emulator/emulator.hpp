@@ -53,7 +53,9 @@ struct EmulatedCyberGlove {
   /// and sub-frames count from 1. False: without NUL and from 0, as programs for the hardware read
   /// them.
   bool hires_terminated = false;
-  double restart_s = 1.75; ///< until it answers 0x12, or hears again after a power cut: 0 to 60
+  /// Until it answers 0x12, or hears again after a power cut: 0 to 60. The maker's own library
+  /// reads the answer after 0.25 s; the manual says 1.75 s.
+  double restart_s = 0.2;
   /// When it is switched on its period is half of what it manages, so that the records of a stream
   /// end in es until the host sets another.
   bool overrun = false;
