@@ -8,6 +8,7 @@ namespace nendo::deform {
 namespace {
 
 constexpr double near_sizes = 4.0; // from zero: a float then has two bits less for the size
+constexpr int middle_bits = 20;    // of the size; without them, rounding would show in the middle
 
 } // namespace
 
@@ -16,9 +17,11 @@ Eigen::Vector3d usual_offset(const Mesh& mesh) noexcept {
   const Box box = box_of_faces(mesh);
   const double size = (box.highest - box.lowest).maxCoeff();
   if (!(size > 0.0) || !std::isfinite(size)) return offset;
+  const double step = std::ldexp(1.0, std::ilogb(size) - middle_bits);
   const Eigen::Vector3d middle = box.lowest / 2.0 + box.highest / 2.0 + mesh.offset;
   for (Eigen::Index axis = 0; axis < 3; ++axis)
-    if (std::abs(middle[axis]) > near_sizes * size) offset[axis] = middle[axis];
+    if (std::abs(middle[axis]) > near_sizes * size)
+      offset[axis] = step * std::round(middle[axis] / step);
   return offset;
 }
 

@@ -9,8 +9,8 @@ namespace nendo::deform {
 
 /// Returns from where the vertices of a mesh should count. On an axis on which the middle of its
 /// faces is at most four times its size from zero, this is 0, so that most models stay as their
-/// files have them. On another axis it is that middle: the difference to a vertex of a face is
-/// then exact, and so is the sum (Sterbenz 1974). In file coordinates.
+/// files have them. On another axis it is that middle, to a millionth of the size: the difference
+/// to a vertex of a face is then exact, and so is the sum (Sterbenz 1974). In file coordinates.
 Eigen::Vector3d usual_offset(const Mesh& mesh) noexcept;
 
 /// Makes the vertices count from that place. The model stays where it is.
