@@ -4,7 +4,7 @@
 // node scales the model to the stage.
 //
 // - Vertices are those of the mesh, in its order; behind them stand copies of those that have
-//   several texture coordinates. Faces with more than three corners become fans of triangles.
+//   several texture coordinates. Faces become triangles as deform's triangles.hpp says.
 // - Each material has a primitive, with its base colour and its texture. Vertices keep their
 //   colours.
 // - A take of a puppet of Type-1 is exact. Each function is a target that has its name, and a

@@ -3,6 +3,8 @@
 #include <map>
 #include <utility>
 
+#include <nendo/deform/triangles.hpp>
+
 namespace nendo::exporting {
 namespace {
 
@@ -14,14 +16,10 @@ using CornersByMaterial = std::map<std::uint32_t, std::vector<std::uint32_t>>;
 CornersByMaterial corners_by_material(const deform::Mesh& mesh) {
   CornersByMaterial corners; // no_index is the greatest key
   const auto& of_face = mesh.look.face_materials;
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t begin = mesh.face_starts[face];
-    const std::uint32_t end = mesh.face_starts[face + 1];
-    if (end < begin + 3) continue;
+  deform::for_each_face_triangle(mesh, [&](std::size_t face, const deform::Triangle& triangle) {
     auto& of_material = corners[of_face.empty() ? no_index : of_face[face]];
-    for (std::uint32_t at = begin + 2; at < end; ++at)
-      of_material.insert(of_material.end(), {begin, at - 1, at});
-  }
+    of_material.insert(of_material.end(), triangle.begin(), triangle.end());
+  });
   return corners;
 }
 

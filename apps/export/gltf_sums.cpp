@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include <nendo/deform/triangles.hpp>
+
 #include "export/control_morphs.hpp"
 #include "export/function_morphs.hpp"
 #include "export/gltf_model.hpp"
@@ -84,8 +86,8 @@ private:
     morphs_ = FunctionMorphs::make(*puppet, take_.source.layout(frame.model), frame, vertices);
     if (!morphs_) return false;
     puppet_ = frame.puppet;
-    deform::Mesh mesh = take_.source.model(frame.model);
-    mesh.vertices = morphs_->rest().cast<double>();
+    const deform::Mesh mesh =
+        deform::in_shape(take_.source.model(frame.model), morphs_->rest().cast<double>());
     models_.push_back({GltfModel(mesh, file_), frame.model});
     models_.back().model.add_function_targets(*morphs_, file_);
     return true;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <nendo/deform/drawn_faces.hpp>
+#include <nendo/deform/triangles.hpp>
 
 namespace nendo::render {
 
@@ -60,6 +61,7 @@ Paint::Paint(const deform::Mesh& mesh, std::vector<std::uint32_t>& corners) {
   const Textures textures = textures_of(mesh);
   const bool textured = std::any_of(textures.begin(), textures.end(),
                                     [](const auto& texture) { return texture != nullptr; });
+  deform::FaceTriangles triangles(mesh);
   corners.clear();
   for (std::size_t at = 0; at < faces.size(); ++at) {
     const auto texture = at == 0 ? nullptr : textures[at - 1];
@@ -67,15 +69,13 @@ Paint::Paint(const deform::Mesh& mesh, std::vector<std::uint32_t>& corners) {
               colour_of(at == 0 ? nullptr : &look.materials[at - 1],
                         !vertex_colours_.empty() || texture != nullptr),
               texture};
-    for (const std::uint32_t face : faces[at]) {
-      const std::uint32_t begin = mesh.face_starts[face];
-      for (std::uint32_t corner = begin + 2; corner < mesh.face_starts[face + 1]; ++corner)
-        for (const std::uint32_t of : {begin, corner - 1, corner}) {
+    for (const std::uint32_t face : faces[at])
+      for (const deform::Triangle& triangle : triangles.of(face))
+        for (const std::uint32_t of : triangle) {
           corners.push_back(mesh.face_corners[of]);
           if (textured)
             texcoords_.emplace_back(mesh.texcoords.col(mesh.corner_texcoords[of]).cast<float>());
         }
-    }
     coat.count = corners.size() / 3 - coat.first;
     if (coat.count == 0) continue;
     coat_of_.insert(coat_of_.end(), coat.count, static_cast<std::uint32_t>(coats_.size()));

@@ -48,7 +48,7 @@ public:
   /// Returns the origin of the scene: place in the scene = vertex / units_per_metre - origin.
   const Eigen::Vector3d& origin_m() const noexcept { return origin_m_; }
   /// Returns the faces to be drawn as triangles, three corners for each, in the order of the
-  /// paint's coats. Larger faces are cut into fans.
+  /// paint's coats. Larger faces are cut as in triangles.hpp.
   const std::vector<std::uint32_t>& corners() const noexcept { return corners_; }
   /// Returns the colours of the triangles.
   const std::shared_ptr<const Paint>& paint() const noexcept { return paint_; }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <nendo/deform/topology.hpp>
+#include <nendo/deform/triangles.hpp>
 
 namespace nendo::session {
 
@@ -30,8 +31,9 @@ bool is_part_edit(const flow::ChangeModel& change) noexcept {
 
 /// Of a shape of that model: something would happen to it.
 bool is_thin(const flow::ModelVersion& model, const deform::BlockShape& shape) {
-  deform::Mesh shaped = model.mesh;
-  model.layout().unpack(shape, shaped.vertices);
+  deform::Points places;
+  model.layout().unpack(shape, places);
+  const deform::Mesh shaped = deform::in_shape(model.mesh, std::move(places));
   if (deform::count_thin_places(shaped) == 0) return false;
   const auto changed = deform::change_topology(shaped);
   return changed && changed->counts.all() > 0;

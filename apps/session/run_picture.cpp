@@ -3,6 +3,8 @@
 #include <utility>
 #include <vector>
 
+#include <nendo/deform/triangles.hpp>
+
 #include "render/picture.hpp"
 
 namespace nendo::session {
@@ -39,7 +41,10 @@ Result<void> RunPicture::write(const deform::Mesh& final_shape) {
   Scene before;
   Scene after;
   builder.build(first_, {}, before);
-  SceneBuilder(final_shape, units_per_metre_).build(last_, {}, after);
+  const bool has_rest = last_rest_.cols() == final_shape.vertices.cols();
+  SceneBuilder(has_rest ? deform::with_triangles_of(final_shape, last_rest_) : final_shape,
+               units_per_metre_)
+      .build(last_, {}, after);
   auto points = before.outline();
   const auto more = after.outline();
   points.insert(points.end(), more.begin(), more.end());

@@ -334,6 +334,8 @@ private:
     recorder_.end(shape.vertices); // which compares with the model as it was loaded
     model_ = std::move(shape);
     if (loop.frames().update()) picture.add(loop.frames().front());
+    if (const auto* const last = loop.model(loop.frames().front().model))
+      picture.set_rest(last->mesh.vertices);
   }
 
   void report_refusals(std::vector<flow::Grant> of_thread) {

@@ -48,7 +48,7 @@ std::optional<SurfaceHit> PuppetTool::hit(const SceneWindow& window, double unit
                                           const PuppetEditor& editor) {
   Ray ray = ray_at(window.stage_camera(), pointer_now(), window.scene_size());
   ray.from *= units_per_metre;
-  return first_hit(editor.seen(), ray);
+  return first_hit(editor.seen(), ray, &editor.model().vertices);
 }
 
 bool PuppetTool::brush(const SceneWindow& window, double units_per_metre, PuppetEditor& editor) {

@@ -42,10 +42,12 @@ Ray ray_at(const render::Camera& camera, const Eigen::Vector2d& pixel, render::S
   return {eye, (far - eye).stableNormalized()};
 }
 
-std::optional<SurfaceHit> first_hit(const deform::Mesh& mesh, const Ray& ray) {
+std::optional<SurfaceHit> first_hit(const deform::Mesh& mesh, const Ray& ray,
+                                    const deform::Points* rest) {
   std::optional<SurfaceHit> hit;
   double nearest = std::numeric_limits<double>::infinity();
-  deform::for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
+  const deform::Points& places = rest != nullptr ? *rest : mesh.vertices;
+  deform::for_each_triangle(mesh, places, [&](const deform::Triangle& corners) {
     const Vector3d a = mesh.vertices.col(corners[0]);
     const Vector3d b = mesh.vertices.col(corners[1]);
     const Vector3d c = mesh.vertices.col(corners[2]);

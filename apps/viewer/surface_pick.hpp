@@ -29,7 +29,9 @@ struct SurfaceHit {
 };
 
 /// Returns the first place of the mesh's faces that the ray meets; nothing if it meets none. It
-/// looks at all triangles.
-std::optional<SurfaceHit> first_hit(const deform::Mesh& mesh, const Ray& ray);
+/// looks at all triangles. `rest` is where the vertices of a shaped model rest, which decides about
+/// its triangles (triangles.hpp); null: as they are.
+std::optional<SurfaceHit> first_hit(const deform::Mesh& mesh, const Ray& ray,
+                                    const deform::Points* rest = nullptr);
 
 } // namespace nendo::viewer

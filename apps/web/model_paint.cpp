@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <nendo/deform/drawn_faces.hpp>
+#include <nendo/deform/triangles.hpp>
 
 #include "web/pictures.hpp"
 
@@ -46,15 +47,14 @@ ModelPaint paint_of(const deform::Mesh& mesh, const deform::BlockLayout& layout)
   ModelPaint paint;
   std::vector<std::uint32_t> drawn; // numbers of the mesh's corners
   const auto faces = deform::drawn_faces(mesh);
+  deform::FaceTriangles triangles(mesh);
   bool textured = false;
   for (std::size_t at = 0; at < faces.size(); ++at) {
     CoatHead coat = at == 0 ? CoatHead{} : coat_of(mesh.look.materials[at - 1], pictures);
     const std::size_t before = drawn.size();
-    for (const std::uint32_t face : faces[at]) {
-      const std::uint32_t begin = mesh.face_starts[face];
-      for (std::uint32_t corner = begin + 2; corner < mesh.face_starts[face + 1]; ++corner)
-        drawn.insert(drawn.end(), {begin, corner - 1, corner});
-    }
+    for (const std::uint32_t face : faces[at])
+      for (const deform::Triangle& triangle : triangles.of(face))
+        drawn.insert(drawn.end(), triangle.begin(), triangle.end());
     coat.triangles = static_cast<std::uint32_t>((drawn.size() - before) / 3);
     if (coat.triangles == 0) continue;
     textured = textured || coat.texture != deform::no_index;

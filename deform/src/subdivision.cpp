@@ -6,6 +6,10 @@
 #include <span>
 #include <utility>
 
+#include <Eigen/Geometry>
+
+#include <nendo/deform/triangles.hpp>
+
 namespace nendo::deform {
 namespace {
 
@@ -162,9 +166,31 @@ void inherit_look(const Mesh& mesh, Mesh& finer) {
   finer.look.objects.of_face = inherited(mesh.look.objects.of_face, before);
 }
 
-} // namespace
+/// Faces around whose middle the new faces would fold, as that of a letter L, become triangles.
+Mesh with_middles_inside(const Mesh& mesh) {
+  std::vector<bool> is_split(mesh.face_count(), false);
+  bool any = false;
+  FaceTriangles triangles(mesh);
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    if (triangles.is_convex(face)) continue;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero(), area = Eigen::Vector3d::Zero();
+    const auto corners = corners_of(mesh, face);
+    for (const std::uint32_t vertex : corners)
+      middle += mesh.vertices.col(vertex) / static_cast<double>(corners.size());
+    const auto area_at = [&](std::size_t at) -> Eigen::Vector3d {
+      const Eigen::Vector3d from = mesh.vertices.col(corners[at]);
+      return (from - middle).cross(mesh.vertices.col(corners[(at + 1) % corners.size()]) - middle);
+    };
+    for (std::size_t at = 0; at < corners.size(); ++at)
+      area += area_at(at);
+    for (std::size_t at = 0; at < corners.size() && !is_split[face]; ++at)
+      is_split[face] = !(area_at(at).dot(area) > 0.0);
+    any = any || is_split[face];
+  }
+  return any ? with_split_faces(mesh, mesh.vertices, is_split) : mesh;
+}
 
-Subdivision subdivide(const Mesh& mesh) {
+Subdivision subdivided_faces(const Mesh& mesh) {
   Subdivision result;
   Mesh& finer = result.mesh;
   finer.vertices = mesh.vertices;
@@ -185,6 +211,12 @@ Subdivision subdivide(const Mesh& mesh) {
   append_means(of_texture, finer.texcoords);
   append_faces(mesh, mesh.corner_texcoords, of_texture, finer.corner_texcoords, [] {});
   return result;
+}
+
+} // namespace
+
+Subdivision subdivide(const Mesh& mesh) {
+  return subdivided_faces(with_middles_inside(mesh));
 }
 
 BlockShape subdivided(const BlockShape& shape, const BlockLayout& before,

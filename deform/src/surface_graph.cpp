@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include <nendo/deform/triangles.hpp>
 
 namespace nendo::deform {
@@ -45,14 +47,34 @@ Vector3d nearest_weights(const Vector3d& a, const Vector3d& b, const Vector3d& c
   return {va / sum, vb / sum, vc / sum};
 }
 
-/// Calls visit() with the triangles of every face, and with those of both ways to cut a quad: a
-/// mirrored quad's first corner may be another one, and the sides of a model are to be alike.
+/// Tells whether straight ways between corners of a face stay on it. Around the notch of a quad
+/// that is hardly concave, as modellers make them, the way is next to no longer.
+bool is_open(const Mesh& mesh, FaceTriangles& triangles, std::size_t face) {
+  constexpr double max_detour = 1.02;
+  if (triangles.is_convex(face)) return true;
+  const std::uint32_t* const at = &mesh.face_corners[mesh.face_starts[face]];
+  if (mesh.face_starts[face + 1] - mesh.face_starts[face] != 4) return false;
+  const auto edge = [&](std::size_t from, std::size_t to) -> Vector3d {
+    return mesh.vertices.col(at[to % 4]) - mesh.vertices.col(at[from % 4]);
+  };
+  const Vector3d area = edge(0, 2).cross(edge(1, 3));
+  for (std::size_t k = 0; k < 4; ++k)
+    if (edge(k, k + 1).cross(edge(k + 1, k + 2)).dot(area) < 0.0 &&
+        edge(k, k + 1).norm() + edge(k + 1, k + 2).norm() > max_detour * edge(k, k + 2).norm())
+      return false;
+  return true;
+}
+
+/// Calls visit() with the triangles of every face, and with those of both ways to cut a convex
+/// quad: a mirrored quad's first corner may be another one, and the sides of a model are to be
+/// alike.
 template <class Visit>
 void for_each_cut(const Mesh& mesh, Visit visit) {
   for_each_triangle(mesh, visit);
+  FaceTriangles triangles(mesh);
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const std::uint32_t begin = mesh.face_starts[face];
-    if (mesh.face_starts[face + 1] - begin != 4) continue;
+    if (mesh.face_starts[face + 1] - begin != 4 || !is_open(mesh, triangles, face)) continue;
     const std::uint32_t* const at = &mesh.face_corners[begin];
     visit(std::array{at[1], at[2], at[3]});
     visit(std::array{at[1], at[3], at[0]});
@@ -112,7 +134,17 @@ SurfaceGraph::SurfaceGraph(const Mesh& mesh) : vertices_(mesh.vertices) {
   const auto straight = [&](std::uint32_t a, std::uint32_t b) {
     return (vertices_.col(a) - vertices_.col(b)).norm();
   };
-  for (std::size_t face = 0; face < mesh.face_count(); ++face)
+  FaceTriangles triangles(mesh);
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    if (!is_open(mesh, triangles, face)) { // a straight way may lead outside
+      for (const Triangle& corners : triangles.of(face))
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint32_t a = mesh.face_corners[corners[k]];
+          const std::uint32_t b = mesh.face_corners[corners[(k + 1) % 3]];
+          add(a, b, straight(a, b));
+        }
+      continue;
+    }
     for (std::uint32_t one = mesh.face_starts[face]; one < mesh.face_starts[face + 1]; ++one)
       for (std::uint32_t other = one + 1; other < mesh.face_starts[face + 1]; ++other) {
         if (other > one + 2 && one != mesh.face_starts[face])
@@ -120,6 +152,7 @@ SurfaceGraph::SurfaceGraph(const Mesh& mesh) : vertices_(mesh.vertices) {
         const std::uint32_t a = mesh.face_corners[one], b = mesh.face_corners[other];
         add(a, b, straight(a, b));
       }
+  }
   std::vector<Hinge> edges;
   for_each_cut(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
     for (std::size_t k = 0; k < 3; ++k) {

@@ -73,6 +73,11 @@ TEST_SUITE("exact predicates") {
         if (turn > 0) REQUIRE(in_circle(a, b, c, d) == reference_circle(a, b, c, d));
         const SpacePoint p = space(), q = space(), r = space(), s = space();
         REQUIRE(orient_3d(p, q, r, s) == reference_3d(p, q, r, s));
+        // Seen from beyond the plane, the same three turn the other way.
+        const SpacePoint up{s[0] - p[0], s[1] - p[1], s[2] - p[2]};
+        const double scale = std::ldexp(1.0, -std::ilogb(1.0 + size));
+        REQUIRE(turn_about(p, q, r, {scale * up[0], scale * up[1], scale * up[2]}) ==
+                -reference_3d(p, q, r, s));
       }
     }
   }

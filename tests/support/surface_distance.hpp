@@ -1,6 +1,5 @@
 #pragma once
-// Computes how far a point is from a model's surface, by looking at every triangle. Polygons become
-// fans about their first corner.
+// Computes how far a point is from a model's surface, by looking at every triangle.
 
 #include <algorithm>
 #include <limits>
@@ -8,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include <nendo/deform/mesh.hpp>
+#include <nendo/deform/triangles.hpp>
 
 namespace nendo::test {
 
@@ -41,21 +41,13 @@ inline double distance_to_triangle(const Eigen::Vector3d& p, const Eigen::Vector
 
 inline NearestTriangle nearest_triangle(const deform::Mesh& model, const Eigen::Vector3d& p) {
   NearestTriangle nearest;
-  for (std::size_t face = 0; face < model.face_count(); ++face) {
-    const auto corner = [&](std::uint32_t at) -> Eigen::Vector3d {
-      return model.vertices.col(
-          static_cast<Eigen::Index>(model.face_corners[model.face_starts[face] + at]));
-    };
-    const std::uint32_t corners = model.face_starts[face + 1] - model.face_starts[face];
-    for (std::uint32_t at = 1; at + 1 < corners; ++at) {
-      const Eigen::Vector3d a = corner(0);
-      const Eigen::Vector3d b = corner(at);
-      const Eigen::Vector3d c = corner(at + 1);
-      const double distance = distance_to_triangle(p, a, b, c);
-      if (distance < nearest.distance)
-        nearest = {distance, (b - a).cross(c - a).stableNormalized()};
-    }
-  }
+  deform::for_each_triangle(model, [&](const deform::Triangle& corners) {
+    const Eigen::Vector3d a = model.vertices.col(corners[0]);
+    const Eigen::Vector3d b = model.vertices.col(corners[1]);
+    const Eigen::Vector3d c = model.vertices.col(corners[2]);
+    const double distance = distance_to_triangle(p, a, b, c);
+    if (distance < nearest.distance) nearest = {distance, (b - a).cross(c - a).stableNormalized()};
+  });
   return nearest;
 }
 

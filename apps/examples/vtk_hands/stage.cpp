@@ -1,7 +1,9 @@
 #include "stage.hpp"
 
 #include <array>
+#include <cstdint>
 
+#include <nendo/deform/triangles.hpp>
 #include <vtkActor.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
@@ -32,12 +34,11 @@ public:
     points_->SetNumberOfPoints(model.vertices.cols());
     data_->SetPoints(points_);
     vtkNew<vtkCellArray> faces;
-    for (std::size_t face = 0; face < model.face_count(); ++face) {
-      faces->InsertNextCell(
-          static_cast<int>(model.face_starts[face + 1] - model.face_starts[face]));
-      for (auto at = model.face_starts[face]; at < model.face_starts[face + 1]; ++at)
-        faces->InsertCellPoint(model.face_corners[at]);
-    }
+    deform::for_each_triangle(model, [&](const deform::Triangle& triangle) {
+      faces->InsertNextCell(3);
+      for (const std::uint32_t vertex : triangle)
+        faces->InsertCellPoint(vertex);
+    });
     data_->SetPolys(faces);
     normals_->SetInputData(data_);
     normals_->SplittingOff();

@@ -8,6 +8,7 @@
 #include <nendo/deform/edit_part.hpp>
 #include <nendo/deform/join.hpp>
 #include <nendo/deform/topology.hpp>
+#include <nendo/deform/triangles.hpp>
 #include <nendo/flow/kept_rest.hpp>
 
 namespace nendo::flow {
@@ -36,10 +37,16 @@ Result<void> check_subdividable(const deform::Mesh& mesh) {
   return Error{Errc::bad_input, "is too large to be subdivided"};
 }
 
-Result<deform::Mesh> cut(const deform::Mesh& shaped, const ModelOrigin& origin) {
-  auto made = deform::cut_model(shaped, deform::CutWire{origin.wire});
+/// Faces keep the triangles that they had in `before`, at rest, although the shape becomes the
+/// rest.
+Result<deform::Mesh> cut(const deform::Mesh& before, const ModelOrigin& origin) {
+  deform::Mesh shaped = before;
+  shaped.vertices = origin.shape;
+  deform::CutOptions options;
+  options.rest = &before.vertices;
+  auto made = deform::cut_model(shaped, deform::CutWire{origin.wire}, options);
   if (!made) return made.error();
-  return std::move(made->mesh);
+  return with_triangles_of(std::move(made->mesh), before.vertices);
 }
 
 Result<deform::Mesh> joined(const deform::Mesh& shaped, const ModelOrigin& origin) {
@@ -54,8 +61,9 @@ Result<deform::Mesh> joined(const deform::Mesh& shaped, const ModelOrigin& origi
   return std::move(made->mesh);
 }
 
-Result<deform::Mesh> made_of_shape(const deform::Mesh& shaped, const ModelOrigin& origin) {
-  if (origin.source == ModelSource::cut) return cut(shaped, origin);
+Result<deform::Mesh> made_of_shape(const deform::Mesh& before, const ModelOrigin& origin) {
+  if (origin.source == ModelSource::cut) return cut(before, origin);
+  const deform::Mesh shaped = deform::in_shape(before, origin.shape);
   if (origin.source == ModelSource::joined) return joined(shaped, origin);
   if (origin.source == ModelSource::copied) return deform::copied_part(shaped, origin.part);
   if (origin.source == ModelSource::removed) return deform::removed_part(shaped, origin.part);
@@ -82,9 +90,7 @@ Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& o
   if (is_of_shape(origin.source)) {
     if (origin.shape.cols() != before.vertices.cols())
       return Error{Errc::bad_input, "is another one than was changed"};
-    deform::Mesh shaped = before;
-    shaped.vertices = origin.shape;
-    auto made = made_of_shape(shaped, origin);
+    auto made = made_of_shape(before, origin);
     if (made && origin.keeps_rest) made->vertices = kept_rest(*made, origin.shape, before.vertices);
     return made;
   }
@@ -123,9 +129,7 @@ Result<std::unique_ptr<ModelVersion>> FinerModel::remade(Remaking& remaking, std
   ModelOrigin& origin = remaking.origin;
   from_->layout().unpack(from_->shape.shape(), origin.shape);
   origin.keeps_rest = keeps_rest;
-  deform::Mesh shaped = from_->mesh;
-  shaped.vertices = origin.shape;
-  auto mesh = made_of_shape(shaped, origin);
+  auto mesh = made_of_shape(from_->mesh, origin);
   found_nothing_ = !mesh && origin.source == ModelSource::topology;
   if (!mesh) return mesh.error();
   std::optional<deform::Points> shape;

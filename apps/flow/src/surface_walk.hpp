@@ -11,8 +11,7 @@
 
 namespace nendo::flow {
 
-/// A triangle with the normals of its corners' vertices. Polygons become fans about their first
-/// corner.
+/// A triangle with the normals of its corners' vertices.
 struct SurfaceTriangle {
   std::array<Eigen::Vector3d, 3> corners;
   std::array<Eigen::Vector3d, 3> normals;

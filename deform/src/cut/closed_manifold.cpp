@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include <nendo/deform/triangles.hpp>
+
 #include "cut/half_edges.hpp"
 
 namespace nendo::deform {
@@ -116,9 +118,42 @@ ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
                                half_edges_of(face_starts, face_corners, vertices));
 }
 
+namespace {
+
+/// Tells whether a face goes through a vertex twice, but not twice in a row: as one with a bridge.
+bool has_bridge(const Mesh& mesh, std::size_t face, std::vector<std::uint32_t>& sorted) {
+  const std::uint32_t begin = mesh.face_starts[face], end = mesh.face_starts[face + 1];
+  if (end - begin < 4) return false;
+  for (std::uint32_t at = begin; at < end; ++at)
+    if (mesh.face_corners[at] == mesh.face_corners[at + 1 < end ? at + 1 : begin]) return false;
+  sorted.assign(mesh.face_corners.begin() + begin, mesh.face_corners.begin() + end);
+  std::sort(sorted.begin(), sorted.end());
+  return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+}
+
+} // namespace
+
 ManifoldCheck check_closed_manifold(const Mesh& mesh) {
-  return check_closed_manifold(mesh.face_starts, mesh.face_corners,
-                               static_cast<std::size_t>(mesh.vertices.cols()));
+  const auto vertices = static_cast<std::size_t>(mesh.vertices.cols());
+  ManifoldCheck check = check_closed_manifold(mesh.face_starts, mesh.face_corners, vertices);
+  if (check.fault != ManifoldFault::repeated_corner) return check;
+  std::vector<bool> is_bridged(mesh.face_count(), false);
+  std::vector<std::uint32_t> sorted;
+  for (std::size_t face = 0; face < mesh.face_count(); ++face)
+    is_bridged[face] = has_bridge(mesh, face, sorted);
+  const Mesh split = with_split_faces(mesh, mesh.vertices, is_bridged);
+  check = check_closed_manifold(split.face_starts, split.face_corners, vertices);
+  if (check) return check;
+  // Of the piece, the face that it is from.
+  FaceTriangles triangles(mesh);
+  std::size_t pieces = 0;
+  for (std::uint32_t face = 0; face < mesh.face_count(); ++face) {
+    pieces += is_bridged[face] ? triangles.of(face).size() : 1;
+    if (check.face >= pieces) continue;
+    check.face = face;
+    break;
+  }
+  return check;
 }
 
 std::string describe(const ManifoldCheck& check, const Mesh& mesh) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/triangles.hpp>
 
 #include "cut/cut_assembly.hpp"
 #include "cut/cut_check.hpp"
@@ -84,7 +85,8 @@ enum class Outcome { cut, again, refused };
 class Cutter {
 public:
   Cutter(const Mesh& mesh, const Blade& blade, const CutOptions& options)
-      : mesh_(mesh), blade_(blade), options_(options) {}
+      : mesh_(mesh), rest_(options.rest != nullptr ? *options.rest : mesh.vertices), blade_(blade),
+        options_(options) {}
   Result<CutModel> run();
 
 private:
@@ -100,6 +102,7 @@ private:
   }
 
   const Mesh& mesh_;
+  const Points& rest_;
   const Blade& blade_;
   const CutOptions& options_;
   HalfEdges edges_;
@@ -120,7 +123,8 @@ Result<void> Cutter::check() {
     return Error{Errc::bad_input, "has coordinates that are too large, or no size"};
   const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
   edges_ = half_edges_of(mesh_.face_starts, mesh_.face_corners, vertices);
-  const ManifoldCheck closed = check_closed_manifold(mesh_.face_starts, mesh_.face_corners, edges_);
+  ManifoldCheck closed = check_closed_manifold(mesh_.face_starts, mesh_.face_corners, edges_);
+  if (closed.fault == ManifoldFault::repeated_corner) closed = check_closed_manifold(mesh_);
   if (!closed) return Error{Errc::bad_input, describe(closed, mesh_)};
   return {};
 }
@@ -154,7 +158,7 @@ Result<CutModel> Cutter::run() {
 }
 
 Outcome Cutter::attempt() {
-  CutSurface surface(mesh_, edges_, blade_, give_, sides_);
+  CutSurface surface(mesh_, rest_, edges_, blade_, give_, sides_);
   if (!surface.refine(0.02 * edge_))
     return refuse("cannot be cut here: the blade bends too often for its size");
   surface.cross();
@@ -173,7 +177,8 @@ Outcome Cutter::attempt() {
         return refuse("is not cut: the blade opens a ring of it, but no part comes off");
       continue;
     }
-    if (!is_sound(assembly, surface, blade_.bends() ? 0.5 * edge_ : 0.0)) return Outcome::again;
+    if (!is_sound(assembly, surface, rest_, blade_.bends() ? 0.5 * edge_ : 0.0))
+      return Outcome::again;
     if (!check_closed_manifold(assembly.mesh)) return Outcome::again;
     result_.mesh = std::move(assembly.mesh);
     result_.added = std::move(assembly.added);
@@ -281,21 +286,19 @@ Result<CutModel> cut_model(const Mesh& mesh, const CutWire& wire, const CutOptio
   return Cutter(mesh, blade, options).run();
 }
 
-double volume_of(const Mesh& mesh) noexcept {
+double volume_of(const Mesh& mesh) {
   if (mesh.vertices.cols() == 0) return 0.0;
   // About a point in the model, so that few digits cancel.
   const Box box = finite_box_of(mesh.vertices);
   const SpacePoint origin = space_point(box.lowest / 2.0 + box.highest / 2.0);
-  const auto from_origin = [&](std::uint32_t at) {
-    const double* of = mesh.vertices.data() + 3 * std::size_t{mesh.face_corners[at]};
+  const auto from_origin = [&](std::uint32_t vertex) {
+    const double* of = mesh.vertices.data() + 3 * std::size_t{vertex};
     return SpacePoint{of[0], of[1], of[2]} - origin;
   };
   double sum = 0.0;
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t begin = mesh.face_starts[face];
-    for (std::uint32_t at = begin + 2; at < mesh.face_starts[face + 1]; ++at)
-      sum += dot(from_origin(begin), cross(from_origin(at - 1), from_origin(at)));
-  }
+  for_each_triangle(mesh, [&](const Triangle& at) {
+    sum += dot(from_origin(at[0]), cross(from_origin(at[1]), from_origin(at[2])));
+  });
   return sum / 6.0;
 }
 

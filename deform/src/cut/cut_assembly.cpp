@@ -178,14 +178,10 @@ void Assembler::write_surface() {
 }
 
 void Assembler::write_pieces(std::size_t face) {
-  std::size_t count = 0;
   bool any_cut = false;
-  for (std::uint32_t piece = first_piece_[face]; piece != no_index; piece = next_piece_[piece]) {
-    ++count;
+  for (std::uint32_t piece = first_piece_[face]; piece != no_index; piece = next_piece_[piece])
     any_cut = any_cut || crossed_of_piece_[piece] != no_index;
-  }
-  const std::size_t corners = cut_.mesh.face_starts[face + 1] - cut_.mesh.face_starts[face];
-  if (!any_cut && count == corners - 2) {
+  if (!any_cut && !surface_.is_split(face)) {
     faces_.copy(face);
     return;
   }

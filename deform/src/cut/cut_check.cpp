@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include <nendo/deform/triangles.hpp>
+
 #include "cut/box_tree.hpp"
 #include "cut/triangle_meeting.hpp"
 
@@ -25,8 +27,8 @@ Corners corners_of_face(const Mesh& mesh, std::size_t face) noexcept {
 
 class CutCheck {
 public:
-  CutCheck(const CutAssembly& assembly, const CutSurface& surface, double reach)
-      : assembly_(assembly), mesh_(assembly.mesh), surface_(surface), reach_(reach),
+  CutCheck(const CutAssembly& assembly, const CutSurface& surface, const Points& rest, double reach)
+      : assembly_(assembly), mesh_(assembly.mesh), rest_(rest), surface_(surface), reach_(reach),
         first_added_(static_cast<std::uint32_t>(static_cast<std::size_t>(mesh_.vertices.cols()) -
                                                 assembly.added.size())) {
     points_.resize(static_cast<std::size_t>(mesh_.vertices.cols()));
@@ -46,6 +48,7 @@ private:
 
   const CutAssembly& assembly_;
   const Mesh& mesh_;
+  const Points& rest_; ///< of the vertices that were there before: all of faces that are not cut
   const CutSurface& surface_;
   double reach_; ///< no face whose corners are all farther from the blade can meet cut faces
   std::uint32_t first_added_;
@@ -61,6 +64,7 @@ bool CutCheck::is_up(std::uint32_t face) const noexcept {
 
 void CutCheck::add_near(bool up, std::vector<Corners>& triangles) const {
   const std::uint32_t old = surface_.vertex_count();
+  FaceTriangles of_faces(mesh_, rest_);
   for (std::size_t face = 0; face < assembly_.first_cut_face; ++face) {
     const std::uint32_t begin = mesh_.face_starts[face];
     const std::uint32_t end = mesh_.face_starts[face + 1];
@@ -76,9 +80,8 @@ void CutCheck::add_near(bool up, std::vector<Corners>& triangles) const {
       longest = std::max(longest, dot(edge, edge));
     }
     if (!belongs || nearest > reach_ + 1.5 * std::sqrt(longest)) continue;
-    for (std::uint32_t at = begin + 2; at < end; ++at)
-      triangles.push_back(
-          {mesh_.face_corners[begin], mesh_.face_corners[at - 1], mesh_.face_corners[at]});
+    for (const auto& [a, b, c] : of_faces.of(face))
+      triangles.push_back({mesh_.face_corners[a], mesh_.face_corners[b], mesh_.face_corners[c]});
   }
 }
 
@@ -135,8 +138,9 @@ bool CutCheck::is_sound(bool up) const {
 
 } // namespace
 
-bool is_sound(const CutAssembly& assembly, const CutSurface& surface, double reach) {
-  const CutCheck check(assembly, surface, reach);
+bool is_sound(const CutAssembly& assembly, const CutSurface& surface, const Points& rest,
+              double reach) {
+  const CutCheck check(assembly, surface, rest, reach);
   return check.is_sound(true) && check.is_sound(false);
 }
 

@@ -18,9 +18,9 @@ std::uint64_t pair_of(std::uint32_t one, std::uint32_t other) noexcept {
 
 } // namespace
 
-CutSurface::CutSurface(const Mesh& mesh, const HalfEdges& edges, const Blade& blade, double give,
-                       const std::vector<double>& sides)
-    : mesh_(mesh), edges_(edges), blade_(blade), give_(give), sides_(sides),
+CutSurface::CutSurface(const Mesh& mesh, const Points& rest, const HalfEdges& edges,
+                       const Blade& blade, double give, const std::vector<double>& sides)
+    : mesh_(mesh), triangles_(mesh, rest), edges_(edges), blade_(blade), give_(give), sides_(sides),
       active_(mesh.face_count(), 0) {
   for (std::uint32_t face = 0; face < mesh.face_count(); ++face) {
     const std::uint32_t begin = mesh.face_starts[face];
@@ -40,13 +40,11 @@ SpacePoint CutSurface::point(std::uint32_t vertex) const noexcept {
   return {at[0], at[1], at[2]};
 }
 
-/// Takes a face as a fan of triangles.
+/// Takes a face as triangles.
 void CutSurface::activate(std::uint32_t face) {
   if (active_[face] != 0) return;
   active_[face] = 1;
-  const std::uint32_t begin = mesh_.face_starts[face];
-  for (std::uint32_t at = begin + 2; at < mesh_.face_starts[face + 1]; ++at) {
-    const std::array corners{begin, at - 1, at};
+  for (const Triangle& corners : triangles_.of(face)) {
     Piece piece{{}, {}, face};
     for (std::size_t k = 0; k < 3; ++k) {
       piece.vertices[k] = mesh_.face_corners[corners[k]];
@@ -192,6 +190,7 @@ void CutSurface::split(std::uint32_t from, std::uint32_t to, std::uint32_t middl
                      {texcoord, old.texcoords[other], old.texcoords[apex]},
                      old.face});
   const auto more = static_cast<std::uint32_t>(pieces_.size() - 1);
+  active_[old.face] = 2;
   index(number);
   index(more);
   changed.insert(changed.end(), {number, more});

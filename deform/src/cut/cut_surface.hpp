@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <nendo/deform/mesh.hpp>
+#include <nendo/deform/triangles.hpp>
 
 #include "cut/blade.hpp"
 #include "cut/half_edges.hpp"
@@ -36,10 +37,10 @@ struct CrossedPiece {
 /// What a blade that gives way by `give` does to a model.
 class CutSurface {
 public:
-  /// `sides` has Blade::side() of all vertices. No vertex may be just `give` above the blade. All
-  /// arguments must outlive this.
-  CutSurface(const Mesh& mesh, const HalfEdges& edges, const Blade& blade, double give,
-             const std::vector<double>& sides);
+  /// `sides` has Blade::side() of all vertices. No vertex may be just `give` above the blade. The
+  /// places `rest` decide about triangles. All arguments must outlive this.
+  CutSurface(const Mesh& mesh, const Points& rest, const HalfEdges& edges, const Blade& blade,
+             double give, const std::vector<double>& sides);
 
   /// Halves edges until a blade that bends is nowhere farther than `sag` from the chord in which it
   /// crosses a triangle. Returns false if that takes too many vertices.
@@ -49,6 +50,8 @@ public:
 
   bool bends() const noexcept { return blade_.bends(); }
   bool is_active(std::size_t face) const noexcept { return active_[face] != 0; }
+  /// Tells whether refine() has split triangles of an active face.
+  bool is_split(std::size_t face) const noexcept { return active_[face] == 2; }
   bool is_up(std::uint32_t vertex) const noexcept { return sides_[vertex] > give_; }
   double above(std::uint32_t vertex) const noexcept { return sides_[vertex] - give_; }
   SpacePoint point(std::uint32_t vertex) const noexcept;
@@ -89,13 +92,14 @@ private:
   std::array<double, 2> texcoord(std::uint32_t index) const noexcept;
 
   const Mesh& mesh_;
+  FaceTriangles triangles_;
   const HalfEdges& edges_;
   const Blade& blade_;
   double give_;
   std::vector<double> sides_;
   std::vector<SpacePoint> added_points_;
   std::vector<EdgePoint> added_;
-  std::vector<std::uint8_t> active_;
+  std::vector<std::uint8_t> active_; ///< of each face; 2: its triangles were split
   std::vector<Piece> pieces_;
   std::unordered_map<std::uint64_t, std::uint32_t> piece_of_edge_;
   std::unordered_map<std::uint64_t, std::uint32_t> crossing_of_edge_;

@@ -166,6 +166,18 @@ int exact_orient_3d(const SpacePoint& a, const SpacePoint& b, const SpacePoint& 
   return plus(plus(term(0), term(1)), term(2)).sign();
 }
 
+int exact_turn_about(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c,
+                     const SpacePoint& normal) noexcept {
+  const auto term = [&](std::size_t axis) {
+    const std::size_t next = (axis + 1) % 3;
+    const std::size_t last = (axis + 2) % 3;
+    return scaled(minor_of(difference(b[next], a[next]), difference(b[last], a[last]),
+                           difference(c[next], a[next]), difference(c[last], a[last])),
+                  normal[axis]);
+  };
+  return plus(plus(term(0), term(1)), term(2)).sign();
+}
+
 } // namespace
 
 int orient_2d(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) noexcept {
@@ -206,6 +218,20 @@ int orient_3d(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c,
                       std::abs(cz) * (std::abs(ax * by) + std::abs(bx * ay));
   if (std::abs(value) > orient_3d_bound * size) return value > 0.0 ? 1 : -1;
   return exact_orient_3d(a, b, c, d);
+}
+
+int turn_about(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c,
+               const SpacePoint& normal) noexcept {
+  const double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2];
+  const double cx = c[0] - a[0], cy = c[1] - a[1], cz = c[2] - a[2];
+  const double value = normal[0] * (by * cz - bz * cy) + normal[1] * (bz * cx - bx * cz) +
+                       normal[2] * (bx * cy - by * cx);
+  const double size = std::abs(normal[0]) * (std::abs(by * cz) + std::abs(bz * cy)) +
+                      std::abs(normal[1]) * (std::abs(bz * cx) + std::abs(bx * cz)) +
+                      std::abs(normal[2]) * (std::abs(bx * cy) + std::abs(by * cx));
+  // The bound is that of orient_3d(), whose three factors are all rounded.
+  if (std::abs(value) > orient_3d_bound * size) return value > 0.0 ? 1 : -1;
+  return exact_turn_about(a, b, c, normal);
 }
 
 } // namespace nendo::deform

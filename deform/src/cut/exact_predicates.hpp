@@ -28,4 +28,10 @@ int in_circle(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c,
 int orient_3d(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c,
               const SpacePoint& d) noexcept;
 
+/// Returns 1 if a, b, c turn to the left, seen from where `normal` points to, -1 to the right, 0 if
+/// they lie on one line for such an observer. The normal's largest coordinate must be between 0.1
+/// and 10 in size.
+int turn_about(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c,
+               const SpacePoint& normal) noexcept;
+
 } // namespace nendo::deform

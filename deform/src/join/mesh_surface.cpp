@@ -3,25 +3,23 @@
 #include <algorithm>
 #include <utility>
 
+#include <nendo/deform/triangles.hpp>
+
 #include "join/look_collector.hpp"
 
 namespace nendo::deform {
 namespace {
 
 void add_faces(const Mesh& mesh, const LookCollector& looks, TriangleSurface& surface) {
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t begin = mesh.face_starts[face];
-    for (std::uint32_t at = begin + 2; at < mesh.face_starts[face + 1]; ++at) {
-      const Corners corners{begin, at - 1, at};
-      const auto through = [&](const std::vector<std::uint32_t>& list) {
-        return Corners{list[corners[0]], list[corners[1]], list[corners[2]]};
-      };
-      surface.faces.push_back(through(mesh.face_corners));
-      surface.looks.push_back(looks.look_of(mesh.look, face));
-      if (!mesh.corner_texcoords.empty())
-        surface.face_texture.push_back(through(mesh.corner_texcoords));
-    }
-  }
+  for_each_face_triangle(mesh, [&](std::size_t face, const Triangle& corners) {
+    const auto through = [&](const std::vector<std::uint32_t>& list) {
+      return Corners{list[corners[0]], list[corners[1]], list[corners[2]]};
+    };
+    surface.faces.push_back(through(mesh.face_corners));
+    surface.looks.push_back(looks.look_of(mesh.look, face));
+    if (!mesh.corner_texcoords.empty())
+      surface.face_texture.push_back(through(mesh.corner_texcoords));
+  });
 }
 
 TriangleSurface surface_of(const Mesh& mesh, const LookCollector& looks, bool has_colours,

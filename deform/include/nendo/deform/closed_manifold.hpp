@@ -38,7 +38,8 @@ struct ManifoldCheck {
 ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
                                     std::span<const std::uint32_t> face_corners,
                                     std::size_t vertices);
-/// The same of a mesh.
+/// The same of a mesh. A face that goes through a vertex twice, as one with a hole by a bridge, is
+/// taken as its triangles (triangles.hpp); then it is no fault.
 ManifoldCheck check_closed_manifold(const Mesh& mesh);
 
 /// Returns the fault in words that go behind the mesh's name: "is open at the edge between (0, 1,

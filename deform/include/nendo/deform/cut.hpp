@@ -35,6 +35,8 @@ struct CutOptions {
   double edge = 0.0; ///< length of the cut faces' edges; 0: the mean where the blade crosses
   std::string material = "cut";                      ///< its name
   Eigen::Vector4f colour{0.45F, 0.06F, 0.05F, 1.0F}; ///< linear
+  const Points* rest =
+      nullptr; ///< its places decide about triangles (triangles.hpp); null: the mesh's
 };
 
 /// A vertex that the cut made: a part of the way from one vertex to another, both of which come
@@ -77,7 +79,7 @@ std::vector<Mesh> separate(const CutModel& model);
 std::vector<Mesh> separate(const Mesh& mesh);
 
 /// Returns the volume that a closed surface encloses, in cubic model units; negative if its faces
-/// face inwards.
-double volume_of(const Mesh& mesh) noexcept;
+/// face inwards. Faces are taken as triangles.hpp says. Allocates.
+double volume_of(const Mesh& mesh);
 
 } // namespace nendo::deform

@@ -20,6 +20,7 @@ struct Subdivision {
 
 /// Subdivides without smoothing, as Blender's Subdivide does: each edge gets a vertex in its
 /// middle, a triangle becomes four, and a face of n > 3 corners becomes n faces about its middle.
+/// A concave face that would fold about its middle becomes triangles before (triangles.hpp).
 /// Texture coordinates and vertices' colours follow, and faces keep materials and names. Faces of
 /// fewer than three corners stay. Allocates.
 Subdivision subdivide(const Mesh& mesh);
