@@ -46,6 +46,7 @@ std::optional<Mesh> without_stray_vertices(const Mesh& mesh) {
   if (kept == mesh.vertices.cols()) return std::nullopt;
   Mesh faces;
   faces.face_starts = mesh.face_starts;
+  faces.offset = mesh.offset;
   faces.vertices.resize(3, kept);
   std::vector<std::uint32_t> number(has_face.size());
   std::uint32_t next = 0;

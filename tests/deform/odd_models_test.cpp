@@ -98,8 +98,10 @@ TEST_SUITE("odd_models") {
     CHECK(stray_vertices(model.mesh) == Indices{0, 5});
     CHECK(box_of_faces(model.mesh).lowest.isZero(0.0));
     CHECK(box_of_faces(model.mesh).highest == Eigen::Vector3d::Ones());
+    model.mesh.offset = Eigen::Vector3d(7, 8, 9);
     const auto faces = without_stray_vertices(model.mesh);
     REQUIRE(faces);
+    CHECK(faces->offset == model.mesh.offset);
     CHECK(faces->vertices == model.mesh.vertices.middleCols(1, 4));
     CHECK(faces->face_corners == Indices{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3});
     CHECK_FALSE(without_stray_vertices(*faces));
