@@ -74,6 +74,9 @@ void add(cli::Command& program);
 namespace recording_command {
 void add(cli::Command& program);
 }
+namespace repair_command {
+void add(cli::Command& program);
+}
 namespace replay_command {
 void add(cli::Command& program);
 }

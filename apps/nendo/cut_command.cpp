@@ -37,6 +37,7 @@ struct Options {
   std::string up; ///< empty: y
   std::optional<double> edge;
   bool repair = false;
+  bool force = false;
 };
 
 using AnyBlade = std::variant<CutPlane, CutWire>;
@@ -132,10 +133,14 @@ Result<Mesh> closed_model(const std::string& file, const Options& options) {
   const ManifoldCheck closed = check_closed_manifold(mesh);
   if (closed) return std::move(mesh);
   if (!options.repair)
-    return Error{Errc::bad_input, file + ": " + describe(closed, mesh) + "; --repair may close it"};
+    return Error{Errc::bad_input,
+                 file + ": " + describe(closed, mesh) +
+                     "; only closed models can be cut, so try --repair, or `nendo repair " + file +
+                     " --out OUT`"};
   auto repaired = deform::repair(mesh);
   if (!repaired) return Error{repaired.error().code, file + ": " + repaired.error().message};
-  cli::note(file + ": " + describe(*repaired));
+  for (const std::string& line : lines_of(*repaired))
+    cli::note(file + ": " + line);
   return std::move(repaired->mesh);
 }
 
@@ -161,8 +166,8 @@ Result<void> write_parts(const std::string& file, const CutModel& cut, const Opt
   const std::vector<Mesh> meshes = meshes_of(cut, options);
   for (std::size_t at = 0; at < meshes.size(); ++at)
     for (const std::string& model : options.models)
-      if (const auto fine =
-              cli::check_spares(model, "--out", part_name(options.out, file, at + 1), false);
+      if (const auto fine = cli::check_spares(model, "--out", part_name(options.out, file, at + 1),
+                                              options.force);
           !fine)
         return fine;
   for (std::size_t at = 0; at < meshes.size(); ++at) {
@@ -247,10 +252,9 @@ void add(cli::Command& program) {
   command.add_option("--edge", options->edge,
                      "Length of the cut faces' edges; without it, about that of the faces which "
                      "the blade crosses");
-  command.add_flag(
-      "--repair", options->repair,
-      "Close a model that is not closed: join edges that lie in one place, turn faces, "
-      "fill holes");
+  command.add_flag("--repair", options->repair,
+                   "Repair a model that is not closed before it is cut, as nendo repair does");
+  command.add_flag("--force", options->force, cli::force_summary);
   command.on_chosen([options] { return cut_files(*options); });
 }
 

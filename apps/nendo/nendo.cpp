@@ -20,8 +20,8 @@ namespace {
 /// Of a command. Loops with deadlines go without: with huge pages some runs of the stress test had
 /// ticks of several milliseconds.
 bool works_without_a_clock(std::string_view command) {
-  constexpr std::array<std::string_view, 6> all{"cut",  "deform",  "export",
-                                                "join", "picture", "replay"};
+  constexpr std::array<std::string_view, 7> all{"cut",     "deform", "export", "join",
+                                                "picture", "repair", "replay"};
   return std::find(all.begin(), all.end(), command) != all.end();
 }
 
@@ -55,6 +55,7 @@ int run(int argc, char** argv) {
         deform_command::add(program);
         cut_command::add(program);
         join_command::add(program);
+        repair_command::add(program);
         picture_command::add(program);
         emulate_command::add(program);
         record_command::add(program);

@@ -185,8 +185,10 @@ Result<void> check_refinable(const deform::Mesh& model, const RunArguments& opti
   if (options.run.refine_to == 0) return {};
   const auto fine = deform::Refiner::check(model);
   if (fine) return {};
-  return Error{Errc::bad_input, "--refine: " + options.run.mesh + ": " + fine.error().message +
-                                    "; only closed models can be refined, so mend it first"};
+  return Error{
+      Errc::bad_input,
+      "--refine: " + options.run.mesh + ": " + fine.error().message +
+          "; only closed models can be refined, so mend it with `nendo repair IN --out OUT`"};
 }
 
 } // namespace

@@ -188,7 +188,8 @@ void print_clay(const flow::LoopStats& stats, double units_per_metre) {
                         "set right",
                         thousands(stats.touching_ticks), stats.most_penetration_mm));
   if (!(clay.first_volume > 0.0)) {
-    print_row("volume", "not kept: the surface is not closed");
+    print_row("volume",
+              "not kept: the surface is not closed; `nendo repair IN --out OUT` may close it");
     return;
   }
   const double cm3 = 1e6 / (units_per_metre * units_per_metre * units_per_metre);

@@ -15,6 +15,7 @@
 #include "gltf_materials.hpp"
 #include "gltf_nodes.hpp"
 #include "mesh_formats.hpp"
+#include "repair/weld.hpp"
 #include "usable.hpp"
 
 namespace nendo::deform {
@@ -51,12 +52,15 @@ class GltfReader {
 public:
   GltfReader(std::string_view text, const ModelFolder* folder) : document_(text, folder) {}
 
-  Mesh read() {
+  /// `weld`: vertices that normals or colours part become one, too.
+  Mesh read(bool weld, ReadNotes& notes) {
     require_readable(document_.root());
     materials_ = read_gltf_materials(document_, mesh_.look);
     for (const GltfPlacedMesh& placed : placed_meshes(document_))
       add_mesh(placed);
     finish();
+    if (!weld) return std::move(mesh_);
+    note_welding(weld_places(mesh_, group_of_vertex_), notes);
     return std::move(mesh_);
   }
 
@@ -76,6 +80,7 @@ private:
     const std::size_t faces_before = mesh_.face_count();
     for (const Json& primitive : *primitives)
       add_primitive(primitive, placed);
+    group_of_vertex_.resize(vertices_.size() / 3, object);
     if (mesh_.face_count() == faces_before) return;
     const std::string name = gltf_text(mesh, "name");
     mesh_.look.objects.names.push_back(placed.name.empty() ? name : placed.name);
@@ -252,6 +257,7 @@ private:
   }
 
   GltfDocument document_;
+  std::vector<std::uint32_t> group_of_vertex_; ///< the placed mesh whose it is
   std::vector<GltfMaterial> materials_;
   std::vector<double> vertices_;             ///< three numbers each
   std::vector<double> texcoords_;            ///< two numbers each
@@ -268,9 +274,9 @@ private:
 } // namespace
 
 Result<Mesh> parse_gltf(std::string_view text, std::string_view name, const ModelFolder* folder,
-                        ReadNotes&) {
+                        const ReadOptions& options, ReadNotes& notes) {
   try {
-    return GltfReader(text, folder).read();
+    return GltfReader(text, folder).read(options.weld, notes);
   } catch (const GltfRefusal& refusal) {
     return Error{Errc::bad_input, std::string(name) + ": " + printable(refusal.what)};
   }

@@ -17,6 +17,7 @@
 #include "model_folder.hpp"
 #include "mtl_file.hpp"
 #include "obj_beside.hpp"
+#include "repair/weld.hpp"
 #include "stl_file.hpp"
 #include "text_scanner.hpp"
 #include "usable.hpp"
@@ -58,10 +59,11 @@ Format format_of(const Source& source) noexcept {
   return is_stl(source.text, source.name) ? Format::stl : Format::obj;
 }
 
-Result<Mesh> parse(const Source& source, Format format, ReadNotes& notes) {
+Result<Mesh> parse(const Source& source, Format format, const ReadOptions& options,
+                   ReadNotes& notes) {
   switch (format) {
   case Format::gltf:
-    return parse_gltf(source.text, source.name, source.folder, notes);
+    return parse_gltf(source.text, source.name, source.folder, options, notes);
   case Format::ply:
     return parse_ply(source.text, source.name, notes);
   case Format::stl:
@@ -96,6 +98,17 @@ void lay(const Source& source, Format format, std::optional<UpAxis> up, ReadMode
     lay_from_z_up(model.mesh.vertices);
 }
 
+/// A file whose faces share no vertex at all was written face by face, as each STL is. In any
+/// other, what it says of vertices holds.
+void weld_soup(Mesh& mesh, Format format, ReadNotes& notes) {
+  if (format != Format::stl && !is_soup(mesh)) return;
+  const Welding welding = weld_places(mesh);
+  if (welding.joined > 0 && format != Format::stl)
+    notes.push_back("no two faces share a vertex, so " + std::to_string(welding.joined) +
+                    " vertices became one with another one in the same place");
+  note_welding(welding, notes);
+}
+
 void note_strays(const Mesh& mesh, ReadNotes& notes) {
   const std::size_t strays = stray_vertices(mesh).size();
   if (strays > 0)
@@ -117,13 +130,13 @@ Result<ReadModel> parse_text(Source source, const ReadOptions& options) {
   if (format == Format::obj && is_binary(source.text))
     return bad_file(source.name, why_no_model(source.text));
   ReadModel model;
-  auto mesh = parse(source, format, model.notes);
+  auto mesh = parse(source, format, options, model.notes);
   if (!mesh) return mesh.error();
   if (mesh->vertices.cols() == 0)
     return bad_file(source.name, format == Format::obj ? why_no_model(source.text)
                                                        : "has no vertices, so there is no model");
   model.mesh = *std::move(mesh);
-  if (format == Format::stl && options.weld) weld_stl(model.mesh);
+  if (options.weld && format != Format::gltf) weld_soup(model.mesh, format, model.notes);
   tidy_faces(model.mesh, model.notes);
   note_strays(model.mesh, model.notes);
   lay(source, format, options.up, model);

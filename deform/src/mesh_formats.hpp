@@ -10,6 +10,7 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/deform/mesh.hpp>
+#include <nendo/deform/mesh_file.hpp>
 
 namespace nendo::deform {
 
@@ -27,7 +28,7 @@ Result<Mesh> parse_ply(std::string_view text, std::string_view name, ReadNotes& 
 class ModelFolder;
 /// Reads a glTF, binary or JSON. `folder` has the other files that it names; null: there are none.
 Result<Mesh> parse_gltf(std::string_view text, std::string_view name, const ModelFolder* folder,
-                        ReadNotes& notes);
+                        const ReadOptions& options, ReadNotes& notes);
 
 /// Returns the mesh as OBJ. `library` names the file with its materials; it is left out if empty.
 std::string obj_text(const Mesh& mesh, std::string_view library);

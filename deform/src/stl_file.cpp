@@ -9,7 +9,6 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <unordered_set>
 
 #include <Eigen/Geometry>
 #include <nendo/base/endings.hpp>
@@ -345,34 +344,6 @@ bool is_stl(std::string_view text, std::string_view name) noexcept {
 Result<Mesh> parse_stl(std::string_view text, std::string_view name, ReadNotes& notes) {
   if (!has_size_of_binary(text) && is_text_stl(text)) return TextStl(text, name).parse(notes);
   return BinaryStl(text, name).parse(notes);
-}
-
-void weld_stl(Mesh& mesh) {
-  const auto place = [&](std::uint32_t vertex) {
-    return std::span<const double, 3>(mesh.vertices.col(vertex).data(), 3);
-  };
-  const auto hash = [&](std::uint32_t vertex) {
-    std::size_t sum = 0;
-    for (const double coordinate : place(vertex)) // +0.0: -0 is the same place
-      sum = (sum ^ std::hash<double>()(coordinate + 0.0)) * 0x9E3779B97F4A7C15U;
-    return sum;
-  };
-  const auto same = [&](std::uint32_t one, std::uint32_t other) {
-    return std::ranges::equal(place(one), place(other));
-  };
-  std::unordered_set<std::uint32_t, decltype(hash), decltype(same)> known(0, hash, same);
-  std::vector<std::uint32_t> first(static_cast<std::size_t>(mesh.vertices.cols()));
-  std::vector<double> kept;
-  std::vector<std::uint32_t> number(first.size());
-  for (std::uint32_t vertex = 0; vertex < first.size(); ++vertex) {
-    first[vertex] = *known.insert(vertex).first;
-    if (first[vertex] != vertex) continue;
-    number[vertex] = static_cast<std::uint32_t>(kept.size() / 3);
-    kept.insert(kept.end(), place(vertex).begin(), place(vertex).end());
-  }
-  for (std::uint32_t& corner : mesh.face_corners)
-    corner = number[first[corner]];
-  mesh.vertices = columns_of<3>(kept);
 }
 
 Result<std::string> stl_text(const Mesh& mesh) {

@@ -22,9 +22,6 @@ bool is_stl(std::string_view text, std::string_view name) noexcept;
 Result<Mesh> parse_stl(std::string_view text, std::string_view name,
                        std::vector<std::string>& notes);
 
-/// Makes one vertex of all that are in one place: the first of them.
-void weld_stl(Mesh& mesh);
-
 /// Returns the mesh as binary STL. Error: failed (more triangles than an STL can count).
 Result<std::string> stl_text(const Mesh& mesh);
 

@@ -12,14 +12,18 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/cut.hpp>
 #include <nendo/deform/mesh_file.hpp>
 
+#include "support/nasty_meshes.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace gltf_file_test {
 
 using namespace nendo::deform;
 using nendo::Errc;
+using nendo::test::cube_of_cells;
 using nendo::test::TemporaryFolder;
 using Json = nlohmann::json;
 
@@ -192,6 +196,58 @@ TEST_CASE("deform/gltf_file/a vertex that was split for its texture is one again
   CHECK(mesh->face_corners == std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3});
   CHECK(mesh->texcoords.col(mesh->corner_texcoords[0]).x() == 0.0);
   CHECK(mesh->texcoords.col(mesh->corner_texcoords[3]).x() == 0.5);
+}
+
+TEST_CASE("deform/gltf_file/vertices that normals part are one, within the mesh of one node") {
+  // A cube of four vertices for each of its sides.
+  const Mesh cube = cube_of_cells(1, true);
+  std::string places, normals, indices;
+  for (std::uint32_t face = 0; face < 6; ++face) {
+    const auto corner = [&](std::uint32_t k) -> Eigen::Vector3d {
+      return cube.vertices.col(cube.face_corners[4 * face + k]);
+    };
+    const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    for (std::uint32_t k = 0; k < 4; ++k)
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        append<float>(places, {static_cast<float>(corner(k)[axis])});
+        append<float>(normals, {static_cast<float>(normal[axis])});
+      }
+    for (const std::uint32_t k : {0U, 1U, 2U, 0U, 2U, 3U})
+      append<std::uint16_t>(indices, {static_cast<std::uint16_t>(4 * face + k)});
+  }
+  const auto view = [](std::size_t from, std::size_t bytes) {
+    return Json{{"buffer", 0}, {"byteOffset", from}, {"byteLength", bytes}};
+  };
+  Json json{
+      {"asset", {{"version", "2.0"}}},
+      {"buffers", {{{"byteLength", 648}}}},
+      {"bufferViews", {view(0, 288), view(288, 288), view(576, 72)}},
+      {"accessors",
+       {{{"bufferView", 0}, {"componentType", 5126}, {"count", 24}, {"type", "VEC3"}},
+        {{"bufferView", 1}, {"componentType", 5126}, {"count", 24}, {"type", "VEC3"}},
+        {{"bufferView", 2}, {"componentType", 5123}, {"count", 36}, {"type", "SCALAR"}}}},
+      {"meshes",
+       {{{"primitives", {{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}}}, {"indices", 2}}}}}}},
+      {"nodes", {{{"mesh", 0}}, {{"mesh", 0}, {"translation", {1, 0, 0}}}}},
+      {"scenes", {{{"nodes", {0}}}}},
+      {"scene", 0}};
+  const std::string binary = places + normals + indices;
+  const auto one = parse(glb(json, binary));
+  REQUIRE_MESSAGE(one, one.error().message);
+  CHECK(one->vertices.cols() == 8);
+  CHECK(check_closed_manifold(*one));
+  CHECK(volume_of(*one) == doctest::Approx(1.0).epsilon(1e-12));
+  // Two nodes are two bodies, though they touch.
+  json["scenes"][0]["nodes"] = {0, 1};
+  const auto two = parse(glb(json, binary));
+  REQUIRE_MESSAGE(two, two.error().message);
+  CHECK(two->vertices.cols() == 16);
+  CHECK(separate(*two).size() == 2);
+  const std::string text = glb(json, binary);
+  const auto plain =
+      parse_model(std::as_bytes(std::span(text)), "two.glb", {.up = UpAxis::y, .weld = false});
+  REQUIRE(plain);
+  CHECK(plain->mesh.vertices.cols() == 48);
 }
 
 TEST_CASE("deform/gltf_file/a JSON glTF reads its bytes beside it, or has them in itself") {

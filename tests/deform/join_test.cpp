@@ -269,7 +269,8 @@ TEST_SUITE("join") {
     Mesh inwards = box;
     for (std::size_t face = 0; face < inwards.face_count(); ++face)
       std::swap(inwards.face_corners[3 * face], inwards.face_corners[3 * face + 1]);
-    CHECK(message(inwards, Errc::bad_input) == "b: faces inwards; turn its faces round");
+    CHECK(message(inwards, Errc::bad_input) ==
+          "b: faces inwards; `nendo repair IN --out OUT` turns it outwards");
     Mesh odd = box;
     odd.vertices(0, 3) = std::nan("");
     CHECK(message(odd, Errc::bad_input) == "b: has a coordinate that is not finite");

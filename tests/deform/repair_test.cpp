@@ -1,8 +1,14 @@
 #include <nendo/deform/repair.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <numbers>
+#include <random>
+#include <set>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -11,6 +17,7 @@
 #include <nendo/deform/mesh_file.hpp>
 
 #include "support/nasty_meshes.hpp"
+#include "support/placed_meshes.hpp"
 
 namespace repair_test {
 
@@ -41,7 +48,266 @@ Mesh without_faces(const Mesh& mesh, std::size_t first, std::size_t count) {
   return open;
 }
 
+/// Vertices - edges + faces: 2 for each ball, 0 for a torus. Of a closed model of triangles.
+long euler_characteristic(const Mesh& mesh) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (std::size_t face = 0; face < mesh.face_count(); ++face)
+    for (std::uint32_t at = mesh.face_starts[face]; at < mesh.face_starts[face + 1]; ++at) {
+      const std::uint32_t next =
+          at + 1 < mesh.face_starts[face + 1] ? at + 1 : mesh.face_starts[face];
+      edges.insert(std::minmax(mesh.face_corners[at], mesh.face_corners[next]));
+    }
+  return static_cast<long>(mesh.vertices.cols()) - static_cast<long>(edges.size()) +
+         static_cast<long>(mesh.face_count());
+}
+
+/// Appends another mesh, whose vertices stay its own.
+void append(Mesh& mesh, const Mesh& more) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.cols());
+  Points both(3, mesh.vertices.cols() + more.vertices.cols());
+  both << mesh.vertices, more.vertices;
+  mesh.vertices = both;
+  for (const std::uint32_t corner : more.face_corners)
+    mesh.face_corners.push_back(corner + first);
+  for (std::size_t face = 0; face < more.face_count(); ++face)
+    mesh.face_starts.push_back(mesh.face_starts.back() + more.face_starts[face + 1] -
+                               more.face_starts[face]);
+}
+
+Mesh reversed(Mesh mesh) {
+  for (std::size_t face = 0; face < mesh.face_count(); ++face)
+    std::reverse(mesh.face_corners.begin() + mesh.face_starts[face],
+                 mesh.face_corners.begin() + mesh.face_starts[face + 1]);
+  return mesh;
+}
+
+/// Vertices in one place become one, as a program does that knows nothing of touching.
+Mesh merged(const Mesh& mesh) {
+  Mesh made = mesh;
+  std::map<std::array<double, 3>, std::uint32_t> known;
+  std::vector<Eigen::Vector3d> places;
+  for (std::uint32_t& corner : made.face_corners) {
+    const Eigen::Vector3d at = mesh.vertices.col(corner);
+    const auto next = static_cast<std::uint32_t>(known.size());
+    const auto [found, is_new] = known.emplace(std::array{at.x(), at.y(), at.z()}, next);
+    if (is_new) places.push_back(at);
+    corner = found->second;
+  }
+  made.vertices.resize(3, static_cast<Eigen::Index>(places.size()));
+  for (std::size_t at = 0; at < places.size(); ++at)
+    made.vertices.col(static_cast<Eigen::Index>(at)) = places[at];
+  return made;
+}
+
 TEST_SUITE("repair") {
+  TEST_CASE("a model without faults comes back to the bit") {
+    Mesh textured = torus(12, 8);
+    textured.texcoords = textured.vertices.topRows<2>();
+    textured.corner_texcoords = textured.face_corners;
+    textured.look.vertex_colours = Eigen::Matrix4Xf::Random(4, textured.vertices.cols());
+    Mesh two = cube_of_cells(2, true);
+    append(two, moved(torus(9, 7), {4, 0, 0}));
+    for (const Mesh& whole : {textured, two, shell(6, 0.5), sponge(1)}) {
+      const auto mended = repair(whole);
+      REQUIRE_MESSAGE(mended, mended.error().message);
+      CHECK(lines_of(*mended).empty());
+      CHECK(mended->mesh.vertices == whole.vertices);
+      CHECK(mended->mesh.face_corners == whole.face_corners);
+      CHECK(mended->mesh.face_starts == whole.face_starts);
+      CHECK(mended->mesh.texcoords == whole.texcoords);
+      CHECK(mended->mesh.corner_texcoords == whole.corner_texcoords);
+      CHECK(mended->mesh.look.vertex_colours == whole.look.vertex_colours);
+    }
+  }
+
+  TEST_CASE("vertices that rounding put apart become one, and others within a tolerance") {
+    std::mt19937 random(7);
+    for (const double noise : {1e-6, 1e-3}) {
+      Mesh broken = unshared(cube_of_cells(3));
+      std::uniform_real_distribution<double> way(-noise, noise);
+      for (double& number : broken.vertices.reshaped())
+        number += way(random);
+      RepairOptions options;
+      if (noise > 1e-5) options.tolerance = 4.0 * noise;
+      const auto mended = repair(broken, options);
+      REQUIRE_MESSAGE(mended, mended.error().message);
+      CHECK(check_closed_manifold(mended->mesh));
+      CHECK(mended->mesh.vertices.cols() == 56);
+      CHECK(euler_characteristic(mended->mesh) == 2);
+      CHECK(volume_of(mended->mesh) == doctest::Approx(1.0).epsilon(10.0 * noise));
+      if (noise > 1e-5) CHECK(!repair(broken)); // by default, they are too far apart
+    }
+  }
+
+  TEST_CASE("surfaces that touch in a point, or at an edge, are separated") {
+    const Mesh cube = cube_of_cells(2);
+    for (const Eigen::Vector3d& way : {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(1, 1, 0)}) {
+      Mesh both = cube;
+      append(both, moved(cube, way));
+      const Mesh touching = merged(both);
+      CHECK(!check_closed_manifold(touching));
+      const auto mended = repair(touching);
+      REQUIRE_MESSAGE(mended, mended.error().message);
+      CHECK(check_closed_manifold(mended->mesh));
+      CHECK(mended->separated == (way.z() > 0.5 ? 1U : 3U)); // an edge of two cells
+      CHECK(euler_characteristic(mended->mesh) == 4);        // two balls
+      CHECK(volume_of(mended->mesh) == doctest::Approx(2.0).epsilon(1e-12));
+      CHECK(separate(mended->mesh).size() == 2);
+      // And so, if all faces have vertices of their own, whichever way one of both faces.
+      Mesh loose = unshared(cube);
+      append(loose, unshared(reversed(moved(cube, way))));
+      const auto again = repair(loose);
+      REQUIRE_MESSAGE(again, again.error().message);
+      CHECK(check_closed_manifold(again->mesh));
+      CHECK(volume_of(again->mesh) == doctest::Approx(2.0).epsilon(1e-12));
+    }
+  }
+
+  TEST_CASE("walls of two bodies stay, and a face that is there twice goes") {
+    Mesh both = cube_of_cells(2, true);
+    append(both, moved(cube_of_cells(2, true), {1, 0, 0}));
+    const auto walls = repair(unshared(both));
+    REQUIRE_MESSAGE(walls, walls.error().message);
+    CHECK(walls->dropped == 0);
+    CHECK(separate(walls->mesh).size() == 2);
+    CHECK(volume_of(walls->mesh) == doctest::Approx(2.0).epsilon(1e-12));
+    for (const bool turns : {false, true}) {
+      Mesh twice = cube_of_cells(2);
+      append(twice, turns ? reversed(cube_of_cells(2)) : cube_of_cells(2));
+      const auto once = repair(unshared(twice));
+      REQUIRE_MESSAGE(once, once.error().message);
+      CHECK(once->dropped == 48);
+      CHECK(volume_of(once->mesh) == doctest::Approx(1.0).epsilon(1e-12));
+    }
+  }
+
+  TEST_CASE("each part is turned outwards, and cavities stay cavities") {
+    const Mesh hollow = shell(8, 0.5);
+    const double volume = volume_of(hollow);
+    Mesh mixed = reversed(hollow);
+    append(mixed, moved(reversed(cube_of_cells(2)), {3, 0, 0}));
+    append(mixed, moved(cube_of_cells(2), {6, 0, 0}));
+    const auto mended = repair(mixed);
+    REQUIRE_MESSAGE(mended, mended.error().message);
+    CHECK(mended->turned == hollow.face_count() + 48);
+    CHECK(volume_of(mended->mesh) == doctest::Approx(volume + 2.0).epsilon(1e-12));
+    CHECK(lines_of(*repair(hollow)).empty());
+  }
+
+  TEST_CASE("a hole of a hundred corners is closed, flat or waved") {
+    for (const double waves : {0.0, 0.2}) {
+      // A tube with a floor: the rim is open.
+      constexpr std::uint32_t around = 100;
+      Mesh tube;
+      tube.vertices.resize(3, 2 * around + 1);
+      for (std::uint32_t at = 0; at < around; ++at) {
+        const double turn = 2.0 * std::numbers::pi * at / around;
+        const double height = 1.0 + waves * std::sin(3.0 * turn);
+        tube.vertices.col(at) << std::cos(turn), 0.0, -std::sin(turn);
+        tube.vertices.col(around + at) << std::cos(turn), height, -std::sin(turn);
+      }
+      tube.vertices.col(2 * around).setZero();
+      for (std::uint32_t at = 0; at < around; ++at) {
+        const std::uint32_t next = (at + 1) % around;
+        add_face(tube, {at, next, around + next, around + at});
+        add_face(tube, {next, at, 2 * around});
+      }
+      const auto mended = repair(tube);
+      REQUIRE_MESSAGE(mended, mended.error().message);
+      CHECK(mended->filled == 1);
+      CHECK(mended->filled_crossing == 0);
+      CHECK(check_closed_manifold(mended->mesh));
+      const double base = 0.5 * around * std::sin(2.0 * std::numbers::pi / around);
+      CHECK(volume_of(mended->mesh) == doctest::Approx(base).epsilon(waves > 0.0 ? 0.2 : 1e-9));
+      CHECK(mended->mesh.vertices == tube.vertices);
+    }
+  }
+
+  TEST_CASE("a vertex in an edge of another face splits that edge") {
+    Mesh cube = cube_of_cells(1);
+    // The top's two triangles meet four others at an edge that has its middle.
+    Mesh broken;
+    broken.vertices.resize(3, 9);
+    broken.vertices.leftCols<8>() = cube.vertices;
+    std::size_t split = cube.face_count();
+    for (std::size_t face = 0; face < cube.face_count(); ++face) {
+      const std::uint32_t* const corner = &cube.face_corners[3 * face];
+      if (split == cube.face_count() &&
+          (cube.vertices.col(corner[0]) - cube.vertices.col(corner[1])).norm() < 1.1) {
+        split = face;
+        broken.vertices.col(8) =
+            0.5 * (cube.vertices.col(corner[0]) + cube.vertices.col(corner[1]));
+        add_face(broken, {corner[0], 8, corner[2]});
+        add_face(broken, {8, corner[1], corner[2]});
+        continue;
+      }
+      add_face(broken, {corner[0], corner[1], corner[2]});
+    }
+    REQUIRE(!check_closed_manifold(broken));
+    const auto mended = repair(broken);
+    REQUIRE_MESSAGE(mended, mended.error().message);
+    CHECK(mended->split == 1);
+    CHECK(mended->filled == 0);
+    CHECK(check_closed_manifold(mended->mesh));
+    CHECK(volume_of(mended->mesh) == doctest::Approx(1.0).epsilon(1e-12));
+  }
+
+  TEST_CASE("a face whose last corner is its first again loses it, and it is said") {
+    Mesh mesh = cube_of_cells(1, true);
+    const Mesh whole = mesh;
+    mesh.face_corners.insert(mesh.face_corners.begin() + 4, mesh.face_corners[0]);
+    for (std::size_t face = 1; face < mesh.face_starts.size(); ++face)
+      ++mesh.face_starts[face];
+    CHECK(!check_closed_manifold(mesh));
+    const auto mended = repair(mesh);
+    REQUIRE_MESSAGE(mended, mended.error().message);
+    CHECK(mended->repeated == 1);
+    CHECK(check_closed_manifold(mended->mesh));
+    CHECK(mended->mesh.face_starts == whole.face_starts);
+    CHECK(volume_of(mended->mesh) == doctest::Approx(1.0).epsilon(1e-14));
+  }
+
+  TEST_CASE("vertices without a face go, and it is said") {
+    Mesh mesh = torus(12, 8);
+    mesh.vertices.conservativeResize(3, mesh.vertices.cols() + 2);
+    mesh.vertices.rightCols<2>().setConstant(1000.0);
+    const auto mended = repair(mesh);
+    REQUIRE(mended);
+    CHECK(mended->mesh.vertices == torus(12, 8).vertices);
+    CHECK(lines_of(*mended) == std::vector<std::string>{"dropped 2 vertices without a face"});
+  }
+
+  TEST_CASE("sheets, one-sided surfaces and surfaces laid double are refused with the reason") {
+    const auto refusal = [](const Mesh& mesh) {
+      const auto mended = repair(mesh);
+      REQUIRE(!mended);
+      CHECK(mended.error().code == nendo::Errc::bad_input);
+      CHECK(mended.error().message.starts_with("cannot be repaired: "));
+      return mended.error().message;
+    };
+    const Mesh sheet = grid(4, 1.0);
+    CHECK(refusal(sheet).find("is a sheet without an inside") != std::string::npos);
+    Mesh laid_double = sheet;
+    append(laid_double, reversed(sheet));
+    CHECK(refusal(unshared(laid_double)).find("is a sheet") != std::string::npos);
+    Mesh strip;
+    constexpr std::uint32_t around = 24;
+    strip.vertices.resize(3, 2 * around);
+    for (std::uint32_t at = 0; at < around; ++at) {
+      const double turn = 2.0 * std::numbers::pi * at / around;
+      for (std::uint32_t side = 0; side < 2; ++side) {
+        const double out = (side == 0 ? -0.3 : 0.3);
+        const double radius = 1.0 + out * std::cos(turn / 2.0);
+        strip.vertices.col(2 * at + side) << radius * std::cos(turn), radius * std::sin(turn),
+            out * std::sin(turn / 2.0);
+      }
+      const bool last = at + 1 == around;
+      const std::uint32_t next = last ? 0 : 2 * at + 2;
+      add_face(strip, {2 * at, 2 * at + 1, next + (last ? 0U : 1U), next + (last ? 1U : 0U)});
+    }
+    CHECK(refusal(strip).find("one side only") != std::string::npos);
+  }
+
   TEST_CASE("vertices in one place are joined, and turned faces turn back") {
     for (const Mesh& whole : {torus(20, 10), cube_of_cells(3, true), comb(5)}) {
       Mesh broken = unshared(whole);
@@ -54,7 +320,11 @@ TEST_SUITE("repair") {
       CHECK(check_closed_manifold(mended->mesh));
       CHECK(volume_of(mended->mesh) == doctest::Approx(volume_of(whole)).epsilon(1e-12));
       CHECK(mended->filled == 0);
-      CHECK(mended->mesh.vertices == broken.vertices);
+      CHECK(mended->mesh.vertices.cols() == whole.vertices.cols());
+      CHECK(mended->joined ==
+            whole.face_corners.size() - static_cast<std::size_t>(whole.vertices.cols()));
+      CHECK(mended->turned == (broken.face_count() + 2) / 3);
+      CHECK(mended->mesh.face_count() == whole.face_count());
     }
   }
 
@@ -79,7 +349,9 @@ TEST_SUITE("repair") {
     REQUIRE(mended);
     CHECK(mended->dropped == 3);
     CHECK(mended->mesh.face_count() == faces);
-    CHECK(describe(*mended) == "dropped 3 faces");
+    CHECK(lines_of(*mended) ==
+          std::vector<std::string>{
+              "dropped 3 faces that had fewer than three corners or repeated another"});
   }
 
   TEST_CASE("the shipped head, open at the neck, can be cut when it is repaired") {
@@ -92,7 +364,6 @@ TEST_SUITE("repair") {
       return;
     }
     CHECK(check_closed_manifold(mended->mesh));
-    MESSAGE(describe(*mended));
     const Eigen::Vector3d middle = head->vertices.rowwise().mean();
     CHECK(cut_model(mended->mesh, CutPlane{middle, {0.1, 1.0, 0.2}}));
   }

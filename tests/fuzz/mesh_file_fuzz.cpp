@@ -8,7 +8,9 @@
 #include <string>
 #include <string_view>
 
+#include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/deform/repair.hpp>
 
 #include "mtl_file.hpp"
 
@@ -82,6 +84,9 @@ void read_as_model(std::span<const std::byte> bytes, std::string_view name) {
     require(mesh.face_starts[face + 1] >= mesh.face_starts[face] + 3);
   require_usable(mesh.look, mesh.face_count(), mesh.vertices.cols());
   require(nendo::deform::vertex_normals(mesh).allFinite());
+  if (mesh.face_corners.size() > 3000) return;
+  if (const auto repaired = nendo::deform::repair(mesh))
+    require(bool(nendo::deform::check_closed_manifold(repaired->mesh)));
 }
 
 } // namespace

@@ -220,7 +220,9 @@ Outcome Cutter::make_cap_of(const CutSurface& surface) {
                     {edge_, blade_.bends()});
     if (cap_.fault != PlaneFault::none) return Outcome::again;
     if (!drop_wrong_sides(cap_, numbers)) return Outcome::cut;
-    if (!blade_.bends()) return refuse("has parts that face inwards, or lies inside itself");
+    if (!blade_.bends())
+      return refuse("has parts that face inwards, which `nendo repair IN --out OUT` turns, or lies "
+                    "inside itself");
   }
 }
 

@@ -32,7 +32,8 @@ Result<void> check_part(const JoinPart& part) {
   if (mesh.vertices.size() > 0 && mesh.vertices.cwiseAbs().maxCoeff() > largest_coordinate)
     return bad("has coordinates beyond 1e60; scale it down");
   if (const ManifoldCheck check = check_closed_manifold(mesh); !check)
-    return bad(describe(check, mesh) + "; only closed models can be joined, so mend it first");
+    return bad(describe(check, mesh) +
+               "; only closed models can be joined, so mend it with `nendo repair IN --out OUT`");
   if (!(diagonal_of(mesh.vertices) > least_size)) return bad("has no size; scale it up");
   return {};
 }
@@ -64,7 +65,7 @@ Error explained(Error error, const TriangleSurface& surface, const Eigen::Vector
   if (!pairs.empty())
     error.message += "; " + part.name + " cuts itself near " +
                      place_text(surface.points[surface.faces[pairs[0].first][0]], offset) +
-                     ", so mend it first";
+                     ", which `nendo repair` does not mend: remove that where it was made";
   return error;
 }
 
@@ -100,7 +101,9 @@ Result<Joined> join(std::span<const JoinPart> parts, const JoinOptions& options)
   SharedSurfaces shared = surfaces_of(counted_alike(parts, moved));
   for (std::size_t at = 0; at < parts.size(); ++at)
     if (!(volume_of(shared.surfaces[at].points, shared.surfaces[at].faces) > 0.0))
-      return Error{Errc::bad_input, parts[at].name + ": faces inwards; turn its faces round"};
+      return Error{Errc::bad_input,
+                   parts[at].name +
+                       ": faces inwards; `nendo repair IN --out OUT` turns it outwards"};
 
   Joined joined;
   TriangleSurface whole = std::move(shared.surfaces[0]);

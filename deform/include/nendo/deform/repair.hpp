@@ -1,33 +1,49 @@
 #pragma once
-// Closes models whose files are nearly closed: edges that lie in one place but have vertices of
-// their own, faces that are turned, and holes.
+// Closes models whose files are nearly closed: vertices that should be one, faces that are double
+// or turned, holes, and surfaces that touch in a point or at an edge.
 
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <nendo/base/result.hpp>
 #include <nendo/deform/mesh.hpp>
 
 namespace nendo::deform {
 
+struct RepairOptions {
+  /// Vertices at open edges become one if they are no farther apart, in model units. Without it,
+  /// 1e-5 of the diagonal of the model's box.
+  std::optional<double> tolerance;
+};
+
 /// A repaired model, and what was done to it.
 struct Repair {
   Mesh mesh;
-  std::size_t dropped = 0; ///< faces with fewer than three corners, or doubles of others
-  std::size_t joined = 0;  ///< vertices at open edges that lay where another one did
-  std::size_t turned = 0;  ///< faces that faced another way than their neighbours
-  std::size_t filled = 0;  ///< holes
+  double tolerance = 0.0;     ///< that was taken, model units
+  std::size_t joined = 0;     ///< vertices at open edges that became one with another one
+  std::size_t recoloured = 0; ///< of these, those that had another colour
+  std::size_t dropped = 0;    ///< faces with fewer than three corners, or that were there before
+  std::size_t repeated = 0;   ///< corners of faces that were the same as the one before
+  std::size_t split = 0;      ///< vertices that lay in an edge, and became a corner there
+  std::size_t turned = 0;     ///< faces
+  std::size_t separated = 0;  ///< vertices that were added where surfaces only touched
+  std::size_t filled = 0;     ///< holes
+  std::size_t filled_crossing = 0; ///< of these, lids that go through the model
+  std::size_t stray = 0;           ///< vertices without a face, which were dropped
 };
 
-/// Repairs a model so that check_closed_manifold() finds no fault in it. Vertices keep their
-/// numbers and bits, except that corners may name another vertex in the same place. A hole is
-/// filled in the plane that fits it best, by triangles between its corners, without texture.
-/// Allocates. Error: bad_input, with what is still wrong and where; the words go behind the model's
-/// name.
-Result<Repair> repair(const Mesh& mesh);
+/// Repairs a model so that check_closed_manifold() finds no fault in it and each part faces
+/// outwards, but those that lie in another one and face inwards: they are cavities. A model that is
+/// so already comes back to the bit. Vertices that stay keep their order and their bits; new ones
+/// come last. A hole is filled by triangles between its corners that look as the face beside it.
+/// Allocates, blocks. Error: bad_input, with what is still wrong and where; the words go behind the
+/// model's name.
+Result<Repair> repair(const Mesh& mesh, const RepairOptions& options = {});
 
-/// Returns what was done, in words that go behind the model's name: "joined 12 vertices, filled 1
-/// hole".
-std::string describe(const Repair& repair);
+/// Returns what was done, one sentence for each kind, in words that go behind the model's name:
+/// "joined 12 vertices with others in the same place". Empty if there was nothing to do.
+std::vector<std::string> lines_of(const Repair& repair);
 
 } // namespace nendo::deform

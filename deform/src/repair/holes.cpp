@@ -1,0 +1,257 @@
+#include "repair/holes.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "cut/blade.hpp"
+#include "cut/cut_assembly.hpp"
+#include "cut/cut_cap.hpp"
+#include "cut/half_edges.hpp"
+#include "join/self_intersections.hpp"
+#include "repair/min_area.hpp"
+
+namespace nendo::deform {
+namespace {
+
+/// Corners of the mesh, whose vertices stand in the order that the lid's faces need.
+using Rim = std::vector<std::uint32_t>;
+
+std::string hole_place(const Mesh& mesh, std::uint32_t corner) {
+  const Eigen::Vector3d at = mesh.vertices.col(mesh.face_corners[corner]) + mesh.offset;
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g)", at.x(), at.y(), at.z());
+  return text;
+}
+
+class HoleFiller {
+public:
+  explicit HoleFiller(Mesh& mesh) : mesh_(mesh) {}
+
+  Result<FilledHoles> run();
+
+private:
+  Result<std::vector<Rim>> rims() const;
+  Result<void> check_bodies(const std::vector<Rim>& rims) const;
+  Result<void> fill(const Rim& rim);
+  std::vector<Corners> flat_lid(const Rim& rim) const;
+  std::vector<Corners> crooked_lid(const Rim& rim) const;
+  bool has_known_edges(const Rim& rim, const std::vector<Corners>& lid) const;
+  bool goes_through(const Rim& rim, const std::vector<Corners>& lid);
+  void add(const Rim& rim, const std::vector<Corners>& lid);
+  SpacePoint point(std::uint32_t corner) const noexcept {
+    const double* const at = mesh_.vertices.data() + 3 * std::size_t{mesh_.face_corners[corner]};
+    return {at[0], at[1], at[2]};
+  }
+  std::vector<SpacePoint> points_of(const Rim& rim) const {
+    std::vector<SpacePoint> points;
+    for (const std::uint32_t corner : rim)
+      points.push_back(point(corner));
+    return points;
+  }
+  bool has_edge(std::uint32_t one, std::uint32_t other) const {
+    return edges_.contains(std::minmax(mesh_.face_corners[one], mesh_.face_corners[other]));
+  }
+
+  Mesh& mesh_;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges_; ///< by vertices, at rims
+  std::size_t looks_ = 0;
+  FilledHoles done_;
+};
+
+/// Each open edge ends where the next one of the rim begins: it is found by turning about the
+/// vertex.
+Result<std::vector<Rim>> HoleFiller::rims() const {
+  const HalfEdges edges = half_edges_of(mesh_.face_starts, mesh_.face_corners,
+                                        static_cast<std::size_t>(mesh_.vertices.cols()));
+  std::vector<std::uint8_t> done(mesh_.face_corners.size(), 0);
+  std::vector<Rim> rims;
+  for (std::uint32_t first = 0; first < done.size(); ++first) {
+    if (edges.twin[first] != no_half_edge || done[first] != 0) continue;
+    Rim rim;
+    std::uint32_t edge = first;
+    while (done[edge] == 0) {
+      done[edge] = 1;
+      rim.push_back(edges.next[edge]);
+      std::uint32_t before = edges.last[edge];
+      for (std::size_t turned = 0; edges.twin[before] != no_half_edge; ++turned) {
+        if (turned > done.size()) break;
+        before = edges.last[edges.twin[before]];
+      }
+      edge = before;
+    }
+    if (edge != first)
+      return Error{Errc::bad_input,
+                   "cannot be repaired: holes touch at " + hole_place(mesh_, edge)};
+    rims.push_back(std::move(rim));
+  }
+  return rims;
+}
+
+SpacePoint area_of_rim(const std::vector<SpacePoint>& points) {
+  SpacePoint area{};
+  for (std::size_t k = 1; k + 1 < points.size(); ++k)
+    area = area + cross(points[k] - points[0], points[k + 1] - points[0]);
+  return area;
+}
+
+/// A lid that is as large as the surface itself closes a sheet, not a body.
+Result<void> HoleFiller::check_bodies(const std::vector<Rim>& rims) const {
+  constexpr double max_lid_share = 0.9;
+  std::vector<std::uint32_t> part_of;
+  const std::uint32_t count = number_parts(mesh_, part_of);
+  std::vector<double> surface(count, 0.0), lids(count, 0.0);
+  for (std::size_t face = 0; face < mesh_.face_count(); ++face) {
+    const std::uint32_t begin = mesh_.face_starts[face];
+    for (std::uint32_t at = begin + 2; at < mesh_.face_starts[face + 1]; ++at)
+      surface[part_of[mesh_.face_corners[begin]]] +=
+          length_of(cross(point(at - 1) - point(begin), point(at) - point(begin)));
+  }
+  for (const Rim& rim : rims)
+    lids[part_of[mesh_.face_corners[rim[0]]]] += length_of(area_of_rim(points_of(rim)));
+  for (const Rim& rim : rims) {
+    const std::uint32_t part = part_of[mesh_.face_corners[rim[0]]];
+    if (lids[part] <= max_lid_share * surface[part]) continue;
+    return Error{Errc::bad_input,
+                 "cannot be repaired: its part at " + hole_place(mesh_, rim[0]) +
+                     " is a sheet without an inside, and to close it would only double it; give it "
+                     "a thickness where it was made, or remove it"};
+  }
+  return {};
+}
+
+std::vector<Corners> HoleFiller::flat_lid(const Rim& rim) const {
+  const std::vector<SpacePoint> points = points_of(rim);
+  const SpacePoint area = area_of_rim(points);
+  if (!(length_of(area) > 0.0)) return {};
+  const PlaneBlade plane(points[0], area);
+  CapLoop loop;
+  for (std::uint32_t k = 0; k < points.size(); ++k) {
+    loop.crossings.push_back(k);
+    loop.places.push_back(plane.chart(points[k]));
+  }
+  Cap cap = make_cap({&loop, 1}, static_cast<std::uint32_t>(rim.size()), {});
+  if (cap.fault != PlaneFault::none) return {};
+  // Rims of four corners and more need an edge inside that is not there yet.
+  if (cap.triangles.size() + 2 != rim.size()) return {};
+  return std::move(cap.triangles);
+}
+
+std::vector<Corners> HoleFiller::crooked_lid(const Rim& rim) const {
+  return min_area_lid(points_of(rim), [&](std::size_t a, std::size_t b) {
+    return mesh_.face_corners[rim[a]] != mesh_.face_corners[rim[b]] && !has_edge(rim[a], rim[b]);
+  });
+}
+
+bool HoleFiller::has_known_edges(const Rim& rim, const std::vector<Corners>& lid) const {
+  for (const Corners& triangle : lid)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangle[k], b = triangle[(k + 1) % 3];
+      const std::size_t apart = a < b ? b - a : a - b;
+      if (apart != 1 && apart + 1 != rim.size() && has_edge(rim[a], rim[b])) return true;
+    }
+  return false;
+}
+
+/// Of many holes in a large model, only the first ones are looked at: each takes all faces.
+bool HoleFiller::goes_through(const Rim& rim, const std::vector<Corners>& lid) {
+  constexpr std::size_t max_looks = 100'000'000; // faces
+  looks_ += mesh_.face_count();
+  if (looks_ > max_looks) return false;
+  std::vector<SpacePoint> points;
+  for (Eigen::Index at = 0; at < mesh_.vertices.cols(); ++at)
+    points.push_back({mesh_.vertices(0, at), mesh_.vertices(1, at), mesh_.vertices(2, at)});
+  std::vector<Corners> triangles;
+  for (std::size_t face = 0; face < mesh_.face_count(); ++face) {
+    const std::uint32_t begin = mesh_.face_starts[face];
+    for (std::uint32_t at = begin + 2; at < mesh_.face_starts[face + 1]; ++at)
+      triangles.push_back(
+          {mesh_.face_corners[begin], mesh_.face_corners[at - 1], mesh_.face_corners[at]});
+  }
+  std::vector<std::uint32_t> changed;
+  for (const Corners& triangle : lid) {
+    changed.push_back(static_cast<std::uint32_t>(triangles.size()));
+    triangles.push_back({mesh_.face_corners[rim[triangle[0]]], mesh_.face_corners[rim[triangle[1]]],
+                         mesh_.face_corners[rim[triangle[2]]]});
+  }
+  return !self_intersections_of(points, triangles, changed, 1).empty();
+}
+
+void HoleFiller::add(const Rim& rim, const std::vector<Corners>& lid) {
+  Appearance& look = mesh_.look;
+  const auto like = static_cast<std::size_t>(std::upper_bound(mesh_.face_starts.begin(),
+                                                              mesh_.face_starts.end(), rim[0]) -
+                                             mesh_.face_starts.begin()) -
+                    1;
+  for (const Corners& triangle : lid) {
+    for (const std::uint32_t k : triangle)
+      for (auto* values : {&mesh_.face_corners, &mesh_.corner_texcoords})
+        if (!values->empty()) {
+          const std::uint32_t value = (*values)[rim[k]];
+          values->push_back(value);
+        }
+    mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
+    for (auto* values : {&look.face_materials, &look.groups.of_face, &look.objects.of_face})
+      if (!values->empty()) {
+        const std::uint32_t value = (*values)[like];
+        values->push_back(value);
+      }
+    for (std::size_t k = 0; k < 3; ++k)
+      edges_.insert(std::minmax(mesh_.face_corners[rim[triangle[k]]],
+                                mesh_.face_corners[rim[triangle[(k + 1) % 3]]]));
+  }
+}
+
+Result<void> HoleFiller::fill(const Rim& rim) {
+  const auto is_sound = [&](const std::vector<Corners>& lid) {
+    return !lid.empty() && !has_known_edges(rim, lid);
+  };
+  std::vector<Corners> lid = flat_lid(rim);
+  if (!is_sound(lid) || goes_through(rim, lid)) {
+    std::vector<Corners> other = crooked_lid(rim);
+    const bool is_good = is_sound(other) && !goes_through(rim, other);
+    if (!is_good) ++done_.crossing;
+    if (is_good || !is_sound(lid)) lid = std::move(other);
+  }
+  if (!is_sound(lid))
+    return Error{
+        Errc::bad_input,
+        "cannot be repaired: the hole of " + std::to_string(rim.size()) + " edges at " +
+            hole_place(mesh_, rim[0]) +
+            " is too crooked to be filled by triangles between its corners; close it where "
+            "the model was made"};
+  add(rim, lid);
+  ++done_.count;
+  return {};
+}
+
+Result<FilledHoles> HoleFiller::run() {
+  const auto found = rims();
+  if (!found) return found.error();
+  if (found->empty()) return done_;
+  if (auto fine = check_bodies(*found); !fine) return fine.error();
+  std::vector<std::uint8_t> at_rim(static_cast<std::size_t>(mesh_.vertices.cols()), 0);
+  for (const Rim& rim : *found)
+    for (const std::uint32_t corner : rim)
+      at_rim[mesh_.face_corners[corner]] = 1;
+  for (std::size_t face = 0; face < mesh_.face_count(); ++face)
+    for (std::uint32_t at = mesh_.face_starts[face]; at < mesh_.face_starts[face + 1]; ++at) {
+      const std::uint32_t next =
+          at + 1 < mesh_.face_starts[face + 1] ? at + 1 : mesh_.face_starts[face];
+      if (at_rim[mesh_.face_corners[at]] != 0 && at_rim[mesh_.face_corners[next]] != 0)
+        edges_.insert(std::minmax(mesh_.face_corners[at], mesh_.face_corners[next]));
+    }
+  for (const Rim& rim : *found)
+    if (auto filled = fill(rim); !filled) return filled.error();
+  return done_;
+}
+
+} // namespace
+
+Result<FilledHoles> fill_holes(Mesh& mesh) {
+  return HoleFiller(mesh).run();
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,34 @@
+#pragma once
+// Sets of numbers that become one set where two of their members are joined.
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace nendo::deform {
+
+class UnionFind {
+public:
+  explicit UnionFind(std::size_t count) : root_(count) {
+    std::iota(root_.begin(), root_.end(), std::uint32_t{0});
+  }
+  /// Returns the least number of the set.
+  std::uint32_t find(std::uint32_t number) noexcept {
+    while (root_[number] != number) {
+      root_[number] = root_[root_[number]];
+      number = root_[number];
+    }
+    return number;
+  }
+  void join(std::uint32_t one, std::uint32_t other) noexcept {
+    one = find(one);
+    other = find(other);
+    root_[std::max(one, other)] = std::min(one, other);
+  }
+
+private:
+  std::vector<std::uint32_t> root_;
+};
+
+} // namespace nendo::deform

@@ -1,0 +1,223 @@
+#include "repair/weld.hpp"
+
+#include <array>
+#include <functional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "repair/stitch.hpp"
+
+namespace nendo::deform {
+namespace {
+
+bool has_no_doubles(const std::vector<std::uint32_t>& places) {
+  for (std::uint32_t at = 0; at < places.size(); ++at)
+    if (places[at] != at) return false;
+  return true;
+}
+
+/// Numbers vertices so that those of one place, one group and one colour share a number, the least
+/// of their own.
+std::vector<std::uint32_t> places_alike(const Mesh& mesh, const std::vector<std::uint32_t>& place,
+                                        std::span<const std::uint32_t> group_of_vertex) {
+  const Eigen::Matrix4Xf& colours = mesh.look.vertex_colours;
+  if (colours.cols() == 0 &&
+      (group_of_vertex.empty() ||
+       std::ranges::adjacent_find(group_of_vertex, std::not_equal_to<>()) == group_of_vertex.end()))
+    return place;
+  using Key = std::tuple<std::uint32_t, std::uint32_t, std::array<float, 4>>;
+  const auto key = [&](std::uint32_t at) {
+    Key of{place[at], group_of_vertex.empty() ? 0 : group_of_vertex[at], {}};
+    if (colours.cols() > 0)
+      std::copy_n(colours.data() + 4 * std::size_t{at}, 4, std::get<2>(of).begin());
+    return of;
+  };
+  std::vector<std::uint32_t> order(place.size()), alike(place.size());
+  std::iota(order.begin(), order.end(), std::uint32_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  for (std::size_t at = 0; at < order.size(); ++at)
+    alike[order[at]] =
+        at > 0 && key(order[at]) == key(order[at - 1]) ? alike[order[at - 1]] : order[at];
+  return alike;
+}
+
+/// Faces with fewer than three places hold nothing together: their vertices become one with the
+/// first that another face has there.
+void join_thin_faces(const Mesh& mesh, std::span<const std::uint32_t> place, UnionFind& sets) {
+  std::vector<std::uint8_t> is_thin(mesh.face_count(), 0);
+  std::vector<std::uint32_t> first(place.size(), no_index); // by place
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::uint32_t begin = mesh.face_starts[face], end = mesh.face_starts[face + 1];
+    std::uint32_t different = 0;
+    for (std::uint32_t at = begin; at < end && different < 3; ++at) {
+      bool is_new = true;
+      for (std::uint32_t before = begin; before < at && is_new; ++before)
+        is_new = place[mesh.face_corners[before]] != place[mesh.face_corners[at]];
+      different += is_new ? 1 : 0;
+    }
+    is_thin[face] = different < 3 ? 1 : 0;
+    for (std::uint32_t at = begin; at < end && different >= 3; ++at) {
+      std::uint32_t& of = first[place[mesh.face_corners[at]]];
+      if (of == no_index) of = mesh.face_corners[at];
+    }
+  }
+  for (std::size_t face = 0; face < mesh.face_count(); ++face)
+    for (std::uint32_t at = mesh.face_starts[face]; at < mesh.face_starts[face + 1]; ++at) {
+      if (is_thin[face] == 0) continue;
+      const std::uint32_t vertex = mesh.face_corners[at];
+      const std::uint32_t other = first[place[vertex]];
+      sets.join(vertex, other == no_index ? place[vertex] : other);
+    }
+}
+
+/// A face that has a place twice in a row has one corner there.
+void join_repeats(const Mesh& mesh, std::span<const std::uint32_t> place, UnionFind& sets) {
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::uint32_t begin = mesh.face_starts[face], end = mesh.face_starts[face + 1];
+    for (std::uint32_t at = begin; at < end; ++at) {
+      const std::uint32_t vertex = mesh.face_corners[at];
+      const std::uint32_t next = mesh.face_corners[at + 1 < end ? at + 1 : begin];
+      if (place[vertex] == place[next]) sets.join(vertex, next);
+    }
+  }
+}
+
+template <class Values>
+void keep_values(Values& values, std::span<const std::uint8_t> keeps) {
+  if (values.empty()) return;
+  std::size_t kept = 0;
+  for (std::size_t at = 0; at < keeps.size(); ++at)
+    if (keeps[at] != 0) values[kept++] = values[at];
+  values.resize(kept);
+}
+
+template <class Columns>
+void keep_columns(Columns& columns, std::span<const std::uint8_t> keeps) {
+  Eigen::Index kept = 0;
+  for (std::size_t at = 0; at < keeps.size(); ++at)
+    if (keeps[at] != 0) columns.col(kept++) = columns.col(static_cast<Eigen::Index>(at)).eval();
+  columns.conservativeResize(columns.rows(), kept);
+}
+
+} // namespace
+
+void keep_faces(Mesh& mesh, std::span<const std::uint8_t> keeps) {
+  std::vector<std::uint8_t> corners;
+  std::vector<std::uint32_t> starts{0};
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::uint32_t count = mesh.face_starts[face + 1] - mesh.face_starts[face];
+    corners.insert(corners.end(), count, keeps[face]);
+    if (keeps[face] != 0) starts.push_back(starts.back() + count);
+  }
+  keep_values(mesh.face_corners, corners);
+  keep_values(mesh.corner_texcoords, corners);
+  keep_values(mesh.look.face_materials, keeps);
+  keep_values(mesh.look.groups.of_face, keeps);
+  keep_values(mesh.look.objects.of_face, keeps);
+  mesh.face_starts = std::move(starts);
+}
+
+void keep_vertices(Mesh& mesh, std::span<const std::uint8_t> keeps) {
+  std::vector<std::uint32_t> number(keeps.size(), no_index);
+  std::uint32_t kept = 0;
+  for (std::size_t at = 0; at < keeps.size(); ++at)
+    if (keeps[at] != 0) number[at] = kept++;
+  if (kept == keeps.size()) return;
+  for (std::uint32_t& corner : mesh.face_corners)
+    corner = number[corner];
+  keep_columns(mesh.vertices, keeps);
+  keep_values(mesh.detail, keeps);
+  if (mesh.look.vertex_colours.cols() > 0) keep_columns(mesh.look.vertex_colours, keeps);
+}
+
+DroppedCorners renumber_corners(Mesh& mesh, std::span<const std::uint32_t> vertex_of) {
+  for (std::uint32_t& corner : mesh.face_corners)
+    corner = vertex_of[corner];
+  std::vector<std::uint8_t> corners(mesh.face_corners.size(), 1);
+  std::vector<std::uint8_t> faces(mesh.face_count(), 1);
+  std::vector<std::uint32_t> starts{0};
+  DroppedCorners dropped;
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::uint32_t begin = mesh.face_starts[face], end = mesh.face_starts[face + 1];
+    std::vector<std::uint32_t> own;
+    for (std::uint32_t at = begin; at < end; ++at) {
+      const std::uint32_t next = at + 1 < end ? at + 1 : begin;
+      if (mesh.face_corners[at] == mesh.face_corners[next])
+        corners[at] = 0;
+      else
+        own.push_back(mesh.face_corners[at]);
+    }
+    const auto left = static_cast<std::uint32_t>(own.size());
+    std::sort(own.begin(), own.end());
+    if (std::unique(own.begin(), own.end()) - own.begin() < 3) {
+      std::fill(corners.begin() + begin, corners.begin() + end, std::uint8_t{0});
+      faces[face] = 0;
+      ++dropped.faces;
+      continue;
+    }
+    dropped.corners += end - begin - left;
+    starts.push_back(starts.back() + left);
+  }
+  keep_values(mesh.face_corners, corners);
+  keep_values(mesh.corner_texcoords, corners);
+  keep_values(mesh.look.face_materials, faces);
+  keep_values(mesh.look.groups.of_face, faces);
+  keep_values(mesh.look.objects.of_face, faces);
+  mesh.face_starts = std::move(starts);
+  return dropped;
+}
+
+Welding weld_places(Mesh& mesh, std::span<const std::uint32_t> group_of_vertex) {
+  Welding done;
+  const auto count = static_cast<std::size_t>(mesh.vertices.cols());
+  const std::vector<std::uint32_t> exact = exact_places(mesh.vertices);
+  if (has_no_doubles(exact)) return done;
+  const std::vector<std::uint32_t> place = places_alike(mesh, exact, group_of_vertex);
+  std::vector<std::uint32_t> place_of_corner;
+  place_of_corner.reserve(mesh.face_corners.size());
+  for (const std::uint32_t vertex : mesh.face_corners)
+    place_of_corner.push_back(place[vertex]);
+  UnionFind sets(count);
+  stitch(mesh, place_of_corner, mesh.face_corners, sets);
+  join_repeats(mesh, place, sets);
+  join_thin_faces(mesh, place, sets);
+  std::vector<std::uint32_t> vertex_of(count);
+  std::vector<std::uint8_t> keeps(count, 1);
+  for (std::uint32_t at = 0; at < count; ++at) {
+    vertex_of[at] = sets.find(at);
+    const bool same_group =
+        group_of_vertex.empty() || group_of_vertex[at] == group_of_vertex[exact[at]];
+    if (place[at] != exact[at] && same_group) ++done.coloured;
+    if (vertex_of[at] == at) continue;
+    keeps[at] = 0;
+    ++done.joined;
+  }
+  for (std::uint32_t& corner : mesh.face_corners)
+    corner = vertex_of[corner];
+  keep_vertices(mesh, keeps);
+  return done;
+}
+
+void note_welding(const Welding& welding, std::vector<std::string>& notes) {
+  if (welding.coloured == 0) return;
+  notes.push_back(std::to_string(welding.coloured) +
+                  (welding.coloured == 1 ? " vertex stays" : " vertices stay") +
+                  " apart from another one in the same place, because their colours differ; "
+                  "`nendo repair` joins them");
+}
+
+bool is_soup(const Mesh& mesh) {
+  if (mesh.face_count() < 2) return false;
+  std::vector<std::uint32_t> face_of(static_cast<std::size_t>(mesh.vertices.cols()), no_index);
+  for (std::uint32_t face = 0; face < mesh.face_count(); ++face)
+    for (std::uint32_t at = mesh.face_starts[face]; at < mesh.face_starts[face + 1]; ++at) {
+      std::uint32_t& of = face_of[mesh.face_corners[at]];
+      if (of != no_index && of != face) return false;
+      of = face;
+    }
+  return true;
+}
+
+} // namespace nendo::deform
