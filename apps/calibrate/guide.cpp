@@ -30,22 +30,52 @@ constexpr double deviations_allowed = 3.0;
 CalibrationGuide::CalibrationGuide(std::span<const PoseId> poses, CountScale scale,
                                    SensorMask stiff)
     : scale_(scale), stiff_(stiff), planned_(poses.begin(), poses.end()), poses_(planned_),
-      kept_(poses.size()), capture_(scale) {}
+      kept_(poses.size()), capture_(scale), still_(scale) {}
+
+void CalibrationGuide::push_free_motion(const GloveSample& sample) {
+  free_motion_.push(sample);
+  still_.push(sample);
+  leave_out_stuck(still_.stuck());
+}
+
+void CalibrationGuide::end_free_motion() {
+  leave_out_stuck(still_.still_in_free_motion());
+}
+
+hand::CountRanges CalibrationGuide::free_motion() const noexcept {
+  hand::CountRanges seen = free_motion_.seen();
+  seen.present.bits &= ~left_out_.bits;
+  return seen;
+}
 
 CalibrationGuide::Event CalibrationGuide::push(const GloveSample& sample) {
   if (is_done()) return Event::none;
-  const hand::CaptureState state = capture_.push(sample);
+  still_.push(sample);
+  leave_out_stuck(still_.stuck());
+  GloveSample usable = sample;
+  usable.present.bits &= ~left_out_.bits;
+  const hand::CaptureState state = capture_.push(usable);
   const bool moves = state == hand::CaptureState::moving || state == hand::CaptureState::noisy;
   if (same_may_come_ && moves) {
     capture_.forget_last();
     same_may_come_ = false;
   }
   if (state != hand::CaptureState::held) return Event::none;
-  const HeldPose held = capture_.held();
+  HeldPose held = capture_.held();
   capture_.begin_next();
   implausible_ = find_unbent(held);
   if (!implausible_) implausible_ = find_implausible(held);
+  while (implausible_ && still_.contradicts(*implausible_, asked())) {
+    const SensorMask before = left_out_;
+    SensorMask stuck;
+    stuck.add(*implausible_);
+    leave_out_stuck(stuck);
+    if (left_out_ == before) break;
+    held.present.bits &= ~left_out_.bits;
+    implausible_ = find_implausible(held);
+  }
   if (implausible_) return Event::implausible;
+  still_.captured(asked());
   kept_[at_] = held;
   same_may_come_ = false;
   advance();
@@ -116,6 +146,8 @@ void CalibrationGuide::begin_anew() {
   poses_ = planned_;
   kept_.assign(poses_.size(), std::nullopt);
   free_motion_ = hand::RangeCapture();
+  still_ = StillSensors(scale_);
+  left_out_ = {};
   at_ = 0;
   ask_again();
 }
@@ -150,7 +182,10 @@ void CalibrationGuide::restore(std::span<const hand::PoseReading> readings,
 std::vector<hand::PoseReading> CalibrationGuide::readings() const {
   std::vector<hand::PoseReading> readings;
   for (std::size_t k = 0; k < poses_.size(); ++k)
-    if (kept_[k]) readings.push_back({poses_[k], *kept_[k]});
+    if (kept_[k]) {
+      readings.push_back({poses_[k], *kept_[k]});
+      readings.back().held.present.bits &= ~left_out_.bits;
+    }
   return readings;
 }
 

@@ -13,6 +13,8 @@
 #include <nendo/hand/pose_capture.hpp>
 #include <nendo/hand/range_capture.hpp>
 
+#include "calibrate/still_sensors.hpp"
+
 namespace nendo::calibrate {
 
 class CalibrationGuide {
@@ -27,11 +29,19 @@ public:
     implausible, ///< a pose was held that cannot be the one asked for; see implausible_sensor()
   };
   /// Takes a sample of the free motion that comes before the poses.
-  void push_free_motion(const GloveSample& sample) { free_motion_.push(sample); }
-  const hand::CountRanges& free_motion() const noexcept { return free_motion_.seen(); }
+  void push_free_motion(const GloveSample& sample);
+  /// Leaves out the sensors that did not change in the free motion, if it was one. Call it once,
+  /// when the poses begin.
+  void end_free_motion();
+  hand::CountRanges free_motion() const noexcept;
 
   /// Takes the next sample in time. Does nothing once is_done().
   Event push(const GloveSample& sample);
+
+  /// Returns the sensors that are left out, because they were found stuck, or by leave_out(). No
+  /// pose, and no free motion, has them.
+  SensorMask left_out() const noexcept { return left_out_; }
+  void leave_out(SensorMask sensors) noexcept { left_out_.bits |= sensors.bits; }
 
   bool is_done() const noexcept { return at_ == poses_.size(); }
   /// Returns the pose asked for. Must not be called once is_done().
@@ -54,12 +64,14 @@ public:
   void restore(std::span<const hand::PoseReading> readings, const hand::CountRanges& free_motion);
   static constexpr std::size_t most_takes = 8;
 
-  /// Returns the held poses in the order in which they are asked for.
+  /// Returns the held poses in the order in which they are asked for, without what is left out.
   std::vector<hand::PoseReading> readings() const;
   /// Tells whether there are readings.
   bool has_any() const noexcept;
 
 private:
+  /// But for those of stiff joints, which may well stand still.
+  void leave_out_stuck(SensorMask stuck) noexcept { leave_out({stuck.bits & ~stiff_.bits}); }
   void advance();
   void ask_again() noexcept;
   std::ptrdiff_t last_kept() const noexcept;
@@ -77,6 +89,8 @@ private:
   bool same_may_come_ = false; ///< the last pose counts again once the hand has moved
   hand::RangeCapture free_motion_;
   std::optional<Sensor> implausible_;
+  StillSensors still_;
+  SensorMask left_out_;
 };
 
 } // namespace nendo::calibrate

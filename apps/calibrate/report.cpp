@@ -118,7 +118,8 @@ void draw_row(cli::SvgDrawing& drawing, Sensor sensor, const hand::SensorFit& qu
 } // namespace
 
 void print_report(std::ostream& out, const hand::CalibrationFit& fit,
-                  std::span<const hand::PoseReading> readings, SensorMask sensors) {
+                  std::span<const hand::PoseReading> readings, SensorMask sensors,
+                  SensorMask left_out) {
   out << "sensor                      counts  deg/count   residual    sure to\n";
   for_each_sensor(sensors, [&](Sensor sensor, std::size_t slot) {
     const hand::SensorFit& quality = fit.sensors[slot];
@@ -128,6 +129,10 @@ void print_report(std::ostream& out, const hand::CalibrationFit& fit,
                        range, to_degrees(fit.calibration[sensor].gain_rad_per_count),
                        to_degrees(quality.residual_rad), to_degrees(quality.deviation_rad),
                        kept_text(quality));
+  });
+  for_each_sensor(left_out, [&](Sensor sensor, std::size_t) {
+    out << fmt::format("{:22} stands still: left out, and estimated from the sensors beside\n",
+                       name_of(sensor));
   });
   print_readings(out, fit, readings);
   print_set_aside(out, fit, readings);

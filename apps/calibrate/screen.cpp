@@ -5,8 +5,6 @@
 #include <cmath>
 
 #include <nendo/base/text.hpp>
-#include <nendo/hand/inverse_kinematics.hpp>
-#include <nendo/hand/joint_angles.hpp>
 
 #include "calibrate/hand_drawing.hpp"
 
@@ -14,67 +12,12 @@ namespace nendo::calibrate {
 namespace {
 
 using hand::CaptureState;
-using hand::Joint;
-using hand::JointAngles;
 
 constexpr int name_width = 23;
 constexpr int least_bar = 8;
 constexpr int drawing_rows = 16;
 constexpr int least_drawing_rows = 10;
 constexpr double silent_after_s = 1.0;
-
-/// Returns the angles that a pose assumes, as a glove would measure them. Joints that the pose
-/// leaves open are relaxed.
-JointAngles assumed_angles(const hand::CalibrationPose& pose) {
-  constexpr double gain = 1e-4; // rad: finer than any eye
-  constexpr double offset = 30000.0;
-  constexpr double relaxed_thumb_rad = 0.35;
-  hand::Calibration calibration;
-  calibration.sensors.fill({gain, offset});
-  GloveSample sample;
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (!sensors_22.has(sensor)) continue;
-    double angle_rad = pose.assumed[slot].known() ? pose.assumed[slot].angle_rad : 0.0;
-    const bool opposes = sensor == Sensor::thumb_roll || sensor == Sensor::thumb_abduction;
-    if (opposes && !pose.assumed[slot].known()) angle_rad = relaxed_thumb_rad;
-    sample.set(sensor,
-               RawCount{static_cast<std::uint16_t>(std::lround(offset + angle_rad / gain))});
-  }
-  return hand::joint_angles(sample, calibration);
-}
-
-/// Brings the pads of the thumb and of the finger with the tip `with` together. It begins with a
-/// half closed hand or, if the pose asks for a `straight` finger, with one that is bent at its base
-/// alone. If `with` is no fingertip, it lays the thumb's pad on the palm at that joint.
-JointAngles touching(JointAngles angles, Joint with, bool straight,
-                     const hand::HandSkeleton& skeleton) {
-  const Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
-  const Eigen::Vector3d& pad = skeleton.pad();
-  const auto found = std::find(hand::fingertips.begin(), hand::fingertips.end(), with);
-  const bool palm = found == hand::fingertips.end();
-  const auto finger = palm ? 0 : static_cast<std::size_t>(found - hand::fingertips.begin());
-  angles.thumb_roll_rad = palm ? 0.8 : 1.2;
-  angles.thumb_abduction_rad = palm ? 0.2 : 0.6;
-  angles.thumb_mcp_flexion_rad = palm ? 0.8 : 0.2 * static_cast<double>(finger);
-  angles.thumb_ip_flexion_rad = palm ? 0.8 : 0.2;
-  if (!palm)
-    angles.fingers[finger - 1] =
-        straight ? hand::FingerAngles{1.0, 0.0, 0.2, 0.1} : hand::FingerAngles{0.9, 0.0, 0.8, 0.4};
-  for (int turn = 0; turn < 10; ++turn) { // tips turn as they move
-    const hand::HandPose pose = skeleton.pose(angles, origin);
-    const Eigen::Isometry3d& thumb = pose[Joint::thumb_tip];
-    const Eigen::Isometry3d& other = pose[with];
-    const Eigen::Vector3d meets =
-        palm ? other * Eigen::Vector3d(0.0, -hand::palm_depth_m, 0.0) : other * pad;
-    const Eigen::Vector3d gap = meets - thumb * pad;
-    hand::FingertipTargets targets{};
-    targets[0] = {thumb.translation() + (palm ? 1.0 : 0.5) * gap, 1.0};
-    if (!palm) targets[finger] = {other.translation() - 0.5 * gap, 1.0};
-    angles = hand::inverse_kinematics(skeleton, origin, targets, angles).angles;
-  }
-  return angles;
-}
 
 std::string fitted(std::string text, int width) {
   text.resize(static_cast<std::size_t>(std::max(width, 0)), ' ');
@@ -113,14 +56,19 @@ std::string state_text(const CalibrationPicture& picture) {
   case CaptureState::moving:
     return "Hold still: " + troubled() + " moves.";
   case CaptureState::noisy:
-    return "Too noisy: " + troubled() + " jumps to and fro. Does the glove sit well?";
+    return "Too noisy: " + troubled() +
+           " jumps to and fro. Does the glove sit well? If it goes "
+           "on, x leaves the sensor out.";
   case CaptureState::saturated:
-    return "At an end of what it can measure: " + troubled() + ". Bend that joint less.";
+    return "At an end of what it can measure: " + troubled() +
+           ". Bend that joint less. If it stays there whatever you do, x leaves the sensor out.";
   case CaptureState::unchanged:
     if (picture.guide->implausible_sensor())
       return "That is not it: look at " +
              std::string(name_of(*picture.guide->implausible_sensor())) +
-             ". If the pose before was not right, b takes it anew.";
+             ". If the pose before was not right, b takes it anew; if the sensor is broken, x "
+             "leaves "
+             "it out.";
     return picture.guide->number() == 0 ? "Take this pose." : "Taken. Now take this one.";
   case CaptureState::settling:
   case CaptureState::held:
@@ -153,9 +101,12 @@ std::vector<std::string> bars(const CalibrationPicture& picture, int width, int 
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
     if (!picture.sample->present.has(sensor) || static_cast<int>(lines.size()) >= rows) continue;
-    lines.push_back(fitted(std::string(name_of(sensor)), name_width) +
-                    gloves::count_bar(width - name_width, (*picture.sample)[sensor].value,
-                                      (*picture.seen)[sensor], picture.info->counts.most));
+    const bool left_out = picture.guide->left_out().has(sensor);
+    lines.push_back(
+        fitted((left_out ? "(" : "") + std::string(name_of(sensor)) + (left_out ? ")" : ""),
+               name_width) +
+        gloves::count_bar(width - name_width, (*picture.sample)[sensor].value,
+                          (*picture.seen)[sensor], picture.info->counts.most));
   }
   return lines;
 }
@@ -183,18 +134,6 @@ std::vector<std::string> middle(const CalibrationPicture& picture, int columns, 
 
 } // namespace
 
-hand::HandPose demonstrated(hand::PoseId id, Side side) {
-  const hand::CalibrationPose& pose = hand::pose_of(id);
-  const hand::HandSkeleton skeleton(side);
-  JointAngles angles = assumed_angles(pose);
-  if (pose.touch) {
-    // Solved as a right hand: a left one is its mirror image.
-    const bool straight = pose.assumed[static_cast<std::size_t>(Sensor::index_pip)].known();
-    angles = touching(angles, pose.touch->with, straight, hand::HandSkeleton(Side::right));
-  }
-  return skeleton.pose(angles, Eigen::Isometry3d::Identity());
-}
-
 std::vector<std::string> calibration_lines(const CalibrationPicture& picture,
                                            cli::ScreenSize size) {
   const CalibrationGuide& guide = *picture.guide;
@@ -210,7 +149,8 @@ std::vector<std::string> calibration_lines(const CalibrationPicture& picture,
   std::vector<std::string> below;
   add_wrapped(below, undetermined_text(picture.undetermined), size.columns);
   if (below.empty()) below.emplace_back(); // what is below stays where it is
-  add_wrapped(below, "SPACE begin  b redo  t take once more  s skip  n anew  w write  q quit",
+  add_wrapped(below,
+              "SPACE begin  b redo  t take once more  s skip  x leave out  n anew  w write  q quit",
               size.columns);
   const int room = size.rows - static_cast<int>(lines.size() + below.size());
   const auto between = middle(picture, size.columns, room);

@@ -33,8 +33,4 @@ struct CalibrationPicture {
 /// drawing is left out and then the bars; the instruction and the keys stay.
 std::vector<std::string> calibration_lines(const CalibrationPicture& picture, cli::ScreenSize size);
 
-/// Returns the pose as a wearer would take it. Inverse kinematics brings touching tips together,
-/// which takes too long to do for every picture.
-hand::HandPose demonstrated(hand::PoseId pose, Side side);
-
 } // namespace nendo::calibrate

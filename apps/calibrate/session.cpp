@@ -5,10 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include "calibrate/demonstration.hpp"
 #include "calibrate/screen.hpp"
 #include "cli/cli.hpp"
 #include "cli/terminal.hpp"
 #include "gloves/monitor_screen.hpp"
+#include "gloves/stuck_sensors.hpp"
 
 namespace nendo::calibrate {
 namespace {
@@ -28,6 +30,7 @@ struct Session {
   SensorMask undetermined{};
   bool begun = false;
   std::string notice{};   ///< why there is no calibration yet; stays until something is done
+  SensorMask told{};      ///< of CalibrationGuide::left_out()
   bool asks_anew = false; ///< the key that begins anew was pressed once
   struct Demonstration {
     hand::PoseId of;
@@ -41,21 +44,45 @@ struct Session {
       seen.add(sample);
       latest = sample;
       if (!begun) guide.push_free_motion(sample);
-      if (!begun || guide.push(sample) != CalibrationGuide::Event::captured) continue;
-      notice.clear();
-      update_undetermined();
+      const bool captured = begun && guide.push(sample) == CalibrationGuide::Event::captured;
+      if (captured) notice.clear();
+      const bool left_out = tell_left_out();
+      if (captured || left_out) update_undetermined();
     }
+  }
+  /// Says which sensors are left out, if there are more than before.
+  bool tell_left_out() {
+    const SensorMask now = guide.left_out();
+    if (std::exchange(told, now) == now) return false;
+    notice = gloves::sensors_in_words(now) + (gloves::is_one(now) ? " stands" : " stand") +
+             " still, whatever the hand does: left out, and estimated from the sensors beside. n "
+             "begins anew with all sensors.";
+    return true;
+  }
+  /// The sensors of which a calibration is made.
+  SensorMask sensors() const { return {glove.info().sensors.bits & ~guide.left_out().bits}; }
+  /// Leaves out what keeps a pose from being taken, as the wearer asks.
+  void leave_out_troubled() {
+    const auto state = guide.capture().state();
+    if (begun && guide.implausible_sensor()) {
+      SensorMask sensor;
+      sensor.add(*guide.implausible_sensor());
+      return guide.leave_out(sensor);
+    }
+    if (!begun || (state != hand::CaptureState::saturated && state != hand::CaptureState::noisy))
+      return;
+    guide.leave_out(guide.capture().troubled());
   }
   Result<hand::CalibrationFit> fitted() const {
     const auto readings = guide.readings();
     hand::FitOptions options = fit;
     options.free_motion = guide.free_motion();
     options.hold_out = false; // between two poses nobody waits for that
-    return hand::fit_calibration(readings, glove.info().side, glove.info().sensors, options);
+    return hand::fit_calibration(readings, glove.info().side, sensors(), options);
   }
   void update_undetermined() {
     const auto found = fitted();
-    undetermined = found ? found->undetermined : glove.info().sensors;
+    undetermined = found ? found->undetermined : sensors();
   }
   /// Ends the session if a calibration fits the poses. Otherwise asks for a pose: without one,
   /// neither this session nor one that goes on from its poses would have a way on.
@@ -76,6 +103,7 @@ struct Session {
       return;
     }
     guide.begin_anew();
+    told = {};
     seen.clear();
     begun = false;
   }
@@ -104,11 +132,13 @@ struct Session {
     if (key == 'q') return SessionEnd::quit;
     if (key == 'w') return finish(SessionEnd::written);
     if (key == 'n') begin_anew(asked_anew);
-    if (key == ' ') begun = true;
+    if (key == ' ' && !std::exchange(begun, true)) guide.end_free_motion();
+    if (key == 'x') leave_out_troubled();
+    tell_left_out();
     if (key == 'b') guide.go_back();
     if (key == 't') guide.take_again();
     if (key == 's') guide.skip();
-    if (key == 'b' || key == 's' || key == 'n') update_undetermined();
+    if (key == 'b' || key == 's' || key == 'n' || key == 'x') update_undetermined();
     return std::nullopt;
   }
 };
@@ -119,6 +149,7 @@ Result<SessionEnd> run_calibration_session(driver::Glove& glove, const std::stri
                                            const hand::FitOptions& fit, CalibrationGuide& guide) {
   Session session{glove, user, fit, guide};
   if (const auto started = glove.start(session.ring); !started) return started.error();
+  session.tell_left_out();
   session.update_undetermined();
   std::optional<SessionEnd> ended;
   while (!ended) {

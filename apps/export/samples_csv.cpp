@@ -8,7 +8,7 @@
 
 #include <nendo/base/file_replacement.hpp>
 #include <nendo/base/units.hpp>
-#include <nendo/hand/calibration.hpp>
+#include <nendo/hand/joint_angles.hpp>
 
 #include "export/csv_row.hpp"
 #include "takes/glove_samples.hpp"
@@ -73,10 +73,11 @@ private:
 
   void put_angles(const GloveSample& sample, const hand::Calibration* calibration) {
     hand::SensorAngles angles_rad{};
-    if (calibration != nullptr) angles_rad = calibration->angles_rad(sample);
+    if (calibration != nullptr) angles_rad = hand::filled_angles_rad(sample, *calibration, samples_.left_out());
     for_each_sensor([&](Sensor sensor) {
       const bool known = calibration != nullptr && sample.present.has(sensor) &&
-                         (*calibration)[sensor].gain_rad_per_count != 0.0;
+                         (*calibration)[sensor].gain_rad_per_count != 0.0 &&
+                         !samples_.left_out().has(sensor); // it measures nothing
       if (!known) return row_.put_nothing();
       row_.put(to_degrees(angles_rad[static_cast<std::size_t>(sensor)]), angle_decimals);
     });

@@ -12,6 +12,7 @@
 #include "gloves/calibration_names.hpp"
 #include "gloves/kept_ranges.hpp"
 #include "gloves/kept_slips.hpp"
+#include "gloves/stuck_sensors.hpp"
 
 namespace nendo::gloves {
 namespace {
@@ -20,6 +21,11 @@ void report_choice(const driver::GloveInfo& glove, const hand::StoredCalibration
                    const std::string& doubt) {
   cli::note(printable(glove.source) + ": calibrated for " + title_of(file.wearer) + " (" +
             printable(file.path.string()) + ")" + doubt);
+  if (file.wearer.left_out.bits != 0)
+    cli::note(printable(glove.source) + ": " + sensors_in_words(file.wearer.left_out) +
+              (is_one(file.wearer.left_out) ? " was" : " were") +
+              " stuck when it was calibrated, so estimated from the sensors beside; once the glove "
+              "is mended, calibrate it again");
 }
 
 void report_none(const driver::GloveInfo& glove, Side side) {
@@ -77,7 +83,7 @@ std::string doubt_about(const hand::CalibrationChoice& choice) {
 }
 
 hand::WearerHand hand_of(const hand::WearerCalibration& wearer, CountScale counts) {
-  return {hand::calibration_for(wearer, counts), wearer.size};
+  return {hand::calibration_for(wearer, counts), wearer.size, wearer.left_out};
 }
 
 hand::WearerHand average_hand(CountScale counts) {
@@ -258,10 +264,10 @@ void add_hand_length(cli::Command& command, HandLength& length) {
                           "calibration says");
 }
 
-Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
-                                 const CalibrationOptions& options, FoundCalibration* found) {
-  FoundCalibration unwanted;
-  FoundCalibration& result = found == nullptr ? unwanted : *found;
+namespace {
+
+Result<hand::Wearer> chosen_wearer(const driver::GloveInfo& glove, Side side,
+                                   const CalibrationOptions& options, FoundCalibration& result) {
   hand::Wearer wearer{average_hand(glove.counts), average_hand(glove.counts)};
   if (options.adapt) return adapting_wearer(glove, side, wearer, options, result);
   if (options.calibration == "none") return wearer;
@@ -282,6 +288,16 @@ Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
     }
   }
   return stored_wearer(glove, side, wearer, options, result);
+}
+
+} // namespace
+
+Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
+                                 const CalibrationOptions& options, FoundCalibration* found) {
+  FoundCalibration unwanted;
+  auto wearer = chosen_wearer(glove, side, options, found == nullptr ? unwanted : *found);
+  if (wearer) wearer->watched = glove.counts;
+  return wearer;
 }
 
 bool is_uncalibrated(const driver::GloveInfo& glove, const hand::Wearer& wearer, Side side) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <nendo/hand/angle_sources.hpp>
+#include <nendo/hand/joint_angles.hpp>
 
 #include "cli/json_line.hpp"
 
@@ -20,8 +21,15 @@ ordered_json switch_json(WristSwitch position) {
 
 } // namespace
 
-ordered_json angle_sources_json(SensorMask sensors) {
-  const hand::AngleSources sources = hand::angle_sources(sensors);
+ordered_json sensors_json(SensorMask sensors) {
+  ordered_json names = ordered_json::array();
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    if (sensors.has(static_cast<Sensor>(slot))) names.push_back(sensor_names[slot]);
+  return names;
+}
+
+ordered_json angle_sources_json(SensorMask sensors, SensorMask left_out) {
+  const hand::AngleSources sources = hand::angle_sources(sensors, left_out);
   ordered_json by_angle = ordered_json::object();
   for (std::size_t n = 0; n < hand::angle_count; ++n)
     by_angle[std::string(hand::angle_names[n])] = name_of(sources[n]);
@@ -36,11 +44,12 @@ void add_counts(ordered_json& object, const driver::RecordCounts& counts) {
 }
 
 std::string sample_json(const GloveSample& sample, const hand::Calibration* calibration,
-                        bool with_sources, const FoundCalibration* found) {
+                        bool with_sources, const FoundCalibration* found, SensorMask left_out) {
   ordered_json raw = ordered_json::object();
   ordered_json angles = ordered_json::object();
-  const auto angles_rad =
-      calibration != nullptr ? calibration->angles_rad(sample) : hand::SensorAngles{};
+  const auto angles_rad = calibration != nullptr
+                              ? hand::filled_angles_rad(sample, *calibration, left_out)
+                              : hand::SensorAngles{};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
     if (!sample.present.has(sensor)) continue;
@@ -60,7 +69,9 @@ std::string sample_json(const GloveSample& sample, const hand::Calibration* cali
   if (sample.is_replayed) line["replayed_s"] = to_seconds(sample.arrival.time_since_epoch());
   if (sample.has_device_time) line["device_time_s"] = to_seconds(sample.device_time);
   if (calibration != nullptr) line["angle_rad"] = std::move(angles);
-  if (calibration != nullptr && with_sources) line["angles"] = angle_sources_json(sample.present);
+  if (left_out.bits != 0) line["left_out"] = sensors_json(left_out);
+  if (calibration != nullptr && with_sources)
+    line["angles"] = angle_sources_json(sample.present, left_out);
   if (calibration != nullptr && with_sources && found != nullptr)
     line["calibration"] = calibration_json(*found);
   return cli::json_text(line);

@@ -15,25 +15,31 @@
 namespace nendo::gloves {
 
 /// Returns an object with the name of each angle's hand::AngleSource: "measured", the rule that
-/// estimates it, or "zero".
-nlohmann::ordered_json angle_sources_json(SensorMask sensors);
+/// estimates it, or "zero". Some of the sensors may be left out.
+nlohmann::ordered_json angle_sources_json(SensorMask sensors, SensorMask left_out = {});
+
+/// Returns an array with the names of the sensors.
+nlohmann::ordered_json sensors_json(SensorMask sensors);
 
 /// Adds the counts to an object, under the names of driver::by_name().
 void add_counts(nlohmann::ordered_json& object, const driver::RecordCounts& counts);
 
-/// Distinguishes the first sample of each glove from the others, by its hand and sensors.
+/// Distinguishes the first sample of each glove from the others, by its hand and sensors, and by
+/// those that are left out of it.
 class GloveChanges {
 public:
-  bool is_first(Side side, SensorMask sensors) noexcept {
-    const bool first = !sensors_ || side != side_ || sensors != *sensors_;
+  bool is_first(Side side, SensorMask sensors, SensorMask left_out = {}) noexcept {
+    const bool first = !sensors_ || side != side_ || sensors != *sensors_ || left_out != left_out_;
     side_ = side;
     sensors_ = sensors;
+    left_out_ = left_out;
     return first;
   }
 
 private:
   Side side_ = Side::right;
   std::optional<SensorMask> sensors_; ///< nullopt: no sample came yet
+  SensorMask left_out_;
 };
 
 /// Returns one object without a line end. Its keys are time_s and measured_s (host clock; of a
@@ -43,9 +49,11 @@ private:
 /// is null. It contains only sensors that the sample has, and only angles that the calibration
 /// knows. With `with_sources`, unless `calibration` is null, there is also the key angles, with
 /// what angle_sources_json() returns, and calibration, with what calibration_json() returns, unless
-/// `found` is null.
+/// `found` is null. If some sensors are `left_out`, the key left_out has their names, and angle_rad
+/// has estimates for them.
 std::string sample_json(const GloveSample& sample, const hand::Calibration* calibration,
-                        bool with_sources = false, const FoundCalibration* found = nullptr);
+                        bool with_sources = false, const FoundCalibration* found = nullptr,
+                        SensorMask left_out = {});
 
 /// Returns an object with the keys kind ("average", "stored", "recorded", "learned"), user and path
 /// (null if there is none): whose hand the angles are.

@@ -7,6 +7,7 @@
 
 #include <nendo/base/text.hpp>
 #include <nendo/driver/record_counts.hpp>
+#include <nendo/hand/joint_angles.hpp>
 
 namespace nendo::gloves {
 namespace {
@@ -121,15 +122,26 @@ std::string stream_line(const MonitorPicture& picture, const std::string& keys, 
   return both_ends(text, keys_fit ? keys : "", width);
 }
 
+/// Returns "index_pip stands still at 255 while the hand moves: ...".
+std::string stuck_text(const MonitorPicture& picture) {
+  std::string text;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    if (!picture.left_out.has(sensor)) continue;
+    text.append(text.empty() ? "" : ", ").append(name_of(sensor));
+    text += " stands still at " + std::to_string((*picture.sample)[sensor].value);
+  }
+  return text + ": estimated (e)";
+}
+
 std::string angle_text(const MonitorPicture& picture, Sensor sensor) {
   const hand::Calibration& calibration = *picture.calibration;
   if (calibration[sensor].gain_rad_per_count == 0.0) return std::string(angle_width, ' ');
-  const double angle_rad =
-      calibration.angles_rad(*picture.sample)[static_cast<std::size_t>(sensor)];
+  const auto angles_rad = hand::filled_angles_rad(*picture.sample, calibration, picture.left_out);
+  const double angle_rad = angles_rad[static_cast<std::size_t>(sensor)];
   const double angle_deg = std::round(to_degrees(angle_rad)) + 0.0; // 0 without a sign
-  return right_aligned((picture.uncalibrated ? "~" : "") +
-                           fixed(std::clamp(angle_deg, -999.0, 999.0), 0) + " deg",
-                       angle_width);
+  const char* const mark = picture.left_out.has(sensor) ? "e" : (picture.uncalibrated ? "~" : "");
+  return right_aligned(mark + fixed(std::clamp(angle_deg, -999.0, 999.0), 0) + " deg", angle_width);
 }
 
 std::string sensor_text(const MonitorPicture& picture, Sensor sensor, int width) {
@@ -210,7 +222,10 @@ std::vector<std::string> monitor_lines(const MonitorPicture& picture, cli::Scree
     keys = picture.info->abilities.light ? "q quit, r ranges, l light" : "q quit, r ranges";
   std::vector<std::string> lines{glove_line(picture, size.columns),
                                  stream_line(picture, keys, size.columns)};
-  if (picture.sample != nullptr) add_sensors(picture, size, size.rows - 2, lines);
+  if (picture.sample != nullptr && picture.left_out.bits != 0)
+    lines.push_back(cut(stuck_text(picture), size.columns));
+  if (picture.sample != nullptr)
+    add_sensors(picture, size, size.rows - static_cast<int>(lines.size()), lines);
   lines.resize(std::min(lines.size(), static_cast<std::size_t>(std::max(size.rows, 0))));
   return lines;
 }

@@ -47,6 +47,8 @@ struct MonitorPicture {
   /// The angles are an average hand's: the first line says so, and each has a '~' before it.
   bool uncalibrated = false;
   std::string wearer{}; ///< whose calibration the angles are of; empty: not said
+  /// Sensors that are stuck: the third line names them, and their angles have an 'e' before them.
+  SensorMask left_out{};
 };
 
 /// Returns `width` characters, of which the one at the place of `count` is '#'. '[' and ']' are at

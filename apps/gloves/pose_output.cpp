@@ -23,9 +23,10 @@ constexpr std::size_t most_pending_bytes = 1 << 16;
 constexpr std::uint64_t most_pending_frames = 64;
 
 /// Of the estimated angles alone.
-nlohmann::ordered_json deviations_json(const hand::JointAngles& angles, SensorMask sensors) {
-  const hand::AngleSources sources = hand::angle_sources(sensors);
-  const hand::AngleDeviations deviations = hand::angle_deviations(angles, sensors);
+nlohmann::ordered_json deviations_json(const hand::JointAngles& angles, SensorMask sensors,
+                                       SensorMask left_out) {
+  const hand::AngleSources sources = hand::angle_sources(sensors, left_out);
+  const hand::AngleDeviations deviations = hand::angle_deviations(angles, sensors, left_out);
   nlohmann::ordered_json by_angle;
   for (std::size_t at = 0; at < hand::angle_count; ++at)
     if (hand::is_estimated(sources[at]))
@@ -36,7 +37,8 @@ nlohmann::ordered_json deviations_json(const hand::JointAngles& angles, SensorMa
 
 /// Returns the line of a pose without a line end, with the key angles if it is a glove's first.
 std::string pose_json(HostTime time, Side side, const hand::HandPose& pose,
-                      const hand::JointAngles& angles, SensorMask sensors, bool is_first) {
+                      const hand::JointAngles& angles, SensorMask sensors, SensorMask left_out,
+                      bool is_first) {
   nlohmann::ordered_json joints = nlohmann::ordered_json::object();
   for (std::size_t at = 0; at < hand::joint_count; ++at) {
     const Eigen::Isometry3d& joint = pose.joints[at];
@@ -51,9 +53,10 @@ std::string pose_json(HostTime time, Side side, const hand::HandPose& pose,
   nlohmann::ordered_json line{{"time_s", to_seconds(time.time_since_epoch())},
                               {"hand", name_of(side)},
                               {"joints", std::move(joints)}};
-  if (auto deviations = deviations_json(angles, sensors); !deviations.empty())
+  if (auto deviations = deviations_json(angles, sensors, left_out); !deviations.empty())
     line["deviations_deg"] = std::move(deviations);
-  if (is_first) line["angles"] = angle_sources_json(sensors);
+  if (left_out.bits != 0) line["left_out"] = sensors_json(left_out);
+  if (is_first) line["angles"] = angle_sources_json(sensors, left_out);
   return cli::json_text(line);
 }
 
@@ -61,9 +64,10 @@ class JsonLines final : public PoseOutput {
 public:
   std::optional<Side> only_side() const override { return std::nullopt; }
   Result<void> put(HostTime time, Side side, const hand::HandPose& pose,
-                   const hand::JointAngles& angles, SensorMask sensors) override {
-    const bool first = gloves_.is_first(side, sensors);
-    lines_ += pose_json(time, side, pose, angles, sensors, first);
+                   const hand::JointAngles& angles, SensorMask sensors,
+                   SensorMask left_out) override {
+    const bool first = gloves_.is_first(side, sensors, left_out);
+    lines_ += pose_json(time, side, pose, angles, sensors, left_out, first);
     lines_ += '\n';
     return lines_.size() < most_pending_bytes ? Result<void>() : flush();
   }
@@ -85,7 +89,7 @@ public:
       : file_(std::move(file)), path_(std::move(path)), side_(side) {}
 
   std::optional<Side> only_side() const override { return side_; }
-  Result<void> put(HostTime, Side, const hand::HandPose& pose, const hand::JointAngles&,
+  Result<void> put(HostTime, Side, const hand::HandPose& pose, const hand::JointAngles&, SensorMask,
                    SensorMask) override {
     if (auto added = file_.add(pose); !added) return added;
     return ++put_ % most_pending_frames != 0 ? Result<void>() : flush();

@@ -20,10 +20,12 @@ public:
 
   /// Returns the hand of which every pose must be, or nullopt if any hand will do.
   virtual std::optional<Side> only_side() const = 0;
-  /// Takes a pose that was made of these angles, which these sensors measured. Keeps it until
+  /// Takes a pose that was made of these angles, which these sensors measured, but for those that
+  /// were left out. Keeps it until
   /// flush(), which it calls itself when much is kept; blocks then.
   virtual Result<void> put(HostTime time, Side side, const hand::HandPose& pose,
-                           const hand::JointAngles& angles, SensorMask sensors) = 0;
+                           const hand::JointAngles& angles, SensorMask sensors,
+                           SensorMask left_out) = 0;
   /// Writes the kept poses. Blocks as long as the disk or the reader does. Error: failed.
   virtual Result<void> flush() = 0;
   /// Flushes and completes the output. Must be the last call. Error: failed.
@@ -35,7 +37,8 @@ public:
 /// with position_m [x, y, z] and orientation_xyzw, a unit quaternion whose w is not negative. The
 /// first pose of each glove has also the key angles, with what angle_sources_json() returns. A pose
 /// with estimated angles has the key deviations_deg: by the name of each of these angles, one
-/// standard deviation (hand::angle_deviations()).
+/// standard deviation (hand::angle_deviations()). Where sensors are stuck, the key left_out has
+/// their names.
 std::unique_ptr<PoseOutput> json_pose_output();
 /// Writes a BVH file. Fails as BvhFile::create() does.
 Result<std::unique_ptr<PoseOutput>>

@@ -25,6 +25,7 @@
 #include "cli/cli.hpp"
 #include "gloves/glove_calibration.hpp"
 #include "gloves/open_hand.hpp"
+#include "gloves/stuck_sensors.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::calibrate_command {
@@ -190,14 +191,25 @@ void note_quality(Wearer& wearer, const hand::CalibrationFit& fit,
   quality->most_counts = std::max(quality->most_counts, free_motion.high_counts[slot]);
 }
 
+void note_left_out(const std::string& source, SensorMask left_out) {
+  if (left_out.bits == 0) return;
+  const bool one = gloves::is_one(left_out);
+  cli::note(printable(source) + ": " + gloves::sensors_in_words(left_out) +
+            (one ? " stands" : " stand") +
+            " still, whatever the hand does: the calibration is made without " +
+            (one ? "it" : "them") + ", and the joint is estimated from the sensors beside");
+}
+
 int fit_and_write(const Options& options, Wearer& wearer,
                   const calibrate::CalibrationGuide& guide) {
   const auto readings = guide.readings();
+  wearer.sensors.bits &= ~guide.left_out().bits;
+  wearer.about.left_out = guide.left_out();
   hand::FitOptions fitting = fit_options(options, wearer.about.counts, wearer.known);
   fitting.free_motion = guide.free_motion();
   const auto fit = hand::fit_calibration(readings, wearer.about.side, wearer.sensors, fitting);
   if (!fit) return cli::report(fit.error());
-  calibrate::print_report(std::cout, *fit, readings, wearer.sensors);
+  calibrate::print_report(std::cout, *fit, readings, wearer.sensors, guide.left_out());
   wearer.about.calibration = fit->calibration;
   wearer.about.size = fit->size;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
@@ -219,11 +231,30 @@ int fit_and_write(const Options& options, Wearer& wearer,
   return drawn ? 0 : cli::report(drawn.error());
 }
 
+/// Returns the sensors that are found stuck anywhere in a capture.
+SensorMask stuck_in(const calibrate::CaptureFile& capture, const Options& options,
+                    SensorMask before) {
+  calibrate::CalibrationGuide guide(poses_for(options), capture.counts, options.stiff_sensors);
+  guide.restore(capture.readings, capture.free_motion);
+  guide.leave_out(before);
+  for (const GloveSample& sample : capture.samples) {
+    if (!guide.has_any()) guide.push_free_motion(sample);
+    const bool first = !guide.has_any();
+    if (guide.push(sample) == calibrate::CalibrationGuide::Event::captured && first)
+      guide.end_free_motion();
+  }
+  return guide.left_out();
+}
+
 int calibrate_from_capture(const Options& options) {
   const auto capture = calibrate::read_capture(options.from);
   if (!capture) return cli::report(capture.error());
   calibrate::CalibrationGuide guide(poses_for(options), capture->counts, options.stiff_sensors);
   guide.restore(capture->readings, capture->free_motion);
+  guide.leave_out(calibrate::still_in(capture->readings, capture->counts));
+  // A sensor may be found late. It is left out from the beginning.
+  guide.leave_out(stuck_in(*capture, options, guide.left_out()));
+  note_left_out(options.from, guide.left_out());
   SensorMask sensors;
   for (const auto& reading : capture->readings)
     sensors.bits |= reading.held.present.bits;
@@ -284,12 +315,17 @@ int calibrate_glove(const Options& options) {
            before.error().message + "; with --fresh it is not read, and written anew"});
     went_on = before->counts == info.counts && before->side == info.side;
     if (went_on) guide.restore(before->readings, before->free_motion);
+    // What was found stuck before is not in the poses.
+    for (const auto& reading : before->readings)
+      if (went_on) guide.leave_out({info.sensors.bits & ~reading.held.present.bits});
   }
+  if (wearer.known) guide.leave_out(wearer.known->left_out);
   cli::install_stop_signals();
   const auto end = calibrate::run_calibration_session(
       **glove, options.user, fit_options(options, info.counts, wearer.known), guide);
   if (!end) return cli::report(end.error());
   if (*end == calibrate::SessionEnd::quit) return keep_for_later(wearer, guide, went_on);
+  note_left_out(options.glove, guide.left_out());
   const int code = fit_and_write(options, wearer, guide);
   return code == 0 ? 0 : (keep_for_later(wearer, guide, went_on), code);
 }

@@ -15,6 +15,8 @@
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
 #include "gloves/calibration_names.hpp"
+#include "gloves/glove_json.hpp"
+#include "gloves/stuck_sensors.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::calibration_command {
@@ -127,6 +129,8 @@ void show_text(const StoredCalibration& file) {
                     quality ? fixed(to_degrees(quality->residual_rad), 1) : "-"});
   }
   print_table(rows);
+  if (wearer.left_out.bits != 0)
+    std::cout << "left out, because stuck: " << gloves::sensors_in_words(wearer.left_out) << '\n';
 }
 
 int show(const std::string& name, bool json) {
@@ -146,6 +150,7 @@ int show(const std::string& name, bool json) {
     for (std::size_t k = 0; k < hand::shape_terms; ++k)
       shape[std::string(hand::shape_term_names[k])] = wearer.size.shape.terms[k];
   }
+  line["left_out"] = gloves::sensors_json(wearer.left_out);
   line["middle_bias"] = wearer.calibration.middle_bias;
   ordered_json mixed_in = ordered_json::array();
   for (std::size_t k = 0; k < hand::couplings.size(); ++k) {

@@ -6,21 +6,74 @@
 #include <iterator>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include <nendo/base/text.hpp>
+#include <nendo/driver/devices.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
 #include "doctor/doctor.hpp"
+#include "gloves/calibration_names.hpp"
+#include "gloves/open_hand.hpp"
+#include "gloves/stuck_sensors.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::doctor_command {
 namespace {
 
+/// Sensors that were stuck when somebody was calibrated.
+doctor::Examination check_calibrations() {
+  doctor::Examination examination{{}, {"stored calibrations"}};
+  for (const auto& file : gloves::stored_calibrations().files) {
+    if (file.wearer.left_out.bits == 0) continue;
+    const bool one = gloves::is_one(file.wearer.left_out);
+    examination.findings.push_back(
+        {doctor::Severity::warning, "stuck_sensor", file.path.string(),
+         gloves::sensors_in_words(file.wearer.left_out) + (one ? " was" : " were") +
+             " stuck when " + gloves::title_of(file.wearer) +
+             " was calibrated, so what they would measure is estimated",
+         "have the glove's sensor or its wire mended, then calibrate again"});
+  }
+  return examination;
+}
+
+/// Sensors of an open glove that stand at an end now.
+std::vector<doctor::Finding> sensors_of(driver::Glove& glove, const std::string& spec) {
+  std::vector<doctor::Finding> findings;
+  for (const gloves::SensorAtEnd& found : gloves::sensors_at_end(glove))
+    findings.push_back({doctor::Severity::warning, "stuck_sensor", spec, gloves::in_words(found),
+                        "bend that joint while `nendo monitor " + spec +
+                            "` shows it; if it is broken, calibrations and runs leave it out by "
+                            "themselves"});
+  return findings;
+}
+
+Result<doctor::Examination> check_glove(const std::string& spec) {
+  const auto glove = gloves::open_glove(spec);
+  if (!glove) return glove.error();
+  return doctor::Examination{sensors_of(**glove, spec), {spec}};
+}
+
+/// Of gloves that are known as such, and that nobody uses. Why one cannot be opened, other checks
+/// say.
+doctor::Examination check_known_gloves() {
+  doctor::Examination examination;
+  for (const driver::GloveCandidate& candidate : driver::find_gloves()) {
+    if (!candidate.identified || !candidate.may_open || !candidate.holders.empty()) continue;
+    auto examined = check_glove(candidate.spec);
+    if (!examined) continue;
+    examination.looked_at.push_back("sensors of " + candidate.spec);
+    std::move(examined->findings.begin(), examined->findings.end(),
+              std::back_inserter(examination.findings));
+  }
+  return examination;
+}
+
 /// The checks, one function for each subject.
-constexpr std::array subjects{doctor::check_ports, doctor::check_machine};
+constexpr std::array subjects{doctor::check_ports, doctor::check_machine, check_calibrations};
 
 std::string_view name_of(doctor::Severity severity) {
   return severity == doctor::Severity::failure ? "failure" : "warning";
@@ -41,11 +94,20 @@ void print_text(const doctor::Finding& finding) {
             << ". Mend it: " << finding.remedy << '\n';
 }
 
-int examine(bool json) {
+int examine(const std::string& glove, bool json) {
   std::vector<doctor::Finding> findings;
   std::string looked_at;
-  for (const auto check : subjects) {
-    doctor::Examination examination = check();
+  std::vector<doctor::Examination> examinations;
+  for (const auto check : subjects)
+    examinations.push_back(check());
+  if (glove.empty()) {
+    examinations.push_back(check_known_gloves());
+  } else {
+    auto examined = check_glove(glove);
+    if (!examined) return cli::report(examined.error());
+    examinations.push_back(*std::move(examined));
+  }
+  for (doctor::Examination& examination : examinations) {
     std::move(examination.findings.begin(), examination.findings.end(),
               std::back_inserter(findings));
     for (const std::string& thing : examination.looked_at)
@@ -67,11 +129,16 @@ int examine(bool json) {
 
 void add(cli::Command& program) {
   auto json = std::make_shared<bool>(false);
+  auto glove = std::make_shared<std::string>();
   cli::Command command = program.add_command(
       "doctor", "Says what keeps gloves from working on this machine, and what mends it");
+  command.add_option(
+      "GLOVE", *glove,
+      "Look at the sensors of this glove, too: serial:/dev/ttyUSB0, auto, ...; without it, "
+      "at those of each glove that its name or a udev rule makes known");
   command.add_flag("--json", *json, "One JSON object a finding");
   command.set_footer("Exit code 1 if something will not work, 0 if there are warnings only.");
-  command.on_chosen([json] { return examine(*json); });
+  command.on_chosen([json, glove] { return examine(*glove, *json); });
 }
 
 } // namespace nendo::app::doctor_command

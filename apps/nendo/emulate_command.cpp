@@ -8,12 +8,15 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include <nendo/driver/simulated_glove.hpp>
 #include <nendo/emulator/emulator.hpp>
 #include <nendo/emulator/served_emulator.hpp>
 
+#include "calibrate/practice_hand.hpp"
 #include "cli/cli.hpp"
+#include "cli/terminal.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::emulate_command {
@@ -28,7 +31,13 @@ struct Options {
   std::string stamp_bit7 = "on";
   std::string hires_form = "hardware";
   double duration_s = 0.0;
+  double hold_s = 0.0;                                 ///< 0: by keys
+  std::shared_ptr<calibrate::PracticeHand> practice{}; ///< null: another motion
+  std::shared_ptr<cli::Keys> keys{};                   ///< that lead it
 };
+
+/// The motion that needs a hand, and so is none of driver::motion_names().
+constexpr std::string_view practice_name = "poses";
 
 std::string list_of(const std::vector<std::string_view>& names) {
   std::string list;
@@ -68,6 +77,60 @@ std::optional<std::uint32_t> parse_mask(std::string_view text) {
   return mask;
 }
 
+/// With --motion poses the hand is led through the poses of nendo calibrate.
+Result<void> practise(Options& options) {
+  emulator::EmulatorOptions& emulator = options.emulator;
+  const bool poses = emulator.motion == practice_name;
+  if (!std::isfinite(options.hold_s) || options.hold_s < 0.0 || options.hold_s > 3600.0 ||
+      (options.hold_s > 0.0 && options.hold_s < 2.0))
+    return Error{Errc::usage, "--hold: use 2s to an hour; a pose is taken when the hand has been "
+                              "still for a second"};
+  if (options.hold_s > 0.0 && !poses)
+    return Error{Errc::usage, "--hold goes with --motion poses only"};
+  if (!poses) return {};
+  if (emulator.glove != "cyberglove")
+    return Error{Errc::usage, "--motion poses: only an emulated cyberglove holds the poses of "
+                              "nendo calibrate"};
+  constexpr double usual_hold_s = 4.0;
+  std::optional<double> hold_s;
+  if (options.hold_s > 0.0) hold_s = options.hold_s;
+  options.keys = std::make_shared<cli::Keys>();
+  if (!hold_s && !options.keys->are_available()) hold_s = usual_hold_s;
+  options.practice = std::make_shared<calibrate::PracticeHand>(emulator.seed, hold_s);
+  emulator.motion = "rest";
+  emulator.cyberglove.played = [practice = options.practice](double time_s) {
+    return practice->at(time_s);
+  };
+  return {};
+}
+
+/// Follows the keys of the terminal, and says what the hand does.
+class PracticeLine {
+public:
+  explicit PracticeLine(const Options& options) : practice_(options.practice), keys_(options.keys) {
+    if (keys_ == nullptr || !keys_->are_available()) return;
+    std::cout << "SPACE: the next pose   b: the one before   q: quit" << std::endl;
+  }
+  /// Waits for so long at most. Returns false if the person wants to end.
+  bool follow(std::chrono::milliseconds time) {
+    if (practice_ == nullptr) {
+      std::this_thread::sleep_for(time);
+      return true;
+    }
+    const auto key = keys_->next(time);
+    if (key == ' ') practice_->go_on();
+    if (key == 'b') practice_->go_back();
+    if (const int step = practice_->step(); std::exchange(told_, step) != step)
+      std::cout << practice_->in_words(step) << std::endl;
+    return key != 'q';
+  }
+
+private:
+  std::shared_ptr<calibrate::PracticeHand> practice_;
+  std::shared_ptr<cli::Keys> keys_;
+  int told_ = -1;
+};
+
 Result<void> complete(Options& options) {
   if (options.hand != "left" && options.hand != "right") {
     return Error{Errc::usage, "--hand " + options.hand + ": use left or right"};
@@ -82,6 +145,7 @@ Result<void> complete(Options& options) {
   emulator.cyberglove.period_low_first = options.period_order == "lsb";
   emulator.cyberglove.stamp_bit7 = options.stamp_bit7 == "on";
   emulator.cyberglove.hires_terminated = options.hires_form == "terminated";
+  if (const auto made = practise(options); !made) return made;
   if (options.mask.empty()) return {};
   const auto mask = parse_mask(options.mask);
   if (!mask) {
@@ -118,11 +182,13 @@ int emulate(Options& options) {
   emulator::ServedEmulator server(**emulator);
   const auto start = std::chrono::steady_clock::now();
   const std::chrono::duration<double> duration(options.duration_s);
-  while (!cli::stop_requested() && !server.is_over()) {
+  PracticeLine practice(options);
+  while (!cli::stop_requested() && !server.is_over() &&
+         practice.follow(std::chrono::milliseconds(20))) {
     if (options.duration_s > 0.0 && std::chrono::steady_clock::now() - start >= duration) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   const auto served = server.finish();
+  if (options.keys) options.keys->restore();
   print((*emulator)->stats());
   return served ? 0 : cli::report(served.error());
 }
@@ -143,7 +209,13 @@ void add_glove_options(cli::Command& command, Options& options) {
       .under(heading);
   command
       .add_option("--motion", emulator.motion,
-                  "What the hand does: " + list_of(driver::motion_names()))
+                  "What the hand does: " + list_of(driver::motion_names()) +
+                      ", or poses: those that nendo calibrate asks for, in its order")
+      .under(heading);
+  command
+      .add_duration("--hold", options.hold_s,
+                    "With --motion poses: how long a pose is held, after a free motion of 8 s; "
+                    "without it, SPACE goes on to the next, or 4 s do where no keys can come")
       .under(heading);
   command.add_option("--rate", emulator.rate_hz, "Records a second until the host sets its own")
       .under(heading);

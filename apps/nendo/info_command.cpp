@@ -18,6 +18,7 @@
 #include "cli/json_line.hpp"
 #include "gloves/glove_json.hpp"
 #include "gloves/open_hand.hpp"
+#include "gloves/stuck_sensors.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::info_command {
@@ -34,11 +35,14 @@ std::vector<std::string> names_of(SensorMask mask) {
   return names;
 }
 
-void print_json(const driver::GloveInfo& info) {
+void print_json(const driver::GloveInfo& info, const std::vector<gloves::SensorAtEnd>& at_end) {
   ordered_json facts = ordered_json::object();
   for (const auto& [name, value] : info.facts)
     facts[name] = value;
   const driver::Abilities& can = info.abilities;
+  ordered_json ends = ordered_json::object();
+  for (const auto& [sensor, count] : at_end)
+    ends[std::string(name_of(sensor))] = count;
   const ordered_json line{
       {"source", info.source},
       {"model", info.model},
@@ -52,6 +56,7 @@ void print_json(const driver::GloveInfo& info) {
         {"light", can.light},
         {"vibration", can.vibration},
         {"resistance", can.resistance}}},
+      {"at_end", std::move(ends)},
       {"facts", std::move(facts)}};
   // A device's text need not be UTF-8.
   cli::print_line(line);
@@ -104,6 +109,17 @@ public:
     line.resize(name_width_ + 2, ' ');
     std::cout << line << printable(value) << '\n';
   }
+  /// Breaks a sentence at its blanks.
+  void print_sentence(std::string name, const std::string& sentence) const {
+    const std::size_t width = 80 - name_width_ - 2;
+    for (std::size_t at = 0; at < sentence.size();) {
+      std::size_t end = std::min(at + width, sentence.size());
+      if (end < sentence.size())
+        if (const std::size_t blank = sentence.rfind(' ', end); blank > at) end = blank;
+      print(std::exchange(name, ""), sentence.substr(at, end - at));
+      at = end < sentence.size() && sentence[end] == ' ' ? end + 1 : end;
+    }
+  }
   void print_list(std::string name, const std::vector<std::string>& words) const {
     for (const auto& line : wrapped(words, 80 - name_width_ - 2))
       print(std::exchange(name, ""), line);
@@ -128,7 +144,7 @@ void print_angles(const Columns& columns, SensorMask sensors) {
   }
 }
 
-void print_text(const driver::GloveInfo& info) {
+void print_text(const driver::GloveInfo& info, const std::vector<gloves::SensorAtEnd>& at_end) {
   const Columns columns(info);
   char rate[32];
   std::snprintf(rate, sizeof rate, "%.6g Hz", info.rate_hz);
@@ -145,6 +161,8 @@ void print_text(const driver::GloveInfo& info) {
   columns.print("sensors", std::to_string(sensors.size()));
   columns.print_list("", sensors);
   print_angles(columns, info.sensors);
+  for (const gloves::SensorAtEnd& found : at_end)
+    columns.print_sentence("look at", gloves::in_words(found));
   if (!info.facts.empty()) std::cout << "\nin its own words\n";
   for (const auto& [name, value] : info.facts)
     columns.print(name, value);
@@ -153,7 +171,8 @@ void print_text(const driver::GloveInfo& info) {
 int info(const std::string& spec, bool json) {
   const auto glove = gloves::open_glove(spec);
   if (!glove) return cli::report(glove.error());
-  json ? print_json((*glove)->info()) : print_text((*glove)->info());
+  const auto at_end = gloves::sensors_at_end(**glove);
+  json ? print_json((*glove)->info(), at_end) : print_text((*glove)->info(), at_end);
   return 0;
 }
 

@@ -21,6 +21,7 @@
 #include "gloves/glove_json.hpp"
 #include "gloves/monitor_screen.hpp"
 #include "gloves/open_hand.hpp"
+#include "gloves/stuck_sensors.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::monitor_command {
@@ -39,16 +40,22 @@ struct Monitored {
   driver::Glove& glove;
   SampleRing& ring;
   const hand::Wearer* wearer;                ///< null: counts only
-  hand::ActiveCalibration* calibrations;     ///< of `wearer`
+  hand::ActiveCalibration& calibrations;     ///< of `wearer`, or of an average hand
   const gloves::FoundCalibration& found;     ///< of the glove's own hand
   std::uint64_t most;                        ///< samples to show; 0: no end
   const hand::Calibration* active = nullptr; ///< for the latest sample; null: none
+  SensorMask left_out{};                     ///< of the latest sample
+  gloves::StuckNotices stuck{};
+  std::vector<std::string> news{}; ///< what the latest sample shows of stuck sensors
   std::uint64_t shown = 0;
 
   bool wanted() const { return !cli::stop_requested() && (most == 0 || shown < most); }
   bool next(GloveSample& sample) {
     if (!wanted() || !ring.try_pop(sample)) return false;
-    if (calibrations != nullptr) active = &calibrations->follow(sample);
+    const hand::Calibration& followed = calibrations.follow(sample);
+    if (wearer != nullptr) active = &followed;
+    left_out = {calibrations.left_out(sample.side).bits & sample.present.bits};
+    news = stuck.changes(sample, calibrations);
     ++shown;
     return true;
   }
@@ -78,9 +85,12 @@ void show_lines(Monitored& monitored) {
     ended = monitored.glove.has_ended(); // then all that it sent is in the ring
     bool any = false;
     for (; monitored.next(sample); any = true) {
-      const bool first = gloves.is_first(sample.side, sample.present);
+      const bool first = gloves.is_first(sample.side, sample.present, monitored.left_out);
       const auto* found = monitored.found_for(sample.side);
-      std::cout << gloves::sample_json(sample, monitored.active, first, found) << '\n';
+      std::cout << gloves::sample_json(sample, monitored.active, first, found, monitored.left_out)
+                << '\n';
+      for (const std::string& sentence : monitored.news)
+        cli::note(monitored.glove.info().source + ": " + sentence);
     }
     if (any) std::cout.flush();
     if (!ended) std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -128,7 +138,8 @@ void show_screen(Monitored& monitored) {
                                          light.is_lit(),
                                          terminal.has_keys(),
                                          any && monitored.is_uncalibrated(sample.side),
-                                         any ? monitored.wearer_of(sample.side) : ""};
+                                         any ? monitored.wearer_of(sample.side) : "",
+                                         monitored.left_out};
     lines = gloves::monitor_lines(picture, terminal.size());
     if (terminal.is_plain() && lines.size() > 2) { // the bars would be some twenty lines a second
       terminal.draw({lines[0], lines[1]});
@@ -154,22 +165,22 @@ int monitor(const Options& options) {
   const auto glove = gloves::open_glove(options.glove);
   if (!glove) return cli::report(glove.error());
   std::optional<hand::Wearer> wearer;
-  std::optional<hand::ActiveCalibration> calibrations;
   gloves::FoundCalibration whose;
   if (!options.raw) {
     const auto found =
         gloves::find_wearer((*glove)->info(), (*glove)->info().side, options.calibration, &whose);
     if (!found) return cli::report(found.error());
     wearer = *found;
-    calibrations.emplace(*wearer);
   }
+  hand::Wearer counts_only;
+  counts_only.watched = (*glove)->info().counts;
+  hand::ActiveCalibration calibrations(wearer ? *wearer : counts_only);
   SampleRing ring(1024);
   cli::install_stop_signals();
   if (const auto started = (*glove)->start(ring); !started) return cli::report(started.error());
 
-  Monitored monitored{
-      **glove, ring,         wearer ? &*wearer : nullptr, calibrations ? &*calibrations : nullptr,
-      whose,   options.count};
+  Monitored monitored{**glove,      ring,  wearer ? &*wearer : nullptr,
+                      calibrations, whose, options.count};
   const bool lines = options.json || isatty(STDOUT_FILENO) == 0;
   if (lines) {
     show_lines(monitored);
@@ -191,6 +202,8 @@ void add(cli::Command& program) {
   command.set_footer(
       "In a bar, # shows the count, and [ ] the least and the greatest seen so far.\n"
       "A ~ before degrees: the glove is uncalibrated, and they are an average hand's.\n"
+      "An e before degrees: the sensor stands still while the hand moves, and its angle is "
+      "estimated\nfrom the sensors beside.\n"
       "Keys: q quit, r forget the ranges seen, l light on and off.\n"
       "It ends with Ctrl-C, with --count, and when a recording (replay:FILE) ends. Records that "
       "got lost\non the line are missed; those that this program had no room for are refused. A "

@@ -38,6 +38,11 @@ std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hand
   return inputs;
 }
 
+hand::JointAngles first_angles(const flow::HandInput& hand) {
+  const hand::WearerHand& own = hand.wearer.of(hand.first.side);
+  return hand::joint_angles(hand.first, own.calibration, own.left_out);
+}
+
 /// Hands that press clay begin beside it, from where bent fingers or a moved hand reach it.
 void stand_beside(const std::vector<flow::HandInput>& inputs, const deform::Mesh& model,
                   flow::Placement& placement) {
@@ -45,9 +50,8 @@ void stand_beside(const std::vector<flow::HandInput>& inputs, const deform::Mesh
   for (const auto& hand : inputs) {
     const Side glove = hand.first.side;
     Eigen::Isometry3d& wrist = placement.T_stage_wrist[flow::Placement::index_of(hand.side)];
-    wrist = flow::beside(model, placement.units_per_metre, hand.skeleton(glove),
-                         hand::joint_angles(hand.first, hand.wearer.of(glove).calibration), wrist,
-                         clear_m);
+    wrist = flow::beside(model, placement.units_per_metre, hand.skeleton(glove), first_angles(hand),
+                         wrist, clear_m);
   }
 }
 
@@ -59,7 +63,7 @@ flow::Placement placement_for(const std::vector<gloves::OpenHand>& open,
   std::array<std::optional<flow::Fingertips>, 2> tips;
   for (const auto& hand : inputs) {
     const Side glove = hand.first.side;
-    const auto angles = hand::joint_angles(hand.first, hand.wearer.of(glove).calibration);
+    const auto angles = first_angles(hand);
     tips[flow::Placement::index_of(hand.side)] =
         hand.skeleton(glove).pose(angles, Eigen::Isometry3d::Identity()).fingertip_positions();
   }

@@ -15,6 +15,7 @@
 #include <nendo/driver/record_counts.hpp>
 
 #include "cli/terminal.hpp"
+#include "gloves/stuck_sensors.hpp"
 
 namespace nendo::session {
 namespace {
@@ -90,6 +91,17 @@ void print_percentiles(std::string_view name, const flow::Histogram& histogram) 
                               ms(0.50), ms(0.90), ms(0.99), to_milliseconds(histogram.max())));
 }
 
+/// Sensors that were left out at the end, or for a while.
+void print_left_out(SensorMask left_out, SensorMask for_a_while) {
+  if (left_out.bits != 0)
+    print_row("", gloves::sensors_in_words(left_out) +
+                      (gloves::is_one(left_out) ? " stands" : " stand") +
+                      " still: left out, and estimated from the sensors beside");
+  if (for_a_while.bits != 0)
+    print_row("", gloves::sensors_in_words(for_a_while) +
+                      " stood still for a while: left out meanwhile, and estimated");
+}
+
 // The spikes that the velocity gate has kept out, and the sensor that had most of them.
 void print_spikes(const std::array<std::uint64_t, sensor_slots>& spikes) {
   const auto worst = std::max_element(spikes.begin(), spikes.end());
@@ -135,6 +147,8 @@ void print_hand(const gloves::OpenHand& hand, const RunOutcome& outcome) {
                         stats.rates[slot].per_s(), stats.silences[slot], info.source));
   print_row("", driver::in_words(driver::counts_of(hand.glove->stats())));
   print_spikes(stats.spikes[slot]);
+  print_left_out(stats.left_out[slot],
+                 {stats.was_left_out[slot].bits & ~stats.left_out[slot].bits});
   if (hand.uncalibrated)
     print_row("", "uncalibrated: its angles are an average hand's; see `nendo calibrate`");
   if (hand.wearer.ends) {

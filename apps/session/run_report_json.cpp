@@ -181,6 +181,8 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
                {"samples_per_s", stats.rates[slot].per_s()},
                {"silences", stats.silences[slot]},
                {"spikes", spikes_json(stats.spikes[slot])},
+               {"left_out", gloves::sensors_json(stats.left_out[slot])},
+               {"was_left_out", gloves::sensors_json(stats.was_left_out[slot])},
                {"switch_uses", stats.switch_uses[slot]},
                {"ring_refused", glove.ring_refused},
                {"reopened", glove.reopened}};

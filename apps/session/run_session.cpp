@@ -13,6 +13,7 @@
 
 #include "cli/cli.hpp"
 #include "gloves/glove_feedback.hpp"
+#include "gloves/stuck_sensors.hpp"
 #include "session/loop_thread.hpp"
 #include "session/mask_edits.hpp"
 #include "session/run_keys.hpp"
@@ -119,6 +120,7 @@ private:
     settle_sinks();
     follow_layers(frame);
     follow_wire(frame);
+    follow_stuck(frame);
     const RunStatus status{
         frame, model, fresh, gloves_, recorder_.is_to_file(), placed_.loop->puppet(frame.puppet)};
     for (Observer* observer : observers_) {
@@ -182,6 +184,15 @@ private:
     const bool on = (frame.layers_on & placed_.setup.live_layers()) != 0;
     if (is_in_ && *is_in_ != on) report(on ? "punched in" : "punched out");
     is_in_ = on;
+  }
+  /// Says once of each sensor that it is stuck, or moves again.
+  void follow_stuck(const flow::Frame& frame) {
+    if (frame.ticks_run == 0) return;
+    for (const auto& hand : hands_) {
+      const std::size_t slot = flow::Placement::index_of(hand.side);
+      for (const std::string& sentence : stuck_[slot].changes(frame.hands[slot].left_out))
+        report(hand.glove->info().source + ": " + sentence);
+    }
   }
   void punch() noexcept {
     const std::uint32_t live = placed_.setup.live_layers();
@@ -433,8 +444,9 @@ private:
   GloveStatuses gloves_;
   double elapsed_s_ = 0.0;
   std::uint64_t marks_ = 0;
-  bool end_reported_ = false; ///< that all gloves have ended
-  std::optional<bool> is_in_; ///< the live layers play, in the latest frame
+  bool end_reported_ = false;                   ///< that all gloves have ended
+  std::array<gloves::StuckNotices, 2> stuck_{}; ///< by flow::Placement::index_of(side)
+  std::optional<bool> is_in_;                   ///< the live layers play, in the latest frame
 };
 
 } // namespace

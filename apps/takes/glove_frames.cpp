@@ -88,7 +88,8 @@ void GloveFrames::follow(Hand& hand, const GloveSample& sample) noexcept {
   const hand::Calibration& active = hand.calibration.follow(sample);
   const GloveSample passed = hand.gated ? hand.gate.pass(sample, active) : sample;
   flow::HandFrame& shown = frame_.hands[hand.slot];
-  shown.angles = hand::joint_angles(passed, active);
+  shown.left_out = hand.calibration.left_out(sample.side);
+  shown.angles = hand::joint_angles(passed, active, shown.left_out);
   const auto& skeleton = hand.skeletons[sample.side == Side::left ? 0 : 1];
   shown.pose = skeleton.pose(shown.angles, shown.T_stage_wrist);
   shown.swapped = sample.side != hand.glove;

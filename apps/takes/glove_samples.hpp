@@ -35,6 +35,11 @@ public:
   /// Returns the calibration for the latest sample, or null if what told of its hand is damaged. It
   /// may be an average hand's.
   const hand::Calibration* calibration() const noexcept { return calibration_; }
+  /// Returns the sensors of the latest sample that are left out, because they are stuck.
+  SensorMask left_out() const noexcept {
+    return calibration_ == nullptr ? SensorMask{}
+                                   : gloves_[glove_].calibration.left_out(sample_.side);
+  }
   /// Returns whether it is the wearer's own (takes::is_calibrated()).
   bool is_calibrated() const noexcept {
     return calibration_ != nullptr && gloves_[glove_].is_calibrated;

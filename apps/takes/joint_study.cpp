@@ -139,11 +139,12 @@ void add_components(const Covariance& covariance, JointStudy& study) {
 
 } // namespace
 
-JointStudy study_joints(const std::vector<hand::JointAngles>& angles, SensorMask sensors) {
+JointStudy study_joints(const std::vector<hand::JointAngles>& angles, SensorMask sensors,
+                        SensorMask left_out) {
   JointStudy study;
   study.samples = angles.size();
   if (angles.empty()) return study;
-  const hand::AngleSources sources = hand::angle_sources(sensors);
+  const hand::AngleSources sources = hand::angle_sources(sensors, left_out);
   for (std::size_t at = 0; at < hand::angle_count; ++at)
     study.ranges[at] =
         range_of(column_of(angles, hand::angle_at(at)), hand::angle_at(at), sources[at]);
@@ -158,7 +159,7 @@ Result<std::vector<JointStudy>> study_joints(const std::filesystem::path& path) 
   if (!samples) return samples.error();
   struct Hand {
     std::vector<hand::JointAngles> angles;
-    SensorMask sensors;
+    SensorMask sensors, left_out;
     HostTime first, last;
   };
   const recording::Setup& setup = samples->setup();
@@ -170,12 +171,13 @@ Result<std::vector<JointStudy>> study_joints(const std::filesystem::path& path) 
     if (hand.angles.empty()) hand.first = sample.measured;
     hand.last = sample.measured;
     hand.sensors.bits |= sample.present.bits;
-    hand.angles.push_back(hand::joint_angles(sample, *samples->calibration()));
+    hand.left_out.bits |= samples->left_out().bits;
+    hand.angles.push_back(hand::joint_angles(sample, *samples->calibration(), samples->left_out()));
   }
   std::vector<JointStudy> studies;
   for (std::size_t at = 0; at < hands.size(); ++at) {
     if (hands[at].angles.empty()) continue;
-    studies.push_back(study_joints(hands[at].angles, hands[at].sensors));
+    studies.push_back(study_joints(hands[at].angles, hands[at].sensors, hands[at].left_out));
     studies.back().side = setup.hands[at].side;
     studies.back().is_calibrated = is_calibrated(setup, at);
     studies.back().duration_s = to_seconds(hands[at].last - hands[at].first);

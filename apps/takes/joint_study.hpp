@@ -53,8 +53,9 @@ struct JointStudy {
 /// Errors: those of TakeReader::open(); bad_input (no sample).
 Result<std::vector<JointStudy>> study_joints(const std::filesystem::path& path);
 
-/// Studies angles that were sampled evenly, as from a glove with these sensors. For tests, and for
-/// angles from elsewhere.
-JointStudy study_joints(const std::vector<hand::JointAngles>& angles, SensorMask sensors);
+/// Studies angles that were sampled evenly, as from a glove with these sensors, some of which were
+/// left out. For tests, and for angles from elsewhere.
+JointStudy study_joints(const std::vector<hand::JointAngles>& angles, SensorMask sensors,
+                        SensorMask left_out = {});
 
 } // namespace nendo::takes

@@ -26,7 +26,8 @@ Key key_of(double time_s, const hand::JointAngles& angles, const Eigen::Isometry
 // As the loop had it before its first tick.
 hand::JointAngles own_angles(const flow::HandInput& input) {
   hand::ActiveCalibration calibration(input.wearer);
-  return hand::joint_angles(input.first, calibration.follow(input.first));
+  const hand::Calibration& active = calibration.follow(input.first);
+  return hand::joint_angles(input.first, active, calibration.left_out(input.first.side));
 }
 
 hand::JointAngles first_angles(const Setup& setup, const flow::HandInput& hand) {

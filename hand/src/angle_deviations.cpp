@@ -36,6 +36,8 @@ double estimated_deg(AngleSource source, const JointAngles& angles, std::size_t 
     return 6.0;
   case AngleSource::opposition:
     return 15.0;
+  case AngleSource::from_neighbours: // of a finger's MCP, PIP or DIP
+    return at % 4 == 0 ? 18.0 : 15.0;
   default:
     return 20.0;
   }
@@ -43,8 +45,9 @@ double estimated_deg(AngleSource source, const JointAngles& angles, std::size_t 
 
 } // namespace
 
-AngleDeviations angle_deviations(const JointAngles& angles, SensorMask present) noexcept {
-  const AngleSources sources = angle_sources(present);
+AngleDeviations angle_deviations(const JointAngles& angles, SensorMask present,
+                                 SensorMask left_out) noexcept {
+  const AngleSources sources = angle_sources(present, left_out);
   AngleDeviations deviations{};
   for (std::size_t at = 0; at < angle_count; ++at) {
     if (sources[at] == AngleSource::zero) continue;

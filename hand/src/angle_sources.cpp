@@ -20,9 +20,45 @@ AngleSource measured_or(SensorMask present, Sensor sensor, AngleSource otherwise
   return present.has(sensor) ? AngleSource::measured : otherwise;
 }
 
+/// Says where the angles of sensors that are left out come from in their stead.
+void set_left_out(AngleSources& sources, SensorMask present, SensorMask left_out) noexcept {
+  const SensorMask measured{present.bits & ~left_out.bits};
+  const auto is_out = [&](Sensor sensor) { return present.has(sensor) && left_out.has(sensor); };
+  const auto set = [&](Angle angle, Sensor sensor, AngleSource source) {
+    if (is_out(sensor)) sources[index_of(angle)] = source;
+  };
+  for (std::size_t f = 0; f < finger_sensors.size(); ++f) {
+    const auto [mcp, pip, dip] = finger_sensors[f];
+    const auto of_finger = [&](Angle index_s) { return angle_at(index_of(index_s) + 4 * f); };
+    set(of_finger(Angle::index_mcp_flexion), mcp, AngleSource::from_neighbours);
+    set(of_finger(Angle::index_pip_flexion), pip, AngleSource::from_neighbours);
+    set(of_finger(Angle::index_dip_flexion), dip, AngleSource::from_neighbours);
+  }
+  const auto by_thumb = [&](Sensor other, AngleSource source) {
+    return measured.has(other) ? source : AngleSource::at_rest;
+  };
+  set(Angle::thumb_mcp_flexion, Sensor::thumb_mcp,
+      by_thumb(Sensor::thumb_ip, AngleSource::from_ip));
+  set(Angle::thumb_ip_flexion, Sensor::thumb_ip,
+      by_thumb(Sensor::thumb_mcp, AngleSource::from_mcp));
+  set(Angle::thumb_roll, Sensor::thumb_roll, AngleSource::at_rest);
+  set(Angle::thumb_abduction, Sensor::thumb_abduction, AngleSource::at_rest);
+  const bool any_gap = measured.has(Sensor::index_middle_abduction) ||
+                       measured.has(Sensor::middle_ring_abduction) ||
+                       measured.has(Sensor::ring_pinky_abduction);
+  const auto by_gaps = any_gap ? AngleSource::from_gaps : AngleSource::at_rest;
+  set(Angle::index_mcp_abduction, Sensor::index_middle_abduction, by_gaps);
+  set(Angle::ring_mcp_abduction, Sensor::middle_ring_abduction, by_gaps);
+  set(Angle::little_mcp_abduction, Sensor::middle_ring_abduction, by_gaps);
+  set(Angle::little_mcp_abduction, Sensor::ring_pinky_abduction, by_gaps);
+  set(Angle::palm_arch, Sensor::palm_arch, AngleSource::at_rest);
+  set(Angle::wrist_pitch, Sensor::wrist_pitch, AngleSource::at_rest);
+  set(Angle::wrist_yaw, Sensor::wrist_yaw, AngleSource::at_rest);
+}
+
 } // namespace
 
-AngleSources angle_sources(SensorMask present) noexcept {
+AngleSources angle_sources(SensorMask present, SensorMask left_out) noexcept {
   AngleSources sources;
   sources.fill(AngleSource::zero);
   const auto source = [&](Angle angle) -> AngleSource& { return sources[index_of(angle)]; };
@@ -63,6 +99,7 @@ AngleSources angle_sources(SensorMask present) noexcept {
   take(Angle::palm_arch, Sensor::palm_arch, zero);
   take(Angle::wrist_pitch, Sensor::wrist_pitch, zero);
   take(Angle::wrist_yaw, Sensor::wrist_yaw, zero);
+  set_left_out(sources, present, left_out);
   return sources;
 }
 

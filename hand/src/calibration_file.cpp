@@ -66,6 +66,16 @@ std::string mixed_in_lines(const Calibration& calibration) {
   return text.empty() ? "" : "mixed_in = [\n" + text + "]\n";
 }
 
+/// Empty where no sensor was stuck.
+std::string left_out_line(SensorMask left_out) {
+  std::string names;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    if (left_out.has(sensor)) names.append(names.empty() ? "\"" : "\", \"").append(name_of(sensor));
+  }
+  return names.empty() ? "" : "# stuck when it was made\nleft_out = [" + names + "\"]\n";
+}
+
 /// Empty for an average hand.
 std::string shape_lines(const WearerShape& shape) {
   if (shape.is_average()) return "";
@@ -194,7 +204,7 @@ Result<std::string> calibration_text(const WearerCalibration& wearer) {
                      "\"\nmade = " + rfc3339(wearer.made) +
                      "\nmethod = " + toml_string(wearer.method) +
                      "\nmiddle_bias = " + decimal_text(wearer.calibration.middle_bias) + "\n" +
-                     mixed_in_lines(wearer.calibration);
+                     left_out_line(wearer.left_out) + mixed_in_lines(wearer.calibration);
   text += "\n[glove]\nmodel = " + toml_string(wearer.glove_model) +
           "\nserial = " + toml_string(wearer.glove_serial) +
           "\ncounts_most = " + std::to_string(wearer.counts.most) +

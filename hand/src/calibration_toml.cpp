@@ -197,6 +197,24 @@ void read_mixed_in(Reader& reader, const toml::table& root, WearerCalibration& w
     read_coupling(reader, entry, wearer, seen);
 }
 
+/// A file from before says nothing of sensors that are left out.
+void read_left_out(Reader& reader, const toml::table& root, WearerCalibration& wearer) {
+  const toml::node* node = root.get("left_out");
+  if (node == nullptr) return;
+  const toml::array* list = node->as_array();
+  if (list == nullptr)
+    return reader.complain(*node, "left_out must be a list of sensors, as [\"index_pip\"]");
+  for (const toml::node& entry : *list) {
+    const auto name = entry.value_exact<std::string>();
+    if (!name) return reader.complain(entry, "left_out: each sensor must be a name in quotes");
+    const auto sensor = reader.sensor(entry, *name);
+    if (!sensor) return;
+    if (wearer.calibration[*sensor].gain_rad_per_count != 0.0)
+      return reader.complain(entry, *name + " is left out, but stands in [sensors], too; keep one");
+    wearer.left_out.add(*sensor);
+  }
+}
+
 void read_glove(Reader& reader, const toml::table& root, WearerCalibration& wearer) {
   const toml::table* glove = reader.table(root, "glove");
   if (glove == nullptr) return;
@@ -241,7 +259,7 @@ void read_hand(Reader& reader, const toml::table& root, WearerCalibration& weare
 
 void read_wearer(Reader& reader, const toml::table& root, WearerCalibration& wearer) {
   reader.allow_only(root, {"version", "user", "hand", "made", "method", "middle_bias", "mixed_in",
-                           "glove", "hand_size", "hand_shape", "sensors"});
+                           "left_out", "glove", "hand_size", "hand_shape", "sensors"});
   wearer.user = reader.text(root, "user");
   reader.check(root, "user", complaint_about_text(wearer.user, false));
   wearer.method = reader.text(root, "method");
@@ -253,6 +271,7 @@ void read_wearer(Reader& reader, const toml::table& root, WearerCalibration& wea
   read_glove(reader, root, wearer);
   read_hand(reader, root, wearer);
   read_sensors(reader, root, wearer);
+  read_left_out(reader, root, wearer);
 }
 
 std::string one_line(std::string_view text) {

@@ -137,8 +137,9 @@ double& JointAngles::operator[](Angle angle) noexcept {
   return const_cast<double&>(angle_in(*this, angle)); // *this is not const
 }
 
-JointAngles joint_angles(const GloveSample& sample, const Calibration& calibration) noexcept {
-  const Measured measured{sample.present, calibration.angles_rad(sample)};
+JointAngles joint_angles(const GloveSample& sample, const Calibration& calibration,
+                         SensorMask left_out) noexcept {
+  const Measured measured{sample.present, filled_angles_rad(sample, calibration, left_out)};
   JointAngles angles;
   set_thumb(angles, measured);
   angles[Finger::index] =

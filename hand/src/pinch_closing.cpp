@@ -123,8 +123,9 @@ private:
   std::size_t count_ = 0;
 };
 
-DigitAngles variances_of(const JointAngles& angles, SensorMask present) noexcept {
-  const AngleDeviations deviations = angle_deviations(angles, present);
+DigitAngles variances_of(const JointAngles& angles, SensorMask present,
+                         SensorMask left_out) noexcept {
+  const AngleDeviations deviations = angle_deviations(angles, present, left_out);
   DigitAngles variances;
   for (std::size_t at = 0; at < 4 * finger_count; ++at) {
     const double deviation_rad = (at < 2 ? thumb_certainty : 1.0) * deviations[at];
@@ -136,10 +137,10 @@ DigitAngles variances_of(const JointAngles& angles, SensorMask present) noexcept
 } // namespace
 
 JointAngles close_pinches(const JointAngles& angles, const HandSkeleton& skeleton,
-                          SensorMask present) noexcept {
+                          SensorMask present, SensorMask left_out) noexcept {
   Pinches pinches(skeleton, angles);
   if (!pinches.are_there()) return angles;
-  const DigitAngles variances = variances_of(angles, present);
+  const DigitAngles variances = variances_of(angles, present, left_out);
   constexpr int steps = 3; // the third moves pads by less than a tenth of a millimetre
   for (int step = 0; step < steps; ++step)
     pinches.step(variances);

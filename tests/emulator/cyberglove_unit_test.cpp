@@ -6,6 +6,7 @@
 #include <random>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -105,6 +106,51 @@ TEST_SUITE("cyberglove_unit") {
     CHECK(bench.ask("?L")[2] == 1);
     bench.ask("l 0\r");
     CHECK(bench.ask("?L")[2] == 0);
+  }
+
+  TEST_CASE("a sensor that is stuck stands still, and the others move on") {
+    for (const bool with_count : {true, false}) {
+      Bench bench;
+      constexpr std::size_t slot = 5; // index_pip; before it no slot is missing
+      const Bytes before = bench.ask("G");
+      Incident stuck{Incident::Kind::sensor_stuck};
+      stuck.sensor = nendo::Sensor::index_pip;
+      if (with_count) stuck.count = 255;
+      bench.unit.inject(stuck, bench.now);
+      std::vector<Bytes> records;
+      for (int n = 0; n < 100; ++n) {
+        bench.after(50ms);
+        records.push_back(bench.ask("G"));
+      }
+      int others = 0;
+      for (const Bytes& record : records) {
+        REQUIRE(record.size() == before.size());
+        CHECK(record[1 + slot] == (with_count ? 255 : records.front()[1 + slot]));
+        if (record[slot] != before[slot]) ++others;
+      }
+      CHECK(others > 50);
+      stuck.kind = Incident::Kind::sensor_free;
+      bench.unit.inject(stuck, bench.now);
+      bool moves = false;
+      for (int n = 0; n < 100; ++n) {
+        bench.after(50ms);
+        moves = moves || bench.ask("G")[1 + slot] != records.front()[1 + slot];
+      }
+      CHECK(moves);
+    }
+  }
+
+  TEST_CASE("a motion from outside is what the records show") {
+    UnitOptions options;
+    options.played = [](double) {
+      nendo::driver::JointAngles angles{};
+      angles[5] = 1.0;
+      return angles;
+    };
+    Bench bench(options);
+    const Bytes record = bench.ask("G");
+    CHECK(static_cast<int>(record[1 + 5]) == doctest::Approx(60 + 1.0 / 0.0125).epsilon(0.03));
+    CHECK(static_cast<int>(record[1 + 4]) == doctest::Approx(60).epsilon(0.05));
   }
 
   TEST_CASE("small letters ask for the same numbers in text, one line each") {

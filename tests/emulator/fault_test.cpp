@@ -31,6 +31,17 @@ TEST_SUITE("fault") {
     REQUIRE(swap);
     CHECK(swap->lasting == 500ms);
     CHECK(parse_fault("swap@5s+2s=18")->lasting == 2s);
+    const auto stuck = parse_fault("stick@3s=index_pip:255");
+    REQUIRE(stuck);
+    const auto incident = incident_of(*stuck, false);
+    REQUIRE(incident);
+    CHECK(incident->sensor == nendo::Sensor::index_pip);
+    CHECK(incident->count == 255);
+    const auto slot = parse_fault("stick@0s+2s=5");
+    REQUIRE(slot);
+    CHECK(slot->lasting == 2s);
+    CHECK_FALSE(incident_of(*slot, false)->count);
+    CHECK(incident_of(*slot, true)->kind == Incident::Kind::sensor_free);
   }
 
   TEST_CASE("what is wrong gets one line that quotes the fault and shows how to write it") {
@@ -64,6 +75,15 @@ TEST_SUITE("fault") {
                                    "swap@5s=20",
                                    "swap@5s+1s",
                                    "restart@5s+2s",
+                                   "stick@5s",
+                                   "stick@5s=",
+                                   "stick@5s=index",
+                                   "stick@5s=24",
+                                   "stick@5s=5:",
+                                   "stick@5s=5:256",
+                                   "stick@5s=5:-1",
+                                   "stick@5s=5:1.5",
+                                   "stick=5:1",
                                    "junk@s",
                                    "junk@5s=1"}) {
       CAPTURE(text);
@@ -87,6 +107,7 @@ TEST_SUITE("fault") {
       std::string example(forms[k].form.substr(0, forms[k].form.find('[')));
       if (by_chance) example = std::string(name) + "=1%";
       if (name == "swap") example = "swap@5s=18";
+      if (name == "stick") example = "stick@5s=index_pip:255";
       const auto fault = parse_fault(example);
       REQUIRE(fault);
       CHECK(fault->kind == static_cast<FaultKind>(k));

@@ -68,6 +68,8 @@ def hand(b):
             h["shape"], h["swapped_shape"] = h["shape"] + later[0], h["swapped_shape"] + later[1]
     if has_ends:
         h["ends"] = {"side": b.take("B"), "sensors": b.take("I"), "counts": [b.take("dd") for _ in range(24)]}
+    if b.left() > 0:
+        h["stuck"] = dict(zip(("watched", "most", "whole_range", "found", "left", "right"), b.take("BHBIII")))
     return h
 
 

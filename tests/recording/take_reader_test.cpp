@@ -82,7 +82,11 @@ Setup unusual_setup() {
                                          .close_pinches = true,
                                          .adapt = CountScale{4095, true}});
   auto& input = test.inputs[0];
-  auto& [left, right, adapt, learned_before, ends] = input.wearer;
+  auto& [left, right, adapt, learned_before, ends, watched, stuck] = input.wearer;
+  watched = CountScale{4095, false};
+  stuck.add(Sensor::ring_pip);
+  left.left_out.add(Sensor::index_pip);
+  right.left_out.add(Sensor::wrist_yaw);
   left.calibration[Sensor::ring_mcp] = {0.1, -17.25};
   left.calibration.mixed_in[3] = 0.125;
   left.calibration.middle_bias = 0.7;
@@ -206,6 +210,13 @@ TEST_SUITE("take_reader") {
     CHECK(lines[3]["ends"]["sensors"] == 0x41);
     CHECK(lines[3]["ends"]["counts"][21] == json::parse("[50.0, 3000.5]"));
     CHECK_FALSE(lines[4].contains("ends"));
+    CHECK(lines[3]["stuck"] == json{{"watched", 1},
+                                    {"most", 4095},
+                                    {"whole_range", 0},
+                                    {"found", 1U << 13U},
+                                    {"left", 1U << 5U},
+                                    {"right", 1U << 22U}});
+    CHECK_FALSE(lines[4].contains("stuck"));
     const auto& options = setup.loop->options;
     CHECK(lines[at]["mesh"] == "ball.obj");
     CHECK(lines[at]["vertices"] == setup.loop->mesh_sum.vertices);

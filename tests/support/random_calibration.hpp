@@ -50,7 +50,10 @@ inline hand::WearerCalibration random_calibration(std::mt19937_64& random) {
     mixed_in = random() % 4 == 0 ? -0.0 : random_number(random, 10.0);
   for (std::size_t slot = 0; slot + 1 < sensor_slots; ++slot) {
     const double gain = std::abs(random_number(random, 255.0 / wearer.counts.most));
-    if (gain == 0.0) continue;
+    if (gain == 0.0 || random() % 8 == 0) {
+      if (random() % 2 == 0) wearer.left_out.add(static_cast<Sensor>(slot));
+      continue;
+    }
     wearer.calibration.sensors[slot] = {gain, random_number(random, 65535.0)};
     if (random() % 2) continue;
     const double least = std::abs(random_number(random, 30000.0));
@@ -83,7 +86,8 @@ inline bool same_bits(const hand::WearerCalibration& a, const hand::WearerCalibr
          a.counts == b.counts && a.side == b.side && a.made == b.made && a.method == b.method &&
          same_bits(a.size.length_m, b.size.length_m) &&
          same_bits(a.size.breadth_m, b.size.breadth_m) && a.size.shape == b.size.shape &&
-         a.quality == b.quality && same_bits(a.calibration, b.calibration);
+         a.quality == b.quality && a.left_out == b.left_out &&
+         same_bits(a.calibration, b.calibration);
 }
 
 } // namespace nendo::test

@@ -107,6 +107,7 @@ void DeformLoop::place_tips(Points& tips) noexcept {
 void DeformLoop::Hand::begin_anew() noexcept {
   input.first = latest;
   if (input.wearer.adapt) input.wearer.learned = calibration.learned();
+  if (const auto* stuck = calibration.stuck()) input.wearer.stuck = stuck->stuck();
   calibration = hand::ActiveCalibration(input.wearer);
   gate = {};
   filter = hand::JointFilter(filter.options());
@@ -119,7 +120,8 @@ void DeformLoop::begin_anew(LogChange& change, Frame& frame) noexcept {
   for (std::size_t at = 0; at < hands_.size(); ++at) {
     Hand& hand = hands_[at];
     hand.begin_anew();
-    state.inputs[at] = {hand.input.first, hand.input.wearer.learned, hand.input.layer};
+    state.inputs[at] = {hand.input.first, hand.input.wearer.learned, hand.input.layer,
+                        hand.input.wearer.stuck};
     state.placement.T_stage_wrist[hand.slot] = hand.T_stage_wrist;
   }
   if (rig_) gestures_->reset(*rig_);

@@ -21,6 +21,8 @@ void DeformLoop::count(Hand& hand, std::size_t samples, HostTime now) noexcept {
     rate.last = hand.latest.arrival;
   }
   stats_.spikes[hand.slot] = hand.gate.spikes();
+  stats_.left_out[hand.slot] = hand.left_out();
+  stats_.was_left_out[hand.slot].bits |= hand.left_out().bits;
   if (const auto* learned = hand.calibration.adaptation()) {
     stats_.ranges[hand.slot] = learned->ranges();
     stats_.range_sides[hand.slot] = learned->side().value_or(hand.input.side);

@@ -167,8 +167,8 @@ void DeformLoop::Hand::follow(const GloveSample& sample) noexcept {
 }
 
 void DeformLoop::Hand::pose_by(const hand::Calibration& active) noexcept {
-  angles = filter.pass(hand::joint_angles(latest, active), latest.time());
-  if (closes_pinches) angles = hand::close_pinches(angles, skeleton(), latest.present);
+  angles = filter.pass(hand::joint_angles(latest, active, left_out()), latest.time());
+  if (closes_pinches) angles = hand::close_pinches(angles, skeleton(), latest.present, left_out());
 }
 
 /// Takes a sample of that input.
@@ -312,6 +312,7 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
     shown.present = true;
     shown.silent = is_silent(hand.slot);
     shown.samples = stats_.samples[hand.slot];
+    shown.left_out = hand.left_out();
     if (rig_) {
       hand_states_[hand.slot] = {shown.angles, shown.pose, hand.T_stage_wrist};
       continue;

@@ -30,6 +30,7 @@ void continue_from(const flow::LoopState& state, const deform::BlockLayout& layo
     flow::HandInput& hand = setup.hands[at];
     hand.first = state.inputs[at].latest;
     hand.wearer.learned = state.inputs[at].learned;
+    hand.wearer.stuck = state.inputs[at].stuck;
     hand.layer = state.inputs[at].layer;
     hand.filter = state.sculptor.settings.filter;
   }

@@ -96,6 +96,30 @@ void read_ends(ByteReader& reader, CheckedReader& checked, hand::WornEnds& ends)
   }
 }
 
+bool has_stuck(const hand::Wearer& wearer) {
+  return wearer.watched || wearer.left.left_out.bits != 0 || wearer.right.left_out.bits != 0;
+}
+
+void put_stuck(ByteWriter& writer, const hand::Wearer& wearer) {
+  writer.u8(static_cast<std::uint8_t>(wearer.watched.has_value()));
+  writer.u16_le(wearer.watched ? wearer.watched->most : 0);
+  writer.u8(static_cast<std::uint8_t>(wearer.watched && wearer.watched->whole_range));
+  writer.u32_le(wearer.stuck.bits);
+  writer.u32_le(wearer.left.left_out.bits);
+  writer.u32_le(wearer.right.left_out.bits);
+}
+
+void read_stuck(ByteReader& reader, CheckedReader& checked, hand::Wearer& wearer) {
+  constexpr std::uint32_t all_slots = (1U << sensor_slots) - 1U;
+  const bool watches = reader.u8() != 0;
+  const CountScale counts{reader.u16_le(), reader.u8() != 0};
+  if (watches) wearer.watched = counts;
+  for (SensorMask* mask : {&wearer.stuck, &wearer.left.left_out, &wearer.right.left_out}) {
+    mask->bits = reader.u32_le();
+    checked.require((mask->bits & ~all_slots) == 0);
+  }
+}
+
 void put_size(ByteWriter& writer, const hand::HandSize& size) {
   writer.f64_le(size.length_m);
   writer.f64_le(size.breadth_m);
@@ -199,6 +223,7 @@ void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& ha
   writer.u8(static_cast<std::uint8_t>(!average));
   if (!average) put_shapes(writer, own.size.shape, other.size.shape);
   if (hand.wearer.ends) put_ends(writer, *hand.wearer.ends);
+  if (has_stuck(hand.wearer)) put_stuck(writer, hand.wearer);
 }
 
 bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
@@ -230,7 +255,10 @@ bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
     }
   }
   if (ends_follow) read_ends(reader, checked, hand.wearer.ends.emplace());
+  if (reader.remaining() > 0) read_stuck(reader, checked, hand.wearer); // since 1.12
   if (!checked.fine()) return false;
+  own.left_out = hand.wearer.of(hand.first.side).left_out;
+  other.left_out = hand.wearer.of(opposite(hand.first.side)).left_out;
   hand.wearer.of(hand.first.side) = own;
   hand.wearer.of(opposite(hand.first.side)) = other;
   hands.push_back(hand);

@@ -51,6 +51,9 @@ constexpr std::array<Row, fault_kinds> rows{{
      false,
      {},
      {}},
+    {"stick", "stick@5s[+2s]=SENSOR[:COUNT]",
+     "a sensor, by its name or slot, stands still (for 2 s) at a count, or where it is", false,
+     Part::optional, Part::required},
     {"press",
      "press@5s+2s",
      "no fault: the switch at the wrist is on for 2 s",
@@ -112,6 +115,31 @@ std::optional<Fault> timed(const Row& row, std::string_view text) {
 
 } // namespace
 
+namespace {
+
+/// Reads SENSOR[:COUNT].
+std::optional<Incident> stuck_sensor(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  const std::string_view name = text.substr(0, colon);
+  Incident incident{Incident::Kind::sensor_stuck};
+  if (const auto named = sensor_named(name)) {
+    incident.sensor = *named;
+  } else {
+    const auto slot = number(name);
+    if (!slot || *slot < 0.0 || *slot >= static_cast<double>(sensor_slots) ||
+        *slot != std::floor(*slot))
+      return std::nullopt;
+    incident.sensor = static_cast<Sensor>(*slot);
+  }
+  if (colon == std::string_view::npos) return incident;
+  const auto count = number(text.substr(colon + 1));
+  if (!count || *count < 0.0 || *count > 255.0 || *count != std::floor(*count)) return std::nullopt;
+  incident.count = static_cast<std::uint16_t>(*count);
+  return incident;
+}
+
+} // namespace
+
 std::string_view name_of(FaultKind kind) noexcept {
   return rows[static_cast<std::size_t>(kind)].name;
 }
@@ -119,6 +147,11 @@ std::string_view name_of(FaultKind kind) noexcept {
 std::optional<Incident> incident_of(const Fault& fault, bool over) {
   using Kind = Incident::Kind;
   if (fault.kind == FaultKind::restart) return Incident{Kind::power_cycle};
+  if (fault.kind == FaultKind::stick) {
+    auto stuck = stuck_sensor(fault.value);
+    if (stuck && over) stuck->kind = Kind::sensor_free;
+    return stuck;
+  }
   if (fault.kind == FaultKind::press) return Incident{over ? Kind::switch_off : Kind::switch_on};
   if (fault.kind != FaultKind::eg && fault.kind != FaultKind::swap) return std::nullopt;
   Incident incident{over ? Kind::glove_in : Kind::glove_out};
@@ -172,6 +205,9 @@ Result<Fault> parse_fault(std::string_view text) {
     }
     if (fault->lasting == Nanoseconds{}) fault->lasting = std::chrono::milliseconds(500);
   }
+  if (fault->kind == FaultKind::stick && !stuck_sensor(fault->value))
+    return wrong("stick=SENSOR[:COUNT]: a sensor's name, as index_pip, or its slot, 0 to 23, and a "
+                 "count of 0 to 255");
   return *fault;
 }
 

@@ -30,9 +30,10 @@ enum class FaultKind : std::uint8_t {
   eg,      ///< the glove is pulled out of the unit
   swap,    ///< another glove is plugged in: `value` is 18, 22, left or right
   restart, ///< the unit's power fails for a moment
+  stick,   ///< a sensor stands still: `value` is its name or slot, and a count after a colon
   press,   ///< no fault: somebody presses the switch at the wrist
 };
-inline constexpr std::size_t fault_kinds = 12;
+inline constexpr std::size_t fault_kinds = 13;
 
 struct Fault {
   FaultKind kind = FaultKind::drop;

@@ -23,7 +23,8 @@ FaultInjector::FaultInjector(const std::vector<Fault>& faults, std::uint32_t see
     }
     schedule_.push_back({fault.at, {fault, false}});
     const bool ends = fault.kind == FaultKind::eg || fault.kind == FaultKind::swap ||
-                      fault.kind == FaultKind::press;
+                      fault.kind == FaultKind::press ||
+                      (fault.kind == FaultKind::stick && fault.lasting > Time{});
     if (ends) schedule_.push_back({fault.at + fault.lasting, {fault, true}});
     if (fault.kind == FaultKind::silence) silences_.push_back(fault);
   }

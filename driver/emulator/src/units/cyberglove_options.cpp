@@ -76,6 +76,7 @@ Result<std::unique_ptr<EmulatedUnit>> make_cyberglove_unit(const EmulatorOptions
   unit.overrun = special.overrun;
   unit.streaming = special.streaming;
   unit.pattern = special.pattern;
+  unit.played = special.played;
   return std::unique_ptr<EmulatedUnit>(std::make_unique<CyberGloveUnit>(unit));
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <nendo/driver/open_glove.hpp>
 #include <nendo/driver/sample.hpp>
 
 #include "simulated/hand_motion.hpp"
@@ -31,6 +32,7 @@ struct UnitOptions {
   bool overrun = false;               ///< EmulatedCyberGlove::overrun
   bool streaming = false;             ///< it streams from the start, as after a host that died
   bool pattern = false;               ///< EmulatedCyberGlove::pattern
+  driver::SensorMotion played;        ///< EmulatedCyberGlove::played
   std::vector<unit::Message> capture; ///< records to send instead of a motion
 };
 

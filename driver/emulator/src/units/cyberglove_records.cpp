@@ -35,7 +35,27 @@ unsigned RecordMaker::patterned(std::size_t slot) const noexcept {
 
 driver::JointAngles RecordMaker::angles(EmulatedUnit::Time now) {
   if (!motion_origin_) motion_origin_ = now; // what the first host sees is the same every time
-  return hand_.at(std::chrono::duration<double>(now - *motion_origin_).count());
+  const double time_s = std::chrono::duration<double>(now - *motion_origin_).count();
+  return played_ ? played_(time_s) : hand_.at(time_s);
+}
+
+void RecordMaker::stick(Sensor sensor, std::optional<std::uint16_t> count) noexcept {
+  stuck_.add(sensor);
+  auto& at = stuck_at_[static_cast<std::size_t>(sensor)];
+  at.reset();
+  // The end of 8 bits is the end of 12.
+  if (count) at = *count == 255 ? 4095U : 16U * *count;
+}
+
+void RecordMaker::release(Sensor sensor) noexcept {
+  stuck_.bits &= ~(1U << static_cast<unsigned>(sensor));
+}
+
+/// Returns what the sensor of that slot shows of a count, both in 16ths.
+unsigned RecordMaker::held(std::size_t slot, unsigned sixteenths) noexcept {
+  if (!stuck_.has(static_cast<Sensor>(slot))) return sixteenths;
+  if (!stuck_at_[slot]) stuck_at_[slot] = sixteenths;
+  return *stuck_at_[slot];
 }
 
 // Bit k of the first byte says that byte k was 0 and is sent as 1. The manual has bit 7 always set;
@@ -60,6 +80,8 @@ Message RecordMaker::fields(const RecordFrame& frame, const Settings& settings,
   auto raw = wearer_.counts(angles(frame.now));
   for (std::size_t slot = 0; pattern_ && slot < sensor_slots; ++slot)
     raw[slot].value = static_cast<std::uint16_t>(patterned(slot));
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    raw[slot].value = static_cast<std::uint16_t>(held(slot, 16U * raw[slot].value) / 16U);
   ++record_number_;
   const std::uint32_t enabled = known.mask & settings.mask;
   const std::uint32_t connected = plugged ? plugged->mask : 0;
@@ -124,9 +146,10 @@ Message RecordMaker::fine_record(const RecordFrame& frame,
     const double count =
         16.0 * (pattern_ ? patterned(slot) : nominal.offset_counts + pose[slot] / nominal.gain_rad);
     // 0 is how a sensor says that it has failed.
-    const auto value = ((connected >> slot) & 1U) == 0
-                           ? 0U
-                           : static_cast<unsigned>(std::clamp(std::lround(count), 1L, 4095L));
+    const auto value =
+        ((connected >> slot) & 1U) == 0
+            ? 0U
+            : held(slot, static_cast<unsigned>(std::clamp(std::lround(count), 1L, 4095L)));
     record.push_back(static_cast<Byte>(value >> 8U));
     record.push_back(static_cast<Byte>(value));
   }

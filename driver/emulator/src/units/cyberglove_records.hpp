@@ -1,10 +1,13 @@
 #pragma once
 // Makes the records of an emulated CyberGlove in the 8-bit, the text and the 12-bit form.
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include <nendo/driver/open_glove.hpp>
 #include <nendo/driver/sample.hpp>
 
 #include "simulated/hand_motion.hpp"
@@ -34,6 +37,11 @@ public:
 
   /// Sets the hand that is in the glove from now on.
   void wear(Side side);
+  /// Lets it move like this, if it is something, and not by its own motion.
+  void play(driver::SensorMotion motion) { played_ = std::move(motion); }
+  /// Lets a sensor stand still at a count of 255, or without one where it is.
+  void stick(Sensor sensor, std::optional<std::uint16_t> count) noexcept;
+  void release(Sensor sensor) noexcept;
 
   /// Returns a record: header, values, time stamp, status, error pairs, NUL. `known` is the glove
   /// that the unit has read, and `plugged` the one in its socket.
@@ -45,6 +53,7 @@ public:
 private:
   unsigned patterned(std::size_t slot) const noexcept; ///< 1 to 255
   driver::JointAngles angles(EmulatedUnit::Time now);
+  unsigned held(std::size_t slot, unsigned sixteenths) noexcept;
   Message fields(const RecordFrame& frame, const Settings& settings, const PluggedGlove& known,
                  const std::optional<PluggedGlove>& plugged);
   Message time_stamp(std::uint64_t ticks) const;
@@ -59,6 +68,10 @@ private:
   std::vector<Message> capture_;
   std::size_t next_captured_ = 0;
   std::optional<EmulatedUnit::Time> motion_origin_;
+  driver::SensorMotion played_;
+  SensorMask stuck_;
+  /// Of stuck sensors, in 16ths of a count; nothing: the next one that it shows.
+  std::array<std::optional<unsigned>, sensor_slots> stuck_at_{};
 };
 
 } // namespace nendo::emulator::unit

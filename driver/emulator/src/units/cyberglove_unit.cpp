@@ -40,6 +40,7 @@ CyberGloveUnit::CyberGloveUnit(const UnitOptions& options)
       records_(options.motion, options.side, options.seed, options.stamp_bit7, options.pattern,
                options.capture),
       settings_(power_up()) {
+  records_.play(options.played);
   assert(options.rate_hz >= 1.0 && options.rate_hz <= most_rate_hz);
   if (options.streaming) start_stream('S', Time{});
 }
@@ -75,6 +76,12 @@ void CyberGloveUnit::inject(const Incident& incident, Time now) {
   case Incident::Kind::power_cycle:
     stream_ = {};
     begin_restart(false, now);
+    break;
+  case Incident::Kind::sensor_stuck:
+    records_.stick(incident.sensor, incident.count);
+    break;
+  case Incident::Kind::sensor_free:
+    records_.release(incident.sensor);
     break;
   case Incident::Kind::switch_on:
   case Incident::Kind::switch_off:

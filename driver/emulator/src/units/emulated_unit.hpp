@@ -18,10 +18,20 @@ namespace nendo::emulator {
 
 /// An event at the unit that the host did not cause.
 struct Incident {
-  enum class Kind : std::uint8_t { glove_out, glove_in, power_cycle, switch_on, switch_off };
+  enum class Kind : std::uint8_t {
+    glove_out,
+    glove_in,
+    power_cycle,
+    switch_on,
+    switch_off,
+    sensor_stuck,
+    sensor_free
+  };
   Kind kind = Kind::glove_out;
   unsigned sensors = 0; ///< glove_in: of another glove; 0: as before
   std::optional<Side> side = std::nullopt;
+  Sensor sensor = Sensor::unused;                    ///< that is stuck, or free again
+  std::optional<std::uint16_t> count = std::nullopt; ///< of 255; nothing: the one that it shows
 };
 
 /// A whole record or reply in the output.

@@ -3,8 +3,10 @@
 // whichever glove sent the sample, or what adaptation learns from how the hand moves: the whole
 // calibration, or how far it has slipped.
 
+#include <array>
 #include <optional>
 
+#include <nendo/hand/stuck_watch.hpp>
 #include <nendo/hand/wearer.hpp>
 
 namespace nendo::hand {
@@ -12,7 +14,9 @@ namespace nendo::hand {
 class ActiveCalibration {
 public:
   explicit ActiveCalibration(const Wearer& wearer) noexcept
-      : left_(wearer.left.calibration), right_(wearer.right.calibration) {
+      : left_(wearer.left.calibration), right_(wearer.right.calibration),
+        left_out_{wearer.left.left_out, wearer.right.left_out} {
+    if (wearer.watched) stuck_.emplace(*wearer.watched, wearer.stuck);
     if (!wearer.adapt) return;
     if (wearer.ends) {
       const Calibration& made = wearer.of(wearer.ends->side).calibration;
@@ -30,6 +34,7 @@ public:
   const Calibration& follow(const GloveSample& sample) noexcept {
     if (ranges_) ranges_->push(sample);
     if (slips_) slips_->push(sample);
+    if (stuck_) stuck_->push(sample);
     return of(sample.side);
   }
   /// Returns the calibration for a sample of that side without learning from one.
@@ -38,6 +43,16 @@ public:
     if (slips_ && slips_->side() == side) return slips_->calibration();
     return side == Side::left ? left_ : right_;
   }
+
+  /// Returns the sensors of that side that are to be left out: those that were stuck when it was
+  /// calibrated, and those that have been found since (joint_angles() takes them). Wait-free.
+  SensorMask left_out(Side side) const noexcept {
+    SensorMask mask = left_out_[side == Side::left ? 0 : 1];
+    if (stuck_ && stuck_->side() == side) mask.bits |= stuck_->stuck().bits;
+    return mask;
+  }
+  /// Returns what watches for stuck sensors, or null if nothing does.
+  const StuckWatch* stuck() const noexcept { return stuck_ ? &*stuck_ : nullptr; }
 
   /// Returns what is being learned in place of a calibration, or null if nothing is.
   const RangeAdaptation* adaptation() const noexcept { return ranges_ ? &*ranges_ : nullptr; }
@@ -52,6 +67,8 @@ public:
 private:
   Calibration left_;
   Calibration right_;
+  std::array<SensorMask, 2> left_out_; ///< of the calibrations: left, right
+  std::optional<StuckWatch> stuck_;
   std::optional<RangeAdaptation> ranges_;
   std::optional<SlipAdaptation> slips_;
 };

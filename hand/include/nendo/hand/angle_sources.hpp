@@ -20,14 +20,18 @@ enum class AngleSource : std::uint8_t {
   opposition, ///< estimated: the thumb's roll and abduction, from its flexion
   from_gaps,  ///< estimated: a finger's direction, from gaps between fingers that are not enough
   zero,       ///< assumed: always 0
+  // Of sensors that are left out:
+  from_neighbours, ///< estimated: from the finger's other joints, and from the fingers beside
+  at_rest,         ///< estimated: always as of a hand at rest
 };
 
-inline constexpr std::size_t angle_source_count = 7;
+inline constexpr std::size_t angle_source_count = 9;
 
 /// Returns "measured", "from_mcp" and so on.
 constexpr std::string_view name_of(AngleSource source) noexcept {
   constexpr std::array<std::string_view, angle_source_count> names{
-      "measured", "from_mcp", "from_pip", "from_ip", "opposition", "from_gaps", "zero"};
+      "measured",  "from_mcp", "from_pip",        "from_ip", "opposition",
+      "from_gaps", "zero",     "from_neighbours", "at_rest"};
   return names[static_cast<std::size_t>(source)];
 }
 
@@ -39,8 +43,8 @@ constexpr bool is_estimated(AngleSource source) noexcept {
 using AngleSources = std::array<AngleSource, angle_count>;
 
 /// Returns where joint_angles() takes each angle from, for samples of a glove that has these
-/// sensors: GloveInfo::sensors, or any sample's `present`. The result is constant for a glove.
-/// Wait-free.
-AngleSources angle_sources(SensorMask present) noexcept;
+/// sensors: GloveInfo::sensors, or any sample's `present`, of which some may be `left_out`. The
+/// result is constant for a glove and what is left out of it. Wait-free.
+AngleSources angle_sources(SensorMask present, SensorMask left_out = {}) noexcept;
 
 } // namespace nendo::hand

@@ -41,6 +41,7 @@ struct WearerCalibration {
   HandSize size;
   Calibration calibration;
   std::array<std::optional<SensorQuality>, sensor_slots> quality{}; ///< of calibrated sensors
+  SensorMask left_out{}; ///< stuck when it was made, so not calibrated and not used
 };
 
 /// Returns the counts that the wearer reached, of the sensors of which the calibration tells them.

@@ -61,7 +61,19 @@ struct JointAngles {
 ///   it bends: its tip comes within 5 mm of the path of a curling index finger's;
 /// - all others, and a thumb without any flexion sensor: zero, that is closed fingers, a flat palm,
 ///   a straight wrist.
+/// Angles of sensors that are present but `left_out`, because they are stuck, are estimated from
+/// more: from the same joints of the fingers beside, too, and where nothing tells them, they are
+/// those of a hand at rest.
 /// Wait-free; the result is finite.
-JointAngles joint_angles(const GloveSample& sample, const Calibration& calibration) noexcept;
+JointAngles joint_angles(const GloveSample& sample, const Calibration& calibration,
+                         SensorMask left_out = {}) noexcept;
+
+/// Returns Calibration::angles_rad(), where the angles of sensors that are `left_out` follow from
+/// the others: a finger's flexion from the same joints beside it and from its own other joints, a
+/// gap from the other gaps, the thumb's flexion from its other one; and where nothing tells them,
+/// as of a hand at rest. Without any left out it returns the same bits as that. Wait-free; finite
+/// if the measured angles are.
+SensorAngles filled_angles_rad(const GloveSample& sample, const Calibration& calibration,
+                               SensorMask left_out) noexcept;
 
 } // namespace nendo::hand

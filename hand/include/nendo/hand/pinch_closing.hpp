@@ -15,11 +15,11 @@ inline constexpr double open_pinch_m = 0.022;
 
 /// Returns the angles with pinches closed. Only joints of the thumb and of fingers whose pads are
 /// near its pad change, and none leaves its range (joint_limits) because of it. `present` are the
-/// sensors that measured the angles; joints that are only estimated turn more easily. The result
-/// depends on nothing else, and changes smoothly with the angles, so that nothing jumps when a
-/// pinch begins or ends. Angles that are not finite are returned as they are. Wait-free, no
-/// allocation.
+/// sensors that measured the angles, but for those `left_out`; joints that are only estimated turn
+/// more easily. The result depends on nothing else, and changes smoothly with the angles, so that
+/// nothing jumps when a pinch begins or ends. Angles that are not finite are returned as they are.
+/// Wait-free, no allocation.
 JointAngles close_pinches(const JointAngles& angles, const HandSkeleton& skeleton,
-                          SensorMask present) noexcept;
+                          SensorMask present, SensorMask left_out = {}) noexcept;
 
 } // namespace nendo::hand

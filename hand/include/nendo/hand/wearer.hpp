@@ -18,6 +18,8 @@ namespace nendo::hand {
 struct WearerHand {
   Calibration calibration = default_calibration();
   HandSize size{};
+  /// Sensors that were stuck when it was calibrated: what they measure is not used.
+  SensorMask left_out{};
 };
 
 struct Wearer {
@@ -31,6 +33,11 @@ struct Wearer {
   /// If it is set, too, only slips from the calibration of that side are learned. The other side's
   /// stays as it is.
   std::optional<WornEnds> ends{};
+  /// If it is set, sensors of a glove with such counts that stand still while others move are left
+  /// out as long as they do (stuck_watch.hpp).
+  std::optional<CountScale> watched{};
+  /// Sensors that an earlier watch of this glove has found stuck.
+  SensorMask stuck{};
 
   const WearerHand& of(Side side) const noexcept { return side == Side::left ? left : right; }
   WearerHand& of(Side side) noexcept { return side == Side::left ? left : right; }

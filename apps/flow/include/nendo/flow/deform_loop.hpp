@@ -319,6 +319,11 @@ private:
       return skeletons[Placement::index_of(latest.side)];
     }
 
+    /// Sensors of `latest` that are stuck.
+    SensorMask left_out() const noexcept {
+      return {calibration.left_out(latest.side).bits & latest.present.bits};
+    }
+
     HandInput input;
     std::size_t slot = 0; ///< of arrays by side
     Eigen::Isometry3d T_stage_wrist;

@@ -34,6 +34,7 @@ struct HandFrame {
   Eigen::Isometry3d T_stage_wrist = Eigen::Isometry3d::Identity();
   std::uint64_t samples = 0;  ///< received since the loop began
   hand::JointAngles angles{}; ///< of which the pose is made
+  SensorMask left_out{};      ///< of its glove: stuck, so that their angles are estimated
 };
 
 /// What an undo or a redo waits for. Whoever runs the loop must ask for it

@@ -37,6 +37,8 @@ struct LoopStats {
   std::array<std::uint64_t, 2> switch_uses{}; ///< how often a hand's switch was turned on
   std::array<std::array<std::uint64_t, sensor_slots>, 2> spikes{}; ///< kept out, by sensor
   std::array<hand::SensorRanges, 2> ranges{}; ///< learned; zeros if not adapting
+  std::array<SensorMask, 2> left_out{};       ///< sensors that are left out, because they are stuck
+  std::array<SensorMask, 2> was_left_out{};   ///< at any time
   std::array<Side, 2> range_sides{};          ///< of the gloves that taught them
   /// By how many counts sensors have slipped; zeros if that is not learned.
   std::array<hand::SensorAngles, 2> slips_counts{};

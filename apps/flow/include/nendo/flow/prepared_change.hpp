@@ -25,6 +25,7 @@ struct LoopState {
     GloveSample latest{};
     std::optional<hand::LearnedRanges> learned{};
     std::optional<Layer> layer{};
+    SensorMask stuck{}; ///< sensors that were found stuck
   };
   std::vector<Input> inputs{}; ///< in the loop's order
   Placement placement{};       ///< without the gaps

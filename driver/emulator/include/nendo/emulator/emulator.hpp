@@ -3,8 +3,10 @@
 // of each protocol and not from the driver's parser, so that each can test the other. Users test
 // their own software against it, with the faults of real lines and real people.
 
+#include <array>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -64,6 +66,9 @@ struct EmulatedCyberGlove {
   /// 255, or 16 times that with 12 bits. So every record can be judged by itself.
   bool pattern = false;
   std::string replay = {}; ///< a file of bytes that a host received: its records are sent
+  /// If set, what the hand does in place of EmulatorOptions::motion: the angle of each sensor's
+  /// joint, radians, at a time in seconds since the first record. Called by the thread that serves.
+  std::function<std::array<double, sensor_slots>(double time_s)> played = {};
 };
 
 struct EmulatorOptions {

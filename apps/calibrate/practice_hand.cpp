@@ -1,0 +1,166 @@
+#include "calibrate/practice_hand.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "calibrate/demonstration.hpp"
+
+namespace nendo::calibrate {
+namespace {
+
+/// Where a free motion takes each joint, degrees. Those of the usual ranges of motion.
+struct Reach {
+  Sensor sensor;
+  double least_deg, most_deg;
+};
+constexpr std::array<Reach, 22> reaches{{
+    {Sensor::thumb_roll, 0, 75},
+    {Sensor::thumb_mcp, 0, 58},
+    {Sensor::thumb_ip, 0, 80},
+    {Sensor::thumb_abduction, 0, 50},
+    {Sensor::index_mcp, 0, 90},
+    {Sensor::index_pip, 0, 103},
+    {Sensor::index_dip, 0, 75},
+    {Sensor::middle_mcp, 0, 90},
+    {Sensor::middle_pip, 0, 103},
+    {Sensor::middle_dip, 0, 75},
+    {Sensor::index_middle_abduction, 0, 22},
+    {Sensor::ring_mcp, 0, 90},
+    {Sensor::ring_pip, 0, 103},
+    {Sensor::ring_dip, 0, 75},
+    {Sensor::middle_ring_abduction, 0, 18},
+    {Sensor::pinky_mcp, 0, 90},
+    {Sensor::pinky_pip, 0, 103},
+    {Sensor::pinky_dip, 0, 75},
+    {Sensor::ring_pinky_abduction, 0, 22},
+    {Sensor::palm_arch, 0, 20},
+    {Sensor::wrist_pitch, -60, 70},
+    {Sensor::wrist_yaw, -30, 20},
+}};
+
+/// The standard's distributions differ between libraries; the engine itself does not.
+double uniform(std::mt19937& random, double low, double high) {
+  return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+}
+
+/// About normal, of a deviation of 1, never beyond 3.
+double scatter(std::mt19937& random) {
+  return 2.0 *
+         (uniform(random, -0.5, 0.5) + uniform(random, -0.5, 0.5) + uniform(random, -0.5, 0.5));
+}
+
+double smooth(double part) noexcept {
+  const double p = std::clamp(part, 0.0, 1.0);
+  return p * p * (3.0 - 2.0 * p);
+}
+
+hand::HandSkeleton stranger(std::mt19937& random) {
+  hand::HandSize size;
+  const double by = uniform(random, 0.92, 1.08);
+  size.length_m *= by;
+  size.breadth_m *= by;
+  return hand::HandSkeleton(Side::right, size);
+}
+
+/// The angles as sensors measure them, of pairs of fingers.
+hand::SensorAngles measured(const hand::JointAngles& joints) {
+  hand::SensorAngles angles{};
+  const auto at = [&](Sensor sensor) -> double& {
+    return angles[static_cast<std::size_t>(sensor)];
+  };
+  at(Sensor::thumb_roll) = joints.thumb_roll_rad;
+  at(Sensor::thumb_mcp) = joints.thumb_mcp_flexion_rad;
+  at(Sensor::thumb_ip) = joints.thumb_ip_flexion_rad;
+  at(Sensor::thumb_abduction) = joints.thumb_abduction_rad;
+  for (std::size_t f = 0; f < joints.fingers.size(); ++f) {
+    angles[4 * f + 4] = joints.fingers[f].mcp_flexion_rad;
+    angles[4 * f + 5] = joints.fingers[f].pip_flexion_rad;
+    angles[4 * f + 6] = joints.fingers[f].dip_flexion_rad;
+    if (f > 0)
+      angles[4 * f + 7] =
+          joints.fingers[f - 1].mcp_abduction_rad - joints.fingers[f].mcp_abduction_rad;
+  }
+  at(Sensor::palm_arch) = joints.palm_arch_rad;
+  at(Sensor::wrist_pitch) = joints.wrist_pitch_rad;
+  at(Sensor::wrist_yaw) = joints.wrist_yaw_rad;
+  return angles;
+}
+
+} // namespace
+
+PracticeHand::PracticeHand(std::uint32_t seed, std::optional<double> hold_s)
+    : hold_s_(hold_s), random_(seed), ids_(hand::full_takes().begin(), hand::full_takes().end()) {
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    gains_[slot] = uniform(random_, 0.88, 1.12);
+    offsets_rad_[slot] = from_degrees(uniform(random_, 1.0, 8.0));
+  }
+  const hand::HandSkeleton skeleton = stranger(random_); // a left hand's angles are the same
+  for (const hand::PoseId id : ids_) {
+    hand::SensorAngles angles = measured(demonstrated_angles(id, skeleton));
+    const hand::CalibrationPose& pose = hand::pose_of(id);
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+      // Where nothing is asked, the joint is anywhere near; pads that touch hold a joint closely.
+      const double asked_rad = pose.assumed[slot].deviation_rad;
+      const double free_rad = from_degrees(pose.touch ? 1.0 : 4.0);
+      angles[slot] += 0.8 * scatter(random_) * (asked_rad > 0.0 ? asked_rad : free_rad);
+    }
+    poses_.push_back(angles);
+  }
+  from_ = now_ = free_motion(0.0);
+}
+
+hand::SensorAngles PracticeHand::free_motion(double time_s) const {
+  constexpr double period_s = 2.6;
+  hand::SensorAngles angles{};
+  for (std::size_t n = 0; n < reaches.size(); ++n) {
+    const Reach& reach = reaches[n];
+    // Fingers go together; the thumb, the gaps and the wrist at other times.
+    const auto slot = static_cast<std::size_t>(reach.sensor);
+    const bool flexes = slot >= 4 && slot < 20 && slot % 4 != 3;
+    const double phase =
+        flexes ? 0.02 * static_cast<double>(slot / 4) : 0.13 * static_cast<double>(n);
+    const double bend = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (time_s / period_s - phase));
+    angles[slot] = from_degrees(reach.least_deg + bend * (reach.most_deg - reach.least_deg));
+  }
+  return angles;
+}
+
+hand::SensorAngles PracticeHand::as_worn(hand::SensorAngles angles) const {
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    angles[slot] = gains_[slot] * angles[slot] + offsets_rad_[slot];
+  return angles;
+}
+
+int PracticeHand::wanted(double time_s) noexcept {
+  int step = asked_.load();
+  if (hold_s_ && time_s >= free_motion_s)
+    step += 1 + static_cast<int>((time_s - free_motion_s) / *hold_s_);
+  return std::clamp(step, 0, pose_count() + 1);
+}
+
+hand::SensorAngles PracticeHand::at(double time_s) {
+  const int step = wanted(time_s);
+  if (step != shown_.load()) {
+    from_ = now_;
+    turned_s_ = time_s;
+    shown_ = step;
+  }
+  // At the end the hand moves freely again, which shows what the calibration has made of it.
+  const bool poses = step >= 1 && step <= pose_count();
+  const hand::SensorAngles to =
+      poses ? poses_[static_cast<std::size_t>(step - 1)] : free_motion(time_s);
+  const double part = turned_s_ == 0.0 && step == 0 ? 1.0 : smooth((time_s - turned_s_) / turn_s);
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    now_[slot] = from_[slot] + part * (to[slot] - from_[slot]);
+  return as_worn(now_);
+}
+
+std::string PracticeHand::in_words(int step) const {
+  if (step <= 0) return "bends and stretches every joint";
+  if (step > pose_count()) return "every pose was held; it moves freely";
+  return "pose " + std::to_string(step) + " of " + std::to_string(pose_count()) + ": " +
+         std::string(hand::pose_of(ids_[static_cast<std::size_t>(step - 1)]).name);
+}
+
+} // namespace nendo::calibrate

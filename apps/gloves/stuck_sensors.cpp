@@ -1,0 +1,105 @@
+#include "gloves/stuck_sensors.hpp"
+
+#include <bit>
+#include <chrono>
+#include <thread>
+
+#include "cli/cli.hpp"
+
+namespace nendo::gloves {
+namespace {
+
+template <class Visit>
+void for_each_of(SensorMask sensors, Visit&& visit) {
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    if (sensors.has(static_cast<Sensor>(slot))) visit(static_cast<Sensor>(slot));
+}
+
+} // namespace
+
+bool is_one(SensorMask sensors) noexcept {
+  return std::popcount(sensors.bits) == 1;
+}
+
+std::string sensors_in_words(SensorMask sensors) {
+  std::string text;
+  int left = std::popcount(sensors.bits);
+  for_each_of(sensors, [&](Sensor sensor) {
+    text.append(name_of(sensor));
+    --left;
+    if (left > 0) text += left == 1 ? " and " : ", ";
+  });
+  return text;
+}
+
+std::vector<std::string> StuckNotices::changes(const GloveSample& sample,
+                                               const hand::ActiveCalibration& calibration) {
+  const SensorMask now{calibration.left_out(sample.side).bits & sample.present.bits};
+  const SensorMask before = known_.value_or(now);
+  known_ = now;
+  std::vector<std::string> sentences;
+  for_each_of({now.bits & ~before.bits}, [&](Sensor sensor) {
+    sentences.push_back(std::string(name_of(sensor)) + " stands still at " +
+                        std::to_string(sample[sensor].value) +
+                        " while the hand moves: it is left out, and estimated from the sensors "
+                        "beside");
+  });
+  for_each_of({before.bits & ~now.bits}, [&](Sensor sensor) {
+    sentences.push_back(std::string(name_of(sensor)) + " moves again: it is measured");
+  });
+  return sentences;
+}
+
+std::vector<std::string> StuckNotices::changes(SensorMask left_out) {
+  const SensorMask before = known_.value_or(left_out);
+  known_ = left_out;
+  std::vector<std::string> sentences;
+  for_each_of({left_out.bits & ~before.bits}, [&](Sensor sensor) {
+    sentences.push_back(std::string(name_of(sensor)) +
+                        " stands still while the hand moves: it is left out, and estimated from "
+                        "the sensors beside");
+  });
+  for_each_of({before.bits & ~left_out.bits}, [&](Sensor sensor) {
+    sentences.push_back(std::string(name_of(sensor)) + " moves again: it is measured");
+  });
+  return sentences;
+}
+
+std::vector<SensorAtEnd> sensors_at_end(driver::Glove& glove) {
+  const driver::GloveInfo& info = glove.info();
+  if (info.kind != driver::GloveKind::device || info.counts.whole_range) return {};
+  constexpr auto patience = std::chrono::milliseconds(2000);
+  constexpr auto looks = std::chrono::milliseconds(500);
+  SampleRing ring(1024);
+  if (!glove.start(ring)) return {};
+  SensorMask at_end = info.sensors;
+  std::optional<GloveSample> last;
+  const HostTime begun = HostClock::now();
+  std::optional<HostTime> first;
+  while (HostClock::now() < begun + patience && !cli::stop_requested() &&
+         (!first || HostClock::now() < *first + looks)) {
+    GloveSample sample;
+    if (!ring.try_pop(sample)) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      continue;
+    }
+    if (!first) first = HostClock::now();
+    last = sample;
+    for_each_of(at_end, [&](Sensor sensor) {
+      if (!sample.present.has(sensor) || !hand::is_at_end(sample[sensor].value, info.counts))
+        at_end.bits &= ~(1U << static_cast<unsigned>(sensor));
+    });
+  }
+  glove.stop();
+  std::vector<SensorAtEnd> found;
+  if (last)
+    for_each_of(at_end, [&](Sensor sensor) { found.push_back({sensor, (*last)[sensor].value}); });
+  return found;
+}
+
+std::string in_words(const SensorAtEnd& found) {
+  return std::string(name_of(found.sensor)) + " stands at its end (" + std::to_string(found.count) +
+         "): if it stays there whatever the hand does, the sensor or its wire is broken";
+}
+
+} // namespace nendo::gloves

@@ -1,0 +1,46 @@
+#pragma once
+// Tells people of sensors that are stuck.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nendo/driver/glove.hpp>
+#include <nendo/driver/sample.hpp>
+#include <nendo/hand/active_calibration.hpp>
+
+namespace nendo::gloves {
+
+/// Returns "index_pip", or "index_pip and ring_mcp", and so on.
+std::string sensors_in_words(SensorMask sensors);
+bool is_one(SensorMask sensors) noexcept;
+
+/// Notices which sensors begin to be left out, and which come back.
+class StuckNotices {
+public:
+  /// Returns a sentence for each sensor that was not left out before and is now, and for each that
+  /// is no more. What is left out of the first sample was told where the calibration was.
+  std::vector<std::string> changes(const GloveSample& sample,
+                                   const hand::ActiveCalibration& calibration);
+  /// Likewise where the counts are not known.
+  std::vector<std::string> changes(SensorMask left_out);
+
+private:
+  std::optional<SensorMask> known_;
+};
+
+/// A sensor that stood at an end of its counts for as long as it was looked at.
+struct SensorAtEnd {
+  Sensor sensor;
+  std::uint16_t count;
+};
+
+/// Looks at a worn glove's samples for a moment, and returns the sensors that stand at an end. At
+/// rest no more can be known. Without samples, and of gloves that calibrate themselves, there are
+/// none. Starts the glove and stops it. Blocks for 2 s at most.
+std::vector<SensorAtEnd> sensors_at_end(driver::Glove& glove);
+/// Returns "index_pip stands at its end (255): ...", with what that means.
+std::string in_words(const SensorAtEnd& found);
+
+} // namespace nendo::gloves

@@ -1,0 +1,76 @@
+#pragma once
+// Finds sensors that stand still though their joints move. A sensor may stand still because its
+// joint rests; that it is stuck shows only where its neighbours move to and fro for long, which no
+// hand does without moving this joint by a count, too. So nothing is found while nothing moves, and
+// a finger that moves alone shows nothing of the others.
+
+#include <array>
+#include <cstdint>
+
+#include <nendo/driver/sample.hpp>
+#include <nendo/hand/swing_finder.hpp>
+
+namespace nendo::hand {
+
+/// Watches the samples of a glove. What it finds depends on them alone, so that a replay finds the
+/// same. Wait-free, no allocation; for use by one thread.
+class StuckWatch {
+public:
+  static constexpr double least_still_s = 3.0;       ///< before a sensor is taken to be stuck
+  static constexpr double least_swing_counts = 16.0; ///< of 255: about 11 degrees
+
+  /// `stuck` are the sensors that an earlier watch of the same glove had found.
+  explicit StuckWatch(CountScale scale = {}, SensorMask stuck = {}) noexcept;
+
+  /// Takes the next sample in time. Samples of another hand or other sensors begin anew.
+  void push(const GloveSample& sample) noexcept;
+
+  /// Returns the sensors that are stuck. One that moves again is none for long.
+  SensorMask stuck() const noexcept { return stuck_; }
+  /// Returns the glove's hand, by the last sample.
+  Side side() const noexcept { return side_; }
+  /// Returns the count at which a sensor stands still, which was seen before.
+  std::uint16_t stands_at(Sensor sensor) const noexcept {
+    return watched_[static_cast<std::size_t>(sensor)].low;
+  }
+
+private:
+  static constexpr std::size_t kept_swings = 8;
+  struct Watched {
+    SwingFinder swings{};
+    /// The numbers of the samples at which its last swings ended, the oldest at `next`.
+    std::array<std::uint64_t, kept_swings> ended{};
+    std::size_t next = 0;
+    std::uint16_t low = 0, high = 0; ///< since it last changed
+    std::uint64_t changed = 0;       ///< the number of the sample that changed it
+    HostTime changed_at{};
+    std::uint8_t away = 0; ///< samples in a row in which a stuck sensor has moved
+  };
+
+  void begin_anew(const GloveSample& sample) noexcept;
+  bool stands_still(Watched& sensor, std::uint16_t count) const noexcept;
+  void watch(std::size_t slot, const GloveSample& sample) noexcept;
+  bool has_swung(std::size_t slot, std::uint64_t since, std::size_t times) const noexcept;
+  template <class Sensors>
+  int swung(const Sensors& sensors, std::size_t of, std::size_t times) const noexcept;
+  bool is_shown(std::size_t slot, const GloveSample& sample) const noexcept;
+  bool shown_by_finger(std::size_t slot) const noexcept;
+  bool shown_by_thumb(std::size_t slot) const noexcept;
+  bool shown_by_hand(std::size_t slot, std::size_t times, int part) const noexcept;
+
+  CountScale scale_;
+  std::array<Watched, sensor_slots> watched_{};
+  SensorMask present_;
+  SensorMask stuck_;
+  SensorMask first_stuck_; ///< for the first sample
+  Side side_ = Side::right;
+  std::uint64_t number_ = 0; ///< of the sample
+};
+
+/// Tells whether a count is at an end of what a bare converter can count, where a broken sensor
+/// usually stands. A glove that calibrates itself is at an end whenever a joint is.
+constexpr bool is_at_end(std::uint16_t count, CountScale scale) noexcept {
+  return !scale.whole_range && (count <= 1 || count + 1 >= scale.most);
+}
+
+} // namespace nendo::hand
