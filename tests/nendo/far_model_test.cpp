@@ -134,8 +134,8 @@ TEST_SUITE("far_model") {
                           "--right", "sim:press", "--duration", "1"});
     balls.run("wired", {ball, "--wire", "0.1:0.4", "--left", "sim:sculpt", "--right", "sim:sculpt",
                         "--duration", "0.8"});
-    balls.run("held", {ball, "--hold", "hand", "--keep-volume", "0.5", "--right", "sim:wave",
-                       "--duration", "0.3"});
+    balls.run("held", {ball, "--hold", "hand", "--right", "sim:wave", "--duration", "0.3"});
+    balls.run("kept", {ball, "--keep-volume", "0.5", "--right", "sim:wave", "--duration", "0.3"});
     balls.run("masked", {ball, "--symmetry", "--right", "sim:sculpt", "--duration", "0.3"});
     balls.run("under", {ball, "--layer", "left.thumb", "--left", "sim:wave", "--duration", "0.3"});
     balls.run("over", {"--over", balls.path("under.nendo"), "--right", "sim:wave"});
