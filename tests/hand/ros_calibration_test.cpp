@@ -205,6 +205,13 @@ TEST_SUITE("ros_calibration") {
     CHECK(any_note_has(read, "not known and not read: 'G_Toe'"));
   }
 
+  TEST_CASE("a thumb whose roll has its zero elsewhere is kept as written, and a note says so") {
+    const std::vector<Joint> joints{{"G_ThumbRotate", {{0.1, -60.0}, {0.6, 60.0}}}};
+    const auto read = required(parse_ros_yaml(yaml_of(joints), "a"));
+    CHECK(angle_deg_at(read, Sensor::thumb_roll, 0.1) == doctest::Approx(-60.0));
+    CHECK(any_note_has(read, "G_ThumbRotate (thumb_roll) goes below 0 degrees"));
+  }
+
   TEST_CASE("a file that is not right is refused in one line that names the place") {
     const auto yaml = [](const std::string& text) { return parse_ros_yaml(text, "a.yaml"); };
     const auto joint = [&](const std::string& points) {
