@@ -156,18 +156,19 @@ TEST_SUITE("hi_res_check") {
       line.loss = 0.1;
       const Tally tally = run(line, HiResCheck(90.0), 20'000, [&](int k, Record& record) {
         if (k < HiResCheck::learning_records || k % every != 0) return;
-        switch (random() % 4) {
+        const auto draw = [&](unsigned below) { return static_cast<unsigned>(random() % below); };
+        switch (draw(4)) {
         case 0:
-          record.sub_frame = static_cast<std::uint8_t>(random() % 10);
+          record.sub_frame = static_cast<std::uint8_t>(draw(10));
           break;
         case 1:
-          record.frame = static_cast<std::uint8_t>((record.frame + 1 + random() % 9) % 31);
+          record.frame = static_cast<std::uint8_t>((record.frame + 1U + draw(9)) % 31U);
           break;
         case 2:
-          record.frame = static_cast<std::uint8_t>((record.frame + 31 - random() % 7) % 31);
+          record.frame = static_cast<std::uint8_t>((record.frame + 31U - draw(7)) % 31U);
           break;
         default:
-          record.second += 1 + random() % 40;
+          record.second += 1U + draw(40);
         }
       });
       CHECK(tally.tells);
@@ -208,7 +209,7 @@ TEST_SUITE("hi_res_check") {
     Line line;
     for (int k = 0; k < 3000; ++k, line.step()) {
       Record record;
-      record.second = random() % 86'400;
+      record.second = static_cast<std::uint32_t>(random() % 86'400);
       record.frame = static_cast<std::uint8_t>(random() % 31);
       record.sub_frame = static_cast<std::uint8_t>(random() % 10);
       check(record, line.now);
