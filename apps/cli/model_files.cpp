@@ -1,8 +1,11 @@
 #include "cli/model_files.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <string_view>
 #include <utility>
+
+#include "cli/cli.hpp"
 
 namespace nendo::cli {
 
@@ -63,6 +66,26 @@ std::string absolute_name(const std::string& name) {
 
 std::string short_name(const std::string& name) {
   return changed_name(name, [](const fs::path& file) { return file.filename(); });
+}
+
+namespace {
+
+std::vector<std::string>& kept_model_notes() {
+  static std::vector<std::string> notes;
+  return notes;
+}
+
+} // namespace
+
+void note_model(const std::string& text) {
+  auto& notes = kept_model_notes();
+  if (std::find(notes.begin(), notes.end(), text) != notes.end()) return; // read once more
+  notes.push_back(text);
+  note(text);
+}
+
+const std::vector<std::string>& model_notes() {
+  return kept_model_notes();
 }
 
 } // namespace nendo::cli

@@ -8,6 +8,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
+#include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "edit/edit_actions.hpp"
 #include "edit/edit_words.hpp"
@@ -23,6 +24,7 @@ void print_json(const MakeOptions& options, const timeline::MadeTimeline& made) 
                               {"result", options.out},
                               {"duration_s", made.timeline.duration_s},
                               {"events", made.timeline.events.size()},
+                              {"model_notes", cli::model_notes()},
                               {"exact", made.exact}};
   for (std::size_t at = 0; at < made.hands.size(); ++at) {
     const auto& hand = made.timeline.hands[at];

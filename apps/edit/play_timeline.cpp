@@ -11,6 +11,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
+#include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "edit/edit_actions.hpp"
 #include "takes/model_files.hpp"
@@ -65,11 +66,19 @@ int play_timeline(const PlayOptions& options) {
   const auto sum = recording::sum_of(shape.vertices);
   const double elapsed_s = to_seconds(HostClock::now() - start);
   if (options.json) {
-    const nlohmann::ordered_json line{
-        {"event", "played"},        {"frames", stats.ticks},  {"time_s", (*frames)->time_s()},
-        {"elapsed_s", elapsed_s},   {"failed", stats.failed}, {"grabs", stats.grabs},
-        {"commits", stats.commits}, {"undos", stats.undos},   {"redos", stats.redos},
-        {"vertices", sum.vertices}, {"crc32c", sum.crc},      {"result", options.out}};
+    const nlohmann::ordered_json line{{"event", "played"},
+                                      {"frames", stats.ticks},
+                                      {"time_s", (*frames)->time_s()},
+                                      {"elapsed_s", elapsed_s},
+                                      {"failed", stats.failed},
+                                      {"grabs", stats.grabs},
+                                      {"commits", stats.commits},
+                                      {"undos", stats.undos},
+                                      {"redos", stats.redos},
+                                      {"vertices", sum.vertices},
+                                      {"crc32c", sum.crc},
+                                      {"result", options.out},
+                                      {"model_notes", cli::model_notes()}};
     cli::print_line(line);
     return 0;
   }

@@ -5,6 +5,9 @@
 #include <string>
 #include <string_view>
 
+#include "render/picture_kind.hpp"
+#include "render/texture_image.hpp"
+
 namespace nendo::exporting {
 namespace {
 
@@ -12,11 +15,9 @@ using Json = GlbFile::Json;
 
 const Eigen::Vector4f clay(0.72F, 0.56F, 0.44F, 1.0F);
 
-/// The media type of a picture that glTF allows, or nullptr.
+/// The media type of a picture that glTF allows.
 const char* media_type_of(std::string_view contents) noexcept {
-  if (contents.starts_with("\x89PNG\r\n\x1A\n")) return "image/png";
-  if (contents.starts_with("\xFF\xD8\xFF")) return "image/jpeg";
-  return nullptr;
+  return render::picture_kind_of(contents) == render::PictureKind::png ? "image/png" : "image/jpeg";
 }
 
 std::string without_ending(const std::string& file) {
@@ -28,12 +29,13 @@ std::vector<std::optional<GlbFile::Index>> add_textures(const deform::Appearance
                                                         GlbFile& file) {
   std::vector<std::optional<GlbFile::Index>> indices;
   for (const deform::Texture& texture : look.textures) {
-    const char* const type = texture.contents ? media_type_of(*texture.contents) : nullptr;
+    const auto contents = render::as_png_or_jpeg(texture.contents);
     indices.emplace_back();
-    if (type == nullptr) continue;
+    if (!contents) continue;
+    const char* const type = media_type_of(*contents);
     const auto image = file.add("images", {{"name", without_ending(texture.file)},
                                            {"mimeType", type},
-                                           {"bufferView", file.add_bytes(*texture.contents)}});
+                                           {"bufferView", file.add_bytes(*contents)}});
     indices.back() = file.add("textures", {{"source", image}});
   }
   return indices;

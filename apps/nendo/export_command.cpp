@@ -14,6 +14,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
+#include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "cli/quantities.hpp"
 #include "export/gltf_export.hpp"
@@ -261,6 +262,7 @@ void print_json(const std::string& format, const exporting::Exported& done) {
   if (!done.begin_s.empty()) line["begin_s"] = done.begin_s;
   if (!done.offset.isZero(0.0))
     line["offset"] = {done.offset.x(), done.offset.y(), done.offset.z()};
+  line["model_notes"] = cli::model_notes();
   line["result"] = done.files.empty() ? std::string() : done.files.front();
   if (done.morphs) {
     line["morphs"] = {{"by", name_of(done.morphs->basis)},

@@ -16,6 +16,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
+#include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
 #include "takes/model_files.hpp"
@@ -140,6 +141,7 @@ void print(const Options& options, const Replayed& done) {
         {"to_the_end", done.to_the_end}, {"exact", done.exact}, {"same_shape", nullptr},
         {"vertices", sum.vertices},      {"crc32c", sum.crc},   {"result", options.out}};
     if (done.same_shape) line["same_shape"] = *done.same_shape;
+    line["model_notes"] = cli::model_notes();
     line["shapes"] = done.shapes;
     line["farthest_from_shapes"] = done.farthest;
     cli::print_line(line);

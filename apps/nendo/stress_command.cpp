@@ -11,6 +11,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
+#include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "cli/terminal.hpp"
 #include "nendo/commands.hpp"
@@ -87,7 +88,8 @@ int run(const stress::StressArguments& arguments) {
       stress::run_stress(*options, model->mesh, progress_for(*options), window.get());
   if (cli::obeys_codes(STDERR_FILENO)) std::cerr << "\r\x1b[K";
   if (!outcome) return cli::report(outcome.error());
-  const ordered_json results = stress::stress_json(*options, **outcome);
+  ordered_json results = stress::stress_json(*options, **outcome);
+  results["model_notes"] = cli::model_notes();
   if (arguments.json) {
     cli::print_line(results);
   } else {

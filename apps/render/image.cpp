@@ -48,17 +48,23 @@ void Image::paste(const Image& other, int x, int y) noexcept {
       at(x + column, y + row) = other.at(column, row);
 }
 
-Result<void> write_png(const std::filesystem::path& path, const Image& image) {
+Result<std::string> png_of(const Image& image) {
   png_image header = header_of(image.size());
   const auto stride = static_cast<png_int_32>(3 * image.size().width);
   png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(header);
   std::string contents(bytes, '\0');
   if (png_image_write_to_memory(&header, contents.data(), &bytes, 0, image.pixels().data(), stride,
-                                nullptr) == 0) {
-    return Error{Errc::failed, path.string() + ": no PNG can be made: " + header.message};
-  }
+                                nullptr) == 0)
+    return Error{Errc::failed, std::string("no PNG can be made: ") + header.message};
   contents.resize(bytes);
-  return replace_file(path, contents);
+  return contents;
+}
+
+Result<void> write_png(const std::filesystem::path& path, const Image& image) {
+  const auto contents = png_of(image);
+  if (!contents)
+    return Error{contents.error().code, path.string() + ": " + contents.error().message};
+  return replace_file(path, *contents);
 }
 
 Result<Image> decode_png(std::string_view contents, const std::string& name) {

@@ -54,6 +54,8 @@ private:
   std::vector<Pixel> pixels_;
 };
 
+/// Returns the contents of a PNG file. Error: failed.
+Result<std::string> png_of(const Image& image);
 /// Writes the file atomically and replaces an existing one. Blocks. Error: failed.
 Result<void> write_png(const std::filesystem::path& path, const Image& image);
 /// Reads a PNG file. Blocks. Error: bad_input (no PNG, or too large).

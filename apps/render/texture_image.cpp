@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "render/jpeg.hpp"
+#include "render/picture_kind.hpp"
+#include "render/tga_bmp.hpp"
 
 namespace nendo::render {
 
@@ -59,13 +62,87 @@ Between between(float part, int count) noexcept {
   return {(first + count) % count, (first + 1) % count, at - whole};
 }
 
+/// Tells by its header and its end alone that a picture is whole, for decoding a large one twice
+/// would be felt. A PNG ends with its mark; a JPEG has its mark nowhere among the pixels, though
+/// one that belongs to a small picture may stand before them. Others are quick to decode.
+bool looks_whole(std::string_view contents) {
+  const PictureKind kind = picture_kind_of(contents);
+  if (kind == PictureKind::jpeg) {
+    constexpr std::size_t before_pixels = std::size_t{1} << 16;
+    return size_of_jpeg(contents) && contents.find("\xFF\xD9", before_pixels) != contents.npos;
+  }
+  constexpr std::size_t width_at = 16, height_at = 20, end_bytes = 12;
+  if (kind != PictureKind::png || contents.size() < height_at + 4 + end_bytes) return false;
+  const auto number_at = [&](std::size_t at) {
+    std::uint32_t number = 0; // the most significant byte first
+    for (std::size_t k = 0; k < 4; ++k)
+      number = number << 8 | static_cast<unsigned char>(contents[at + k]);
+    return number;
+  };
+  const auto fits = [](std::uint32_t pixels) { return pixels >= 1 && pixels <= Size::most; };
+  return fits(number_at(width_at)) && fits(number_at(height_at)) &&
+         contents.substr(contents.size() - end_bytes).find("IEND") != contents.npos;
+}
+
+Result<Image> decode_png_texture(std::string_view contents) {
+  auto image = decode_png(contents, "texture");
+  if (image) return image;
+  const bool is_too_large = image.error().message.find("more than") != std::string::npos;
+  return Error{Errc::bad_input, is_too_large ? "has more than " + std::to_string(Size::most) +
+                                                   " pixels along a side; make it smaller"
+                                             : "is a damaged PNG picture; export it once more"};
+}
+
 } // namespace
 
-std::optional<Image> decode_picture(const std::string& contents) {
-  if (contents.starts_with("\xFF\xD8")) return decode_jpeg(contents);
-  auto image = decode_png(contents, "texture");
-  if (!image) return std::nullopt;
-  return *std::move(image);
+Result<Image> decode_picture(std::string_view contents) {
+  switch (picture_kind_of(contents)) {
+  case PictureKind::png:
+    return decode_png_texture(contents);
+  case PictureKind::jpeg: {
+    auto decoded = decode_jpeg(contents);
+    if (!decoded) return decoded.error();
+    return std::move(decoded->image);
+  }
+  case PictureKind::bmp:
+    return decode_bmp(contents);
+  case PictureKind::tga:
+    return decode_tga(contents);
+  case PictureKind::none:
+    break;
+  }
+  const std::string format(foreign_format_of(contents));
+  if (format.empty())
+    return Error{Errc::bad_input, "is no picture; PNG, JPEG, TGA and BMP are read"};
+  if (format == "a pointer of Git LFS")
+    return Error{Errc::bad_input, "is a pointer of Git LFS; `git lfs pull` fetches the picture"};
+  if (format == "an HTML page")
+    return Error{Errc::bad_input, "is an HTML page; download the picture itself"};
+  return Error{Errc::bad_input, "is " + format + ", which is not read; save it as PNG or JPEG"};
+}
+
+std::string fault_of_picture(std::string_view contents) {
+  constexpr std::size_t large = std::size_t{4} << 20;
+  if (contents.size() > large && looks_whole(contents)) return "";
+  if (picture_kind_of(contents) == PictureKind::jpeg) {
+    const auto decoded = decode_jpeg(contents);
+    if (!decoded) return decoded.error().message;
+    return decoded->is_whole ? "" : "is a damaged JPEG picture; what can be read of it is shown";
+  }
+  const auto image = decode_picture(contents);
+  return image ? "" : image.error().message;
+}
+
+std::shared_ptr<const std::string>
+as_png_or_jpeg(const std::shared_ptr<const std::string>& contents) {
+  if (!contents) return nullptr;
+  const PictureKind kind = picture_kind_of(*contents);
+  if (kind == PictureKind::none) return nullptr;
+  if (kind == PictureKind::png || kind == PictureKind::jpeg) return contents;
+  const auto image = decode_picture(*contents);
+  if (!image) return nullptr;
+  auto png = png_of(*image);
+  return png ? std::make_shared<const std::string>(*std::move(png)) : nullptr;
 }
 
 TextureImage::TextureImage(Image image) {

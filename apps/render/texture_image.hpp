@@ -1,19 +1,32 @@
 #pragma once
 // Pictures on surfaces: decoded, and made smaller step by step for surfaces that are far away.
 
-#include <optional>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include <nendo/base/result.hpp>
 
 #include "render/image.hpp"
 
 namespace nendo::render {
 
-/// Returns the picture of a PNG or JPEG file, of at most Size::most pixels along each side, or
-/// nothing if it is damaged or something else. What is transparent becomes black.
-std::optional<Image> decode_picture(const std::string& contents);
+/// Returns the picture of a PNG, JPEG, TGA or BMP file, of at most Size::most pixels along each
+/// side. What is transparent becomes black in a PNG, and is opaque elsewhere. Error: bad_input,
+/// with the end of a sentence that begins with the file's name, such as "is a WebP picture, which
+/// is not read; save it as PNG or JPEG".
+Result<Image> decode_picture(std::string_view contents);
+
+/// Returns what is wrong with a texture's file, in the same words, or an empty text. Decodes it.
+std::string fault_of_picture(std::string_view contents);
+
+/// Returns the file if it is a PNG or a JPEG, and if it is a TGA or a BMP, a PNG of the same
+/// picture. Nothing if it is something else, or if a TGA or BMP is damaged.
+std::shared_ptr<const std::string>
+as_png_or_jpeg(const std::shared_ptr<const std::string>& contents);
 
 /// Never changes once it is made, so threads may share it.
 class TextureImage {

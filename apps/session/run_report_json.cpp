@@ -5,6 +5,7 @@
 #include <nendo/driver/record_counts.hpp>
 
 #include "cli/json_line.hpp"
+#include "cli/model_files.hpp"
 #include "gloves/glove_json.hpp"
 #include "session/loop_options.hpp"
 
@@ -205,6 +206,7 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
       static_cast<double>(outcome.vertices) * static_cast<double>(stats.ticks) / outcome.elapsed_s;
   line["recordings"] = recordings_json(outcome.recordings);
   line["published"] = published_json(outcome);
+  line["model_notes"] = cli::model_notes();
   line["result"] = outcome.result;
   cli::print_line(line);
 }

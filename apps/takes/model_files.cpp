@@ -8,10 +8,12 @@
 #include <nendo/base/text.hpp>
 #include <nendo/deform/face_box.hpp>
 #include <nendo/deform/offset.hpp>
+#include <nendo/deform/read_notes.hpp>
 #include <nendo/deform/side_by_side.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/model_files.hpp"
+#include "render/texture_image.hpp"
 
 namespace nendo::takes {
 namespace {
@@ -38,10 +40,22 @@ void add_other_units(const std::vector<std::string>& files, const std::vector<de
                   ", which is a speck beside it; if their units differ, scale one of them");
 }
 
+/// Notes textures that cannot be shown, as they are: in one line each for what is alike.
+void note_pictures(deform::ReadModel& model) {
+  deform::NoteSum sum;
+  for (const deform::Texture& texture : model.mesh.look.textures)
+    if (texture.contents)
+      if (const std::string fault = render::fault_of_picture(*texture.contents); !fault.empty())
+        sum.add("texture", texture.file, ": " + fault);
+  sum.append_to(model.notes);
+  deform::bound_notes(model.notes);
+}
+
 /// One file, with all that is to be said of it as notes.
 Result<deform::ReadModel> read_alone(const std::string& file, const deform::ReadOptions& options) {
   auto model = deform::read_model(file, options);
   if (!model) return model;
+  note_pictures(*model);
   if (const auto remark = deform::remark_on(model->mesh); !remark.empty())
     model->notes.emplace_back(remark);
   return model;
@@ -69,7 +83,7 @@ Result<deform::ReadModel> read_models(const std::string& name, const deform::Rea
 
 void note_all(const std::string& name, const std::vector<std::string>& notes) {
   for (const std::string& what : notes)
-    cli::note(printable(name + ": " + what));
+    cli::note_model(printable(name + ": " + what));
 }
 
 Result<deform::ReadModel> read_models_from_zero(const std::string& name,

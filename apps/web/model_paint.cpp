@@ -16,10 +16,9 @@ std::uint16_t as_share(float value) noexcept {
                       : std::uint16_t{0};
 }
 
-CoatHead coat_of(const deform::Material& material, const Pictures& pictures) {
+CoatHead coat_of(const deform::Material& material, const deform::Mesh& mesh) {
   CoatHead coat;
-  if (material.texture < pictures.size() && pictures[material.texture])
-    coat.texture = material.texture;
+  if (has_picture(mesh, material.texture)) coat.texture = material.texture;
   if (!material.colour) return coat;
   coat.has_colour = 1;
   for (std::size_t channel = 0; channel < 3; ++channel)
@@ -42,7 +41,6 @@ std::vector<std::array<std::uint16_t, 3>> colours_of(const deform::Mesh& mesh,
 } // namespace
 
 ModelPaint paint_of(const deform::Mesh& mesh, const deform::BlockLayout& layout) {
-  const Pictures pictures = pictures_of(mesh);
   const std::vector<std::uint32_t> place_of = layout.places();
   ModelPaint paint;
   std::vector<std::uint32_t> drawn; // numbers of the mesh's corners
@@ -50,7 +48,7 @@ ModelPaint paint_of(const deform::Mesh& mesh, const deform::BlockLayout& layout)
   deform::FaceTriangles triangles(mesh);
   bool textured = false;
   for (std::size_t at = 0; at < faces.size(); ++at) {
-    CoatHead coat = at == 0 ? CoatHead{} : coat_of(mesh.look.materials[at - 1], pictures);
+    CoatHead coat = at == 0 ? CoatHead{} : coat_of(mesh.look.materials[at - 1], mesh);
     const std::size_t before = drawn.size();
     for (const std::uint32_t face : faces[at])
       for (const deform::Triangle& triangle : triangles.of(face))

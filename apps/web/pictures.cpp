@@ -1,23 +1,26 @@
 #include "web/pictures.hpp"
 
+#include "render/picture_kind.hpp"
+#include "render/texture_image.hpp"
+
 namespace nendo::web {
 
 bool is_png(std::string_view contents) noexcept {
   return contents.starts_with("\x89PNG\r\n\x1A\n");
 }
 
-bool is_jpeg(std::string_view contents) noexcept {
-  return contents.starts_with("\xFF\xD8\xFF");
+bool has_picture(const deform::Mesh& mesh, std::uint32_t texture) noexcept {
+  const auto& textures = mesh.look.textures;
+  if (mesh.corner_texcoords.empty() || texture >= textures.size()) return false;
+  const auto& contents = textures[texture].contents;
+  return contents && render::picture_kind_of(*contents) != render::PictureKind::none;
 }
 
 Pictures pictures_of(const deform::Mesh& mesh) {
   Pictures pictures;
   if (mesh.corner_texcoords.empty()) return pictures;
-  for (const deform::Texture& texture : mesh.look.textures) {
-    const bool is_picture =
-        texture.contents && (is_png(*texture.contents) || is_jpeg(*texture.contents));
-    pictures.push_back(is_picture ? texture.contents : nullptr);
-  }
+  for (const deform::Texture& texture : mesh.look.textures)
+    pictures.push_back(render::as_png_or_jpeg(texture.contents));
   return pictures;
 }
 

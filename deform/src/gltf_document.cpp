@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "gltf_extensions.hpp"
 #include "uri.hpp"
 #include "usable.hpp"
 
@@ -164,6 +165,7 @@ GltfDocument::GltfDocument(std::string_view file, const ModelFolder* folder) : f
   const Json* const asset = gltf_member(root_, "asset");
   if (asset == nullptr || !gltf_text(*asset, "version").starts_with("2."))
     refuse("is no glTF of version 2; export the model anew");
+  require_readable(root_);
   read_buffers();
 }
 
@@ -213,10 +215,9 @@ std::size_t GltfDocument::size_of(const char* list) const {
   return items != nullptr && items->is_array() ? items->size() : 0;
 }
 
-std::string GltfDocument::file_named(const std::string& uri, std::uint64_t most_bytes) const {
-  const auto name = name_in_folder(percent_decoded(uri));
-  if (folder_ == nullptr || !name) return {};
-  return folder_->read(*name, most_bytes).value_or(std::string());
+FolderFile GltfDocument::file_named(const std::string& uri, std::uint64_t max_bytes) const {
+  if (folder_ == nullptr) return {{}, {}, ": no other file is read here"};
+  return folder_->find(percent_decoded(uri), max_bytes);
 }
 
 void GltfDocument::read_buffers() {
@@ -233,13 +234,16 @@ void GltfDocument::read_buffers() {
       if (!data) refuse("has a buffer with a damaged data URI");
       own_[at] = *std::move(data);
     } else if (!uri.empty()) {
-      own_[at] = file_named(uri, left);
+      own_[at] = file_named(uri, left).contents.value_or(std::string());
     }
     if (!uri.empty()) bytes = bytes_of(own_[at]);
     left -= own_[at].size();
     if (bytes.size() < length && !uri.empty() && !is_data_uri(uri))
       refuse("needs the file '" + printable_uri(uri) + "' of " + std::to_string(length) +
              " bytes beside it");
+    for (const char* const meshopt : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+      if (bytes.size() < length && gltf_extension(buffer, meshopt) != nullptr)
+        refuse_meshopt(meshopt);
     if (bytes.size() < length) refuse("has fewer bytes than its buffers should have");
     buffers_.push_back(bytes.first(static_cast<std::size_t>(length)));
   }
@@ -331,13 +335,21 @@ void GltfDocument::fill_sparse(const Json& accessor, GltfNumbers& numbers) const
   }
 }
 
-std::string GltfDocument::image(const Json& image) const {
+FolderFile GltfDocument::image(const Json& image) const {
   const std::string uri = gltf_text(image, "uri");
-  if (is_data_uri(uri)) return data_of_uri(uri).value_or(std::string());
-  if (!uri.empty()) return file_named(uri, ModelFolder::most_texture_bytes);
-  if (gltf_member(image, "bufferView") == nullptr) return {};
-  const Bytes bytes = view(gltf_count(image, "bufferView", 0));
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  if (!uri.empty() && !is_data_uri(uri)) return file_named(uri, ModelFolder::most_texture_bytes);
+  FolderFile file;
+  if (is_data_uri(uri)) {
+    file.contents = data_of_uri(uri);
+  } else if (gltf_member(image, "bufferView") != nullptr) {
+    const Bytes bytes = view(gltf_count(image, "bufferView", 0));
+    file.contents.emplace(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  }
+  if (!file.contents || file.contents->empty()) {
+    file.contents.reset();
+    file.lack = ": has no data in the file; export the model once more";
+  }
+  return file;
 }
 
 } // namespace nendo::deform

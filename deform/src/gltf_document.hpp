@@ -53,8 +53,8 @@ public:
   GltfNumbers numbers(std::uint64_t accessor) const;
   /// Returns the bytes of a buffer's part. Throws GltfRefusal.
   Bytes view(std::uint64_t buffer_view) const;
-  /// Returns the contents of an image; empty if its file is missing. Throws GltfRefusal.
-  std::string image(const Json& image) const;
+  /// Returns the contents of an image, or why there are none. Throws GltfRefusal.
+  FolderFile image(const Json& image) const;
 
 private:
   void read_binary(std::string_view file);
@@ -62,7 +62,7 @@ private:
   void read_buffers();
   void fill(const Json& accessor, GltfNumbers& numbers) const;
   void fill_sparse(const Json& accessor, GltfNumbers& numbers) const;
-  std::string file_named(const std::string& uri, std::uint64_t most_bytes) const;
+  FolderFile file_named(const std::string& uri, std::uint64_t max_bytes) const;
 
   const ModelFolder* folder_;
   Json root_;

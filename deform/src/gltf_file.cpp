@@ -11,10 +11,15 @@
 
 #include <nendo/base/text.hpp>
 
+#include "colour_range.hpp"
 #include "gltf_document.hpp"
+#include "gltf_extensions.hpp"
 #include "gltf_materials.hpp"
+#include "gltf_morphs.hpp"
 #include "gltf_nodes.hpp"
+#include "gltf_notes.hpp"
 #include "mesh_formats.hpp"
+#include "mtl_file.hpp"
 #include "repair/weld.hpp"
 #include "usable.hpp"
 
@@ -32,17 +37,11 @@ constexpr std::uint64_t no_accessor = std::numeric_limits<std::uint64_t>::max();
 // glTF's modes of primitives.
 constexpr std::uint64_t triangles_mode = 4, strip_mode = 5, fan_mode = 6;
 
-void require_readable(const Json& root) {
-  const Json* const required = gltf_member(root, "extensionsRequired");
-  if (required == nullptr || !required->is_array()) return;
-  for (const Json& extension : *required) {
-    const std::string name = extension.is_string() ? extension.get<std::string>() : std::string();
-    if (name == "KHR_mesh_quantization" || name == "KHR_texture_transform" ||
-        name.starts_with("KHR_materials_") || name.starts_with("KHR_lights_"))
-      continue;
-    throw GltfRefusal{"needs glTF's extension '" + name.substr(0, 60) +
-                      "', which is not known here; export the model without it"};
-  }
+ColourNumbers gltf_colour_numbers(std::uint64_t component_type) noexcept {
+  constexpr std::uint64_t int8 = 5120, uint8 = 5121, float32 = 5126;
+  if (component_type == float32) return ColourNumbers::floats;
+  return component_type == int8 || component_type == uint8 ? ColourNumbers::int8
+                                                           : ColourNumbers::int16;
 }
 
 /// The numbers of one vertex that make it another vertex: place, normal and colour.
@@ -54,13 +53,14 @@ public:
 
   /// `weld`: vertices that normals or colours part become one, too.
   Mesh read(bool weld, ReadNotes& notes) {
-    require_readable(document_.root());
-    materials_ = read_gltf_materials(document_, mesh_.look);
+    materials_ = read_gltf_materials(document_, mesh_.look, notes_);
+    note_left_out(document_, notes_);
     for (const GltfPlacedMesh& placed : placed_meshes(document_))
       add_mesh(placed);
     finish();
-    if (!weld) return std::move(mesh_);
-    note_welding(weld_places(mesh_, group_of_vertex_), notes);
+    settle_hidden(mesh_.look, notes_);
+    notes_.append_to(notes);
+    if (weld) note_welding(weld_places(mesh_, group_of_vertex_), notes);
     return std::move(mesh_);
   }
 
@@ -96,6 +96,10 @@ private:
         throw GltfRefusal{"a primitive's " + name + " is of another size than its vertices"};
       return found;
     };
+    if (gltf_extension(primitive, "KHR_draco_mesh_compression") != nullptr &&
+        gltf_member(document_.item("accessors", gltf_count(attributes, "POSITION", 0)),
+                    "bufferView") == nullptr)
+      refuse_draco();
     auto places = numbers("POSITION", 3, 0);
     if (!places || places->width != 3) throw GltfRefusal{"a primitive has no POSITION of VEC3"};
     const std::size_t count = places->count;
@@ -103,11 +107,41 @@ private:
     if (numbers_read_ > most_read_vertices)
       throw GltfRefusal{"reads more than 200 million vertices, some of them again and again"};
     Part part{*std::move(places), numbers("NORMAL", 3, count), numbers("COLOR_0", 3, count), {}};
+    if (part.colours) settle_colours(gltf_count(attributes, "COLOR_0", 0), *part.colours);
     const std::uint32_t set = material == no_index ? 0 : materials_[material].texcoord_set;
     part.texcoords = numbers("TEXCOORD_" + std::to_string(set), 2, count);
     if (gltf_count(primitive, "mode", triangles_mode) > fan_mode)
       throw GltfRefusal{"a primitive has a mode that glTF does not know"};
     return part;
+  }
+
+  /// Brings colours that are no parts of 1 to these: of integers that the file forgot to call
+  /// normalized, or of floats up to 255.
+  void settle_colours(std::uint64_t accessor, GltfNumbers& colours) {
+    const Json& given = document_.item("accessors", accessor);
+    const Json* const normalized = gltf_member(given, "normalized");
+    if (normalized != nullptr && *normalized == true) return;
+    ColourRange range(gltf_colour_numbers(gltf_count(given, "componentType", 0)));
+    for (const double part : colours.values)
+      range.see(part);
+    for (double& part : colours.values)
+      part = static_cast<double>(range.part_of(part));
+    if (const std::string note = range.note(); !note.empty()) notes_.add("COLOR_0: " + note);
+  }
+
+  /// Notes a texture that has no place on the primitive, and coordinates that are not used.
+  void note_placing(const Part& part, const Json& attributes, std::uint32_t material) {
+    const std::uint32_t set = material == no_index ? 0 : materials_[material].texcoord_set;
+    for (const char* const name : {"TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3"})
+      if (gltf_member(attributes, name) != nullptr && name != "TEXCOORD_" + std::to_string(set))
+        notes_.add("texture coordinates", name,
+                   ": are left out; those of the base colour are read");
+    if (part.texcoords || material == no_index) return;
+    const Material& of = mesh_.look.materials[material];
+    if (of.texture != no_index && mesh_.look.textures[of.texture].contents)
+      notes_.add("texture", mesh_.look.textures[of.texture].file,
+                 ": a part of the model has no texture coordinates for it, so it is not shown "
+                 "there");
   }
 
   void add_primitive(const Json& primitive, const GltfPlacedMesh& placed) {
@@ -119,12 +153,17 @@ private:
       document_.item("materials", number);
       material = static_cast<std::uint32_t>(number);
     }
-    const Part part = part_of(primitive, *attributes, material);
+    Part part = part_of(primitive, *attributes, material);
+    if (!placed.weights.empty())
+      numbers_read_ += apply_targets(document_, primitive, placed.weights, part.places);
+    note_placing(part, *attributes, material);
     const auto accessor = [&](const char* name) {
       return gltf_count(*attributes, name, no_accessor);
     };
     auto& vertices = vertices_of_[{accessor("POSITION"), accessor("NORMAL"), accessor("COLOR_0")}];
-    if (vertices.empty()) vertices = add_vertices(part, *attributes, placed);
+    // Targets move vertices of one accessor differently in two primitives.
+    if (vertices.empty() || !placed.weights.empty())
+      vertices = add_vertices(part, *attributes, placed);
     const std::uint32_t first_texcoord = texcoords_of(part, *attributes, material);
     const auto corners = corners_of(primitive, part.places.count);
     const bool mirrored = placed.mirrors();
@@ -268,6 +307,7 @@ private:
   /// By the accessor, and the material if that turns them.
   std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> first_texcoords_;
   std::size_t numbers_read_ = 0;
+  NoteSum notes_;
   Mesh mesh_;
 };
 

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include <nendo/deform/material.hpp>
+#include <nendo/deform/read_notes.hpp>
 
 #include "gltf_document.hpp"
 
@@ -19,7 +20,8 @@ struct GltfMaterial {
 };
 
 /// Adds all materials of the document to `look`, in their order, and the textures that they use.
-/// Throws GltfRefusal.
-std::vector<GltfMaterial> read_gltf_materials(const GltfDocument& document, Appearance& look);
+/// Notes textures that are missing. Throws GltfRefusal.
+std::vector<GltfMaterial> read_gltf_materials(const GltfDocument& document, Appearance& look,
+                                              NoteSum& notes);
 
 } // namespace nendo::deform

@@ -4,6 +4,9 @@
 #include <map>
 #include <utility>
 
+#include "gltf_extensions.hpp"
+#include "gltf_morphs.hpp"
+
 namespace nendo::deform {
 
 namespace {
@@ -120,6 +123,40 @@ std::vector<Eigen::Affine3d> joints_of(const GltfDocument& document, const NodeT
   return joints;
 }
 
+constexpr std::size_t max_placed_meshes = 1'000'000;
+
+/// Where the instances of a node's mesh are, relative to the node.
+std::vector<Eigen::Affine3d> instances_of(const GltfDocument& document, const Json& instances) {
+  const Json* const attributes = gltf_member(instances, "attributes");
+  if (attributes == nullptr) throw GltfRefusal{"instances of a mesh have no attributes"};
+  std::size_t count = 0;
+  const auto numbers = [&](const char* name, std::size_t width) {
+    GltfNumbers found;
+    if (gltf_member(*attributes, name) == nullptr) return found;
+    found = document.numbers(gltf_count(*attributes, name, 0));
+    if (found.width != width || (count > 0 && found.count != count))
+      throw GltfRefusal{std::string("the ") + name + " of instances is of a wrong size"};
+    count = found.count;
+    return found;
+  };
+  const GltfNumbers translations = numbers("TRANSLATION", 3);
+  const GltfNumbers rotations = numbers("ROTATION", 4);
+  const GltfNumbers scales = numbers("SCALE", 3);
+  if (count > max_placed_meshes) throw GltfRefusal{"has more than a million instances of meshes"};
+  std::vector<Eigen::Affine3d> transforms(count, Eigen::Affine3d::Identity());
+  for (std::size_t at = 0; at < count; ++at) {
+    Eigen::Affine3d& transform = transforms[at];
+    if (translations.count > 0) transform.translate(Eigen::Vector3d(translations.row(at)));
+    if (rotations.count > 0) {
+      const double* const row = rotations.row(at); // x, y, z, w
+      const Eigen::Quaterniond turn(row[3], row[0], row[1], row[2]);
+      if (turn.norm() > 0.0) transform.rotate(turn.normalized());
+    }
+    if (scales.count > 0) transform.scale(Eigen::Vector3d(scales.row(at)));
+  }
+  return transforms;
+}
+
 } // namespace
 
 bool GltfPlacedMesh::mirrors() const noexcept {
@@ -168,16 +205,29 @@ std::vector<GltfPlacedMesh> placed_meshes(const GltfDocument& document) {
   for (const std::uint64_t node : tree.order()) {
     const Json& given = document.item("nodes", node);
     if (gltf_member(given, "mesh") == nullptr) continue;
-    GltfPlacedMesh& mesh = placed.emplace_back();
+    GltfPlacedMesh mesh;
     mesh.mesh = gltf_count(given, "mesh", 0);
     mesh.name = gltf_text(given, "name");
     mesh.T_world_node = tree.transform(node);
-    if (gltf_member(given, "skin") == nullptr) continue;
-    auto& joints = skins[gltf_count(given, "skin", 0)];
-    if (!joints)
-      joints = std::make_shared<const std::vector<Eigen::Affine3d>>(
-          joints_of(document, tree, gltf_count(given, "skin", 0)));
-    mesh.joints = joints;
+    mesh.weights = default_weights(given, document.item("meshes", mesh.mesh));
+    if (gltf_member(given, "skin") != nullptr) {
+      auto& joints = skins[gltf_count(given, "skin", 0)];
+      if (!joints)
+        joints = std::make_shared<const std::vector<Eigen::Affine3d>>(
+            joints_of(document, tree, gltf_count(given, "skin", 0)));
+      mesh.joints = joints;
+    }
+    const Json* const instances = gltf_extension(given, "EXT_mesh_gpu_instancing");
+    if (instances == nullptr) {
+      placed.push_back(std::move(mesh));
+      continue;
+    }
+    for (const Eigen::Affine3d& T_node_instance : instances_of(document, *instances)) {
+      placed.push_back(mesh);
+      placed.back().T_world_node = mesh.T_world_node * T_node_instance;
+      if (placed.size() > max_placed_meshes)
+        throw GltfRefusal{"has more than a million instances of meshes"};
+    }
   }
   return placed;
 }

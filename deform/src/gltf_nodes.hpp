@@ -20,6 +20,7 @@ struct GltfPlacedMesh {
   /// Of a skinned mesh, what moves the vertices of each joint; its own node has no effect then
   /// (glTF 2.0, 3.7.3.3).
   std::shared_ptr<const std::vector<Eigen::Affine3d>> joints;
+  std::vector<double> weights; ///< of morph targets; empty: all are 0
 
   /// Tells whether the node turns faces inside out.
   bool mirrors() const noexcept;
@@ -29,7 +30,8 @@ struct GltfPlacedMesh {
                                      const GltfNumbers& places) const;
 };
 
-/// Returns the meshes of the default scene, or of all nodes if there are no scenes, depth first.
+/// Returns the meshes of the default scene, or of all nodes if there are no scenes, depth first. A
+/// node with instances (EXT_mesh_gpu_instancing) has its mesh in the place of each.
 /// Throws GltfRefusal.
 std::vector<GltfPlacedMesh> placed_meshes(const GltfDocument& document);
 

@@ -15,7 +15,6 @@
 #include "gltf_document.hpp"
 #include "mesh_formats.hpp"
 #include "model_folder.hpp"
-#include "mtl_file.hpp"
 #include "obj_beside.hpp"
 #include "repair/weld.hpp"
 #include "stl_file.hpp"
@@ -46,8 +45,8 @@ struct Source {
 Result<Mesh> parse_obj_of(const Source& source, ReadNotes& notes) {
   auto model = parse_obj(source.text, source.name, notes);
   if (!model) return model.error();
-  if (source.folder != nullptr && !model->mesh.look.materials.empty())
-    read_materials(*source.folder, model->libraries, model->mesh.look, notes);
+  if (source.folder != nullptr)
+    read_materials(*source.folder, model->libraries, model->mesh, notes);
   return std::move(model->mesh);
 }
 
@@ -140,6 +139,7 @@ Result<ReadModel> parse_text(Source source, const ReadOptions& options) {
   tidy_faces(model.mesh, model.notes);
   note_strays(model.mesh, model.notes);
   lay(source, format, options.up, model);
+  bound_notes(model.notes);
   return model;
 }
 

@@ -11,11 +11,9 @@
 #include <nendo/base/result.hpp>
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/deform/read_notes.hpp>
 
 namespace nendo::deform {
-
-/// What a reader left out, changed or guessed (ReadModel::notes).
-using ReadNotes = std::vector<std::string>;
 
 struct ObjModel {
   Mesh mesh;                          ///< its materials have names only

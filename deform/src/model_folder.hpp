@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,6 +18,14 @@ namespace nendo::deform {
 /// or if the name cannot be a file's.
 std::optional<std::string> name_in_folder(std::string_view named);
 
+/// What a model named, as it was found.
+struct FolderFile {
+  std::string name; ///< relative to the model's folder, as it is spelled there
+  std::optional<std::string> contents;
+  /// If there are no contents: why, and the remedy, as the end of a note that begins with the name.
+  std::string lack;
+};
+
 class ModelFolder {
 public:
   /// The largest material file, and the largest texture, that is read.
@@ -25,12 +35,22 @@ public:
   /// The folder of the model in the file `model`.
   explicit ModelFolder(const std::filesystem::path& model);
 
-  /// Returns the contents of the file with that name_in_folder(). Nothing if there is none, if it
-  /// is too large or no regular file, or if a link leads out of the folder. Blocks.
-  std::optional<std::string> read(std::string_view name, std::uint64_t most_bytes) const;
+  /// Reads the file that a model names so, in any spelling of capitals and blanks. If `beside` is
+  /// the name of another file of the model, names are relative to that file's folder, too. A name
+  /// that leads out of the model's folder means the file of the same name within it. Nothing is
+  /// read that is too large or no regular file, or if a link leads out of the folder. One thread at
+  /// a time may call it. Blocks.
+  FolderFile find(std::string_view named, std::uint64_t max_bytes,
+                  std::string_view beside = {}) const;
 
 private:
+  std::optional<std::string> spelled(const std::string& name) const;
+  const std::map<std::string, std::string, std::less<>>& listing(const std::string& folder) const;
+  FolderFile read(const std::string& name, std::uint64_t max_bytes) const;
+
   std::filesystem::path folder_; ///< without links; empty if it is not known
+  /// Of folders in which a name was looked for: how each file is spelled, by its folded name.
+  mutable std::map<std::string, std::map<std::string, std::string, std::less<>>> listings_;
 };
 
 } // namespace nendo::deform

@@ -64,27 +64,63 @@ Result<void> write_texture(const fs::path& obj, Texture& texture) {
 
 } // namespace
 
-void read_materials(const ModelFolder& folder, const std::vector<std::string>& libraries,
-                    Appearance& look, std::vector<std::string>&) {
-  const auto apply = [&](std::string_view named) {
-    const auto name = name_in_folder(named);
-    const auto text = name ? folder.read(*name, ModelFolder::most_material_bytes) : std::nullopt;
-    if (text) apply_mtl(*text, look);
-    return text.has_value();
-  };
-  constexpr std::size_t most_libraries = 64; // a hostile model could name one a line
-  std::size_t left = most_libraries;
-  for (const std::string& library : libraries) {
-    if (left == 0) break;
+namespace {
+
+/// Reads the files that one mtllib names: one whose name may have blanks, or several. At most
+/// `left` files are tried.
+void read_library(const ModelFolder& folder, std::string_view library, std::size_t& left,
+                  MtlReader& reader, NoteSum& notes) {
+  const auto read = [&](std::string_view named) {
+    FolderFile file = folder.find(named, ModelFolder::most_material_bytes);
+    if (file.contents) reader.read(*file.contents, file.name);
     --left;
-    // A name with blanks, or several names.
-    if (apply(library)) continue;
-    for (const std::string_view name : fields_of(library, left)) {
-      apply(name);
-      --left;
-    }
+    return file;
+  };
+  const FolderFile whole = read(library);
+  if (whole.contents) return;
+  std::vector<std::pair<std::string, std::string>> lacking;
+  const auto names = fields_of(library, left);
+  for (const std::string_view name : names)
+    if (const FolderFile file = names.size() == 1 ? whole : read(name); !file.contents)
+      lacking.emplace_back(name, file.lack);
+  if (lacking.size() == names.size()) lacking = {{std::string(library), whole.lack}};
+  for (const auto& [name, lack] : lacking)
+    notes.add("file of materials", name, lack);
+}
+
+/// What is named, and not shown because no corner says where.
+void note_unplaced_textures(const Mesh& mesh, NoteSum& notes) {
+  if (!mesh.corner_texcoords.empty()) return;
+  for (const Texture& texture : mesh.look.textures)
+    if (texture.contents)
+      notes.add("texture", texture.file,
+                ": the model has no texture coordinates, so it is not shown");
+}
+
+} // namespace
+
+void read_materials(const ModelFolder& folder, const std::vector<std::string>& libraries,
+                    Mesh& mesh, ReadNotes& notes) {
+  NoteSum sum;
+  if (mesh.look.materials.empty()) {
+    for (const std::string& library : libraries)
+      sum.add("file of materials", library, ": is not used, because no face has one (usemtl)");
+    return sum.append_to(notes);
   }
-  read_textures(folder, look);
+  if (libraries.empty()) {
+    for (const Material& material : mesh.look.materials)
+      sum.add("material", material.name,
+              ": no file of materials is named (mtllib), so it has no colour of its own");
+    return sum.append_to(notes);
+  }
+  MtlReader reader(mesh.look, sum);
+  std::size_t left = 64; // a hostile model could name one a line
+  for (const std::string& library : libraries)
+    if (left > 0) read_library(folder, library, left, reader, sum);
+  reader.finish();
+  reader.read_textures(folder);
+  note_unplaced_textures(mesh, sum);
+  sum.append_to(notes);
 }
 
 Result<std::string> write_materials(const fs::path& obj, const Appearance& look,

@@ -6,16 +6,17 @@
 #include <vector>
 
 #include <nendo/base/result.hpp>
-#include <nendo/deform/material.hpp>
+#include <nendo/deform/mesh.hpp>
 
+#include "mesh_formats.hpp"
 #include "model_folder.hpp"
 
 namespace nendo::deform {
 
-/// Reads what `libraries` name, as each mtllib has it, into the look's materials, and then their
-/// textures. What is missing stays unknown. Blocks.
+/// Reads what `libraries` name, as each mtllib has it, into the mesh's materials, and then their
+/// textures. What is missing stays unknown, and is noted. Blocks.
 void read_materials(const ModelFolder& folder, const std::vector<std::string>& libraries,
-                    Appearance& look, std::vector<std::string>& notes);
+                    Mesh& mesh, ReadNotes& notes);
 
 /// Writes the materials of the OBJ in the file `obj`, and their textures, and returns the name for
 /// its mtllib; empty, and nothing is written, if there are none. `wanted` is the materials' file;

@@ -9,6 +9,7 @@
 
 #include <nendo/base/text.hpp>
 
+#include "colour_range.hpp"
 #include "mesh_formats.hpp"
 #include "obj_left_out.hpp"
 #include "polypaint.hpp"
@@ -21,6 +22,7 @@ namespace nendo::deform {
 namespace {
 
 constexpr std::uint32_t no_texcoord = no_index;
+constexpr float no_colour = std::numeric_limits<float>::infinity(); // white, in every range
 
 /// Names in the order in which they were first seen, and which of them holds for the next face.
 class CurrentName {
@@ -85,7 +87,8 @@ private:
   ObjLeftOut left_out_;
   std::vector<double> vertices_;  ///< three numbers each
   std::vector<double> texcoords_; ///< two numbers each
-  std::vector<float> colours_;    ///< of the first vertices, four numbers each
+  std::vector<float> colours_;    ///< of the first vertices, four numbers each, as they are written
+  ColourRange colour_range_;
   CurrentName material_, group_, object_;
   std::vector<std::uint32_t> painted_; ///< by ZBrush, of the first vertices
   HighestIndex highest_vertex_;
@@ -133,17 +136,19 @@ std::string if_from_zero(std::string_view field) {
 /// without a colour are white, if others have one.
 Result<void> ObjParser::vertex() {
   if (auto done = coordinates(vertices_, 3, 3); !done) return done;
-  Eigen::Vector4f colour = Eigen::Vector4f::Ones();
+  Eigen::Vector4f colour = Eigen::Vector4f::Constant(no_colour);
   double alone = 1.0; // a fourth number without more is w
   for (Eigen::Index channel = 0; channel < 3; ++channel) {
     const auto number = to_finite_number(scanner_.field());
     if (!number && channel == 1) left_out_.weight(alone);
     if (!number) return {};
     alone = *number;
-    colour[channel] = linear_of(static_cast<float>(std::clamp(*number, 0.0, 1.0)));
+    colour[channel] = static_cast<float>(std::clamp(*number, -1e30, 1e30));
   }
-  colours_.resize(4 * (vertices_.size() / 3 - 1), 1.0F);
+  colours_.resize(4 * (vertices_.size() / 3 - 1), no_colour);
   colours_.insert(colours_.end(), colour.begin(), colour.end());
+  for (Eigen::Index channel = 0; channel < 3; ++channel)
+    colour_range_.see(static_cast<double>(colour[channel]));
   return {};
 }
 
@@ -247,7 +252,10 @@ void ObjParser::finish_look() {
   if (colours_.empty() && !painted_.empty())
     look.vertex_colours = colours_of_polypaint(painted_, mesh_.vertices.cols());
   if (colours_.empty()) return;
-  colours_.resize(4 * static_cast<std::size_t>(mesh_.vertices.cols()), 1.0F);
+  colours_.resize(4 * static_cast<std::size_t>(mesh_.vertices.cols()), no_colour);
+  for (float& channel : colours_)
+    channel = linear_of(colour_range_.part_of(static_cast<double>(channel)));
+  if (auto note = colour_range_.note(); !note.empty()) notes_.push_back(std::move(note));
   look.vertex_colours =
       Eigen::Map<const Eigen::Matrix4Xf>(colours_.data(), 4, mesh_.vertices.cols());
 }

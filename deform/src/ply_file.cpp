@@ -11,6 +11,7 @@
 
 #include <nendo/base/text.hpp>
 
+#include "colour_range.hpp"
 #include "mesh_formats.hpp"
 #include "ply_header.hpp"
 #include "srgb.hpp"
@@ -145,6 +146,7 @@ private:
   void note_left_out(const PlyElement& element, const std::vector<Use>& uses);
   Result<void> read_value(const PlyProperty& property, Use use);
   void keep_vertex();
+  void finish_colours();
 
   const PlyHeader& header_;
   std::string_view name_;
@@ -152,8 +154,9 @@ private:
   PlyBody body_;
   std::vector<double> coordinates_;
   double vertex_[3] = {};
-  std::vector<float> colours_; ///< four numbers each
+  std::vector<float> colours_; ///< four numbers each, as they are in the file
   bool has_colours_ = false;
+  std::array<ColourNumbers, 4> colour_numbers_{};
   std::array<float, 4> colour_{};
   HighestIndex highest_;
   TriangleStrip strip_;
@@ -168,6 +171,7 @@ Result<Mesh> PlyParser::parse() {
   if (highest_.is_beyond(vertices))
     return body_.error_at(highest_.place, "a face names vertex " + std::to_string(highest_.index) +
                                               ", counted from 0, of " + std::to_string(vertices));
+  finish_colours();
   mesh_.look.vertex_colours = Eigen::Map<const Eigen::Matrix4Xf>(
       colours_.data(), 4, static_cast<Eigen::Index>(colours_.size() / 4));
   return std::move(mesh_);
@@ -212,16 +216,26 @@ bool has_colours(const std::vector<Use>& uses) noexcept {
          count(Use::alpha) <= 1;
 }
 
-/// As a part of 1, linear. Colours are encoded as on screens, opacity is not.
-float part_of_colour(PlyType type, double value, bool is_alpha) noexcept {
-  double greatest = 1.0; // of floats
-  if (type == PlyType::uint8 || type == PlyType::int8) greatest = 255.0;
-  if (type == PlyType::uint16 || type == PlyType::int16) greatest = 65535.0;
-  if (type == PlyType::uint32 || type == PlyType::int32) greatest = 255.0; // in ASCII, an int
-  const double part = value / greatest;
-  if (!(part > 0.0)) return 0.0F; // NaN, too
-  const auto within = static_cast<float>(std::min(part, 1.0));
-  return is_alpha ? within : linear_of(within);
+ColourNumbers colour_numbers_of(PlyType type) noexcept {
+  switch (type) {
+  case PlyType::int8:
+  case PlyType::uint8:
+    return ColourNumbers::int8;
+  case PlyType::int16:
+  case PlyType::uint16:
+    return ColourNumbers::int16;
+  case PlyType::int32:
+  case PlyType::uint32:
+    return ColourNumbers::int32;
+  case PlyType::float32:
+  case PlyType::float64:
+    break;
+  }
+  return ColourNumbers::floats;
+}
+
+std::size_t channel_of(Use use) noexcept {
+  return static_cast<std::size_t>(use) - static_cast<std::size_t>(Use::red);
 }
 
 Result<std::vector<Use>> PlyParser::uses_of(const PlyElement& element) const {
@@ -290,7 +304,10 @@ Result<void> PlyParser::read_element(const PlyElement& element) {
   if (element.name == "vertex") {
     coordinates_.reserve(3 * element.count);
     has_colours_ = has_colours(*uses);
-    colour_ = {1.0F, 1.0F, 1.0F, 1.0F};
+    colour_.fill(std::numeric_limits<float>::infinity()); // full, in every range
+    for (std::size_t at = 0; at < uses->size(); ++at)
+      if ((*uses)[at] >= Use::red)
+        colour_numbers_[channel_of((*uses)[at])] = colour_numbers_of(element.properties[at].type);
   }
   for (std::uint64_t row = 0; row < element.count; ++row) {
     for (std::size_t i = 0; i < uses->size(); ++i) {
@@ -302,6 +319,26 @@ Result<void> PlyParser::read_element(const PlyElement& element) {
     if (element.name == "vertex") keep_vertex();
   }
   return {};
+}
+
+/// Makes parts of 1 of them, linear. Colours are encoded as on screens, opacity is not. Red, green
+/// and blue have one range, unless they are of different types.
+void PlyParser::finish_colours() {
+  std::array<ColourRange, 4> ranges;
+  for (std::size_t channel = 0; channel < 4; ++channel) {
+    ColourRange& range = ranges[channel];
+    range = ColourRange(colour_numbers_[channel]);
+    for (std::size_t at = 0; at < colours_.size(); ++at) {
+      const bool is_opacity = at % 4 == 3;
+      if (is_opacity == (channel == 3) && colour_numbers_[at % 4] == colour_numbers_[channel])
+        range.see(static_cast<double>(colours_[at]));
+    }
+  }
+  for (std::size_t at = 0; at < colours_.size(); ++at) {
+    const float part = ranges[at % 4].part_of(static_cast<double>(colours_[at]));
+    colours_[at] = at % 4 == 3 ? part : linear_of(part);
+  }
+  if (auto note = ranges[0].note(); !note.empty()) notes_.push_back(std::move(note));
 }
 
 void PlyParser::keep_vertex() {
@@ -370,8 +407,7 @@ Result<void> PlyParser::read_value(const PlyProperty& property, Use use) {
   if (!value) return body_.no_number();
   if (use == Use::skip) return {};
   if (use >= Use::red) {
-    colour_[static_cast<std::size_t>(use) - static_cast<std::size_t>(Use::red)] =
-        part_of_colour(property.type, *value, use == Use::alpha);
+    colour_[channel_of(use)] = static_cast<float>(std::clamp(*value, -1e30, 1e30));
     return {};
   }
   if (!is_usable(*value)) return body_.bad("a coordinate is not finite or beyond 1e100");

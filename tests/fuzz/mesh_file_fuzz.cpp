@@ -51,7 +51,10 @@ void read_as_materials(std::string_view text) {
   nendo::deform::Appearance look;
   look.materials = {{"skin", {}, nendo::deform::no_index, true},
                     {"a", {}, nendo::deform::no_index, true}};
-  nendo::deform::apply_mtl(text, look);
+  nendo::deform::NoteSum notes;
+  nendo::deform::MtlReader reader(look, notes);
+  reader.read(text, "maps/skin.mtl");
+  reader.finish();
   require_usable(look, 0, 0);
   for (const auto& texture : look.textures)
     require(nendo::deform::name_in_folder(texture.file) == texture.file);

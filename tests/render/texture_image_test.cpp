@@ -97,6 +97,14 @@ TEST_SUITE("texture_image") {
     }
   }
 
+  TEST_CASE("a JPEG that is cut off is shown, and its fault is found") {
+    const std::string contents = jpeg_contents();
+    CHECK(fault_of_picture(contents) == "");
+    const std::string cut = contents.substr(0, contents.size() - 10);
+    CHECK(decode_picture(cut));
+    CHECK(fault_of_picture(cut) == "is a damaged JPEG picture; what can be read of it is shown");
+  }
+
   TEST_CASE("what is damaged gives no picture, or one of its size") {
     CHECK_FALSE(decode_picture(""));
     CHECK_FALSE(decode_picture("no picture"));
@@ -107,7 +115,7 @@ TEST_SUITE("texture_image") {
         if (const auto image = decode_picture(spoilt))
           CHECK(image->pixels().size() == static_cast<std::size_t>(image->size().width) *
                                               static_cast<std::size_t>(image->size().height));
-        if (at > 0) decode_picture(contents.substr(0, at));
+        if (at > 0) static_cast<void>(decode_picture(contents.substr(0, at)));
       }
   }
 

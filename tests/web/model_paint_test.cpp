@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "following_client.hpp"
+#include "render/image.hpp"
 #include "support/test_meshes.hpp"
 #include "web/model_message.hpp"
 #include "web/pictures.hpp"
@@ -114,7 +115,24 @@ TEST_SUITE("model_paint") {
     CHECK_FALSE(pictures[2]);
     mesh.corner_texcoords.clear();
     CHECK(pictures_of(mesh).empty());
+    CHECK_FALSE(has_picture(mesh, 0));
     CHECK(client_of(mesh).texcoords.empty());
+  }
+
+  TEST_CASE("a client gets a TGA as PNG") {
+    deform::Mesh mesh = row_of_quads();
+    const std::string one_pixel{0, 0, 2, 0, 0, 0,  0,    0,      0,      0,     0,
+                                0, 1, 0, 1, 0, 24, 0x20, '\x0A', '\x14', '\x1E'};
+    mesh.look.textures[1].contents = std::make_shared<const std::string>(one_pixel);
+    CHECK(has_picture(mesh, 1));
+    CHECK_FALSE(has_picture(mesh, 2));
+    CHECK_FALSE(has_picture(mesh, deform::no_index));
+    const Pictures pictures = pictures_of(mesh);
+    REQUIRE(pictures[1]);
+    CHECK(is_png(*pictures[1]));
+    const auto image = render::decode_png(*pictures[1], "texture");
+    REQUIRE(image);
+    CHECK(image->pixels() == std::vector<render::Pixel>{{30, 20, 10}});
   }
 }
 

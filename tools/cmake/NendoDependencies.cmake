@@ -16,6 +16,7 @@ if(NENDO_APPS)
   find_package(CLI11 REQUIRED)
   find_package(PNG REQUIRED)
   pkg_check_modules(libturbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
+  find_path(NENDO_STB_INCLUDE stb/stb_image.h REQUIRED) # headers alone
   find_package(glfw3 3.3 QUIET)
   find_package(OpenGL QUIET COMPONENTS OpenGL OPTIONAL_COMPONENTS GLX)
   pkg_check_modules(imgui IMPORTED_TARGET QUIET imgui)

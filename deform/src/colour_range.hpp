@@ -1,0 +1,43 @@
+#pragma once
+// Colours of files that no rule of their format gives a range: from 0 to 1, to 255 or to 65535.
+
+#include <string>
+
+namespace nendo::deform {
+
+/// The numbers that a file has for one part of a colour.
+enum class ColourNumbers {
+  floats,
+  int8,
+  int16,
+  int32,
+  factors ///< floats of materials, which some programs make brighter than 1 on purpose
+};
+
+/// Finds out, from all colours of a file, which number stands for full. Floats are from 0 to 1 as
+/// long as none is above 1; else from 0 to 255, or from 0 to 65535. Where fractions are above 1 and
+/// none is above 2, they are from 0 to 1, and what is above is full; so are factors up to 10.
+/// Integers of 8 bits are from 0 to 255; those of more bits, too, as long as none is above 255, and
+/// from 0 to 65535 else.
+class ColourRange {
+public:
+  explicit ColourRange(ColourNumbers numbers = ColourNumbers::floats) noexcept
+      : numbers_(numbers) {}
+
+  /// Takes a part of a colour into account; what is not finite counts for nothing.
+  void see(double value) noexcept;
+  /// Returns the number that stands for full.
+  double full() const noexcept;
+  /// Returns the part of 1 that the value is; 0 for what is not a number.
+  float part_of(double value) const noexcept;
+  /// Returns a note for the reader's caller if the range is not what the format's readers agree
+  /// about, or an empty text.
+  std::string note() const;
+
+private:
+  ColourNumbers numbers_;
+  double max_ = 0.0;
+  bool all_whole_ = true;
+};
+
+} // namespace nendo::deform
