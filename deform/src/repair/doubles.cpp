@@ -9,18 +9,18 @@
 namespace nendo::deform {
 namespace {
 
-using Places = std::vector<std::uint32_t>;
+using FacePlaces = std::vector<std::uint32_t>;
 
 /// The places of a face from the least on, in the direction of the face.
-Places turned_to_least(std::span<const std::uint32_t> own) {
-  Places places(own.begin(), own.end());
+FacePlaces turned_to_least(std::span<const std::uint32_t> own) {
+  FacePlaces places(own.begin(), own.end());
   std::rotate(places.begin(), std::min_element(places.begin(), places.end()), places.end());
   return places;
 }
 
 /// The same for both directions.
-Places whichever_way(const Places& places) {
-  Places back(places.rbegin(), places.rend());
+FacePlaces whichever_way(const FacePlaces& places) {
+  FacePlaces back(places.rbegin(), places.rend());
   return std::min(places, turned_to_least(back));
 }
 
@@ -61,7 +61,7 @@ std::size_t drop_double_faces(Mesh& mesh, std::vector<std::uint32_t>& place_of) 
     return std::span(place_of).subspan(mesh.face_starts[face],
                                        mesh.face_starts[face + 1] - mesh.face_starts[face]);
   };
-  std::vector<Places> keys;
+  std::vector<FacePlaces> keys;
   for (std::size_t face = 0; face < mesh.face_count(); ++face)
     keys.push_back(whichever_way(turned_to_least(own(face))));
   std::vector<std::uint32_t> order(keys.size());

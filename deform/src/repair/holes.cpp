@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <nendo/deform/triangles.hpp>
+
 #include "cut/blade.hpp"
 #include "cut/cut_assembly.hpp"
 #include "cut/cut_cap.hpp"
@@ -103,12 +105,10 @@ Result<void> HoleFiller::check_bodies(const std::vector<Rim>& rims) const {
   std::vector<std::uint32_t> part_of;
   const std::uint32_t count = number_parts(mesh_, part_of);
   std::vector<double> surface(count, 0.0), lids(count, 0.0);
-  for (std::size_t face = 0; face < mesh_.face_count(); ++face) {
-    const std::uint32_t begin = mesh_.face_starts[face];
-    for (std::uint32_t at = begin + 2; at < mesh_.face_starts[face + 1]; ++at)
-      surface[part_of[mesh_.face_corners[begin]]] +=
-          length_of(cross(point(at - 1) - point(begin), point(at) - point(begin)));
-  }
+  for_each_face_triangle(mesh_, [&](std::size_t, const Triangle& of) {
+    surface[part_of[mesh_.face_corners[of[0]]]] +=
+        length_of(cross(point(of[1]) - point(of[0]), point(of[2]) - point(of[0])));
+  });
   for (const Rim& rim : rims)
     lids[part_of[mesh_.face_corners[rim[0]]]] += length_of(area_of_rim(points_of(rim)));
   for (const Rim& rim : rims) {
@@ -164,12 +164,7 @@ bool HoleFiller::goes_through(const Rim& rim, const std::vector<Corners>& lid) {
   for (Eigen::Index at = 0; at < mesh_.vertices.cols(); ++at)
     points.push_back({mesh_.vertices(0, at), mesh_.vertices(1, at), mesh_.vertices(2, at)});
   std::vector<Corners> triangles;
-  for (std::size_t face = 0; face < mesh_.face_count(); ++face) {
-    const std::uint32_t begin = mesh_.face_starts[face];
-    for (std::uint32_t at = begin + 2; at < mesh_.face_starts[face + 1]; ++at)
-      triangles.push_back(
-          {mesh_.face_corners[begin], mesh_.face_corners[at - 1], mesh_.face_corners[at]});
-  }
+  for_each_triangle(mesh_, [&](const Triangle& triangle) { triangles.push_back(triangle); });
   std::vector<std::uint32_t> changed;
   for (const Corners& triangle : lid) {
     changed.push_back(static_cast<std::uint32_t>(triangles.size()));

@@ -7,6 +7,7 @@
 
 #include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/cut.hpp>
+#include <nendo/deform/triangles.hpp>
 
 #include "cut/cut_assembly.hpp"
 #include "repair/doubles.hpp"
@@ -187,20 +188,18 @@ Result<void> Repairer::check_volumes() const {
   const std::uint32_t count = number_parts(mesh_, part_of);
   std::vector<double> volume(count, 0.0), area(count, 0.0);
   std::vector<std::uint32_t> first(count, no_index);
-  for (std::size_t face = 0; face < mesh_.face_count(); ++face) {
-    const std::uint32_t begin = mesh_.face_starts[face];
-    const std::uint32_t part = part_of[mesh_.face_corners[begin]];
-    if (first[part] == no_index) first[part] = mesh_.face_corners[begin];
-    const Eigen::Vector3d origin = mesh_.vertices.col(first[part]);
-    const auto from_origin = [&](std::uint32_t at) -> Eigen::Vector3d {
-      return mesh_.vertices.col(mesh_.face_corners[at]) - origin;
+  for (std::uint32_t vertex = 0; vertex < part_of.size(); ++vertex)
+    if (part_of[vertex] != no_index && first[part_of[vertex]] == no_index)
+      first[part_of[vertex]] = vertex;
+  for_each_triangle(mesh_, [&](const Triangle& triangle) {
+    const std::uint32_t part = part_of[triangle[0]];
+    const auto from_first = [&](std::size_t k) -> Eigen::Vector3d {
+      return mesh_.vertices.col(triangle[k]) - mesh_.vertices.col(first[part]);
     };
-    for (std::uint32_t at = begin + 2; at < mesh_.face_starts[face + 1]; ++at) {
-      const Eigen::Vector3d a = from_origin(begin), b = from_origin(at - 1), c = from_origin(at);
-      volume[part] += a.dot(b.cross(c)) / 6.0;
-      area[part] += 0.5 * (b - a).cross(c - a).norm();
-    }
-  }
+    const Eigen::Vector3d a = from_first(0), b = from_first(1), c = from_first(2);
+    volume[part] += a.dot(b.cross(c)) / 6.0;
+    area[part] += 0.5 * (b - a).cross(c - a).norm();
+  });
   for (std::uint32_t part = 0; part < count; ++part)
     if (!(std::abs(volume[part]) > 1e-9 * std::pow(area[part], 1.5)))
       return Error{Errc::bad_input, "cannot be repaired: its part at " +

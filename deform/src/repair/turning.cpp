@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <nendo/deform/triangles.hpp>
+
 #include "cut/cut_assembly.hpp"
 #include "join/crossings.hpp"
 #include "repair/stitch.hpp"
@@ -43,6 +45,7 @@ struct ClosedPart {
 };
 
 bool lies_within(const ClosedPart& part, ClosedPart& other, std::span<const SpacePoint> points) {
+  if (part.triangles.empty()) return false;
   if (!other.tree) other.tree.emplace(points, other.triangles);
   return is_inside(points[part.triangles.front()[0]], {points, other.triangles, &*other.tree}) == 1;
 }
@@ -100,13 +103,9 @@ std::size_t turn_outwards(Mesh& mesh) {
   std::vector<SpacePoint> points;
   for (Eigen::Index at = 0; at < mesh.vertices.cols(); ++at)
     points.push_back({mesh.vertices(0, at), mesh.vertices(1, at), mesh.vertices(2, at)});
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t begin = mesh.face_starts[face];
-    ClosedPart& part = parts[part_of[mesh.face_corners[begin]]];
-    for (std::uint32_t at = begin + 2; at < mesh.face_starts[face + 1]; ++at)
-      part.triangles.push_back(
-          {mesh.face_corners[begin], mesh.face_corners[at - 1], mesh.face_corners[at]});
-  }
+  for_each_triangle(mesh, [&](const Triangle& triangle) {
+    parts[part_of[triangle[0]]].triangles.push_back(triangle);
+  });
   bool any = false;
   for (ClosedPart& part : parts) {
     part.volume = volume_of(points, part.triangles);
