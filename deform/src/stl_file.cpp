@@ -70,13 +70,48 @@ bool looks_binary(std::string_view text) noexcept {
 struct StlFaces {
   std::vector<double> vertices; ///< three numbers each
   Mesh mesh;
+  std::size_t facets = 0, left_out = 0, first_left_out = 0;
 
   void add_vertex(const std::array<double, 3>& place) {
     mesh.face_corners.push_back(static_cast<std::uint32_t>(vertices.size() / 3));
     vertices.insert(vertices.end(), place.begin(), place.end());
   }
-  void end_face() {
-    mesh.face_starts.push_back(static_cast<std::uint32_t>(mesh.face_corners.size()));
+  /// Returns false, and forgets the facet with its vertices, if it has fewer than three different
+  /// places.
+  bool end_face() {
+    ++facets;
+    const std::size_t begin = mesh.face_starts.back();
+    if (has_three_places(begin)) {
+      mesh.face_starts.push_back(static_cast<std::uint32_t>(mesh.face_corners.size()));
+      return true;
+    }
+    if (left_out++ == 0) first_left_out = facets;
+    mesh.face_corners.resize(begin);
+    vertices.resize(3 * begin); // each corner has a vertex of its own
+    return false;
+  }
+  bool has_three_places(std::size_t begin) const noexcept {
+    const std::size_t end = mesh.face_corners.size();
+    const auto differ = [&](std::size_t one, std::size_t other) {
+      return !std::equal(vertices.begin() + static_cast<std::ptrdiff_t>(3 * one),
+                         vertices.begin() + static_cast<std::ptrdiff_t>(3 * one + 3),
+                         vertices.begin() + static_cast<std::ptrdiff_t>(3 * other));
+    };
+    std::size_t second = begin;
+    while (second < end && !differ(begin, second))
+      ++second;
+    for (std::size_t third = second; third < end; ++third)
+      if (differ(begin, third) && differ(second, third)) return true;
+    return false;
+  }
+  void note_left_out(ReadNotes& notes) const {
+    const std::string first = "facet " + std::to_string(first_left_out);
+    if (left_out > 0)
+      notes.push_back(std::to_string(left_out) +
+                      (left_out == 1 ? " facet (" + first + ") has"
+                                     : " facets (the first is " + first + ") have") +
+                      " fewer than three different corners and " + (left_out == 1 ? "is" : "are") +
+                      " left out");
   }
   Mesh take() && {
     mesh.vertices = columns_of<3>(vertices);
@@ -122,6 +157,7 @@ Result<Mesh> TextStl::parse(ReadNotes& notes) {
 }
 
 void TextStl::note_all(ReadNotes& notes) const {
+  faces_.note_left_out(notes);
   if (in_solid_) notes.push_back("ends without endsolid; it may be cut off");
   if (unknown_ > 0)
     notes.push_back(std::to_string(unknown_) + (unknown_ == 1 ? " line" : " lines") +
@@ -181,8 +217,7 @@ Result<void> TextStl::vertex() {
 Result<void> TextStl::facet_ends() {
   if (!in_loop_) return bad("endloop stands outside of a loop");
   in_loop_ = false;
-  faces_.end_face();
-  objects_.of_face.push_back(object_);
+  if (faces_.end_face()) objects_.of_face.push_back(object_);
   return {};
 }
 
@@ -245,7 +280,8 @@ public:
 
 private:
   Result<std::size_t> count_facets(ReadNotes& notes) const;
-  Result<void> facet(std::size_t number);
+  /// Returns false if the facet is left out.
+  Result<bool> facet(std::size_t number);
 
   Error bad(const std::string& what) const {
     return {Errc::bad_input, std::string(name_) + ": " + what};
@@ -285,18 +321,21 @@ Result<Mesh> BinaryStl::parse(ReadNotes& notes) {
   FacetColours colours(text_.substr(0, stl_header_bytes));
   Appearance& look = faces_.mesh.look;
   for (std::size_t number = 0; number < *count; ++number) {
-    if (const auto done = facet(number); !done) return done.error();
+    const auto kept = facet(number);
+    if (!kept) return kept.error();
+    if (!*kept) continue;
     const std::size_t attribute = facets_offset + facet_bytes * (number + 1) - 2;
     colours.add_facet(little_endian(text_, attribute, 2), look);
   }
   if (look.materials.empty()) look.face_materials.clear();
+  faces_.note_left_out(notes);
   if (colours.left_out() > 0)
     notes.push_back("attributes of " + std::to_string(colours.left_out()) +
                     " triangles, which are no colours, are left out");
   return std::move(faces_).take();
 }
 
-Result<void> BinaryStl::facet(std::size_t number) {
+Result<bool> BinaryStl::facet(std::size_t number) {
   const std::size_t begin = facets_offset + facet_bytes * number;
   for (std::size_t corner = 0; corner < 3; ++corner) {
     std::array<double, 3> place{};
@@ -310,8 +349,7 @@ Result<void> BinaryStl::facet(std::size_t number) {
     }
     faces_.add_vertex(place);
   }
-  faces_.end_face();
-  return {};
+  return faces_.end_face();
 }
 
 void append_little_endian_word(std::string& text, std::uint32_t number, int bytes) {

@@ -110,9 +110,10 @@ TEST_SUITE("stl_file") {
     const auto model = parse(binary(triangles));
     REQUIRE_MESSAGE(model, model.error().message);
     CHECK(model->mesh.face_count() == 5);
+    CHECK(model->mesh.vertices.cols() == 4 + 3);
     REQUIRE(model->notes.size() == 1);
     CHECK(model->notes[0] ==
-          "1 face (face 5) has fewer than three different corners and is left out");
+          "1 facet (facet 5) has fewer than three different corners and is left out");
   }
 
   TEST_CASE("a count that disagrees with the bytes is refused or noted") {
