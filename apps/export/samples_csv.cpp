@@ -73,7 +73,8 @@ private:
 
   void put_angles(const GloveSample& sample, const hand::Calibration* calibration) {
     hand::SensorAngles angles_rad{};
-    if (calibration != nullptr) angles_rad = hand::filled_angles_rad(sample, *calibration, samples_.left_out());
+    if (calibration != nullptr)
+      angles_rad = hand::filled_angles_rad(sample, *calibration, samples_.left_out());
     for_each_sensor([&](Sensor sensor) {
       const bool known = calibration != nullptr && sample.present.has(sensor) &&
                          (*calibration)[sensor].gain_rad_per_count != 0.0 &&

@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "calibrate/demonstration.hpp"
 #include "calibrate/guide.hpp"
 #include "calibrate/hand_drawing.hpp"
 #include "calibrate/screen.hpp"
