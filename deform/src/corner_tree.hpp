@@ -12,7 +12,7 @@
 
 namespace nendo::deform {
 
-struct PlaneBox {
+struct CornerBox {
   PlanePoint lowest, highest;
 };
 
@@ -28,7 +28,7 @@ public:
   /// Calls is_wanted(corner) for those in the box until it returns true. Returns that corner, or
   /// `none`.
   template <class IsWanted>
-  std::uint32_t find(const PlaneBox& box, const IsWanted& is_wanted) const {
+  std::uint32_t find(const CornerBox& box, const IsWanted& is_wanted) const {
     return find(0, static_cast<std::uint32_t>(order_.size()), 0, box, is_wanted);
   }
   static constexpr std::uint32_t none = ~std::uint32_t{0};
@@ -36,7 +36,7 @@ public:
 private:
   void halve(std::uint32_t begin, std::uint32_t end, std::size_t axis);
   template <class IsWanted>
-  std::uint32_t find(std::uint32_t begin, std::uint32_t end, std::size_t axis, const PlaneBox& box,
+  std::uint32_t find(std::uint32_t begin, std::uint32_t end, std::size_t axis, const CornerBox& box,
                      const IsWanted& is_wanted) const {
     const std::uint32_t middle = begin + (end - begin) / 2;
     if (begin == end || counts_[middle] == 0) return none;

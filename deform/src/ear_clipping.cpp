@@ -225,7 +225,7 @@ std::uint32_t EarClipper::find_blocker(const Corners& ear) {
     return nobody;
   }
   if (tree_.empty()) return nobody;
-  PlaneBox box{};
+  CornerBox box{};
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto [low, high] = std::minmax(
         {tree_.place(ear[0])[axis], tree_.place(ear[1])[axis], tree_.place(ear[2])[axis]});
