@@ -1,7 +1,9 @@
 #pragma once
 // A rim in space, closed by triangles of the least area.
 
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cut/space.hpp"

@@ -66,8 +66,8 @@ private:
            sets_.find(element_of_[one.at_high()]) == sets_.find(element_of_[other.at_high()]);
   }
   /// Into the face, square to the edge.
-  SpacePoint inwards(const PlacedEdge& side, const SpacePoint& along) const noexcept {
-    return cross(normals_[side.face], side.forward ? along : -1.0 * along);
+  SpacePoint inwards(const PlacedEdge& side, const SpacePoint& axis) const noexcept {
+    return cross(normals_[side.face], side.forward ? axis : -1.0 * axis);
   }
   SpacePoint along(const PlacedEdge& side) const noexcept {
     return unit_of(corner_point(mesh_, side.at_high()) - corner_point(mesh_, side.at_low()));

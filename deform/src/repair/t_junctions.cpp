@@ -1,7 +1,6 @@
 #include "repair/t_junctions.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <utility>
 

@@ -55,7 +55,7 @@ void join_thin_faces(const Mesh& mesh, std::span<const std::uint32_t> place, Uni
       bool is_new = true;
       for (std::uint32_t before = begin; before < at && is_new; ++before)
         is_new = place[mesh.face_corners[before]] != place[mesh.face_corners[at]];
-      different += is_new ? 1 : 0;
+      different += is_new ? 1U : 0U;
     }
     is_thin[face] = different < 3 ? 1 : 0;
     for (std::uint32_t at = begin; at < end && different >= 3; ++at) {

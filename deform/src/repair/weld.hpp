@@ -13,9 +13,8 @@
 namespace nendo::deform {
 
 struct Welding {
-  std::size_t joined = 0; ///< vertices that became one with another one
-  std::size_t coloured =
-      0; ///< vertices that stay apart from others in their place for their colour
+  std::size_t joined = 0;   ///< vertices that became one with another one
+  std::size_t coloured = 0; ///< vertices that stay apart from one in their place, for their colour
 };
 
 /// Makes vertices of exactly one place one, wherever faces meet there edge to edge. The first
