@@ -390,7 +390,10 @@ Result<std::string> stl_text(const Mesh& mesh) {
   std::uint64_t count = 0;
   for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& triangle) {
     const auto corner = [&](int which) -> Eigen::Vector3d {
-      return mesh.vertices.col(triangle[static_cast<std::size_t>(which)]);
+      // As they are written, so that what is read again has the same normals.
+      return mesh.vertices.col(triangle[static_cast<std::size_t>(which)])
+          .cast<float>()
+          .cast<double>();
     };
     append_floats(text, unit_normal(corner(1) - corner(0), corner(2) - corner(0)));
     for (int which = 0; which < 3; ++which)
