@@ -74,6 +74,7 @@ TEST_SUITE("base/table") {
     CHECK(TableReader::plain("Index MCP") == "index_mcp");
     CHECK(TableReader::plain("index_mcp") == "index_mcp");
     CHECK(TableReader::plain(" - ").empty());
+    CHECK(TableReader::plain("}\rTime\n(s)") == "time_s"); // of a cell in quotes
     TableReader table("B,note,A,A,,c\n", "t");
     REQUIRE(table.read_head("a,b"));
     CHECK(table.find("b") == 0);

@@ -103,7 +103,8 @@ std::string TableReader::plain(std::string_view name) {
   std::string result;
   bool is_between = false;
   for (const char c : trimmed(name)) {
-    if (is_blank(c) || std::string_view("()[]{}/-_").find(c) != std::string_view::npos) {
+    const bool is_mute = static_cast<unsigned char>(c) <= ' '; // line ends within quotes, too
+    if (is_mute || std::string_view("()[]{}/-_").find(c) != std::string_view::npos) {
       is_between = !result.empty();
       continue;
     }
