@@ -145,6 +145,8 @@ std::vector<Arguments> printing_commands(const Workshop& shop) {
       {"edit", "show", at("t.timeline.toml"), "--json"},
       {"edit", "play", at("t.timeline.toml"), "--out", at("played.obj")},
       {"edit", "mirror", at("t.timeline.toml"), "--out", at("m.timeline.toml")},
+      {"repair", at("s.obj"), "--out", at("repaired.obj")},
+      {"repair", at("s.obj"), "--out", at("repaired.ply"), "--json"},
       {"emulate", "--link", at("glove"), "--duration", "0.2"},
   };
 }
