@@ -267,9 +267,12 @@ TEST_SUITE("live_settings") {
     REQUIRE_FALSE(replay);
     CHECK(replay.error().code == Errc::bad_input);
     live.setup.loop->rest.front().x[3] = std::numeric_limits<float>::quiet_NaN();
-    live.record();
-    REQUIRE(live.end());
-    auto reader = TakeReader::open(live.path);
+    std::uint32_t chunks = 0;
+    const auto bytes = setup_bytes(live.setup, chunks);
+    const auto fine = check_readable(live.setup, bytes);
+    REQUIRE_FALSE(fine);
+    CHECK(fine.error().message.find("a vertex that is too far away") != std::string::npos);
+    auto reader = TakeReader::of(bytes, "a take");
     REQUIRE(reader);
     CHECK(reader->setup().loop->rest.empty());
     CHECK(reader->strange() == 1);

@@ -293,7 +293,7 @@ TEST_SUITE("take_reader") {
       flow::ModelOrigin origin;
       origin.source = flow::ModelSource::cut;
       origin.wire = {{{-1.0, 0.5, 0.25}, {1.0, 0.5, 0.25}}, {{-1.0, 0.5, 2.0}, {1.0, 0.5, 2.0}}};
-      origin.shape = deform::Points::Random(3, 40'000); // some chunks of them
+      origin.shape = deform::Points::Random(3, 750'000); // more than go into one chunk
       origin.keeps_rest = keeps_rest;
       source.loop->origins = {std::make_shared<const flow::ModelOrigin>(origin)};
       std::uint32_t chunks = 0;
