@@ -46,7 +46,8 @@ void report_none_of(const driver::GloveInfo& glove, Side side, const std::string
 }
 
 /// Fails if nothing at all is stored for the user, and names the users that there are.
-Result<void> check_user(const hand::CalibrationList& stored, const std::string& user) {
+Result<void> check_user(const hand::CalibrationList& stored, const std::string& option,
+                        const std::string& user) {
   std::set<std::string> users;
   for (const hand::StoredCalibration& file : stored.files)
     users.insert(file.wearer.user);
@@ -55,7 +56,7 @@ Result<void> check_user(const hand::CalibrationList& stored, const std::string& 
   for (const std::string& one : users)
     known.append(known.empty() ? "" : ", ").append(printable(one));
   return Error{Errc::bad_input,
-               "--user " + printable(user) + ": no calibration of " + printable(user) +
+               option + " " + printable(user) + ": no calibration of " + printable(user) +
                    " is stored; " +
                    (known.empty() ? "there is none of anybody" : "there are those of " + known) +
                    "; `nendo calibrate GLOVE --user " + printable(user) + "` makes one"};
@@ -147,7 +148,10 @@ Result<hand::Wearer> stored_wearer(const driver::GloveInfo& glove, Side side, ha
     wearer.of(side) = hand_of(own->file->wearer, glove.counts);
     found = found_in(*own->file);
   } else if (!user.empty()) {
-    if (auto known = check_user(stored, user); !known) return known.error();
+    const std::string& own_user = side == Side::left ? options.left_user : options.right_user;
+    const std::string option =
+        own_user.empty() ? "--user" : "--" + std::string(name_of(side)) + "-user";
+    if (auto known = check_user(stored, option, user); !known) return known.error();
     report_none_of(glove, side, user);
   } else if (is_uncalibrated(glove, wearer, side)) {
     report_none(glove, side);

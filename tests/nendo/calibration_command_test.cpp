@@ -393,7 +393,8 @@ TEST_SUITE("calibration command") {
     CHECK(mixed.err.find("calibrated for berta, left hand") != std::string::npos);
     const auto nobody = record({"--left-user", "bert", "--right-user", "anna"});
     CHECK(nobody.exit_code == 5);
-    CHECK(nobody.err.find("there are those of anna, berta") != std::string::npos);
+    CHECK(nobody.err.find("--left-user bert: no calibration of bert is stored; there are those of "
+                          "anna, berta") != std::string::npos);
     const auto run = nendo::test::nendo({"run", "--left", "sim", "--right", "sim", "--left-user",
                                          "berta", "--right-user", "anna", "--duration", "0.2",
                                          "--out", home.file("x.obj").string()});
