@@ -112,9 +112,9 @@ void note_strays(const Mesh& mesh, ReadNotes& notes) {
   const std::size_t strays = stray_vertices(mesh).size();
   if (strays > 0)
     notes.push_back(std::to_string(strays) +
-                    (strays == 1 ? " vertex belongs to no face; it is"
-                                 : " vertices belong to no face; they are") +
-                    " kept, and do not count for the model's size");
+                    (strays == 1 ? " vertex belongs to no face; it is kept, and does"
+                                 : " vertices belong to no face; they are kept, and do") +
+                    " not count for the model's size");
 }
 
 Result<ReadModel> parse_text(Source source, const ReadOptions& options) {
