@@ -159,7 +159,9 @@ TEST_SUITE("cyberglove_unit_commands") {
   }
 
   TEST_CASE("a power cycle ends the stream without a word and undoes every setting") {
-    Bench bench;
+    UnitOptions options;
+    options.restart_time = 1750ms;
+    Bench bench(options);
     bench.ask("d 1\r");
     bench.ask("S");
     bench.unit.inject({Incident::Kind::power_cycle}, bench.now);
