@@ -139,6 +139,17 @@ TEST_SUITE("repair") {
     }
   }
 
+  TEST_CASE("a face that is there twice does not keep its edges from being joined") {
+    Mesh loose = unshared(cube_of_cells(2));
+    add_face(loose, {loose.face_corners[0], loose.face_corners[1], loose.face_corners[2]});
+    add_face(loose, {loose.face_corners[5], loose.face_corners[4], loose.face_corners[3]});
+    const auto mended = repair(loose);
+    REQUIRE_MESSAGE(mended, mended.error().message);
+    CHECK(mended->dropped == 2);
+    CHECK(mended->mesh.vertices.cols() == 26);
+    CHECK(volume_of(mended->mesh) == doctest::Approx(1.0).epsilon(1e-12));
+  }
+
   TEST_CASE("surfaces that touch in a point, or at an edge, are separated") {
     const Mesh cube = cube_of_cells(2);
     for (const Eigen::Vector3d& way : {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(1, 1, 0)}) {

@@ -40,9 +40,10 @@ public:
 
   Result<Repair> run() {
     drop_thin_faces();
+    drop_doubles(); // they would close the edges of the first ones
     join_places();
     split_junctions();
-    result_.dropped += drop_double_faces(mesh_, place_of_);
+    drop_doubles();
     if (auto turned = turn(); !turned) return turned.error();
     separate();
     drop_strays();
@@ -59,6 +60,7 @@ public:
 
 private:
   void drop_thin_faces();
+  void drop_doubles() { result_.dropped += drop_double_faces(mesh_, place_of_); }
   void join_places();
   void split_junctions();
   Result<void> turn();
@@ -80,6 +82,7 @@ void Repairer::drop_thin_faces() {
   const DroppedCorners dropped = renumber_corners(mesh_, same);
   result_.dropped += dropped.faces;
   result_.repeated = dropped.corners;
+  place_of_ = mesh_.face_corners;
 }
 
 /// Vertices of edges that have not just two faces.
