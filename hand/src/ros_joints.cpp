@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t max_joint_points = 4096;
 constexpr double min_raw = -0.1; // drivers' own files have -0.001
 constexpr double max_raw = 1.1;
-constexpr double max_angle_deg = 360.0;
+constexpr double max_angle_deg = 1e9; // a steep line is far beyond its joint at the counts' ends
 constexpr double told_deviation_deg = 0.05;
 
 std::string fixed_text(double value, int decimals) {
@@ -70,7 +70,7 @@ std::string complaint_about_points(std::vector<RosPoint>& points) {
       return "raw value " + decimal_text(point.raw) +
              " is not from 0 to 1; write a count as (count - 1) / 254";
     if (!(std::abs(point.angle_deg) <= max_angle_deg))
-      return "angle " + decimal_text(point.angle_deg) + " is beyond 360 degrees; mend it";
+      return "angle " + decimal_text(point.angle_deg) + " is absurd; give degrees";
   }
   std::stable_sort(points.begin(), points.end(),
                    [](const RosPoint& a, const RosPoint& b) { return a.raw < b.raw; });

@@ -231,7 +231,7 @@ TEST_SUITE("ros_calibration") {
     is_refused(joint("[[0.3, zero], [0.6, 90]]"), "a.yaml:2:", "'zero' is no finite number");
     is_refused(joint("[[0.3, .nan], [0.6, 90]]"), "a.yaml:2:", "no finite number");
     is_refused(joint("[[80, 0], [160, 90]]"), "a.yaml:2:", "(count - 1) / 254");
-    is_refused(joint("[[0.3, 0], [0.6, 900]]"), "a.yaml:2:", "360");
+    is_refused(joint("[[0.3, 0], [0.6, 9e99]]"), "a.yaml:2:", "absurd");
     is_refused(joint("5"), "a.yaml:2:", "no list");
     is_refused(yaml("&a [*a]"), "a.yaml:1:", "alias");
     is_refused(yaml(std::string(100'000, '[')), "a.yaml:1:", "nested too deeply");
@@ -272,7 +272,7 @@ TEST_SUITE("ros_calibration") {
       calibration.mixed_in = {};
       for (auto& line : calibration.sensors)
         if (line.gain_rad_per_count != 0.0)
-          line = {line.gain_rad_per_count *
+          line = {(round % 5 == 0 ? 8.0 : 1.0) * line.gain_rad_per_count *
                       (0.5 + 1e-9 * static_cast<double>(random() % 1'000'000'000)),
                   line.offset_counts + static_cast<double>(random() % 40)};
       for (const bool is_xml : {false, true}) {
