@@ -198,8 +198,8 @@ TEST_SUITE("far_model") {
     const Vector3d away(1e6, 2e6, -3e6);
     const std::string far = balls.ball("far.obj", 2.0, away);
     const std::string near = balls.ball("near.obj", 2.0, Vector3d::Zero());
-    std::ofstream(balls.path("far.csv")) << "1000001,2000000,-3000000,0.5,0,0.25\n";
-    std::ofstream(balls.path("near.csv")) << "1,0,0,0.5,0,0.25\n";
+    std::ofstream(balls.path("far.csv")) << "x,y,z,dx,dy,dz\n1000001,2000000,-3000000,0.5,0,0.25\n";
+    std::ofstream(balls.path("near.csv")) << "x,y,z,dx,dy,dz\n1,0,0,0.5,0,0.25\n";
     for (const std::string name : {"far", "near"})
       balls.nendo({"deform", balls.path(name + ".obj"), "--vectors", balls.path(name + ".csv"),
                    "--radius", "1", "--out", balls.path(name + "-deformed.ply")});
