@@ -41,8 +41,8 @@ public:
   virtual bool next() = 0;
   virtual const flow::Frame& frame() const = 0; ///< the latest; not before next()
   virtual double time_s() const = 0;            ///< of the latest, since the take began
-  /// Tells whether the hand of that side has angles of its own, by a calibration, or else an average
-  /// hand's; nothing if that is not known, as of a timeline.
+  /// Tells whether the hand of that side has angles of its own, by a calibration, or else an
+  /// average hand's; nothing if that is not known, as of a timeline.
   virtual std::optional<bool> is_calibrated(Side) const { return std::nullopt; }
   /// Returns true while nothing was missing in the source, so that the frames equal the original
   /// ones.

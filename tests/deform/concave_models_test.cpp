@@ -67,7 +67,7 @@ TEST_SUITE("concave models") {
     const Mesh model = l_prism();
     const Mesh peg = box({2.5, 0.25, 0.25}, {3.5, 0.75, 0.75});
     const std::vector<JoinPart> parts{{&model, "L"}, {&peg, "peg"}};
-    const auto joined = join(parts);
+    const auto joined = join(parts, {});
     REQUIRE_MESSAGE(joined, joined.error().message);
     CHECK(check_closed_manifold(joined->mesh));
     CHECK(volume_of(joined->mesh) == doctest::Approx(5.125).epsilon(1e-6));
@@ -94,7 +94,7 @@ TEST_SUITE("concave models") {
       CHECK(sum == doctest::Approx(volume));
       const Mesh stud = box({3.9, 3.9, 0.2}, {4.9, 4.9, 0.8});
       const std::vector<JoinPart> parts{{&plate, "plate"}, {&stud, "stud"}};
-      const auto joined = join(parts);
+      const auto joined = join(parts, {});
       REQUIRE_MESSAGE(joined, joined.error().message);
       CHECK(volume_of(joined->mesh) == doctest::Approx(volume + 0.6 - 0.006).epsilon(1e-5));
       CHECK(Refiner::check(plate));

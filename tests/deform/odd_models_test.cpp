@@ -92,8 +92,7 @@ TEST_SUITE("odd_models") {
   }
 
   TEST_CASE("stray vertices keep their numbers, and do not count for the size") {
-    const auto model =
-        read("v 900 900 900\n" + v4 + "f 2 4 3\nf 2 3 5\nf 2 5 4\nf 3 4 5\nv -700 0 0\n");
+    auto model = read("v 900 900 900\n" + v4 + "f 2 4 3\nf 2 3 5\nf 2 5 4\nf 3 4 5\nv -700 0 0\n");
     CHECK(model.mesh.vertices.cols() == 6);
     CHECK(stray_vertices(model.mesh) == Indices{0, 5});
     CHECK(box_of_faces(model.mesh).lowest.isZero(0.0));

@@ -394,7 +394,7 @@ TEST_SUITE("exchange") {
       }
       changes += test.loop->stats().changes;
       models += maker.made();
-      CHECK(test.loop->stats().shape_jumps + test.loop->stats().resets > 25);
+      CHECK(test.loop->stats().undos + test.loop->stats().resets > 25);
     }
     CHECK(sum.allocations == 0);
     CHECK(sum.frees == 0);

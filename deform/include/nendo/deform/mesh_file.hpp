@@ -49,8 +49,8 @@ struct ReadModel {
 /// coordinates; each node is an object. Vertices of a node's mesh with the same place and colour
 /// become one, because glTF splits them where normals or texture coordinates meet; so do those of a
 /// file in which no two faces share a vertex. Surfaces that only touch stay apart. Normals are
-/// dropped, because they change. `name` is what error messages call the file. Error: bad_input with the
-/// line, the byte offset or the part of the document, for example if there are no vertices, a
+/// dropped, because they change. `name` is what error messages call the file. Error: bad_input with
+/// the line, the byte offset or the part of the document, for example if there are no vertices, a
 /// coordinate is not finite, an index is wrong, or the file is cut off.
 Result<ReadModel> parse_model(std::span<const std::byte> bytes, std::string_view name,
                               const ReadOptions& options = {});

@@ -11,7 +11,8 @@ class HoldWatch {
 public:
   /// Returns true if the fingertips took hold in this frame.
   bool follow(const Frame& frame) noexcept {
-    const bool anew = frame.held && (!held_ || frame.commits != commits_ || frame.shape_jumps != jumps_);
+    const bool anew =
+        frame.held && (!held_ || frame.commits != commits_ || frame.shape_jumps != jumps_);
     held_ = frame.held;
     commits_ = frame.commits;
     jumps_ = frame.shape_jumps;
