@@ -103,7 +103,7 @@ PracticeHand::PracticeHand(std::uint32_t seed, std::optional<double> hold_s)
       // Where nothing is asked, the joint is anywhere near; pads that touch hold a joint closely.
       const double asked_rad = pose.assumed[slot].deviation_rad;
       const double free_rad = from_degrees(pose.touch ? 1.0 : 4.0);
-      angles[slot] += 0.8 * scatter(random_) * (asked_rad > 0.0 ? asked_rad : free_rad);
+      angles[slot] += 0.6 * scatter(random_) * (asked_rad > 0.0 ? asked_rad : free_rad);
     }
     poses_.push_back(angles);
   }

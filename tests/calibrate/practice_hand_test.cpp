@@ -79,12 +79,12 @@ TEST_SUITE("practice_hand") {
   }
 
   TEST_CASE("by time it does the same, and then moves freely") {
-    Practice practice(4, 3.0);
+    Practice practice(1, 3.5);
     while (practice.time_s < PracticeHand::free_motion_s)
       practice.guide.push_free_motion(practice.next());
     practice.guide.end_free_motion();
     const double end_s =
-        PracticeHand::free_motion_s + 3.0 * static_cast<double>(hand::full_takes().size()) + 1.0;
+        PracticeHand::free_motion_s + 3.5 * static_cast<double>(hand::full_takes().size()) + 1.0;
     while (practice.time_s < end_s)
       practice.guide.push(practice.next());
     CHECK(practice.guide.is_done());

@@ -54,7 +54,7 @@ struct Guided {
   void take_all() {
     for (int tries = 0; !guide.is_done() && tries < 200; ++tries) {
       const hand::SensorAngles angles = wearer.perform(guide.asked());
-      for (int n = 0; n < 180; ++n)
+      for (int n = 0; n < 135; ++n)
         guide.push(next(angles));
     }
   }
@@ -176,7 +176,7 @@ TEST_SUITE("stuck_sensor") {
     for (int n = 0; n < 3 && guided.guide.number() == 0; ++n)
       for (const PoseId pose : {PoseId::fist, PoseId::flat}) {
         const hand::SensorAngles angles = guided.wearer.perform(pose);
-        for (int k = 0; k < 180; ++k)
+        for (int k = 0; k < 135; ++k)
           guided.guide.push(guided.next(angles));
       }
     CHECK(guided.guide.left_out().has(Sensor::index_pip));
@@ -188,7 +188,7 @@ TEST_SUITE("stuck_sensor") {
     guided.move_freely(14.0);
     for (int n = 0; n < 6; ++n) {
       const hand::SensorAngles angles = guided.wearer.perform(guided.guide.asked());
-      for (int k = 0; k < 180; ++k)
+      for (int k = 0; k < 135; ++k)
         guided.guide.push(guided.next(angles));
     }
     CHECK(guided.guide.left_out().bits == 0);

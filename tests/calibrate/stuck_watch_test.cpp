@@ -117,12 +117,11 @@ TEST_SUITE("stuck_watch") {
   TEST_CASE("each flexion sensor that stands still while the hand closes is found, alone") {
     for (const SensorMask sensors : {sensors_22, sensors_18}) {
       for (const std::optional<std::uint16_t> count :
-           {std::optional<std::uint16_t>(255), std::optional<std::uint16_t>(1),
-            std::optional<std::uint16_t>(131), std::optional<std::uint16_t>()}) {
+           {std::optional<std::uint16_t>(255), std::optional<std::uint16_t>()}) {
         for_each_sensor(sensors, [&](Sensor sensor, std::size_t slot) {
           if (slot < 4 || slot >= 20 || slot % 4 == 3) return;
           WatchedHand hand(driver::Motion::grasp, 3, sensors);
-          hand.pass(0.0, 40.0, {{sensor, count, 6.0}});
+          hand.pass(0.0, 30.0, {{sensor, count, 6.0}});
           CAPTURE(name_of(sensor));
           CHECK(hand.watch.stuck() == only(sensor));
           if (count) CHECK(hand.watch.stands_at(sensor) == *count);
