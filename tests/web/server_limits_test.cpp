@@ -186,7 +186,7 @@ TEST_SUITE("server_limits") {
     const auto shapes = counters().shapes;
     for (std::uint64_t turn = 1; turn <= 20; ++turn) {
       viewer.client.send_text(turn % 2 == 1 ? "undo" : "redo");
-      REQUIRE(eventually([&] { return newest_frame(served).jumps >= turn; }));
+      REQUIRE(eventually([&] { return newest_frame(served).shape_jumps >= turn; }));
       const auto updates = counters().updates + 3;
       REQUIRE(eventually([&] { return counters().updates >= updates; }));
     }

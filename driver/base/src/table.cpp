@@ -163,13 +163,13 @@ Result<void> TableReader::read_cell(std::size_t& at) {
     return {};
   }
   const std::size_t begin = ++at;
-  for (;; ++at) {
+  for (;;) {
     at = rest_.find('"', at);
     if (at == std::string_view::npos)
       return bad("column " + std::to_string(cells_.size() + 1) +
                  ": a quote begins here and never ends; close it");
     if (at + 1 >= rest_.size() || rest_[at + 1] != '"') break;
-    ++at;
+    at += 2; // two quotes are one that belongs to the text
   }
   const std::string_view content = rest_.substr(begin, at - begin);
   for (std::size_t k = 0; k < content.size(); ++k)
