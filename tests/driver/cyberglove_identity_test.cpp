@@ -104,7 +104,7 @@ TEST_SUITE("cyberglove_identity") {
       CAPTURE(fact.name);
       CHECK(met.fact(fact.name) == fact.value);
     }
-    CHECK(met.identity->facts.size() == 23);
+    CHECK(met.identity->facts.size() == 24);
     CHECK(met.identity->model == "Scripted CyberGlove, 22 sensors");
     CHECK(met.identity->abilities.wrist_switch);
     CHECK(met.identity->abilities.light);
