@@ -139,7 +139,7 @@ TEST_SUITE("sample_table") {
                ":3: column 2 (time_s): '0' is less than in the row before"));
   }
 
-  TEST_CASE("a count that is missing is none; other columns are named, but not our own") {
+  TEST_CASE("a count that is missing is none, other columns are named, but not our own") {
     const auto table = Table("time_s,index_mcp,index_pip,index_mcp_deg,measured_s,note\n"
                              "0,nan,4,,0,x\n1,N/A,nan,,0,y\n2,3,,,0,z\n")
                            .read();
