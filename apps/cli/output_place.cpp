@@ -15,8 +15,10 @@ namespace {
 
 std::string either(std::span<const std::string_view> endings) {
   std::string words;
-  for (const auto ending : endings)
-    words += (words.empty() ? "" : " or ") + std::string(ending);
+  for (const auto& ending : endings) {
+    const bool is_last = &ending == &endings.back();
+    words += (words.empty() ? "" : is_last ? " or " : ", ") + std::string(ending);
+  }
   return words;
 }
 

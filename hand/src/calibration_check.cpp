@@ -63,7 +63,7 @@ bool may_be_calibrated(Sensor sensor) noexcept {
 std::string complaint_about_text(std::string_view text, bool may_be_empty) {
   if (text.empty()) return may_be_empty ? "" : "must not be empty; give a name";
   if (text.size() > most_text_bytes) return "is longer than 200 bytes; shorten it";
-  if (!is_utf8(text)) return "is not UTF-8; write it anew";
+  if (!is_utf8(text)) return "is not UTF-8; save it as UTF-8";
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
     if (byte < 0x20 || byte == 0x7F) return "has control characters; leave them out";

@@ -287,7 +287,7 @@ Result<WearerCalibration> parse_calibration(std::string_view text, std::string_v
     root = toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     return bad_line(name, error.source().begin.line,
-                    one_line(error.description()) + "; mend it or calibrate anew");
+                    one_line(error.description()) + "; mend it or calibrate again");
   }
   Reader reader(name);
   const toml::node* version = reader.find(root, "version");

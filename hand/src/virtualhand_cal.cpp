@@ -57,7 +57,7 @@ Result<void> CalParser::read_heading(std::string_view line) {
   }
   if (row_ % rows_per_group != 0)
     return bad(in_quotes(line) + " stands where row " + std::to_string(row_ % rows_per_group + 1) +
-               " of 4 of a finger should; export the calibration anew");
+               " of 4 of a finger should; export the calibration once more");
   const auto fields = fields_of(line);
   if (fields.size() < 2 || fields[0] != "FINGER") return {};
   std::string_view number = fields[1];
@@ -230,7 +230,7 @@ Result<ExportedCalibration> virtualhand_text(const Calibration& calibration, Cou
     if (slot % rows_per_group == 0)
       text += "FINGER " + std::to_string(slot / rows_per_group) + ":\n";
     if (!(std::abs(cells->gain) <= 10.0))
-      return Error{Errc::bad_input, sensor_of(slot) + ": its gain is absurd; calibrate anew"};
+      return Error{Errc::bad_input, sensor_of(slot) + ": its gain is absurd; calibrate again"};
     std::snprintf(row.data(), row.size(), "%3d%6ld%10.5f%5d\n",
                   static_cast<int>(slot % rows_per_group), cells->offset, cells->gain, 0);
     text += row.data();

@@ -66,7 +66,7 @@ TEST_SUITE("nendo join") {
       std::string about;
     };
     for (const Case& wrong : {Case{{"join", a, "--out", out}, 2, "name a second file"},
-                              Case{{"join", a, b, "--out", "x.stl"}, 2, "--out"},
+                              Case{{"join", a, b, "--out", "x.fbx"}, 2, "--out"},
                               Case{{"join", a, b, "--out", a}, 2, "--force"},
                               Case{{"join", a, b, "--seam", "-1", "--out", out}, 2, "--seam"},
                               Case{{"join", a, b, "--seam", "nan", "--out", out}, 2, "--seam"},

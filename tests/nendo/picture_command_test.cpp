@@ -1,3 +1,5 @@
+#include <filesystem>
+
 #include <doctest/doctest.h>
 
 #include <nendo/deform/mesh_file.hpp>
@@ -87,6 +89,10 @@ TEST_SUITE("picture") {
     const auto missing = test::nendo({"picture", "no.obj", "--out", with.out});
     CHECK(missing.exit_code == 5);
     CHECK(is_one_line_about(missing.err, "no.obj"));
+    const std::string folder = std::filesystem::path(with.out).parent_path().string();
+    const auto of_folder = test::nendo({"picture", folder, "--out", with.out});
+    CHECK(of_folder.exit_code == 5);
+    CHECK(is_one_line_about(of_folder.err, folder + ": is a folder"));
     const auto named = test::nendo({"picture", with.mesh, "--out", "picture.jpg"});
     CHECK(named.exit_code == 2);
     CHECK(is_one_line_about(named.err, ".png"));

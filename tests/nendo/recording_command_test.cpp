@@ -283,7 +283,7 @@ TEST_SUITE("recording_command") {
              {{"replay", run.take, "--from", "3", "--to", "2"}, 2, "--from"},
              {{"replay", run.take, "--from", "99", "--no-clock"}, 2, "--from 99"},
              {{"replay", run.take, "--loop", "--no-clock"}, 2, "--loop"},
-             {{"replay", run.take, "--out", "shape.stl"}, 2, ".obj"},
+             {{"replay", run.take, "--out", "shape.fbx"}, 2, ".obj, .ply or .stl"},
              {{"replay", run.take, "--no-clock", "--mesh", "/nowhere.obj"}, 5, "/nowhere.obj"},
              {{"recording", "info", text}, 5, "no recording"},
              {{"recording", "check", run.path("none")}, 5, "none"},

@@ -80,6 +80,8 @@ Result<OpenFile> open_file(const fs::path& path, std::string_view kind) {
   if (!file.is_open()) return bad("cannot be opened: " + why(errno));
   struct stat info{};
   if (::fstat(file.get(), &info) != 0) return bad("cannot be read: " + why(errno));
+  if (S_ISDIR(info.st_mode))
+    return bad("is a folder and not a regular file; name a " + std::string(kind) + " file");
   if (!S_ISREG(info.st_mode))
     return bad("is not a regular file; name a " + std::string(kind) + " file");
   return OpenFile{std::move(file), static_cast<std::uint64_t>(info.st_size)};
