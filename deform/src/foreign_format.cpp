@@ -202,6 +202,8 @@ std::string why_no_model(std::string_view text) {
   LineReader lines(text.substr(0, 4096));
   const auto first = lines.next();
   if (!first) return "has no vertices, only blanks" + std::string(no_model);
+  if (trimmed(*first).starts_with("["))
+    return "is JSON or a list, and no model" + std::string(no_model);
   const std::vector<std::string_view> fields = fields_of(*first, 8);
   const auto is_number = [](std::string_view field) {
     return to_finite_number(field.substr(0, field.find_last_not_of(",;") + 1)).has_value();
@@ -210,7 +212,7 @@ std::string why_no_model(std::string_view text) {
     return "has no vertices; it is a table of numbers, perhaps a point cloud (XYZ)" +
            std::string(by_cloud_program);
   return "has no vertices, so it is no OBJ, PLY, STL or glTF model; its first line is " +
-         in_quotes(*first);
+         in_quotes(*first) + std::string(no_model);
 }
 
 } // namespace nendo::deform

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include <nendo/base/text.hpp>
+
 #include "gltf_extensions.hpp"
 #include "uri.hpp"
 #include "usable.hpp"
@@ -157,14 +159,41 @@ std::string gltf_text(const Json& object, const char* name) {
   return member != nullptr && member->is_string() ? member->get<std::string>() : std::string();
 }
 
+namespace {
+
+/// What JSON without an asset is, which each glTF has.
+std::string foreign_json(const Json& root) {
+  constexpr const char* in_its_program =
+      "; open it in the program that made it, and export it as glTF (.glb), OBJ, PLY or STL";
+  const std::string type = gltf_text(root, "type");
+  if (type == "CityJSON") return std::string("is a CityJSON file") + in_its_program;
+  if (type.starts_with("Feature")) return std::string("is a map (GeoJSON)") + in_its_program;
+  if (gltf_member(root, "metadata") != nullptr &&
+      (gltf_member(root, "geometries") != nullptr || gltf_member(root, "vertices") != nullptr ||
+       gltf_member(root, "data") != nullptr))
+    return "is a model in the JSON of three.js; load it in the editor of three.js, and export it "
+           "as GLB there";
+  return "is JSON, but no glTF, because it has no \"asset\"; give the file of a model (.obj, .ply, "
+         ".stl, .glb, .gltf)";
+}
+
+[[noreturn]] void refuse_version(const std::string& version) {
+  if (version.empty()) refuse("does not say its version of glTF; export it once more as glTF 2");
+  refuse("is glTF of version " + in_quotes(version) +
+         ", and only version 2 is read; export it once more as glTF 2");
+}
+
+} // namespace
+
 GltfDocument::GltfDocument(std::string_view file, const ModelFolder* folder) : folder_(folder) {
   if (file.starts_with(binary_magic))
     read_binary(file);
   else
     read_json(file);
   const Json* const asset = gltf_member(root_, "asset");
-  if (asset == nullptr || !gltf_text(*asset, "version").starts_with("2."))
-    refuse("is no glTF of version 2; export the model anew");
+  if (asset == nullptr && !file.starts_with(binary_magic)) refuse(foreign_json(root_));
+  const std::string version = asset == nullptr ? std::string() : gltf_text(*asset, "version");
+  if (!version.starts_with("2.")) refuse_version(version);
   require_readable(root_);
   read_buffers();
 }
@@ -172,7 +201,8 @@ GltfDocument::GltfDocument(std::string_view file, const ModelFolder* folder) : f
 void GltfDocument::read_binary(std::string_view file) {
   const Bytes bytes = bytes_of(file);
   if (bytes.size() < header_bytes + chunk_header_bytes) refuse("the file is cut off");
-  if (integer_at(bytes, 4, 4) != 2) refuse("is no glTF of version 2; export the model anew");
+  if (const auto version = integer_at(bytes, 4, 4); version != 2)
+    refuse_version(std::to_string(version));
   const std::size_t length = integer_at(bytes, 8, 4);
   if (length > bytes.size() || length < header_bytes + chunk_header_bytes)
     refuse("the file is cut off");
@@ -199,7 +229,7 @@ void GltfDocument::read_json(std::string_view text) {
   root_ = Json::parse(text.begin(), text.end(), watch, false);
   if (too_deep) refuse("has JSON of more than " + std::to_string(most_depth) + " levels");
   if (root_.is_discarded() || !root_.is_object())
-    refuse("has damaged JSON, so it is no glTF model");
+    refuse("has damaged JSON, so it is no glTF model; export it once more");
 }
 
 const Json& GltfDocument::item(const char* list, std::uint64_t index) const {

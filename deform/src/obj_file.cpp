@@ -2,6 +2,8 @@
 // which are computed, and lines, points and curves, which are noted.
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -11,6 +13,7 @@
 
 #include "colour_range.hpp"
 #include "mesh_formats.hpp"
+#include "number_text.hpp"
 #include "obj_left_out.hpp"
 #include "polypaint.hpp"
 #include "srgb.hpp"
@@ -132,19 +135,24 @@ std::string if_from_zero(std::string_view field) {
              : "";
 }
 
-/// Three coordinates, and three parts of a colour behind them where a program wrote those. Vertices
-/// without a colour are white, if others have one.
+/// Three coordinates, and behind them w, three parts of a colour, or w and those. Vertices without
+/// a colour are white, if others have one.
 Result<void> ObjParser::vertex() {
   if (auto done = coordinates(vertices_, 3, 3); !done) return done;
   Eigen::Vector4f colour = Eigen::Vector4f::Constant(no_colour);
-  double alone = 1.0; // a fourth number without more is w
-  for (Eigen::Index channel = 0; channel < 3; ++channel) {
-    const auto number = to_finite_number(scanner_.field());
-    if (!number && channel == 1) left_out_.weight(alone);
-    if (!number) return {};
-    alone = *number;
-    colour[channel] = static_cast<float>(std::clamp(*number, -1e30, 1e30));
+  std::array<double, 4> more{};
+  std::size_t count = 0;
+  for (; count < more.size(); ++count) {
+    const auto number = to_number_of_any_program(scanner_.field());
+    if (!number || !std::isfinite(*number)) break;
+    more[count] = *number;
   }
+  const bool has_weight = count == 1 || count == 4;
+  if (has_weight) left_out_.weight(more[0]);
+  if (count < 3) return {};
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    colour[static_cast<Eigen::Index>(channel)] =
+        static_cast<float>(std::clamp(more[has_weight ? channel + 1 : channel], -1e30, 1e30));
   colours_.resize(4 * (vertices_.size() / 3 - 1), no_colour);
   colours_.insert(colours_.end(), colour.begin(), colour.end());
   for (Eigen::Index channel = 0; channel < 3; ++channel)
@@ -158,7 +166,7 @@ Result<void> ObjParser::coordinates(std::vector<double>& list, int needed, int k
     const std::string_view field = scanner_.field();
     if (field.empty() && i < needed)
       return bad("needs " + std::to_string(needed) + " numbers, has " + std::to_string(i));
-    const auto number = field.empty() ? 0.0 : to_number(field);
+    const auto number = field.empty() ? 0.0 : to_number_of_any_program(field);
     if (!number || !is_usable(*number))
       return bad(in_quotes(field) + std::string(not_usable(field)));
     list.push_back(*number);

@@ -13,6 +13,7 @@
 
 #include "colour_range.hpp"
 #include "mesh_formats.hpp"
+#include "number_text.hpp"
 #include "ply_header.hpp"
 #include "srgb.hpp"
 #include "text_scanner.hpp"
@@ -66,7 +67,7 @@ public:
   std::optional<double> number(PlyType type) {
     if (format_ == PlyFormat::ascii) {
       word_ = words_.field_on_any_line();
-      return to_number(word_);
+      return to_number_of_any_program(word_);
     }
     if (bytes_.size() - at_ < size_of(type)) return std::nullopt;
     const bool native =

@@ -16,6 +16,7 @@
 #include <nendo/deform/triangles.hpp>
 
 #include "mesh_formats.hpp"
+#include "number_text.hpp"
 #include "srgb.hpp"
 #include "text_scanner.hpp"
 #include "usable.hpp"
@@ -205,7 +206,7 @@ Result<void> TextStl::vertex() {
   for (double& coordinate : place) {
     const std::string_view field = words_.field_on_any_line();
     if (field.empty()) return bad("the file is cut off within a vertex");
-    const auto number = to_number(field);
+    const auto number = to_number_of_any_program(field);
     if (!number || !is_usable(*number))
       return bad(in_quotes(field) + std::string(not_usable(field)));
     coordinate = *number;

@@ -81,6 +81,37 @@ TEST_SUITE("odd_models") {
     CHECK(model.mesh.look.vertex_colours.cols() == 0);
   }
 
+  TEST_CASE("of seven numbers of a vertex, the fourth is w and the last three are its colour") {
+    const auto model = read("v 0 0 0 1 1 0 0\nv 1 0 0 2 0 1 0\nv 0 1 0 1 0 0 1\nv 0 0 1 1 1 1 1\n"
+                            "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    REQUIRE(model.mesh.look.vertex_colours.cols() == 4);
+    CHECK(model.mesh.look.vertex_colours.col(0).head<3>() == Eigen::Vector3f(1, 0, 0));
+    CHECK(model.mesh.look.vertex_colours.col(1).head<3>() == Eigen::Vector3f(0, 1, 0));
+    CHECK(model.mesh.look.vertex_colours.col(2).head<3>() == Eigen::Vector3f(0, 0, 1));
+    CHECK(model.mesh.vertices.col(1) == Eigen::Vector3d(1, 0, 0));
+    REQUIRE(model.notes.size() == 1);
+    CHECK(model.notes[0].starts_with("the fourth number of 1 vertex is left out"));
+  }
+
+  TEST_CASE("exponents with D, as Fortran writes them, are read in each format of text") {
+    const std::string obj = "v 0 0 0\nv 1.5D+02 0 0\nv 0 25d-1 0\nf 1 2 3\n";
+    const std::string ply = "ply\nformat ascii 1.0\ncomment nendo\nelement vertex 3\n"
+                            "property double x\nproperty double y\nproperty double z\n"
+                            "element face 1\nproperty list uchar int vertex_index\nend_header\n"
+                            "0 0 0\n1.5D+02 0 0\n0 25d-1 0\n3 0 1 2\n";
+    const std::string stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
+                            "vertex 1.5D+02 0 0\nvertex 0 25d-1 0\nendloop\nendfacet\nendsolid a\n";
+    for (const std::string& text : {obj, ply, stl}) {
+      CAPTURE(text);
+      const auto model = read(text);
+      REQUIRE(model.mesh.vertices.cols() == 3);
+      CHECK(model.mesh.vertices.col(1) == Eigen::Vector3d(150, 0, 0));
+      CHECK(model.mesh.vertices.col(2) == Eigen::Vector3d(0, 2.5, 0));
+    }
+    for (const char* wrong : {"1D", "D+02", "1DD2", "1e2D2", "0x1D", "1.5D+400"})
+      CHECK_FALSE(parse("v 0 0 " + std::string(wrong) + "\n"));
+  }
+
   TEST_CASE("an index of 0 is refused with what to do") {
     const auto model = parse(v4 + "f 0 1 2\n");
     REQUIRE_FALSE(model);
@@ -163,6 +194,15 @@ TEST_SUITE("odd_models") {
         {"0.1 0.2 0.3 255 0 0\n0.1 0.2 0.4 1 2 3\n", "XYZ", "MeshLab"},
         {"\x89NENDO\r\n\1\0"s, "recording of Nendo", "nendo replay"},
         {"hello there\n", "'hello there'", "no OBJ"},
+        {"hello there\n", "'hello there'", "give the file of a model"},
+        {"[1, 2, 3]\n", "JSON or a list", "give the file of a model"},
+        {"{\"a\": 1}", "JSON, but no glTF", "give the file of a model"},
+        {"{\"type\": \"CityJSON\"}", "CityJSON", "export it"},
+        {"{\"type\": \"FeatureCollection\"}", "GeoJSON", "export it"},
+        {"{\"metadata\": {}, \"geometries\": []}", "three.js", "export it"},
+        {"{\"asset\": {\"version\": \"1.0\"}}", "glTF of version '1.0'", "as glTF 2"},
+        {"{\"asset\": {}}", "does not say its version", "as glTF 2"},
+        {"{\"asset\": {\"version\"", "damaged JSON", "export it once more"},
         {"\1\2\3\0\5\6"s, "binary data", "give the file of a model"},
     };
     for (const Case& one : cases) {
