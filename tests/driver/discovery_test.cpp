@@ -242,15 +242,14 @@ TEST_SUITE("discovery") {
     CHECK(port.node_missing);
     CHECK_FALSE(port.may_open);
     CHECK(port.access.empty());
-    for (const char* way :
-         {"docker run --device=/dev/ttyUSB0", "podman run --device=/dev/ttyUSB0",
-          "systemd-nspawn --bind=/dev/ttyUSB0", "lxc-device", "mknod -m 660 /dev/ttyUSB0 c 188 0"})
-      CHECK_MESSAGE(port.remedy.find(way) != std::string::npos, port.remedy);
+    // Which way it names depends on the container in which the test itself runs, if any.
+    CHECK(port.remedy == missing_node("/dev/ttyUSB0"));
+    CHECK(port.remedy.find("/dev/ttyUSB0") != std::string::npos);
     const auto glove = open_glove("serial:/dev/ttyUSB0");
     REQUIRE_FALSE(glove);
     CHECK(glove.error().code == Errc::no_device);
     CHECK(glove.error().message.find("no node") != std::string::npos);
-    CHECK(glove.error().message.find("--device=/dev/ttyUSB0") != std::string::npos);
+    CHECK(glove.error().message.find(port.remedy) != std::string::npos);
   }
 
   TEST_CASE("which container it is, its maker's marks tell, and only its way is told then") {
@@ -261,8 +260,10 @@ TEST_SUITE("discovery") {
     std::filesystem::remove(machine.real("/dev/ttyUSB0"));
     const TemporaryFolder root;
     const auto remedy = [&] { return missing_node("/dev/ttyUSB0", root.path()).value_or(""); };
-    CHECK(remedy().find("docker") != std::string::npos);
-    CHECK(remedy().find("lxc-device") != std::string::npos);
+    for (const char* way :
+         {"docker run --device=/dev/ttyUSB0", "podman run --device=/dev/ttyUSB0",
+          "systemd-nspawn --bind=/dev/ttyUSB0", "lxc-device", "mknod -m 660 /dev/ttyUSB0 c 188 0"})
+      CHECK_MESSAGE(remedy().find(way) != std::string::npos, remedy());
     std::filesystem::create_directories(root.path() / "run/systemd");
     const auto marked = [&](const std::string& kind) {
       std::ofstream(root.path() / "run/systemd/container") << kind << '\n';

@@ -81,11 +81,14 @@ TEST_SUITE("fivedt_usb_driver") {
     glove->stop();
   }
 
-  TEST_CASE("the hand is the glove's to say, and a receiver without a glove is no glove") {
+  TEST_CASE("hand= goes before what the glove says, and a receiver without a glove is no glove") {
     MockedUsb bus;
     UltraModel model(0x0002);
     auto& device = bus.plug(model, 3, 7);
-    CHECK(open_glove("usb:5d70:0002?hand=left").error().code == Errc::usage);
+    {
+      const auto turned = required(open_glove("usb:5d70:0002?hand=left"));
+      CHECK(turned->info().side == Side::left);
+    }
     CHECK(open_glove("usb:5d70:0000").error().code == Errc::no_device);
     MockedUsb::with_model(device, [&] { model.silent = true; });
     const auto silent = open_glove("usb:5d70:0002");
