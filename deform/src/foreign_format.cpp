@@ -161,7 +161,9 @@ bool is_3ds(std::string_view bytes) noexcept {
 }
 
 std::optional<std::string> text_format(std::string_view bytes) {
-  const std::string_view text = trimmed(without_mark(bytes.substr(0, 4096)));
+  const std::string_view whole = without_mark(bytes.substr(0, 4096));
+  const std::string_view text =
+      whole.substr(std::min(whole.find_first_not_of(" \t\r\n"), whole.size()));
   if (begins_with_word(text, "<!doctype html") || begins_with_word(text, "<html"))
     return "is a page of the web and not the file itself; download it by the page's own button or "
            "its raw link";
@@ -172,7 +174,7 @@ std::optional<std::string> text_format(std::string_view bytes) {
       text.starts_with("0\r\nSECTION") || text.starts_with("999\n"))
     return "is a DXF file" + std::string(by_cad);
   // IGES: lines of 80 letters, and in column 73 the S of the start section.
-  if (text.size() > 80 && text.substr(72, 8).starts_with("S      1"))
+  if (whole.size() > 80 && whole.substr(72, 8).starts_with("S      1"))
     return "is an IGES file" + std::string(by_cad);
   const std::string_view first = text.substr(0, text.find_first_of("\r\n"));
   for (const std::string_view off : {"OFF"sv, "COFF"sv, "NOFF"sv, "STOFF"sv})
