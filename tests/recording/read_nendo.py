@@ -128,7 +128,10 @@ def end(b):
 
 
 def sent(b):
-    return {"gloves": [dict(zip(("delivered", "missed", "refused", "bad"), b.take("4Q"))) for _ in range(b.take("B"))]}
+    told = {"gloves": [dict(zip(("delivered", "missed", "refused", "bad"), b.take("4Q"))) for _ in range(b.take("B"))]}
+    if b.left() > 0:
+        told["known"] = [dict(zip(("missed", "clamped"), b.take("BQ"))) for _ in told["gloves"]]
+    return told
 
 
 def tape(b):
