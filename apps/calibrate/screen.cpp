@@ -150,7 +150,7 @@ std::vector<std::string> calibration_lines(const CalibrationPicture& picture,
   add_wrapped(below, undetermined_text(picture.undetermined), size.columns);
   if (below.empty()) below.emplace_back(); // what is below stays where it is
   add_wrapped(below,
-              "SPACE begin  b redo  t take once more  s skip  x leave out  n anew  w write  q quit",
+              "SPACE begin  b redo  t take more  s skip  x leave out  n anew  w write  q quit",
               size.columns);
   const int room = size.rows - static_cast<int>(lines.size() + below.size());
   const auto between = middle(picture, size.columns, room);

@@ -122,6 +122,8 @@ Result<session::RunOptions> run_options(const Options& options) {
 
 /// Draws the face's expressions of a recording on one sheet.
 Result<void> draw_strip(const Options& options, const std::string& recording) {
+  const auto take = takes::read_take(recording);
+  if (!take) return take.error();
   picture_command::PictureOptions picture;
   picture.file = recording;
   picture.out = options.picture;
@@ -129,10 +131,13 @@ Result<void> draw_strip(const Options& options, const std::string& recording) {
   picture.size = "520x420";
   picture.by_glove_time = true;
   for (const auto& [caption, time_s] : expressions) {
-    if (time_s > options.duration_s - 1.0) break; // the gloves may have begun before the recording
+    // The gloves began before the recording: on a busy machine, by seconds.
+    const double recorded_s = time_s + take->first_sample_s;
+    if (!(recorded_s >= 0.0 && recorded_s <= take->duration_s)) continue;
     picture.times += (picture.times.empty() ? "" : ",") + std::to_string(time_s);
     picture.captions += (picture.captions.empty() ? "" : ",") + std::string(caption);
   }
+  if (picture.times.empty()) picture.strip = 2;
   return picture_command::draw_picture(picture);
 }
 

@@ -103,8 +103,9 @@ CalibrationFormat format_of(std::string_view text) noexcept {
   const bool is_named = text.find("cyberglove_calibration") != std::string_view::npos;
   while (const auto line = lines.next()) {
     const std::string plain = TableReader::plain(line->substr(0, most_head_bytes));
-    if (plain.find(gain_rad) != std::string::npos || plain.find(gain_deg) != std::string::npos)
-      return CalibrationFormat::csv;
+    const bool has_gain =
+        plain.find(gain_rad) != std::string::npos || plain.find(gain_deg) != std::string::npos;
+    if (has_gain && plain.find('=') == std::string::npos) return CalibrationFormat::csv;
     if (line->starts_with('#') || plain.starts_with("sep=")) continue;
     if (line->starts_with('<')) return CalibrationFormat::ros_xml;
     if (is_named || looks_like_yaml(*line)) return CalibrationFormat::ros_yaml;

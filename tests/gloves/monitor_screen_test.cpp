@@ -89,6 +89,8 @@ TEST_SUITE("monitor_screen") {
     CHECK(glove.lines()[0].ends_with("aaa~"));
     glove.picture.wearer.clear();
     glove.picture.stats.records = 359;
+    CHECK(glove.lines()[1].find("359 delivered, losses on the line unknown") != std::string::npos);
+    glove.picture.stats.tells_missed = true;
     CHECK(glove.lines()[1].find("11 ms old, 359 delivered, nothing lost") == 0);
     CHECK(glove.lines()[1].ends_with("q quit, r ranges"));
     glove.sample.wrist_switch = WristSwitch::on;

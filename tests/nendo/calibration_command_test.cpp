@@ -246,7 +246,7 @@ TEST_SUITE("calibration command") {
     CHECK(is_one_line_about(calibration({"import", file, "--user", "anna"}).err, "--hand"));
     CHECK(is_one_line_about(calibration({"import", file, "--hand", "left"}).err, "--user"));
     CHECK(calibration({"import", file, "--user", "a", "--hand", "both"}).exit_code == 2);
-    CHECK(calibration({"export", "anna", "--format", "xml"}).exit_code == 2);
+    CHECK(calibration({"export", "anna", "--format", "pdf"}).exit_code == 2);
     CHECK(calibration({"import", "/no/such/file", "--user", "a", "--hand", "left"}).exit_code == 5);
     CHECK(calibration({"show", "nobody"}).exit_code == 5);
     CHECK(calibration({}).exit_code == 2);

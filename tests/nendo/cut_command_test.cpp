@@ -136,14 +136,15 @@ TEST_SUITE("nendo cut") {
     refused({cube, "--plane", "1,2,3", "--out", out}, 2, "--plane 1,2,3: use X,Y,Z,NX,NY,NZ");
     refused({cube, "--plane", "1,2,3,0,0,0", "--out", out}, 2, "a normal that is not zero");
     refused({cube, "--plane", "1,2,3,0,nan,1", "--out", out}, 2, "use X,Y,Z,NX,NY,NZ");
-    refused({cube, "--plane", plane, "--out", place("p%d.stl")}, 2, "--out");
+    refused({cube, "--plane", plane, "--out", place("p%d.fbx")}, 2, "--out");
     refused({cube, cube, "--plane", plane, "--out", out}, 2, "use a name with %s");
     refused({cube, "--plane", plane, "--out", out, "--edge", "-1"}, 2, "--edge");
     refused({cube, "--plane", "9,0,0,1,0,0", "--out", out}, 1, "cube.obj: is not touched");
     refused({place("none.obj"), "--plane", plane, "--out", out}, 5, "none.obj");
     refused({cube, "--wire", place("none.txt"), "--out", out}, 5, "none.txt");
     test::write_file(place("bad.txt"), "0,0,0,1,1,1\n0,0,x,1,1,1\n");
-    refused({cube, "--wire", place("bad.txt"), "--out", out}, 5, "bad.txt:2: use six numbers");
+    refused({cube, "--wire", place("bad.txt"), "--out", out}, 5,
+            "bad.txt:2: column 3: 'x' is no finite number; a row has six");
     test::write_file(place("short.txt"), "0,0,0,1,1,1\n");
     refused({cube, "--wire", place("short.txt"), "--out", out}, 5, "fewer than two places");
     save("own1.obj", test::cube_of_cells(2));

@@ -450,7 +450,7 @@ TEST_SUITE("deform") {
     CHECK(with({"--out", out, "--radius", "1", "--common-radius", "1+2"}).exit_code == 2);
     CHECK(with({"--out", out, "--radius", "1", "--kernel", "gauss"}).exit_code == 2);
     CHECK(with({"--out", out, "--radius", "1", "--polynomial", "cubic"}).exit_code == 2);
-    CHECK(with({"--out", (folder.path() / "o.stl").string(), "--radius", "1"}).exit_code == 2);
+    CHECK(with({"--out", (folder.path() / "o.fbx").string(), "--radius", "1"}).exit_code == 2);
     CHECK(with({"--out", "/no/such/folder/o.obj", "--radius", "1"}).exit_code == 1);
     CHECK(with({"--out", out, "--radius", "1"}).exit_code == 0);
   }

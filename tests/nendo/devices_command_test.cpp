@@ -25,7 +25,8 @@ const std::set<std::string> device_keys{"device",
                                         "holders",
                                         "left_alone",
                                         "latency_timer_ms",
-                                        "holders_complete"};
+                                        "holders_complete",
+                                        "node_missing"};
 
 std::set<std::string> keys_of(const nlohmann::json& object) {
   std::set<std::string> keys;

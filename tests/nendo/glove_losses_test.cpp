@@ -168,6 +168,7 @@ TEST_SUITE("glove_losses") {
     for (const std::string options : {"", "?rate=60"}) {
       const auto refused = test::nendo(
           {"record", "serial:" + one, "serial:" + two + options, "--out", take, "--duration", "1"});
+      CAPTURE(refused.err);
       CHECK(refused.exit_code == 2);
       const std::string mark = "say ";
       const auto at = refused.err.find(mark);

@@ -108,8 +108,9 @@ TEST_SUITE("nendo repair") {
     CHECK(cut.err.find("--repair") != std::string::npos);
     const auto join = test::nendo({"join", bad, ball, "--out", place("j.obj")});
     CHECK(join.err.find("`nendo repair IN --out OUT`") != std::string::npos);
-    const std::vector<std::string> run{"run",  "--mesh", bad,        "--refine",   "400", "--mode",
-                                       "clay", "--left", "sim:open", "--duration", "0.1"};
+    const std::vector<std::string> run{
+        "run",    "--mesh",    bad,          "--refine", "400",   "--mode",        "clay",
+        "--left", "sim:press", "--duration", "0.1",      "--out", place("run.obj")};
     const auto refine = test::nendo(run);
     CHECK(refine.exit_code == 5);
     CHECK(refine.err.find("`nendo repair IN --out OUT`") != std::string::npos);

@@ -208,7 +208,8 @@ TEST_SUITE("stress report") {
                                               {"delivered", 359},
                                               {"missed", 98},
                                               {"refused", 7},
-                                              {"bad_records", 12}});
+                                              {"bad_records", 12},
+                                              {"clamped_values", 0}});
     CHECK(report["gloves"][1]["sent"] == 90);
     CHECK(report["missed"] == 0); // the loop's deadlines
     CHECK(text_of(options, outcome, nullptr)
