@@ -1,6 +1,7 @@
 // Losses on the line and in the program: every command that sums up a glove tells them apart.
 
 #include <csignal>
+#include <filesystem>
 #include <map>
 #include <sstream>
 
@@ -166,6 +167,7 @@ TEST_SUITE("glove_losses") {
     test::appears(one);
     test::appears(two);
     for (const std::string options : {"", "?rate=60"}) {
+      std::filesystem::remove(take);
       const auto refused = test::nendo(
           {"record", "serial:" + one, "serial:" + two + options, "--out", take, "--duration", "1"});
       CAPTURE(refused.err);
