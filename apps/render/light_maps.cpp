@@ -25,44 +25,6 @@ bool casts(const Surface& surface) {
   return surface.material.opacity > 0.0F;
 }
 
-/// The scene's model and the hands' skins.
-std::vector<Caster> casters_of(const Scene& scene) {
-  std::vector<Caster> casters{{&scene.model, scene.model.corners}};
-  for (const Surface& veil : scene.veils)
-    if (casts(veil)) casters.push_back({&veil, veil.corners});
-  return casters;
-}
-
-/// The least size that a sample of a map can have, whatever the map's direction.
-float min_sample_m(const Surface& surface, int side) {
-  if (surface.places.empty()) return 0.0F;
-  Vector3f lowest = surface.places.front(), highest = lowest;
-  for (const Vector3f& place : surface.places) {
-    lowest = lowest.cwiseMin(place);
-    highest = highest.cwiseMax(place);
-  }
-  Vector3f sides = highest - lowest;
-  std::sort(sides.begin(), sides.end());
-  // A direction along the longest side leaves the second one, turned by 45 degrees at most.
-  return sides[1] / std::numbers::sqrt2_v<float> / static_cast<float>(side - 4);
-}
-
-/// The corners of the triangles that have an edge longer than that.
-std::vector<std::uint32_t> large_triangles(const Surface& surface, float length_m) {
-  std::vector<std::uint32_t> large;
-  for (std::size_t at = 0; at + 2 < surface.corners.size(); at += 3) {
-    const std::array corners{surface.corners[at], surface.corners[at + 1], surface.corners[at + 2]};
-    float longest = 0.0F;
-    for (std::size_t k = 0; k < 3; ++k)
-      longest = std::max(
-          longest,
-          (surface.places[corners[k]] - surface.places[corners[(k + 1) % 3]]).squaredNorm());
-    if (!(longest <= length_m * length_m))
-      large.insert(large.end(), corners.begin(), corners.end());
-  }
-  return large;
-}
-
 // Evenly over the sphere, by the golden angle.
 std::vector<Vector3f> directions() {
   std::vector<Vector3f> all;
@@ -109,7 +71,7 @@ Vector3f turned(const Vector3f& direction, double azimuth_deg) {
       .normalized();
 }
 
-DepthMap::DepthMap(std::span<const Caster> casters, const Vector3f& toward, int side)
+DepthMap::DepthMap(const Scene& scene, const Vector3f& toward, int side)
     : corner_(Eigen::Vector2f::Zero()), side_(side),
       nearest_(static_cast<std::size_t>(side) * static_cast<std::size_t>(side),
                std::numeric_limits<float>::lowest()) {
@@ -120,18 +82,23 @@ DepthMap::DepthMap(std::span<const Caster> casters, const Vector3f& toward, int 
   constexpr float far = 1e6F; // what is beyond casts no shadow
   Eigen::Vector2f lowest = Eigen::Vector2f::Constant(far);
   Eigen::Vector2f highest = -lowest;
-  for (const Caster& caster : casters)
-    for (const Vector3f& place : caster.surface->places) {
+  const auto count = [&](const Surface& surface) {
+    for (const Vector3f& place : surface.places) {
       if (!(place.cwiseAbs().maxCoeff() < far)) continue;
       const Eigen::Vector2f across = rows_.topRows<2>() * place;
       lowest = lowest.cwiseMin(across);
       highest = highest.cwiseMax(across);
     }
+  };
+  count(scene.model);
+  for (const Surface& veil : scene.veils)
+    if (casts(veil)) count(veil);
   if (!(lowest.x() < highest.x() || lowest.y() < highest.y())) return;
   sample_m_ = (highest - lowest).maxCoeff() / static_cast<float>(side - 4);
   corner_ = lowest - Eigen::Vector2f::Constant(2.0F * sample_m_);
-  for (const Caster& caster : casters)
-    cast(caster);
+  cast(scene.model);
+  for (const Surface& veil : scene.veils)
+    if (casts(veil)) cast(veil);
 }
 
 Vector3f DepthMap::on_map(const Vector3f& place) const noexcept {
@@ -139,20 +106,15 @@ Vector3f DepthMap::on_map(const Vector3f& place) const noexcept {
   return {(along.x() - corner_.x()) / sample_m_, (along.y() - corner_.y()) / sample_m_, along.z()};
 }
 
-void DepthMap::cast(const Caster& caster) {
-  std::vector<Vector3f> places(caster.surface->places.size());
-  std::transform(caster.surface->places.begin(), caster.surface->places.end(), places.begin(),
+void DepthMap::cast(const Surface& surface) {
+  std::vector<Vector3f> places(surface.places.size());
+  std::transform(surface.places.begin(), surface.places.end(), places.begin(),
                  [this](const Vector3f& place) { return on_map(place); });
-  cast_triangles(caster, places);
-  if (caster.by_points) cast_points(places);
-}
-
-void DepthMap::cast_triangles(const Caster& caster, const std::vector<Vector3f>& places) {
-  for (std::size_t at = 0; at + 2 < caster.corners.size(); at += 3) {
+  for (std::size_t at = 0; at + 2 < surface.corners.size(); at += 3) {
     std::array<RasterCorner, 3> corners;
     Vector3f depth;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vector3f& on = places[caster.corners[at + k]];
+      const Vector3f& on = places[surface.corners[at + k]];
       corners[k] = {static_cast<double>(on.x()), static_cast<double>(on.y())};
       depth[static_cast<Eigen::Index>(k)] = on.z();
     }
@@ -163,16 +125,6 @@ void DepthMap::cast_triangles(const Caster& caster, const std::vector<Vector3f>&
                                       static_cast<float>(b[1]) * depth[1] +
                                       static_cast<float>(b[2]) * depth[2]);
     });
-  }
-}
-
-void DepthMap::cast_points(const std::vector<Vector3f>& places) {
-  const auto limit = static_cast<float>(side_);
-  for (const Vector3f& on : places) {
-    if (!(on.x() >= 0.0F && on.y() >= 0.0F && on.x() < limit && on.y() < limit)) continue;
-    float& nearest = nearest_[static_cast<std::size_t>(on.y()) * static_cast<std::size_t>(side_) +
-                              static_cast<std::size_t>(on.x())];
-    nearest = std::max(nearest, on.z());
   }
 }
 
@@ -205,18 +157,12 @@ Lighting::Lighting(const Scene& scene, double azimuth_deg)
   maps_->key = {turned(key_direction, azimuth_deg), {1.42F, 1.35F, 1.25F}};
   maps_->fill = {turned(fill_direction, azimuth_deg), {0.22F, 0.27F, 0.34F}};
   maps_->rim = {turned(rim_direction, azimuth_deg), {0.62F, 0.66F, 0.72F}};
-  std::vector<Caster> casters = casters_of(scene);
-  maps_->key_shadow.emplace_back(casters, maps_->key.toward, shadow_side);
-  // Of a model of a million triangles, most cover no sample of the sky's maps. Its vertices cover
-  // the same samples without looking at each triangle for each direction.
-  const std::vector<std::uint32_t> large =
-      large_triangles(scene.model, 0.5F * min_sample_m(scene.model, sky_side));
-  if (2 * large.size() < scene.model.corners.size()) casters.front() = {&scene.model, large, true};
+  maps_->key_shadow.emplace_back(scene, maps_->key.toward, shadow_side);
   std::vector<std::pair<float, float>> model;
   std::vector<std::vector<std::pair<float, float>>> veils(scene.veils.size());
   std::vector<std::vector<std::pair<float, float>>> grounds(scene.grounds.size());
   for (const Vector3f& toward : directions()) {
-    const DepthMap map(casters, toward, sky_side);
+    const DepthMap map(scene, toward, sky_side);
     add_sky(scene.model, map, toward, model);
     for (std::size_t at = 0; at < veils.size(); ++at)
       if (casts(scene.veils[at])) add_sky(scene.veils[at], map, toward, veils[at]);

@@ -1,27 +1,19 @@
 #pragma once
 // Shadow maps: how much of the lights and the sky reaches a surface.
 
-#include <cstdint>
-#include <span>
 #include <vector>
 
 #include "render/picture.hpp"
 
 namespace nendo::render {
 
-/// A surface that casts shadows, by some of its triangles, and perhaps by its vertices as points.
-struct Caster {
-  const Surface* surface;
-  std::span<const std::uint32_t> corners; ///< of triangles, three each
-  bool by_points = false;
-};
-
 /// The depth of a scene along a direction. For each sample of a square, it keeps the place that is
 /// nearest to the light.
 class DepthMap {
 public:
   /// `toward` is a unit vector to the light, and `side` is the number of samples along each side.
-  DepthMap(std::span<const Caster> casters, const Eigen::Vector3f& toward, int side);
+  /// The map has all that casts shadows: the model and the hands' skins.
+  DepthMap(const Scene& scene, const Eigen::Vector3f& toward, int side);
 
   /// Returns true if nothing is nearer to the light than `place` by more than slack_m. Outside of
   /// the map, everything is lit.
@@ -33,9 +25,7 @@ public:
 
 private:
   Eigen::Vector3f on_map(const Eigen::Vector3f& place) const noexcept;
-  void cast(const Caster& caster);
-  void cast_triangles(const Caster& caster, const std::vector<Eigen::Vector3f>& places);
-  void cast_points(const std::vector<Eigen::Vector3f>& places);
+  void cast(const Surface& surface);
 
   Eigen::Matrix3f rows_; ///< across, across, toward the light
   Eigen::Vector2f corner_;

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -47,22 +46,6 @@ SceneHand hand_at(Side side, const Eigen::Vector3d& place) {
   T_world_wrist.translation() = place;
   const auto pose = hand::HandSkeleton(side).pose({}, T_world_wrist);
   return {pose, pose.fingertip_positions() - 0.1 * TipPlaces::Ones(), false};
-}
-
-/// Two balls that nearly touch, and so shade each other.
-deform::Mesh two_balls(std::uint32_t rings, std::uint32_t segments) {
-  deform::Mesh mesh = test::sphere(rings, segments, 1.0);
-  const deform::Mesh one = mesh;
-  const auto count = static_cast<std::uint32_t>(one.vertices.cols());
-  const std::uint32_t corners = one.face_starts.back();
-  mesh.vertices.conservativeResize(3, 2 * one.vertices.cols());
-  mesh.vertices.rightCols(one.vertices.cols()) =
-      one.vertices.colwise() + Eigen::Vector3d(2.05, 0.3, 0.0);
-  for (std::size_t face = 1; face < one.face_starts.size(); ++face)
-    mesh.face_starts.push_back(corners + one.face_starts[face]);
-  for (const std::uint32_t vertex : one.face_corners)
-    mesh.face_corners.push_back(count + vertex);
-  return mesh;
 }
 
 } // namespace
@@ -160,27 +143,6 @@ TEST_SUITE("picture") {
     const int before_nothing = blueness();
     scene.veils.back().material.opacity = scene.veils.back().material.rim_opacity = 1.0F;
     CHECK(blueness() == before_nothing);
-  }
-
-  TEST_CASE("a model of very many triangles has the light and shade that it has with fewer") {
-    // Of the finer one, most triangles are smaller than a sample of the sky's maps.
-    const auto drawn = [](std::uint32_t rings, std::uint32_t segments) {
-      const deform::Mesh mesh = two_balls(rings, segments);
-      const Scene scene = scene_of(mesh, moment_of(mesh));
-      const View view{30.0, 12.0};
-      const Lighting lighting(scene, view.azimuth_deg);
-      return draw(lighting, framing(scene.outline(), view, 1.0), {200, 200});
-    };
-    const Image few = drawn(120, 240), many = drawn(420, 780);
-    double sum = 0.0, farthest = 0.0;
-    for (int y = 0; y < 200; ++y)
-      for (int x = 0; x < 200; ++x) {
-        const double off = std::abs(grey(few.at(x, y)) - grey(many.at(x, y)));
-        sum += off;
-        farthest = std::max(farthest, off);
-      }
-    CHECK(sum / (200.0 * 200.0) < 0.5);
-    CHECK(farthest < 40.0); // at the edges, a pixel's part
   }
 
   TEST_CASE("hostile shapes are drawn as far as they can be, and nothing crashes") {
