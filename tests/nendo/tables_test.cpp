@@ -58,7 +58,8 @@ TEST_SUITE("tables") {
               -0.005},
              {"numpy.txt", "# time_s index_mcp wrist_yaw\n1e1 7.4e1 170.0\n10.0111 72 168\n",
               10.0}}) {
-      CAPTURE(name);
+      const std::string& file = name;
+      CAPTURE(file);
       const auto samples = samples_of(files.write(name, text));
       REQUIRE(samples.size() == 2);
       CHECK(samples[0]["raw"]["index_mcp"] == 74);
