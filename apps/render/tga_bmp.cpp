@@ -38,9 +38,10 @@ Error too_many_pixels() {
                    " pixels along a side; make it smaller");
 }
 
+/// Bytes beyond the end are 0.
 std::uint32_t number_at(std::string_view bytes, std::size_t at, std::size_t width) noexcept {
   std::uint32_t number = 0;
-  for (std::size_t k = 0; k < width; ++k)
+  for (std::size_t k = 0; k < width && at + k < bytes.size(); ++k)
     number |= std::uint32_t{static_cast<unsigned char>(bytes[at + k])} << (8 * k);
   return number;
 }
