@@ -1,6 +1,6 @@
 #include "export/morph_normals.hpp"
 
-#include <Eigen/Geometry>
+#include <nendo/deform/vertex_areas.hpp>
 
 namespace nendo::exporting {
 
@@ -15,37 +15,19 @@ constexpr double min_area_fraction = 1e-12; ///< of the square of the diagonal
 
 MorphNormals::MorphNormals(const deform::Mesh& mesh) {
   const double diagonal = deform::diagonal_of(mesh.vertices);
-  scale_ = diagonal > 0.0 ? 1.0 / diagonal : 1.0;
-  const Eigen::Vector3d origin =
-      mesh.vertices.cols() > 0 ? Eigen::Vector3d(mesh.vertices.col(0)) : Eigen::Vector3d::Zero();
-  shape_.vertices = (mesh.vertices.colwise() - origin) * scale_;
+  if (diagonal > 0.0) unit_ = diagonal;
+  shape_.vertices = mesh.vertices;
   shape_.face_starts = mesh.face_starts;
   shape_.face_corners = mesh.face_corners;
-  rest_areas_ = areas(0.0, {});
+  rest_areas_ = deform::vertex_areas(shape_, shape_.vertices, unit_);
   lengths_ = rest_areas_.colwise().norm();
   for (double& length : lengths_)
     if (length < min_area_fraction) length = 0.0;
 }
 
-/// The sums of the areas of each vertex's faces, at rest plus so many times the displacement.
+/// The areas at rest plus so many times the displacement.
 deform::Points MorphNormals::areas(double way_factor, const Eigen::Matrix3Xf& way) const {
-  deform::Points sums = deform::Points::Zero(3, shape_.vertices.cols());
-  const auto place = [&](std::uint32_t corner) -> Eigen::Vector3d {
-    const auto vertex = static_cast<Index>(shape_.face_corners[corner]);
-    if (way_factor == 0.0) return shape_.vertices.col(vertex);
-    return shape_.vertices.col(vertex) + way_factor * scale_ * way.col(vertex).cast<double>();
-  };
-  for (std::size_t face = 0; face < shape_.face_count(); ++face) {
-    const std::uint32_t begin = shape_.face_starts[face];
-    const std::uint32_t end = shape_.face_starts[face + 1];
-    const Eigen::Vector3d first = place(begin);
-    Eigen::Vector3d area = Eigen::Vector3d::Zero();
-    for (std::uint32_t at = begin + 1; at + 1 < end; ++at)
-      area += (place(at) - first).cross(place(at + 1) - first);
-    for (std::uint32_t at = begin; at < end; ++at)
-      sums.col(shape_.face_corners[at]) += area;
-  }
-  return sums;
+  return deform::vertex_areas(shape_, shape_.vertices + way_factor * way.cast<double>(), unit_);
 }
 
 Eigen::Matrix3Xf MorphNormals::rest() const {

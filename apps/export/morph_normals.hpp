@@ -27,8 +27,8 @@ private:
   deform::Points areas(double way_factor, const Eigen::Matrix3Xf& way) const;
   Eigen::Matrix3Xf divided(const deform::Points& turn) const;
 
-  deform::Mesh shape_; ///< vertices and faces alone, in units of the model's diagonal
-  double scale_ = 1.0; ///< these units on a model unit
+  deform::Mesh shape_; ///< vertices and faces alone
+  double unit_ = 1.0;  ///< of areas: the model's diagonal
   deform::Points rest_areas_;
   Eigen::VectorXd lengths_; ///< of the areas at rest; 0 where a vertex has no area
 };

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <nendo/deform/face_box.hpp>
+#include <nendo/deform/vertex_areas.hpp>
 
 namespace nendo::deform {
 
@@ -34,27 +35,30 @@ std::string_view remark_on(const Mesh& mesh) noexcept {
   return {};
 }
 
-Points vertex_normals(const Mesh& mesh) {
-  Points normals = Points::Zero(3, mesh.vertices.cols());
-  const double diagonal = diagonal_of(mesh.vertices);
-  if (!(diagonal > 0.0)) return normals;
+Points vertex_areas(const Mesh& mesh, const Points& places, double unit) {
+  Points areas = Points::Zero(3, places.cols());
   const auto corner = [&](std::uint32_t at) {
     return static_cast<Eigen::Index>(mesh.face_corners[at]);
   };
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const std::uint32_t begin = mesh.face_starts[face];
     const std::uint32_t end = mesh.face_starts[face + 1];
-    // Twice the area vector of the polygon. In units of the diagonal, so that no model is too small
-    // for the square.
     const auto edge_from_first = [&](std::uint32_t at) -> Eigen::Vector3d {
-      return (mesh.vertices.col(corner(at)) - mesh.vertices.col(corner(begin))) / diagonal;
+      return (places.col(corner(at)) - places.col(corner(begin))) / unit;
     };
     Eigen::Vector3d area = Eigen::Vector3d::Zero();
     for (std::uint32_t at = begin + 1; at + 1 < end; ++at)
       area += edge_from_first(at).cross(edge_from_first(at + 1));
     for (std::uint32_t at = begin; at < end; ++at)
-      normals.col(corner(at)) += area;
+      areas.col(corner(at)) += area;
   }
+  return areas;
+}
+
+Points vertex_normals(const Mesh& mesh) {
+  const double diagonal = diagonal_of(mesh.vertices);
+  if (!(diagonal > 0.0)) return Points::Zero(3, mesh.vertices.cols());
+  Points normals = vertex_areas(mesh, mesh.vertices, diagonal);
   for (Eigen::Index vertex = 0; vertex < normals.cols(); ++vertex) {
     const double length = normals.col(vertex).stableNorm();
     if (length > 0.0) normals.col(vertex) /= length;
