@@ -8,7 +8,7 @@
 namespace nendo::deform {
 
 /// Notes what is not read of the document: what moves it, further scenes, variants, textures that
-/// are not of the base colour, further colours and texture coordinates, points and lines, unknown
+/// are not of the base colour, further colours of vertices, points and lines, unknown
 /// extensions. It looks at all meshes, also at those that no scene has.
 void note_left_out(const GltfDocument& document, NoteSum& notes);
 

@@ -73,7 +73,7 @@ Result<Mesh> parse(const Source& source, Format format, const ReadOptions& optio
   return parse_obj_of(source, notes);
 }
 
-/// The first bytes of an OBJ are text. What a program left behind its end may be anything.
+/// The first bytes of an OBJ are text. What a program left after its end may be anything.
 bool is_binary(std::string_view text) noexcept {
   const std::string_view head = text.substr(0, 4096);
   const std::size_t zero = head.find('\0');

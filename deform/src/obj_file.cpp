@@ -135,7 +135,7 @@ std::string if_from_zero(std::string_view field) {
              : "";
 }
 
-/// Three coordinates, and behind them w, three parts of a colour, or w and those. Vertices without
+/// Three coordinates, and after them w, three parts of a colour, or w and those. Vertices without
 /// a colour are white, if others have one.
 Result<void> ObjParser::vertex() {
   if (auto done = coordinates(vertices_, 3, 3); !done) return done;

@@ -176,7 +176,7 @@ Result<void> TextStl::statement(std::string_view word) {
     in_solid_ = false;
     object_ = no_index;
   } else if (is_word(word, "normal")) {
-    // Computed anew, because it changes.
+    // It is computed, because it changes.
     for (int number = 0; number < 3; ++number)
       words_.field_on_any_line();
   } else if (is_word(word, "loop")) {

@@ -16,7 +16,7 @@ namespace nendo::deform {
 /// Stands for no material, no name, and so on, where an index would be.
 inline constexpr std::uint32_t no_index = std::numeric_limits<std::uint32_t>::max();
 
-/// A picture file as it was read, PNG or JPEG. It is not decoded, and may be damaged.
+/// A picture file as it was read, of any format. It is not decoded, and may be damaged.
 struct Texture {
   /// Its name relative to the model's folder. It never leads out of that folder.
   std::string file;

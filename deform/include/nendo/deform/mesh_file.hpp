@@ -71,12 +71,12 @@ std::vector<std::string> lost_in_file(const std::filesystem::path& path, const M
 /// Writes OBJ, PLY (binary little-endian) or STL (binary), by the ending of the path, in any case.
 /// It turns the model so that the axis `up` of the file points up. It writes a temporary file
 /// beside `path`, syncs and renames it, so that a file of that name is always whole. Coordinates
-/// survive a round trip exactly, but in an STL, which has floats; Mesh::offset is added to
-/// them. An OBJ has all that the mesh has;
-/// its materials go beside it into `materials`, or into a file of its name with .mtl if that is
-/// empty, and textures too. They never replace a file that was not written by this function. A PLY
-/// has colours of vertices alone, an STL has triangles alone. Blocks for as long as the disk does.
-/// Errors: usage (unknown ending), failed (a file cannot be written).
+/// survive a round trip exactly, but in an STL, which has floats; Mesh::offset is added to them. An
+/// OBJ has all that the mesh has; its materials and textures go beside it, the materials into
+/// `materials`, or into a file of its name with .mtl if that is empty. They never replace a file
+/// that was not written by this function. A PLY has colours of vertices alone, an STL has triangles
+/// alone. Blocks for as long as the disk does. Errors: usage (unknown ending), failed (a file
+/// cannot be written, or the model is too large for an STL).
 Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh,
                         const std::filesystem::path& materials = {}, UpAxis up = UpAxis::y);
 
