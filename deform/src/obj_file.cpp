@@ -117,11 +117,15 @@ Result<void> ObjParser::statement() {
   if (keyword == "v") return vertex();
   if (keyword == "vt") return coordinates(texcoords_, 1, 2);
   if (keyword == "f" || keyword == "fo") return face();
-  if (keyword == "usemtl") material_.set(joined_fields(scanner_));
-  if (keyword == "g") group_.set(joined_fields(scanner_));
-  if (keyword == "o") object_.set(joined_fields(scanner_));
-  if (keyword == "mtllib") libraries_.push_back(joined_fields(scanner_));
-  if (keyword.empty())
+  if (keyword == "usemtl")
+    material_.set(joined_fields(scanner_));
+  else if (keyword == "g")
+    group_.set(joined_fields(scanner_));
+  else if (keyword == "o")
+    object_.set(joined_fields(scanner_));
+  else if (keyword == "mtllib")
+    libraries_.push_back(joined_fields(scanner_));
+  else if (keyword.empty())
     read_polypaint(scanner_.rest_of_line(), painted_);
   else
     left_out_.statement(keyword, scanner_.line());

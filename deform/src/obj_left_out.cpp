@@ -8,16 +8,13 @@ namespace nendo::deform {
 
 namespace {
 
-using namespace std::string_view_literals;
-
 /// Statements of the format (Wavefront's Appendix B1) that leave polygons as they are: normals,
 /// smoothing, display and the parts of curves, which curv and surf stand for.
 constexpr std::string_view harmless[] = {
-    "vn",     "vp",     "s",      "mg",   "lod",  "bevel",  "c_interp",   "d_interp",
-    "usemap", "maplib", "deg",    "bmat", "step", "cstype", "parm",       "trim",
-    "hole",   "scrv",   "sp",     "end",  "con",  "ctech",  "stech",      "call",
-    "csh",    "usemtl", "mtllib", "g",    "o",    "v",      "vt",         "f",
-    "fo",     "bzp",    "bsp",    "cdc",  "cdp",  "res",    "shadow_obj", "trace_obj",
+    "vn",     "vp",     "s",   "mg",   "lod",  "bevel",  "c_interp",   "d_interp",
+    "usemap", "maplib", "deg", "bmat", "step", "cstype", "parm",       "trim",
+    "hole",   "scrv",   "sp",  "end",  "con",  "ctech",  "stech",      "call",
+    "csh",    "bzp",    "bsp", "cdc",  "cdp",  "res",    "shadow_obj", "trace_obj",
 };
 
 std::string several(std::size_t count, const char* one, const char* more) {

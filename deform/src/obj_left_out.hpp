@@ -10,8 +10,8 @@ namespace nendo::deform {
 
 class ObjLeftOut {
 public:
-  /// Counts the statement, if it is left out. Known ones that change no polygon, such as vn and s,
-  /// are none.
+  /// Counts a statement that is not read. Known ones that change no polygon, such as vn and s, do
+  /// not count.
   void statement(std::string_view keyword, std::size_t line);
   void weight(double w) noexcept { weights_ += w != 1.0 ? 1 : 0; }
 
