@@ -176,16 +176,16 @@ std::vector<Eigen::Vector3d> GltfPlacedMesh::moved(const GltfDocument& document,
     return moved;
   }
   const GltfNumbers of = document.numbers(gltf_count(attributes, "JOINTS_0", 0));
-  const GltfNumbers weights = document.numbers(gltf_count(attributes, "WEIGHTS_0", 0));
-  if (of.width != 4 || weights.width != 4 || of.count != places.count ||
-      weights.count != places.count)
+  const GltfNumbers shares = document.numbers(gltf_count(attributes, "WEIGHTS_0", 0));
+  if (of.width != 4 || shares.width != 4 || of.count != places.count ||
+      shares.count != places.count)
     throw GltfRefusal{"a skinned primitive has not four joints for each vertex"};
   for (std::size_t at = 0; at < places.count; ++at) {
     const Eigen::Vector3d place(places.row(at));
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double whole = 0.0;
     for (std::size_t k = 0; k < 4; ++k) {
-      const double weight = weights.row(at)[k];
+      const double weight = shares.row(at)[k];
       if (!(weight > 0.0)) continue;
       const double joint = of.row(at)[k];
       if (!(joint >= 0.0 && joint < static_cast<double>(joints->size())))
