@@ -13,24 +13,34 @@ namespace {
 
 using Json = GltfDocument::Json;
 
-Eigen::Affine3d own_transform(const Json& node) {
+/// Of these three, each may be null. The rotation is x, y, z, w.
+Eigen::Affine3d transform_by(const double* translation, const double* rotation,
+                             const double* scale) {
   Eigen::Affine3d transform = Eigen::Affine3d::Identity();
+  if (translation != nullptr) transform.translate(Eigen::Vector3d(translation));
+  if (rotation != nullptr) {
+    const Eigen::Quaterniond turn(rotation[3], rotation[0], rotation[1], rotation[2]);
+    if (turn.norm() > 0.0) transform.rotate(turn.normalized());
+  }
+  if (scale != nullptr) transform.scale(Eigen::Vector3d(scale));
+  return transform;
+}
+
+Eigen::Affine3d own_transform(const Json& node) {
   const auto matrix = gltf_numbers(node, "matrix", 16);
   if (!matrix.empty()) {
+    Eigen::Affine3d transform = Eigen::Affine3d::Identity();
     const Eigen::Matrix4d given = Eigen::Map<const Eigen::Matrix4d>(matrix.data());
     transform.matrix().topRows<3>() = given.topRows<3>();
     return transform;
   }
   const auto translation = gltf_numbers(node, "translation", 3);
-  const auto rotation = gltf_numbers(node, "rotation", 4); // x, y, z, w
+  const auto rotation = gltf_numbers(node, "rotation", 4);
   const auto scale = gltf_numbers(node, "scale", 3);
-  if (!translation.empty()) transform.translate(Eigen::Vector3d(translation.data()));
-  if (!rotation.empty()) {
-    const Eigen::Quaterniond turn(rotation[3], rotation[0], rotation[1], rotation[2]);
-    if (turn.norm() > 0.0) transform.rotate(turn.normalized());
-  }
-  if (!scale.empty()) transform.scale(Eigen::Vector3d(scale.data()));
-  return transform;
+  const auto data_of = [](const std::vector<double>& numbers) {
+    return numbers.empty() ? nullptr : numbers.data();
+  };
+  return transform_by(data_of(translation), data_of(rotation), data_of(scale));
 }
 
 /// The numbers of a list of nodes.
@@ -143,17 +153,14 @@ std::vector<Eigen::Affine3d> instances_of(const GltfDocument& document, const Js
   const GltfNumbers rotations = numbers("ROTATION", 4);
   const GltfNumbers scales = numbers("SCALE", 3);
   if (count > max_placed_meshes) throw GltfRefusal{"has more than a million instances of meshes"};
-  std::vector<Eigen::Affine3d> transforms(count, Eigen::Affine3d::Identity());
-  for (std::size_t at = 0; at < count; ++at) {
-    Eigen::Affine3d& transform = transforms[at];
-    if (translations.count > 0) transform.translate(Eigen::Vector3d(translations.row(at)));
-    if (rotations.count > 0) {
-      const double* const row = rotations.row(at); // x, y, z, w
-      const Eigen::Quaterniond turn(row[3], row[0], row[1], row[2]);
-      if (turn.norm() > 0.0) transform.rotate(turn.normalized());
-    }
-    if (scales.count > 0) transform.scale(Eigen::Vector3d(scales.row(at)));
-  }
+  std::vector<Eigen::Affine3d> transforms;
+  transforms.reserve(count);
+  const auto row_of = [](const GltfNumbers& all, std::size_t at) {
+    return all.count > 0 ? all.row(at) : nullptr;
+  };
+  for (std::size_t at = 0; at < count; ++at)
+    transforms.push_back(
+        transform_by(row_of(translations, at), row_of(rotations, at), row_of(scales, at)));
   return transforms;
 }
 
