@@ -123,7 +123,7 @@ Result<ReadModel> parse_text(Source source, const ReadOptions& options) {
   if (const auto foreign = foreign_format(source.text)) return bad_file(source.name, *foreign);
   source.text = without_mark(source.text);
   // Some programs end a text with zeros.
-  if (!is_gltf(source.text) && !is_stl(source.text, source.name) && !is_ply(source.text))
+  if (format_of(source) == Format::obj)
     source.text = source.text.substr(0, source.text.find_last_not_of('\0') + 1);
   const Format format = format_of(source);
   if (format == Format::obj && is_binary(source.text))
