@@ -48,7 +48,7 @@ private:
     Texture texture{name_of(image, source, file), nullptr};
     if (file.contents && file.contents->size() > left_) {
       file.contents.reset();
-      file.lack = ": is too large; at most 256 MiB are read of all textures together";
+      file.lack = too_large_lack;
     }
     if (file.contents) {
       left_ -= file.contents->size();

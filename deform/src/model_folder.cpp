@@ -180,7 +180,7 @@ FolderFile ModelFolder::read(const std::string& name, std::uint64_t max_bytes) c
   else if (!std::filesystem::is_regular_file(path, failed))
     file.lack = ": is no regular file";
   else if (!failed && bytes > max_bytes)
-    file.lack = ": is too large; at most 256 MiB are read of all textures together";
+    file.lack = too_large_lack;
   else
     file.lack = ": cannot be read; check its permissions";
   return file;

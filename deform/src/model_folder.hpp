@@ -26,6 +26,11 @@ struct FolderFile {
   std::string lack;
 };
 
+/// FolderFile::lack of a file that is too large.
+inline constexpr std::string_view too_large_lack =
+    ": is too large; at most 256 MiB are read of all textures together, and 16 MiB of a file of "
+    "materials";
+
 class ModelFolder {
 public:
   /// The largest material file, and the largest texture, that is read.
