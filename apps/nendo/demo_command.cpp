@@ -121,9 +121,8 @@ Result<session::RunOptions> run_options(const Options& options) {
 }
 
 /// Draws the face's expressions of a recording on one sheet.
-Result<void> draw_strip(const Options& options, const std::string& recording) {
-  const auto take = takes::read_take(recording);
-  if (!take) return take.error();
+Result<void> draw_strip(const Options& options, const std::string& recording,
+                        const takes::Take& take) {
   picture_command::PictureOptions picture;
   picture.file = recording;
   picture.out = options.picture;
@@ -132,34 +131,34 @@ Result<void> draw_strip(const Options& options, const std::string& recording) {
   picture.by_glove_time = true;
   for (const auto& [caption, time_s] : expressions) {
     // The gloves began before the recording: on a busy machine, by seconds.
-    const double recorded_s = time_s + take->first_sample_s;
-    if (!(recorded_s >= 0.0 && recorded_s <= take->duration_s)) continue;
+    const double recorded_s = time_s + take.first_sample_s;
+    if (!(recorded_s >= 0.0 && recorded_s <= take.duration_s)) continue;
     picture.times += (picture.times.empty() ? "" : ",") + std::to_string(time_s);
     picture.captions += (picture.captions.empty() ? "" : ",") + std::string(caption);
   }
   if (picture.times.empty()) picture.strip = 2;
-  return picture_command::draw_picture(picture);
+  return picture_command::draw_picture(picture, take);
 }
 
 /// Exports a recording as an animation for Blender.
-Result<void> animate(const session::RunOptions& run, const std::string& out) {
-  auto model = takes::read_take(run.recording.file);
-  if (!model) return model.error();
+Result<void> animate(const takes::Take& take, const std::string& out) {
   exporting::GltfOptions gltf;
   gltf.generator = "Nendo " NENDO_VERSION;
   exporting::Choice choice;
   choice.rate_hz = exporting::animators_rate_hz;
-  const auto done = exporting::export_gltf(model->open, choice, gltf, out);
+  const auto done = exporting::export_gltf(take.open, choice, gltf, out);
   if (!done) return done.error();
   return {};
 }
 
 /// Makes pictures and the animation, and says where everything is.
 Result<void> show(const Options& options, const session::RunOptions& run) {
+  const auto take = takes::read_take(run.recording.file);
+  if (!take) return take.error();
   if (makes_strip(options))
-    if (auto drawn = draw_strip(options, run.recording.file); !drawn) return drawn;
+    if (auto drawn = draw_strip(options, run.recording.file, *take); !drawn) return drawn;
   const std::string animation = beside(options.out, ".glb");
-  if (auto done = animate(run, animation); !done) return done;
+  if (auto done = animate(*take, animation); !done) return done;
   std::cout << (makes_strip(options) ? "\nTen fingers, six faces: "
                                      : "\nBefore and after, with the hands: ")
             << options.picture << "\nThe animation, for Blender: " << animation

@@ -7,6 +7,7 @@
 #include <nendo/base/result.hpp>
 
 #include "render/scene.hpp"
+#include "takes/take.hpp"
 
 namespace nendo::app::picture_command {
 
@@ -30,8 +31,9 @@ struct PictureOptions {
   bool no_hands = false;
 };
 
-/// Draws the picture and writes it. Blocks. Errors: usage (an option, which the message names),
-/// those of takes::read_take(), failed (it cannot be written).
-Result<void> draw_picture(const PictureOptions& options);
+/// Draws the picture of a take, which was read from `options.file`, and writes it. Blocks. Errors:
+/// usage (an option, which the message names), those of takes::read_take(), failed (it cannot be
+/// written).
+Result<void> draw_picture(const PictureOptions& options, const takes::Take& take);
 
 } // namespace nendo::app::picture_command

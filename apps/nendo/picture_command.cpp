@@ -21,7 +21,6 @@
 #include "render/picture.hpp"
 #include "takes/key_poses.hpp"
 #include "takes/model_files.hpp"
-#include "takes/take.hpp"
 
 namespace nendo::app::picture_command {
 namespace {
@@ -226,22 +225,16 @@ void colour_by_distance(const takes::Take& take, const std::vector<SceneFrame>& 
   cli::note(text);
 }
 
-} // namespace
-
-Result<void> draw_picture(const PictureOptions& options) {
-  const auto wanted = check(options);
-  if (!wanted) return wanted.error();
-  const auto take = takes::read_take(options.file, takes::reading(options.up));
-  if (!take) return take.error();
-  const auto times = times_of(options, *take);
+Result<void> draw_take(const Options& options, const Wanted& wanted, const takes::Take& take) {
+  const auto times = times_of(options, take);
   if (!times) return times.error();
-  const SceneBuilder builder(take->rest, take->units_per_metre);
+  const SceneBuilder builder(take.rest, take.units_per_metre);
   SceneParts parts = options.parts;
   parts.hands = parts.vectors = !options.no_hands;
   std::vector<Scene> scenes;
   std::vector<SceneFrame> frames;
   for (const double time : *times) {
-    auto scene_frame = take->frame_at(time);
+    auto scene_frame = take.frame_at(time);
     if (!scene_frame) return scene_frame.error();
     if (scene_frame->mesh == nullptr)
       builder.build(*scene_frame, parts, scenes.emplace_back());
@@ -251,14 +244,30 @@ Result<void> draw_picture(const PictureOptions& options) {
     if (options.colour == "distance") frames.push_back(*std::move(scene_frame));
   }
   if (options.colour == "distance") {
-    if (!(take->duration_s > 0.0))
+    if (!(take.duration_s > 0.0))
       return bad("--colour distance", "is for a recording or a timeline; a mesh went nowhere");
-    colour_by_distance(*take, frames, scenes);
+    colour_by_distance(take, frames, scenes);
   }
   return write_panels(options,
                       options.turntable > 0
-                          ? draw_turntable(scenes, options.turntable, *wanted)
-                          : draw_strip(scenes, *times, parts_of(options.captions), *wanted));
+                          ? draw_turntable(scenes, options.turntable, wanted)
+                          : draw_strip(scenes, *times, parts_of(options.captions), wanted));
+}
+
+Result<void> make_picture(const Options& options) {
+  const auto wanted = check(options);
+  if (!wanted) return wanted.error();
+  const auto take = takes::read_take(options.file, takes::reading(options.up));
+  if (!take) return take.error();
+  return draw_take(options, *wanted, *take);
+}
+
+} // namespace
+
+Result<void> draw_picture(const PictureOptions& options, const takes::Take& take) {
+  const auto wanted = check(options);
+  if (!wanted) return wanted.error();
+  return draw_take(options, *wanted, take);
 }
 
 void add(cli::Command& program) {
@@ -296,7 +305,7 @@ void add(cli::Command& program) {
                    "Of a recording: draws where hands touch clay, and how hard");
   command.add_flag("--no-hands", options->no_hands, "Of a recording: leaves the hands out");
   command.on_chosen([options] {
-    const auto done = draw_picture(*options);
+    const auto done = make_picture(*options);
     return done ? 0 : cli::report(done.error());
   });
 }
