@@ -103,7 +103,7 @@ Result<session::RunOptions> run_options(const Options& options) {
   run.loop.rate_hz = rate_hz;
   run.loop.sculptor.mode = *mode;
   run.recording.file = options.record;
-  if (options.record.empty()) {
+  if (options.record.empty() && options.what != "clay") { // of which nothing is recorded
     run.recording.file = beside(options.out, ".nendo");
     std::error_code ignored; // if it stays, the recording's own check says so
     std::filesystem::remove(run.recording.file, ignored);
