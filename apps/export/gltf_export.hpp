@@ -3,10 +3,10 @@
 // targets, and the hands as skinned skeletons. Units are metres and y points up, as on the stage. A
 // node scales the model to the stage.
 //
-// - Vertices are those of the mesh, in its order; behind them stand copies of those that have
-//   several texture coordinates. Faces become triangles as deform's triangles.hpp says.
-// - Each material has a primitive, with its base colour and its texture. Vertices keep their
-//   colours.
+// - Each material has a primitive, with its base colour and its texture, and with vertices of its
+//   own (gltf_parts.hpp): those of the mesh, in its order, and behind them copies of those that
+//   have several texture coordinates. They keep their colours. Faces become triangles as deform's
+//   triangles.hpp says.
 // - A take of a puppet of Type-1 is exact. Each function is a target that has its name, and a
 //   frame's weights are the values of the functions, from 0 to 1 (function_morphs.hpp).
 // - Any other take of Type-1 is exact. For each control vector it has targets along each axis and
@@ -16,7 +16,8 @@
 // - Where the model becomes another one, as when it is subdivided, or its puppet is edited, each
 //   part of the take has a mesh of its own. Its node is shown in its time by an animation of its
 //   scale, which is 0 otherwise.
-// - Normals are those of the rest shape only. Blender computes its own from the faces.
+// - Targets also move the normals, as far as sums of targets can (morph_normals.hpp). Blender
+//   computes its own from the faces.
 // - A take of gloves alone has no model, and the file then has the hands alone.
 // - Time 0 is that of the first frame. Weights and joints are interpolated linearly, as players do.
 
