@@ -17,6 +17,7 @@
 #include <nendo/deform/cut.hpp>
 #include <nendo/deform/face_box.hpp>
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/deform/offset.hpp>
 #include <nendo/deform/repair.hpp>
 
 #include "cli/cli.hpp"
@@ -188,13 +189,7 @@ Result<void> write_parts(const std::string& file, const CutModel& cut, const Opt
 
 std::string box_text(const Mesh& mesh) {
   const Box box = box_of_faces(mesh);
-  const Eigen::Vector3d low = box.lowest + mesh.offset, high = box.highest + mesh.offset;
-  const int digits = mesh.offset.isZero(0.0) ? 6 : 10; // far from zero the first ones say nothing
-  char text[160];
-  std::snprintf(text, sizeof text, "(%.*g, %.*g, %.*g) to (%.*g, %.*g, %.*g)", digits, low.x(),
-                digits, low.y(), digits, low.z(), digits, high.x(), digits, high.y(), digits,
-                high.z());
-  return text;
+  return place_text(box.lowest, mesh.offset) + " to " + place_text(box.highest, mesh.offset);
 }
 
 Result<void> cut_file(const std::string& file, const AnyBlade& blade, const Options& options) {

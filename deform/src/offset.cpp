@@ -1,6 +1,7 @@
 #include <nendo/deform/offset.hpp>
 
 #include <cmath>
+#include <cstdio>
 
 #include <nendo/deform/face_box.hpp>
 
@@ -38,6 +39,15 @@ void count_from(const Eigen::Vector3d& offset, Mesh& mesh) noexcept {
       mesh.vertices.row(axis).array() += before - offset[axis];
   }
   mesh.offset = offset;
+}
+
+std::string place_text(const Eigen::Vector3d& place, const Eigen::Vector3d& offset) {
+  const Eigen::Vector3d at = place + offset;
+  const int digits = offset.isZero(0.0) ? 6 : 10; // far from zero the first ones say nothing
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.*g, %.*g, %.*g)", digits, at.x(), digits, at.y(), digits,
+                at.z());
+  return text;
 }
 
 } // namespace nendo::deform

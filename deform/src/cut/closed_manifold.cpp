@@ -1,8 +1,8 @@
 #include <nendo/deform/closed_manifold.hpp>
 
 #include <algorithm>
-#include <cstdio>
 
+#include <nendo/deform/offset.hpp>
 #include <nendo/deform/triangles.hpp>
 
 #include "cut/half_edges.hpp"
@@ -86,12 +86,7 @@ void check_fans(std::span<const std::uint32_t> starts, const HalfEdges& edges, F
 }
 
 std::string place_of(const Mesh& mesh, std::uint32_t vertex) {
-  const Eigen::Vector3d at = mesh.vertices.col(static_cast<Eigen::Index>(vertex)) + mesh.offset;
-  const int digits = mesh.offset.isZero(0.0) ? 6 : 10; // far from zero the first ones say nothing
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.*g, %.*g, %.*g)", digits, at.x(), digits, at.y(), digits,
-                at.z());
-  return text;
+  return place_text(mesh.vertices.col(vertex), mesh.offset);
 }
 
 } // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <deque>
 #include <utility>
 
@@ -38,14 +37,6 @@ Result<void> check_part(const JoinPart& part) {
   return {};
 }
 
-std::string place_text(const SpacePoint& place, const Eigen::Vector3d& offset) {
-  const int digits = offset.isZero(0.0) ? 6 : 10; // far from zero the first ones say nothing
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.*g, %.*g, %.*g)", digits, place[0] + offset[0], digits,
-                place[1] + offset[1], digits, place[2] + offset[2]);
-  return text;
-}
-
 /// The parts, counted from where the first one is. `moved` owns those that counted from elsewhere.
 std::vector<const Mesh*> counted_alike(std::span<const JoinPart> parts, std::deque<Mesh>& moved) {
   std::vector<const Mesh*> meshes;
@@ -62,10 +53,11 @@ std::vector<const Mesh*> counted_alike(std::span<const JoinPart> parts, std::deq
 Error explained(Error error, const TriangleSurface& surface, const Eigen::Vector3d& offset,
                 const JoinPart& part) {
   const auto pairs = self_intersections(surface.points, surface.faces, 1);
-  if (!pairs.empty())
-    error.message += "; " + part.name + " cuts itself near " +
-                     place_text(surface.points[surface.faces[pairs[0].first][0]], offset) +
-                     ", which `nendo repair` does not mend: remove that where it was made";
+  if (pairs.empty()) return error;
+  const SpacePoint& near = surface.points[surface.faces[pairs[0].first][0]];
+  error.message += "; " + part.name + " cuts itself near " +
+                   place_text(Eigen::Vector3d(near.data()), offset) +
+                   ", which `nendo repair` does not mend: remove that where it was made";
   return error;
 }
 

@@ -1,11 +1,11 @@
 #include "repair/holes.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include <nendo/deform/offset.hpp>
 #include <nendo/deform/triangles.hpp>
 
 #include "cut/blade.hpp"
@@ -20,13 +20,6 @@ namespace {
 
 /// Corners of the mesh, whose vertices stand in the order that the lid's faces need.
 using Rim = std::vector<std::uint32_t>;
-
-std::string hole_place(const Mesh& mesh, std::uint32_t corner) {
-  const Eigen::Vector3d at = mesh.vertices.col(mesh.face_corners[corner]) + mesh.offset;
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g)", at.x(), at.y(), at.z());
-  return text;
-}
 
 class HoleFiller {
 public:
@@ -46,6 +39,9 @@ private:
   SpacePoint point(std::uint32_t corner) const noexcept {
     const double* const at = mesh_.vertices.data() + 3 * std::size_t{mesh_.face_corners[corner]};
     return {at[0], at[1], at[2]};
+  }
+  std::string where(std::uint32_t corner) const {
+    return place_text(mesh_.vertices.col(mesh_.face_corners[corner]), mesh_.offset);
   }
   std::vector<SpacePoint> points_of(const Rim& rim) const {
     std::vector<SpacePoint> points;
@@ -85,8 +81,7 @@ Result<std::vector<Rim>> HoleFiller::rims() const {
       edge = before;
     }
     if (edge != first)
-      return Error{Errc::bad_input,
-                   "cannot be repaired: holes touch at " + hole_place(mesh_, edge)};
+      return Error{Errc::bad_input, "cannot be repaired: holes touch at " + where(edge)};
     rims.push_back(std::move(rim));
   }
   return rims;
@@ -115,7 +110,7 @@ Result<void> HoleFiller::check_bodies(const std::vector<Rim>& rims) const {
     const std::uint32_t part = part_of[mesh_.face_corners[rim[0]]];
     if (lids[part] <= max_lid_share * surface[part]) continue;
     return Error{Errc::bad_input,
-                 "cannot be repaired: its part at " + hole_place(mesh_, rim[0]) +
+                 "cannot be repaired: its part at " + where(rim[0]) +
                      " is a sheet without an inside, and to close it would only double it; give it "
                      "a thickness where it was made, or remove it"};
   }
@@ -214,7 +209,7 @@ Result<void> HoleFiller::fill(const Rim& rim) {
     return Error{
         Errc::bad_input,
         "cannot be repaired: the hole of " + std::to_string(rim.size()) + " edges at " +
-            hole_place(mesh_, rim[0]) +
+            where(rim[0]) +
             " is too crooked to be filled by triangles between its corners; close it where "
             "the model was made"};
   add(rim, lid);

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <nendo/deform/closed_manifold.hpp>
-#include <nendo/deform/cut.hpp>
+#include <nendo/deform/offset.hpp>
 #include <nendo/deform/triangles.hpp>
 
 #include "cut/cut_assembly.hpp"
@@ -23,13 +23,6 @@ namespace {
 
 constexpr double default_tolerance = 1e-5; // of the diagonal
 constexpr double largest_repairable = 1e60;
-
-std::string repair_place(const Mesh& mesh, std::uint32_t vertex) {
-  char text[96];
-  const Eigen::Vector3d at = mesh.vertices.col(vertex) + mesh.offset;
-  std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g)", at.x(), at.y(), at.z());
-  return text;
-}
 
 class Repairer {
 public:
@@ -68,6 +61,9 @@ private:
   void drop_strays();
   Result<void> check_volumes() const;
   std::vector<std::uint8_t> open_vertices() const;
+  std::string where(std::uint32_t vertex) const {
+    return place_text(mesh_.vertices.col(vertex), mesh_.offset);
+  }
 
   Repair result_;
   Mesh& mesh_;
@@ -129,8 +125,8 @@ Result<void> Repairer::turn() {
     return Error{Errc::bad_input,
                  "cannot be repaired: its surface has one side only, as a Möbius strip has, so it "
                  "has no inside; cut it open at the edge between " +
-                     repair_place(mesh_, alike.one_sided->first) + " and " +
-                     repair_place(mesh_, alike.one_sided->second) + " where it was made"};
+                     where(alike.one_sided->first) + " and " + where(alike.one_sided->second) +
+                     " where it was made"};
   result_.turned = alike.turned;
   return {};
 }
@@ -205,8 +201,7 @@ Result<void> Repairer::check_volumes() const {
   });
   for (std::uint32_t part = 0; part < count; ++part)
     if (!(std::abs(volume[part]) > 1e-9 * std::pow(area[part], 1.5)))
-      return Error{Errc::bad_input, "cannot be repaired: its part at " +
-                                        repair_place(mesh_, first[part]) +
+      return Error{Errc::bad_input, "cannot be repaired: its part at " + where(first[part]) +
                                         " has no inside: both of its sides lie in one place; give "
                                         "it a thickness where it was made, or remove it"};
   return {};

@@ -3,6 +3,8 @@
 // float holds a place to a share of its distance from zero. So that nothing depends on that
 // distance, the vertices of such a model count from a place beside it (Mesh::offset).
 
+#include <string>
+
 #include <nendo/deform/mesh.hpp>
 
 namespace nendo::deform {
@@ -15,5 +17,9 @@ Eigen::Vector3d usual_offset(const Mesh& mesh) noexcept;
 
 /// Makes the vertices count from that place. The model stays where it is.
 void count_from(const Eigen::Vector3d& offset, Mesh& mesh) noexcept;
+
+/// Returns a place of a mesh with that offset as people look for it, in file coordinates:
+/// "(0, 1, 2.5)".
+std::string place_text(const Eigen::Vector3d& place, const Eigen::Vector3d& offset);
 
 } // namespace nendo::deform
