@@ -1,7 +1,8 @@
 #include "cut_assembly.hpp"
 
 #include <algorithm>
-#include <numeric>
+
+#include "union_find.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -297,32 +298,18 @@ CutAssembly assemble(const ChosenCut& cut, CutSurface& surface) {
 
 std::uint32_t number_parts(const Mesh& mesh, std::vector<std::uint32_t>& part_of_vertex) {
   const auto count = static_cast<std::size_t>(mesh.vertices.cols());
-  std::vector<std::uint32_t> root(count);
-  std::iota(root.begin(), root.end(), 0U);
-  const auto find = [&](std::uint32_t vertex) {
-    while (root[vertex] != vertex) {
-      root[vertex] = root[root[vertex]];
-      vertex = root[vertex];
-    }
-    return vertex;
-  };
+  UnionFind sets(count);
   std::vector<std::uint8_t> used(count, 0);
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t first = find(mesh.face_corners[mesh.face_starts[face]]);
-    std::uint32_t least = first;
+  for (std::size_t face = 0; face < mesh.face_count(); ++face)
     for (std::uint32_t at = mesh.face_starts[face]; at < mesh.face_starts[face + 1]; ++at) {
       used[mesh.face_corners[at]] = 1;
-      const std::uint32_t other = find(mesh.face_corners[at]);
-      root[std::max(least, other)] = std::min(least, other);
-      least = std::min(least, other);
+      sets.join(mesh.face_corners[mesh.face_starts[face]], mesh.face_corners[at]);
     }
-  }
-  // The root is the least vertex of its part.
   part_of_vertex.assign(count, no_index);
   std::uint32_t parts = 0;
   for (std::uint32_t vertex = 0; vertex < count; ++vertex) {
     if (used[vertex] == 0) continue;
-    const std::uint32_t least = find(vertex);
+    const std::uint32_t least = sets.find(vertex);
     part_of_vertex[vertex] = least == vertex ? parts++ : part_of_vertex[least];
   }
   return parts;

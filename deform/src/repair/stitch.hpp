@@ -7,7 +7,7 @@
 
 #include <nendo/deform/mesh.hpp>
 
-#include "repair/union_find.hpp"
+#include "union_find.hpp"
 
 namespace nendo::deform {
 
