@@ -4,6 +4,8 @@
 #include <chrono>
 #include <thread>
 
+#include <nendo/hand/stuck_watch.hpp>
+
 #include "cli/cli.hpp"
 
 namespace nendo::gloves {
@@ -32,32 +34,16 @@ std::string sensors_in_words(SensorMask sensors) {
   return text;
 }
 
-std::vector<std::string> StuckNotices::changes(const GloveSample& sample,
-                                               const hand::ActiveCalibration& calibration) {
-  const SensorMask now{calibration.left_out(sample.side).bits & sample.present.bits};
-  const SensorMask before = known_.value_or(now);
-  known_ = now;
-  std::vector<std::string> sentences;
-  for_each_of({now.bits & ~before.bits}, [&](Sensor sensor) {
-    sentences.push_back(std::string(name_of(sensor)) + " stands still at " +
-                        std::to_string(sample[sensor].value) +
-                        " while the hand moves: it is left out, and estimated from the sensors "
-                        "beside");
-  });
-  for_each_of({before.bits & ~now.bits}, [&](Sensor sensor) {
-    sentences.push_back(std::string(name_of(sensor)) + " moves again: it is measured");
-  });
-  return sentences;
-}
-
-std::vector<std::string> StuckNotices::changes(SensorMask left_out) {
+std::vector<std::string> StuckNotices::changes(SensorMask left_out, const GloveSample* sample) {
   const SensorMask before = known_.value_or(left_out);
   known_ = left_out;
   std::vector<std::string> sentences;
   for_each_of({left_out.bits & ~before.bits}, [&](Sensor sensor) {
-    sentences.push_back(std::string(name_of(sensor)) +
-                        " stands still while the hand moves: it is left out, and estimated from "
-                        "the sensors beside");
+    const std::string place =
+        sample != nullptr ? " at " + std::to_string((*sample)[sensor].value) : std::string();
+    sentences.push_back(std::string(name_of(sensor)) + " stands still" + place +
+                        " while the hand moves: it is left out, and estimated from the sensors "
+                        "beside");
   });
   for_each_of({before.bits & ~left_out.bits}, [&](Sensor sensor) {
     sentences.push_back(std::string(name_of(sensor)) + " moves again: it is measured");

@@ -8,7 +8,6 @@
 
 #include <nendo/driver/glove.hpp>
 #include <nendo/driver/sample.hpp>
-#include <nendo/hand/active_calibration.hpp>
 
 namespace nendo::gloves {
 
@@ -19,12 +18,10 @@ bool is_one(SensorMask sensors) noexcept;
 /// Notices which sensors begin to be left out, and which come back.
 class StuckNotices {
 public:
-  /// Returns a sentence for each sensor that was not left out before and is now, and for each that
-  /// is no more. What is left out of the first sample was told where the calibration was.
-  std::vector<std::string> changes(const GloveSample& sample,
-                                   const hand::ActiveCalibration& calibration);
-  /// Likewise where the counts are not known.
-  std::vector<std::string> changes(SensorMask left_out);
+  /// Returns a sentence for each sensor that was not left out before and is now, with its count if
+  /// the sample is given, and for each that is no more. What is left out at first was said where
+  /// the calibration was found.
+  std::vector<std::string> changes(SensorMask left_out, const GloveSample* sample = nullptr);
 
 private:
   std::optional<SensorMask> known_;

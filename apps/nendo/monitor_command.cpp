@@ -54,8 +54,8 @@ struct Monitored {
     if (!wanted() || !ring.try_pop(sample)) return false;
     const hand::Calibration& followed = calibrations.follow(sample);
     if (wearer != nullptr) active = &followed;
-    left_out = {calibrations.left_out(sample.side).bits & sample.present.bits};
-    news = stuck.changes(sample, calibrations);
+    left_out = calibrations.left_out(sample);
+    news = stuck.changes(left_out, &sample);
     ++shown;
     return true;
   }

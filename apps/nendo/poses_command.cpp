@@ -71,7 +71,7 @@ public:
   PoseStream(gloves::OpenHand& hand, const Options& options, gloves::PoseOutput& output,
              std::uint64_t& written)
       : hand_(hand), options_(options), output_(output), written_(written),
-        start_(hand.first.arrival), calibration_(hand.wearer), source_(hand.glove->info().source),
+        start_(hand.first.arrival), calibration_(hand.wearer),
         left_(skeleton_for(Side::left, hand)), right_(skeleton_for(Side::right, hand)),
         grid_(start_, rate_of(options)) {}
 
@@ -92,8 +92,8 @@ public:
 private:
   bool take(const GloveSample& sample) {
     const GloveSample passed = gate_.pass(sample, calibration_.follow(sample));
-    for (const std::string& sentence : stuck_.changes(sample, calibration_))
-      cli::note(source_ + ": " + sentence);
+    for (const std::string& sentence : stuck_.changes(calibration_.left_out(sample), &sample))
+      cli::note(hand_.glove->info().source + ": " + sentence);
     return grid_.take(
         passed, [this](HostTime time, const GloveSample& newest) { return put(time, newest); });
   }
@@ -109,7 +109,7 @@ private:
     if (is_over(time) || is_enough() || cli::stop_requested()) return false;
     const Side side = output_.only_side().value_or(sample.side);
     const auto& skeleton = side == Side::left ? left_ : right_;
-    const SensorMask left_out{calibration_.left_out(sample.side).bits & sample.present.bits};
+    const SensorMask left_out = calibration_.left_out(sample);
     const auto angles = hand::joint_angles(sample, calibration_.of(sample.side), left_out);
     // A glove does not know where it is: the forearm ends at the origin.
     state_ = output_.put(time, side, skeleton.pose(angles, Eigen::Isometry3d::Identity()), angles,
@@ -128,7 +128,6 @@ private:
   hand::ActiveCalibration calibration_;
   hand::SensorGate gate_;
   gloves::StuckNotices stuck_;
-  std::string source_;
   hand::HandSkeleton left_;
   hand::HandSkeleton right_;
   gloves::SampleGrid grid_;

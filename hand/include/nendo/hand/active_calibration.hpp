@@ -51,6 +51,10 @@ public:
     if (stuck_ && stuck_->side() == side) mask.bits |= stuck_->stuck().bits;
     return mask;
   }
+  /// Returns those of the sample's own sensors that are to be left out. Wait-free.
+  SensorMask left_out(const GloveSample& sample) const noexcept {
+    return {left_out(sample.side).bits & sample.present.bits};
+  }
   /// Returns what watches for stuck sensors, or null if nothing does.
   const StuckWatch* stuck() const noexcept { return stuck_ ? &*stuck_ : nullptr; }
 
