@@ -38,11 +38,10 @@ void report_none(const driver::GloveInfo& glove, Side side) {
 /// Of a user who has calibrations, but none for this glove and hand.
 void report_none_of(const driver::GloveInfo& glove, Side side, const std::string& user) {
   const std::string source = printable(glove.source);
-  cli::note(source + ": " + printable(user) + " has no calibration of a " +
-            std::string(name_of(side)) +
-            " hand for this glove, so angles are an average hand's; `nendo "
-            "calibrate " +
-            source + " --user " + printable(user) + "` makes one");
+  cli::note(
+      source + ": " + printable(user) + " has no calibration of a " + std::string(name_of(side)) +
+      " hand for this glove, so angles are an average hand's; `nendo calibrate " +
+      cli::shell_word(source) + " --user " + cli::shell_word(printable(user)) + "` makes one");
 }
 
 /// Fails if nothing at all is stored for the user, and names the users that there are.
@@ -55,11 +54,11 @@ Result<void> check_user(const hand::CalibrationList& stored, const std::string& 
   std::string known;
   for (const std::string& one : users)
     known.append(known.empty() ? "" : ", ").append(printable(one));
-  return Error{Errc::bad_input,
-               option + " " + printable(user) + ": no calibration of " + printable(user) +
-                   " is stored; " +
-                   (known.empty() ? "there is none of anybody" : "there are those of " + known) +
-                   "; `nendo calibrate GLOVE --user " + printable(user) + "` makes one"};
+  return Error{
+      Errc::bad_input,
+      option + " " + printable(user) + ": no calibration of " + printable(user) + " is stored; " +
+          (known.empty() ? "there is none of anybody" : "there are those of " + known) +
+          "; `nendo calibrate GLOVE --user " + cli::shell_word(printable(user)) + "` makes one"};
 }
 
 /// Tells of the calibration that a glove of the other hand would get in place of `glove`, if it is

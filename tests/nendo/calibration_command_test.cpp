@@ -388,6 +388,8 @@ TEST_SUITE("calibration command") {
     CHECK(one.exit_code == 0);
     CHECK(one.err.find("calibrated for anna, right hand") != std::string::npos);
     CHECK(one.err.find("anna has no calibration of a left hand") != std::string::npos);
+    CHECK(one.err.find("`nendo calibrate 'sim?hand=left' --user anna` makes one") !=
+          std::string::npos);
     const auto mixed = record({"--user", "anna", "--left-user", "berta"});
     CHECK(mixed.exit_code == 0);
     CHECK(mixed.err.find("calibrated for berta, left hand") != std::string::npos);
