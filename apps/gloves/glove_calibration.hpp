@@ -2,10 +2,12 @@
 // Chooses the wearer of a glove: the calibration that is asked for, the stored one, the default, or
 // what is learned while the glove is used; and the size of the hand. The options for both are here.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <nendo/base/result.hpp>
 #include <nendo/driver/glove.hpp>
@@ -37,9 +39,15 @@ struct FoundCalibration {
     recorded, ///< that of the recording which is replayed
     learned,  ///< what --adapt learns
   } kind = Kind::average;
-  std::string user;           ///< of a file
-  std::filesystem::path path; ///< likewise
+  std::string user;           ///< of a file, or of what is learned
+  std::filesystem::path path; ///< of a file
 };
+
+/// Returns "average", "stored", "recorded" or "learned".
+constexpr std::string_view name_of(FoundCalibration::Kind kind) noexcept {
+  constexpr std::array<std::string_view, 4> names{"average", "stored", "recorded", "learned"};
+  return names[static_cast<std::size_t>(kind)];
+}
 
 /// Returns the serial number that the glove reports, or an empty text.
 std::string serial_of(const driver::GloveInfo& glove);

@@ -81,22 +81,7 @@ ordered_json calibration_json(const FoundCalibration& found) {
   const auto text_or_null = [](const std::string& text) {
     return text.empty() ? ordered_json() : ordered_json(text);
   };
-  std::string_view kind;
-  switch (found.kind) {
-  case FoundCalibration::Kind::average:
-    kind = "average";
-    break;
-  case FoundCalibration::Kind::stored:
-    kind = "stored";
-    break;
-  case FoundCalibration::Kind::recorded:
-    kind = "recorded";
-    break;
-  case FoundCalibration::Kind::learned:
-    kind = "learned";
-    break;
-  }
-  return {{"kind", kind},
+  return {{"kind", name_of(found.kind)},
           {"user", text_or_null(found.user)},
           {"path", text_or_null(found.path.string())}};
 }
