@@ -62,11 +62,10 @@ void print_json(const driver::GloveInfo& info, const std::vector<gloves::SensorA
   cli::print_line(line);
 }
 
-// Returns "a, b, c" in lines of at most `width` characters.
+// Returns the words with blanks between, in lines of at most `width` characters.
 std::vector<std::string> wrapped(const std::vector<std::string>& words, std::size_t width) {
   std::vector<std::string> lines{""};
-  for (std::size_t at = 0; at < words.size(); ++at) {
-    const std::string word = words[at] + (at + 1 < words.size() ? "," : "");
+  for (const std::string& word : words) {
     std::string& line = lines.back();
     if (!line.empty() && line.size() + 1 + word.size() > width) {
       lines.push_back(word);
@@ -109,20 +108,19 @@ public:
     line.resize(name_width_ + 2, ' ');
     std::cout << line << printable(value) << '\n';
   }
-  /// Breaks a sentence at its blanks.
-  void print_sentence(std::string name, const std::string& sentence) const {
-    const std::size_t width = 80 - name_width_ - 2;
-    for (std::size_t at = 0; at < sentence.size();) {
-      std::size_t end = std::min(at + width, sentence.size());
-      if (end < sentence.size())
-        if (const std::size_t blank = sentence.rfind(' ', end); blank > at) end = blank;
-      print(std::exchange(name, ""), sentence.substr(at, end - at));
-      at = end < sentence.size() && sentence[end] == ' ' ? end + 1 : end;
-    }
-  }
-  void print_list(std::string name, const std::vector<std::string>& words) const {
+  void print_words(std::string name, const std::vector<std::string>& words) const {
     for (const auto& line : wrapped(words, 80 - name_width_ - 2))
       print(std::exchange(name, ""), line);
+  }
+  void print_sentence(std::string name, const std::string& sentence) const {
+    const auto words = fields_of(sentence, sentence.size());
+    print_words(std::move(name), {words.begin(), words.end()});
+  }
+  /// Prints "a, b, c".
+  void print_list(std::string name, std::vector<std::string> words) const {
+    for (std::size_t at = 0; at + 1 < words.size(); ++at)
+      words[at] += ',';
+    print_words(std::move(name), words);
   }
 
 private:
