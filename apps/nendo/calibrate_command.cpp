@@ -213,10 +213,12 @@ int fit_and_write(const Options& options, Wearer& wearer,
   wearer.about.calibration = fit->calibration;
   wearer.about.size = fit->size;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    if (wearer.sensors.has(static_cast<Sensor>(slot)))
+    if (wearer.sensors.has(static_cast<Sensor>(slot))) {
       note_quality(wearer, *fit, fitting.free_motion, slot);
-    else
+    } else { // a touch-up may begin with a line of it
       wearer.about.calibration.sensors[slot] = {};
+      wearer.about.quality[slot].reset();
+    }
   }
   const auto earlier = hand::write_calibration(wearer.path, wearer.about);
   if (!earlier) return cli::report(earlier.error());
@@ -274,6 +276,7 @@ int calibrate_from_capture(const Options& options) {
               (guide.is_again() ? " once more" : ""));
   Wearer wearer = describe(options, capture->side, capture->counts, sensors);
   if (const auto fine = find_files(wearer, options); !fine) return cli::report(fine.error());
+  if (wearer.known) guide.leave_out(wearer.known->left_out);
   return fit_and_write(options, wearer, guide);
 }
 

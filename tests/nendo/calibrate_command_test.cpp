@@ -1,6 +1,7 @@
 // nendo calibrate, as a wearer uses it: from a capture of the poses, and at a terminal.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -35,6 +36,7 @@ struct Before {
   double free_motion_s = 0.0;
   std::uint64_t free_motion_seed = 1;
   int slip_counts = 0; ///< of slots with even numbers; the others slip the other way
+  SensorMask stuck{};  ///< at 255
 };
 
 /// A wearer doing the poses one after another, recorded as nendo monitor --json --raw prints it.
@@ -54,6 +56,7 @@ void record(reference::Wearer& wearer, std::span<const hand::PoseId> poses,
       if (sample.present.has(static_cast<Sensor>(slot)))
         sample.raw[slot].value = static_cast<std::uint16_t>(
             std::clamp(static_cast<int>(sample.raw[slot].value) + slip, 0, 255));
+      if (before.stuck.has(static_cast<Sensor>(slot))) sample.raw[slot].value = 255;
     }
     file << gloves::sample_json(sample, nullptr) << '\n';
   };
@@ -175,6 +178,31 @@ TEST_SUITE("calibrate") {
       CHECK(mended->calibration.sensors[slot].gain_rad_per_count ==
             made->calibration.sensors[slot].gain_rad_per_count);
       CHECK(std::abs(found - (slot % 2 == 0 ? slip : -slip)) < 4.0);
+    }
+  }
+
+  TEST_CASE("a touch-up leaves out a sensor that broke, and the next one leaves it out as well") {
+    const TemporaryFolder folder;
+    REQUIRE(::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1) == 0);
+    reference::Wearer wearer(2006);
+    const auto capture = folder.path() / "capture.jsonl";
+    record(wearer, hand::quick_poses(), capture);
+    const auto quick =
+        nendo::test::nendo({"calibrate", "--from", capture, "--user", "ida", "--quick"});
+    REQUIRE_MESSAGE(quick.exit_code == 0, quick.err);
+    const auto path = hand::own_calibration_path("ida", "", wearer.side());
+    REQUIRE(path);
+    const SensorMask broken = mask_of(std::array{Sensor::index_pip});
+    for (const SensorMask stuck : {broken, SensorMask{}}) { // the second time it moves again
+      record(wearer, hand::touch_up_poses(), capture, {30.0, 2, 0, stuck});
+      const auto done =
+          nendo::test::nendo({"calibrate", "--from", capture, "--user", "ida", "--touch-up"});
+      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+      const auto mended = hand::read_calibration(*path);
+      REQUIRE_MESSAGE(mended, mended.error().message);
+      CHECK(mended->left_out == broken);
+      CHECK(mended->calibration[Sensor::index_pip].gain_rad_per_count == 0.0);
+      CHECK(mended->calibration[Sensor::ring_pip].gain_rad_per_count != 0.0);
     }
   }
 
