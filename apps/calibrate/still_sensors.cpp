@@ -1,7 +1,6 @@
 #include "calibrate/still_sensors.hpp"
 
 #include <algorithm>
-#include <span>
 
 #include <nendo/hand/calibration_poses.hpp>
 
@@ -37,12 +36,6 @@ bool asks_to_move(std::span<const PoseId> poses, std::size_t slot) {
 
 } // namespace
 
-bool StillSensors::stands_still(std::uint16_t low, std::uint16_t high) const noexcept {
-  const bool same_end =
-      high - low <= 1 && hand::is_at_end(low, scale_) && hand::is_at_end(high, scale_);
-  return high - low <= scale_.most / 1024 || same_end;
-}
-
 void StillSensors::push(const GloveSample& sample) {
   if (begun_ && sample.time() == last_) return; // the same, of which another part asks
   watch_.push(sample);
@@ -63,23 +56,21 @@ void StillSensors::push(const GloveSample& sample) {
     seen.most = std::max(seen.most, count);
     seen.low = std::min(seen.low, count);
     seen.high = std::max(seen.high, count);
-    if (stands_still(seen.low, seen.high)) continue;
+    if (hand::is_still(seen.low, seen.high, scale_)) continue;
     seen.low = seen.high = count;
     seen.changed_after = poses_.size();
     seen.changed = true;
   }
 }
 
-bool StillSensors::still_over_poses(std::size_t slot) const {
-  return asks_to_move(std::span(poses_).subspan(std::min(seen_[slot].changed_after, poses_.size())),
-                      slot);
+std::span<const PoseId> StillSensors::poses_since_change(std::size_t slot) const {
+  return std::span(poses_).subspan(seen_[slot].changed_after);
 }
 
 bool StillSensors::contradicts(Sensor sensor, PoseId pose) const {
   const auto slot = static_cast<std::size_t>(sensor);
-  const auto since =
-      static_cast<std::ptrdiff_t>(std::min(seen_[slot].changed_after, poses_.size()));
-  std::vector<PoseId> poses(poses_.begin() + since, poses_.end());
+  const auto before = poses_since_change(slot);
+  std::vector<PoseId> poses(before.begin(), before.end());
   poses.push_back(pose);
   return asks_to_move(poses, slot);
 }
@@ -105,9 +96,8 @@ SensorMask StillSensors::stuck() const {
     if (!present_.has(sensor)) continue;
     const Seen& seen = seen_[slot];
     const bool at_end = hand::is_at_end(seen.low, scale_) && !seen.changed;
-    // A glove that calibrates itself holds a straight or a fully bent joint at an end.
-    const bool own_end = scale_.whole_range && (seen.low == 0 || seen.high >= scale_.most);
-    if ((!own_end && still_over_poses(slot)) ||
+    const bool rests = hand::rests_at_end(seen.low, seen.high, scale_);
+    if ((!rests && asks_to_move(poses_since_change(slot), slot)) ||
         (long_enough && at_end && others_moved(slot, 16.0, 40)))
       found.add(sensor);
   }
@@ -136,9 +126,8 @@ SensorMask still_in(const std::vector<hand::PoseReading>& readings, CountScale s
       least = std::min(least, held.mean_counts[slot]);
       most = std::max(most, held.mean_counts[slot]);
     }
-    const bool own_end = scale.whole_range && (least <= 0.0 || most >= scale.most);
-    if (!own_end && most - least <= scale.most / 1024.0 && most - least < 1.0 &&
-        asks_to_move(poses, slot))
+    if (!hand::rests_at_end(least, most, scale) && most - least <= scale.most / 1024.0 &&
+        most - least < 1.0 && asks_to_move(poses, slot))
       found.add(sensor);
   }
   return found;

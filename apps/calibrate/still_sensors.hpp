@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <nendo/hand/calibration_fit.hpp>
@@ -39,8 +40,8 @@ private:
     std::size_t changed_after = 0;     ///< so many poses were held before it last changed
     bool changed = false;              ///< ever
   };
-  bool stands_still(std::uint16_t low, std::uint16_t high) const noexcept;
-  bool still_over_poses(std::size_t slot) const;
+  /// The poses that were held since a sensor last changed.
+  std::span<const hand::PoseId> poses_since_change(std::size_t slot) const;
   bool others_moved(std::size_t slot, double counts, int part) const;
 
   CountScale scale_;

@@ -40,23 +40,14 @@ void StuckWatch::begin_anew(const GloveSample& sample) noexcept {
   }
 }
 
-/// A twelve-bit converter may flicker by its last two bits, and so does the last bit at an end.
-bool StuckWatch::stands_still(Watched& sensor, std::uint16_t count) const noexcept {
-  const std::uint16_t low = std::min(sensor.low, count);
-  const std::uint16_t high = std::max(sensor.high, count);
-  const int flicker = scale_.most / 1024;
-  const bool same_end = high - low <= 1 && is_at_end(low, scale_) && is_at_end(high, scale_);
-  if (high - low > flicker && !same_end) return false;
-  sensor.low = low;
-  sensor.high = high;
-  return true;
-}
-
 void StuckWatch::watch(std::size_t slot, const GloveSample& sample) noexcept {
   Watched& sensor = watched_[slot];
   const std::uint16_t count = sample.raw[slot].value;
   const auto name = static_cast<Sensor>(slot);
-  if (stands_still(sensor, count)) {
+  const std::uint16_t low = std::min(sensor.low, count), high = std::max(sensor.high, count);
+  if (is_still(low, high, scale_)) {
+    sensor.low = low;
+    sensor.high = high;
     sensor.away = 0;
     return;
   }
@@ -125,8 +116,7 @@ bool StuckWatch::is_shown(std::size_t slot, const GloveSample& sample) const noe
   if (!present_.has(sensor) || stuck_.has(sensor) ||
       seconds_between(still.changed_at, sample.time()) < least_still_s)
     return false;
-  // A glove that calibrates itself holds a straight or a fully bent joint there.
-  if (scale_.whole_range && (still.low == 0 || still.high >= scale_.most)) return false;
+  if (rests_at_end(still.low, still.high, scale_)) return false;
   constexpr std::size_t often = 6;
   switch (sensor) {
   case Sensor::thumb_roll:

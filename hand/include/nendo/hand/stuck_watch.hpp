@@ -48,7 +48,6 @@ private:
   };
 
   void begin_anew(const GloveSample& sample) noexcept;
-  bool stands_still(Watched& sensor, std::uint16_t count) const noexcept;
   void watch(std::size_t slot, const GloveSample& sample) noexcept;
   bool has_swung(std::size_t slot, std::uint64_t since, std::size_t times) const noexcept;
   template <class Sensors>
@@ -71,6 +70,19 @@ private:
 /// usually stands. A glove that calibrates itself is at an end whenever a joint is.
 constexpr bool is_at_end(std::uint16_t count, CountScale scale) noexcept {
   return !scale.whole_range && (count <= 1 || count + 1 >= scale.most);
+}
+
+/// Tells whether a sensor that counts from `low` to `high` stands still. A twelve-bit converter may
+/// flicker by its last two bits, and so does the last bit at an end.
+constexpr bool is_still(std::uint16_t low, std::uint16_t high, CountScale scale) noexcept {
+  const bool same_end = high - low <= 1 && is_at_end(low, scale) && is_at_end(high, scale);
+  return high - low <= scale.most / 1024 || same_end;
+}
+
+/// Tells whether counts reach an end of a glove that calibrates itself, where it holds a straight
+/// or a fully bent joint: to stand still there means nothing.
+constexpr bool rests_at_end(double low, double high, CountScale scale) noexcept {
+  return scale.whole_range && (low <= 0.0 || high >= scale.most);
 }
 
 } // namespace nendo::hand
