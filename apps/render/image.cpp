@@ -48,6 +48,11 @@ void Image::paste(const Image& other, int x, int y) noexcept {
       at(x + column, y + row) = other.at(column, row);
 }
 
+Error too_many_pixels() {
+  return {Errc::bad_input,
+          "has more than " + std::to_string(Size::most) + " pixels along a side; make it smaller"};
+}
+
 Result<std::string> png_of(const Image& image) {
   png_image header = header_of(image.size());
   const auto stride = static_cast<png_int_32>(3 * image.size().width);

@@ -54,6 +54,10 @@ private:
   std::vector<Pixel> pixels_;
 };
 
+/// Returns the error of a texture of more than Size::most pixels along a side: bad_input, with the
+/// end of a sentence that begins with the file's name.
+Error too_many_pixels();
+
 /// Returns the contents of a PNG file. Error: failed.
 Result<std::string> png_of(const Image& image);
 /// Writes the file atomically and replaces an existing one. Blocks. Error: failed.

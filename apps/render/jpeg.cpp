@@ -3,7 +3,6 @@
 #include "render/jpeg.hpp"
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include <turbojpeg.h>
@@ -33,9 +32,7 @@ Result<Size> read_header(const Decoder& decoder, std::string_view contents) {
     return damaged_jpeg();
   if (space == TJCS_CMYK || space == TJCS_YCCK)
     return Error{Errc::bad_input, "is a JPEG in CMYK, which is not read; save it in RGB"};
-  if (size.width > Size::most || size.height > Size::most)
-    return Error{Errc::bad_input, "has more than " + std::to_string(Size::most) +
-                                      " pixels along a side; make it smaller"};
+  if (size.width > Size::most || size.height > Size::most) return too_many_pixels();
   return size;
 }
 

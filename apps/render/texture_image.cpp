@@ -62,6 +62,20 @@ Between between(float part, int count) noexcept {
   return {(first + count) % count, (first + 1) % count, at - whole};
 }
 
+/// The longer side that a PNG's header says, in pixels; 0 if there is none.
+std::uint32_t longer_side_of_png(std::string_view contents) noexcept {
+  constexpr std::size_t width_at = 16, height_at = 20;
+  if (contents.size() < height_at + 4) return 0;
+  const auto number_at = [&](std::size_t at) {
+    std::uint32_t number = 0; // the most significant byte first
+    for (std::size_t k = 0; k < 4; ++k)
+      number = number << 8 | static_cast<unsigned char>(contents[at + k]);
+    return number;
+  };
+  const std::uint32_t width = number_at(width_at), height = number_at(height_at);
+  return width == 0 || height == 0 ? 0 : std::max(width, height);
+}
+
 /// Tells by its header and its end alone that a picture is whole, for decoding a large one twice
 /// would be felt. A PNG ends with its mark; a JPEG has its mark nowhere among the pixels, though
 /// one that belongs to a small picture may stand before them. Others are quick to decode.
@@ -71,26 +85,18 @@ bool looks_whole(std::string_view contents) {
     constexpr std::size_t before_pixels = std::size_t{1} << 16;
     return size_of_jpeg(contents) && contents.find("\xFF\xD9", before_pixels) != contents.npos;
   }
-  constexpr std::size_t width_at = 16, height_at = 20, end_bytes = 12;
-  if (kind != PictureKind::png || contents.size() < height_at + 4 + end_bytes) return false;
-  const auto number_at = [&](std::size_t at) {
-    std::uint32_t number = 0; // the most significant byte first
-    for (std::size_t k = 0; k < 4; ++k)
-      number = number << 8 | static_cast<unsigned char>(contents[at + k]);
-    return number;
-  };
-  const auto fits = [](std::uint32_t pixels) { return pixels >= 1 && pixels <= Size::most; };
-  return fits(number_at(width_at)) && fits(number_at(height_at)) &&
+  if (kind != PictureKind::png) return false;
+  constexpr std::size_t end_bytes = 12;
+  const std::uint32_t side = longer_side_of_png(contents);
+  return side >= 1 && side <= Size::most &&
          contents.substr(contents.size() - end_bytes).find("IEND") != contents.npos;
 }
 
 Result<Image> decode_png_texture(std::string_view contents) {
   auto image = decode_png(contents, "texture");
   if (image) return image;
-  const bool is_too_large = image.error().message.find("more than") != std::string::npos;
-  return Error{Errc::bad_input, is_too_large ? "has more than " + std::to_string(Size::most) +
-                                                   " pixels along a side; make it smaller"
-                                             : "is a damaged PNG picture; export it once more"};
+  if (longer_side_of_png(contents) > Size::most) return too_many_pixels();
+  return Error{Errc::bad_input, "is a damaged PNG picture; export it once more"};
 }
 
 } // namespace

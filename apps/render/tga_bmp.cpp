@@ -33,11 +33,6 @@ Error cut_off() {
   return not_shown("is cut off; export it once more");
 }
 
-Error too_many_pixels() {
-  return not_shown("has more than " + std::to_string(Size::most) +
-                   " pixels along a side; make it smaller");
-}
-
 /// Bytes beyond the end are 0.
 std::uint32_t number_at(std::string_view bytes, std::size_t at, std::size_t width) noexcept {
   std::uint32_t number = 0;
