@@ -101,6 +101,17 @@ void keep_columns(Columns& columns, std::span<const std::uint8_t> keeps) {
   columns.conservativeResize(columns.rows(), kept);
 }
 
+/// Keeps these faces, which have these corners and then begin there.
+void keep_faces_with(Mesh& mesh, std::span<const std::uint8_t> faces,
+                     std::span<const std::uint8_t> corners, std::vector<std::uint32_t> starts) {
+  keep_values(mesh.face_corners, corners);
+  keep_values(mesh.corner_texcoords, corners);
+  keep_values(mesh.look.face_materials, faces);
+  keep_values(mesh.look.groups.of_face, faces);
+  keep_values(mesh.look.objects.of_face, faces);
+  mesh.face_starts = std::move(starts);
+}
+
 } // namespace
 
 void keep_faces(Mesh& mesh, std::span<const std::uint8_t> keeps) {
@@ -111,12 +122,7 @@ void keep_faces(Mesh& mesh, std::span<const std::uint8_t> keeps) {
     corners.insert(corners.end(), count, keeps[face]);
     if (keeps[face] != 0) starts.push_back(starts.back() + count);
   }
-  keep_values(mesh.face_corners, corners);
-  keep_values(mesh.corner_texcoords, corners);
-  keep_values(mesh.look.face_materials, keeps);
-  keep_values(mesh.look.groups.of_face, keeps);
-  keep_values(mesh.look.objects.of_face, keeps);
-  mesh.face_starts = std::move(starts);
+  keep_faces_with(mesh, keeps, corners, std::move(starts));
 }
 
 void keep_vertices(Mesh& mesh, std::span<const std::uint8_t> keeps) {
@@ -160,12 +166,7 @@ DroppedCorners renumber_corners(Mesh& mesh, std::span<const std::uint32_t> verte
     dropped.corners += end - begin - left;
     starts.push_back(starts.back() + left);
   }
-  keep_values(mesh.face_corners, corners);
-  keep_values(mesh.corner_texcoords, corners);
-  keep_values(mesh.look.face_materials, faces);
-  keep_values(mesh.look.groups.of_face, faces);
-  keep_values(mesh.look.objects.of_face, faces);
-  mesh.face_starts = std::move(starts);
+  keep_faces_with(mesh, faces, corners, std::move(starts));
   return dropped;
 }
 
