@@ -166,10 +166,9 @@ void inherit_look(const Mesh& mesh, Mesh& finer) {
   finer.look.objects.of_face = inherited(mesh.look.objects.of_face, before);
 }
 
-/// Faces around whose middle the new faces would fold, as that of a letter L, become triangles.
-Mesh with_middles_inside(const Mesh& mesh) {
-  std::vector<bool> is_split(mesh.face_count(), false);
-  bool any = false;
+/// Of each face whether the new faces around its middle would fold, as in that of a letter L.
+std::vector<bool> faces_that_fold(const Mesh& mesh) {
+  std::vector<bool> folds(mesh.face_count(), false);
   FaceTriangles triangles(mesh);
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     if (triangles.is_convex(face)) continue;
@@ -183,11 +182,10 @@ Mesh with_middles_inside(const Mesh& mesh) {
     };
     for (std::size_t at = 0; at < corners.size(); ++at)
       area += area_at(at);
-    for (std::size_t at = 0; at < corners.size() && !is_split[face]; ++at)
-      is_split[face] = !(area_at(at).dot(area) > 0.0);
-    any = any || is_split[face];
+    for (std::size_t at = 0; at < corners.size() && !folds[face]; ++at)
+      folds[face] = !(area_at(at).dot(area) > 0.0);
   }
-  return any ? with_split_faces(mesh, mesh.vertices, is_split) : mesh;
+  return folds;
 }
 
 Subdivision subdivided_faces(const Mesh& mesh) {
@@ -216,7 +214,9 @@ Subdivision subdivided_faces(const Mesh& mesh) {
 } // namespace
 
 Subdivision subdivide(const Mesh& mesh) {
-  return subdivided_faces(with_middles_inside(mesh));
+  const std::vector<bool> folds = faces_that_fold(mesh);
+  if (std::find(folds.begin(), folds.end(), true) == folds.end()) return subdivided_faces(mesh);
+  return subdivided_faces(with_split_faces(mesh, mesh.vertices, folds));
 }
 
 BlockShape subdivided(const BlockShape& shape, const BlockLayout& before,
