@@ -16,21 +16,13 @@ struct HandFile {
   FileReplacement file;
 };
 
-std::filesystem::path path_for(Side side, const std::filesystem::path& path, bool alone) {
-  if (alone) return path;
-  auto name = path.parent_path() / path.stem();
-  name += "-" + std::string(name_of(side));
-  name += path.extension();
-  return name;
-}
-
 Result<std::vector<HandFile>> begin(const ChosenFrames& frames, const Skeletons& skeletons,
                                     const std::filesystem::path& path) {
   const bool alone = !(skeletons[0] && skeletons[1]);
   std::vector<HandFile> files;
   for (std::size_t slot = 0; slot < skeletons.size(); ++slot) {
     if (!skeletons[slot]) continue;
-    const auto named = path_for(skeletons[slot]->side(), path, alone);
+    const auto named = alone ? path : path_of_hand(path, skeletons[slot]->side());
     auto file = FileReplacement::begin(named);
     if (!file) return file.error();
     hand::BvhFormat format(*skeletons[slot]);
@@ -45,6 +37,13 @@ Result<std::vector<HandFile>> begin(const ChosenFrames& frames, const Skeletons&
 }
 
 } // namespace
+
+std::filesystem::path path_of_hand(const std::filesystem::path& path, Side side) {
+  auto name = path.parent_path() / path.stem();
+  name += "-" + std::string(name_of(side));
+  name += path.extension();
+  return name;
+}
 
 Result<Exported> export_hands_bvh(ChosenFrames& frames, const Skeletons& skeletons,
                                   const std::filesystem::path& path) {

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,6 +16,7 @@
 #include <nendo/hand/sensor_gate.hpp>
 
 #include "cli/cli.hpp"
+#include "export/hands_bvh.hpp"
 #include "gloves/open_hand.hpp"
 #include "gloves/pose_output.hpp"
 #include "gloves/sample_grid.hpp"
@@ -149,14 +149,6 @@ Result<void> stream(std::span<PoseStream> streams) {
   return {};
 }
 
-/// One file a hand, as `nendo export` names them.
-std::string bvh_name(const Options& options, Side side) {
-  if (options.gloves.size() == 1) return options.bvh;
-  const std::filesystem::path path(options.bvh);
-  return (path.parent_path() / path.stem()).string() + "-" + std::string(name_of(side)) +
-         path.extension().string();
-}
-
 using Outputs = std::vector<std::unique_ptr<gloves::PoseOutput>>;
 
 /// One for all gloves, or one for each.
@@ -165,8 +157,9 @@ Result<Outputs> open_outputs(const Options& options, const std::vector<gloves::O
   if (options.bvh.empty()) outputs.push_back(gloves::json_pose_output());
   for (const gloves::OpenHand& hand : hands) {
     if (options.bvh.empty()) break;
-    auto file = gloves::bvh_pose_output(bvh_name(options, hand.side), skeleton_for(hand.side, hand),
-                                        rate_of(options));
+    const std::string name =
+        hands.size() == 1 ? options.bvh : exporting::path_of_hand(options.bvh, hand.side).string();
+    auto file = gloves::bvh_pose_output(name, skeleton_for(hand.side, hand), rate_of(options));
     if (!file) return file.error();
     outputs.push_back(*std::move(file));
   }
@@ -181,9 +174,7 @@ Result<std::vector<gloves::OpenHand>> open_gloves(const Options& options) {
     hands.push_back(*std::move(hand));
   }
   if (hands.size() == 2 && hands[0].side == hands[1].side)
-    return Error{Errc::usage, options.gloves[0] + " and " + options.gloves[1] + " are both " +
-                                  std::string(name_of(hands[0].side)) +
-                                  "-hand gloves; give one of each hand"};
+    return gloves::same_hand(hands[0], hands[1]);
   return hands;
 }
 
