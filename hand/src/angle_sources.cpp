@@ -1,19 +1,9 @@
 #include <nendo/hand/angle_sources.hpp>
 
+#include "finger_rules.hpp"
+
 namespace nendo::hand {
 namespace {
-
-struct FingerSensors {
-  Sensor mcp;
-  Sensor pip;
-  Sensor dip;
-};
-constexpr std::array<FingerSensors, 4> finger_sensors{{
-    {Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip},
-    {Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip},
-    {Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip},
-    {Sensor::pinky_mcp, Sensor::pinky_pip, Sensor::pinky_dip},
-}};
 
 /// Measured if there is such a sensor.
 AngleSource measured_or(SensorMask present, Sensor sensor, AngleSource otherwise) noexcept {

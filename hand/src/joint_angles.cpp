@@ -4,25 +4,18 @@
 
 #include <nendo/hand/joint_limits.hpp>
 
+#include "finger_rules.hpp"
+
 namespace nendo::hand {
 namespace {
 
 // The rules of the header. The thumb's were chosen with this skeleton: of the ends from 20 to 90
 // degrees of roll and 10 to 65 of abduction, these bring the tips together.
-constexpr double pip_of_mcp = 1.1;
 constexpr double thumb_ip_of_mcp = 0.5;
 constexpr double resting_opposition = from_degrees(20);
 constexpr double most_roll = from_degrees(30);
 constexpr double most_abduction = from_degrees(35);
 constexpr double fully_bent_thumb_mcp = from_degrees(55);
-
-constexpr double bent(double angle_rad) noexcept {
-  return std::max(angle_rad, 0.0);
-}
-
-constexpr double estimated_dip(double pip_rad) noexcept {
-  return 0.32 * bent(pip_rad) * bent(pip_rad) + 0.17 * bent(pip_rad);
-}
 
 /// Of thumb roll or abduction, which reaches `most_rad`.
 constexpr double estimated_opposition(double thumb_mcp_rad, double most_rad) noexcept {

@@ -2,20 +2,13 @@
 
 #include <nendo/hand/joint_angles.hpp>
 
+#include "finger_rules.hpp"
+
 namespace nendo::hand {
 namespace {
 
-struct BendSensors {
-  Sensor mcp;
-  Sensor pip;
-  Sensor dip;
-};
-constexpr std::array<BendSensors, 4> bend_sensors{{
-    {Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip},
-    {Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip},
-    {Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip},
-    {Sensor::pinky_mcp, Sensor::pinky_pip, Sensor::pinky_dip},
-}};
+// Of finger_sensors.
+constexpr std::size_t mcp_at = 0, pip_at = 1, dip_at = 2;
 constexpr std::array<Sensor, 3> gap_sensors{
     Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_pinky_abduction};
 
@@ -40,10 +33,6 @@ private:
   double sum_ = 0.0, weight_ = 0.0;
 };
 
-constexpr double bent_only(double angle_rad) noexcept {
-  return std::max(angle_rad, 0.0);
-}
-
 /// Fills in the angles of one sample.
 class Filling {
 public:
@@ -56,13 +45,13 @@ public:
   }
 
   SensorAngles filled() noexcept {
-    // MCP joints first: the others follow from them, too.
-    for (std::size_t f = 0; f < bend_sensors.size(); ++f)
-      fill(bend_sensors[f].mcp, [&] { return mcp(f); });
-    for (std::size_t f = 0; f < bend_sensors.size(); ++f)
-      fill(bend_sensors[f].pip, [&] { return pip(f); });
-    for (std::size_t f = 0; f < bend_sensors.size(); ++f)
-      fill(bend_sensors[f].dip, [&] { return dip(f); });
+    // MCP joints first: the others follow from them as well.
+    for (std::size_t f = 0; f < finger_sensors.size(); ++f)
+      fill(finger_sensors[f][mcp_at], [&] { return mcp(f); });
+    for (std::size_t f = 0; f < finger_sensors.size(); ++f)
+      fill(finger_sensors[f][pip_at], [&] { return pip(f); });
+    for (std::size_t f = 0; f < finger_sensors.size(); ++f)
+      fill(finger_sensors[f][dip_at], [&] { return dip(f); });
     fill_thumb();
     couple();
     fill_gaps();
@@ -79,39 +68,41 @@ private:
     if (missing_.has(sensor)) at(sensor) = estimate();
   }
   /// Adds the same joint of the fingers beside this one, if measured.
-  void add_beside(Mean& mean, std::size_t f, Sensor BendSensors::* joint, double weight) noexcept {
+  void add_beside(Mean& mean, std::size_t f, std::size_t joint, double weight) noexcept {
     for (const std::size_t beside : {f - 1, f + 1})
-      if (beside < bend_sensors.size() && is_measured(bend_sensors[beside].*joint))
-        mean.add(at(bend_sensors[beside].*joint), weight);
+      if (beside < finger_sensors.size() && is_measured(finger_sensors[beside][joint]))
+        mean.add(at(finger_sensors[beside][joint]), weight);
   }
 
   double mcp(std::size_t f) noexcept {
     Mean mean;
-    add_beside(mean, f, &BendSensors::mcp, 1.0);
-    if (is_measured(bend_sensors[f].pip)) mean.add(bent_only(at(bend_sensors[f].pip)) / 1.1, 0.7);
+    add_beside(mean, f, mcp_at, 1.0);
+    if (is_measured(finger_sensors[f][pip_at]))
+      mean.add(bent(at(finger_sensors[f][pip_at])) / pip_of_mcp, 0.7);
     return mean.or_else(resting_mcp);
   }
   double pip(std::size_t f) noexcept {
     Mean mean;
-    add_beside(mean, f, &BendSensors::pip, 0.7);
-    if (is_measured(bend_sensors[f].dip)) mean.add(1.5 * bent_only(at(bend_sensors[f].dip)), 2.0);
-    if (is_measured(bend_sensors[f].mcp)) mean.add(1.1 * bent_only(at(bend_sensors[f].mcp)), 0.4);
+    add_beside(mean, f, pip_at, 0.7);
+    if (is_measured(finger_sensors[f][dip_at]))
+      mean.add(1.5 * bent(at(finger_sensors[f][dip_at])), 2.0);
+    if (is_measured(finger_sensors[f][mcp_at]))
+      mean.add(pip_of_mcp * bent(at(finger_sensors[f][mcp_at])), 0.4);
     return mean.or_else(resting_pip);
   }
   double dip(std::size_t f) noexcept {
     Mean mean;
-    add_beside(mean, f, &BendSensors::dip, 0.7);
-    const double pip_rad = bent_only(at(bend_sensors[f].pip));
-    mean.add(0.32 * pip_rad * pip_rad + 0.17 * pip_rad, 1.0);
+    add_beside(mean, f, dip_at, 0.7);
+    mean.add(estimated_dip(at(finger_sensors[f][pip_at])), 1.0);
     return mean.or_else(0.0);
   }
 
   void fill_thumb() noexcept {
     const bool mcp = is_measured(Sensor::thumb_mcp), ip = is_measured(Sensor::thumb_ip);
     fill(Sensor::thumb_mcp,
-         [&] { return ip ? 0.7 * bent_only(at(Sensor::thumb_ip)) : resting_thumb_mcp; });
+         [&] { return ip ? 0.7 * bent(at(Sensor::thumb_ip)) : resting_thumb_mcp; });
     fill(Sensor::thumb_ip,
-         [&] { return mcp ? 0.9 * bent_only(at(Sensor::thumb_mcp)) : resting_thumb_ip; });
+         [&] { return mcp ? 0.9 * bent(at(Sensor::thumb_mcp)) : resting_thumb_ip; });
   }
   /// As Calibration::angles_rad() does, with what the estimated joints do to the others. Of thumb
   /// roll and abduction, one that is left out is taken to be as at rest.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "finger_rules.hpp"
+
 namespace nendo::hand {
 namespace {
 
@@ -10,12 +12,6 @@ constexpr std::size_t slot_number(Sensor sensor) noexcept {
   return static_cast<std::size_t>(sensor);
 }
 
-constexpr std::array<std::array<Sensor, 3>, 4> flexions{{
-    {Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip},
-    {Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip},
-    {Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip},
-    {Sensor::pinky_mcp, Sensor::pinky_pip, Sensor::pinky_dip},
-}};
 constexpr std::array<Sensor, 4> thumb_sensors{Sensor::thumb_roll, Sensor::thumb_mcp,
                                               Sensor::thumb_ip, Sensor::thumb_abduction};
 
@@ -81,14 +77,14 @@ int StuckWatch::swung(const Sensors& sensors, std::size_t of, std::size_t times)
 bool StuckWatch::shown_by_finger(std::size_t slot) const noexcept {
   const std::size_t finger = slot / 4 - 1, joint = slot % 4;
   int usable = 0;
-  for (const Sensor sensor : flexions[finger])
+  for (const Sensor sensor : finger_sensors[finger])
     if (slot_number(sensor) != slot && present_.has(sensor) && !stuck_.has(sensor)) ++usable;
   std::array<Sensor, 4> alike{};
   for (std::size_t f = 0; f < alike.size(); ++f)
-    alike[f] = flexions[f][joint];
-  const int moved = swung(flexions[finger], slot, 3);
+    alike[f] = finger_sensors[f][joint];
+  const int moved = swung(finger_sensors[finger], slot, 3);
   if (moved >= 2 || (usable == 1 && moved == 1 && swung(alike, slot, 3) >= 1)) return true;
-  if (swung(flexions[finger], slot, 6) >= 1 && swung(alike, slot, 4) >= 2) return true;
+  if (swung(finger_sensors[finger], slot, 6) >= 1 && swung(alike, slot, 4) >= 2) return true;
   return usable == 0 && shown_by_hand(slot, kept_swings, 80);
 }
 
@@ -131,7 +127,8 @@ bool StuckWatch::is_shown(std::size_t slot, const GloveSample& sample) const noe
   case Sensor::middle_ring_abduction:
   case Sensor::ring_pinky_abduction: {
     const std::size_t finger = slot / 4 - 1;
-    return swung(std::array{flexions[finger - 1][0], flexions[finger][0]}, slot, 4) == 2 &&
+    return swung(std::array{finger_sensors[finger - 1][0], finger_sensors[finger][0]}, slot, 4) ==
+               2 &&
            shown_by_hand(slot, 4, 40);
   }
   case Sensor::palm_arch:
