@@ -521,7 +521,7 @@ TEST_SUITE("run") {
     CHECK(
         nendo::test::nendo({"run", "--right", "sim", "--out", "/no/such/folder/x.obj"}).exit_code ==
         1);
-    CHECK(nendo::test::nendo({"run", "--right", "sim", "--out", "shape.stl"}).exit_code == 2);
+    CHECK(nendo::test::nendo({"run", "--right", "sim", "--out", "shape.fbx"}).exit_code == 2);
     CHECK_FALSE(std::filesystem::exists(out));
   }
 }
