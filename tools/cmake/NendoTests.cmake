@@ -5,6 +5,10 @@
 # clock and no device, and give way to tests that do.
 include(doctest)
 
+# What tools/check builds with the address sanitizer: the tests that do not need the program, and the fuzz targets.
+add_custom_target(library_tests)
+add_custom_target(fuzz_targets)
+
 # doctest's own implementation, compiled once for all test programs.
 add_library(nendo_test_main OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/tests/support/main.cpp)
 nendo_settings(nendo_test_main PRIVATE)
@@ -34,7 +38,9 @@ function(nendo_test name)
   endif()
   target_link_libraries(${target} PRIVATE nendo_test_main ${ARG_LIBRARIES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${ARG_INCLUDES})
-  if(ARG_PROGRAM)
+  if(NOT ARG_PROGRAM)
+    add_dependencies(library_tests ${target})
+  else()
     target_compile_definitions(${target} PRIVATE NENDO_PROGRAM="$<TARGET_FILE:nendo>")
     add_dependencies(${target} nendo)
     if(TARGET nendo-bench) # which `nendo bench` starts
@@ -63,4 +69,5 @@ function(nendo_fuzz name)
   target_link_options(${target} PRIVATE -fsanitize=fuzzer,address,undefined)
   target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES})
   target_include_directories(${target} PRIVATE ${ARG_INCLUDES})
+  add_dependencies(fuzz_targets ${target})
 endfunction()
