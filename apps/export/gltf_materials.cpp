@@ -76,9 +76,9 @@ GltfMaterials::GltfMaterials(const deform::Appearance& look, GlbFile& file) {
   if (!of_face.empty() &&
       std::find(of_face.begin(), of_face.end(), deform::no_index) == of_face.end())
     return;
-  const bool coloured = look.vertex_colours.cols() > 0; // they multiply it
-  plain_ = file.add("materials", coloured ? material_named("white", Eigen::Vector4f::Ones())
-                                          : material_named("clay", clay));
+  plain_ = file.add("materials", look.has_colours() // they multiply it
+                                     ? material_named("white", Eigen::Vector4f::Ones())
+                                     : material_named("clay", clay));
 }
 
 } // namespace nendo::exporting

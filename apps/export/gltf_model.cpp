@@ -40,11 +40,19 @@ std::vector<float> texcoords_of(const deform::Mesh& mesh, const GltfPart& part) 
   return numbers;
 }
 
+/// The colours of a part's vertices, four numbers each; empty if the mesh has none.
 std::vector<float> colours_of(const deform::Mesh& mesh, const GltfPart& part) {
   std::vector<float> rgba;
-  for (const std::uint32_t vertex : part.vertices)
-    for (const float channel : mesh.look.vertex_colours.col(vertex))
-      rgba.push_back(channel);
+  const auto put = [&](const Eigen::Vector4f& colour) {
+    rgba.insert(rgba.end(), colour.begin(), colour.end());
+  };
+  if (mesh.look.vertex_colours.cols() > 0)
+    for (const std::uint32_t vertex : part.vertices)
+      put(mesh.look.vertex_colours.col(vertex));
+  else if (mesh.look.texcoord_colours.cols() > 0)
+    for (const std::uint32_t texcoord : part.texcoords)
+      put(texcoord == deform::no_index ? Eigen::Vector4f(Eigen::Vector4f::Ones())
+                                       : Eigen::Vector4f(mesh.look.texcoord_colours.col(texcoord)));
   return rgba;
 }
 
@@ -64,10 +72,11 @@ GltfModel::GltfModel(const deform::Mesh& mesh, GlbFile& file)
   for (const GltfPart& part : parts_) {
     Json attributes;
     attributes["POSITION"] = file.add_vectors(columns_of(vertices, part), Use::vertices, true);
-    if (!mesh.corner_texcoords.empty())
+    if (!mesh.look.textures.empty() ||
+        (!mesh.corner_texcoords.empty() && mesh.look.texcoord_colours.cols() == 0))
       attributes["TEXCOORD_0"] = file.add_texcoords(texcoords_of(mesh, part));
-    if (mesh.look.vertex_colours.cols() > 0)
-      attributes["COLOR_0"] = file.add_colours(colours_of(mesh, part));
+    if (const std::vector<float> colours = colours_of(mesh, part); !colours.empty())
+      attributes["COLOR_0"] = file.add_colours(colours);
     if (part.triangles.empty()) {
       primitives_.push_back({{"attributes", attributes}, {"mode", points_mode}});
       continue;

@@ -46,7 +46,6 @@ void print_json(const Options& options, const Repair& repaired) {
                    {"out", printable(options.out)},
                    {"tolerance", repaired.tolerance},
                    {"joined_vertices", repaired.joined},
-                   {"recoloured_vertices", repaired.recoloured},
                    {"dropped_faces", repaired.dropped},
                    {"dropped_corners", repaired.repeated},
                    {"split_edges", repaired.split},

@@ -46,6 +46,7 @@ std::shared_ptr<const Paint> paint_by_distance(const deform::Mesh& rest,
     material.colour = Eigen::Vector4f::Ones();
     material.texture = deform::no_index;
   }
+  painted.look.texcoord_colours.resize(4, 0);
   painted.look.vertex_colours.setOnes(4, shape.cols());
   for (Index vertex = 0; vertex < shape.cols(); ++vertex)
     painted.look.vertex_colours.col(vertex).head<3>() =

@@ -57,6 +57,7 @@ Paint::Paint(const deform::Mesh& mesh, std::vector<std::uint32_t>& corners) {
   if (colours.cols() == mesh.vertices.cols())
     for (Eigen::Index vertex = 0; vertex < colours.cols(); ++vertex)
       vertex_colours_.emplace_back(colours.col(vertex).head<3>());
+  const bool coloured_corners = mesh.look.texcoord_colours.cols() > 0;
   const auto faces = deform::drawn_faces(mesh);
   const Textures textures = textures_of(mesh);
   const bool textured = std::any_of(textures.begin(), textures.end(),
@@ -67,12 +68,15 @@ Paint::Paint(const deform::Mesh& mesh, std::vector<std::uint32_t>& corners) {
     const auto texture = at == 0 ? nullptr : textures[at - 1];
     Coat coat{corners.size() / 3, 0,
               colour_of(at == 0 ? nullptr : &look.materials[at - 1],
-                        !vertex_colours_.empty() || texture != nullptr),
+                        !vertex_colours_.empty() || coloured_corners || texture != nullptr),
               texture};
     for (const std::uint32_t face : faces[at])
       for (const deform::Triangle& triangle : triangles.of(face))
         for (const std::uint32_t of : triangle) {
           corners.push_back(mesh.face_corners[of]);
+          if (coloured_corners)
+            corner_colours_.emplace_back(
+                mesh.look.texcoord_colours.col(mesh.corner_texcoords[of]).head<3>());
           if (textured)
             texcoords_.emplace_back(mesh.texcoords.col(mesh.corner_texcoords[of]).cast<float>());
         }
@@ -87,10 +91,11 @@ Vector3f Paint::colour_at(std::size_t triangle, const std::array<std::uint32_t, 
                           const std::array<float, 3>& shares, float samples) const noexcept {
   const Coat& coat = coats_[coat_of_[triangle]];
   Vector3f colour = coat.colour;
-  if (!vertex_colours_.empty()) {
+  if (!vertex_colours_.empty() || !corner_colours_.empty()) {
     Vector3f mixed = Vector3f::Zero();
     for (std::size_t k = 0; k < 3; ++k)
-      mixed += shares[k] * vertex_colours_[vertices[k]];
+      mixed += shares[k] * (corner_colours_.empty() ? vertex_colours_[vertices[k]]
+                                                    : corner_colours_[3 * triangle + k]);
     colour = colour.cwiseProduct(mixed);
   }
   if (!coat.texture) return colour;

@@ -1,6 +1,6 @@
 #pragma once
-// The colours of a model's triangles: those of its materials and vertices. Without any, a model is
-// of clay.
+// The colours of a model's triangles: those of its materials, and of vertices or corners. Without
+// any, a model is of clay.
 
 #include <array>
 #include <cstdint>
@@ -33,6 +33,9 @@ public:
   /// Returns one linear colour for each vertex, which multiplies the coat's; empty if all are
   /// white.
   const std::vector<Eigen::Vector3f>& vertex_colours() const noexcept { return vertex_colours_; }
+  /// Returns one linear colour for each triangle's corners, in place of the vertices'; empty if
+  /// corners of one vertex do not differ.
+  const std::vector<Eigen::Vector3f>& corner_colours() const noexcept { return corner_colours_; }
   /// Returns the texture coordinates of each triangle's corners; empty if no coat has a texture.
   const std::vector<Eigen::Vector2f>& texcoords() const noexcept { return texcoords_; }
   /// Returns the linear colour of a place in a triangle. `vertices` are its corners, and `shares`
@@ -45,6 +48,7 @@ private:
   std::vector<Coat> coats_;
   std::vector<std::uint32_t> coat_of_; ///< of each triangle
   std::vector<Eigen::Vector3f> vertex_colours_;
+  std::vector<Eigen::Vector3f> corner_colours_;
   std::vector<Eigen::Vector2f> texcoords_;
 };
 

@@ -194,24 +194,28 @@ void GlRenderer::use_material(const render::Material& material) {
   set(program_, "unlit", material.opacity > 0.0F ? 0 : 1);
 }
 
-// One call for each colour. Where there is a texture, a vertex has several texture coordinates, so
-// each corner is drawn by itself, and the shader looks up its vertex.
+// One call for each colour. Where there is a texture, a vertex has several texture coordinates, and
+// it may have several colours; then each corner is drawn by itself, and the shader looks up its
+// vertex.
 void GlRenderer::draw_model() const {
   set(program_, "vertex_colours", paint_->vertex_colours().empty() ? 0 : 1);
+  const bool corner_colours = !paint_->corner_colours().empty();
+  set(program_, "corner_colours", corner_colours ? 1 : 0);
   for (std::size_t at = 0; at < paint_->coats().size(); ++at) {
     const render::Coat& coat = paint_->coats()[at];
     const auto count = static_cast<GLsizei>(3 * coat.count);
     set(program_, "colour", coat.colour);
     const bool textured = textures_.use(at);
     set(program_, "textured", textured ? 1 : 0);
+    set(program_, "by_corners", textured || corner_colours ? 1 : 0);
     const std::size_t offset = 3 * coat.first * sizeof(std::uint32_t);
-    if (textured)
+    if (textured || corner_colours)
       glDrawArrays(GL_TRIANGLES, static_cast<GLint>(3 * coat.first), count);
     else
       glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset));
   }
-  set(program_, "textured", 0);
-  set(program_, "vertex_colours", 0);
+  for (const char* what : {"textured", "by_corners", "vertex_colours", "corner_colours"})
+    set(program_, what, 0);
 }
 
 void GlRenderer::draw_surface(const render::Surface& surface, bool model) {

@@ -12,9 +12,12 @@ uniform samplerBuffer block_places;   // 64 x, 64 y, 64 z, and again
 uniform samplerBuffer block_normals;
 uniform samplerBuffer block_colours;
 uniform bool vertex_colours;
-uniform bool textured; // then vertices are counted by corners
+uniform bool by_corners; // then vertices are counted by corners
+uniform bool textured;
 uniform usamplerBuffer corner_places;
 uniform samplerBuffer corner_texcoords;
+uniform bool corner_colours; // in place of the vertices'
+uniform samplerBuffer corner_tints;
 uniform float scale;
 uniform vec3 offset;
 layout(location = 0) in vec3 given_place;
@@ -27,15 +30,19 @@ centroid out vec3 normal;
 centroid out vec3 tint;
 centroid out vec2 texcoord;
 vec3 of_block(samplerBuffer blocks) {
-  int vertex = textured ? int(texelFetch(corner_places, gl_VertexID).r) : gl_VertexID;
+  int vertex = by_corners ? int(texelFetch(corner_places, gl_VertexID).r) : gl_VertexID;
   int at = vertex / 64 * 192 + vertex % 64;
   return vec3(texelFetch(blocks, at).r, texelFetch(blocks, at + 64).r, texelFetch(blocks, at + 128).r);
+}
+vec3 of_corner(samplerBuffer floats) {
+  int at = 3 * gl_VertexID;
+  return vec3(texelFetch(floats, at).r, texelFetch(floats, at + 1).r, texelFetch(floats, at + 2).r);
 }
 void main() {
   place = from_blocks ? scale * of_block(block_places) + offset : given_place;
   normal = from_blocks ? of_block(block_normals) : given_normal;
   texcoord = textured ? texelFetch(corner_texcoords, gl_VertexID).rg : vec2(0.0);
-  tint = vertex_colours ? of_block(block_colours) : vec3(1.0);
+  tint = corner_colours ? of_corner(corner_tints) : vertex_colours ? of_block(block_colours) : vec3(1.0);
   within = place;
   gl_Position = clip_of_world * vec4(place, 1.0);
 }

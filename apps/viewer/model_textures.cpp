@@ -44,41 +44,45 @@ void ModelTextures::remove() {
   pictures_.erase(std::unique(pictures_.begin(), pictures_.end()), pictures_.end());
   glDeleteTextures(static_cast<GLsizei>(pictures_.size()), pictures_.data());
   pictures_.clear();
-  glDeleteTextures(2, buffer_textures_.data());
-  glDeleteBuffers(2, buffers_.data());
+  glDeleteTextures(3, buffer_textures_.data());
+  glDeleteBuffers(3, buffers_.data());
   buffer_textures_ = {};
   buffers_ = {};
 }
 
 void ModelTextures::set(const render::Paint& paint, const std::vector<std::uint32_t>& corners) {
   remove();
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units[2]));
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units[3]));
   std::map<const render::TextureImage*, GLuint> made;
   for (const render::Coat& coat : paint.coats()) {
     auto& name = made[coat.texture.get()];
     if (coat.texture && name == 0) name = texture_with(coat.texture->image());
     pictures_.push_back(name);
   }
-  if (paint.texcoords().empty()) return;
-  glGenBuffers(2, buffers_.data());
-  glGenTextures(2, buffer_textures_.data());
-  const auto fill = [&](std::size_t which, GLenum format, std::size_t bytes, const void* data) {
+  if (paint.texcoords().empty() && paint.corner_colours().empty()) return;
+  glGenBuffers(3, buffers_.data());
+  glGenTextures(3, buffer_textures_.data());
+  const auto fill = [&](std::size_t which, GLenum format, const auto& values) {
+    if (values.empty()) return;
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units[which]));
     glBindBuffer(GL_TEXTURE_BUFFER, buffers_[which]);
-    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_STATIC_DRAW);
+    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(values.size() * sizeof values[0]),
+                 values.data(), GL_STATIC_DRAW);
     glBindTexture(GL_TEXTURE_BUFFER, buffer_textures_[which]);
     glTexBuffer(GL_TEXTURE_BUFFER, format, buffers_[which]);
   };
-  fill(0, GL_R32UI, corners.size() * sizeof(std::uint32_t), corners.data());
-  fill(1, GL_RG32F, paint.texcoords().size() * sizeof(Eigen::Vector2f), paint.texcoords().data());
+  fill(0, GL_R32UI, corners);
+  fill(1, GL_RG32F, paint.texcoords());
+  fill(2, GL_R32F, paint.corner_colours()); // OpenGL 3.3 has no buffers of three floats
   glActiveTexture(GL_TEXTURE0);
 }
 
 void ModelTextures::bind(unsigned program) const {
   viewer::set(program, "corner_places", units[0]);
   viewer::set(program, "corner_texcoords", units[1]);
-  viewer::set(program, "picture", units[2]);
-  for (std::size_t which = 0; which < 2; ++which) {
+  viewer::set(program, "corner_tints", units[2]);
+  viewer::set(program, "picture", units[3]);
+  for (std::size_t which = 0; which < 3; ++which) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units[which]));
     glBindTexture(GL_TEXTURE_BUFFER, buffer_textures_[which]);
   }
@@ -87,7 +91,7 @@ void ModelTextures::bind(unsigned program) const {
 
 bool ModelTextures::use(std::size_t coat) const {
   if (coat >= pictures_.size() || pictures_[coat] == 0) return false;
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units[2]));
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units[3]));
   glBindTexture(GL_TEXTURE_2D, pictures_[coat]);
   glActiveTexture(GL_TEXTURE0);
   return true;

@@ -1,6 +1,6 @@
 #pragma once
-// The textures of a model on the graphics card, and the texture coordinates of its triangles'
-// corners. All calls belong to the thread that has the OpenGL context.
+// The textures of a model on the graphics card, and the texture coordinates and colours of its
+// triangles' corners. All calls belong to the thread that has the OpenGL context.
 
 #include <array>
 #include <cstdint>
@@ -12,8 +12,9 @@ namespace nendo::viewer {
 
 class ModelTextures {
 public:
-  /// The units of the textures that the shaders read: corners, their texture coordinates, picture.
-  static constexpr std::array<int, 3> units{4, 5, 6};
+  /// The units of the textures that the shaders read: corners, their texture coordinates, their
+  /// colours, picture.
+  static constexpr std::array<int, 4> units{4, 5, 6, 7};
 
   ModelTextures() = default;
   ~ModelTextures();
@@ -31,8 +32,8 @@ public:
 private:
   void remove();
 
-  std::array<unsigned, 2> buffers_{};
-  std::array<unsigned, 2> buffer_textures_{}; ///< 0 where no coat has a picture
+  std::array<unsigned, 3> buffers_{};
+  std::array<unsigned, 3> buffer_textures_{}; ///< 0 where corners have nothing of their own
   std::vector<unsigned> pictures_;            ///< of each coat; 0 where it has none
 };
 

@@ -37,7 +37,8 @@ ModelHead head_of(const deform::BlockLayout& layout, const ModelPaint& paint, co
   head.diagonal = layout.diagonal();
   head.flags = static_cast<std::uint8_t>(
       (hands[0] != nullptr ? 1U : 0U) | (hands[1] != nullptr ? 2U : 0U) |
-      (paint.colours.empty() ? 0U : 4U) | (paint.texcoords.empty() ? 0U : 8U));
+      (paint.colours.empty() ? 0U : 4U) | (paint.texcoords.empty() ? 0U : 8U) |
+      (paint.colours_of_corners ? 16U : 0U));
   for (std::size_t axis = 0; axis < 3; ++axis)
     head.origin[axis] = layout.origin()[static_cast<Eigen::Index>(axis)];
   return head;

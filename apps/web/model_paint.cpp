@@ -27,14 +27,17 @@ CoatHead coat_of(const deform::Material& material, const deform::Mesh& mesh) {
   return coat;
 }
 
-std::vector<std::array<std::uint16_t, 3>> colours_of(const deform::Mesh& mesh,
-                                                     const deform::BlockLayout& layout) {
+std::array<std::uint16_t, 3> as_shares(const Eigen::Vector4f& colour) noexcept {
+  return {as_share(colour[0]), as_share(colour[1]), as_share(colour[2])};
+}
+
+std::vector<std::array<std::uint16_t, 3>> vertex_colours_of(const deform::Mesh& mesh,
+                                                            const deform::BlockLayout& layout) {
   const auto& given = mesh.look.vertex_colours;
   std::vector<std::array<std::uint16_t, 3>> colours;
   if (given.cols() == 0 || given.cols() != mesh.vertices.cols()) return colours;
   for (const std::uint32_t vertex : layout.order())
-    colours.push_back(
-        {as_share(given(0, vertex)), as_share(given(1, vertex)), as_share(given(2, vertex))});
+    colours.push_back(as_shares(given.col(vertex)));
   return colours;
 }
 
@@ -58,13 +61,17 @@ ModelPaint paint_of(const deform::Mesh& mesh, const deform::BlockLayout& layout)
     textured = textured || coat.texture != deform::no_index;
     paint.coats.push_back(coat);
   }
+  const auto& of_corners = mesh.look.texcoord_colours;
+  paint.colours_of_corners = of_corners.cols() > 0;
+  if (!paint.colours_of_corners) paint.colours = vertex_colours_of(mesh, layout);
   for (const std::uint32_t corner : drawn) {
     paint.corners.push_back(place_of[mesh.face_corners[corner]]);
+    if (paint.colours_of_corners)
+      paint.colours.push_back(as_shares(of_corners.col(mesh.corner_texcoords[corner])));
     if (!textured) continue;
     const auto& place = mesh.texcoords.col(mesh.corner_texcoords[corner]);
     paint.texcoords.push_back({as_float(place.x()), as_float(place.y())});
   }
-  paint.colours = colours_of(mesh, layout);
   return paint;
 }
 

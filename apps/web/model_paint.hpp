@@ -18,8 +18,10 @@ struct ModelPaint {
   std::vector<CoatHead> coats; ///< of the triangles, in their order
   /// Of each corner; empty if no coat has a texture.
   std::vector<std::array<float, 2>> texcoords;
-  /// Linear, red, green, blue of each vertex in block order, 65535 for 1; empty if all are white.
+  /// Linear, red, green, blue of each vertex in block order, or of each corner, 65535 for 1; empty
+  /// if all are white.
   std::vector<std::array<std::uint16_t, 3>> colours;
+  bool colours_of_corners = false;
 };
 
 /// Returns what deform::drawn_faces() tells of the mesh. `layout` must be the mesh's. Allocates.

@@ -74,7 +74,7 @@ static_assert(sizeof(ShapeHead) == 16);
 /// The head of the model message, in PROTOCOL.md's order and without gaps.
 struct ModelHead {
   char magic[8]{'N', 'E', 'N', 'D', 'O', 'W', 'E', 'B'};
-  std::uint32_t version = 5;
+  std::uint32_t version = 6;
   std::uint32_t vertices = 0;
   std::uint32_t triangles = 0;
   std::uint32_t name_bytes = 0;

@@ -60,7 +60,7 @@ public:
     finish();
     settle_hidden(mesh_.look, notes_);
     notes_.append_to(notes);
-    if (weld) note_welding(weld_places(mesh_, group_of_vertex_), notes);
+    if (weld) weld_places(mesh_, group_of_vertex_);
     return std::move(mesh_);
   }
 

@@ -10,6 +10,7 @@
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/up_axis.hpp>
 
+#include "corner_colours.hpp"
 #include "face_tidying.hpp"
 #include "foreign_format.hpp"
 #include "gltf_document.hpp"
@@ -101,11 +102,10 @@ void lay(const Source& source, Format format, std::optional<UpAxis> up, ReadMode
 /// other, what it says of vertices holds.
 void weld_soup(Mesh& mesh, Format format, ReadNotes& notes) {
   if (format != Format::stl && !is_soup(mesh)) return;
-  const Welding welding = weld_places(mesh);
-  if (welding.joined > 0 && format != Format::stl)
-    notes.push_back("no two faces share a vertex, so " + std::to_string(welding.joined) +
+  const std::size_t joined = weld_places(mesh);
+  if (joined > 0 && format != Format::stl)
+    notes.push_back("no two faces share a vertex, so " + std::to_string(joined) +
                     " vertices became one with another one in the same place");
-  note_welding(welding, notes);
 }
 
 void note_strays(const Mesh& mesh, ReadNotes& notes) {
@@ -215,8 +215,13 @@ Result<Mesh> read_mesh(const std::filesystem::path& path) {
 std::vector<std::string> lost_in_file(const std::filesystem::path& path, const Mesh& mesh) {
   constexpr double visible = 1e-6; // of the model's size
   const bool is_stl = ends_in(path.string(), ".stl");
-  if (!is_stl && !ends_in(path.string(), ".ply")) return {};
   std::vector<std::string> notes;
+  const std::size_t seams = is_stl ? 0 : count_colour_seams(mesh);
+  if (seams > 0)
+    notes.push_back("OBJ and PLY have one colour for each vertex, so " + std::to_string(seams) +
+                    (seams == 1 ? " vertex gets" : " vertices get") +
+                    " the mean of its faces' colours; `nendo export` to .glb keeps them");
+  if (!is_stl && !ends_in(path.string(), ".ply")) return notes;
   const Appearance& look = mesh.look;
   std::string lost;
   const auto add = [&](bool has, const char* what) {
@@ -224,9 +229,9 @@ std::vector<std::string> lost_in_file(const std::filesystem::path& path, const M
   };
   add(is_stl && has_polygons(mesh),
       "faces of more than three corners (they are cut into triangles)");
-  add(is_stl && look.vertex_colours.cols() > 0, "colours");
+  add(is_stl && look.has_colours(), "colours");
   add(!look.materials.empty(), "materials");
-  add(mesh.texcoords.cols() > 0, "texture coordinates");
+  add(has_texture_places(mesh), "texture coordinates");
   add(!look.groups.names.empty(), "groups");
   add(!look.objects.names.empty(), "objects");
   if (!lost.empty())

@@ -1,5 +1,6 @@
 // The writer of OBJ.
 
+#include "corner_colours.hpp"
 #include "mesh_formats.hpp"
 #include "mtl_file.hpp"
 #include "number_text.hpp"
@@ -18,7 +19,7 @@ void append_column(std::string& text, const Column& column) {
 }
 
 void append_vertices(std::string& text, const Mesh& mesh) {
-  const Eigen::Matrix4Xf& colours = mesh.look.vertex_colours;
+  const Eigen::Matrix4Xf colours = mean_vertex_colours(mesh);
   for (Eigen::Index vertex = 0; vertex < mesh.vertices.cols(); ++vertex) {
     text += 'v';
     append_column(text, mesh.vertices.col(vertex));
@@ -61,6 +62,7 @@ void append_face_lines(std::string& text, const Mesh& mesh) {
   const Appearance& look = mesh.look;
   ChangingName object("o", line_names(look.objects), look.objects.of_face);
   ChangingName group("g", line_names(look.groups), look.groups.of_face);
+  const bool textured = has_texture_places(mesh);
   ChangingName material("usemtl", unique_names(look.materials), look.face_materials);
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     for (ChangingName* name : {&object, &group, &material})
@@ -69,7 +71,7 @@ void append_face_lines(std::string& text, const Mesh& mesh) {
     for (std::size_t at = mesh.face_starts[face]; at < mesh.face_starts[face + 1]; ++at) {
       text += ' ';
       append_number(text, std::uint64_t{mesh.face_corners[at]} + 1);
-      if (mesh.corner_texcoords.empty()) continue;
+      if (!textured) continue;
       text += '/';
       append_number(text, std::uint64_t{mesh.corner_texcoords[at]} + 1);
     }
@@ -83,7 +85,8 @@ std::string obj_text(const Mesh& mesh, std::string_view library) {
   std::string text = "# nendo\n";
   if (!library.empty()) text += "mtllib " + std::string(library) + "\n";
   append_vertices(text, mesh);
-  for (Eigen::Index texcoord = 0; texcoord < mesh.texcoords.cols(); ++texcoord) {
+  const Eigen::Index texcoords = has_texture_places(mesh) ? mesh.texcoords.cols() : 0;
+  for (Eigen::Index texcoord = 0; texcoord < texcoords; ++texcoord) {
     text += "vt";
     append_column(text, mesh.texcoords.col(texcoord));
     text += '\n';

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "corner_colours.hpp"
 #include "mesh_formats.hpp"
 #include "srgb.hpp"
 
@@ -44,7 +45,8 @@ std::string ply_text(const Mesh& mesh) {
   // them.
   const bool large_face = has_large_face(mesh);
   const bool large_model = mesh.vertices.cols() > std::numeric_limits<std::int32_t>::max();
-  const bool coloured = mesh.look.vertex_colours.cols() == mesh.vertices.cols();
+  const Eigen::Matrix4Xf colours = mean_vertex_colours(mesh);
+  const bool coloured = colours.cols() > 0 && colours.cols() == mesh.vertices.cols();
   const std::string colour_properties = "property uchar red\nproperty uchar green\n"
                                         "property uchar blue\nproperty uchar alpha\n";
   std::string text = "ply\nformat binary_little_endian 1.0\ncomment nendo\nelement vertex " +
@@ -57,7 +59,7 @@ std::string ply_text(const Mesh& mesh) {
   for (Eigen::Index vertex = 0; vertex < mesh.vertices.cols(); ++vertex) {
     for (const double coordinate : mesh.vertices.col(vertex))
       append_little_endian(text, coordinate);
-    if (coloured) append_colour(text, mesh.look.vertex_colours.col(vertex));
+    if (coloured) append_colour(text, colours.col(vertex));
   }
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const std::uint32_t begin = mesh.face_starts[face];

@@ -207,6 +207,7 @@ Subdivision subdivided_faces(const Mesh& mesh) {
   const Middles of_texture(mesh, mesh.corner_texcoords,
                            static_cast<std::uint32_t>(mesh.texcoords.cols()));
   append_means(of_texture, finer.texcoords);
+  if (finer.look.texcoord_colours.cols() > 0) append_means(of_texture, finer.look.texcoord_colours);
   append_faces(mesh, mesh.corner_texcoords, of_texture, finer.corner_texcoords, [] {});
   return result;
 }

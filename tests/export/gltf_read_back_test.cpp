@@ -13,6 +13,8 @@
 #include <nendo/deform/subdivision.hpp>
 
 #include "export/gltf_model.hpp"
+#include "support/nasty_meshes.hpp"
+#include "support/six_colours.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
 
@@ -138,6 +140,16 @@ TEST_SUITE("gltf_read_back") {
   TEST_CASE("vertices, materials, texture and colours come back, also of a finer model") {
     check_read_back(painted_ball());
     check_read_back(deform::subdivide(painted_ball()).mesh);
+  }
+
+  TEST_CASE("faces of a vertex that differ in colour come back so, and share the vertex") {
+    const deform::Mesh cube = test::with_six_colours(test::cube_of_cells(2));
+    const deform::Mesh back = read_back(cube, 1.0);
+    CHECK(back.vertices.cols() == cube.vertices.cols());
+    CHECK(back.face_count() == cube.face_count());
+    CHECK(test::worst_of_six_colours(back) < 1e-6F);
+    CHECK(back.look.materials.size() == 1);
+    CHECK(*back.look.materials[0].colour == Eigen::Vector4f(Eigen::Vector4f::Ones()));
   }
 
   TEST_CASE("parts share no vertices, and all of them together have hardly more than the model") {

@@ -40,6 +40,9 @@ void require_usable(const nendo::deform::Appearance& look, std::size_t faces,
   require(are_below_or_none(look.objects.of_face, look.objects.names.size()));
   require(look.vertex_colours.cols() == 0 || look.vertex_colours.cols() == vertices);
   require(look.vertex_colours.allFinite());
+  require(look.texcoord_colours.cols() == 0 ||
+          (look.texcoord_colours.cols() == mesh.texcoords.cols() &&
+           look.vertex_colours.cols() == 0 && look.texcoord_colours.allFinite()));
   for (const auto& material : look.materials) {
     require(!material.colour || material.colour->allFinite());
     require(material.texture == nendo::deform::no_index || material.texture < look.textures.size());

@@ -241,6 +241,22 @@ TEST_SUITE("picture") {
     CHECK(std::abs(before) > 40.0);
   }
 
+  TEST_CASE("colours of corners end at the edge between two faces") {
+    deform::Mesh mesh = test::grid(2, 1.0);
+    mesh.texcoords = Eigen::Matrix2Xd::Zero(2, 2);
+    mesh.look.texcoord_colours.resize(4, 2);
+    mesh.look.texcoord_colours << 0.6F, 0.0F, 0.0F, 0.0F, 0.0F, 0.6F, 1.0F, 1.0F; // red and blue
+    for (std::uint32_t corner = 0; corner < 16; ++corner)
+      mesh.corner_texcoords.push_back(corner / 4 % 2); // faces on the left, and on the right
+    const Image image = plate_from_above(mesh);
+    for (const int y : {45, 55, 65, 75})
+      for (const int x : {45, 57, 63, 75}) {
+        const Pixel& pixel = image.at(x, y);
+        const int warmth = static_cast<int>(pixel[0]) - static_cast<int>(pixel[2]);
+        CHECK((x < 60 ? warmth : -warmth) > 60);
+      }
+  }
+
   TEST_CASE("a model of which all is transparent is drawn all the same") {
     deform::Mesh mesh = test::grid(2, 1.0);
     mesh.look.materials = {

@@ -14,7 +14,9 @@
 
 #include "render/picture.hpp"
 #include "support/memory_screen.hpp"
+#include "support/nasty_meshes.hpp"
 #include "support/restraint.hpp"
+#include "support/six_colours.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
 #include "viewer/pointing.hpp"
@@ -122,6 +124,35 @@ int single_pixels(const Image& image, double steps) {
       if (std::min(aside, above) > steps) ++found;
     }
   return found;
+}
+
+/// Lights differ a little: they have the sky's shadows in pictures. Hues do not.
+void check_same_hues(const deform::Mesh& mesh) {
+  Look look(mesh);
+  look.window->parts().ground = false;
+  const Image image = look.picture();
+  Scene scene;
+  SceneFrame moment;
+  moment.vertices = mesh.vertices;
+  SceneParts parts;
+  parts.ground = false;
+  look.builder.build(moment, parts, scene);
+  const Camera& camera = look.window->camera();
+  const Image drawn = draw(Lighting(scene, camera.view.azimuth_deg), camera, size);
+  int compared = 0;
+  int alike = 0;
+  for (int y = 0; y < size.height; y += 3)
+    for (int x = 0; x < size.width; x += 3) {
+      const auto hue = [](const Pixel& pixel) {
+        return static_cast<int>(pixel[0]) - static_cast<int>(pixel[2]);
+      };
+      const int expected = hue(drawn.at(x, y));
+      if (std::abs(expected) < 40) continue;
+      ++compared;
+      alike += hue(image.at(x, y)) * expected > 0 ? 1 : 0;
+    }
+  CHECK(compared > 500);
+  CHECK(alike > compared * 97 / 100);
 }
 
 } // namespace
@@ -268,32 +299,13 @@ TEST_SUITE("window_picture" * doctest::skip(!test::restraint_is_counted)) {
     mesh.look.materials[1] = {"b", Eigen::Vector4f(0.4F, 0.4F, 0.6F, 1.0F), 0, true};
     mesh.texcoords = (mesh.vertices.topRows<2>() / 2.0).array() + 0.5;
     mesh.corner_texcoords = mesh.face_corners;
-    Look look(mesh);
-    look.window->parts().ground = false;
-    const Image image = look.picture();
-    Scene scene;
-    SceneFrame moment;
-    moment.vertices = mesh.vertices;
-    SceneParts parts;
-    parts.ground = false;
-    look.builder.build(moment, parts, scene);
-    const Camera& camera = look.window->camera();
-    const Image drawn = draw(Lighting(scene, camera.view.azimuth_deg), camera, size);
-    // Lights differ a little: they have the sky's shadows in pictures. Hues do not.
-    int compared = 0;
-    int alike = 0;
-    for (int y = 0; y < size.height; y += 3)
-      for (int x = 0; x < size.width; x += 3) {
-        const auto hue = [](const Pixel& pixel) {
-          return static_cast<int>(pixel[0]) - static_cast<int>(pixel[2]);
-        };
-        const int expected = hue(drawn.at(x, y));
-        if (std::abs(expected) < 40) continue;
-        ++compared;
-        alike += hue(image.at(x, y)) * expected > 0 ? 1 : 0;
-      }
-    CHECK(compared > 500);
-    CHECK(alike > compared * 97 / 100);
+    check_same_hues(mesh);
+  }
+
+  TEST_CASE("the window shows the colours of corners that pictures show") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    check_same_hues(test::with_six_colours(test::cube_of_cells(3, true)));
   }
 }
 

@@ -20,7 +20,7 @@ public:
     Bytes in{model};
     const std::string magic(reinterpret_cast<const char*>(model.data()), 8);
     in.at = 8;
-    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 5;
+    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 6;
     const auto vertices = in.take<std::uint32_t>();
     const auto triangles = in.take<std::uint32_t>();
     const auto name_bytes = in.take<std::uint32_t>();
@@ -48,7 +48,8 @@ public:
       coat.colour = in.take<std::array<float, 3>>();
     }
     if ((flags & 8U) != 0) texcoords = in.take_all<float>(std::size_t{6} * triangles);
-    if ((flags & 4U) != 0) colours = in.take_all<std::uint16_t>(std::size_t{3} * vertices);
+    const std::size_t coloured = (flags & 16U) != 0 ? std::size_t{3} * triangles : vertices;
+    if ((flags & 4U) != 0) colours = in.take_all<std::uint16_t>(3 * coloured);
     name.assign(reinterpret_cast<const char*>(model.data()) + in.at, name_bytes);
     good = good && in.at + name_bytes == model.size();
   }
@@ -262,7 +263,7 @@ private:
     can_undo = (hands & 64U) != 0;
     can_redo = (hands & 128U) != 0;
     in.at += 1;
-    const auto steps = in.take<std::uint32_t>();
+    const auto step_count = in.take<std::uint32_t>();
     newest = in.take<std::uint64_t>();
     tick = in.take<std::uint64_t>();
     in.at = 40;
@@ -280,9 +281,9 @@ private:
       other_bones[slot] = (hands >> slot & 16U) != 0;
       if (present[slot]) take_hand(in, slot);
     }
-    for (std::uint32_t step = 0; step < steps; ++step)
+    for (std::uint32_t step = 0; step < step_count; ++step)
       take_step(in);
-    if (steps > 0 && number > 0) number = newest;
+    if (step_count > 0 && number > 0) number = newest;
   }
 
   static Eigen::Quaterniond take_turn(Bytes& in) {

@@ -1,5 +1,6 @@
 // The colours of the model message, and which files clients may get.
 
+#include <cmath>
 #include <limits>
 #include <memory>
 
@@ -7,6 +8,8 @@
 
 #include "following_client.hpp"
 #include "render/image.hpp"
+#include "support/nasty_meshes.hpp"
+#include "support/six_colours.hpp"
 #include "support/test_meshes.hpp"
 #include "web/model_message.hpp"
 #include "web/pictures.hpp"
@@ -102,6 +105,25 @@ TEST_SUITE("model_paint") {
       CHECK(client.colours[3 * at + 1] / 65535.0 ==
             doctest::Approx(client.order[at] / 12.0).epsilon(1e-4));
       CHECK(client.colours[3 * at + 2] == (client.order[at] == 3 ? 0 : 65535));
+    }
+    CHECK(client.texcoords.empty());
+  }
+
+  TEST_CASE("colours that differ in one vertex come corner by corner") {
+    const deform::Mesh cube = test::with_six_colours(test::cube_of_cells(1, true));
+    const FollowingClient client = client_of(cube);
+    REQUIRE(client.good);
+    CHECK(client.corners.size() == 36);
+    REQUIRE(client.colours.size() == 108);
+    for (std::size_t at = 0; at < 36; at += 3) {
+      const auto place = [&](std::size_t k) -> Eigen::Vector3d {
+        return cube.vertices.col(client.order[client.corners[at + k]]);
+      };
+      const Eigen::Vector3d normal = (place(1) - place(0)).cross(place(2) - place(0));
+      const Eigen::Vector4f wanted = test::colour_of_side(test::side_of(normal));
+      for (std::size_t k = 0; k < 9; ++k)
+        CHECK(client.colours[3 * at + k] ==
+              std::lround(65535.0F * wanted[static_cast<Eigen::Index>(k % 3)]));
     }
     CHECK(client.texcoords.empty());
   }

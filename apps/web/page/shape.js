@@ -33,7 +33,8 @@ class Shape {
     this.bake = makeProgram(gl, glsl('deform') + glsl('bake'), 'void main() {}', ['baked_place', 'baked_normal'])
     this.corners = makeBuffer(gl, gl.ELEMENT_ARRAY_BUFFER, this.seams.drawn, gl.STATIC_DRAW)
     this.texcoords = this.seams.texcoords && makeBuffer(gl, gl.ARRAY_BUFFER, this.seams.texcoords, gl.STATIC_DRAW)
-    this.tints = model.colours && makeBuffer(gl, gl.ARRAY_BUFFER, forDrawn(model.colours, 3, this.seams), gl.STATIC_DRAW)
+    const tints = this.seams.tints || (model.colours && forDrawn(model.colours, 3, this.seams))
+    this.tints = tints && makeBuffer(gl, gl.ARRAY_BUFFER, tints, gl.STATIC_DRAW)
     this.states = [this.makeState(), this.makeState()] // the first is the base
     this.feedback = gl.createTransformFeedback()
     this.texture = gl.createTexture()

@@ -14,7 +14,7 @@ function readModel(buffer) {
   const view = new DataView(buffer)
   const text = (at, count) => new TextDecoder().decode(new Uint8Array(buffer, at, count))
   if (buffer.byteLength < MODEL_HEAD || text(0, 8) !== 'NENDOWEB') throw new Error('this server is no nendo')
-  if (view.getUint32(8, true) !== 5) throw new Error('this server speaks another version; reload the page')
+  if (view.getUint32(8, true) !== 6) throw new Error('this server speaks another version; reload the page')
   const vertices = view.getUint32(12, true), triangles = view.getUint32(16, true)
   const flags = view.getUint8(82), bones = [null, null]
   let places = MODEL_HEAD
@@ -24,8 +24,9 @@ function readModel(buffer) {
     places += 2 * JOINTS * BONE_BYTES
   }
   const order = places + 12 * vertices, corners = order + 4 * vertices, coats = corners + 12 * triangles
+  const tints = flags & 16 ? 3 * triangles : vertices
   const texcoords = coats + COAT_BYTES * view.getUint32(84, true), colours = texcoords + (flags & 8 ? 24 * triangles : 0)
-  const name = colours + (flags & 4 ? 6 * vertices : 0)
+  const name = colours + (flags & 4 ? 6 * tints : 0)
   return {
     vertices, triangles,
     rate: view.getFloat64(24, true), unit: view.getFloat64(32, true),
@@ -37,7 +38,8 @@ function readModel(buffer) {
     corners: new Uint32Array(buffer, corners, 3 * triangles),
     coats: readCoats(view, coats, view.getUint32(84, true)),
     texcoords: flags & 8 ? new Float32Array(buffer, texcoords, 6 * triangles) : null,
-    colours: flags & 4 ? new Uint16Array(buffer, colours, 3 * vertices) : null,
+    colours: flags & 4 ? new Uint16Array(buffer, colours, 3 * tints) : null,
+    areColoursOfCorners: Boolean(flags & 16),
     name: text(name, view.getUint32(20, true)),
   }
 }

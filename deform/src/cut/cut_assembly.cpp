@@ -259,23 +259,27 @@ void Assembler::write_cap() {
     }
 }
 
+/// The cut faces are white, so that their material shows.
 void Assembler::write_texcoords() {
   if (!faces_.has_texcoords()) return;
   const auto old = static_cast<std::size_t>(cut_.mesh.texcoords.cols());
-  const std::size_t corners = surface_.crossings().size() + cut_.cap.inner.size();
-  Eigen::Matrix2Xd& texcoords = result_.mesh.texcoords;
-  texcoords.resize(2, static_cast<Eigen::Index>(old + surface_.new_texcoords().size() + corners));
-  double* to = std::copy_n(cut_.mesh.texcoords.data(), 2 * old, texcoords.data());
-  for (const auto& texcoord : surface_.new_texcoords())
-    to = std::copy(texcoord.begin(), texcoord.end(), to);
+  std::vector<TexturePoint> points;
+  points.reserve(old + surface_.new_texcoords().size() + surface_.crossings().size() +
+                 cut_.cap.inner.size());
+  for (std::size_t at = 0; at < old; ++at)
+    points.push_back(texture_point_of(cut_.mesh, at));
+  points.insert(points.end(), surface_.new_texcoords().begin(), surface_.new_texcoords().end());
   const auto put = [&](const PlanePoint& place) {
-    *to++ = place[0] / cut_.diagonal;
-    *to++ = place[1] / cut_.diagonal;
+    TexturePoint point = white_texture_point;
+    point[0] = place[0] / cut_.diagonal;
+    point[1] = place[1] / cut_.diagonal;
+    points.push_back(point);
   };
   for (const SpacePoint& point : surface_.crossing_points())
     put(cut_.blade.chart(point));
   for (const PlanePoint& place : cut_.cap.inner)
     put(place);
+  set_texture_points(points, result_.mesh);
 }
 
 void Assembler::write_look() {

@@ -296,11 +296,9 @@ void CutSurface::link_loops() {
   }
 }
 
-std::array<double, 2> CutSurface::texcoord(std::uint32_t index) const noexcept {
+TexturePoint CutSurface::texcoord(std::uint32_t index) const noexcept {
   const auto old = static_cast<std::uint32_t>(mesh_.texcoords.cols());
-  if (index >= old) return new_texcoords_[index - old];
-  const double* at = mesh_.texcoords.data() + 2 * std::size_t{index};
-  return {at[0], at[1]};
+  return index < old ? texture_point_of(mesh_, index) : new_texcoords_[index - old];
 }
 
 std::uint32_t CutSurface::texcoord_between(std::uint64_t point, std::uint32_t from,
@@ -310,9 +308,11 @@ std::uint32_t CutSurface::texcoord_between(std::uint64_t point, std::uint32_t fr
     if ((one.from == from && one.to == to) || (one.from == to && one.to == from)) return one.index;
   const auto number = static_cast<std::uint32_t>(static_cast<std::size_t>(mesh_.texcoords.cols()) +
                                                  new_texcoords_.size());
-  const std::array<double, 2> a = texcoord(from);
-  const std::array<double, 2> b = texcoord(to);
-  new_texcoords_.push_back({(1.0 - part) * a[0] + part * b[0], (1.0 - part) * a[1] + part * b[1]});
+  TexturePoint mixed = texcoord(from);
+  const TexturePoint other = texcoord(to);
+  for (std::size_t k = 0; k < mixed.size(); ++k)
+    mixed[k] = (1.0 - part) * mixed[k] + part * other[k];
+  new_texcoords_.push_back(mixed);
   known.push_back({from, to, number});
   return number;
 }

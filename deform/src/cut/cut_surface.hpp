@@ -11,6 +11,7 @@
 
 #include "cut/blade.hpp"
 #include "cut/half_edges.hpp"
+#include "texture_point.hpp"
 
 namespace nendo::deform {
 
@@ -68,9 +69,7 @@ public:
   const std::vector<std::vector<std::uint32_t>>& loops() const noexcept { return loops_; }
   const std::vector<std::uint32_t>& loop_of() const noexcept { return loop_of_; }
   /// Texture coordinates: the mesh's, and those of new corners behind them.
-  const std::vector<std::array<double, 2>>& new_texcoords() const noexcept {
-    return new_texcoords_;
-  }
+  const std::vector<TexturePoint>& new_texcoords() const noexcept { return new_texcoords_; }
   /// Returns the index of a texture coordinate between two others; what was made for this point
   /// before is taken again.
   std::uint32_t texcoord_between(std::uint64_t point, std::uint32_t from, std::uint32_t to,
@@ -89,7 +88,7 @@ private:
   std::uint32_t crossing(std::uint32_t from, std::uint32_t to);
   double crossing_part(std::uint32_t from, std::uint32_t to) const noexcept;
   void link_loops();
-  std::array<double, 2> texcoord(std::uint32_t index) const noexcept;
+  TexturePoint texcoord(std::uint32_t index) const noexcept;
 
   const Mesh& mesh_;
   FaceTriangles triangles_;
@@ -112,7 +111,7 @@ private:
     std::uint32_t from, to, index;
   };
   std::unordered_map<std::uint64_t, std::vector<PointTexcoord>> texcoords_of_point_;
-  std::vector<std::array<double, 2>> new_texcoords_;
+  std::vector<TexturePoint> new_texcoords_;
 };
 
 } // namespace nendo::deform

@@ -96,6 +96,8 @@ std::vector<Mesh> separated(const Mesh& mesh, const std::vector<std::uint32_t>& 
     take_columns(mesh.vertices, vertex.used(), own.vertices);
     own.offset = mesh.offset;
     take_columns(mesh.texcoords, texcoord.used(), own.texcoords);
+    if (mesh.look.texcoord_colours.cols() > 0)
+      take_columns(mesh.look.texcoord_colours, texcoord.used(), own.look.texcoord_colours);
     if (mesh.look.vertex_colours.cols() > 0)
       take_columns(mesh.look.vertex_colours, vertex.used(), own.look.vertex_colours);
     own.look.materials = mesh.look.materials;

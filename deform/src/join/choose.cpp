@@ -44,7 +44,10 @@ private:
   TexturePoint on_edge(std::uint32_t face, const Crossing& point) const {
     const TexturePoint& a = from_.texture_points[texture_at(face, point.from)];
     const TexturePoint& b = from_.texture_points[texture_at(face, point.to)];
-    return {a[0] + point.along * (b[0] - a[0]), a[1] + point.along * (b[1] - a[1])};
+    TexturePoint mixed = a;
+    for (std::size_t k = 0; k < mixed.size(); ++k)
+      mixed[k] += point.along * (b[k] - a[k]);
+    return mixed;
   }
   TexturePoint within(std::uint32_t face, const Crossing& point) const {
     const Corners& corner = from_.faces[face];
@@ -56,12 +59,13 @@ private:
     const double of_b = std::clamp(dot(area, area_vector(a, point.place, c)) / whole, 0.0, 1.0);
     const double of_c = std::clamp(dot(area, area_vector(a, b, point.place)) / whole, 0.0, 1.0);
     const Corners& texture = from_.face_texture[face];
-    const auto mixed = [&](std::size_t k) {
-      const double first = from_.texture_points[texture[0]][k];
-      return first + of_b * (from_.texture_points[texture[1]][k] - first) +
-             of_c * (from_.texture_points[texture[2]][k] - first);
-    };
-    return {mixed(0), mixed(1)};
+    TexturePoint mixed = from_.texture_points[texture[0]];
+    for (std::size_t k = 0; k < mixed.size(); ++k) {
+      const double first = mixed[k];
+      mixed[k] = first + of_b * (from_.texture_points[texture[1]][k] - first) +
+                 of_c * (from_.texture_points[texture[2]][k] - first);
+    }
+    return mixed;
   }
 
   const TriangleSurface& from_;

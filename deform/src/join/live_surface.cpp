@@ -77,7 +77,10 @@ std::uint32_t LiveSurface::middle_texture(std::uint32_t edge) {
   if (surface_.face_texture.empty()) return no_entry;
   const TexturePoint& a = surface_.texture_points[texture(edge)];
   const TexturePoint& b = surface_.texture_points[texture(next(edge))];
-  surface_.texture_points.push_back({0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])});
+  TexturePoint middle{};
+  for (std::size_t k = 0; k < middle.size(); ++k)
+    middle[k] = 0.5 * (a[k] + b[k]);
+  surface_.texture_points.push_back(middle);
   return static_cast<std::uint32_t>(surface_.texture_points.size() - 1);
 }
 

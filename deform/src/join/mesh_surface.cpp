@@ -5,6 +5,7 @@
 
 #include <nendo/deform/triangles.hpp>
 
+#include "corner_colours.hpp"
 #include "join/look_collector.hpp"
 
 namespace nendo::deform {
@@ -32,13 +33,13 @@ TriangleSurface surface_of(const Mesh& mesh, const LookCollector& looks, bool ha
     const Eigen::Vector4f colour = mesh.look.vertex_colours.col(i);
     surface.colours.push_back({colour[0], colour[1], colour[2], colour[3]});
   }
-  for (Eigen::Index i = 0; i < mesh.texcoords.cols(); ++i)
-    surface.texture_points.push_back({mesh.texcoords(0, i), mesh.texcoords(1, i)});
+  for (std::size_t at = 0; at < static_cast<std::size_t>(mesh.texcoords.cols()); ++at)
+    surface.texture_points.push_back(texture_point_of(mesh, at));
   add_faces(mesh, looks, surface);
   if (has_colours && surface.colours.empty())
     surface.colours.assign(surface.points.size(), {1.0f, 1.0f, 1.0f, 1.0f});
   if (has_texture && surface.face_texture.empty()) {
-    surface.texture_points.assign(1, {0.0, 0.0});
+    surface.texture_points.assign(1, white_texture_point);
     surface.face_texture.assign(surface.faces.size(), {0, 0, 0});
   }
   return surface;
@@ -104,9 +105,7 @@ void set_texture(const TriangleSurface& surface, Mesh& mesh) {
       used.use(at);
   std::vector<TexturePoint> kept;
   used.number([&](std::uint32_t at) { kept.push_back(surface.texture_points[at]); });
-  mesh.texcoords.resize(2, static_cast<Eigen::Index>(kept.size()));
-  for (std::size_t at = 0; at < kept.size(); ++at)
-    mesh.texcoords.col(static_cast<Eigen::Index>(at)) << kept[at][0], kept[at][1];
+  set_texture_points(kept, mesh);
   for (const Corners& corners : surface.face_texture)
     for (const std::uint32_t at : corners)
       mesh.corner_texcoords.push_back(used[at]);
@@ -122,10 +121,19 @@ SharedSurfaces surfaces_of(std::span<const Mesh* const> meshes) {
   };
   const bool has_colours =
       any([](const Mesh& mesh) { return mesh.look.vertex_colours.cols() > 0; });
+  const bool has_corner_colours =
+      any([](const Mesh& mesh) { return mesh.look.texcoord_colours.cols() > 0; });
   const bool has_texture = any([](const Mesh& mesh) { return !mesh.corner_texcoords.empty(); });
   for (const Mesh* mesh : meshes) {
     looks.take(mesh->look);
-    shared.surfaces.push_back(surface_of(*mesh, looks, has_colours, has_texture));
+    if (has_corner_colours && mesh->look.vertex_colours.cols() > 0) {
+      Mesh alike = *mesh;
+      move_colours_to_corners(alike);
+      shared.surfaces.push_back(surface_of(alike, looks, false, true));
+    } else {
+      shared.surfaces.push_back(
+          surface_of(*mesh, looks, has_colours && !has_corner_colours, has_texture));
+    }
   }
   return shared;
 }

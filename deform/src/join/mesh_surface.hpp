@@ -13,7 +13,8 @@ namespace nendo::deform {
 
 /// Several meshes as surfaces with one list of materials, textures and names. What is the same in
 /// two meshes is one entry; another material of the same name gets a new name. If some mesh has
-/// colours or texture coordinates, all surfaces have some: white, and (0, 0).
+/// colours or texture coordinates, all surfaces have some: white, and (0, 0). Colours are those of
+/// corners if some mesh has such colours.
 struct SharedSurfaces {
   std::vector<TriangleSurface> surfaces;
   Appearance look; ///< its lists of faces and vertices are empty

@@ -11,6 +11,7 @@
 #include <nendo/deform/mesh.hpp>
 
 #include "join/space.hpp"
+#include "texture_point.hpp"
 
 namespace nendo::deform {
 
@@ -26,14 +27,12 @@ struct FaceLook {
 };
 
 using Colour = std::array<float, 4>;
-using TexturePoint = std::array<double, 2>;
-
 struct TriangleSurface {
   std::vector<SpacePoint> points;
   std::vector<Corners> faces;
   std::vector<FaceLook> looks;              ///< one for each face
   std::vector<Colour> colours;              ///< one for each point, or none at all
-  std::vector<TexturePoint> texture_points; ///< none, if there are no texture coordinates
+  std::vector<TexturePoint> texture_points; ///< none, if corners have none
   std::vector<Corners> face_texture;        ///< of each face's corners, or none at all
   std::vector<SpacePoint> rest;     ///< where each point is before the hands, or none at all
   std::vector<VertexDetail> detail; ///< one for each point, or none at all

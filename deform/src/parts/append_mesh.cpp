@@ -28,6 +28,7 @@ void append_mesh(const Mesh& more, Mesh& mesh) {
   const auto corners = static_cast<std::uint32_t>(mesh.face_corners.size());
   append_columns(more.vertices, mesh.vertices);
   append_columns(more.texcoords, mesh.texcoords);
+  append_columns(more.look.texcoord_colours, mesh.look.texcoord_colours);
   append_columns(more.look.vertex_colours, mesh.look.vertex_colours);
   append_numbers(more.face_corners, vertices, mesh.face_corners);
   append_numbers(more.corner_texcoords, texcoords, mesh.corner_texcoords);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "corner_colours.hpp"
 #include "join/look_collector.hpp"
 #include "parts/append_mesh.hpp"
 
@@ -12,13 +13,15 @@ constexpr double gap_of_width = 0.1; // of the widest model's width
 
 /// What each mesh is to have, so that all are alike.
 struct Shared {
-  bool colours = false, texture = false, materials = false, groups = false, objects = false;
+  bool colours = false, corner_colours = false, texture = false, materials = false, groups = false,
+       objects = false;
 };
 
 Shared shared_by(std::span<const Mesh> models) {
   Shared shared;
   for (const Mesh& model : models) {
     shared.colours = shared.colours || model.look.vertex_colours.cols() > 0;
+    shared.corner_colours = shared.corner_colours || model.look.texcoord_colours.cols() > 0;
     shared.texture = shared.texture || !model.corner_texcoords.empty();
     shared.materials = shared.materials || !model.look.face_materials.empty();
     shared.groups = shared.groups || !model.look.groups.of_face.empty();
@@ -39,8 +42,10 @@ Mesh like_the_others(const Mesh& model, const Shared& shared, LookCollector& loo
     if (shared.objects) made.look.objects.of_face.push_back(look.object);
   }
   made.look.vertex_colours = model.look.vertex_colours;
-  if (shared.colours && made.look.vertex_colours.cols() == 0)
+  made.look.texcoord_colours = model.look.texcoord_colours;
+  if ((shared.colours || shared.corner_colours) && !made.look.has_colours())
     made.look.vertex_colours = Eigen::Matrix4Xf::Ones(4, model.vertices.cols());
+  if (shared.corner_colours) move_colours_to_corners(made);
   if (shared.texture && made.corner_texcoords.empty()) {
     made.texcoords = Eigen::Matrix2Xd::Zero(2, 1);
     made.corner_texcoords.assign(model.face_corners.size(), 0);

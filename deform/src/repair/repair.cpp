@@ -9,6 +9,7 @@
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/triangles.hpp>
 
+#include "corner_colours.hpp"
 #include "cut/cut_assembly.hpp"
 #include "repair/doubles.hpp"
 #include "repair/holes.hpp"
@@ -98,13 +99,14 @@ void Repairer::join_places() {
   std::vector<std::uint8_t> used(place.size(), 0);
   for (const std::uint32_t vertex : mesh_.face_corners)
     used[vertex] = 1;
+  const Eigen::Matrix4Xf& colours = mesh_.look.vertex_colours;
+  bool differ = false;
   for (std::uint32_t vertex = 0; vertex < place.size(); ++vertex)
     if (used[vertex] != 0 && place[vertex] != vertex) {
       ++result_.joined;
-      const Eigen::Matrix4Xf& colours = mesh_.look.vertex_colours;
-      if (colours.cols() > 0 && colours.col(vertex) != colours.col(place[vertex]))
-        ++result_.recoloured;
+      differ = differ || (colours.cols() > 0 && colours.col(vertex) != colours.col(place[vertex]));
     }
+  if (differ) move_colours_to_corners(mesh_);
   result_.dropped += renumber_corners(mesh_, place).faces;
   place_of_ = mesh_.face_corners;
 }
@@ -232,8 +234,6 @@ std::vector<std::string> lines_of(const Repair& repair) {
   std::snprintf(tolerance, sizeof tolerance, "%.3g", repair.tolerance);
   add(repair.joined, "joined", "vertex", "vertices",
       std::string(" with others no farther away than ") + tolerance);
-  add(repair.recoloured, "gave", "vertex", "vertices",
-      " the colour of the one with which it was joined");
   add(repair.dropped, "dropped", "face", "faces",
       " that had fewer than three corners or repeated another");
   add(repair.repeated, "dropped", "corner", "corners", " that repeated the one before in its face");

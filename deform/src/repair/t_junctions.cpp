@@ -65,25 +65,38 @@ Junctions junctions_of(const Mesh& mesh, const std::vector<std::uint32_t>& place
   return found;
 }
 
-/// Texture coordinates between others, in columns of their own behind all others.
+/// Texture coordinates between others, and the colours of these places, in new last columns.
 class MixedTexcoords {
 public:
-  explicit MixedTexcoords(Eigen::Matrix2Xd& columns) : columns_(columns), before_(columns.cols()) {}
+  explicit MixedTexcoords(Mesh& mesh) : mesh_(mesh), before_(mesh.texcoords.cols()) {}
   std::uint32_t between(std::uint32_t a, std::uint32_t b, double along) {
     if (a == b) return a;
-    more_.emplace_back((1.0 - along) * columns_.col(a) + along * columns_.col(b));
+    more_.push_back({a, b, along});
     return static_cast<std::uint32_t>(before_) + static_cast<std::uint32_t>(more_.size()) - 1;
   }
   void finish() {
-    columns_.conservativeResize(2, before_ + static_cast<Eigen::Index>(more_.size()));
-    for (std::size_t at = 0; at < more_.size(); ++at)
-      columns_.col(before_ + static_cast<Eigen::Index>(at)) = more_[at];
+    append_to(mesh_.texcoords);
+    if (mesh_.look.texcoord_colours.cols() > 0) append_to(mesh_.look.texcoord_colours);
   }
 
 private:
-  Eigen::Matrix2Xd& columns_;
+  struct Mix {
+    std::uint32_t a, b;
+    double along;
+  };
+  template <class Columns>
+  void append_to(Columns& columns) {
+    columns.conservativeResize(columns.rows(), before_ + static_cast<Eigen::Index>(more_.size()));
+    for (std::size_t at = 0; at < more_.size(); ++at) {
+      const auto along = static_cast<typename Columns::Scalar>(more_[at].along);
+      columns.col(before_ + static_cast<Eigen::Index>(at)) =
+          (1 - along) * columns.col(more_[at].a) + along * columns.col(more_[at].b);
+    }
+  }
+
+  Mesh& mesh_;
   Eigen::Index before_;
-  std::vector<Eigen::Vector2d> more_;
+  std::vector<Mix> more_;
 };
 
 } // namespace
@@ -96,7 +109,7 @@ std::size_t split_at_junctions(Mesh& mesh, std::vector<std::uint32_t>& place_of,
   place_of.clear();
   mesh.face_corners.clear();
   mesh.corner_texcoords.clear();
-  MixedTexcoords texcoords(mesh.texcoords);
+  MixedTexcoords texcoords(mesh);
   std::size_t added = 0;
   const auto put = [&](std::uint32_t vertex, std::uint32_t place) {
     mesh.face_corners.push_back(vertex);

@@ -1,11 +1,12 @@
 #include "repair/weld.hpp"
 
-#include <array>
+#include <algorithm>
 #include <functional>
-#include <tuple>
+#include <map>
 #include <utility>
 #include <vector>
 
+#include "corner_colours.hpp"
 #include "repair/stitch.hpp"
 
 namespace nendo::deform {
@@ -17,29 +18,18 @@ bool has_no_doubles(const std::vector<std::uint32_t>& places) {
   return true;
 }
 
-/// Numbers vertices so that those of one place, one group and one colour share a number, the least
-/// of their own.
-std::vector<std::uint32_t> places_alike(const Mesh& mesh, const std::vector<std::uint32_t>& place,
-                                        std::span<const std::uint32_t> group_of_vertex) {
-  const Eigen::Matrix4Xf& colours = mesh.look.vertex_colours;
-  if (colours.cols() == 0 &&
-      (group_of_vertex.empty() ||
-       std::ranges::adjacent_find(group_of_vertex, std::not_equal_to<>()) == group_of_vertex.end()))
+/// Numbers vertices so that those of one place and one group share a number, the least of their
+/// own.
+std::vector<std::uint32_t> places_in_groups(const std::vector<std::uint32_t>& place,
+                                            std::span<const std::uint32_t> group_of_vertex) {
+  if (group_of_vertex.empty() ||
+      std::ranges::adjacent_find(group_of_vertex, std::not_equal_to<>()) == group_of_vertex.end())
     return place;
-  using Key = std::tuple<std::uint32_t, std::uint32_t, std::array<float, 4>>;
-  const auto key = [&](std::uint32_t at) {
-    Key of{place[at], group_of_vertex.empty() ? 0 : group_of_vertex[at], {}};
-    if (colours.cols() > 0)
-      std::copy_n(colours.data() + 4 * std::size_t{at}, 4, std::get<2>(of).begin());
-    return of;
-  };
-  std::vector<std::uint32_t> order(place.size()), alike(place.size());
-  std::iota(order.begin(), order.end(), std::uint32_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-  for (std::size_t at = 0; at < order.size(); ++at)
-    alike[order[at]] =
-        at > 0 && key(order[at]) == key(order[at - 1]) ? alike[order[at - 1]] : order[at];
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first;
+  std::vector<std::uint32_t> alike;
+  alike.reserve(place.size());
+  for (std::uint32_t at = 0; at < place.size(); ++at)
+    alike.push_back(first.emplace(std::pair(place[at], group_of_vertex[at]), at).first->second);
   return alike;
 }
 
@@ -170,12 +160,12 @@ DroppedCorners renumber_corners(Mesh& mesh, std::span<const std::uint32_t> verte
   return dropped;
 }
 
-Welding weld_places(Mesh& mesh, std::span<const std::uint32_t> group_of_vertex) {
-  Welding done;
+std::size_t weld_places(Mesh& mesh, std::span<const std::uint32_t> group_of_vertex) {
+  std::size_t joined = 0;
   const auto count = static_cast<std::size_t>(mesh.vertices.cols());
   const std::vector<std::uint32_t> exact = exact_places(mesh.vertices);
-  if (has_no_doubles(exact)) return done;
-  const std::vector<std::uint32_t> place = places_alike(mesh, exact, group_of_vertex);
+  if (has_no_doubles(exact)) return joined;
+  const std::vector<std::uint32_t> place = places_in_groups(exact, group_of_vertex);
   std::vector<std::uint32_t> place_of_corner;
   place_of_corner.reserve(mesh.face_corners.size());
   for (const std::uint32_t vertex : mesh.face_corners)
@@ -186,27 +176,20 @@ Welding weld_places(Mesh& mesh, std::span<const std::uint32_t> group_of_vertex) 
   join_thin_faces(mesh, place, sets);
   std::vector<std::uint32_t> vertex_of(count);
   std::vector<std::uint8_t> keeps(count, 1);
+  const Eigen::Matrix4Xf& colours = mesh.look.vertex_colours;
+  bool differ = false;
   for (std::uint32_t at = 0; at < count; ++at) {
     vertex_of[at] = sets.find(at);
-    const bool same_group =
-        group_of_vertex.empty() || group_of_vertex[at] == group_of_vertex[exact[at]];
-    if (place[at] != exact[at] && same_group) ++done.coloured;
     if (vertex_of[at] == at) continue;
+    differ = differ || (colours.cols() > 0 && colours.col(vertex_of[at]) != colours.col(at));
     keeps[at] = 0;
-    ++done.joined;
+    ++joined;
   }
+  if (differ) move_colours_to_corners(mesh);
   for (std::uint32_t& corner : mesh.face_corners)
     corner = vertex_of[corner];
   keep_vertices(mesh, keeps);
-  return done;
-}
-
-void note_welding(const Welding& welding, std::vector<std::string>& notes) {
-  if (welding.coloured == 0) return;
-  notes.push_back(std::to_string(welding.coloured) +
-                  (welding.coloured == 1 ? " vertex stays" : " vertices stay") +
-                  " apart from another one in the same place, because their colours differ; "
-                  "`nendo repair` joins them");
+  return joined;
 }
 
 bool is_soup(const Mesh& mesh) {

@@ -12,21 +12,13 @@
 
 namespace nendo::deform {
 
-struct Welding {
-  std::size_t joined = 0;   ///< vertices that became one with another one
-  std::size_t coloured = 0; ///< vertices that stay apart from one in their place, for their colour
-};
-
 /// Makes vertices of exactly one place one, wherever faces meet there edge to edge. The first
 /// vertex of a place stays, so the order does. Where surfaces only touch, in a point, or at an edge
-/// with four faces, they stay apart: the model is not less of a manifold than it was. Texture
-/// coordinates of corners stay. Vertices of different colours stay apart, too. `group_of_vertex`,
-/// if not empty, names for each vertex those among which it may be joined. Coordinates must be
-/// finite. Allocates.
-Welding weld_places(Mesh& mesh, std::span<const std::uint32_t> group_of_vertex = {});
-
-/// Adds a note if vertices stay apart for their colours.
-void note_welding(const Welding& welding, std::vector<std::string>& notes);
+/// with four faces, they stay apart: the model is not less of a manifold than it was. Corners keep
+/// their texture coordinates and colours. `group_of_vertex`, if not empty, names for each vertex
+/// those among which it may be joined. Coordinates must be finite. Returns how many vertices became
+/// one with another one. Allocates.
+std::size_t weld_places(Mesh& mesh, std::span<const std::uint32_t> group_of_vertex = {});
 
 /// Returns whether no two faces share a vertex, though there are several faces.
 bool is_soup(const Mesh& mesh);

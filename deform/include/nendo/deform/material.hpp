@@ -47,9 +47,15 @@ struct Appearance {
   std::vector<std::uint32_t> face_materials; ///< one for each face, or no_index
   std::vector<Texture> textures;
   Eigen::Matrix4Xf vertex_colours; ///< 4 by #vertices, linear; they multiply the base colour
-  FaceNames groups;                ///< OBJ's g; several names are one, with blanks between them
-  FaceNames objects;               ///< OBJ's o, or glTF's nodes
+  /// 4 by #texcoords, linear: colours of corners, where the faces at a vertex differ in colour.
+  /// They replace vertex_colours. A model without a texture then has texture coordinates of 0.
+  Eigen::Matrix4Xf texcoord_colours;
+  FaceNames groups;  ///< OBJ's g; several names are one, with blanks between them
+  FaceNames objects; ///< OBJ's o, or glTF's nodes
 
+  bool has_colours() const noexcept {
+    return vertex_colours.cols() > 0 || texcoord_colours.cols() > 0;
+  }
   /// Returns the face's material, or null. The pointer is valid as long as `materials` is.
   const Material* material_of(std::size_t face) const noexcept {
     if (face_materials.empty() || face_materials[face] == no_index) return nullptr;

@@ -21,15 +21,14 @@ struct RepairOptions {
 /// A repaired model, and what was done to it.
 struct Repair {
   Mesh mesh;
-  double tolerance = 0.0;     ///< that was taken, model units
-  std::size_t joined = 0;     ///< vertices at open edges that became one with another one
-  std::size_t recoloured = 0; ///< of these, those that had another colour
-  std::size_t dropped = 0;    ///< faces with fewer than three corners, or that were there before
-  std::size_t repeated = 0;   ///< corners of faces that were the same as the one before
-  std::size_t split = 0;      ///< vertices that lay in an edge, and became a corner there
-  std::size_t turned = 0;     ///< faces
-  std::size_t separated = 0;  ///< vertices that were added where surfaces only touched
-  std::size_t filled = 0;     ///< holes
+  double tolerance = 0.0;    ///< that was taken, model units
+  std::size_t joined = 0;    ///< vertices at open edges that became one with another one
+  std::size_t dropped = 0;   ///< faces with fewer than three corners, or that were there before
+  std::size_t repeated = 0;  ///< corners of faces that were the same as the one before
+  std::size_t split = 0;     ///< vertices that lay in an edge, and became a corner there
+  std::size_t turned = 0;    ///< faces
+  std::size_t separated = 0; ///< vertices that were added where surfaces only touched
+  std::size_t filled = 0;    ///< holes
   std::size_t filled_crossing = 0; ///< of these, lids that go through the model
   std::size_t stray = 0;           ///< vertices without a face, which were dropped
 };
