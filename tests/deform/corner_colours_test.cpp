@@ -161,8 +161,8 @@ TEST_SUITE("corner_colours") {
       const auto path = folder.path() / name;
       CHECK(lost_in_file(path, coloured) ==
             std::vector<std::string>{
-                "OBJ and PLY have one colour for each vertex, so 8 vertices get the mean of their "
-                "faces' colours; `nendo export` to .glb keeps them"});
+                "OBJ and PLY have one colour for each vertex, so 8 vertices get the mean of the "
+                "faces' colours there; `nendo export` to .glb keeps them"});
       REQUIRE(write_mesh(path, coloured));
       const auto back = read_mesh(path);
       REQUIRE(back);
