@@ -220,7 +220,7 @@ std::vector<std::string> lost_in_file(const std::filesystem::path& path, const M
   if (seams > 0)
     notes.push_back("OBJ and PLY have one colour for each vertex, so " + std::to_string(seams) +
                     (seams == 1 ? " vertex gets" : " vertices get") +
-                    " the mean of the faces' colours there; `nendo export` to .glb keeps them");
+                    " the mean of the faces' colours there");
   if (!is_stl && !ends_in(path.string(), ".ply")) return notes;
   const Appearance& look = mesh.look;
   std::string lost;

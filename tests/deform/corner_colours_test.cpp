@@ -162,7 +162,7 @@ TEST_SUITE("corner_colours") {
       CHECK(lost_in_file(path, coloured) ==
             std::vector<std::string>{
                 "OBJ and PLY have one colour for each vertex, so 8 vertices get the mean of the "
-                "faces' colours there; `nendo export` to .glb keeps them"});
+                "faces' colours there"});
       REQUIRE(write_mesh(path, coloured));
       const auto back = read_mesh(path);
       REQUIRE(back);
