@@ -103,11 +103,32 @@ PracticeHand::PracticeHand(std::uint32_t seed, std::optional<double> hold_s)
       // Where nothing is asked, the joint is anywhere near; pads that touch hold a joint closely.
       const double asked_rad = pose.assumed[slot].deviation_rad;
       const double free_rad = from_degrees(pose.touch ? 1.0 : 4.0);
-      angles[slot] += 0.6 * scatter(random_) * (asked_rad > 0.0 ? asked_rad : free_rad);
+      // A flat hand and a fist that are farther off than usual would make later poses implausible.
+      const double deviations = std::clamp(0.6 * scatter(random_), -1.0, 1.0);
+      angles[slot] += deviations * (asked_rad > 0.0 ? asked_rad : free_rad);
     }
     poses_.push_back(angles);
   }
+  keep_from_ends();
   from_ = now_ = free_motion(0.0);
+}
+
+/// A sensor at an end of what it can measure keeps a pose from being taken: where one would come
+/// there, the glove's gain is less.
+void PracticeHand::keep_from_ends() {
+  constexpr double margin_counts = 6.0;
+  constexpr CountScale counts{};
+  const hand::Calibration typical = hand::default_calibration(counts);
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto& [gain, offset] = typical.sensors[slot];
+    const double least_rad = gain * (margin_counts - offset) - offsets_rad_[slot];
+    const double most_rad = gain * (counts.most - margin_counts - offset) - offsets_rad_[slot];
+    for (const hand::SensorAngles& pose : poses_) {
+      const double end_rad = pose[slot] > 0.0 ? most_rad : least_rad;
+      if (gain > 0.0 && std::abs(gains_[slot] * pose[slot]) > std::abs(end_rad))
+        gains_[slot] = end_rad / pose[slot];
+    }
+  }
 }
 
 hand::SensorAngles PracticeHand::free_motion(double time_s) const {
@@ -134,8 +155,11 @@ hand::SensorAngles PracticeHand::as_worn(hand::SensorAngles angles) const {
 
 int PracticeHand::wanted(double time_s) noexcept {
   int step = asked_.load();
-  if (hold_s_ && time_s >= free_motion_s)
-    step += 1 + static_cast<int>((time_s - free_motion_s) / *hold_s_);
+  if (hold_s_) {
+    const double round_s = std::fmod(time_s, free_motion_s + pose_count() * *hold_s_);
+    if (round_s >= free_motion_s)
+      step += 1 + static_cast<int>((round_s - free_motion_s) / *hold_s_);
+  }
   return std::clamp(step, 0, pose_count() + 1);
 }
 
@@ -146,7 +170,7 @@ hand::SensorAngles PracticeHand::at(double time_s) {
     turned_s_ = time_s;
     shown_ = step;
   }
-  // At the end the hand moves freely again, which shows what the calibration has made of it.
+  // After the last pose the hand moves freely again, which shows what the calibration has made.
   const bool poses = step >= 1 && step <= pose_count();
   const hand::SensorAngles to =
       poses ? poses_[static_cast<std::size_t>(step - 1)] : free_motion(time_s);

@@ -23,8 +23,9 @@ public:
   static constexpr double free_motion_s = 8.0; ///< with hold_s: how long the free motion is
   static constexpr double turn_s = 0.6;        ///< from one pose to the next
 
-  /// `hold_s`: each pose is left after so long; nothing: only go_on() leaves it. Takes a moment,
-  /// because tips that touch are brought together.
+  /// `hold_s`: each pose is left after so long, and after the last one all begins again, so that a
+  /// wearer who missed a pose can begin again as well; nothing: only go_on() leaves it. Takes a
+  /// moment, because tips that touch are brought together.
   PracticeHand(std::uint32_t seed, std::optional<double> hold_s);
 
   /// Returns the sensors' angles as the stranger's glove has them, for a typical one's gains.
@@ -46,6 +47,7 @@ public:
   std::string in_words(int step) const;
 
 private:
+  void keep_from_ends();
   hand::SensorAngles free_motion(double time_s) const;
   hand::SensorAngles as_worn(hand::SensorAngles angles) const;
   int wanted(double time_s) noexcept;

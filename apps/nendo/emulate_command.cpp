@@ -82,9 +82,9 @@ Result<void> practise(Options& options) {
   emulator::EmulatorOptions& emulator = options.emulator;
   const bool poses = emulator.motion == practice_name;
   if (!std::isfinite(options.hold_s) || options.hold_s < 0.0 || options.hold_s > 3600.0 ||
-      (options.hold_s > 0.0 && options.hold_s < 2.0))
-    return Error{Errc::usage, "--hold: use 2s to an hour; a pose is taken when the hand has been "
-                              "still for a second"};
+      (options.hold_s > 0.0 && options.hold_s < 3.0))
+    return Error{Errc::usage, "--hold: use 3s to an hour; it can take 2.6 s until the hand has "
+                              "gone to a pose and nendo calibrate has taken it"};
   if (options.hold_s > 0.0 && !poses)
     return Error{Errc::usage, "--hold goes with --motion poses only"};
   if (!poses) return {};
@@ -214,8 +214,9 @@ void add_glove_options(cli::Command& command, Options& options) {
       .under(heading);
   command
       .add_duration("--hold", options.hold_s,
-                    "With --motion poses: how long a pose is held, after a free motion of 8 s; "
-                    "without it, SPACE goes on to the next, or 4 s do where no keys can come")
+                    "With --motion poses: how long a pose is held, after a free motion of 8 s, "
+                    "again and again; without it, SPACE goes on to the next, or 4 s do where no "
+                    "keys can come")
       .under(heading);
   command.add_option("--rate", emulator.rate_hz, "Records a second until the host sets its own")
       .under(heading);

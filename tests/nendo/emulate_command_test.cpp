@@ -120,6 +120,7 @@ TEST_SUITE("emulate") {
                           Case{"--restart-time", "61s", 2, "restart-time"},
                           Case{"--restart-time", "-1", 2, "restart-time"},
                           Case{"--motion", "fly", 2, "fly"},
+                          Case{"--hold", "3s", 2, "--motion poses"},
                           Case{"--replay", "/no/such/file", 5, "/no/such/file"},
                           Case{"--log", "/no/such/folder/log", 1, "/no/such/folder/log"},
                           Case{"--duration", "-1", 2, "--duration"}}) {
@@ -131,6 +132,10 @@ TEST_SUITE("emulate") {
       CHECK(is_one_line_about(done.err, c.about));
       CHECK(done.out.empty());
     }
+    const auto hurried = nendo::test::nendo(
+        {"emulate", "--link", link, "--motion", "poses", "--hold", "2s", "--duration", "1"});
+    CHECK(hurried.exit_code == 2);
+    CHECK(is_one_line_about(hurried.err, "--hold: use 3s"));
     const auto without = nendo::test::nendo({"emulate"});
     CHECK(without.exit_code == 2);
     CHECK(is_one_line_about(without.err, "--link"));
