@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 
+#include <nendo/base/advised_command.hpp>
 #include <nendo/flow/realtime.hpp>
 
 namespace nendo::doctor {
@@ -67,14 +68,14 @@ void check_rules(const MachineFacts& facts, Findings& found) {
   for (const udev::RuleFile& file : facts.rules) {
     if (file.state == udev::RuleState::current) continue;
     const std::string path = file.path.string();
-    Finding finding{Severity::warning, "rules", path, "", "sudo nendo udev install"};
+    Finding finding{Severity::warning, "rules", path, "", as_root("udev install")};
     switch (file.state) {
     case udev::RuleState::outdated:
       finding.what = "is of another version of nendo";
       break;
     case udev::RuleState::foreign:
       finding.what = "is not nendo's and hides nendo's rules";
-      finding.remedy = "sudo mv " + path + " " + path + ".old && sudo nendo udev install";
+      finding.remedy = "sudo mv " + path + " " + path + ".old && " + as_root("udev install");
       break;
     default:
       finding.what = "is not installed: gloves need root, a group, or luck";

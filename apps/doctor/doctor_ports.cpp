@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include <nendo/base/advised_command.hpp>
+
 namespace nendo::doctor {
 namespace {
 
@@ -100,10 +102,10 @@ void check_grabbers(const PortFacts& facts, Findings& found) {
   for (const Grabber& grabber : grabbers) {
     if (!runs(facts, grabber.name)) continue;
     const std::string mask = "sudo systemctl mask --now " + std::string(grabber.units);
-    const std::string bind = "sudo nendo udev bind " + unmarked->device + " --as right (or left)";
+    const std::string bind = as_root("udev bind " + shell_word(unmarked->device) + " --as right");
     found.push_back({Severity::warning, "grabber", unmarked->device,
                      std::string(grabber.name) + " runs and " + std::string(grabber.harm),
-                     grabber.heeds_rules ? bind + ", or " + mask : mask});
+                     grabber.heeds_rules ? bind + " (or --as left), or " + mask : mask});
   }
 }
 

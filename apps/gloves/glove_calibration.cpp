@@ -4,11 +4,11 @@
 #include <set>
 #include <utility>
 
+#include <nendo/base/advised_command.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/recording/take_reader.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/shell_word.hpp"
 #include "gloves/calibration_names.hpp"
 #include "gloves/kept_ranges.hpp"
 #include "gloves/kept_slips.hpp"
@@ -31,17 +31,17 @@ void report_choice(const driver::GloveInfo& glove, const hand::StoredCalibration
 void report_none(const driver::GloveInfo& glove, Side side) {
   const std::string source = printable(glove.source);
   cli::note(source + ": not calibrated for this " + std::string(name_of(side)) +
-            " hand, so angles are an average hand's; `nendo calibrate " + cli::shell_word(source) +
+            " hand, so angles are an average hand's; `nendo calibrate " + shell_word(source) +
             " --user NAME` makes them the wearer's");
 }
 
 /// Of a user who has calibrations, but none for this glove and hand.
 void report_none_of(const driver::GloveInfo& glove, Side side, const std::string& user) {
   const std::string source = printable(glove.source);
-  cli::note(
-      source + ": " + printable(user) + " has no calibration of a " + std::string(name_of(side)) +
-      " hand for this glove, so angles are an average hand's; `nendo calibrate " +
-      cli::shell_word(source) + " --user " + cli::shell_word(printable(user)) + "` makes one");
+  cli::note(source + ": " + printable(user) + " has no calibration of a " +
+            std::string(name_of(side)) +
+            " hand for this glove, so angles are an average hand's; `nendo calibrate " +
+            shell_word(source) + " --user " + shell_word(printable(user)) + "` makes one");
 }
 
 /// Fails if nothing at all is stored for the user, and names the users that there are.
@@ -58,7 +58,7 @@ Result<void> check_user(const hand::CalibrationList& stored, const std::string& 
       Errc::bad_input,
       option + " " + printable(user) + ": no calibration of " + printable(user) + " is stored; " +
           (known.empty() ? "there is none of anybody" : "there are those of " + known) +
-          "; `nendo calibrate GLOVE --user " + cli::shell_word(printable(user)) + "` makes one"};
+          "; `nendo calibrate GLOVE --user " + shell_word(printable(user)) + "` makes one"};
 }
 
 /// Tells of the calibration that a glove of the other hand would get in place of `glove`, if it is

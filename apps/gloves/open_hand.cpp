@@ -5,11 +5,11 @@
 #include <thread>
 #include <utility>
 
+#include <nendo/base/advised_command.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/flow/touching_hand.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/shell_word.hpp"
 
 namespace nendo::gloves {
 namespace {
@@ -95,8 +95,8 @@ Error same_hand(const OpenHand& one, const OpenHand& other) {
   } else {
     name += (name.find('?') == std::string::npos ? "?" : "&") + wish;
   }
-  return {Errc::usage, both + "leave one out, or, if that one is on the other hand, say " +
-                           cli::shell_word(name)};
+  return {Errc::usage,
+          both + "leave one out, or, if that one is on the other hand, say " + shell_word(name)};
 }
 
 Result<void> start(std::span<OpenHand> hands) {

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include <nendo/base/advised_command.hpp>
 #include <nendo/base/files.hpp>
 #include <nendo/base/table.hpp>
 #include <nendo/base/text.hpp>
@@ -136,8 +137,8 @@ Result<Mesh> closed_model(const std::string& file, const Options& options) {
   if (!options.repair)
     return Error{Errc::bad_input,
                  file + ": " + describe(closed, mesh) +
-                     "; only closed models can be cut, so try --repair, or `nendo repair " + file +
-                     " --out OUT`"};
+                     "; only closed models can be cut, so try --repair, or `nendo repair " +
+                     shell_word(file) + " --out OUT`"};
   auto repaired = deform::repair(mesh);
   if (!repaired) return Error{repaired.error().code, file + ": " + repaired.error().message};
   for (const std::string& line : lines_of(*repaired))

@@ -10,12 +10,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include <nendo/base/advised_command.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/driver/devices.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
-#include "cli/shell_word.hpp"
 #include "doctor/doctor.hpp"
 #include "gloves/calibration_names.hpp"
 #include "gloves/open_hand.hpp"
@@ -46,7 +46,7 @@ std::vector<doctor::Finding> sensors_of(driver::Glove& glove, const std::string&
   std::vector<doctor::Finding> findings;
   for (const gloves::SensorAtEnd& found : gloves::sensors_at_end(glove))
     findings.push_back({doctor::Severity::warning, "stuck_sensor", spec, gloves::in_words(found),
-                        "bend that joint while `nendo monitor " + cli::shell_word(spec) +
+                        "bend that joint while `nendo monitor " + shell_word(spec) +
                             "` shows it; if it is broken, calibrations and runs leave it out by "
                             "themselves"});
   return findings;

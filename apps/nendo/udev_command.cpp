@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <nendo/base/advised_command.hpp>
 #include <nendo/driver/devices.hpp>
 #include <nendo/udev/bindings.hpp>
 #include <nendo/udev/installed_rules.hpp>
@@ -101,9 +102,8 @@ int show(const Options& options) {
                                          "and 61-nendo-uaccess.rules"});
   }
   for (const udev::RuleFile& file : udev::rules_in_force(options.root)) {
-    constexpr std::string_view words[]{"not installed; sudo nendo udev install", "current",
-                                       "of another version; sudo nendo udev install",
-                                       "not nendo's"};
+    const std::string words[]{"not installed; " + as_root("udev install"), "current",
+                              "of another version; " + as_root("udev install"), "not nendo's"};
     std::cout << file.path.string() << ": " << words[static_cast<std::size_t>(file.state)] << '\n';
   }
   const auto bindings = udev::read_bindings(options.root);
@@ -146,7 +146,8 @@ int bind(const Options& options) {
       change_bindings(*bindings, udev::with_binding(*bindings, side_of(options), *rule), options);
   for (const udev::RuleFile& file : udev::rules_in_force(options.root)) {
     if (code == 0 && file.state == udev::RuleState::missing)
-      cli::note(file.name + " is not installed, and the binding needs it: sudo nendo udev install");
+      cli::note(file.name +
+                " is not installed, and the binding needs it: " + as_root("udev install"));
   }
   return code;
 }

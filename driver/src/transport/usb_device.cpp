@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdio>
 
+#include <nendo/base/advised_command.hpp>
+
 #include "transport/usb_identity.hpp"
 
 namespace nendo::driver {
@@ -33,9 +35,9 @@ UsbIdentity identify_usb(UsbId id, unsigned bus, unsigned address,
 Error usb_permission_error(const UsbIdentity& identity) {
   const std::string node = node_of(identity);
   return {Errc::no_permission, "USB device " + to_string(id_of(identity)) + " at " + node +
-                                   ": no permission to open it; sudo nendo udev install mends it "
-                                   "for good, sudo chown $USER " +
-                                   node + " until it is plugged in again"};
+                                   ": no permission to open it; " + as_root("udev install") +
+                                   " mends it for good, sudo chown $USER " + node +
+                                   " until it is plugged in again"};
 }
 
 } // namespace nendo::driver
