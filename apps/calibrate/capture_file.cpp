@@ -5,6 +5,7 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include <nlohmann/json.hpp>
@@ -102,12 +103,14 @@ std::optional<Side> hand_of(const json& line) {
   return std::nullopt;
 }
 
+constexpr std::string_view use_monitor = "; use what `nendo monitor GLOVE --json` prints";
+
 /// Reads a line into `file`. Returns what is wrong with the line, or an empty text.
 std::string take_line(const std::string& text, CaptureFile& file, bool first) {
   const json line = json::parse(text, nullptr, false);
-  if (!line.is_object()) return "not a JSON object; use what nendo monitor --json prints";
+  if (!line.is_object()) return "not a JSON object" + std::string(use_monitor);
   const auto side = hand_of(line);
-  if (!side) return "no \"hand\" that is left or right";
+  if (!side) return "no \"hand\" that is left or right" + std::string(use_monitor);
   if (!first && *side != file.side) return "the other hand; use one file for each";
   file.side = *side;
   if (line.contains("low_counts"))
@@ -120,7 +123,8 @@ std::string take_line(const std::string& text, CaptureFile& file, bool first) {
   }
   GloveSample sample;
   sample.side = *side;
-  if (!read_sample(line, sample)) return "neither a sample with its time and counts nor a pose";
+  if (!read_sample(line, sample))
+    return "neither a sample with its time and counts nor a pose" + std::string(use_monitor);
   file.samples.push_back(sample);
   return {};
 }
@@ -155,7 +159,7 @@ Result<CaptureFile> read_capture(const std::filesystem::path& path) {
       return Error{Errc::bad_input, path.string() + ":" + std::to_string(number) + ": " + wrong};
   }
   if (input.bad()) return bad("cannot be read");
-  if (file.is_empty()) return bad("there is nothing in it");
+  if (file.is_empty()) return bad("there is nothing in it" + std::string(use_monitor));
   return file;
 }
 

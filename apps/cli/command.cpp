@@ -138,9 +138,13 @@ std::optional<std::string> unknown_command(CLI::App& program, int argc, char** a
 }
 
 int report_usage(const CLI::App& app, const std::string& first_word, const std::string& what) {
-  const auto chosen = app.get_subcommands();
+  std::string chosen;
+  for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
+    at = at->get_subcommands().front();
+    chosen += at->get_name() + ' ';
+  }
   if (!chosen.empty()) {
-    std::cerr << "nendo: " << what << " (see nendo " << chosen.front()->get_name() << " --help)\n";
+    std::cerr << "nendo: " << what << " (see nendo " << chosen << "--help)\n";
   } else if (first_word.starts_with('-')) {
     std::cerr << "nendo: " << what << " (see nendo --help)\n";
   } else {

@@ -30,6 +30,7 @@ struct Options {
   double value = 0.0;
   std::string place;
   std::string with;
+  std::string mesh; ///< of mirror
   std::uint32_t key = 0;
   std::optional<unsigned> blended_key;
   double time_s = 0.0;
@@ -96,7 +97,7 @@ int blend(const Options& options) {
 int mirror(const Options& options) {
   return edit(options, [&](Timeline& timeline) -> Result<void> {
     if (options.plane) return timeline::mirror(timeline, *options.plane / timeline.units_per_metre);
-    const auto model = takes::timeline_model(timeline);
+    const auto model = takes::timeline_model(timeline, options.mesh);
     if (!model) return model.error();
     return timeline::mirror(timeline, takes::middle_plane_m(timeline, model->mesh));
   });
@@ -262,6 +263,7 @@ void add_whole_edits(cli::Command& edit_command, const std::shared_ptr<Options>&
                   "The left hand does what the right one did, and the other way round", options);
   mirroring.add_option("--plane", options->plane,
                        "The mirror's x in the model's units; without it, the model's middle");
+  mirroring.add_option("--mesh", options->mesh, "The model, if it is no longer where it was");
   mirroring.on_chosen([options] { return mirror(*options); });
 }
 

@@ -257,7 +257,7 @@ Result<void> draw_take(const Options& options, const Wanted& wanted, const takes
 Result<void> make_picture(const Options& options) {
   const auto wanted = check(options);
   if (!wanted) return wanted.error();
-  const auto take = takes::read_take(options.file, takes::reading(options.up));
+  const auto take = takes::read_take(options.file, takes::reading(options.up), options.mesh);
   if (!take) return take.error();
   return draw_take(options, *wanted, *take);
 }
@@ -280,6 +280,8 @@ void add(cli::Command& program) {
       .required();
   command.add_option("--out", options->out, "Where to write the picture, .png").required();
   takes::add_up_option(command, options->up);
+  command.add_option("--mesh", options->mesh,
+                     "Of a recording: the model, if it is no longer where it was");
   command.add_option("--view", options->view,
                      "front, back, left, right, side, top, or AZIMUTH,ELEVATION in degrees");
   command.add_option("--size", options->size, "WIDTHxHEIGHT in pixels, of each picture");

@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include <nendo/base/text.hpp>
 #include <nendo/driver/chunk_file.hpp>
 #include <nendo/recording/take_tools.hpp>
 
@@ -103,10 +104,10 @@ double first_sample_s(const recording::Setup& setup) {
   return setup.hands.empty() ? 0.0 : sum_s / static_cast<double>(setup.hands.size());
 }
 
-Result<Take> read_recording(const std::filesystem::path& path) {
+Result<Take> read_recording(const std::filesystem::path& path, const std::string& named) {
   const auto summary = recording::summarise(path);
   if (!summary) return summary.error();
-  auto model = recorded_model(path.string(), summary->setup);
+  auto model = recorded_model(path.string(), summary->setup, named);
   if (!model) return model.error();
   const recording::LoopSetup& loop = *summary->setup.loop;
   Take take;
@@ -126,8 +127,8 @@ Result<Take> read_recording(const std::filesystem::path& path) {
   return take;
 }
 
-Result<Take> read_edited(const std::filesystem::path& path) {
-  auto frames = TimelineFrames::open(path);
+Result<Take> read_edited(const std::filesystem::path& path, const std::string& named) {
+  auto frames = TimelineFrames::open(path, named);
   if (!frames) return frames.error();
   const timeline::Timeline& timeline = (*frames)->player().timeline();
   Take take;
@@ -156,13 +157,17 @@ bool is_recording(const std::filesystem::path& path) {
 
 } // namespace
 
-Result<Take> read_take(const std::filesystem::path& path, const deform::ReadOptions& reading) {
-  if (timeline::is_timeline(path)) return read_edited(path);
-  if (is_recording(path)) return read_recording(path);
-  auto model = read_model(path.string(), reading);
-  if (!model) return model.error();
+Result<Take> read_take(const std::filesystem::path& path, const deform::ReadOptions& reading,
+                       const std::string& model) {
+  if (timeline::is_timeline(path)) return read_edited(path, model);
+  if (is_recording(path)) return read_recording(path, model);
+  if (!model.empty())
+    return Error{Errc::usage,
+                 "--mesh: " + printable(path.string()) + " is itself a model; leave it out"};
+  auto read = read_model(path.string(), reading);
+  if (!read) return read.error();
   Take take;
-  take.rest = std::move(model->mesh);
+  take.rest = std::move(read->mesh);
   take.frame_at = [vertices = take.rest.vertices](double) -> Result<render::SceneFrame> {
     render::SceneFrame scene_frame;
     scene_frame.vertices = vertices;

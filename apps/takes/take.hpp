@@ -27,9 +27,11 @@ struct Take {
 };
 
 /// Reads a take from a file. A timeline is known by its name, a mesh or a recording by its content.
-/// `reading` is of a mesh alone. The loop of a recording runs again without a clock. Errors:
-/// bad_input, as from deform::read_mesh(), TakeReader::open(), recorded_model() and
-/// TimelineFrames::open().
-Result<Take> read_take(const std::filesystem::path& path, const deform::ReadOptions& reading = {});
+/// `reading` is of a mesh alone, and `model` names the model of a recording or timeline that is no
+/// longer where it was. The loop of a recording runs again without a clock. Errors: usage (a
+/// `model` of a mesh); bad_input, as from deform::read_mesh(), TakeReader::open(), recorded_model()
+/// and TimelineFrames::open().
+Result<Take> read_take(const std::filesystem::path& path, const deform::ReadOptions& reading = {},
+                       const std::string& model = {});
 
 } // namespace nendo::takes
