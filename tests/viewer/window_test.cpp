@@ -12,6 +12,7 @@
 #include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
 #include "viewer/live_window.hpp"
+#include "viewer/puppet_editor.hpp"
 
 namespace window_test {
 
@@ -200,6 +201,58 @@ TEST_SUITE("window") {
     REQUIRE(moved != nullptr);
     CHECK(moved->side == Side::right);
     CHECK(moved->pose().translation().y() > frame.hands[1].T_stage_wrist.translation().y());
+  }
+
+  TEST_CASE("a mark that waits for its finger is held, and neither it nor the camera moves") {
+    if (!test::restraint_is_counted) return; // Mesa's own memory is not for our sanitizers
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    test::LoopUnderTest test(flow::Mode::type1);
+    constexpr Size size{800, 600};
+    auto opened = LiveWindow::open("test", size);
+    REQUIRE(opened);
+    LiveWindow& window = **opened;
+    const SceneBuilder builder(test.model, test.placement.units_per_metre);
+    window.begin(test.loop->layout(), builder, {});
+    PuppetEditor& editor = window.editor();
+    editor.begin(test.model, "ball.obj", nullptr);
+    editor.turn(true);
+    const flow::Frame& frame = test.frame_after_tick(0);
+    window.show(frame, true, {});
+    SimulatedInput input;
+    const auto move = [&](const Eigen::Vector2d& pointer, bool left) {
+      input.pointer = pointer;
+      input.buttons[0] = left;
+      window.simulate(input);
+      window.show(frame, false, {});
+    };
+    const auto drag = [&](const Eigen::Vector2d& from) {
+      move(from, false);
+      move(from, true);
+      for (int step = 1; step <= 5; ++step)
+        move(from + Eigen::Vector2d(3.0 * step, -20.0 * step), true);
+      move(input.pointer, false);
+    };
+    const Eigen::Vector3d middle_m = 0.5 * builder.size_m().y() * Eigen::Vector3d::UnitY();
+    const Eigen::Vector4d clip =
+        window.camera().projection(1.0 * size.width / size.height) * middle_m.homogeneous();
+    const Eigen::Vector2d mark((1.0 + clip.x() / clip.w()) / 2 * size.width,
+                               (1.0 - clip.y() / clip.w()) / 2 * size.height);
+    move(mark, false);
+    move(mark, true);
+    move(mark, false);
+    REQUIRE(editor.pending());
+    const Eigen::Vector3d place = editor.pending()->at;
+    const Camera before = window.camera();
+    drag(mark);
+    REQUIRE(editor.pending());
+    CHECK(editor.pending()->at == place);
+    CHECK(editor.told().starts_with("Bend the finger"));
+    CHECK(window.camera().view.azimuth_deg == before.view.azimuth_deg);
+    CHECK(window.camera().view.elevation_deg == before.view.elevation_deg);
+    CHECK(window.camera().eye() == before.eye());
+    drag({780.0, 500.0}); // the control: beside the model, the same way turns the camera
+    CHECK(window.camera().view.elevation_deg != before.view.elevation_deg);
   }
 }
 
