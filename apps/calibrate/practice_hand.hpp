@@ -56,7 +56,7 @@ private:
   std::mt19937 random_;
   std::vector<hand::PoseId> ids_;
   std::vector<hand::SensorAngles> poses_;
-  std::array<double, sensor_slots> gains_{}; ///< of the glove, of a typical one's
+  std::array<double, sensor_slots> gains_{}; ///< the glove's, as parts of a typical one's
   std::array<double, sensor_slots> offsets_rad_{};
   std::atomic<int> asked_{0}; ///< steps that go_on() and go_back() make
   std::atomic<int> shown_{0};

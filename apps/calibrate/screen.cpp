@@ -66,7 +66,7 @@ std::string state_text(const CalibrationPicture& picture) {
     if (picture.guide->implausible_sensor())
       return "That is not it: look at " +
              std::string(name_of(*picture.guide->implausible_sensor())) +
-             ". If the pose before was not right, b takes it anew; if the sensor is broken, x "
+             ". If the pose before was not right, b takes it again; if the sensor is broken, x "
              "leaves "
              "it out.";
     return picture.guide->number() == 0 ? "Take this pose." : "Taken. Now take this one.";

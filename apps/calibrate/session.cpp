@@ -30,7 +30,7 @@ struct Session {
   SensorMask undetermined{};
   bool begun = false;
   std::string notice{};   ///< why there is no calibration yet; stays until something is done
-  SensorMask told{};      ///< of CalibrationGuide::left_out()
+  SensorMask announced{}; ///< the sensors left out that the wearer knows of
   bool asks_anew = false; ///< the key that begins anew was pressed once
   struct Demonstration {
     hand::PoseId of;
@@ -53,10 +53,10 @@ struct Session {
   /// Says which sensors are left out, if there are more than before.
   bool tell_left_out() {
     const SensorMask now = guide.left_out();
-    if (std::exchange(told, now) == now) return false;
+    if (std::exchange(announced, now) == now) return false;
     notice = gloves::sensors_in_words(now) + (gloves::is_one(now) ? " stands" : " stand") +
              " still, whatever the hand does: left out, and estimated from the sensors beside. n "
-             "begins anew with all sensors.";
+             "begins again with all sensors.";
     return true;
   }
   /// The sensors of which a calibration is made.
@@ -103,7 +103,7 @@ struct Session {
       return;
     }
     guide.begin_anew();
-    told = {};
+    announced = {};
     seen.clear();
     begun = false;
   }

@@ -9,7 +9,7 @@ using Eigen::Index;
 namespace {
 
 // A vertex whose faces have next to no area has no direction that one could turn.
-constexpr double min_area_fraction = 1e-12; ///< of the square of the diagonal
+constexpr double min_area_fraction = 1e-12; ///< as a part of the diagonal's square
 
 } // namespace
 

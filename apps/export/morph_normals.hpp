@@ -28,9 +28,9 @@ private:
   Eigen::Matrix3Xf divided(const deform::Points& turn) const;
 
   deform::Mesh shape_; ///< vertices and faces alone
-  double unit_ = 1.0;  ///< of areas: the model's diagonal
+  double unit_ = 1.0;  ///< of length: the model's diagonal
   deform::Points rest_areas_;
-  Eigen::VectorXd lengths_; ///< of the areas at rest; 0 where a vertex has no area
+  Eigen::VectorXd lengths_; ///< the areas at rest; 0 where a vertex has no area
 };
 
 } // namespace nendo::exporting

@@ -22,7 +22,7 @@ struct CalibrationOptions {
   std::string user;         ///< empty: any
   std::string calibration;  ///< a NAME of `nendo calibration`, or "none"; empty: what is stored
   bool adapt = false;       ///< learn the wearer's ranges, or the slips of such a calibration
-  std::string left_user{};  ///< of the left hand, in place of `user`
+  std::string left_user{};  ///< the left hand's, in place of `user`
   std::string right_user{}; ///< likewise
 
   /// The wearer of that hand; empty: any.
@@ -39,8 +39,8 @@ struct FoundCalibration {
     recorded, ///< that of the recording which is replayed
     learned,  ///< what --adapt learns
   } kind = Kind::average;
-  std::string user;           ///< of a file, or of what is learned
-  std::filesystem::path path; ///< of a file
+  std::string user;           ///< the wearer of the file, or of what is learned
+  std::filesystem::path path; ///< the file's
 };
 
 /// Returns "average", "stored", "recorded" or "learned".

@@ -135,7 +135,7 @@ void add(cli::Command& program) {
       "doctor", "Says what keeps gloves from working on this machine, and what mends it");
   command.add_option(
       "GLOVE", *glove,
-      "Look at the sensors of this glove, too: serial:/dev/ttyUSB0, auto, ...; without it, "
+      "Also look at the sensors of this glove: serial:/dev/ttyUSB0, auto, ...; without it, "
       "at those of each glove that its name or a udev rule makes known");
   command.add_flag("--json", *json, "One JSON object a finding");
   command.set_footer("Exit code 1 if something will not work, 0 if there are warnings only.");

@@ -30,7 +30,7 @@ struct Options {
   double value = 0.0;
   std::string place;
   std::string with;
-  std::string mesh; ///< of mirror
+  std::string mesh; ///< for mirror
   std::uint32_t key = 0;
   std::optional<unsigned> blended_key;
   double time_s = 0.0;

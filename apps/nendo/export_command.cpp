@@ -248,7 +248,7 @@ void note_offset(const std::string& format, const exporting::Exported& done) {
   if (format == "pc2" || format == "mdd")
     cli::note(done.files.front() + ": its vertices count from " + place +
               " in model units, because 32-bit floats are coarse so far from zero; move the mesh "
-              "that it is put on there");
+              "that plays it to that place");
   else
     cli::note(done.files.front() + ": the middle of the stage is " + place + " in model units");
 }

@@ -40,11 +40,11 @@ struct Monitored {
   driver::Glove& glove;
   SampleRing& ring;
   const hand::Wearer* wearer;                ///< null: counts only
-  hand::ActiveCalibration& calibrations;     ///< of `wearer`, or of an average hand
-  const gloves::FoundCalibration& found;     ///< of the glove's own hand
+  hand::ActiveCalibration& calibrations;     ///< those of `wearer`, or an average hand's
+  const gloves::FoundCalibration& found;     ///< what was found for the glove's own hand
   std::uint64_t most;                        ///< samples to show; 0: no end
   const hand::Calibration* active = nullptr; ///< for the latest sample; null: none
-  SensorMask left_out{};                     ///< of the latest sample
+  SensorMask left_out{};                     ///< with the latest sample
   gloves::StuckNotices stuck{};
   std::vector<std::string> news{}; ///< what the latest sample shows of stuck sensors
   std::uint64_t shown = 0;

@@ -15,7 +15,7 @@ namespace nendo::app::picture_command {
 struct PictureOptions {
   std::string up; ///< empty: y
   std::string file;
-  std::string mesh; ///< of a take whose model is no longer where it was; empty: where it was
+  std::string mesh; ///< the model of a take, if it is no longer where it was
   std::string out;
   std::string view = "30,12";
   std::string size = "960x720";

@@ -290,7 +290,7 @@ void add(cli::Command& program) {
                      "Of a recording: the moment, or moments T,T,..., in seconds, on one sheet");
   command.add_flag("--glove-time", options->by_glove_time,
                    "--time counts from the first sample of the gloves, where their motion began, "
-                   "and not from the begin of the recording");
+                   "and not from the beginning of the recording");
   command.add_option("--key-poses", options->key_poses,
                      "Of a recording: so many moments that differ the most, on one sheet");
   command.add_option("--captions", options->captions,

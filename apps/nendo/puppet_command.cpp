@@ -32,7 +32,7 @@ using puppet::Function;
 
 struct Options {
   std::string file;
-  std::string up; ///< of the model's file; empty: y
+  std::string up; ///< the axis that is up in the model's file; empty: y
   std::string picture;
   std::string out;
   bool force = false;
@@ -327,7 +327,7 @@ Result<void> make(const Options& options) {
   for (const std::string& line : made->found)
     fmt::print("{}\n", line);
   if (options.up == "z")
-    cli::note(options.out + ": play it with --up z, too, because its model has z up");
+    cli::note(options.out + ": play it with --up z, because z is up in its model");
   if (model->mesh.offset.isZero(0.0)) return replace_file(options.out, made->text);
   auto puppet = puppet::parse_puppet(made->text, options.out);
   if (!puppet) return puppet.error();

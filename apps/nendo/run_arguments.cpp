@@ -175,7 +175,7 @@ Result<void> set_wire(RunArguments& options) {
   if (options.run.duration_s > 0.0 && span->to_s > options.run.duration_s)
     return Error{Errc::usage,
                  std::string(is_knife ? "--knife " : "--wire ") + text +
-                     ": ends after the run; use times within --duration, or a longer one"};
+                     ": ends after the run; use times within --duration, or a longer --duration"};
   options.run.loop.wire_time = {span->from_s, span->to_s,
                                 is_knife ? flow::Blade::knife : flow::Blade::wire};
   return {};

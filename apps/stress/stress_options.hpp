@@ -17,7 +17,7 @@ struct StressArguments {
   std::string duration = "10";
   std::string stages = "sleep,input,hands,deform,publish";
   std::string mode = "type1";
-  std::string up; ///< of the model's file; empty: y
+  std::string up; ///< the axis that is up in the model's file; empty: y
   std::string radius;
   std::string load;
   std::string fail_if;

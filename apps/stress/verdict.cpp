@@ -97,7 +97,7 @@ Why stopped_outside(const StressOptions& options, const StressOutcome& outcome) 
   const Environment& machine = outcome.environment;
   const std::string floor =
       outcome.floor.gaps.count() > 0
-          ? fmt::format(" (a thread that only reads the clock is stopped for up to {}, too)",
+          ? fmt::format(" (even a thread that only reads the clock is stopped for up to {})",
                         duration_text(to_microseconds(outcome.floor.gaps.max())))
           : "";
   if (machine.hypervisor)
@@ -118,7 +118,7 @@ Why stopped_outside(const StressOptions& options, const StressOutcome& outcome) 
 Why unexplained(const StressOptions& options, const StressOutcome& outcome) {
   if (refused_grant(outcome, "policy") != nullptr || options.run.realtime.priority == 0)
     return preempted(options, outcome);
-  return {"something that the kernel does not tell of had the processor",
+  return {"something that the kernel does not report had the processor",
           "`nendo stress --floor 5` beside an idle machine, and compare"};
 }
 

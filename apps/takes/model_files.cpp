@@ -37,7 +37,7 @@ void add_other_units(const std::vector<std::string>& files, const std::vector<de
   };
   notes.push_back(name(most) + " is " + std::to_string(std::lround(times)) + " times as large as " +
                   name(least) +
-                  ", which is a speck beside it; if their units differ, scale one of them");
+                  ", which can hardly be seen beside it; if their units differ, scale one of them");
 }
 
 /// Notes textures that cannot be shown, as they are: in one line each for what is alike.

@@ -18,7 +18,7 @@ struct Take {
   deform::Mesh rest;            ///< the model at rest: it defines faces, scale and place
   double units_per_metre = 0.0; ///< model to stage; 0 means as the loop would place it
   double duration_s = 0.0;      ///< 0 if nothing moves
-  double first_sample_s = 0.0;  ///< of a recording: when the gloves' first samples came, their mean
+  double first_sample_s = 0.0;  ///< the mean time of the gloves' first samples in a recording
   /// Makes the scene at a time from 0 to duration_s, in any order. May block. Errors: those of
   /// read_take().
   std::function<Result<render::SceneFrame>(double time_s)> frame_at;

@@ -36,7 +36,7 @@ std::string in_words(const RecordCounts& counts) {
     text += (text.empty() ? "" : ", ") + std::to_string(*count) + " ";
     text += name == "bad_records" ? "bad records" : clamped ? "values out of range" : name;
   }
-  if (!counts.tells_missed) text += "; this glove does not tell how many were lost on the line";
+  if (!counts.tells_missed) text += "; how many were lost on the line is not known with this glove";
   return text;
 }
 

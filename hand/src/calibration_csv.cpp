@@ -93,7 +93,7 @@ private:
   std::string_view name_;
   ReadLines lines_;
   std::size_t sensor_ = 0, gain_ = 0, offset_ = 0; ///< columns
-  double unit_rad_ = 1.0;                          ///< of the gains
+  double unit_rad_ = 1.0;                          ///< the gains' unit
 };
 
 } // namespace

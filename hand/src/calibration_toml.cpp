@@ -210,7 +210,8 @@ void read_left_out(Reader& reader, const toml::table& root, WearerCalibration& w
     const auto sensor = reader.sensor(entry, *name);
     if (!sensor) return;
     if (wearer.calibration[*sensor].gain_rad_per_count != 0.0)
-      return reader.complain(entry, *name + " is left out, but stands in [sensors], too; keep one");
+      return reader.complain(entry,
+                             *name + " is in left_out and in [sensors]; keep it in one of them");
     wearer.left_out.add(*sensor);
   }
 }

@@ -23,8 +23,8 @@ constexpr std::string_view yaml_shape =
 struct YamlNode {
   enum class Kind : std::uint8_t { scalar, list, map } kind = Kind::scalar;
   std::size_t line = 0;
-  std::string text;            ///< of a scalar
-  std::vector<YamlNode> parts; ///< of a list; of a map keys and values by turns
+  std::string text;            ///< a scalar's
+  std::vector<YamlNode> parts; ///< a list's; a map's keys and values by turns
 };
 
 struct FreeParser {

@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 
 constexpr auto write_timeout = 100ms;
 constexpr auto at_once = 0ms;          ///< for the reader, which must not wait
-constexpr auto slowest_lines = 3500ms; ///< of one line a second, the first of which is skipped
+constexpr auto slowest_lines = 3500ms; ///< for one line a second, the first of which is skipped
 constexpr auto starting_time = 2500ms; ///< a board that restarts at opening, boot loader included
 constexpr auto waking_time = 300ms;    ///< from the end of a wait to the next line
 constexpr auto learning_time = 300ms;  ///< for an answer, and for lines with all slots

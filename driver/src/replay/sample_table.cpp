@@ -25,7 +25,7 @@ constexpr std::string_view head_example = "time_s,thumb_roll,thumb_mcp";
 struct TimeUnit {
   std::string_view ending;
   std::string_view word;
-  int digits; ///< of a nanosecond
+  int digits; ///< after the point, for nanoseconds
 };
 constexpr std::array<TimeUnit, 4> time_units{{{"s", "seconds", 9},
                                               {"ms", "milliseconds", 6},
@@ -131,7 +131,7 @@ private:
     if (columns_.time || wishes_.rate_hz) return {};
     if (!without_unit.empty())
       return table_.bad("column " + without_unit +
-                        " does not tell its unit; name it time_s, time_ms, "
+                        " has no unit in its name; name it time_s, time_ms, "
                         "time_us or time_ns, or add ?rate=HZ, the rows a second");
     return table_.bad(
         "there is no column time_s (or time_ms, time_us, time_ns), so add ?rate=HZ, the "
@@ -251,7 +251,7 @@ private:
   std::string name_;
   TableWishes wishes_;
   Columns columns_;
-  std::array<std::optional<HostTime>, 2> latest_; ///< of the left and of the right hand
+  std::array<std::optional<HostTime>, 2> latest_; ///< the left hand's and the right hand's
   std::vector<GloveSample> rows_;
 };
 
