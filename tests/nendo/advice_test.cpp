@@ -120,7 +120,6 @@ TEST_SUITE("advice") {
           Case{std::string(run) + "--strength 0.5", "--brush inflate", ""},
           Case{std::string(run) + "--hold hand --mode type2", "--mode type1", ""},
           Case{std::string(run) + "ball.obj --topology", "--refine 100000", "--refine 100"},
-          Case{std::string(run) + "--switch keep", "--keep-last", "--keep-last 60s"},
           Case{std::string(run) + "--puppet masks.toml", "--mask", "--mask masks.toml"},
           Case{std::string(run) + "--threads 2 --priority 5", "--priority 0", ""},
           Case{"nendo deform ball.obj --vectors v.csv --out o.obj", "--radius R", "--radius 0.3"},
@@ -184,7 +183,7 @@ TEST_SUITE("advice") {
     for (const auto& [command, option] :
          {std::pair{"nendo edit make take.nendo", "--out"},
           std::pair{"nendo picture a.obj", "--out"}, std::pair{"nendo calibration import", "FILE"},
-          std::pair{"nendo edit copy t", "--to"}}) {
+          std::pair{"nendo edit copy t", "--hand"}}) {
       CAPTURE(command);
       const auto refused = type(command);
       CHECK(refused.exit_code == 2);
