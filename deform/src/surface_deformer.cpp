@@ -1,11 +1,10 @@
 #include <nendo/deform/surface_deformer.hpp>
 
-#include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <utility>
 
 #include "sculpted_parts.hpp"
+#include "surface_shape.hpp"
 #include "usable.hpp"
 
 namespace nendo::deform {
@@ -33,14 +32,7 @@ FieldStatus SurfaceDeformer::apply(const Points& ends, BlockShape& out) {
   FieldStatus status = grabbed_ ? FieldStatus::ok : FieldStatus::singular;
   if (grabbed_ && all_usable(ends)) {
     vectors_ = ends - starts_;
-    field_->solve(vectors_, coefficients_);
-    // The functions are at most 1, and affine maps of rigid parts reach a few times farther.
-    const double most = 1e3 * static_cast<double>(coefficients_.all.cols()) *
-                        static_cast<double>(coefficients_.all.cwiseAbs().maxCoeff());
-    if (!(rest.extent + most <= most_units)) {
-      coefficients_.all.setZero();
-      status = FieldStatus::not_finite;
-    }
+    status = solve_within(*field_, vectors_, rest.extent, coefficients_);
   } else if (grabbed_) {
     status = FieldStatus::not_finite; // the last good shape
   }
@@ -52,13 +44,7 @@ FieldStatus SurfaceDeformer::apply(const Points& ends, BlockShape& out) {
 void SurfaceDeformer::absorb() noexcept {
   if (!is_moved()) return;
   BoundedShape& rest = shape_->parts().change();
-  field_->displace(coefficients_, rest.shape, rest.shape);
-  for (std::size_t block = 0; block < rest.bounds.size(); ++block) {
-    if (!field_->reaches(block)) continue;
-    rest.bounds[block] = bounds_of(rest.shape[block]);
-    for (const float side : rest.bounds[block].sides)
-      rest.extent = std::max(rest.extent, std::abs(static_cast<double>(side)));
-  }
+  displace(*field_, coefficients_, rest.shape, rest);
 }
 
 FieldStatus SurfaceDeformer::commit(const Points& ends) {

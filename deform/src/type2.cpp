@@ -4,6 +4,8 @@
 #include <cassert>
 #include <utility>
 
+#include <nendo/deform/surface_stroke.hpp>
+
 #include "brush/brush_stroke.hpp"
 #include "fingertip_curve.hpp"
 #include "masked_step.hpp"
@@ -26,6 +28,13 @@ std::size_t most_fields(const DeformerOptions& options) {
     return static_cast<std::size_t>(2 * most_steps_of_piece * FingertipCurve::most_pieces);
   return static_cast<std::size_t>(options.injective ? options.injective->most_links
                                                     : FingertipCurve::most_pieces);
+}
+
+/// Of points that pull along the surface: no field through the air has a part in it.
+DeformerOptions without_fields(Eigen::Index control_points) {
+  DeformerOptions options;
+  options.brushes.of_points.assign(static_cast<std::size_t>(control_points), Brush::none);
+  return options;
 }
 
 } // namespace
@@ -69,6 +78,11 @@ Type2Deformer::Type2Deformer(SculptedShape& shape, Eigen::Index control_points, 
   most_links_ = options.injective->most_links;
 }
 
+Type2Deformer::Type2Deformer(SculptedShape& shape, std::shared_ptr<const SurfaceField> field)
+    : Type2Deformer(shape, field->point_count(), 1.0, without_fields(field->point_count())) {
+  along_ = std::make_unique<SurfaceStroke>(shape.layout(), std::move(field));
+}
+
 Type2Deformer::~Type2Deformer() = default;
 Type2Deformer::Type2Deformer(Type2Deformer&&) noexcept = default;
 Type2Deformer& Type2Deformer::operator=(Type2Deformer&&) noexcept = default;
@@ -81,15 +95,21 @@ FieldStatus Type2Deformer::begin(const Points& tips) {
 void Type2Deformer::release(bool is_step) noexcept {
   if (is_step) shape_->parts().keep();
   begun_ = false;
+  forget_last();
+}
+
+/// What the last call applied.
+void Type2Deformer::forget_last() noexcept {
   is_brushed_ = false;
   fields_.clear();
+  if (along_) along_->clear();
 }
 
 FieldStatus Type2Deformer::reset(const Points& tips) {
   const FieldStatus status = take_hold(tips);
   if (!is_solved(status)) return status;
   shape_->parts().reset();
-  fields_.clear();
+  forget_last();
   return status;
 }
 
@@ -101,6 +121,7 @@ FieldStatus Type2Deformer::take_hold(const Points& tips) {
   if (!is_solved(status)) return status;
   current_ = tips;
   curve_->begin(tips);
+  if (along_) along_->begin(tips);
   begun_ = true;
   return status;
 }
@@ -118,7 +139,7 @@ FieldStatus Type2Deformer::undo(const Points& tips) {
   if (!is_solved(status)) return status;
   shape_->parts().keep();
   shape_->parts().undo();
-  fields_.clear();
+  forget_last();
   return status;
 }
 
@@ -127,7 +148,7 @@ FieldStatus Type2Deformer::redo(const Points& tips) {
   const FieldStatus status = take_hold(tips);
   if (!is_solved(status)) return status;
   shape_->parts().redo();
-  fields_.clear();
+  forget_last();
   return status;
 }
 
@@ -135,10 +156,13 @@ FieldStatus Type2Deformer::redo(const Points& tips) {
 StrokeResult Type2Deformer::follow(const Points& tips, Lead lead) {
   assert(tips.cols() == current_.cols());
   report_ = {};
-  is_brushed_ = false;
-  fields_.clear();
+  forget_last();
   if (!all_usable(tips)) return {FieldStatus::not_finite, 0};
   if (!begun_) return {begin(tips), 0};
+  if (along_) {
+    const FieldStatus status = along_->go_to(tips, shape_->parts());
+    return {status, along_->is_moved() ? 1 : 0};
+  }
   StrokeResult result;
   for (((*curve_).*lead)(tips); curve_->next_cut(next_); current_ = next_) {
     const FieldStatus status = apply_piece();

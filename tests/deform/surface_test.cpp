@@ -1,8 +1,10 @@
-// Distances along a surface, the fields that are made of them, and the deformer that applies them.
+// Distances along a surface, the fields that are made of them, and the deformers that apply them.
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -11,6 +13,8 @@
 
 #include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/surface_deformer.hpp>
+#include <nendo/deform/surface_stroke.hpp>
+#include <nendo/deform/type2.hpp>
 
 #include "support/test_meshes.hpp"
 
@@ -67,11 +71,46 @@ struct Made {
   std::shared_ptr<const SurfaceField> field;
 };
 
+/// A model whose surface points pull in type 2.
+struct Stroked {
+  explicit Stroked(const Mesh& model) : mesh(model), made(mesh, setup_on(mesh)), tips(3, 4) {
+    DeformerOptions options;
+    options.undo_bytes = std::size_t{1} << 22;
+    shape = std::make_unique<SculptedShape>(made.layout, options, nullptr);
+    deformer = std::make_unique<Type2Deformer>(*shape, made.field);
+    for (Index i = 0; i < 4; ++i)
+      tips.col(i) = setup_on(mesh).points[static_cast<std::size_t>(i)].place.in(mesh.vertices);
+  }
+  Points vertices() const {
+    Points points;
+    made.layout.unpack(deformer->shape(), points);
+    return points;
+  }
+  /// Goes there in so many steps, by ways that a generator chooses.
+  void go_to(const Points& ends, int steps, std::mt19937& random);
+
+  Mesh mesh;
+  Made made;
+  Points tips;
+  std::unique_ptr<SculptedShape> shape;
+  std::unique_ptr<Type2Deformer> deformer;
+};
+
 Points random_vectors(Index points, std::mt19937& random) {
   Points vectors(3, points);
   for (double& coordinate : vectors.reshaped())
     coordinate = static_cast<double>(random() % 2001) / 1000.0 - 1.0;
   return vectors;
+}
+
+void Stroked::go_to(const Points& ends, int steps, std::mt19937& random) {
+  for (int step = 1; step < steps; ++step) {
+    const double part = static_cast<double>(step) / steps;
+    const Points way = tips + part * (ends - tips) + 0.2 * random_vectors(tips.cols(), random);
+    REQUIRE(deformer->stroke_to(way).status == FieldStatus::ok);
+  }
+  REQUIRE(deformer->end_at(ends).status == FieldStatus::ok);
+  tips = ends;
 }
 
 } // namespace
@@ -273,6 +312,97 @@ TEST_SUITE("surface") {
     wrong(1, 2) = 1e90;
     CHECK(deformer.apply(wrong, out) == FieldStatus::not_finite);
     CHECK(vertices().allFinite());
+  }
+
+  TEST_CASE("a stroke of type 2 leads where type 1 leads, whatever the way and its steps") {
+    for (const int steps : {1, 7, 20000}) { // of which the last ones are below float's resolution
+      std::mt19937 random(5);
+      Stroked one(test::grid(20, 10.0));
+      REQUIRE(one.deformer->begin(one.tips) == FieldStatus::ok);
+      const Points ends = one.tips + 0.4 * random_vectors(4, random);
+      SculptedShape rest(one.made.layout, {}, nullptr);
+      SurfaceDeformer type1(rest, one.made.field);
+      BlockShape wanted;
+      REQUIRE(type1.grab(one.tips) == FieldStatus::ok);
+      REQUIRE(type1.apply(ends, wanted) == FieldStatus::ok);
+      Points vertices;
+      one.made.layout.unpack(wanted, vertices);
+      one.go_to(ends, steps, random);
+      CHECK(one.vertices() == vertices);
+      CHECK((vertices - one.mesh.vertices).cwiseAbs().maxCoeff() > 0.1);
+    }
+  }
+
+  TEST_CASE("strokes of type 2 add up, and what touches another side moves only its own") {
+    const Mesh both = two_sheets(1e-3);
+    Stroked one(both);
+    std::mt19937 random(6);
+    Points wanted = both.vertices;
+    for (int stroke = 0; stroke < 3; ++stroke) {
+      REQUIRE(one.deformer->begin(one.tips) == FieldStatus::ok);
+      CHECK(one.deformer->undo_steps() == static_cast<std::size_t>(stroke));
+      const Points ends = one.tips + 0.3 * random_vectors(4, random);
+      wanted += one.made.displaced(ends - one.tips) - both.vertices;
+      one.go_to(ends, 50, random);
+      CHECK((one.vertices() - wanted).cwiseAbs().maxCoeff() < 1e-5);
+    }
+    const Index sheet = both.vertices.cols() / 2;
+    CHECK(one.vertices().rightCols(sheet) == both.vertices.rightCols(sheet));
+    CHECK((one.vertices() - both.vertices).cwiseAbs().maxCoeff() > 0.2);
+  }
+
+  TEST_CASE("strokes of type 2 are undone, done again and reset, bit for bit") {
+    Stroked one(test::grid(20, 10.0));
+    std::mt19937 random(7);
+    std::vector<Points> shapes{one.mesh.vertices};
+    for (int stroke = 0; stroke < 4; ++stroke) {
+      REQUIRE(one.deformer->begin(one.tips) == FieldStatus::ok);
+      one.go_to(one.tips + 0.3 * random_vectors(4, random), 9, random);
+      shapes.push_back(one.vertices());
+    }
+    for (std::size_t stroke = 4; stroke-- > 0;) {
+      REQUIRE(one.deformer->undo(one.tips) == FieldStatus::ok);
+      CHECK(one.vertices() == shapes[stroke]);
+      REQUIRE(one.deformer->stroke_to(one.tips).status == FieldStatus::ok);
+      CHECK(one.vertices() == shapes[stroke]); // who holds still moves nothing
+    }
+    REQUIRE(one.deformer->redo(one.tips) == FieldStatus::ok);
+    CHECK(one.vertices() == shapes[1]);
+    one.deformer->release(true);
+    REQUIRE(one.deformer->reset(one.tips) == FieldStatus::ok);
+    CHECK(one.vertices() == one.mesh.vertices);
+    Points wrong = one.tips;
+    for (const double far : {std::nan(""), 1e90}) {
+      wrong(1, 2) = far;
+      CHECK(one.deformer->stroke_to(wrong).status == FieldStatus::not_finite);
+      CHECK(one.vertices() == one.mesh.vertices);
+      CHECK_FALSE(one.deformer->along()->is_moved());
+    }
+    one.go_to(one.tips + 0.3 * random_vectors(4, random), 3, random);
+    CHECK(one.vertices().allFinite());
+    CHECK(one.vertices() != one.mesh.vertices);
+  }
+
+  TEST_CASE("what a step of type 2 tells leads from the shape before to its own") {
+    Stroked one(test::grid(20, 10.0));
+    std::mt19937 random(8);
+    REQUIRE(one.deformer->begin(one.tips) == FieldStatus::ok);
+    const SurfaceField::Terms terms = one.made.field->terms();
+    Points followed = one.mesh.vertices;
+    SurfaceMove move;
+    for (int step = 0; step < 20; ++step) {
+      const Points way = one.tips + 0.3 * random_vectors(4, random);
+      REQUIRE(one.deformer->stroke_to(way).status == FieldStatus::ok);
+      CHECK(one.deformer->fields().fields().empty());
+      one.deformer->along()->tell(move);
+      REQUIRE(move.field == one.made.field->number());
+      for (std::size_t place = 0; place + 1 < terms.starts.size(); ++place)
+        for (std::uint32_t at = terms.starts[place]; at < terms.starts[place + 1]; ++at)
+          followed.col(one.made.layout.order()[place]) +=
+              one.made.layout.unit() *
+              (terms.values[at] * move.vectors.col(terms.of_vector[at])).cast<double>();
+      CHECK((one.vertices() - followed).cwiseAbs().maxCoeff() < 1e-5);
+    }
   }
 }
 

@@ -19,6 +19,8 @@ class BlockEvaluator;
 class BrushStroke;
 class FingertipCurve;
 class MaskedStep;
+class SurfaceField;
+class SurfaceStroke;
 
 struct StrokeResult {
   FieldStatus status = FieldStatus::ok;
@@ -41,6 +43,9 @@ public:
   /// another one does. `shape` must outlive the deformer.
   Type2Deformer(SculptedShape& shape, Eigen::Index control_points, double piece_length,
                 const DeformerOptions& options);
+  /// Measures distances along the surface. The field must be of the shape's layout, and holds its
+  /// masks. All points pull, and each call leads all the way to them, without pieces or links.
+  Type2Deformer(SculptedShape& shape, std::shared_ptr<const SurfaceField> field);
   /// Uses one radius > 0 for all fingertips, in model units.
   Type2Deformer(Points shape, Eigen::Index control_points, double radius, double piece_length,
                 CsrbfOptions csrbf, const EvaluationOptions& evaluation = {})
@@ -86,13 +91,15 @@ public:
   /// Returns the shape. BlockShape::follow() brings a copy of it up to date.
   const BlockShape& shape() const noexcept { return shape_->shape(); }
   /// Returns the fields that the last call applied to the shape. Their centres are the fingertips
-  /// rounded by BlockLayout::rounded().
+  /// rounded by BlockLayout::rounded(). None along the surface.
   const FieldSequence& fields() const noexcept { return fields_; }
   /// Tells whether a brush has changed the shape in the last call, so that fields() does not tell
   /// all.
   bool is_brushed() const noexcept { return is_brushed_; }
   /// Tells whether a mask holds vertices, which fields() does not tell either.
   bool is_masked() const noexcept;
+  /// Returns what the stroke has done along the surface; null: distances go through the air.
+  const SurfaceStroke* along() const noexcept { return along_.get(); }
   /// Returns what the last call took, the worst of its pieces; all is 0 unless the deformer is
   /// injective.
   const ChainReport& report() const noexcept { return report_; }
@@ -103,6 +110,7 @@ private:
 
   Type2Deformer(std::unique_ptr<SculptedShape> own, Eigen::Index control_points,
                 double piece_length, const DeformerOptions& options);
+  void forget_last() noexcept;
   FieldStatus take_hold(const Points& tips);
   StrokeResult follow(const Points& tips, Lead lead);
   const Points& pulling(const Points& tips);
@@ -132,6 +140,7 @@ private:
   ChainReport report_;
   std::unique_ptr<MaskedStep> masked_;
   std::unique_ptr<BrushStroke> brushes_; ///< null: all pull, or do nothing
+  std::unique_ptr<SurfaceStroke> along_;
   bool is_brushed_ = false;
   bool begun_ = false;
 };

@@ -1,0 +1,52 @@
+#pragma once
+// A stroke of Type-2 with distances along the surface. The functions belong to the surface at rest
+// and stay as they are, so that the field is linear in the points' ways: however a way is cut into
+// pieces, they make the same shape. So the shape at a stroke's beginning is kept, and each step
+// makes the shape of it and of the whole way up to there. Nothing is lost to rounding, however
+// short the steps are.
+
+#include <memory>
+
+#include <nendo/deform/csrbf.hpp>
+#include <nendo/deform/sculpted_shape.hpp>
+#include <nendo/deform/surface_field.hpp>
+
+namespace nendo::deform {
+
+class SurfaceStroke {
+public:
+  /// Allocates; no other function does. The field must be of that layout.
+  SurfaceStroke(const BlockLayout& layout, std::shared_ptr<const SurfaceField> field);
+
+  /// Begins at these points (3 by #points), which must be usable, and of the shape as the first
+  /// go_to() finds it.
+  void begin(const Points& tips) noexcept;
+  /// Makes the shape that of the stroke up to `tips`, which must be usable. If float could not hold
+  /// it, nothing happens and the status is not_finite.
+  FieldStatus go_to(const Points& tips, SculptedShape::Parts& parts) noexcept;
+  /// Forgets what the last go_to() did, so that is_moved() and tell() do not tell it again.
+  void clear() noexcept { step_.all.setZero(); }
+
+  /// Tells whether the last go_to() moved anything.
+  bool is_moved() const noexcept { return !step_.all.isZero(0.0F); }
+  /// Tells by what the last go_to() led from the shape before to its result. Allocates only if
+  /// `move` has no room.
+  void tell(SurfaceMove& move) const { field_->tell(step_, move); }
+  /// Of the vectors that tell() tells.
+  Eigen::Index vector_count() const noexcept {
+    return static_cast<Eigen::Index>(field_->vector_count());
+  }
+
+private:
+  std::shared_ptr<const SurfaceField> field_;
+  Points starts_;
+  Points way_;                       ///< from there
+  BlockShape first_;                 ///< the shape at the beginning
+  double first_extent_ = 0.0;        ///< no coordinate of it is larger
+  SurfaceField::Coefficients whole_; ///< of the way so far
+  SurfaceField::Coefficients next_;  ///< and of the one that is tried
+  SurfaceField::Coefficients step_;  ///< by what they differ
+  bool has_first_ = false;
+};
+
+} // namespace nendo::deform
