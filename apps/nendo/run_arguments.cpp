@@ -148,6 +148,23 @@ Result<void> check_hands(const session::RunOptions& run) {
   return {};
 }
 
+/// What acts on fingertips, or through the air, has nothing to do with a puppet's points.
+Result<void> check_puppet(const session::RunOptions& run) {
+  if (!run.puppet) return {};
+  const flow::SculptorOptions& sculptor = run.loop.sculptor;
+  if (sculptor.hold == flow::Hold::hand)
+    return Error{Errc::usage, "--hold hand: a puppet's own points move it; leave it out"};
+  if (sculptor.needs_rings())
+    return Error{Errc::usage, "--brush " + flow::in_words(sculptor.brushes) +
+                                  ": fingertips have brushes, and a puppet's points pull; give "
+                                  "one of --brush and --puppet"};
+  if (sculptor.deformer.csrbf.keep_volume > 0.0 && run.puppet->distance != puppet::Distance::air)
+    return Error{Errc::usage, "--keep-volume: " + run.puppet_file +
+                                  " measures its distances along the surface, where no kernel is "
+                                  "known that keeps the volume; use distance = \"air\" in it"};
+  return {};
+}
+
 Result<void> set_size(RunArguments& options) {
   session::RunOptions& run = options.run;
   if (run.loop.sculptor.mode == flow::Mode::clay) run.model_size_m = session::clay_size_m;
@@ -260,14 +277,7 @@ Result<void> check(RunArguments& options) {
     return Error{Errc::usage,
                  "--topology: with a puppet, key O does it when it is wanted; leave out this or "
                  "--puppet"};
-  if (run.puppet && *hold == flow::Hold::hand)
-    return Error{Errc::usage, "--hold hand: a puppet's own points move it; leave it out"};
-  if (run.puppet && csrbf->keep_volume > 0.0 && run.puppet->distance != puppet::Distance::air &&
-      run.loop.sculptor.mode == flow::Mode::type1)
-    return Error{Errc::usage, "--keep-volume: " + run.puppet_file +
-                                  " measures its distances along the surface, where no kernel is "
-                                  "known that keeps the volume; use --mode type2, or distance = "
-                                  "\"air\" in it"};
+  if (auto fine = check_puppet(run); !fine) return fine;
   if (auto fine = read_masks(run); !fine) return fine;
   if (auto fine = read_take(options); !fine) return fine;
   if (run.mesh.empty() && !run.over)

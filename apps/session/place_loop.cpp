@@ -140,7 +140,7 @@ Result<void> set_masks(const RunOptions& options, const deform::Mesh& model, Eig
 
 Result<PlacedLoop> make_loop(PlacedSetup setup, const deform::Mesh& model,
                              const deform::BlockShape* first) {
-  const auto fine = flow::check_points(setup.options.rig.get(), setup.options.sculptor.mode);
+  const auto fine = flow::check_points(setup.options.rig.get(), setup.options.sculptor);
   if (!fine) return fine.error();
   auto loop = std::make_unique<flow::DeformLoop>(model, setup.placement, setup.inputs,
                                                  setup.options, first);

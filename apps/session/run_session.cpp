@@ -148,9 +148,8 @@ private:
     if (fresh && awaits && !settings_) tell(models_.go_to(*frame.awaited));
     if (settings_ && !loop.is_changing() && !loop.change_settings(*std::exchange(settings_, {})))
       report("settings that nothing can be done with; the run goes on as it was (puppets "
-             "do not act on clay, one whose distances go along the surface cannot keep the volume "
-             "in type 1, and one of more than " +
-             std::to_string(deform::CsrbfSolver::lean_size) + " points has no type 2)");
+             "do not act on clay, and one whose distances go along the surface cannot keep the "
+             "volume)");
     if (!awaits) edit_masks();
     if (puppet_ && !awaits && !loop.is_changing() && !recorder_.is_changing() &&
         !models_.is_handing_over())

@@ -212,15 +212,56 @@ TEST_SUITE("rig_loop") {
     }
   }
 
-  TEST_CASE("type 2 with distances through the air plays it, too") {
-    auto test = puppet_loop(Mode::type2);
+  TEST_CASE("type 2 plays it along the surface, or through the air as in older recordings") {
+    auto type1 = puppet_loop(), along = puppet_loop(Mode::type2), older = puppet_loop(Mode::type2);
+    older.options.sculptor.type2_along_surface = false;
+    older.loop =
+        std::make_unique<DeformLoop>(older.model, older.placement, older.inputs, older.options);
+    int moves_along = 0;
+    std::size_t fields_of_older = 0;
     HostTime now = HostClock::now();
     for (std::uint64_t tick = 0; tick < 40; ++tick) {
-      test.bend(static_cast<int>(tick), now += 11ms);
-      test.frame_after_tick(tick);
+      now += 11ms;
+      std::vector<deform::Points> shapes;
+      for (LoopUnderTest* const test : {&type1, &along, &older}) {
+        test->bend(static_cast<int>(tick), now);
+        shapes.push_back(test->vertices_of(test->frame_after_tick(tick)));
+      }
+      REQUIRE(shapes[1] == shapes[0]); // of one stroke; what adds up are strokes
+      const Frame& frame = along.loop->frames().front();
+      CHECK(frame.fields.fields().empty());
+      moves_along += frame.surface.field != 0 ? 1 : 0;
+      fields_of_older += older.loop->frames().front().fields.fields().size();
+      if (tick < 39) continue;
+      CHECK((shapes[1] - type1.model.vertices).cwiseAbs().maxCoeff() > 0.02);
+      CHECK((shapes[2] - type1.model.vertices).cwiseAbs().maxCoeff() > 0.02);
+      CHECK((shapes[2] - shapes[1]).cwiseAbs().maxCoeff() > 0.01);
     }
-    const Frame& frame = test.loop->frames().front();
-    CHECK((test.vertices_of(frame) - test.model.vertices).cwiseAbs().maxCoeff() > 0.02);
+    CHECK(moves_along > 10);
+    CHECK(fields_of_older > 10);
+  }
+
+  TEST_CASE("strokes of type 2 along the surface add up, and an undo goes back stroke by stroke") {
+    auto test = puppet_loop(Mode::type2);
+    HostTime now = HostClock::now();
+    std::uint64_t tick = 0;
+    const auto after = [&](int counts) {
+      test.bend(counts, now += 11ms);
+      return test.vertices_of(test.frame_after_tick(tick++));
+    };
+    after(0);
+    const deform::Points first = after(15);
+    test.commands.try_push(Request::commit);
+    CHECK(after(15) == first);
+    const deform::Points second = after(25);
+    CHECK((second - first).cwiseAbs().maxCoeff() > 5e-3);
+    test.commands.try_push(Request::undo);
+    CHECK(after(25) == first);
+    test.commands.try_push(Request::redo);
+    CHECK(after(25) == second);
+    test.commands.try_push(Request::reset);
+    CHECK(after(25) == test.model.vertices);
+    CHECK((after(10) - test.model.vertices).cwiseAbs().maxCoeff() > 5e-3);
   }
 }
 

@@ -153,13 +153,16 @@ TEST_SUITE("run") {
     const json clay = summary({"--keep-volume", "0.75"});
     CHECK(clay["keep_volume"] == 0.75);
     CHECK(clay["failed"] == 0);
-    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--hold", "fist"},
-                                                  {"--hold", "hand", "--mode", "type2"},
-                                                  {"--hold", "hand", "--keep-volume", "1"},
-                                                  {"--hold", "hand", "--puppet", "face"},
-                                                  {"--keep-volume", "2"},
-                                                  {"--keep-volume", "1", "--injective"},
-                                                  {"--keep-volume", "1", "--puppet", "face"}}) {
+    for (const std::vector<std::string>& wrong :
+         {std::vector<std::string>{"--hold", "fist"},
+          {"--hold", "hand", "--mode", "type2"},
+          {"--hold", "hand", "--keep-volume", "1"},
+          {"--hold", "hand", "--puppet", "face"},
+          {"--keep-volume", "2"},
+          {"--keep-volume", "1", "--injective"},
+          {"--keep-volume", "1", "--puppet", "face"},
+          {"--keep-volume", "1", "--mode", "type2", "--puppet", "face"},
+          {"--brush", "inflate", "--puppet", "face"}}) {
       CAPTURE(wrong.back());
       const auto done = run(wrong);
       CHECK(done.exit_code == 2);

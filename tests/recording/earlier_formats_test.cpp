@@ -91,15 +91,27 @@ TEST_SUITE("earlier_formats") {
       Setup now, then;
       REQUIRE(read_setup_chunk(type, whole, now));
       CHECK(now.loop->options.pull_is_step);
-      // That rule, since 1.6 the brushes, and since 1.7 how much of the volume is kept, what holds,
-      // and whether there is a table.
-      constexpr std::size_t since = 1 + 13 + 9 + 1;
+      // That rule, since 1.6 the brushes, since 1.7 how much of the volume is kept, what holds, and
+      // whether there is a table, and since 1.13 how type 2 measures.
+      constexpr std::size_t since = 1 + 13 + 9 + 1 + 1;
       REQUIRE(read_setup_chunk(type, whole.first(whole.size() - since), then));
       CHECK_FALSE(then.loop->options.pull_is_step);
       CHECK(then.loop->origins.size() == now.loop->origins.size());
       ++loops;
     }
     CHECK(loops == 1);
+  }
+
+  TEST_CASE("in a loop of format 1.12, type 2 measures distances through the air") {
+    constexpr auto type = driver::chunk_type("LOOP");
+    const auto payload =
+        payloads_of(test::setup_of(test::LoopUnderTest(Mode::type2)), type).front();
+    const std::span whole(payload);
+    Setup now, then;
+    REQUIRE(read_setup_chunk(type, whole, now));
+    CHECK(now.loop->options.sculptor.type2_along_surface);
+    REQUIRE(read_setup_chunk(type, whole.first(whole.size() - 1), then));
+    CHECK_FALSE(then.loop->options.sculptor.type2_along_surface);
   }
 }
 

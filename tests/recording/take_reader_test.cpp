@@ -122,6 +122,7 @@ Setup unusual_setup() {
                                           deform::Brush::scale};
   setup.loop->options.sculptor.brush_strength = -0.25;
   setup.loop->options.sculptor.hold = flow::Hold::hand;
+  setup.loop->options.sculptor.type2_along_surface = false;
   setup.loop->options.sculptor.deformer.csrbf.keep_volume = 0.75;
   setup.loop->options.settings->keep_volume = 0.125;
   setup.loop->placement.table = flow::Table{{1.5, -2.5, 0.25}, 8.0};
@@ -239,6 +240,7 @@ TEST_SUITE("take_reader") {
     CHECK(are_brushes(lines[at], options.sculptor));
     CHECK(is_hold(lines[at], 0.75, flow::Hold::hand));
     CHECK(lines[at]["table"] == json::parse("[1.5, -2.5, 0.25, 8.0]"));
+    CHECK(lines[at]["type2_along_surface"] == 0);
     CHECK(lines[at++]["least_gap"] == 0.04);
     REQUIRE(lines[at]["chunk"] == "REST");
     REQUIRE(lines[at]["blocks"].size() == 2);

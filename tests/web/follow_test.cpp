@@ -301,47 +301,53 @@ TEST_SUITE("follow") {
     }
   }
 
-  TEST_CASE("through grabs, commits, undos and clutches, a follower has a puppet's shape at every "
-            "tick, within 2e-6 of the diagonal, and gets weights and shapes only when it must") {
-    StreamedLoop streamed = puppet_loop(flow::Mode::type1);
-    Followed followed(streamed);
-    const FollowingClient& client = followed.client;
-    std::mt19937 random(21);
-    int bent = 0;
-    double worst = 0.0;
-    double moved = 0.0;
-    int compared = 0;
-    std::size_t most = 0;
-    for (int tick = 0; tick < 600; ++tick) {
-      bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
-      if (random() % 25 == 0)
-        streamed.test.commands.try_push(flow::requests[random() % flow::requests.size()]);
-      if (random() % 25 == 0)
-        streamed.test.commands.try_push(
-            flow::SetClutch{random() % 2 == 0 ? Side::left : Side::right,
-                            puppet::RigPlayer::all_fingers, random() % 2 == 0});
-      const auto shape = streamed.tick(bent);
-      moved = std::max(moved, (shape - streamed.test.model.vertices).cwiseAbs().maxCoeff());
-      followed.pass();
-      const flow::Frame& frame = streamed.test.loop->frames().front();
-      CHECK(client.let_go == frame.let_go);
-      CHECK(client.is_puppet);
-      most = std::max(most, client.update_bytes);
-      if (!followed.is_up_to_date()) continue;
-      worst = std::max(worst, followed.gap(shape));
-      ++compared;
+  TEST_CASE(
+      "through grabs, commits, undos and clutches, a follower has a puppet's shape at every "
+      "tick, within 2e-6 of the diagonal, where it bakes within 1e-5, and gets weights and shapes "
+      "only when it must") {
+    for (const flow::Mode mode : {flow::Mode::type1, flow::Mode::type2}) {
+      CAPTURE(name_of(mode));
+      const bool bakes = mode == flow::Mode::type2;
+      StreamedLoop streamed = puppet_loop(mode);
+      Followed followed(streamed);
+      const FollowingClient& client = followed.client;
+      std::mt19937 random(21);
+      int bent = 0;
+      double worst = 0.0;
+      double moved = 0.0;
+      int compared = 0;
+      std::size_t most = 0;
+      for (int tick = 0; tick < 600; ++tick) {
+        bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
+        if (random() % 25 == 0)
+          streamed.test.commands.try_push(flow::requests[random() % flow::requests.size()]);
+        if (random() % 25 == 0)
+          streamed.test.commands.try_push(
+              flow::SetClutch{random() % 2 == 0 ? Side::left : Side::right,
+                              puppet::RigPlayer::all_fingers, random() % 2 == 0});
+        const auto shape = streamed.tick(bent);
+        moved = std::max(moved, (shape - streamed.test.model.vertices).cwiseAbs().maxCoeff());
+        followed.pass();
+        const flow::Frame& frame = streamed.test.loop->frames().front();
+        CHECK(client.let_go == frame.let_go);
+        CHECK(client.is_puppet);
+        most = std::max(most, client.update_bytes);
+        if (!followed.is_up_to_date()) continue;
+        worst = std::max(worst, followed.gap(shape));
+        ++compared;
+      }
+      CHECK(client.good);
+      CHECK(worst < (bakes ? 1e-5 : 2e-6));
+      CHECK(moved > 0.05); // of a ball of radius 1
+      CHECK(compared > 500);
+      CHECK(client.commits > 3);
+      CHECK(client.jumps > 3);
+      CHECK(client.jumps < 100); // not one for each tick
+      CHECK(client.vectors > 1000);
+      CHECK(client.weights == 1);
+      CHECK(client.shapes < static_cast<int>(client.jumps) + (bakes ? 10 : 3));
+      CHECK(most < 1000);
     }
-    CHECK(client.good);
-    CHECK(worst < 2e-6);
-    CHECK(moved > 0.05); // of a ball of radius 1
-    CHECK(compared > 500);
-    CHECK(client.commits > 3);
-    CHECK(client.jumps > 3);
-    CHECK(client.jumps < 100); // not one for each tick
-    CHECK(client.vectors > 1000);
-    CHECK(client.weights == 1);
-    CHECK(client.shapes < static_cast<int>(client.jumps) + 3);
-    CHECK(most < 1000);
   }
 
   TEST_CASE("a puppet's follower gets other weights when radii, kernel or mode change, and has the "
@@ -367,7 +373,8 @@ TEST_SUITE("follow") {
     CHECK(worst < 1e-5);
     CHECK(compared > 500);
     CHECK(followed.client.weights > 3);
-    CHECK(followed.client.weights < 30);
+    CHECK(static_cast<std::uint64_t>(followed.client.weights) <=
+          streamed.test.loop->stats().changes + 1);
     CHECK(streamed.test.loop->stats().changes > 15);
   }
 

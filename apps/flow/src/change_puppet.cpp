@@ -68,7 +68,7 @@ SculptorSetup DeformLoop::first_with(std::uint32_t puppet) const {
 Result<SculptorSetup> DeformLoop::setup_with(std::uint32_t puppet) const {
   const SculptorSetup first = first_with(puppet);
   const auto& rig = puppets_[puppet];
-  if (auto fine = check_points(rig.get(), asked_.settings.mode); !fine) return fine.error();
+  if (auto fine = check_points(rig.get(), asked_.options); !fine) return fine.error();
   const auto& before = puppets_[asked_puppet_];
   SculptorSetup setup =
       with_settings(first, first, asked_.settings, hands_of(puppet), units_per_metre_);

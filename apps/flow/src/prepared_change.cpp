@@ -59,11 +59,11 @@ std::optional<SculptorSetup> DeformLoop::setup_for(const SculptorSetup& before,
   const bool presses = can_press(puppets_[asked_puppet_].get());
   if (!presses && is_by_hands(settings.mode) && settings.mode != asked_.settings.mode)
     return std::nullopt;
-  if (settings.mode != asked_.settings.mode &&
-      !check_points(puppets_[asked_puppet_].get(), settings.mode))
-    return std::nullopt;
   SculptorSetup setup = with_settings(before, first_with(asked_puppet_), settings,
                                       hands_of(asked_puppet_), units_per_metre_);
+  if (settings.mode != asked_.settings.mode &&
+      !check_points(puppets_[asked_puppet_].get(), setup.options))
+    return std::nullopt;
   setup.options.surface = asked_.options.surface; // others may be another version's
   setup.options.deformer.mask = asked_.options.deformer.mask;
   setup.options.bodies = presses ? bodies_ : nullptr;
@@ -71,8 +71,7 @@ std::optional<SculptorSetup> DeformLoop::setup_for(const SculptorSetup& before,
       settings.kernel == asked_.settings.kernel && settings.radius_m == asked_.settings.radius_m;
   if (!same && !set_surface(setup.options, *asked_model_)) return std::nullopt;
   // Along a surface, no kernel is known that keeps the volume.
-  if (setup.options.surface && settings.mode == Mode::type1 && settings.keep_volume > 0.0)
-    return std::nullopt;
+  if (setup.options.is_along_surface() && settings.keep_volume > 0.0) return std::nullopt;
   return setup;
 }
 

@@ -34,13 +34,14 @@ bool can_press(const puppet::Rig* rig) noexcept {
   return !is_played(rig);
 }
 
-Result<void> check_points(const puppet::Rig* rig, Mode mode) {
+Result<void> check_points(const puppet::Rig* rig, const SculptorOptions& sculptor) {
   if (!is_played(rig) || rig->starts().cols() <= deform::CsrbfSolver::lean_size) return {};
-  if (mode == Mode::type1 && rig->puppet().distance == puppet::Distance::surface) return {};
+  const bool along_surface = sculptor.mode == Mode::type1 || sculptor.type2_along_surface;
+  if (along_surface && rig->puppet().distance == puppet::Distance::surface) return {};
   return Error{Errc::bad_input, "the puppet has " + std::to_string(rig->starts().cols()) +
                                     " points; a tick solves for at most " +
                                     std::to_string(deform::CsrbfSolver::lean_size) +
-                                    " of them, unless distances go along the surface in type 1"};
+                                    " of them, unless distances go along the surface"};
 }
 
 StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept {

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include <nendo/deform/surface_stroke.hpp>
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/hand/held_points.hpp>
 
@@ -71,6 +72,8 @@ Deformer make(SculptedShape& shape, Eigen::Index control_points, const SculptorO
   }
   if (options.mode == Mode::parts && options.bodies && options.parts)
     return PartHands(shape, options.parts, options.bodies, options.deformer.mask);
+  if (options.mode == Mode::type2 && options.is_along_surface())
+    return Type2Deformer(shape, options.surface);
   if (options.mode == Mode::type2)
     return Type2Deformer(shape, control_points, options.piece_length,
                          brushed(options, control_points));
@@ -100,6 +103,15 @@ auto each(Deformer& deformer, const Of1& of_type1, const Of2& of_type2, const Of
           return of_type1(one);
       },
       deformer);
+}
+
+/// What `function` returns of what measures distances along the surface; `otherwise`, if nothing
+/// does.
+template <class Value, class Function>
+Value along_surface(const Deformer& deformer, Value otherwise, const Function& function) {
+  if (const auto* type1 = std::get_if<deform::SurfaceDeformer>(&deformer)) return function(*type1);
+  const auto* type2 = std::get_if<Type2Deformer>(&deformer);
+  return type2 == nullptr || type2->along() == nullptr ? otherwise : function(*type2->along());
 }
 
 FieldStatus follow(ClayHands& hands, const Points&, bool ends, BlockShape& out) {
@@ -164,6 +176,10 @@ std::string in_words(const std::array<deform::Brush, 5>& brushes) {
 bool SculptorOptions::needs_rings() const noexcept {
   return std::any_of(brushes.begin(), brushes.end(),
                      [](deform::Brush brush) { return brush != deform::Brush::pull; });
+}
+
+bool SculptorOptions::is_along_surface() const noexcept {
+  return surface != nullptr && (mode != Mode::type2 || type2_along_surface);
 }
 
 Eigen::Index SculptorOptions::points_of_hand() const noexcept {
@@ -295,7 +311,8 @@ const deform::FieldSequence& Sculptor::fields() const noexcept {
 
 bool Sculptor::is_told_by_fields() const noexcept {
   if (const auto* type2 = std::get_if<Type2Deformer>(&deformer_))
-    return !type2->is_brushed() && !type2->is_masked();
+    return !type2->is_brushed() && !type2->is_masked() &&
+           !(type2->along() != nullptr && type2->along()->is_moved());
   if (const ClayHands* hands = clay()) return !hands->is_moved();
   if (const PartHands* hands = parts()) return !hands->is_moved();
   const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
@@ -303,29 +320,32 @@ bool Sculptor::is_told_by_fields() const noexcept {
 }
 
 void Sculptor::tell(deform::SurfaceMove& move) const noexcept {
-  if (const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
-    surface->tell(move);
-  else
-    move.clear();
+  const bool is_told = along_surface(deformer_, false, [&](const auto& surface) {
+    surface.tell(move);
+    return true;
+  });
+  if (!is_told || (mode() == Mode::type2 && !moves_anything())) move.clear();
 }
 
 bool Sculptor::has_room(const deform::SurfaceMove& move) const noexcept {
-  const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_);
-  return surface == nullptr || move.vectors.cols() >= surface->vector_count();
+  return along_surface(deformer_, true, [&](const auto& surface) {
+    return move.vectors.cols() >= surface.vector_count();
+  });
 }
 
 deform::SurfaceMove Sculptor::room_to_tell() const {
   deform::SurfaceMove room;
-  if (const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
-    room.vectors.setZero(3, surface->vector_count());
+  room.vectors.setZero(3, along_surface(deformer_, Eigen::Index{0}, [](const auto& surface) {
+                         return surface.vector_count();
+                       }));
   return room;
 }
 
 bool Sculptor::moves_anything() const noexcept {
-  if (const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
-    return surface->is_moved();
   if (const ClayHands* hands = clay()) return hands->is_moved();
   if (const PartHands* hands = parts()) return hands->is_moved();
+  if (along_surface(deformer_, false, [](const auto& surface) { return surface.is_moved(); }))
+    return true;
   if (const auto* type2 = std::get_if<Type2Deformer>(&deformer_); type2 && type2->is_brushed())
     return true;
   const auto all = fields().fields();

@@ -27,7 +27,7 @@ constexpr ChunkType chunk_type(const char (&letters)[5]) noexcept {
 }
 
 inline constexpr std::uint16_t format_major = 1;  ///< a newer one cannot be read
-inline constexpr std::uint16_t format_minor = 12; ///< newer ones add what may be passed over
+inline constexpr std::uint16_t format_minor = 13; ///< newer ones add what may be passed over
 inline constexpr std::size_t file_header_bytes = 16;
 inline constexpr std::size_t chunk_header_bytes = 20;
 inline constexpr std::size_t chunk_checksum_bytes = 4; ///< after the payload

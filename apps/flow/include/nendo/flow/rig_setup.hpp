@@ -28,9 +28,10 @@ std::optional<double> mirror_of(const puppet::Rig* rig) noexcept;
 /// Tells whether hands with that puppet, which may be null, can press clay: it has no points.
 bool can_press(const puppet::Rig* rig) noexcept;
 /// Tells whether a tick can solve for that puppet's points without allocating. Error, bad_input:
-/// there are more than deform::CsrbfSolver::lean_size. In type 1 with distances along the surface
-/// any number is good, because their field is solved for beforehand.
-Result<void> check_points(const puppet::Rig* rig, Mode mode);
+/// there are more than deform::CsrbfSolver::lean_size. Where distances go along the surface, any
+/// number is good, because their field is solved for beforehand; type 2 of older recordings
+/// (SculptorOptions::type2_along_surface) has none.
+Result<void> check_points(const puppet::Rig* rig, const SculptorOptions& sculptor);
 /// Returns what the step from one of them to the other is: of a puppet, of masks, or of symmetry.
 StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept;
 /// Makes the second half of the points the mirror images of the first.

@@ -53,9 +53,10 @@ struct SculptorOptions {
   std::optional<double> mirror{};
   /// Of the model; needed by some brushes (needs_rings()).
   std::shared_ptr<const deform::VertexRings> rings{};
-  /// If set, type1 measures distances along the surface. Type2 does not: it moves its centres with
-  /// the surface, where all distances would have to be measured anew at each piece.
+  /// If set, distances are measured along the surface at rest, in type 2 only if the next is true,
+  /// which it was not in older recordings. Then nothing keeps the volume, and links need not be.
   std::shared_ptr<const deform::SurfaceField> surface{};
+  bool type2_along_surface = true;
   /// The hands that press clay or move parts, and the model that is clay, or its parts. A loop sets
   /// them. Without hands, as with a puppet, both modes shape as type 1 does.
   std::shared_ptr<const HandBodies> bodies{};
@@ -64,6 +65,8 @@ struct SculptorOptions {
 
   /// Tells whether a brush does something that needs the triangles about each vertex.
   bool needs_rings() const noexcept;
+  /// Tells whether distances are measured along the surface.
+  bool is_along_surface() const noexcept;
   /// Returns how many points of a hand hold the model; not of a puppet.
   Eigen::Index points_of_hand() const noexcept;
 };
@@ -142,8 +145,9 @@ public:
   /// Returns the fields of the last update: for type 1 they lead from the rest shape to this shape,
   /// for type 2 from the shape before.
   const deform::FieldSequence& fields() const noexcept;
-  /// Tells by what the last update() led along the surface from the rest shape to this shape; by
-  /// nothing, if it measures no distances there. Allocates only if `move` has no room.
+  /// Tells by what the last update() led along the surface: for type 1 from the rest shape to this
+  /// shape, for type 2 from the shape before; by nothing, if it measures no distances there.
+  /// Allocates only if `move` has no room.
   void tell(deform::SurfaceMove& move) const noexcept;
   bool has_room(const deform::SurfaceMove& move) const noexcept; ///< for tell()
   /// Returns such room. Allocates.
