@@ -64,9 +64,11 @@ struct Why {
 Why too_much_work(const StressOptions& options, const StressOutcome& outcome, double work_us) {
   const bool may_share = outcome.environment.cpus > 1 && options.run.loop.stages.deform &&
                          options.run.loop.sculptor.deformer.evaluation.threads < 2;
+  // A second thread is refused to a loop with real-time priority, which is usual here.
+  const std::string share = options.run.realtime.priority > 0 ? "--threads 2 -p 0" : "--threads 2";
   return {fmt::format("the work of a tick takes {}, and the next one is due after {}",
                       duration_text(work_us), duration_text(period_us(options))),
-          std::string("a model of fewer vertices, ") + (may_share ? "--threads 2, " : "") + "or " +
+          "a model of fewer vertices, " + (may_share ? share + ", " : "") + "or " +
               slower(work_us)};
 }
 
@@ -77,16 +79,18 @@ Why preempted(const StressOptions& options, const StressOutcome& outcome) {
   if (policy != nullptr)
     return {"other threads had the processor" + load + ", and " + policy->wanted + " is refused",
             policy->remedy};
-  if (options.run.realtime.priority == 0)
+  if (options.run.realtime.priority == 0) {
+    const bool shares = options.run.loop.sculptor.deformer.evaluation.threads > 1;
     return {"other threads had the processor" + load + ", and the loop has no real-time priority",
-            fmt::format("-p {}", flow::usual_priority)};
+            fmt::format("-p {}{}", flow::usual_priority, shares ? " without --threads 2" : "")};
+  }
   const double cpu = outcome.costs.cpu_s / std::max(outcome.elapsed_s, 1e-9);
   const auto& limit = outcome.environment.rt_runtime_us;
   if (limit && *limit >= 0 && cpu >= 0.9 * static_cast<double>(*limit) / 1e6) {
     return {
         fmt::format("the kernel stops real-time threads that use more than {:.0f} % of a second",
                     static_cast<double>(*limit) / 1e4),
-        "a lower rate, or without --spin"};
+        "a lower rate, or --spin off"};
   }
   return {"other real-time threads, or the kernel, had the processor",
           fmt::format("a higher priority than {} (-p), or a CPU of its own (--affinity)",

@@ -137,7 +137,26 @@ TEST_SUITE("stress report") {
     CHECK(alone.remedy.find("--threads") == std::string::npos);
     CHECK(alone.remedy.find(" (-i ") != std::string::npos);
     outcome.environment.cpus = 4;
-    CHECK(judge(options, outcome).remedy.find("--threads 2") != std::string::npos);
+    CHECK(judge(options, outcome).remedy.find(" --threads 2, ") != std::string::npos);
+  }
+
+  TEST_CASE("a remedy is no option that the others on the command line refuse") {
+    StressOptions options;
+    options.run.loop.rate_hz = 12'000.0;
+    options.run.realtime.priority = 80;
+    StressOutcome outcome(options.run.loop);
+    fill(outcome);
+    outcome.environment.cpus = 4;
+    CHECK(judge(options, outcome).remedy.find(" --threads 2 -p 0, ") != std::string::npos);
+    options.run.loop.rate_hz = 1000.0;
+    options.run.realtime.priority = 0;
+    options.run.loop.sculptor.deformer.evaluation.threads = 2;
+    CHECK(judge(options, outcome).remedy == "-p 80 without --threads 2");
+    StressArguments both; // with the usual priority, these two do not go together
+    both.loop.threads = 2;
+    const auto refused = parse(both);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message.find("--priority 0") != std::string::npos);
   }
 
   TEST_CASE("a loop that kept its rate is told so, and one without a rate is not judged") {
