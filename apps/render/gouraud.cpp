@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "render/raster.hpp"
 #include "render/shading.hpp"
 
 namespace nendo::render {
@@ -60,14 +61,16 @@ void GouraudRenderer::see(const Surface& surface, const Camera& camera) {
     corner.inverse_depth = 0.0F;
     if (!(depth > nearest_seen_m && std::isfinite(depth))) continue;
     corner.inverse_depth = static_cast<float>(1.0 / depth);
-    corner.at = {middle_x + scale * along.x() / depth, middle_y - scale * along.y() / depth};
+    corner.at = {on_grid(middle_x + scale * along.x() / depth),
+                 on_grid(middle_y - scale * along.y() / depth)};
     corner.colour = lit_vertex(surface, at, lamp);
   }
 }
 
 void GouraudRenderer::fill(const std::array<const Corner*, 3>& corners) {
   const int width = image_.size().width;
-  each_covered({corners[0]->at, corners[1]->at, corners[2]->at}, width, {0, image_.size().height},
+  const std::array<GridCorner, 3> on{corners[0]->at, corners[1]->at, corners[2]->at};
+  each_covered(on, sample_box(on, width, {0, image_.size().height}),
                [&](int x, int y, const std::array<double, 3>& shares) {
                  float depth = 0.0F;
                  Vector3f colour = Vector3f::Constant(0.5F); // rounds

@@ -9,7 +9,7 @@
 
 #include "render/camera.hpp"
 #include "render/image.hpp"
-#include "render/raster.hpp"
+#include "render/sample_grid.hpp"
 #include "render/surface.hpp"
 
 namespace nendo::render {
@@ -27,7 +27,7 @@ public:
 private:
   /// A vertex as the camera sees it.
   struct Corner {
-    RasterCorner at;
+    GridCorner at;
     float inverse_depth = 0.0F; ///< 0: behind the camera
     Eigen::Vector3f colour;     ///< encoded, 0 to 255
   };

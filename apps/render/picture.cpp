@@ -1,14 +1,14 @@
 #include "render/picture.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <thread>
 
+#include "render/parallel.hpp"
 #include "render/raster.hpp"
 #include "render/shading.hpp"
+#include "render/triangle_bands.hpp"
 
 namespace nendo::render {
 
@@ -24,39 +24,47 @@ constexpr double nearest_m = 0.01;
 struct Seen {
   const Surface* surface = nullptr;
   const std::vector<float>* sky = nullptr; ///< nullptr: lit as if nothing were about
-  std::vector<RasterCorner> corners;
-  std::vector<float> inverse_depth; ///< 0: behind the camera
+  std::vector<GridCorner> corners;         ///< beyond the grid: behind the camera
+  std::vector<float> inverse_depth;
+  TriangleBands bands;
 };
 
 class Projection {
 public:
-  Projection(const Camera& camera, Size size, int samples)
+  /// Bands have as many rows as `band_rows` says, of samples.
+  Projection(const Camera& camera, Size size, int samples, int band_rows)
       : rows_(camera.axes()), eye_(camera.eye()),
-        scale_(samples * size.height / (2.0 * camera.tangent())),
-        middle_{samples * size.width * (1.0 + camera.centre) / 2.0, samples * size.height / 2.0} {}
+        grid_{samples * size.width, samples * size.height, band_rows},
+        scale_(grid_.height / (2.0 * camera.tangent())),
+        middle_x_(grid_.width * (1.0 + camera.centre) / 2.0), middle_y_(grid_.height / 2.0) {}
 
   Seen see(const Surface& surface, const std::vector<float>* sky) const {
-    Seen seen{&surface, sky, {}, {}};
-    seen.corners.resize(surface.places.size());
+    Seen seen{&surface, sky, {}, {}, {}};
+    seen.corners.assign(surface.places.size(), {beyond_grid, beyond_grid});
     seen.inverse_depth.resize(surface.places.size());
     for (std::size_t at = 0; at < surface.places.size(); ++at) {
       const Eigen::Vector3d along = rows_ * (surface.places[at].cast<double>() - eye_);
       const double depth = -along.z();
       if (!(depth > nearest_m && std::isfinite(depth))) continue;
       seen.inverse_depth[at] = static_cast<float>(1.0 / depth);
-      seen.corners[at] = {middle_.x + scale_ * along.x() / depth,
-                          middle_.y - scale_ * along.y() / depth};
+      if (!(seen.inverse_depth[at] > 0.0F)) continue; // so far away that it is none
+      seen.corners[at] = {on_grid(middle_x_ + scale_ * along.x() / depth),
+                          on_grid(middle_y_ - scale_ * along.y() / depth)};
     }
+    seen.bands = TriangleBands(seen.corners, surface.corners, grid_);
     return seen;
   }
   Vector3f eye() const { return eye_.cast<float>(); }
   float footprint_m(float depth) const noexcept { return depth / static_cast<float>(scale_); }
+  const BandedGrid& grid() const noexcept { return grid_; }
 
 private:
   Eigen::Matrix3d rows_;
   Eigen::Vector3d eye_;
+  BandedGrid grid_;
   double scale_;
-  RasterCorner middle_;
+  double middle_x_;
+  double middle_y_;
 };
 
 // What of which surface a sample shows.
@@ -69,22 +77,25 @@ struct Hit {
 
 using Hits = std::vector<Hit>;
 
-void cover(const Seen& seen, std::uint32_t number, int width, Rows rows, Hits& hits) {
+/// hits: one for each sample of the band.
+void cover(const Seen& seen, std::uint32_t number, const BandedGrid& grid, int band, Hits& hits) {
   const auto& corners = seen.surface->corners;
-  for (std::size_t at = 0; at + 2 < corners.size(); at += 3) {
-    std::array<RasterCorner, 3> on;
+  const Rows rows = grid.rows_of(band);
+  for (const std::uint32_t at : seen.bands.of(band)) {
+    std::array<GridCorner, 3> on;
     std::array<double, 3> inverse{};
     for (std::size_t k = 0; k < 3; ++k) {
       on[k] = seen.corners[corners[at + k]];
       inverse[k] = static_cast<double>(seen.inverse_depth[corners[at + k]]);
     }
-    if (!(inverse[0] > 0.0 && inverse[1] > 0.0 && inverse[2] > 0.0)) continue;
-    each_covered(on, width, rows, [&](int x, int y, const std::array<double, 3>& b) {
+    const SampleBox box = sample_box(on, grid.width, rows);
+    each_covered(on, box, [&](int x, int y, const std::array<double, 3>& b) {
       const double depth = b[0] * inverse[0] + b[1] * inverse[1] + b[2] * inverse[2];
-      Hit& hit = hits[static_cast<std::size_t>(y - rows.first) * static_cast<std::size_t>(width) +
-                      static_cast<std::size_t>(x)];
+      Hit& hit =
+          hits[static_cast<std::size_t>(y - rows.first) * static_cast<std::size_t>(grid.width) +
+               static_cast<std::size_t>(x)];
       if (static_cast<float>(depth) <= hit.inverse_depth) return;
-      hit = {static_cast<float>(depth), number, static_cast<std::uint32_t>(at), {}};
+      hit = {static_cast<float>(depth), number, at, {}};
       for (std::size_t k = 0; k < 3; ++k)
         hit.shares[k] = static_cast<float>(b[k] * inverse[k] / depth);
     });
@@ -126,13 +137,15 @@ struct View3d {
 View3d seen_by(const Lighting& lighting, const Camera& camera, Size size) {
   const Scene& scene = lighting.scene();
   const auto& maps = lighting.maps();
-  View3d view{&lighting, Projection(camera, size, samples_across), size, {}, 0, {}};
-  view.opaque.push_back(view.projection.see(scene.model, &maps.model_sky));
+  View3d view{&lighting, Projection(camera, size, samples_across, samples_across * band_pixels),
+              size,      {},
+              0,         {}};
+  view.opaque.push_back(view.projection.see(scene.model, &maps.skies.model));
   for (const Surface& solid : scene.solids)
     view.opaque.push_back(view.projection.see(solid, nullptr));
   view.grounds_from = view.opaque.size();
   for (std::size_t at = 0; at < scene.grounds.size(); ++at)
-    view.opaque.push_back(view.projection.see(scene.grounds[at], &maps.ground_sky[at]));
+    view.opaque.push_back(view.projection.see(scene.grounds[at], &maps.skies.grounds[at]));
   std::vector<std::pair<float, std::size_t>> order;
   for (std::size_t at = 0; at < scene.veils.size(); ++at) {
     Vector3f sum = Vector3f::Zero();
@@ -143,9 +156,9 @@ View3d seen_by(const Lighting& lighting, const Camera& camera, Size size) {
   }
   std::sort(order.begin(), order.end());
   for (const auto& [away, at] : order) {
-    const bool is_reach = maps.veil_sky[at].empty();
+    const bool is_reach = maps.skies.veils[at].empty();
     view.veils.push_back(
-        view.projection.see(scene.veils[at], is_reach ? nullptr : &maps.veil_sky[at]));
+        view.projection.see(scene.veils[at], is_reach ? nullptr : &maps.skies.veils[at]));
   }
   return view;
 }
@@ -167,14 +180,16 @@ Vector3f opaque_colour(const View3d& view, const Hit& hit, float height) {
 }
 
 // One band of pixel rows, into the picture.
-void draw_band(const View3d& view, Rows pixel_rows, Image& image) {
-  const int width = samples_across * view.size.width;
-  const Rows rows{samples_across * pixel_rows.first, samples_across * pixel_rows.end};
+void draw_band(const View3d& view, int band, Image& image) {
+  const BandedGrid& grid = view.projection.grid();
+  const int width = grid.width;
+  const Rows rows = grid.rows_of(band);
+  const Rows pixel_rows{rows.first / samples_across, rows.end / samples_across};
   const std::size_t count =
       static_cast<std::size_t>(width) * static_cast<std::size_t>(rows.end - rows.first);
   Hits hits(count);
   for (std::uint32_t number = 0; number < view.opaque.size(); ++number)
-    cover(view.opaque[number], number, width, rows, hits);
+    cover(view.opaque[number], number, grid, band, hits);
   std::vector<Vector3f> colours(count);
   for (std::size_t at = 0; at < count; ++at) {
     const auto row =
@@ -184,7 +199,7 @@ void draw_band(const View3d& view, Rows pixel_rows, Image& image) {
   }
   for (const Seen& veil : view.veils) {
     Hits over(count);
-    cover(veil, 0, width, rows, over);
+    cover(veil, 0, grid, band, over);
     for (std::size_t at = 0; at < count; ++at) {
       if (over[at].inverse_depth <= hits[at].inverse_depth) continue;
       const ShadedPlace place = place_of(over[at], veil);
@@ -221,26 +236,17 @@ void draw_band(const View3d& view, Rows pixel_rows, Image& image) {
 Image draw(const Lighting& lighting, const Camera& camera, Size size, unsigned threads) {
   const View3d view = seen_by(lighting, camera, size);
   Image image(size);
-  std::atomic<int> next{0};
-  const auto work = [&] {
-    for (int first; (first = band_pixels * next++) < size.height;)
-      draw_band(view, {first, std::min(size.height, first + band_pixels)}, image);
-  };
-  std::vector<std::thread> others;
-  for (unsigned thread = 1; thread < threads; ++thread)
-    others.emplace_back(work);
-  work();
-  for (auto& other : others)
-    other.join();
+  each_in_parallel(static_cast<std::size_t>(view.projection.grid().bands()), threads,
+                   [&](std::size_t band) { draw_band(view, static_cast<int>(band), image); });
   return image;
 }
 
 Image silhouette(const Scene& scene, const Camera& camera, Size size) {
-  const Projection projection(camera, size, 1);
+  const Projection projection(camera, size, 1, size.height);
   Hits hits(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height));
   const auto add = [&](const Surface& surface) {
     if (surface.material.opacity > 0.0F)
-      cover(projection.see(surface, nullptr), 0, size.width, {0, size.height}, hits);
+      cover(projection.see(surface, nullptr), 0, projection.grid(), 0, hits);
   };
   add(scene.model);
   for (const auto* surfaces : {&scene.solids, &scene.veils})

@@ -19,9 +19,9 @@ namespace nendo::render {
 class Lighting {
 public:
   /// Places the lights relative to a camera that looks from that azimuth, so that every view shows
-  /// the shapes well. The scene must not change while this is used. Takes some tenths of a second.
-  /// Allocates.
-  explicit Lighting(const Scene& scene, double azimuth_deg = 0.0);
+  /// the shapes well. The scene must not change while this is used. Uses `threads` threads. Takes
+  /// some tenths of a second. Allocates.
+  explicit Lighting(const Scene& scene, double azimuth_deg = 0.0, unsigned threads = 2);
   ~Lighting();
   Lighting(Lighting&&) noexcept;
 

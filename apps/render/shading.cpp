@@ -34,8 +34,7 @@ float power(float base, int doublings) noexcept {
 
 float key_part(const ShadedPlace& at, const Vector3f& normal, const Lighting::Maps& maps) noexcept {
   if (!at.shadowed) return 1.0F;
-  return maps.key_shadow.front().lit_part(at.place + shadow_slack_m * normal, shadow_slack_m,
-                                          shadow_reach);
+  return maps.key_shadow.lit_part(at.place + shadow_slack_m * normal, shadow_slack_m, shadow_reach);
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <doctest/doctest.h>
@@ -48,6 +49,33 @@ SceneHand hand_at(Side side, const Eigen::Vector3d& place) {
   return {pose, pose.fingertip_positions() - 0.1 * TipPlaces::Ones(), false};
 }
 
+/// A model, a solid, veils and a ground, made without a mathematical library, which differ.
+Scene scene_without_libraries() {
+  Scene scene;
+  scene.model.material.colour = {0.5F, 0.24F, 0.14F};
+  add_sphere(scene.model, {0.0F, 0.3F, 0.0F}, 0.3F, 48);
+  add_capsule(scene.model, {0.3F, 0.1F, 0.1F}, {0.45F, 0.5F, 0.3F}, 0.08F, 0.03F);
+  add_arrow(scene.solids.emplace_back(), {-0.5F, 0.1F, 0.3F}, {-0.2F, 0.5F, 0.3F}, 0.03F);
+  Surface& skin = scene.veils.emplace_back();
+  skin.material = {{0.3F, 0.3F, 0.4F}, 0.1F, 0.6F, 1.0F, 0.0F, 0.0F, true};
+  add_capsule(skin, {-0.2F, 0.3F, 0.35F}, {0.2F, 0.35F, 0.35F}, 0.06F, 0.04F);
+  Surface& reach = scene.veils.emplace_back();
+  reach.material = {{0.8F, 0.4F, 0.0F}, 0.0F, 0.0F, 0.3F};
+  add_sphere(reach, {0.1F, 0.6F, 0.1F}, 0.15F);
+  Surface& ground = scene.grounds.emplace_back();
+  ground.material = {{0.7F, 0.7F, 0.7F}, 0.0F, 1.0F, 1.0F, 0.1F, 1.2F};
+  constexpr std::uint32_t side = 25;
+  for (std::uint32_t at = 0; at < side * side; ++at) {
+    ground.places.emplace_back(0.125F * static_cast<float>(at % side) - 1.5F, 0.0F,
+                               0.125F * static_cast<float>(at / side) - 1.5F);
+    ground.normals.emplace_back(Eigen::Vector3f::UnitY());
+    if (at % side + 1 < side && at + side < side * side)
+      ground.corners.insert(ground.corners.end(),
+                            {at, at + side, at + side + 1, at, at + side + 1, at + 1});
+  }
+  return scene;
+}
+
 } // namespace
 
 TEST_SUITE("picture") {
@@ -81,12 +109,29 @@ TEST_SUITE("picture") {
     scene_frame.hands[0] = hand_at(Side::left, {-0.5, 0.4, 0.0});
     const Scene scene = scene_of(mesh, scene_frame);
     const Camera camera = framing(scene.outline(), {20, 15}, 1.2);
-    const Image once = draw(Lighting(scene), camera, {120, 100}, 1);
-    for (const unsigned threads : {1U, 2U, 5U})
-      CHECK(draw(Lighting(scene), camera, {120, 100}, threads) == once);
+    const Image once = draw(Lighting(scene, 0.0, 1), camera, {120, 100}, 1);
+    for (const unsigned threads : {1U, 2U, 8U})
+      CHECK(draw(Lighting(scene, 0.0, threads), camera, {120, 100}, threads) == once);
     scene_frame.vertices *= 1.1;
     const Scene larger = scene_of(mesh, scene_frame);
     CHECK_FALSE(draw(Lighting(larger), camera, {120, 100}) == once);
+  }
+
+  TEST_CASE("a picture has the same bytes on every machine and in every version") {
+    const Scene scene = scene_without_libraries();
+    const Camera camera = framing(scene.outline(), {30.0, 20.0}, 4.0 / 3.0);
+    const auto sum_of = [&](double azimuth_deg) {
+      std::uint64_t sum = 0xcbf29ce484222325U; // FNV-1a
+      const Image image = draw(Lighting(scene, azimuth_deg), camera, {160, 120});
+      for (const Pixel& pixel : image.pixels())
+        for (const std::uint8_t byte : pixel)
+          sum = (sum ^ byte) * 0x100000001b3U;
+      return sum;
+    };
+    // As they were before the lights were computed several places at once. They change only if a
+    // picture is meant to look different.
+    CHECK(sum_of(0.0) == 0xc8c12a06bcd3f01aU);
+    CHECK(sum_of(30.0) == 0x5c42bedfaca4e89cU);
   }
 
   TEST_CASE("light comes from the upper left, and what stands on the ground shades it") {
