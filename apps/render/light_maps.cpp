@@ -6,6 +6,7 @@
 
 #include <nendo/base/units.hpp>
 
+#include "render/coarse_surface.hpp"
 #include "render/exact_trig.hpp"
 #include "render/parallel.hpp"
 #include "render/sky_light.hpp"
@@ -22,10 +23,10 @@ bool casts(const Surface& surface) {
   return surface.material.opacity > 0.0F;
 }
 
-/// The model and the hands' skins.
-std::vector<Caster> casters_of(const Scene& scene) {
+/// `model`, which stands for the scene's, and the hands' skins.
+std::vector<Caster> casters_of(const Scene& scene, const Surface& model) {
   std::vector<Caster> casters;
-  casters.emplace_back(scene.model);
+  casters.emplace_back(model);
   for (const Surface& veil : scene.veils)
     if (casts(veil)) casters.emplace_back(veil);
   return casters;
@@ -59,7 +60,11 @@ Vector3f turned(const Vector3f& direction, double azimuth_deg) {
 }
 
 Lighting::Lighting(const Scene& scene, double azimuth_deg, unsigned threads) : scene_(&scene) {
-  const std::vector<Caster> casters = casters_of(scene);
+  const std::vector<Caster> casters = casters_of(scene, scene.model);
+  // A sample of the sky's maps is wider than many triangles of a dense model.
+  const Surface coarse = is_dense(scene.model) ? coarse_surface(scene.model) : Surface();
+  const std::vector<Caster> sky_casters =
+      is_dense(scene.model) ? casters_of(scene, coarse) : casters;
   const Vector3f key = turned(key_direction, azimuth_deg);
   std::optional<DepthMap> key_shadow;
   Skies skies;
@@ -67,7 +72,7 @@ Lighting::Lighting(const Scene& scene, double azimuth_deg, unsigned threads) : s
     if (at == 0)
       key_shadow.emplace(casters, key, shadow_side);
     else
-      skies = skies_of(scene, casters, threads);
+      skies = skies_of(scene, sky_casters, threads);
   });
   maps_ = std::make_unique<Maps>(Maps{{key, {1.42F, 1.35F, 1.25F}},
                                       {turned(fill_direction, azimuth_deg), {0.22F, 0.27F, 0.34F}},

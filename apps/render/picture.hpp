@@ -1,7 +1,8 @@
 #pragma once
 // Draws pictures of scenes on the processor, without a screen or a GPU. The same input gives the
 // same bytes on any machine and with any number of threads. It is meant for documents and tests: a
-// picture of a thousand pixels takes about a second.
+// picture a thousand pixels wide takes some tenths of a second, and that of a million triangles
+// about 2 seconds.
 
 #include <memory>
 #include <optional>
@@ -20,7 +21,7 @@ class Lighting {
 public:
   /// Places the lights relative to a camera that looks from that azimuth, so that every view shows
   /// the shapes well. The scene must not change while this is used. Uses `threads` threads. Takes
-  /// some tenths of a second. Allocates.
+  /// some tenths of a second; above a million triangles, about a second. Allocates.
   explicit Lighting(const Scene& scene, double azimuth_deg = 0.0, unsigned threads = 2);
   ~Lighting();
   Lighting(Lighting&&) noexcept;
