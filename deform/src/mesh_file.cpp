@@ -1,5 +1,6 @@
 #include <nendo/deform/mesh_file.hpp>
 
+#include <algorithm>
 #include <new>
 #include <string>
 
@@ -20,6 +21,7 @@
 #include "repair/weld.hpp"
 #include "stl_file.hpp"
 #include "text_scanner.hpp"
+#include "texture_files.hpp"
 #include "usable.hpp"
 
 namespace nendo::deform {
@@ -51,6 +53,29 @@ Result<Mesh> parse_obj_of(const Source& source, ReadNotes& notes) {
   return std::move(model->mesh);
 }
 
+/// Programs that write both show the texture alone, and its colours are those of the vertices.
+void prefer_texture(Mesh& mesh, ReadNotes& notes) {
+  Appearance& look = mesh.look;
+  const bool is_textured =
+      std::all_of(look.textures.begin(), look.textures.end(),
+                  [](const Texture& texture) { return texture.contents != nullptr; });
+  if (look.textures.empty() || !is_textured || mesh.corner_texcoords.empty() ||
+      look.vertex_colours.cols() == 0)
+    return;
+  look.vertex_colours.resize(4, 0);
+  notes.emplace_back("the colours of vertices are left out, because its texture has them");
+}
+
+Result<Mesh> parse_ply_of(const Source& source, ReadNotes& notes) {
+  auto model = parse_ply(source.text, source.name, notes);
+  if (!model) return model.error();
+  if (source.folder != nullptr) {
+    read_textures(*source.folder, model->textures, model->mesh, notes);
+    prefer_texture(model->mesh, notes);
+  }
+  return std::move(model->mesh);
+}
+
 enum class Format { gltf, ply, stl, obj };
 
 Format format_of(const Source& source) noexcept {
@@ -65,7 +90,7 @@ Result<Mesh> parse(const Source& source, Format format, const ReadOptions& optio
   case Format::gltf:
     return parse_gltf(source.text, source.name, source.folder, options, notes);
   case Format::ply:
-    return parse_ply(source.text, source.name, notes);
+    return parse_ply_of(source, notes);
   case Format::stl:
     return parse_stl(source.text, source.name, notes);
   case Format::obj:

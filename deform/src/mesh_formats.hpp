@@ -21,7 +21,13 @@ struct ObjModel {
 };
 
 Result<ObjModel> parse_obj(std::string_view text, std::string_view name, ReadNotes& notes);
-Result<Mesh> parse_ply(std::string_view text, std::string_view name, ReadNotes& notes);
+
+struct PlyModel {
+  Mesh mesh;                         ///< its textures have no contents
+  std::vector<std::string> textures; ///< what the file calls each of them
+};
+
+Result<PlyModel> parse_ply(std::string_view text, std::string_view name, ReadNotes& notes);
 
 class ModelFolder;
 /// Reads a glTF, binary or JSON. `folder` has the other files that it names; null: there are none.

@@ -1,7 +1,6 @@
 #include "mtl_file.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <set>
 #include <utility>
 
@@ -10,6 +9,7 @@
 
 #include "number_text.hpp"
 #include "text_scanner.hpp"
+#include "texture_files.hpp"
 
 namespace nendo::deform {
 
@@ -183,18 +183,10 @@ void MtlReader::settle_opacity(std::size_t at) {
 }
 
 void MtlReader::read_textures(const ModelFolder& folder) {
-  std::uint64_t left = ModelFolder::most_texture_bytes; // of all together
+  TextureFiles files(folder, notes_);
   for (std::size_t at = first_texture_; at < look_.textures.size(); ++at) {
-    Texture& texture = look_.textures[at];
     const Named& named = named_[at - first_texture_];
-    FolderFile file = folder.find(named.name, left, named.file);
-    if (!file.name.empty()) texture.file = std::move(file.name);
-    if (!file.contents) {
-      notes_.add("texture", named.name, file.lack);
-      continue;
-    }
-    left -= file.contents->size();
-    texture.contents = std::make_shared<const std::string>(*std::move(file.contents));
+    files.read(look_.textures[at], named.name, named.file);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <nendo/base/text.hpp>
 
 #include "mtl_file.hpp"
+#include "texture_files.hpp"
 
 namespace nendo::deform {
 
@@ -86,15 +87,6 @@ void read_library(const ModelFolder& folder, std::string_view library, std::size
   if (lacking.size() == names.size()) lacking = {{std::string(library), whole.lack}};
   for (const auto& [name, lack] : lacking)
     notes.add("file of materials", name, lack);
-}
-
-/// What is named, and not shown because no corner says where.
-void note_unplaced_textures(const Mesh& mesh, NoteSum& notes) {
-  if (!mesh.corner_texcoords.empty()) return;
-  for (const Texture& texture : mesh.look.textures)
-    if (texture.contents)
-      notes.add("texture", texture.file,
-                ": the model has no texture coordinates, so it is not shown");
 }
 
 } // namespace

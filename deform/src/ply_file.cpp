@@ -15,6 +15,7 @@
 #include "mesh_formats.hpp"
 #include "number_text.hpp"
 #include "ply_header.hpp"
+#include "ply_look.hpp"
 #include "srgb.hpp"
 #include "text_scanner.hpp"
 #include "usable.hpp"
@@ -129,14 +130,33 @@ private:
 };
 
 /// What a value is used for.
-enum class Use { skip, x, y, z, corners, strips, red, green, blue, alpha };
+enum class Use {
+  skip,
+  x,
+  y,
+  z,
+  corners,
+  strips,
+  red,
+  green,
+  blue,
+  alpha,
+  across, ///< texture coordinates
+  up,
+  texcoords, ///< of a face's corners
+  texture    ///< its number
+};
+
+bool is_channel(Use use) noexcept {
+  return use >= Use::red && use <= Use::alpha;
+}
 
 class PlyParser {
 public:
   PlyParser(std::string_view text, const PlyHeader& header, std::string_view name, ReadNotes& notes)
       : header_(header), name_(name), notes_(notes), body_(text, header, name) {}
 
-  Result<Mesh> parse();
+  Result<PlyModel> parse();
 
 private:
   Result<std::vector<Use>> uses_of(const PlyElement& element) const;
@@ -147,6 +167,7 @@ private:
   void note_left_out(const PlyElement& element, const std::vector<Use>& uses);
   Result<void> read_value(const PlyProperty& property, Use use);
   void keep_vertex();
+  void end_row(const PlyElement& element);
   void finish_colours();
 
   const PlyHeader& header_;
@@ -160,11 +181,13 @@ private:
   std::array<ColourNumbers, 4> colour_numbers_{};
   std::array<float, 4> colour_{};
   HighestIndex highest_;
+  std::array<double, 2> texcoord_{};
+  PlyLook look_;
   TriangleStrip strip_;
   Mesh mesh_;
 };
 
-Result<Mesh> PlyParser::parse() {
+Result<PlyModel> PlyParser::parse() {
   for (const auto& element : header_.elements)
     if (const auto done = read_element(element); !done) return done.error();
   mesh_.vertices = columns_of<3>(coordinates_);
@@ -175,7 +198,8 @@ Result<Mesh> PlyParser::parse() {
   finish_colours();
   mesh_.look.vertex_colours = Eigen::Map<const Eigen::Matrix4Xf>(
       colours_.data(), 4, static_cast<Eigen::Index>(colours_.size() / 4));
-  return std::move(mesh_);
+  look_.finish(header_.textures, mesh_, notes_);
+  return PlyModel{std::move(mesh_), header_.textures};
 }
 
 /// Red, green, blue and opacity, by the names that programs give them.
@@ -200,21 +224,43 @@ ColourNames colours_in(const PlyElement& element) noexcept {
   return known_colours.front();
 }
 
+/// The names of the texture coordinates that the element has; empty if it has none.
+std::array<std::string_view, 2> texcoords_in(const PlyElement& element) noexcept {
+  for (const auto& names : ply_texcoord_names)
+    if (has_property(element, names[0]) && has_property(element, names[1])) return names;
+  return {};
+}
+
 /// What a property of a vertex is used for.
-Use use_in_vertex(std::string_view name, const ColourNames& colours) noexcept {
+Use use_in_vertex(std::string_view name, const ColourNames& colours,
+                  const std::array<std::string_view, 2>& texcoords) noexcept {
   constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
   if (const auto* const axis = std::find(axes.begin(), axes.end(), name); axis != axes.end())
     return static_cast<Use>(static_cast<int>(Use::x) + static_cast<int>(axis - axes.begin()));
+  if (!name.empty() && name == texcoords[0]) return Use::across;
+  if (!name.empty() && name == texcoords[1]) return Use::up;
   const auto* const channel = std::find(colours.begin(), colours.end(), name);
   if (channel == colours.end()) return Use::skip;
   return static_cast<Use>(static_cast<int>(Use::red) + static_cast<int>(channel - colours.begin()));
 }
 
+bool has_once(const std::vector<Use>& uses, Use use) noexcept {
+  return std::count(uses.begin(), uses.end(), use) == 1;
+}
+
 /// Whether the colours are whole, and nothing is said twice.
 bool has_colours(const std::vector<Use>& uses) noexcept {
-  const auto count = [&](Use use) { return std::count(uses.begin(), uses.end(), use); };
-  return count(Use::red) == 1 && count(Use::green) == 1 && count(Use::blue) == 1 &&
-         count(Use::alpha) <= 1;
+  return has_once(uses, Use::red) && has_once(uses, Use::green) && has_once(uses, Use::blue) &&
+         std::count(uses.begin(), uses.end(), Use::alpha) <= 1;
+}
+
+/// What a property of a face, or of strips, is used for.
+Use use_in_face(const PlyProperty& property, bool is_strips) noexcept {
+  const std::string_view name = property.name;
+  if (!property.count_type) return !is_strips && name == "texnumber" ? Use::texture : Use::skip;
+  if (name == "vertex_indices" || name == "vertex_index")
+    return is_strips ? Use::strips : Use::corners;
+  return !is_strips && name == "texcoord" ? Use::texcoords : Use::skip;
 }
 
 ColourNumbers colour_numbers_of(PlyType type) noexcept {
@@ -244,14 +290,13 @@ Result<std::vector<Use>> PlyParser::uses_of(const PlyElement& element) const {
   int wanted = 0;
   const bool is_strips = element.name == "tristrips";
   const ColourNames colours = colours_in(element);
+  const auto texcoords = texcoords_in(element);
   for (const auto& property : element.properties) {
     Use use = Use::skip;
-    if (element.name == "vertex" && !property.count_type) {
-      use = use_in_vertex(property.name, colours);
-    } else if ((element.name == "face" || is_strips) && property.count_type) {
-      if (property.name == "vertex_indices" || property.name == "vertex_index")
-        use = is_strips ? Use::strips : Use::corners;
-    }
+    if (element.name == "vertex" && !property.count_type)
+      use = use_in_vertex(property.name, colours, texcoords);
+    else if (element.name == "face" || is_strips)
+      use = use_in_face(property, is_strips);
     wanted += use != Use::skip && use < Use::red ? 1 : 0;
     uses.push_back(use);
   }
@@ -305,10 +350,15 @@ Result<void> PlyParser::read_element(const PlyElement& element) {
   if (element.name == "vertex") {
     coordinates_.reserve(3 * element.count);
     has_colours_ = has_colours(*uses);
+    look_.has_vertices = has_once(*uses, Use::across) && has_once(*uses, Use::up);
     colour_.fill(std::numeric_limits<float>::infinity()); // full, in every range
     for (std::size_t at = 0; at < uses->size(); ++at)
-      if ((*uses)[at] >= Use::red)
+      if (is_channel((*uses)[at]))
         colour_numbers_[channel_of((*uses)[at])] = colour_numbers_of(element.properties[at].type);
+  }
+  if (element.name == "face") {
+    look_.has_faces = has_once(*uses, Use::texcoords);
+    look_.has_numbers = has_once(*uses, Use::texture);
   }
   for (std::uint64_t row = 0; row < element.count; ++row) {
     for (std::size_t i = 0; i < uses->size(); ++i) {
@@ -317,9 +367,16 @@ Result<void> PlyParser::read_element(const PlyElement& element) {
           property.count_type ? read_list(property, (*uses)[i]) : read_value(property, (*uses)[i]);
       if (!done) return done;
     }
-    if (element.name == "vertex") keep_vertex();
+    end_row(element);
   }
   return {};
+}
+
+void PlyParser::end_row(const PlyElement& element) {
+  if (element.name == "vertex") keep_vertex();
+  if (element.name != "face") return;
+  const std::size_t faces = mesh_.face_count();
+  look_.end_face(mesh_.face_starts[faces] - mesh_.face_starts[faces - 1]);
 }
 
 /// Makes parts of 1 of them, linear. Colours are encoded as on screens, opacity is not. Red, green
@@ -345,6 +402,7 @@ void PlyParser::finish_colours() {
 void PlyParser::keep_vertex() {
   coordinates_.insert(coordinates_.end(), vertex_, vertex_ + 3);
   if (has_colours_) colours_.insert(colours_.end(), colour_.begin(), colour_.end());
+  if (look_.has_vertices) look_.add_vertex(texcoord_[0], texcoord_[1]);
 }
 
 Result<void> PlyParser::read_list(const PlyProperty& property, Use use) {
@@ -407,7 +465,14 @@ Result<void> PlyParser::read_value(const PlyProperty& property, Use use) {
   const auto value = body_.number(property.type);
   if (!value) return body_.no_number();
   if (use == Use::skip) return {};
-  if (use >= Use::red) {
+  if (use == Use::across || use == Use::up) {
+    texcoord_[use == Use::across ? 0 : 1] = *value;
+    return {};
+  }
+  if (use == Use::texcoords) look_.add_number(*value);
+  if (use == Use::texture) look_.set_texture(*value);
+  if (use == Use::texcoords || use == Use::texture) return {};
+  if (is_channel(use)) {
     colour_[channel_of(use)] = static_cast<float>(std::clamp(*value, -1e30, 1e30));
     return {};
   }
@@ -418,7 +483,7 @@ Result<void> PlyParser::read_value(const PlyProperty& property, Use use) {
 
 } // namespace
 
-Result<Mesh> parse_ply(std::string_view text, std::string_view name, ReadNotes& notes) {
+Result<PlyModel> parse_ply(std::string_view text, std::string_view name, ReadNotes& notes) {
   const auto header = parse_ply_header(text, name);
   if (!header) return header.error();
   return PlyParser(text, *header, name, notes).parse();

@@ -42,6 +42,7 @@ private:
   Result<void> format();
   Result<void> element();
   Result<void> property();
+  void comment();
 
   std::size_t bytes_of_body_taken() const noexcept;
 
@@ -81,8 +82,18 @@ Result<void> HeaderParser::statement(std::string_view keyword) {
   if (keyword == "format") return format();
   if (keyword == "element") return element();
   if (keyword == "property") return property();
+  if (keyword == "comment") comment();
   if (keyword.empty() || keyword == "comment" || keyword == "obj_info") return {};
   return bad(in_quotes(keyword) + " is not known in a PLY header");
+}
+
+/// Names may have blanks. Only the first ones are read: a hostile header could name one a line.
+void HeaderParser::comment() {
+  constexpr std::size_t most_textures = 64;
+  if (scanner_.field() != "TextureFile") return;
+  const std::string_view named = trimmed(scanner_.rest_of_line());
+  if (!named.empty() && header_.textures.size() < most_textures)
+    header_.textures.emplace_back(named);
 }
 
 Result<void> HeaderParser::format() {

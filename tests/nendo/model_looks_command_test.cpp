@@ -111,6 +111,29 @@ TEST_SUITE("model_looks") {
           std::vector<Pixel>{{200, 20, 20}, {200, 20, 20}, {20, 20, 200}, {20, 20, 200}});
   }
 
+  TEST_CASE("a PLY's texture is seen as that of the same OBJ is") {
+    const TemporaryFolder folder;
+    put(folder.path() / "m.obj", square_obj("m.mtl"));
+    put(folder.path() / "m.mtl", "newmtl skin\nmap_Kd skin.tga\n");
+    put(folder.path() / "skin.tga", two_colours_tga());
+    const std::string head = "ply\nformat ascii 1.0\ncomment TextureFile skin.tga\n"
+                             "element vertex 4\nproperty float x\nproperty float y\n"
+                             "property float z\n";
+    const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
+    put(folder.path() / "vertices.ply",
+        head + "property float s\nproperty float t\n" + faces +
+            "end_header\n-1 -1 0 0 0\n1 -1 0 1 0\n1 1 0 1 1\n-1 1 0 0 1\n4 0 1 2 3\n");
+    put(folder.path() / "faces.ply",
+        head + faces + "property list uchar float texcoord\nend_header\n" +
+            "-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n4 0 1 2 3 8 0 0 1 0 1 1 0 1\n");
+    CHECK(is_red(middle_of(folder.path() / "m.obj", true)));
+    const std::string picture = test::contents(folder.path() / "picture.png");
+    for (const char* const name : {"vertices.ply", "faces.ply"}) {
+      CHECK(is_red(middle_of(folder.path() / name, true)));
+      CHECK(test::contents(folder.path() / "picture.png") == picture);
+    }
+  }
+
   TEST_CASE("each command says once what a model lacks, and JSON has it") {
     const TemporaryFolder folder;
     const fs::path model = folder.path() / "source/m.obj";

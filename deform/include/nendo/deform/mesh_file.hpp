@@ -43,12 +43,13 @@ struct ReadModel {
 /// Parses a PLY, which begins with "ply", a glTF, which begins with "glTF" or "{", an STL, which
 /// begins with "solid" or has as many bytes as its count says, or else an OBJ. What is known to be
 /// of another format is refused with the format's name and a remedy.
-/// It keeps vertices, faces of any size and vertices' colours, and of an OBJ texture coordinates,
-/// materials' names, groups and objects. Of a glTF (Khronos specification 2.0) it takes all meshes
-/// of the default scene in the places of their nodes, with materials, textures and texture
-/// coordinates; each node is an object. Vertices of a node's mesh with the same place and colour
-/// become one, because glTF splits them where normals or texture coordinates meet; so do those of a
-/// file in which no two faces share a vertex. Surfaces that only touch stay apart. Normals are
+/// It keeps vertices, faces of any size and vertices' colours, of an OBJ and a PLY texture
+/// coordinates and textures, and of an OBJ materials' names, groups and objects. Of a glTF (Khronos
+/// specification 2.0) it takes all meshes of the default scene in the places of their nodes, with
+/// materials, textures and texture coordinates; each node is an object. Vertices of a node's mesh
+/// with the same place and colour become one, because glTF splits them where normals or texture
+/// coordinates meet; so do those of a file in which no two faces share a vertex. Surfaces that only
+/// touch stay apart. Normals are
 /// dropped, because they change. `name` is what error messages call the file. Error: bad_input with
 /// the line, the byte offset or the part of the document, for example if there are no vertices, a
 /// coordinate is not finite, an index is wrong, or the file is cut off.
