@@ -41,6 +41,13 @@ Result<void> check(const Options& options) {
   return cli::check_spares(options.model, "--out", options.out, options.force);
 }
 
+std::size_t faces_left_out(const Repair& repaired) {
+  std::size_t faces = 0;
+  for (const LeftOut& left : repaired.left_out)
+    faces += left.faces;
+  return faces;
+}
+
 void print_json(const Options& options, const Repair& repaired) {
   cli::print_line({{"file", printable(options.model)},
                    {"out", printable(options.out)},
@@ -54,6 +61,8 @@ void print_json(const Options& options, const Repair& repaired) {
                    {"filled_holes", repaired.filled},
                    {"crossing_lids", repaired.filled_crossing},
                    {"dropped_vertices", repaired.stray},
+                   {"left_out_faces", faces_left_out(repaired)},
+                   {"skipped_junctions", repaired.skipped_junctions},
                    {"vertices", repaired.mesh.vertices.cols()},
                    {"faces", repaired.mesh.face_count()},
                    {"volume", volume_of(repaired.mesh)}});

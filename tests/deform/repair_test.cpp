@@ -99,6 +99,27 @@ Mesh merged(const Mesh& mesh) {
   return made;
 }
 
+/// 24 quads about the z axis.
+Mesh moebius_strip(double size) {
+  Mesh strip;
+  constexpr std::uint32_t around = 24;
+  strip.vertices.resize(3, 2 * around);
+  for (std::uint32_t at = 0; at < around; ++at) {
+    const double turn = 2.0 * std::numbers::pi * at / around;
+    for (std::uint32_t side = 0; side < 2; ++side) {
+      const double out = (side == 0 ? -0.3 : 0.3);
+      const double radius = 1.0 + out * std::cos(turn / 2.0);
+      strip.vertices.col(2 * at + side) << radius * std::cos(turn), radius * std::sin(turn),
+          out * std::sin(turn / 2.0);
+    }
+    const bool last = at + 1 == around;
+    const std::uint32_t next = last ? 0 : 2 * at + 2;
+    add_face(strip, {2 * at, 2 * at + 1, next + (last ? 0U : 1U), next + (last ? 1U : 0U)});
+  }
+  strip.vertices *= size;
+  return strip;
+}
+
 TEST_SUITE("repair") {
   TEST_CASE("a model without faults comes back to the bit") {
     Mesh textured = torus(12, 8);
@@ -288,6 +309,76 @@ TEST_SUITE("repair") {
     CHECK(lines_of(*mended) == std::vector<std::string>{"dropped 2 vertices without a face"});
   }
 
+  TEST_CASE("a loose flap is left out, and the rest is repaired") {
+    const Mesh cube = cube_of_cells(2);
+    const auto check = [&](const Mesh& mesh, std::size_t faces) {
+      const auto mended = repair(mesh);
+      REQUIRE_MESSAGE(mended, mended.error().message);
+      CHECK(check_closed_manifold(mended->mesh));
+      CHECK(volume_of(mended->mesh) == doctest::Approx(1.0).epsilon(1e-12));
+      CHECK(mended->mesh.vertices.cols() == 26);
+      CHECK(mended->stray == 0);
+      CHECK(mended->separated == 0);
+      REQUIRE(mended->left_out.size() == 1);
+      CHECK(mended->left_out[0].faces == faces);
+      const std::vector<std::string> lines = lines_of(*mended);
+      CHECK(lines.back().starts_with("left out " + std::to_string(faces) + " face"));
+      return lines.back();
+    };
+    // On an edge, outside or inside, whichever way it faces.
+    for (const double height : {0.7, -0.2})
+      for (const bool turns : {false, true}) {
+        Mesh finned = cube;
+        const std::uint32_t a = cube.face_corners[0], b = cube.face_corners[1];
+        const Eigen::Vector3d middle = 0.5 * (cube.vertices.col(a) + cube.vertices.col(b));
+        const Eigen::Vector3d out = middle - Eigen::Vector3d::Constant(0.5);
+        finned.vertices.conservativeResize(3, 27);
+        finned.vertices.col(26) = middle + height * out;
+        add_face(finned, {turns ? b : a, turns ? a : b, 26});
+        CHECK(check(finned, 1).find("it is a sheet without an inside") != std::string::npos);
+      }
+    // Two sheets apart from the cube, and a one-sided one.
+    Mesh sheets = without_faces(cube, 3, 1);
+    append(sheets, moved(grid(2, 0.1), {3, 0, 0}));
+    append(sheets, moved(grid(2, 0.1), {4, 0, 0}));
+    const std::size_t faces = 2 * grid(2, 0.1).face_count();
+    CHECK(check(sheets, faces).find(" in 2 parts, the first at (") != std::string::npos);
+    Mesh with_strip = cube;
+    append(with_strip, moved(moebius_strip(0.1), {3, 0, 0}));
+    CHECK(check(with_strip, 24).find("one side only") != std::string::npos);
+  }
+
+  TEST_CASE("that open edges are too many to look for vertices in them is told") {
+    // Thin slivers, each as long as all others: so each edge is compared with each vertex.
+    Mesh mesh = cube_of_cells(1);
+    constexpr int slivers = 7000;
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.cols());
+    mesh.vertices.conservativeResize(3, first + 3 * slivers);
+    for (std::uint32_t at = 0; at < slivers; ++at) {
+      const double height = 2.0 + 0.01 * at;
+      mesh.vertices.col(first + 3 * at) << 0.0, height, 0.0;
+      mesh.vertices.col(first + 3 * at + 1) << 1.0, height, 0.0;
+      mesh.vertices.col(first + 3 * at + 2) << 0.5, height, 1e-3;
+      add_face(mesh, {first + 3 * at, first + 3 * at + 1, first + 3 * at + 2});
+    }
+    const auto mended = repair(mesh, {.tolerance = 1e-9});
+    REQUIRE_MESSAGE(mended, mended.error().message);
+    CHECK(mended->skipped_junctions);
+    CHECK(lines_of(*mended).back().starts_with("has too many open edges"));
+    CHECK_FALSE(repair(cube_of_cells(1))->skipped_junctions);
+  }
+
+  TEST_CASE("faces that look inwards are counted as they are turned, and cavities are not") {
+    CHECK(count_inward_faces(shell(6, 0.5)) == 0);
+    Mesh inwards = reversed(shell(6, 0.5));
+    append(inwards, moved(cube_of_cells(2), {3, 0, 0}));
+    const double volume = volume_of(shell(6, 0.5)) + 1.0;
+    CHECK(count_inward_faces(inwards) == shell(6, 0.5).face_count());
+    CHECK(turn_outwards(inwards) == shell(6, 0.5).face_count());
+    CHECK(volume_of(inwards) == doctest::Approx(volume).epsilon(1e-12));
+    CHECK(count_inward_faces(inwards) == 0);
+  }
+
   TEST_CASE("sheets, one-sided surfaces and surfaces laid double are refused with the reason") {
     const auto refusal = [](const Mesh& mesh) {
       const auto mended = repair(mesh);
@@ -301,22 +392,7 @@ TEST_SUITE("repair") {
     Mesh laid_double = sheet;
     append(laid_double, reversed(sheet));
     CHECK(refusal(unshared(laid_double)).find("is a sheet") != std::string::npos);
-    Mesh strip;
-    constexpr std::uint32_t around = 24;
-    strip.vertices.resize(3, 2 * around);
-    for (std::uint32_t at = 0; at < around; ++at) {
-      const double turn = 2.0 * std::numbers::pi * at / around;
-      for (std::uint32_t side = 0; side < 2; ++side) {
-        const double out = (side == 0 ? -0.3 : 0.3);
-        const double radius = 1.0 + out * std::cos(turn / 2.0);
-        strip.vertices.col(2 * at + side) << radius * std::cos(turn), radius * std::sin(turn),
-            out * std::sin(turn / 2.0);
-      }
-      const bool last = at + 1 == around;
-      const std::uint32_t next = last ? 0 : 2 * at + 2;
-      add_face(strip, {2 * at, 2 * at + 1, next + (last ? 0U : 1U), next + (last ? 1U : 0U)});
-    }
-    CHECK(refusal(strip).find("one side only") != std::string::npos);
+    CHECK(refusal(moebius_strip(1.0)).find("one side only") != std::string::npos);
   }
 
   TEST_CASE("vertices in one place are joined, and turned faces turn back") {

@@ -71,6 +71,48 @@ TEST_SUITE("nendo repair") {
     CHECK(json.out.find("\"dropped_vertices\":1,") != std::string::npos);
   }
 
+  TEST_CASE_FIXTURE(Fixture, "a flap on an edge is left out in one line, and what is left is cut") {
+    deform::Mesh mesh = test::cube_of_cells(2);
+    mesh.vertices.conservativeResize(3, mesh.vertices.cols() + 1);
+    mesh.vertices.rightCols<1>() << 0.5, 0.5, 2.0;
+    test::add_face(mesh, {mesh.face_corners[0], mesh.face_corners[1], 26});
+    const std::string in = save("in.obj", mesh);
+    const auto done = test::nendo({"repair", in, "--out", place("out.obj"), "--json"});
+    REQUIRE(done.exit_code == 0);
+    CHECK(done.out.find("\"left_out_faces\":1,") != std::string::npos);
+    CHECK(done.out.find("\"volume\":1.0") != std::string::npos);
+    const auto told = test::nendo({"repair", in, "--out", place("out.obj")});
+    CHECK(told.out.find(in + ": left out 1 face at (") != std::string::npos);
+    const std::vector<std::string> plane{"--plane", "0.4,0,0,1,0,0"};
+    const auto cut =
+        test::nendo({"cut", in, plane[0], plane[1], "--repair", "--out", place("p%d.obj")});
+    CHECK(cut.exit_code == 0);
+    CHECK(cut.err.find("left out 1 face at (") != std::string::npos);
+  }
+
+  TEST_CASE_FIXTURE(Fixture,
+                    "runs tell before they begin what keeps hands from knowing an inside") {
+    const auto run = [&](const std::string& model, const char* mode) {
+      return test::nendo({"run", model, "--mode", mode, "--left", "sim:press", "--duration", "0.1",
+                          "--out", place("run.obj"), "--force"});
+    };
+    const auto open = run(save("open.obj", open_cube(3)), "clay");
+    CHECK(open.exit_code == 0);
+    CHECK(is_one_line_about(open.err, "is open at the edge between"));
+    CHECK(open.err.find("`nendo repair IN --out OUT` closes it") != std::string::npos);
+    const auto sheet = run(save("sheet.obj", test::grid(6, 1.0)), "clay");
+    CHECK(is_one_line_about(sheet.err, "is a sheet without an inside"));
+    CHECK(run(place("open.obj"), "type1").err == "");
+    deform::Mesh inwards = test::cube_of_cells(3);
+    for (std::size_t face = 0; face < inwards.face_count(); ++face)
+      std::swap(inwards.face_corners[3 * face], inwards.face_corners[3 * face + 1]);
+    const std::string turned = save("inwards.obj", inwards);
+    for (const char* mode : {"clay", "parts", "type1"})
+      CHECK(is_one_line_about(run(turned, mode).err, "108 of its 108 faces look inwards"));
+    REQUIRE(test::nendo({"repair", turned, "--out", place("outwards.obj")}).exit_code == 0);
+    CHECK(run(place("outwards.obj"), "clay").err == "");
+  }
+
   TEST_CASE_FIXTURE(Fixture, "a model without faults is written as it was, to the bit") {
     const std::string in = save("in.obj", test::torus(20, 10));
     const auto done = test::nendo({"repair", in, "--out", place("out.obj")});

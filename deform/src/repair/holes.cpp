@@ -21,6 +21,13 @@ namespace {
 /// Corners of the mesh, whose vertices stand in the order that the lid's faces need.
 using Rim = std::vector<std::uint32_t>;
 
+/// What was done to one part of the mesh.
+struct PartHoles {
+  std::size_t count = 0, crossing = 0;
+  std::uint32_t vertex = no_index; ///< of a part that stays open
+  std::string why, remedy;
+};
+
 class HoleFiller {
 public:
   explicit HoleFiller(Mesh& mesh) : mesh_(mesh) {}
@@ -29,8 +36,10 @@ public:
 
 private:
   Result<std::vector<Rim>> rims() const;
-  Result<void> check_bodies(const std::vector<Rim>& rims) const;
-  Result<void> fill(const Rim& rim);
+  void number_all_parts();
+  void find_sheets(const std::vector<Rim>& rims);
+  void fill(const Rim& rim);
+  FilledHoles sum() const;
   std::vector<Corners> flat_lid(const Rim& rim) const;
   std::vector<Corners> crooked_lid(const Rim& rim) const;
   bool has_known_edges(const Rim& rim, const std::vector<Corners>& lid) const;
@@ -49,6 +58,10 @@ private:
       points.push_back(point(corner));
     return points;
   }
+  PartHoles& part_at(std::uint32_t corner) { return parts_[part_of_[mesh_.face_corners[corner]]]; }
+  void stays_open(std::uint32_t corner, std::string why, std::string remedy) {
+    part_at(corner) = {0, 0, mesh_.face_corners[corner], std::move(why), std::move(remedy)};
+  }
   bool has_edge(std::uint32_t one, std::uint32_t other) const {
     return edges_.contains(std::minmax(mesh_.face_corners[one], mesh_.face_corners[other]));
   }
@@ -56,7 +69,8 @@ private:
   Mesh& mesh_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges_; ///< by vertices, at rims
   std::size_t looks_ = 0;
-  FilledHoles done_;
+  std::vector<std::uint32_t> part_of_; ///< each vertex
+  std::vector<PartHoles> parts_;
 };
 
 /// Each open edge ends where the next one of the rim begins: it is found by turning about the
@@ -94,27 +108,26 @@ SpacePoint area_of_rim(const std::vector<SpacePoint>& points) {
   return area;
 }
 
+void HoleFiller::number_all_parts() {
+  parts_.resize(number_parts(mesh_, part_of_));
+}
+
 /// A lid that is as large as the surface itself closes a sheet, not a body.
-Result<void> HoleFiller::check_bodies(const std::vector<Rim>& rims) const {
+void HoleFiller::find_sheets(const std::vector<Rim>& rims) {
   constexpr double max_lid_share = 0.9;
-  std::vector<std::uint32_t> part_of;
-  const std::uint32_t count = number_parts(mesh_, part_of);
-  std::vector<double> surface(count, 0.0), lids(count, 0.0);
+  std::vector<double> surface(parts_.size(), 0.0), lids(parts_.size(), 0.0);
   for_each_face_triangle(mesh_, [&](std::size_t, const Triangle& of) {
-    surface[part_of[mesh_.face_corners[of[0]]]] +=
+    surface[part_of_[mesh_.face_corners[of[0]]]] +=
         length_of(cross(point(of[1]) - point(of[0]), point(of[2]) - point(of[0])));
   });
   for (const Rim& rim : rims)
-    lids[part_of[mesh_.face_corners[rim[0]]]] += length_of(area_of_rim(points_of(rim)));
+    lids[part_of_[mesh_.face_corners[rim[0]]]] += length_of(area_of_rim(points_of(rim)));
   for (const Rim& rim : rims) {
-    const std::uint32_t part = part_of[mesh_.face_corners[rim[0]]];
-    if (lids[part] <= max_lid_share * surface[part]) continue;
-    return Error{Errc::bad_input,
-                 "cannot be repaired: its part at " + where(rim[0]) +
-                     " is a sheet without an inside, and to close it would only double it; give it "
-                     "a thickness where it was made, or remove it"};
+    const std::uint32_t part = part_of_[mesh_.face_corners[rim[0]]];
+    if (lids[part] > max_lid_share * surface[part] && parts_[part].vertex == no_index)
+      stays_open(rim[0], "is a sheet without an inside, and to close it would only double it",
+                 "give it a thickness where it was made");
   }
-  return {};
 }
 
 std::vector<Corners> HoleFiller::flat_lid(const Rim& rim) const {
@@ -194,7 +207,9 @@ void HoleFiller::add(const Rim& rim, const std::vector<Corners>& lid) {
   }
 }
 
-Result<void> HoleFiller::fill(const Rim& rim) {
+void HoleFiller::fill(const Rim& rim) {
+  PartHoles& part = part_at(rim[0]);
+  if (part.vertex != no_index) return;
   const auto is_sound = [&](const std::vector<Corners>& lid) {
     return !lid.empty() && !has_known_edges(rim, lid);
   };
@@ -202,26 +217,35 @@ Result<void> HoleFiller::fill(const Rim& rim) {
   if (!is_sound(lid) || goes_through(rim, lid)) {
     std::vector<Corners> other = crooked_lid(rim);
     const bool is_good = is_sound(other) && !goes_through(rim, other);
-    if (!is_good) ++done_.crossing;
+    if (!is_good) ++part.crossing;
     if (is_good || !is_sound(lid)) lid = std::move(other);
   }
   if (!is_sound(lid))
-    return Error{
-        Errc::bad_input,
-        "cannot be repaired: the hole of " + std::to_string(rim.size()) + " edges at " +
-            where(rim[0]) +
-            " is too crooked to be filled by triangles between its corners; close it where "
-            "the model was made"};
+    return stays_open(rim[0],
+                      "has a hole of " + std::to_string(rim.size()) +
+                          " edges that is too crooked to be filled by triangles between its "
+                          "corners",
+                      "close it where the model was made");
   add(rim, lid);
-  ++done_.count;
-  return {};
+  ++part.count;
+}
+
+FilledHoles HoleFiller::sum() const {
+  FilledHoles all;
+  for (const PartHoles& part : parts_) {
+    all.count += part.count;
+    all.crossing += part.crossing;
+    if (part.vertex != no_index) all.unfilled.push_back({part.vertex, part.why, part.remedy});
+  }
+  return all;
 }
 
 Result<FilledHoles> HoleFiller::run() {
   const auto found = rims();
   if (!found) return found.error();
-  if (found->empty()) return done_;
-  if (auto fine = check_bodies(*found); !fine) return fine.error();
+  if (found->empty()) return FilledHoles{};
+  number_all_parts();
+  find_sheets(*found);
   std::vector<std::uint8_t> at_rim(static_cast<std::size_t>(mesh_.vertices.cols()), 0);
   for (const Rim& rim : *found)
     for (const std::uint32_t corner : rim)
@@ -234,8 +258,8 @@ Result<FilledHoles> HoleFiller::run() {
         edges_.insert(std::minmax(mesh_.face_corners[at], mesh_.face_corners[next]));
     }
   for (const Rim& rim : *found)
-    if (auto filled = fill(rim); !filled) return filled.error();
-  return done_;
+    fill(rim);
+  return sum();
 }
 
 } // namespace

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <span>
+#include <string>
 #include <utility>
+
+#include <Eigen/Geometry>
 
 #include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/offset.hpp>
@@ -38,16 +41,15 @@ public:
     join_places();
     split_junctions();
     drop_doubles();
-    if (auto turned = turn(); !turned) return turned.error();
+    turn();
     separate();
     drop_strays();
-    const auto filled = fill_holes(mesh_);
-    if (!filled) return filled.error();
-    result_.filled = filled->count;
-    result_.filled_crossing = filled->crossing;
+    if (auto filled = fill(); !filled) return filled.error();
+    leave_out_flat();
+    drop_left_out_vertices();
+    if (auto enough = check_rest(); !enough) return enough.error();
     if (const ManifoldCheck check = check_closed_manifold(mesh_); !check)
       return Error{Errc::bad_input, "cannot be repaired: it still " + describe(check, mesh_)};
-    if (auto solid = check_volumes(); !solid) return solid.error();
     result_.turned += turn_outwards(mesh_);
     return std::move(result_);
   }
@@ -57,10 +59,17 @@ private:
   void drop_doubles() { result_.dropped += drop_double_faces(mesh_, place_of_); }
   void join_places();
   void split_junctions();
-  Result<void> turn();
+  void turn();
   void separate();
   void drop_strays();
-  Result<void> check_volumes() const;
+  Result<void> fill();
+  void leave_out_flat();
+  void drop_left_out_vertices();
+  std::vector<std::uint8_t> used_vertices() const;
+  Result<void> check_rest() const;
+  void leave_out_parts(const std::vector<UnfilledPart>& parts);
+  void leave_out(std::span<const std::uint32_t> faces, const UnfilledPart& how);
+  void drop_left_out_faces();
   std::vector<std::uint8_t> open_vertices() const;
   std::string where(std::uint32_t vertex) const {
     return place_text(mesh_.vertices.col(vertex), mesh_.offset);
@@ -69,7 +78,21 @@ private:
   Repair result_;
   Mesh& mesh_;
   std::vector<std::uint32_t> place_of_; ///< of each corner: the first vertex of its place
+  std::vector<std::uint8_t> keeps_;     ///< of each face, while some are left out
+  double left_out_area_ = 0.0;
+  std::size_t left_out_vertices_ = 0; ///< that are in the mesh still
 };
+
+double area_of(FaceTriangles& triangles, const Mesh& mesh, std::uint32_t face) {
+  double area = 0.0;
+  for (const Triangle& triangle : triangles.of(face)) {
+    const auto at = [&](std::size_t k) -> Eigen::Vector3d {
+      return mesh.vertices.col(mesh.face_corners[triangle[k]]);
+    };
+    area += 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
+  }
+  return area;
+}
 
 /// Faces with fewer than three corners, and corners that repeat the one before.
 void Repairer::drop_thin_faces() {
@@ -96,9 +119,7 @@ std::vector<std::uint8_t> Repairer::open_vertices() const {
 void Repairer::join_places() {
   const std::vector<std::uint32_t> place =
       near_places(mesh_.vertices, open_vertices(), result_.tolerance);
-  std::vector<std::uint8_t> used(place.size(), 0);
-  for (const std::uint32_t vertex : mesh_.face_corners)
-    used[vertex] = 1;
+  const std::vector<std::uint8_t> used = used_vertices();
   const Eigen::Matrix4Xf& colours = mesh_.look.vertex_colours;
   bool differ = false;
   for (std::uint32_t vertex = 0; vertex < place.size(); ++vertex)
@@ -115,22 +136,26 @@ void Repairer::split_junctions() {
   // What lies in an edge of a face that is split may be split by it in turn.
   constexpr int rounds = 3;
   for (int round = 0; round < rounds; ++round) {
-    const std::size_t split = split_at_junctions(mesh_, place_of_, result_.tolerance);
-    result_.split += split;
-    if (split == 0) break;
+    const SplitJunctions split = split_at_junctions(mesh_, place_of_, result_.tolerance);
+    result_.split += split.count;
+    result_.skipped_junctions = result_.skipped_junctions || split.is_too_many;
+    if (split.count == 0) break;
   }
 }
 
-Result<void> Repairer::turn() {
-  const TurnedAlike alike = turn_alike(mesh_, place_of_);
-  if (alike.one_sided)
-    return Error{Errc::bad_input,
-                 "cannot be repaired: its surface has one side only, as a Möbius strip has, so it "
-                 "has no inside; cut it open at the edge between " +
-                     where(alike.one_sided->first) + " and " + where(alike.one_sided->second) +
-                     " where it was made"};
+/// Surfaces with one side only are left out, and then the others are turned.
+void Repairer::turn() {
+  TurnedAlike alike = turn_alike(mesh_, place_of_);
+  if (alike.one_sided) {
+    leave_out(alike.one_sided_faces,
+              {alike.one_sided->first,
+               "has one side only, as a Möbius strip has, so it has no inside",
+               "cut it open at the edge between " + where(alike.one_sided->first) + " and " +
+                   where(alike.one_sided->second) + " where it was made"});
+    drop_left_out_faces();
+    alike = turn_alike(mesh_, place_of_);
+  }
   result_.turned = alike.turned;
-  return {};
 }
 
 /// Corners that no edge holds together get vertices of their own. The first ones keep the vertex.
@@ -172,19 +197,34 @@ void Repairer::separate() {
   }
 }
 
-/// Vertices that became one with another one go, too, but are not counted again.
-void Repairer::drop_strays() {
-  std::vector<std::uint8_t> keeps(static_cast<std::size_t>(mesh_.vertices.cols()), 0);
+std::vector<std::uint8_t> Repairer::used_vertices() const {
+  std::vector<std::uint8_t> used(static_cast<std::size_t>(mesh_.vertices.cols()), 0);
   for (const std::uint32_t corner : mesh_.face_corners)
-    keeps[corner] = 1;
+    used[corner] = 1;
+  return used;
+}
+
+/// Vertices that became one with another one, or whose faces were left out, go, too, but are not
+/// counted again.
+void Repairer::drop_strays() {
+  const std::vector<std::uint8_t> keeps = used_vertices();
   const auto gone = static_cast<std::size_t>(std::count(keeps.begin(), keeps.end(), 0));
   keep_vertices(mesh_, keeps);
-  result_.stray = gone - std::min(gone, result_.joined);
+  result_.stray = gone - std::min(gone, result_.joined + left_out_vertices_);
+}
+
+Result<void> Repairer::fill() {
+  const auto filled = fill_holes(mesh_);
+  if (!filled) return filled.error();
+  result_.filled = filled->count;
+  result_.filled_crossing = filled->crossing;
+  leave_out_parts(filled->unfilled);
+  return {};
 }
 
 /// What was filled must have got an inside.
-Result<void> Repairer::check_volumes() const {
-  if (mesh_.face_count() == 0) return {};
+void Repairer::leave_out_flat() {
+  if (mesh_.face_count() == 0) return;
   std::vector<std::uint32_t> part_of;
   const std::uint32_t count = number_parts(mesh_, part_of);
   std::vector<double> volume(count, 0.0), area(count, 0.0);
@@ -201,12 +241,85 @@ Result<void> Repairer::check_volumes() const {
     volume[part] += a.dot(b.cross(c)) / 6.0;
     area[part] += 0.5 * (b - a).cross(c - a).norm();
   });
+  std::vector<UnfilledPart> flat;
   for (std::uint32_t part = 0; part < count; ++part)
     if (!(std::abs(volume[part]) > 1e-9 * std::pow(area[part], 1.5)))
-      return Error{Errc::bad_input, "cannot be repaired: its part at " + where(first[part]) +
-                                        " has no inside: both of its sides lie in one place; give "
-                                        "it a thickness where it was made, or remove it"};
-  return {};
+      flat.push_back({first[part], "has no inside: both of its sides lie in one place",
+                      "give it a thickness where it was made"});
+  leave_out_parts(flat);
+}
+
+void Repairer::leave_out_parts(const std::vector<UnfilledPart>& parts) {
+  if (parts.empty()) return;
+  std::vector<std::uint32_t> part_of;
+  std::vector<std::vector<std::uint32_t>> faces_of(number_parts(mesh_, part_of));
+  for (std::uint32_t face = 0; face < mesh_.face_count(); ++face)
+    faces_of[part_of[mesh_.face_corners[mesh_.face_starts[face]]]].push_back(face);
+  for (const UnfilledPart& part : parts)
+    leave_out(faces_of[part_of[part.vertex]], part);
+  drop_left_out_faces();
+}
+
+/// What is alike but for its place becomes one note.
+void Repairer::leave_out(std::span<const std::uint32_t> faces, const UnfilledPart& how) {
+  if (keeps_.empty()) keeps_.assign(mesh_.face_count(), 1);
+  FaceTriangles triangles(mesh_);
+  for (const std::uint32_t face : faces) {
+    keeps_[face] = 0;
+    left_out_area_ += area_of(triangles, mesh_, face);
+  }
+  auto known = std::find_if(result_.left_out.begin(), result_.left_out.end(),
+                            [&](const LeftOut& left) { return left.why == how.why; });
+  if (known == result_.left_out.end())
+    known = result_.left_out.insert(known, {0, 0, where(how.vertex), how.why, how.remedy});
+  ++known->parts;
+  known->faces += faces.size();
+}
+
+void Repairer::drop_left_out_faces() {
+  if (place_of_.size() == mesh_.face_corners.size()) {
+    std::vector<std::uint32_t> places;
+    for (std::size_t face = 0; face < mesh_.face_count(); ++face)
+      if (keeps_[face] != 0)
+        places.insert(places.end(), place_of_.begin() + mesh_.face_starts[face],
+                      place_of_.begin() + mesh_.face_starts[face + 1]);
+    place_of_ = std::move(places);
+  }
+  const auto count_used = [&] {
+    const std::vector<std::uint8_t> used = used_vertices();
+    return static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
+  };
+  left_out_vertices_ += count_used();
+  keep_faces(mesh_, keeps_);
+  left_out_vertices_ -= count_used();
+  keeps_.clear();
+}
+
+/// What was separated from them was not, as far as anybody sees.
+void Repairer::drop_left_out_vertices() {
+  if (result_.left_out.empty()) return;
+  const std::vector<std::uint8_t> used = used_vertices();
+  const std::vector<std::uint32_t> place = exact_places(mesh_.vertices);
+  std::vector<std::uint8_t> stays(place.size(), 0);
+  for (std::size_t vertex = 0; vertex < used.size(); ++vertex)
+    if (used[vertex] != 0) stays[place[vertex]] = 1;
+  for (std::size_t vertex = 0; vertex < used.size(); ++vertex)
+    if (used[vertex] == 0 && stays[place[vertex]] != 0 && result_.separated > 0)
+      --result_.separated;
+  keep_vertices(mesh_, used);
+}
+
+/// A model of which only trifles would be left is none.
+Result<void> Repairer::check_rest() const {
+  if (result_.left_out.empty()) return {};
+  double rest = 0.0;
+  FaceTriangles triangles(mesh_);
+  for (std::uint32_t face = 0; face < mesh_.face_count(); ++face)
+    rest += area_of(triangles, mesh_, face);
+  if (rest > left_out_area_) return {};
+  const LeftOut& first = result_.left_out.front();
+  return Error{Errc::bad_input, "cannot be repaired: its part at " + first.where + " " + first.why +
+                                    "; " + first.remedy + ", or remove it"};
 }
 
 } // namespace
@@ -220,34 +333,6 @@ Result<Repair> repair(const Mesh& mesh, const RepairOptions& options) {
   if (mesh.vertices.size() > 0 && tolerance < 1e-15 * mesh.vertices.cwiseAbs().maxCoeff())
     tolerance = 0.0;
   return Repairer(mesh, tolerance).run();
-}
-
-std::vector<std::string> lines_of(const Repair& repair) {
-  std::vector<std::string> lines;
-  const auto add = [&](std::size_t count, const char* did, const char* one, const char* many,
-                       const std::string& more) {
-    if (count == 0) return;
-    lines.push_back(std::string(did) + " " + std::to_string(count) + " " +
-                    (count == 1 ? one : many) + more);
-  };
-  char tolerance[64];
-  std::snprintf(tolerance, sizeof tolerance, "%.3g", repair.tolerance);
-  add(repair.joined, "joined", "vertex", "vertices",
-      std::string(" with others no farther away than ") + tolerance);
-  add(repair.dropped, "dropped", "face", "faces",
-      " that had fewer than three corners or repeated another");
-  add(repair.repeated, "dropped", "corner", "corners", " that repeated the one before in its face");
-  add(repair.split, "split an edge at", "vertex", "vertices", " that lay in it");
-  add(repair.turned, "turned", "face", "faces", " round");
-  add(repair.separated, "separated surfaces that only touched, by", "more vertex", "more vertices",
-      "");
-  add(repair.filled, "filled", "hole", "holes",
-      repair.filled_crossing == 0
-          ? ""
-          : "; " + std::to_string(repair.filled_crossing) +
-                (repair.filled_crossing == 1 ? " lid goes" : " lids go") + " through the model");
-  add(repair.stray, "dropped", "vertex", "vertices", " without a face");
-  return lines;
 }
 
 } // namespace nendo::deform

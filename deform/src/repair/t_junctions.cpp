@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "cut/space.hpp"
@@ -24,8 +25,9 @@ SpacePoint place_point(const Mesh& mesh, std::uint32_t place) noexcept {
 /// By the corner behind which they come.
 using Junctions = std::map<std::uint32_t, std::vector<JunctionPoint>>;
 
-Junctions junctions_of(const Mesh& mesh, const std::vector<std::uint32_t>& place_of,
-                       double tolerance) {
+/// Nothing if there are too many open edges to be compared with all that may lie in them.
+std::optional<Junctions> junctions_of(const Mesh& mesh, const std::vector<std::uint32_t>& place_of,
+                                      double tolerance) {
   constexpr std::size_t max_looks = 100'000'000;
   std::vector<PlacedEdge> open;
   for_each_edge(placed_edges(mesh, place_of), [&](std::span<const PlacedEdge> sides) {
@@ -49,7 +51,7 @@ Junctions junctions_of(const Mesh& mesh, const std::vector<std::uint32_t>& place
     const double high = std::max(begin[0], begin[0] + way[0]) + tolerance;
     for (auto at = std::lower_bound(by_x.begin(), by_x.end(), std::pair(low, std::uint32_t{0}));
          at != by_x.end() && at->first <= high; ++at) {
-      if (++looks > max_looks) return {};
+      if (++looks > max_looks) return std::nullopt;
       if (at->second == from || at->second == to) continue;
       const SpacePoint beside = place_point(mesh, at->second) - begin;
       const double along = dot(beside, way) / (length * length);
@@ -101,9 +103,12 @@ private:
 
 } // namespace
 
-std::size_t split_at_junctions(Mesh& mesh, std::vector<std::uint32_t>& place_of, double tolerance) {
-  const Junctions junctions = junctions_of(mesh, place_of, tolerance);
-  if (junctions.empty()) return 0;
+SplitJunctions split_at_junctions(Mesh& mesh, std::vector<std::uint32_t>& place_of,
+                                  double tolerance) {
+  const auto found = junctions_of(mesh, place_of, tolerance);
+  if (!found) return {.count = 0, .is_too_many = true};
+  const Junctions& junctions = *found;
+  if (junctions.empty()) return {};
   const Mesh before = mesh;
   const std::vector<std::uint32_t> places = std::move(place_of);
   place_of.clear();
@@ -135,7 +140,7 @@ std::size_t split_at_junctions(Mesh& mesh, std::vector<std::uint32_t>& place_of,
     mesh.face_starts[face + 1] = static_cast<std::uint32_t>(mesh.face_corners.size());
   }
   texcoords.finish();
-  return added;
+  return {.count = added};
 }
 
 } // namespace nendo::deform

@@ -18,6 +18,14 @@ struct RepairOptions {
   std::optional<double> tolerance;
 };
 
+/// Parts of a model that cannot be closed, for one reason, and are left out of the repaired one.
+struct LeftOut {
+  std::size_t parts = 0, faces = 0;
+  std::string where;  ///< a vertex of the first
+  std::string why;    ///< the words go behind "it"
+  std::string remedy; ///< what to do where the model was made
+};
+
 /// A repaired model, and what was done to it.
 struct Repair {
   Mesh mesh;
@@ -31,15 +39,26 @@ struct Repair {
   std::size_t filled = 0;    ///< holes
   std::size_t filled_crossing = 0; ///< of these, lids that go through the model
   std::size_t stray = 0;           ///< vertices without a face, which were dropped
+  std::vector<LeftOut> left_out;   ///< parts that cannot be closed, by their reasons
+  /// There were too many open edges to look for vertices that lie in them.
+  bool skipped_junctions = false;
 };
 
 /// Repairs a model so that check_closed_manifold() finds no fault in it and each part faces
 /// outwards, but those that lie in another one and face inwards: they are cavities. A model that is
 /// so already comes back to the bit. Vertices that stay keep their order and their bits; new ones
 /// come last. A hole is filled by triangles between its corners that look as the face beside it.
-/// Allocates, blocks. Error: bad_input, with what is still wrong and where; the words go behind the
-/// model's name.
+/// Parts that cannot be closed are left out, as a loose flap is, unless they have more surface than
+/// the rest. Allocates, blocks. Error: bad_input, with what is still wrong and where; the words go
+/// behind the model's name.
 Result<Repair> repair(const Mesh& mesh, const RepairOptions& options = {});
+
+/// Turns parts outwards whose own volume is negative, but not those that lie in another part, which
+/// are cavities; what lies in a part that is turned is turned with it. The mesh must be closed.
+/// Returns how many faces were turned. Allocates.
+std::size_t turn_outwards(Mesh& mesh);
+/// Returns how many faces turn_outwards() would turn. Allocates.
+std::size_t count_inward_faces(const Mesh& mesh);
 
 /// Returns what was done, one sentence for each kind, in words that go behind the model's name:
 /// "joined 12 vertices with others in the same place". Empty if there was nothing to do.
