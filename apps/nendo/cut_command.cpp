@@ -133,7 +133,13 @@ Result<Mesh> closed_model(const std::string& file, const Options& options) {
   if (!model) return model.error();
   Mesh& mesh = model->mesh;
   const ManifoldCheck closed = check_closed_manifold(mesh);
-  if (closed) return std::move(mesh);
+  if (closed) {
+    if (const std::size_t turned = turn_outwards(mesh); turned > 0)
+      cli::note(file + ": " + std::to_string(turned) +
+                " of its faces look inwards, so they are turned round before it is cut, as `nendo "
+                "repair` does");
+    return std::move(mesh);
+  }
   if (!options.repair)
     return Error{Errc::bad_input,
                  file + ": " + describe(closed, mesh) +

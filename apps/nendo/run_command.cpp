@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <spdlog/fmt/fmt.h>
 
 #include <nendo/base/text.hpp>
+#include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/face_box.hpp>
 #include <nendo/deform/mesh.hpp>
+#include <nendo/deform/repair.hpp>
 #include <nendo/deform/supports.hpp>
 
 #include "cli/cli.hpp"
@@ -72,6 +75,32 @@ void note_oddities(const deform::Mesh& model, const RunArguments& options) {
             ", so no part of it stays as it is; use a smaller radius to shape a part");
 }
 
+/// Whether repairing closes the model, in words that go behind a semicolon. That is tried, so that
+/// the advice is true, unless it takes longer than people wait.
+std::string advice_to_close(const deform::Mesh& model) {
+  constexpr Eigen::Index most_tried = 1'000'000;
+  if (model.vertices.cols() > most_tried) return "`nendo repair IN --out OUT` may close it";
+  const auto repaired = deform::repair(model);
+  return repaired ? "`nendo repair IN --out OUT` closes it" : repaired.error().message;
+}
+
+/// Tells before the first tick what keeps hands from knowing the model's inside.
+void note_inside(const deform::Mesh& model, const session::RunOptions& options) {
+  const deform::ManifoldCheck closed = deform::check_closed_manifold(model);
+  // Clay knows the volume of surfaces that touch in a point, too.
+  if (!closed && closed.fault != deform::ManifoldFault::pinched_vertex) {
+    if (options.loop.sculptor.mode == flow::Mode::clay)
+      cli::note(options.mesh + ": " + deform::describe(closed, model) +
+                ", so it has no inside, and what hands press in does not come out elsewhere; " +
+                advice_to_close(model));
+    return;
+  }
+  if (const std::size_t inwards = deform::count_inward_faces(model); inwards > 0)
+    cli::note(fmt::format("{}: {} of its {} faces look inwards, so hands take its inside for its "
+                          "outside there; `nendo repair IN --out OUT` turns them",
+                          options.mesh, inwards, model.face_count()));
+}
+
 /// Turns the guard against folds on, or says that a model of this size goes without.
 void choose_injective(const deform::Mesh& model, RunArguments& options) {
   if (options.not_injective || options.run.puppet || options.run.over) return;
@@ -121,6 +150,7 @@ int run(RunArguments& options) {
   auto model = read_model(options);
   if (!model) return cli::report(model.error());
   note_oddities(*model, options);
+  note_inside(*model, options.run);
   choose_injective(*model, options);
   cli::install_stop_signals();
   session::RunOptions& wanted = options.run;

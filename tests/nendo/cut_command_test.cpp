@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -32,6 +35,32 @@ struct Fixture {
 };
 
 TEST_SUITE("nendo cut") {
+  TEST_CASE_FIXTURE(Fixture, "of a model that faces inwards one line tells that it is turned") {
+    deform::Mesh mesh = test::cube_of_cells(2);
+    for (std::size_t face = 0; face < mesh.face_count(); ++face)
+      std::swap(mesh.face_corners[3 * face], mesh.face_corners[3 * face + 1]);
+    REQUIRE(deform::volume_of(mesh) < 0.0);
+    const std::string in = save("inwards.obj", mesh);
+    for (const bool repairs : {false, true}) {
+      std::vector<std::string> arguments{in, "--plane", "0.3,0.5,0.5,1,0,0", "--out",
+                                         place("part%d.obj")};
+      if (repairs) arguments.emplace_back("--repair");
+      const auto done = cut(arguments);
+      REQUIRE(done.exit_code == 0);
+      CHECK(is_one_line_about(done.err, "48 of its faces look inwards"));
+      std::vector<double> volumes;
+      for (const char* name : {"part1.obj", "part2.obj"}) {
+        const auto part = deform::read_mesh(place(name));
+        REQUIRE(part);
+        CHECK(deform::check_closed_manifold(*part));
+        volumes.push_back(deform::volume_of(*part));
+      }
+      std::sort(volumes.begin(), volumes.end());
+      CHECK(volumes[0] == doctest::Approx(0.3).epsilon(1e-11));
+      CHECK(volumes[1] == doctest::Approx(0.7).epsilon(1e-11));
+    }
+  }
+
   TEST_CASE_FIXTURE(Fixture, "a plane cuts two models at once, and each part is a closed model") {
     const std::string cube = save("cube.obj", test::cube_of_cells(4));
     const std::string ring = save("ring.obj", test::torus(40, 20));
