@@ -1,6 +1,7 @@
 #include <nendo/deform/clay.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -15,6 +16,7 @@
 #include "reference/icosphere.hpp"
 #include "support/contact_parts.hpp"
 #include "support/fields.hpp"
+#include "support/nasty_meshes.hpp"
 #include "support/restraint.hpp"
 #include "support/self_intersections.hpp"
 #include "support/test_meshes.hpp"
@@ -172,6 +174,51 @@ TEST_SUITE("clay") {
     open.clay.begin(parts);
     open.go(parts, {0, 0, -15}, 60);
     CHECK(volume_of(open.now()) / whole - 1.0 < -0.02);
+  }
+
+  TEST_CASE("models of a few vertices keep their volume, however many of them are touched") {
+    Mesh tetrahedron;
+    tetrahedron.vertices.resize(3, 4);
+    tetrahedron.vertices << 30, 30, -30, -30, 30, -30, 30, -30, 30, -30, -30, 30;
+    for (const auto& face : {std::array{0U, 1U, 2U}, {0U, 3U, 1U}, {0U, 2U, 3U}, {1U, 3U, 2U}})
+      nendo::test::add_face(tetrahedron, {face[0], face[1], face[2]});
+    const auto box = [](const Vector3d& sides) {
+      Mesh mesh = nendo::test::cube_of_cells(1);
+      mesh.vertices = sides.asDiagonal() * (mesh.vertices.array() - 0.5).matrix();
+      return mesh;
+    };
+    for (const Mesh& mesh : {tetrahedron, box({40, 40, 40}), box({60, 60, 6}), box({8, 80, 8}),
+                             nendo::test::cube_of_cells(1, true)}) {
+      const double size = mesh.vertices.maxCoeff() - mesh.vertices.minCoeff();
+      Mesh clay = mesh;
+      clay.vertices *= std::max(1.0, 40.0 / size);
+      const double volume = volume_of(clay);
+      REQUIRE(volume > 0.0);
+      for (const bool lies_on_table : {true, false}) {
+        SculptedShape shape(clay.vertices, {});
+        ClayOptions options;
+        options.lies_on_table = lies_on_table;
+        ClayDeformer deformer(shape, corners_of_triangles(clay), 2, 1, options);
+        Mesh now = clay;
+        // Two fingers press each corner in turn, the whole way through, in strokes of their own.
+        for (Eigen::Index corner = 0; corner < clay.vertices.cols(); ++corner) {
+          const Vector3d at = now.vertices.col(corner);
+          const Vector3d out = at.normalized();
+          Parts parts{cone(at + 12.0 * out, at + 40.0 * out, 8.0, 9.0),
+                      cone(-at - 12.0 * out, -at - 40.0 * out, 8.0, 9.0)};
+          REQUIRE(is_solved(deformer.begin(parts)));
+          for (int call = 0; call < 30; ++call) {
+            const double inwards = call < 15 ? -1.5 : 1.5;
+            parts[0] = moved({parts[0]}, Vector3d(inwards * out))[0];
+            parts[1] = moved({parts[1]}, Vector3d(-inwards * out))[0];
+            CHECK(is_solved(deformer.press_to(parts).status));
+            shape.layout().unpack(deformer.shape(), now.vertices);
+            CHECK(volume_of(now) == doctest::Approx(volume).epsilon(2e-3));
+          }
+        }
+        CHECK((now.vertices - clay.vertices).cwiseAbs().maxCoeff() > 1.0);
+      }
+    }
   }
 
   TEST_CASE("without the volume, what is out of reach keeps its bits") {

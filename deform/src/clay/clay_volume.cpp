@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "block_edit.hpp"
 #include "clay/clay_work.hpp"
 
 namespace nendo::deform {
@@ -17,6 +18,43 @@ constexpr double most_swell = 1.0 / 3.0; // of that, in a call: then slopes are 
 constexpr double swell_reach = 3.0;      // of that, from the contacts
 constexpr double volume_is_kept = 1e-5;  // relative
 constexpr double most_left = 0.9;        // of what was missing before; else it is left
+
+// Hands touch nearly all vertices of a box that has eight of them, and what is free swells by as
+// much as the box is long, of which the second order knows nothing.
+constexpr std::size_t most_coarse_vertices = 200;
+constexpr double missing_in_coarse = 1e-4; // relative; less comes out as in other models
+constexpr double most_scaling = 2.0;
+
+/// The middle of the shape's box, or of its floor.
+Eigen::Vector3d middle_of_box(const BoundedShape& shape, bool of_floor) noexcept {
+  Eigen::Vector3d middle;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    float high = shape.bounds[0].sides[axis], negated_low = shape.bounds[0].sides[axis + 4];
+    for (const BlockBounds& box : shape.bounds) {
+      high = std::max(high, box.sides[axis]);
+      negated_low = std::max(negated_low, box.sides[axis + 4]);
+    }
+    const bool is_floor = of_floor && axis == 1;
+    middle[static_cast<Eigen::Index>(axis)] =
+        is_floor ? -static_cast<double>(negated_low)
+                 : 0.5 * (static_cast<double>(high) - static_cast<double>(negated_low));
+  }
+  return middle;
+}
+
+void scale_about(const Eigen::Vector3d& middle, double factor, BoundedShape& shape) noexcept {
+  const Eigen::Vector3f centre = middle.cast<float>();
+  const auto by = static_cast<float>(factor);
+  const std::uint64_t stamp = BlockShape::new_stamp();
+  for (std::size_t block = 0; block < shape.bounds.size(); ++block) {
+    VertexBlock& content = shape.shape.data()[block];
+    for (std::size_t lane = 0; lane < block_size; ++lane)
+      set_vertex(content, lane, centre + by * (vertex_in(content, lane) - centre));
+    shape.shape.set_stamp(block, stamp);
+    shape.bounds[block] = fast_bounds_of(content);
+  }
+  shape.extent = std::max(1.0, factor) * shape.extent + std::abs(factor - 1.0) * middle.norm();
+}
 
 } // namespace
 
@@ -42,11 +80,35 @@ bool ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
       for (const VertexMask::Part& part : masked_.mask()->parts())
         volume_.read_again(part.block);
       change = volume_.volume(shape) - whole_volume_;
+    } else if (is_coarse()) {
+      change = scale_to_volume(shape, report);
     }
   }
   // Where a mask holds nearly all, nothing may be left that can give way.
   note_volume(change, is_pressed, std::abs(before), report);
   return true;
+}
+
+bool ClayDeformer::Work::is_coarse() const noexcept {
+  return layout_.vertex_count() <= most_coarse_vertices && masked_.mask() == nullptr;
+}
+
+/// Of a coarse model, what is missing then comes out everywhere alike, which no faces can be in the
+/// way of. Returns what is missing afterwards.
+double ClayDeformer::Work::scale_to_volume(BoundedShape& shape, ClayReport& report) noexcept {
+  const double change = volume_.volume(shape) - whole_volume_;
+  const double times = whole_volume_ / (whole_volume_ + change);
+  if (std::abs(change) <= missing_in_coarse * std::abs(whole_volume_) ||
+      !(times >= 1.0 / most_scaling && times <= most_scaling))
+    return change;
+  const double factor = std::cbrt(times);
+  const Eigen::Vector3d middle = middle_of_box(shape, options_.lies_on_table);
+  scale_about(middle, factor, shape);
+  for (Grip& grip : grips_)
+    for (HeldPoint& point : grip.held())
+      point.at = middle + factor * (point.at - middle);
+  report.is_moved = true;
+  return volume_.volume(shape) - whole_volume_;
 }
 
 /// Later calls give back what `change` is too much or too little, unless this one has pressed
@@ -67,8 +129,11 @@ bool ClayDeformer::Work::finish(BoundedShape& shape, ClayReport& report) noexcep
   const std::optional<std::size_t> moved = zones_->keep_apart(shape, volume_, masked_.mask());
   report.kept_apart = moved.value_or(0);
   // Where faces were in its way, not all has come out that was given back.
-  if (report.kept_apart > 0)
-    note_volume(volume_.volume(shape) - whole_volume_, is_pressed, most_left * before, report);
+  if (report.kept_apart > 0) {
+    const double change =
+        is_coarse() ? scale_to_volume(shape, report) : volume_.volume(shape) - whole_volume_;
+    note_volume(change, is_pressed, most_left * before, report);
+  }
   return moved.has_value();
 }
 

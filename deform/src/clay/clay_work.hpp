@@ -82,6 +82,8 @@ private:
   void push_straight(BoundedShape& shape) noexcept;
   const NearestLanes& free_lanes(std::size_t block, const NearestLanes& all) noexcept;
   bool give_back(BoundedShape& shape, bool is_pressed, ClayReport& report) noexcept;
+  bool is_coarse() const noexcept;
+  double scale_to_volume(BoundedShape& shape, ClayReport& report) noexcept;
   void note_volume(double change, bool is_pressed, double most, ClayReport& report) noexcept;
   bool finish(BoundedShape& shape, ClayReport& report) noexcept;
   void put_off(double way, double volume, ClayReport& report) noexcept;
