@@ -78,6 +78,8 @@ std::string sculptor_text(const flow::SculptorOptions& sculptor, bool is_puppet)
                      line("weight_bytes", std::to_string(options.evaluation.weight_bytes)) +
                      supports_text(options.supports, is_puppet ? "point" : "tip");
   if (is_puppet && sculptor.type2_along_surface) text += line("type2_along_surface", "true");
+  if (!is_puppet && sculptor.clay_scales_few_vertices)
+    text += line("clay_scales_few_vertices", "true");
   if (options.injective)
     text +=
         line("injective", "{ most_bound = " + decimal_text(options.injective->most_bound) +

@@ -82,17 +82,20 @@ void read_sculptor(TomlReader& reader, const toml::table& root, bool is_puppet,
   const toml::table* const table = reader.table(root, "sculptor");
   if (table == nullptr) return;
   // order and storage stand in older files; they are ignored.
-  reader.allow_only(*table,
-                    {"mode", "piece_length", "kernel", "polynomial", "merge_fraction", "order",
-                     "storage", "weight_bytes", "shared", "own", "injective", "brushes",
-                     "brush_strength", "keep_volume", "hold", "type2_along_surface"});
+  reader.allow_only(*table, {"mode", "piece_length", "kernel", "polynomial", "merge_fraction",
+                             "order", "storage", "weight_bytes", "shared", "own", "injective",
+                             "brushes", "brush_strength", "keep_volume", "hold",
+                             "type2_along_surface", "clay_scales_few_vertices"});
   auto& options = sculptor.deformer;
   read_hold(reader, *table, options.csrbf.keep_volume, sculptor.hold);
   read_brushes(reader, *table, sculptor.brushes, sculptor.brush_strength);
   sculptor.mode = reader.named(*table, "mode", flow::mode_named);
   sculptor.piece_length = reader.number(*table, "piece_length");
-  sculptor.type2_along_surface =
-      table->contains("type2_along_surface") && reader.truth(*table, "type2_along_surface");
+  const auto has_rule = [&](const char* name) { // not in older files
+    return table->contains(name) && reader.truth(*table, name);
+  };
+  sculptor.type2_along_surface = has_rule("type2_along_surface");
+  sculptor.clay_scales_few_vertices = has_rule("clay_scales_few_vertices");
   options.csrbf.kernel = reader.named(*table, "kernel", deform::wendland_named);
   options.csrbf.polynomial = reader.named(*table, "polynomial", deform::polynomial_named);
   options.csrbf.merge_fraction = reader.number(*table, "merge_fraction");

@@ -102,7 +102,7 @@ TEST_SUITE("earlier_formats") {
     CHECK(loops == 1);
   }
 
-  TEST_CASE("in a loop of format 1.12, type 2 measures distances through the air") {
+  TEST_CASE("a loop of format 1.12 has the rules of its time in type 2 and in clay") {
     constexpr auto type = driver::chunk_type("LOOP");
     const auto payload =
         payloads_of(test::setup_of(test::LoopUnderTest(Mode::type2)), type).front();
@@ -110,8 +110,10 @@ TEST_SUITE("earlier_formats") {
     Setup now, then;
     REQUIRE(read_setup_chunk(type, whole, now));
     CHECK(now.loop->options.sculptor.type2_along_surface);
+    CHECK(now.loop->options.sculptor.clay_scales_few_vertices);
     REQUIRE(read_setup_chunk(type, whole.first(whole.size() - 1), then));
     CHECK_FALSE(then.loop->options.sculptor.type2_along_surface);
+    CHECK_FALSE(then.loop->options.sculptor.clay_scales_few_vertices);
   }
 }
 

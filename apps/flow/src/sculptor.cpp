@@ -68,7 +68,7 @@ Deformer make(SculptedShape& shape, Eigen::Index control_points, const SculptorO
     const auto radii = radii_on_stage(options.deformer.supports, options.bodies->units_per_metre());
     return ClayHands(shape, options.clay, options.bodies,
                      std::accumulate(radii.begin(), radii.end(), 0.0) / fingers, options.deformer,
-                     options.mirror);
+                     options.mirror, options.clay_scales_few_vertices);
   }
   if (options.mode == Mode::parts && options.bodies && options.parts)
     return PartHands(shape, options.parts, options.bodies, options.deformer.mask);

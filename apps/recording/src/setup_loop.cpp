@@ -153,7 +153,8 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
   put_hold(writer, options.sculptor.deformer.csrbf.keep_volume, options.sculptor.hold);
   if (options.settings) put_hold(writer, options.settings->keep_volume, options.settings->hold);
   put_table(writer, loop.placement);
-  writer.u8(static_cast<std::uint8_t>(options.sculptor.type2_along_surface));
+  writer.u8(static_cast<std::uint8_t>((options.sculptor.type2_along_surface ? 1U : 0U) |
+                                      (options.sculptor.clay_scales_few_vertices ? 2U : 0U)));
 }
 
 void put_brushes(ByteWriter& writer, const std::array<deform::Brush, 5>& brushes, double strength) {
@@ -395,8 +396,10 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
     if (options.settings)
       checked.require(read_hold(reader, options.settings->keep_volume, options.settings->hold));
   }
-  if (reader.remaining() > 0) read.placement.table = read_table(reader, checked);    // since 1.7
-  options.sculptor.type2_along_surface = reader.remaining() > 0 && reader.u8() != 0; // since 1.13
+  if (reader.remaining() > 0) read.placement.table = read_table(reader, checked); // since 1.7
+  const unsigned rules = reader.remaining() > 0 ? reader.u8() : 0U;               // since 1.13
+  options.sculptor.type2_along_surface = (rules & 1U) != 0;
+  options.sculptor.clay_scales_few_vertices = (rules & 2U) != 0;
   if (loop || !checked.fine()) return false;
   loop = std::move(read);
   return true;

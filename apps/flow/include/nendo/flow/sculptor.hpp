@@ -57,6 +57,7 @@ struct SculptorOptions {
   /// which it was not in older recordings. Then nothing keeps the volume, and links need not be.
   std::shared_ptr<const deform::SurfaceField> surface{};
   bool type2_along_surface = true;
+  bool clay_scales_few_vertices = true; ///< deform::ClayOptions::scales_few_vertices
   /// The hands that press clay or move parts, and the model that is clay, or its parts. A loop sets
   /// them. Without hands, as with a puppet, both modes shape as type 1 does.
   std::shared_ptr<const HandBodies> bodies{};
