@@ -210,7 +210,7 @@ TEST_SUITE("server") {
       CHECK((viewer.vertices() - shape).cwiseAbs().maxCoeff() < 1e-5 * viewer.diagonal);
       CHECK((shape - served->streamed.test.model.vertices).cwiseAbs().maxCoeff() > 1e-3);
       CHECK(viewer.good);
-      const bool weighted = puppet != nullptr && mode == flow::Mode::type1;
+      const bool weighted = puppet != nullptr; // in both modes along the surface
       CHECK(viewer.weights == (weighted ? 1 : 0));
       CHECK((viewer.vectors > 0) == weighted);
       CHECK(served->server->counters().weights == (weighted ? 1 : 0));
