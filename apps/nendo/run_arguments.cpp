@@ -149,7 +149,7 @@ Result<void> check_hands(const session::RunOptions& run) {
 }
 
 /// What acts on fingertips, or through the air, has nothing to do with a puppet's points.
-Result<void> check_puppet(const session::RunOptions& run) {
+Result<void> check_puppet(const session::RunOptions& run, bool injective) {
   if (!run.puppet) return {};
   const flow::SculptorOptions& sculptor = run.loop.sculptor;
   if (sculptor.hold == flow::Hold::hand)
@@ -158,6 +158,9 @@ Result<void> check_puppet(const session::RunOptions& run) {
     return Error{Errc::usage, "--brush " + flow::in_words(sculptor.brushes) +
                                   ": fingertips have brushes, and a puppet's points pull; give "
                                   "one of --brush and --puppet"};
+  if (injective)
+    return Error{Errc::usage, "--injective and --puppet: nothing keeps a puppet's surface from "
+                              "folding; give one of them"};
   if (sculptor.deformer.csrbf.keep_volume > 0.0 && run.puppet->distance != puppet::Distance::air)
     return Error{Errc::usage, "--keep-volume: " + run.puppet_file +
                                   " measures its distances along the surface, where no kernel is "
@@ -277,7 +280,7 @@ Result<void> check(RunArguments& options) {
     return Error{Errc::usage,
                  "--topology: with a puppet, key O does it when it is wanted; leave out this or "
                  "--puppet"};
-  if (auto fine = check_puppet(run); !fine) return fine;
+  if (auto fine = check_puppet(run, options.injective); !fine) return fine;
   if (auto fine = read_masks(run); !fine) return fine;
   if (auto fine = read_take(options); !fine) return fine;
   if (run.mesh.empty() && !run.over)

@@ -160,6 +160,7 @@ TEST_SUITE("run") {
           {"--hold", "hand", "--puppet", "face"},
           {"--keep-volume", "2"},
           {"--keep-volume", "1", "--injective"},
+          {"--injective", "--puppet", "face"},
           {"--keep-volume", "1", "--puppet", "face"},
           {"--keep-volume", "1", "--mode", "type2", "--puppet", "face"},
           {"--brush", "inflate", "--puppet", "face"}}) {
