@@ -47,8 +47,8 @@ struct ReadModel {
 /// coordinates and textures, and of an OBJ materials' names, groups and objects. Of a glTF (Khronos
 /// specification 2.0) it takes all meshes of the default scene in the places of their nodes, with
 /// materials, textures and texture coordinates; each node is an object. Vertices of a node's mesh
-/// with the same place and colour become one, because glTF splits them where normals or texture
-/// coordinates meet; so do those of a file in which no two faces share a vertex. Surfaces that only
+/// with the same place become one, because glTF splits them where normals, texture coordinates or
+/// colours meet; so do those of a file in which no two faces share a vertex. Surfaces that only
 /// touch stay apart. Normals are
 /// dropped, because they change. `name` is what error messages call the file. Error: bad_input with
 /// the line, the byte offset or the part of the document, for example if there are no vertices, a
