@@ -135,10 +135,12 @@ TEST_SUITE("ply_texture") {
   }
 
   TEST_CASE("texture coordinates of vertices, under each of their names") {
-    for (const auto& [across, up] : {std::pair{"s", "t"},
-                                     {"u", "v"},
-                                     {"texture_u", "texture_v"},
-                                     {"texture_s", "texture_t"}}) {
+    for (const auto& names : {std::pair{"s", "t"},
+                              {"u", "v"},
+                              {"texture_u", "texture_v"},
+                              {"texture_s", "texture_t"}}) {
+      const char* const across = names.first;
+      const char* const up = names.second;
       CAPTURE(across);
       const ReadModel model =
           read(head("ascii", "comment TextureFile skin.png\n") +
