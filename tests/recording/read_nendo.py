@@ -94,7 +94,8 @@ def loop(b):
         o["settings"].update(hold(b))
     if b.take("B"):
         o["table"] = b.take("4d")
-    o["type2_along_surface"] = b.take("B")
+    rules = b.take("B")
+    o["type2_along_surface"], o["clay_scales_few_vertices"] = rules & 1, rules >> 1
     return o
 
 

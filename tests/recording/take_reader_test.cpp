@@ -241,6 +241,7 @@ TEST_SUITE("take_reader") {
     CHECK(is_hold(lines[at], 0.75, flow::Hold::hand));
     CHECK(lines[at]["table"] == json::parse("[1.5, -2.5, 0.25, 8.0]"));
     CHECK(lines[at]["type2_along_surface"] == 0);
+    CHECK(lines[at]["clay_scales_few_vertices"] == 1);
     CHECK(lines[at++]["least_gap"] == 0.04);
     REQUIRE(lines[at]["chunk"] == "REST");
     REQUIRE(lines[at]["blocks"].size() == 2);
