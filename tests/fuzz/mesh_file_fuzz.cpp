@@ -40,9 +40,8 @@ void require_usable(const nendo::deform::Appearance& look, std::size_t faces,
   require(are_below_or_none(look.objects.of_face, look.objects.names.size()));
   require(look.vertex_colours.cols() == 0 || look.vertex_colours.cols() == vertices);
   require(look.vertex_colours.allFinite());
-  require(look.texcoord_colours.cols() == 0 ||
-          (look.texcoord_colours.cols() == mesh.texcoords.cols() &&
-           look.vertex_colours.cols() == 0 && look.texcoord_colours.allFinite()));
+  require(look.texcoord_colours.allFinite());
+  require(look.texcoord_colours.cols() == 0 || look.vertex_colours.cols() == 0);
   for (const auto& material : look.materials) {
     require(!material.colour || material.colour->allFinite());
     require(material.texture == nendo::deform::no_index || material.texture < look.textures.size());
@@ -89,6 +88,8 @@ void read_as_model(std::span<const std::byte> bytes, std::string_view name) {
   for (std::size_t face = 0; face < mesh.face_count(); ++face)
     require(mesh.face_starts[face + 1] >= mesh.face_starts[face] + 3);
   require_usable(mesh.look, mesh.face_count(), mesh.vertices.cols());
+  const Eigen::Index colours = mesh.look.texcoord_colours.cols();
+  require(colours == 0 || colours == mesh.texcoords.cols());
   require(nendo::deform::vertex_normals(mesh).allFinite());
   if (mesh.face_corners.size() > 3000) return;
   if (const auto repaired = nendo::deform::repair(mesh))
