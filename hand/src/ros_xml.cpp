@@ -55,9 +55,13 @@ private:
     static_cast<XmlJoints*>(self)->stop("has a document type; leave <!DOCTYPE ...> out");
   }
 
+  // Debian 13's Expat advises another function, which Debian 12's does not have.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
   std::size_t line() const {
     return static_cast<std::size_t>(XML_GetCurrentLineNumber(parser_.get()));
   }
+#pragma GCC diagnostic pop
   Error bad(const std::string& what) const { return bad_line(name_, line(), what); }
   void stop(const std::string& what) {
     if (!wrong_) wrong_ = bad(what);
