@@ -124,7 +124,8 @@ TEST_SUITE("player") {
       Taken taken(seed % 2 == 0 ? Mode::type1 : Mode::type2, seed % 4 == 3);
       auto& loop = *taken.live.test.loop;
       std::mt19937 random(seed);
-      const HostTime begin = HostClock::now();
+      // Not now: what the last bits of the times make of a shape would differ from run to run.
+      const HostTime begin{std::chrono::hours(1)};
       int bent = 0;
       std::vector<Points> shapes;
       for (std::uint64_t tick = 0; tick < 300; ++tick) {
