@@ -42,7 +42,7 @@ private:
 class FaceCutter {
 public:
   FaceCutter(const CrossedPart& part, std::uint32_t number, const Crossings& crossings)
-      : part_(part), number_(number), crossings_(crossings), on_edges_(number, crossings) {}
+      : part_(part), crossings_(crossings), on_edges_(number, crossings) {}
 
   /// Appends the pieces of the face. `segments` are the crossing segments in it.
   bool cut(std::uint32_t face, std::span<const std::pair<std::uint32_t, std::uint32_t>> segments,
@@ -134,7 +134,6 @@ private:
   }
 
   const CrossedPart& part_;
-  std::uint32_t number_;
   const Crossings& crossings_;
   EdgeCrossings on_edges_;
   std::size_t x_ = 0, y_ = 1;
