@@ -275,7 +275,7 @@ TEST_SUITE("cyberglove_identity") {
     script.baud = 4800;
     const HostTime start = HostClock::now();
     const Meeting met(script);
-    CHECK(HostClock::now() - start < 5s);
+    CHECK(HostClock::now() - start < 30s);
     REQUIRE_FALSE(met.identity);
     CHECK(met.identity.error().code == Errc::no_device);
     CHECK(met.identity.error().message.starts_with(

@@ -283,7 +283,7 @@ TEST_SUITE("lucidgloves_driver") {
     test::require_ok(glove->start(ring));
     const auto start = HostClock::now();
     REQUIRE(eventually([&] { return glove->stats().records >= 300; }));
-    CHECK(HostClock::now() - start < 5s); // a host that says nothing needs 25 minutes
+    CHECK(HostClock::now() - start < 30s); // a host that says nothing needs 25 minutes
     glove->set_feedback(resistance({1, 2, 3, 4, 5}));
     const std::uint64_t before = glove->stats().records;
     REQUIRE(eventually([&] { return glove->stats().records >= before + 100; }));
