@@ -183,7 +183,7 @@ std::optional<std::string> text_format(std::string_view bytes) {
   if (has(text, "\nversion = ") && has(text, "\ntake = ") && has(text, "\nunits_per_metre = "))
     return "is a timeline of Nendo; nendo edit and nendo export read it";
   if (has(text, "version = ") && has(text, "\nmodel = ") && has(text, "\n[points]"))
-    return "is a puppet of Nendo; give it with --puppet";
+    return "is a puppet of Nendo and no model; `nendo run --puppet FILE` plays it";
   return std::nullopt;
 }
 

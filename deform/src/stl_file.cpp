@@ -150,7 +150,8 @@ Result<Mesh> TextStl::parse(ReadNotes& notes) {
     if (const auto done = statement(word); !done) return done.error();
   if (in_loop_) return bad("the file is cut off within a facet");
   if (faces_.mesh.face_count() == 0)
-    return Error{Errc::bad_input, std::string(name_) + ": is an STL without a facet"};
+    return Error{Errc::bad_input,
+                 std::string(name_) + ": is an STL without a facet; export it once more"};
   note_all(notes);
   Mesh mesh = std::move(faces_).take();
   if (!objects_.names.empty()) mesh.look.objects = std::move(objects_);
@@ -310,7 +311,7 @@ Result<std::size_t> BinaryStl::count_facets(ReadNotes& notes) const {
   if (promised == 0) return bad("is an STL without a triangle");
   const std::size_t more = text_.size() - facets_offset - facet_bytes * promised;
   if (more > 0)
-    notes.push_back(std::to_string(more) + " bytes behind the last triangle are left out");
+    notes.push_back(std::to_string(more) + " bytes after the last triangle are left out");
   return promised;
 }
 

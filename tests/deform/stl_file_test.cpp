@@ -123,7 +123,7 @@ TEST_SUITE("stl_file") {
     const auto trailing = parse(binary(four) + "more");
     check_tetrahedron(trailing, four_corners);
     REQUIRE(trailing->notes.size() == 1);
-    CHECK(trailing->notes[0] == "4 bytes behind the last triangle are left out");
+    CHECK(trailing->notes[0] == "4 bytes after the last triangle are left out");
     for (const std::int64_t unknown : {std::int64_t{0}, std::int64_t{0xFFFFFFFF}}) {
       const auto counted = parse(binary(four, "made", unknown));
       check_tetrahedron(counted, four_corners);
@@ -150,7 +150,7 @@ TEST_SUITE("stl_file") {
     CHECK(cut_off.error().message.find("cut off") != std::string::npos);
     const auto none = parse("solid x\nendsolid x\n");
     REQUIRE_FALSE(none);
-    CHECK(none.error().message == "t.stl: is an STL without a facet");
+    CHECK(none.error().message == "t.stl: is an STL without a facet; export it once more");
   }
 
   TEST_CASE("colours of facets are materials, in the forms of both programs") {
