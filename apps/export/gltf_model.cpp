@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include <nendo/deform/corner_colours.hpp>
+
 namespace nendo::exporting {
 
 using Eigen::Index;
@@ -72,8 +74,7 @@ GltfModel::GltfModel(const deform::Mesh& mesh, GlbFile& file)
   for (const GltfPart& part : parts_) {
     Json attributes;
     attributes["POSITION"] = file.add_vectors(columns_of(vertices, part), Use::vertices, true);
-    if (!mesh.look.textures.empty() ||
-        (!mesh.corner_texcoords.empty() && mesh.look.texcoord_colours.cols() == 0))
+    if (deform::has_texture_places(mesh))
       attributes["TEXCOORD_0"] = file.add_texcoords(texcoords_of(mesh, part));
     if (const std::vector<float> colours = colours_of(mesh, part); !colours.empty())
       attributes["COLOR_0"] = file.add_colours(colours);

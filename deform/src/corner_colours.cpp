@@ -1,4 +1,4 @@
-#include "corner_colours.hpp"
+#include <nendo/deform/corner_colours.hpp>
 
 #include <algorithm>
 #include <array>

@@ -7,11 +7,11 @@
 #include <nendo/base/endings.hpp>
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
+#include <nendo/deform/corner_colours.hpp>
 #include <nendo/deform/face_box.hpp>
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/up_axis.hpp>
 
-#include "corner_colours.hpp"
 #include "face_tidying.hpp"
 #include "foreign_format.hpp"
 #include "gltf_document.hpp"

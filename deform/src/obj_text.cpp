@@ -1,6 +1,7 @@
 // The writer of OBJ.
 
-#include "corner_colours.hpp"
+#include <nendo/deform/corner_colours.hpp>
+
 #include "mesh_formats.hpp"
 #include "mtl_file.hpp"
 #include "number_text.hpp"

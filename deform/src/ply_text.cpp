@@ -6,7 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "corner_colours.hpp"
+#include <nendo/deform/corner_colours.hpp>
+
 #include "mesh_formats.hpp"
 #include "srgb.hpp"
 

@@ -1,6 +1,6 @@
 // Faces of a vertex that differ in colour keep their colours, whatever is done to the model.
 
-#include "corner_colours.hpp"
+#include <nendo/deform/corner_colours.hpp>
 
 #include <array>
 #include <string>

@@ -142,6 +142,20 @@ TEST_SUITE("gltf_read_back") {
     check_read_back(deform::subdivide(painted_ball()).mesh);
   }
 
+  TEST_CASE("a model without texture coordinates gets none, whatever textures it names") {
+    deform::Mesh ball = test::sphere(5, 8, 1.0);
+    ball.look.materials = {{"skin", {}, 0, true}};
+    ball.look.face_materials.assign(ball.face_count(), 0);
+    ball.look.textures = {
+        {"skin.png", std::make_shared<const std::string>("\x89PNG\r\n\x1A\nrest")}};
+    GlbFile file("test");
+    const GltfModel model(ball, file);
+    model.add_to(file, GltfMaterials(ball.look, file), 1.0, {});
+    const auto& attributes = file["meshes"][0]["primitives"][0]["attributes"];
+    CHECK(attributes.contains("POSITION"));
+    CHECK_FALSE(attributes.contains("TEXCOORD_0"));
+  }
+
   TEST_CASE("faces of a vertex that differ in colour come back so, and share the vertex") {
     const deform::Mesh cube = test::with_six_colours(test::cube_of_cells(2));
     const deform::Mesh back = read_back(cube, 1.0);

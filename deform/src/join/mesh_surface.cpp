@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include <nendo/deform/corner_colours.hpp>
 #include <nendo/deform/triangles.hpp>
 
-#include "corner_colours.hpp"
 #include "join/look_collector.hpp"
 
 namespace nendo::deform {

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "corner_colours.hpp"
+#include <nendo/deform/corner_colours.hpp>
+
 #include "join/look_collector.hpp"
 #include "parts/append_mesh.hpp"
 

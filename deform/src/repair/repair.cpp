@@ -9,10 +9,10 @@
 #include <Eigen/Geometry>
 
 #include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/corner_colours.hpp>
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/triangles.hpp>
 
-#include "corner_colours.hpp"
 #include "cut/cut_assembly.hpp"
 #include "repair/doubles.hpp"
 #include "repair/holes.hpp"

@@ -6,7 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "corner_colours.hpp"
+#include <nendo/deform/corner_colours.hpp>
+
 #include "repair/stitch.hpp"
 
 namespace nendo::deform {
