@@ -75,10 +75,10 @@ void note_oddities(const deform::Mesh& model, const RunArguments& options) {
             ", so no part of it stays as it is; use a smaller radius to shape a part");
 }
 
-/// Whether repairing closes the model, in words that go behind a semicolon. That is tried, so that
+/// Whether repairing closes the model, in words that follow a semicolon. That is tried, so that
 /// the advice is true, unless it takes longer than people wait.
 std::string advice_to_close(const deform::Mesh& model) {
-  constexpr Eigen::Index most_tried = 1'000'000;
+  constexpr Eigen::Index most_tried = 100'000;
   if (model.vertices.cols() > most_tried) return "`nendo repair IN --out OUT` may close it";
   const auto repaired = deform::repair(model);
   return repaired ? "`nendo repair IN --out OUT` closes it" : repaired.error().message;
@@ -87,7 +87,7 @@ std::string advice_to_close(const deform::Mesh& model) {
 /// Tells before the first tick what keeps hands from knowing the model's inside.
 void note_inside(const deform::Mesh& model, const session::RunOptions& options) {
   const deform::ManifoldCheck closed = deform::check_closed_manifold(model);
-  // Clay knows the volume of surfaces that touch in a point, too.
+  // Clay also knows the volume of surfaces that touch in a point.
   if (!closed && closed.fault != deform::ManifoldFault::pinched_vertex) {
     if (options.loop.sculptor.mode == flow::Mode::clay)
       cli::note(options.mesh + ": " + deform::describe(closed, model) +
