@@ -4,7 +4,7 @@
 // node scales the model to the stage.
 //
 // - Each material has a primitive, with its base colour and its texture, and with vertices of its
-//   own (gltf_parts.hpp): those of the mesh, in its order, and behind them copies of those that
+//   own (gltf_parts.hpp): those of the mesh, in its order, and after them copies of those that
 //   have several texture coordinates. They keep their colours. Faces become triangles as deform's
 //   triangles.hpp says.
 // - A take of a puppet of Type-1 is exact. Each function is a target that has its name, and a

@@ -51,7 +51,7 @@ class GltfReader {
 public:
   GltfReader(std::string_view text, const ModelFolder* folder) : document_(text, folder) {}
 
-  /// `weld`: vertices that only normals part become one as well.
+  /// `weld`: vertices of one place that normals or colours part become one as well.
   Mesh read(bool weld, ReadNotes& notes) {
     materials_ = read_gltf_materials(document_, mesh_.look, notes_);
     note_left_out(document_, notes_);

@@ -27,6 +27,7 @@ struct FaceLook {
 };
 
 using Colour = std::array<float, 4>;
+
 struct TriangleSurface {
   std::vector<SpacePoint> points;
   std::vector<Corners> faces;

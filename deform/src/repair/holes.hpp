@@ -14,7 +14,7 @@ namespace nendo::deform {
 /// A part whose holes stay open.
 struct UnfilledPart {
   std::uint32_t vertex; ///< one of it
-  std::string why;      ///< the words go behind the part's name
+  std::string why;      ///< the words follow the part's name
   std::string remedy;
 };
 

@@ -204,7 +204,7 @@ std::vector<std::uint8_t> Repairer::used_vertices() const {
   return used;
 }
 
-/// Vertices that became one with another one, or whose faces were left out, go, too, but are not
+/// Vertices that became one with another one, or whose faces were left out, also go, but are not
 /// counted again.
 void Repairer::drop_strays() {
   const std::vector<std::uint8_t> keeps = used_vertices();

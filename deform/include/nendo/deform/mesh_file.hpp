@@ -49,10 +49,10 @@ struct ReadModel {
 /// materials, textures and texture coordinates; each node is an object. Vertices of a node's mesh
 /// with the same place become one, because glTF splits them where normals, texture coordinates or
 /// colours meet; so do those of a file in which no two faces share a vertex. Surfaces that only
-/// touch stay apart. Normals are
-/// dropped, because they change. `name` is what error messages call the file. Error: bad_input with
-/// the line, the byte offset or the part of the document, for example if there are no vertices, a
-/// coordinate is not finite, an index is wrong, or the file is cut off.
+/// touch stay apart. Normals are dropped, because they change. `name` is what error messages call
+/// the file. Error: bad_input with the line, the byte offset or the part of the document, for
+/// example if there are no vertices, a coordinate is not finite, an index is wrong, or the file is
+/// cut off.
 Result<ReadModel> parse_model(std::span<const std::byte> bytes, std::string_view name,
                               const ReadOptions& options = {});
 /// The same, without the notes.
@@ -73,11 +73,11 @@ std::vector<std::string> lost_in_file(const std::filesystem::path& path, const M
 /// It turns the model so that the axis `up` of the file points up. It writes a temporary file
 /// beside `path`, syncs and renames it, so that a file of that name is always whole. Coordinates
 /// survive a round trip exactly, but in an STL, which has floats; Mesh::offset is added to them. An
-/// OBJ has all that the mesh has; its materials and textures go beside it, the materials into
-/// `materials`, or into a file of its name with .mtl if that is empty. They never replace a file
-/// that was not written by this function. A PLY has colours of vertices alone, an STL has triangles
-/// alone. Blocks for as long as the disk does. Errors: usage (unknown ending), failed (a file
-/// cannot be written, or the model is too large for an STL).
+/// OBJ has all that the mesh has, but one colour for each vertex; its materials and textures go
+/// beside it, the materials into `materials`, or into a file of its name with .mtl if that is
+/// empty. They never replace a file that was not written by this function. A PLY has colours of
+/// vertices alone, an STL has triangles alone. Blocks for as long as the disk does. Errors: usage
+/// (unknown ending), failed (a file cannot be written, or the model is too large for an STL).
 Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh,
                         const std::filesystem::path& materials = {}, UpAxis up = UpAxis::y);
 

@@ -22,7 +22,7 @@ struct RepairOptions {
 struct LeftOut {
   std::size_t parts = 0, faces = 0;
   std::string where;  ///< a vertex of the first
-  std::string why;    ///< the words go behind "it"
+  std::string why;    ///< the words follow "it"
   std::string remedy; ///< what to do where the model was made
 };
 

@@ -24,15 +24,15 @@ public:
   /// Makes the shape that of the stroke up to `tips`, which must be usable. If float could not hold
   /// it, nothing happens and the status is not_finite.
   FieldStatus go_to(const Points& tips, SculptedShape::Parts& parts) noexcept;
-  /// Forgets what the last go_to() did, so that is_moved() and tell() do not tell it again.
+  /// Forgets what the last go_to() did, so that is_moved() and tell() do not report it again.
   void clear() noexcept { step_.all.setZero(); }
 
-  /// Tells whether the last go_to() moved anything.
+  /// Returns whether the last go_to() moved anything.
   bool is_moved() const noexcept { return !step_.all.isZero(0.0F); }
-  /// Tells by what the last go_to() led from the shape before to its result. Allocates only if
+  /// Reports by what the last go_to() led from the shape before to its result. Allocates only if
   /// `move` has no room.
   void tell(SurfaceMove& move) const { field_->tell(step_, move); }
-  /// Of the vectors that tell() tells.
+  /// Returns how many vectors tell() reports.
   Eigen::Index vector_count() const noexcept {
     return static_cast<Eigen::Index>(field_->vector_count());
   }
