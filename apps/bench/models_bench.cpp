@@ -95,15 +95,16 @@ public:
   double step_us(flow::Request request) {
     commands_.try_push(request);
     tick_us();
-    if (const auto& awaited = loop_->frames().front().awaited) loop_->change_to(*awaited);
+    if (const auto& awaited = loop_->frames().front().awaited) loop_->changes().change_to(*awaited);
     return tick_us();
   }
   /// Of the tick that takes masks: a ball, and in turn all but that.
   double mask_us() {
     puppet::Puppet puppet;
-    puppet.masks.push_back({loop_->model(0)->mesh.vertices.col(0), 0.3});
+    puppet.masks.push_back({loop_->changes().model(0)->mesh.vertices.col(0), 0.3});
     puppet.inverted = number_ % 2 == 0;
-    if (!loop_->change_puppet(std::make_shared<const puppet::Rig>(puppet, deform::Points(3, 0))))
+    if (!loop_->changes().change_puppet(
+            std::make_shared<const puppet::Rig>(puppet, deform::Points(3, 0))))
       return 0.0;
     return tick_us();
   }
@@ -136,26 +137,26 @@ Figures measure(const deform::Mesh& model, bool held, unsigned repetitions) {
     flow::DeformLoop& loop = timed.loop();
     timed.tick_us();
     const HostTime begin = HostClock::now();
-    flow::FinerModel finer(loop.newest_model());
+    flow::FinerModel finer(loop.changes().newest_model());
     figures.make_us.push_back(us(HostClock::now() - begin));
-    loop.hold_still();
+    loop.changes().hold_still();
     timed.tick_us();
     const HostTime still = HostClock::now();
-    loop.is_still(); // which change_model() requires
-    static_cast<void>(loop.change_model(finer));
+    loop.changes().is_still(); // which change_model() requires
+    static_cast<void>(loop.changes().change_model(finer));
     figures.finish_us.push_back(us(HostClock::now() - still));
     figures.new_us.push_back(timed.tick_us());
-    figures.vertices = loop.newest_model().layout().vertex_count();
+    figures.vertices = loop.changes().newest_model().layout().vertex_count();
     for (int tick = 0; tick < 20; ++tick)
       figures.ordinary_us.push_back(timed.tick_us());
     timed.commit();
     figures.commit_us.push_back(timed.tick_us());
-    loop.is_changing(); // frees what was before
-    if (held) continue; // an undo would first take what the hands hold
+    loop.changes().is_changing(); // frees what was before
+    if (held) continue;           // an undo would first take what the hands hold
     figures.undo_us.push_back(timed.step_us(flow::Request::undo));
-    loop.is_changing();
+    loop.changes().is_changing();
     figures.redo_us.push_back(timed.step_us(flow::Request::redo));
-    loop.is_changing();
+    loop.changes().is_changing();
     figures.mask_us.push_back(timed.mask_us());
   }
   return figures;
@@ -209,16 +210,16 @@ void measure_changes(const Options& options) {
     }
   });
   std::uint64_t changes = 0;
-  flow::LoopSettings settings = loop.settings();
+  flow::LoopSettings settings = loop.changes().settings();
   const double first_m = settings.radius_m[0];
   for (HostTime next = HostClock::now(); half < 2 && !cli::stop_requested();) {
     std::this_thread::sleep_until(next += std::chrono::milliseconds(60'000 / changes_a_minute));
     timed.bend(); // no tick without something to do
     loop.frames().update();
-    loop.refill_undo();
+    loop.changes().refill_undo();
     if (half == 0) continue;
     settings.radius_m.fill(first_m * (1.0 + 0.01 * static_cast<double>(++changes % 30)));
-    loop.change_settings(settings);
+    loop.changes().change_settings(settings);
   }
   stop = cli::stop_requested().load();
   thread.join();

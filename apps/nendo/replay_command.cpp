@@ -95,7 +95,7 @@ void compare_shapes(recording::TakeReader& reader, flow::DeformLoop& loop, Repla
   loop.frames().update();
   const flow::Frame& frame = loop.frames().front();
   deform::Points shape;
-  loop.layout(frame.model).unpack(frame.shape, shape);
+  loop.changes().layout(frame.model).unpack(frame.shape, shape);
   const auto distance = recording::distance_between(*recorded, shape);
   if (!distance) return;
   ++done.shapes;

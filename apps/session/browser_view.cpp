@@ -22,10 +22,10 @@ void keep_numbers(const flow::LoopSettings& in_force, flow::LoopSettings& asked)
 
 Result<void> BrowserView::begin(const LoopStart& start) {
   placed_ = &start.placed;
-  const deform::BlockLayout& layout = placed_->loop->layout();
+  const deform::BlockLayout& layout = placed_->loop->changes().layout();
   if (auto fine = check(layout); !fine) return fine;
   streams_.begin(stream_for(layout));
-  server_->set_settings(placed_->loop->settings(), false);
+  server_->set_settings(placed_->loop->changes().settings(), false);
   pictures_ = web::pictures_of(start.model);
   server_->present(streams_.now(), message_for(layout, start.model), pictures_);
   follow_weights();
@@ -84,7 +84,7 @@ void BrowserView::update(const RunStatus& status, flow::CommandRing& commands) {
 
 // The loop makes another field of a puppet when radii, kernel or model change.
 void BrowserView::follow_weights() {
-  const auto& surface = placed_->loop->sculptor_options().surface;
+  const auto& surface = placed_->loop->changes().sculptor_options().surface;
   if (!surface || surface->number() == weights_) return;
   weights_ = surface->number();
   server_->add_weights(weights_, web::weights_message(*surface));

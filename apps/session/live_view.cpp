@@ -34,9 +34,9 @@ public:
     const PlacedLoop& placed = start.placed;
     gauges_.has_layers = placed.setup.live_layers() != 0;
     const SceneBuilder builder(start.model, placed.setup.placement.units_per_metre);
-    window_->begin(placed.loop->layout(), builder, placed.loop->settings());
+    window_->begin(placed.loop->changes().layout(), builder, placed.loop->changes().settings());
     window_->show_contacts(options_.contact);
-    window_->editor().begin(start.model, model_name_, placed.loop->puppet(0));
+    window_->editor().begin(start.model, model_name_, placed.loop->changes().puppet(0));
     if (edits_) window_->editor().turn(true);
   }
 

@@ -56,19 +56,20 @@ Result<void> RunModels::prepare(const flow::ModelVersion& version) {
 
 std::optional<std::string> RunModels::go_to(const flow::Awaited& awaited) {
   flow::DeformLoop& loop = *placed_.loop;
-  if (is_handing_over() || loop.is_changing()) return std::nullopt; // it is asked for again
-  const flow::ModelVersion* const version = loop.model(awaited.model);
-  if (version != nullptr && version != &loop.newest_model())
+  if (is_handing_over() || loop.changes().is_changing())
+    return std::nullopt; // it is asked for again
+  const auto version = loop.changes().model(awaited.model);
+  if (version != nullptr && version.get() != &loop.changes().newest_model())
     if (const auto prepared = prepare(*version); !prepared) return prepared.error().message;
-  if (loop.change_to(awaited)) return std::nullopt;
+  if (loop.changes().change_to(awaited)) return std::nullopt;
   return "settings that nothing can be done with; the run goes on as it was";
 }
 
 std::optional<std::string> RunModels::follow(bool may_begin) {
   using std::chrono::seconds;
   flow::DeformLoop& loop = *placed_.loop;
-  if (stage_ == Stage::handing_over && !loop.is_changing()) stage_ = Stage::none;
-  if (stage_ == Stage::holding_still && loop.is_still()) return hand_over();
+  if (stage_ == Stage::handing_over && !loop.changes().is_changing()) stage_ = Stage::none;
+  if (stage_ == Stage::holding_still && loop.changes().is_still()) return hand_over();
   if (making_.valid() && making_.wait_for(seconds(0)) == std::future_status::ready) {
     Made made = making_.get();
     if (!made.finer) {
@@ -82,7 +83,7 @@ std::optional<std::string> RunModels::follow(bool may_begin) {
   // Another version would forget what can be redone, and nobody has asked for it.
   if (is_by_itself_ && stage_ == Stage::none && loop.frames().front().redo_steps > 0)
     finer_.reset();
-  if (finer_ && stage_ == Stage::none && may_begin && loop.hold_still())
+  if (finer_ && stage_ == Stage::none && may_begin && loop.changes().hold_still())
     stage_ = Stage::holding_still;
   if (asked_ && !finer_ && !making_.valid() && !is_handing_over()) return begin();
   if (refine_to_ > 0 && !asked_ && !finer_ && !making_.valid() && !is_handing_over()) look();
@@ -93,7 +94,7 @@ std::optional<std::string> RunModels::follow(bool may_begin) {
 void RunModels::look() {
   flow::DeformLoop& loop = *placed_.loop;
   const flow::Frame& frame = loop.frames().front();
-  const flow::ModelVersion& model = loop.newest_model();
+  const flow::ModelVersion& model = loop.changes().newest_model();
   const HostTime now = HostClock::now();
   if (now - looked_at_ < look_interval || frame.model != model.number || frame.redo_steps > 0)
     return;
@@ -129,7 +130,8 @@ void RunModels::look() {
 std::optional<std::string> RunModels::choose_part() {
   flow::DeformLoop& loop = *placed_.loop;
   const flow::Frame& frame = loop.frames().front();
-  made_.part = frame.model == loop.newest_model().number ? frame.parts.chosen : deform::no_index;
+  made_.part =
+      frame.model == loop.changes().newest_model().number ? frame.parts.chosen : deform::no_index;
   if (made_.part != deform::no_index) return std::nullopt;
   return "no hand has taken a part of this model yet; take the one that is meant, in mode parts "
          "(m)";
@@ -140,7 +142,7 @@ std::optional<std::string> RunModels::begin() {
   is_by_itself_ = false;
   if (is_part_edit(made_) && made_.part == deform::no_index)
     if (auto told = choose_part()) return told;
-  const flow::ModelVersion& model = placed_.loop->newest_model();
+  const flow::ModelVersion& model = placed_.loop->changes().newest_model();
   making_ = std::async(std::launch::async, [&model, how = made_, wire = wire_] {
     return Made{flow::FinerModel::make(model, how, wire.places())};
   });
@@ -152,22 +154,23 @@ std::optional<std::string> RunModels::hand_over() {
   flow::DeformLoop& loop = *placed_.loop;
   std::optional<flow::FinerModel> finer = std::exchange(finer_, {});
   stage_ = Stage::handing_over;
-  if (!finer->is_of(loop.newest_model())) { // somebody has undone meanwhile
-    loop.keep_model();
+  if (!finer->is_of(loop.changes().newest_model())) { // somebody has undone meanwhile
+    loop.changes().keep_model();
     if (is_part_edit(made_)) return "the model is another one now; choose the part again";
     if (!is_by_itself_) asked_ = made_; // of the model that there is now
     return std::nullopt;
   }
   const auto taken =
-      loop.change_model(*finer, [this](const auto& version) { return prepare(version); });
+      loop.changes().change_model(*finer, [this](const auto& version) { return prepare(version); });
   // What nobody has asked for happens many times a minute.
   const bool is_topology = made_.source == flow::ModelSource::topology;
   if (is_by_itself_ && (finer->found_nothing() || (taken && !is_topology))) return std::nullopt;
   if (!taken) return taken.error().message + "; the model stays as it is";
   if (is_topology)
-    return "what was thin has parted, opened or fused; " + parts_text(loop.newest_model());
-  if (is_of_shape(made_.source)) return parts_text(loop.newest_model());
-  return "the model has " + std::to_string(loop.newest_model().layout().vertex_count()) +
+    return "what was thin has parted, opened or fused; " +
+           parts_text(loop.changes().newest_model());
+  if (is_of_shape(made_.source)) return parts_text(loop.changes().newest_model());
+  return "the model has " + std::to_string(loop.changes().newest_model().layout().vertex_count()) +
          " vertices now";
 }
 

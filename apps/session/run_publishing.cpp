@@ -27,7 +27,7 @@ publish::LoopOutline outline_of(const PlacedLoop& placed, const deform::Mesh& mo
 }
 
 publish::LoopOutline outline_of(const LoopStart& start) {
-  return outline_of(start.placed, start.model, start.placed.loop->layout());
+  return outline_of(start.placed, start.model, start.placed.loop->changes().layout());
 }
 
 // Each version of the model has a segment, and the name goes from one to the next.

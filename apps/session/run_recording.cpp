@@ -150,15 +150,15 @@ void RunRecorder::set_file(bool on, const flow::Frame& frame) {
   next_log_ = any ? std::make_unique<flow::InputLog>() : nullptr;
   counts_ = counts();
   is_changing_ = true;
-  placed_.loop->change_log(next_log_.get(), frame.shape);
+  placed_.loop->changes().change_log(next_log_.get(), frame.shape);
 }
 
 std::optional<std::string> RunRecorder::follow() {
   if (!is_changing_) return std::nullopt;
-  const auto state = placed_.loop->take_state();
+  const auto state = placed_.loop->changes().take_state();
   if (!state) return std::nullopt;
   is_changing_ = false;
-  const deform::BlockLayout& layout = placed_.loop->newest_model().layout();
+  const deform::BlockLayout& layout = placed_.loop->changes().newest_model().layout();
   deform::Points vertices;
   layout.unpack(state->shape, vertices);
   end_with(recording::sum_of(vertices));
@@ -175,7 +175,7 @@ std::optional<std::string> RunRecorder::follow() {
     return begun.error().message + "; the run goes on, and is kept in memory only";
   next_log_.reset();
   is_changing_ = true;
-  placed_.loop->change_log(nullptr, state->shape);
+  placed_.loop->changes().change_log(nullptr, state->shape);
   return begun.error().message + "; the run goes on, and is not recorded";
 }
 

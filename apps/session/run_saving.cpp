@@ -61,7 +61,7 @@ std::string RunSaving::save_recording() {
 
 /// Only the file that was opened, or that was saved before, is written over.
 std::string RunSaving::save_puppet(const flow::DeformLoop& loop) {
-  const auto& rig = loop.puppet(loop.newest_puppet());
+  const auto& rig = loop.changes().puppet(loop.changes().newest_puppet());
   if (!rig || out_puppet_.file.empty()) return "there is no puppet or mask to save";
   std::error_code ignored;
   if (!out_puppet_.may_be_replaced && std::filesystem::exists(out_puppet_.file, ignored)) {
@@ -75,7 +75,7 @@ std::string RunSaving::save_puppet(const flow::DeformLoop& loop) {
     puppet.model = *name;
     puppet.text = puppet::text_of(puppet);
   }
-  puppet::count_from(-loop.model(0)->mesh.offset, puppet);
+  puppet::count_from(-loop.changes().model(0)->mesh.offset, puppet);
   const auto written = replace_file(out_puppet_.file, puppet.text);
   if (!written) return written.error().message;
   out_puppet_.may_be_replaced = true;
@@ -86,8 +86,8 @@ std::string RunSaving::save_puppet(const flow::DeformLoop& loop) {
 std::string RunSaving::save_shape(flow::DeformLoop& loop) {
   const std::string file = cli::next_free_name(out_, saved_);
   const flow::Frame& frame = loop.frames().front();
-  deform::Mesh shape = loop.model(frame.model)->mesh;
-  loop.layout(frame.model).unpack(frame.shape, shape.vertices);
+  deform::Mesh shape = loop.changes().model(frame.model)->mesh;
+  loop.changes().layout(frame.model).unpack(frame.shape, shape.vertices);
   const auto written = deform::write_mesh(file, shape, {}, up_);
   return written ? "saved as " + file : written.error().message;
 }

@@ -86,7 +86,7 @@ public:
     if (const auto drawn = picture.write(model_); !drawn) return drawn.error();
     for (Observer* observer : observers_)
       if (const auto ended = observer->end(); !ended) return ended.error();
-    const flow::SculptorOptions& sculptor = placed_.loop->sculptor_options();
+    const flow::SculptorOptions& sculptor = placed_.loop->changes().sculptor_options();
     RunOutcome outcome{placed_.loop->stats(),  elapsed_s_,
                        model_.vertices.cols(), deform::largest_radius(sculptor.deformer.supports),
                        options_.out,           std::move(grants_),
@@ -116,13 +116,17 @@ private:
 
   void update_observers(bool fresh) {
     const flow::Frame& frame = placed_.loop->frames().front();
-    const flow::ModelVersion& model = *placed_.loop->model(frame.model);
+    const flow::ModelVersion& model = *placed_.loop->changes().model(frame.model);
     settle_sinks();
     follow_layers(frame);
     follow_wire(frame);
     follow_stuck(frame);
-    const RunStatus status{
-        frame, model, fresh, gloves_, recorder_.is_to_file(), placed_.loop->puppet(frame.puppet)};
+    const RunStatus status{frame,
+                           model,
+                           fresh,
+                           gloves_,
+                           recorder_.is_to_file(),
+                           placed_.loop->changes().puppet(frame.puppet)};
     for (Observer* observer : observers_) {
       observer->update(status, commands_);
       if (auto puppet = observer->take_puppet()) puppet_ = std::move(puppet);
@@ -146,15 +150,16 @@ private:
     const flow::Frame& frame = loop.frames().front();
     const bool awaits = frame.awaited.has_value(); // by an undo or a redo
     if (fresh && awaits && !settings_) tell(models_.go_to(*frame.awaited));
-    if (settings_ && !loop.is_changing() && !loop.change_settings(*std::exchange(settings_, {})))
+    if (settings_ && !loop.changes().is_changing() &&
+        !loop.changes().change_settings(*std::exchange(settings_, {})))
       report("settings that nothing can be done with; the run goes on as it was (puppets "
              "do not act on clay, and one whose distances go along the surface cannot keep the "
              "volume)");
     if (!awaits) edit_masks();
-    if (puppet_ && !awaits && !loop.is_changing() && !recorder_.is_changing() &&
+    if (puppet_ && !awaits && !loop.changes().is_changing() && !recorder_.is_changing() &&
         !models_.is_handing_over())
       change_puppet();
-    if (taken_puppet_ && !awaits && !loop.is_changing() && !recorder_.is_changing() &&
+    if (taken_puppet_ && !awaits && !loop.changes().is_changing() && !recorder_.is_changing() &&
         !models_.is_handing_over())
       follow_taken_puppet();
     // A recording has the whole of a wire that cuts in it, or nothing of it.
@@ -211,8 +216,9 @@ private:
         static_cast<std::size_t>(functions) > frame_capacity(placed_).functions)
       return report("a puppet with so many points more cannot be published; save it, and begin "
                     "again with it");
-    recorder_.add_puppet(loop.next_puppet(), *rig);
-    if (const auto changed = loop.change_puppet(rig); !changed) report(changed.error().message);
+    recorder_.add_puppet(loop.changes().next_puppet(), *rig);
+    if (const auto changed = loop.changes().change_puppet(rig); !changed)
+      report(changed.error().message);
   }
   /// To a puppet of the take, which the loop has already if the take has changed to it before.
   void follow_taken_puppet() {
@@ -222,13 +228,14 @@ private:
     const auto of_take = puppets.find(number);
     const auto known = taken_puppets_.find(number);
     if (of_take == puppets.end() || known != taken_puppets_.end()) {
-      const auto changed = loop.change_puppet(of_take == puppets.end() ? 0 : known->second);
+      const auto changed =
+          loop.changes().change_puppet(of_take == puppets.end() ? 0 : known->second);
       if (!changed) report(changed.error().message);
       return;
     }
-    auto rig = recording::rig_of(*of_take->second, loop.model(0)->mesh);
+    auto rig = recording::rig_of(*of_take->second, loop.changes().model(0)->mesh);
     if (!rig) return report(rig.error().message);
-    taken_puppets_[number] = loop.next_puppet();
+    taken_puppets_[number] = loop.changes().next_puppet();
     puppet_ = *std::move(rig);
     change_puppet();
   }
@@ -236,14 +243,14 @@ private:
   void edit_masks() {
     const flow::DeformLoop& loop = *placed_.loop;
     for (const flow::Command& command : std::exchange(mask_edits_, {})) {
-      if (!puppet_) puppet_ = loop.puppet(loop.newest_puppet());
-      auto edited = edited_masks(command, puppet_, loop.model(0)->mesh.vertices);
+      if (!puppet_) puppet_ = loop.changes().puppet(loop.changes().newest_puppet());
+      auto edited = edited_masks(command, puppet_, loop.changes().model(0)->mesh.vertices);
       if (edited)
         puppet_ = *std::move(edited);
       else
         report(edited.error().message);
     }
-    if (puppet_ == loop.puppet(loop.newest_puppet())) puppet_.reset();
+    if (puppet_ == loop.changes().puppet(loop.changes().newest_puppet())) puppet_.reset();
   }
   void tell(const std::optional<std::string>& message) {
     if (message) report(*message);
@@ -284,10 +291,10 @@ private:
 
   void play_otherwise(const flow::Command& command) noexcept {
     const flow::DeformLoop& loop = *placed_.loop;
-    if (!flow::is_played(loop.puppet(loop.newest_puppet()).get()) &&
+    if (!flow::is_played(loop.changes().puppet(loop.changes().newest_puppet()).get()) &&
         !flow::is_played(puppet_.get()) && std::holds_alternative<flow::SetSymmetry>(command))
       mask_edits_.push_back(command);
-    else if (!flow::is_played(loop.puppet(loop.newest_puppet()).get()))
+    else if (!flow::is_played(loop.changes().puppet(loop.changes().newest_puppet()).get()))
       report("there is no puppet here, and fingertips touch the model; g lets go of it");
     else if (!loop_commands_.try_push(command))
       report("the loop does not answer, so it was not told how to play the puppet");
@@ -304,7 +311,7 @@ private:
     const auto is_due = [this] {
       return loop_commands_.size() > 0 || settings_ || puppet_ || taken_puppet_ ||
              !mask_edits_.empty() || record_ || recorder_.is_changing() || models_.is_due() ||
-             models_.is_handing_over() || placed_.loop->is_changing();
+             models_.is_handing_over() || placed_.loop->changes().is_changing();
     };
     auto& frames = placed_.loop->frames();
     const HostTime begin = HostClock::now();
@@ -344,7 +351,7 @@ private:
     recorder_.end(shape.vertices); // which compares with the model as it was loaded
     model_ = std::move(shape);
     if (loop.frames().update()) picture.add(loop.frames().front());
-    if (const auto* const last = loop.model(loop.frames().front().model))
+    if (const auto last = loop.changes().model(loop.frames().front().model))
       picture.set_rest(last->mesh.vertices);
   }
 
@@ -391,7 +398,7 @@ private:
     HostTime next_progress = thread.start;
     bool is_news = false;
     while (!thread.ended && !cli::stop_requested() && !is_over(options_, thread.start)) {
-      placed_.loop->refill_undo();
+      placed_.loop->changes().refill_undo();
       const bool fresh = frames.update();
       if (fresh) {
         is_news = true;

@@ -22,10 +22,10 @@ void SettingsChanger::update(flow::DeformLoop& loop, HostTime start) {
           from_seconds(seconds_a_minute / per_minute_);
   // There and back, so that the hands shape the same all the time.
   constexpr double larger = 1.25;
-  flow::LoopSettings settings = loop.settings();
+  flow::LoopSettings settings = loop.changes().settings();
   for (double& radius_m : settings.radius_m)
     radius_m *= asked_ % 2 == 0 ? larger : 1.0 / larger;
-  if (loop.change_settings(settings)) ++asked_;
+  if (loop.changes().change_settings(settings)) ++asked_;
 }
 
 } // namespace nendo::stress

@@ -85,9 +85,9 @@ struct Watch {
     ++pictures;
     const bool fresh = loop.frames().update();
     const flow::Frame& frame = loop.frames().front();
-    observer->update(
-        {frame, *loop.model(frame.model), fresh, gloves, false, loop.puppet(frame.puppet)},
-        commands);
+    observer->update({frame, *loop.changes().model(frame.model), fresh, gloves, false,
+                      loop.changes().puppet(frame.puppet)},
+                     commands);
     bool ends = false;
     std::optional<flow::LoopSettings> wanted;
     commands.drain([&](const flow::Command& command) noexcept {
@@ -98,7 +98,7 @@ struct Watch {
     });
     if (!wanted && fresh && loop.frames().front().awaited)
       wanted = loop.frames().front().awaited->settings;
-    if (wanted) loop.change_settings(*wanted);
+    if (wanted) loop.changes().change_settings(*wanted);
     return ends;
   }
 };

@@ -61,9 +61,9 @@ Result<std::unique_ptr<RecordedFrames>> RecordedFrames::open(const std::filesyst
 
 std::optional<PlayedPuppet> RecordedFrames::puppet() const {
   flow::DeformLoop& loop = replay_->loop();
-  const auto& rig = loop.puppet(loop.frames().front().puppet);
+  const auto& rig = loop.changes().puppet(loop.frames().front().puppet);
   if (!flow::is_played(rig.get())) return std::nullopt;
-  return PlayedPuppet{rig, loop.sculptor_options()};
+  return PlayedPuppet{rig, loop.changes().sculptor_options()};
 }
 
 bool RecordedFrames::next() {

@@ -22,15 +22,17 @@ public:
                                                       const deform::Mesh& model);
 
   const deform::Mesh& model(std::uint32_t version) const override {
-    return replay_->loop().model(version)->mesh;
+    return replay_->loop().changes().model(version)->mesh;
   }
   const deform::BlockLayout& layout(std::uint32_t version) const override {
-    return replay_->loop().layout(version);
+    return replay_->loop().changes().layout(version);
   }
   bool has_one_model() const override { return has_one_model_; }
   std::optional<PlayedPuppet> puppet() const override;
   const puppet::Rig* masks() const override {
-    return replay_->loop().rig() == nullptr ? replay_->loop().puppet(0).get() : nullptr;
+    return replay_->loop().changes().first_puppet() == nullptr
+               ? replay_->loop().changes().puppet(0).get()
+               : nullptr;
   }
   double rate_hz() const override { return rate_hz_; }
   double duration_s() const override { return duration_s_; }

@@ -83,7 +83,7 @@ void use_puppet(const puppet::Rig& first, const puppet::Rig& rig, flow::Sculptor
 /// The puppet before the first tick, or the one that took its place; or the masks of fingertips.
 void keep_puppet(const flow::DeformLoop& loop, const puppet::RigState& state,
                  std::shared_ptr<const puppet::Rig> last, Timeline& timeline) {
-  const auto& first = loop.puppet(0);
+  const auto& first = loop.changes().puppet(0);
   if (!flow::is_played(first.get())) {
     if (first) timeline.masks = {first};
     return;
@@ -91,7 +91,7 @@ void keep_puppet(const flow::DeformLoop& loop, const puppet::RigState& state,
   timeline.rig = last ? std::move(last) : first;
   timeline.rig_state = first_state(*timeline.rig);
   timeline.rig_state.symmetric = state.symmetric;
-  timeline.sculptor.surface = loop.sculptor_options().surface;
+  timeline.sculptor.surface = loop.changes().sculptor_options().surface;
   if (timeline.rig != first) use_puppet(*first, *timeline.rig, timeline.sculptor);
   const auto from = puppet::functions_before(first->puppet(), timeline.rig->puppet());
   for (std::size_t at = 0; at < from.size(); ++at) {
@@ -133,7 +133,7 @@ public:
   /// What the puppet is told that is played then, and marks. Roles of functions that it has not say
   /// nothing; a loop passes over them, too.
   void hear_told(const flow::Command& command, const flow::DeformLoop& loop) {
-    const auto& played = loop.puppet(loop.newest_puppet());
+    const auto& played = loop.changes().puppet(loop.changes().newest_puppet());
     const auto* role = std::get_if<flow::SetRole>(&command);
     if (role != nullptr && played && timeline_.rig) {
       if (const auto number = number_in(*timeline_.rig, *played, role->function))
@@ -338,7 +338,7 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
   made.timeline = begin_timeline(setup, take);
   std::optional<recording::PuppetChange> change;
   std::shared_ptr<const puppet::Rig> last;
-  if ((*replay)->loop().rig() != nullptr) {
+  if ((*replay)->loop().changes().first_puppet() != nullptr) {
     auto scanned = TakeReader::open(take);
     if (!scanned) return scanned.error();
     change = last_change_in(*std::move(scanned));
@@ -358,17 +358,17 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
     if (const auto* model_change = std::get_if<flow::ChangeModel>(&*entry))
       follower.hear(*model_change, (*replay)->loop().drawn_wire());
     const auto* settings = std::get_if<flow::LoopSettings>(&*entry);
-    if (settings != nullptr && !follower.hear(*settings, (*replay)->loop().settings()))
+    if (settings != nullptr && !follower.hear(*settings, (*replay)->loop().changes().settings()))
       return bad("changes the filter of the hands on the way, which a timeline cannot; cut out the "
                  "part before that with `nendo recording cut`");
     const bool ticked = (*replay)->feed(*entry);
     if (std::holds_alternative<recording::PuppetChange>(*entry) && !made.timeline.rig) {
       const flow::DeformLoop& loop = (*replay)->loop();
-      const auto& masks = loop.puppet(loop.newest_puppet());
+      const auto& masks = loop.changes().puppet(loop.changes().newest_puppet());
       if (flow::is_played(masks.get()))
         return bad("begins a puppet on the way, and a timeline has one from the beginning on; save "
                    "the puppet, and record a run with it by --puppet FILE");
-      follower.hear(loop.newest_puppet(), masks);
+      follower.hear(loop.changes().newest_puppet(), masks);
     }
     if (!ticked) continue;
     auto& frames = (*replay)->loop().frames();

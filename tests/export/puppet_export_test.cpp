@@ -97,7 +97,7 @@ struct RecordedPuppet {
       const double turn = 6.283185307179586 * static_cast<double>(tick) / (ticks - 1);
       test.bend(static_cast<int>(30.0 * (1.0 - std::cos(turn))), woke);
       if (motion.edits && (tick == 20 || tick == 40)) {
-        const auto& now = test.loop->puppet(test.loop->newest_puppet());
+        const auto& now = test.loop->changes().puppet(test.loop->changes().newest_puppet());
         if (!played.change_puppet(edited(*now, tick == 20, test.model)))
           throw std::runtime_error("the edit was refused");
       }

@@ -73,17 +73,18 @@ public:
   /// Edges there are split and collapsed, as who runs the loop does it. Hands stay at that part.
   void refine(double part) {
     DeformLoop& loop = *test_.loop;
-    auto finer = FinerModel::make(loop.newest_model(), {0, ModelSource::refined, 100'000});
+    auto finer =
+        FinerModel::make(loop.changes().newest_model(), {0, ModelSource::refined, 100'000});
     REQUIRE(finer);
-    REQUIRE(loop.hold_still());
+    REQUIRE(loop.changes().hold_still());
     go(part, 1);
-    REQUIRE(loop.change_model(*finer));
+    REQUIRE(loop.changes().change_model(*finer));
     go(part, 1);
   }
   void change_to(Mode mode) {
-    LoopSettings settings = test_.loop->settings();
+    LoopSettings settings = test_.loop->changes().settings();
     settings.mode = mode;
-    REQUIRE(test_.loop->change_settings(settings));
+    REQUIRE(test_.loop->changes().change_settings(settings));
   }
   const Frame& frame() { return test_.loop->frames().front(); }
   Points shape() { return test_.vertices_of(frame()); }
@@ -246,7 +247,8 @@ TEST_SUITE("clay_loop") {
     presses.ask(Request::undo);
     for (int tick = 0; tick < 3; ++tick) {
       presses.go(0.0, 1);
-      if (const auto awaited = presses.frame().awaited) presses.test().loop->change_to(*awaited);
+      if (const auto awaited = presses.frame().awaited)
+        presses.test().loop->changes().change_to(*awaited);
     }
     CHECK(presses.frame().settings.mode == Mode::clay);
     CHECK(presses.shape() == pressed);
@@ -272,7 +274,8 @@ TEST_SUITE("clay_loop") {
     CHECK(alone > 0.02);
     presses.ask(Request::reset);
     presses.go(0.0, 2);
-    REQUIRE(presses.test().loop->change_puppet(presses.rig_of("version = 1\nmirror = \"x\"\n")));
+    REQUIRE(presses.test().loop->changes().change_puppet(
+        presses.rig_of("version = 1\nmirror = \"x\"\n")));
     presses.press();
     CHECK(presses.frame().symmetric);
     CHECK(farthest(presses.shape(), model) > 0.02);
@@ -284,16 +287,16 @@ TEST_SUITE("clay_loop") {
     presses.ask(Request::redo);
     presses.go(0.0, 2);
     CHECK(presses.shape() == pressed);
-    REQUIRE(presses.test().loop->change_puppet(presses.rig_of("version = 1\n")));
+    REQUIRE(presses.test().loop->changes().change_puppet(presses.rig_of("version = 1\n")));
     presses.go(0.0, 2);
     CHECK_FALSE(presses.frame().symmetric);
   }
 
   TEST_CASE("clay begins with symmetry as well") {
     LoopUnderTest test(Mode::type1, {.puppet = "version = 1\nmirror = \"x\"\n"});
-    LoopSettings settings = test.loop->settings();
+    LoopSettings settings = test.loop->changes().settings();
     settings.mode = Mode::clay;
-    CHECK(test.loop->change_settings(settings));
+    CHECK(test.loop->changes().change_settings(settings));
   }
 
   TEST_CASE("clay that is refined while hands press it keeps its volume") {
@@ -315,11 +318,11 @@ TEST_SUITE("clay_loop") {
   TEST_CASE("masks come and go while hands press, and what they hold keeps its bits") {
     Presses presses;
     const deform::Points& model = presses.test().model.vertices;
-    REQUIRE(presses.test().loop->change_puppet(
+    REQUIRE(presses.test().loop->changes().change_puppet(
         presses.rig_of("version = 1\n[[masks]]\nat = [0, 0, 0]\nradius = 9\n")));
     presses.press();
     CHECK(farthest(presses.shape(), model) == 0.0); // all of it is held
-    REQUIRE(presses.test().loop->change_puppet(
+    REQUIRE(presses.test().loop->changes().change_puppet(
         presses.rig_of("version = 1\n[[masks]]\nat = [0, 9, 0]\nradius = 0.1\n")));
     presses.press();
     CHECK(farthest(presses.shape(), model) > 0.02);
@@ -327,11 +330,12 @@ TEST_SUITE("clay_loop") {
 
   TEST_CASE("a puppet's points do not press") {
     LoopUnderTest test(Mode::type1, {.puppet = test::ball_puppet});
-    LoopSettings settings = test.loop->settings();
+    LoopSettings settings = test.loop->changes().settings();
     settings.mode = Mode::clay;
-    CHECK_FALSE(test.loop->change_settings(settings));
+    CHECK_FALSE(test.loop->changes().change_settings(settings));
     Presses presses;
-    const auto refused = presses.test().loop->change_puppet(presses.rig_of(test::ball_puppet));
+    const auto refused =
+        presses.test().loop->changes().change_puppet(presses.rig_of(test::ball_puppet));
     REQUIRE_FALSE(refused);
     CHECK(refused.error().message.find("type 1") != std::string::npos);
   }

@@ -44,7 +44,7 @@ TEST_SUITE("exchange") {
       CHECK(gap(shape, loop.test.model.vertices) > 1e-2);
       std::mt19937 random(7);
       for (int at = 0; at < 60; ++at) {
-        loop.change(test::any_settings(loop.test.loop->settings(), random));
+        loop.change(test::any_settings(loop.test.loop->changes().settings(), random));
         for (int tick = 0; tick < 2; ++tick)
           CHECK(gap(loop.bent(15), shape) < 1e-6);
       }
@@ -55,7 +55,7 @@ TEST_SUITE("exchange") {
   TEST_CASE("a change of the filter in mid-motion does not move the shape by itself") {
     Clocked loop(Mode::type1, {.rings_of_ball = 12, .filter = hand::FilterKind::one_euro});
     deform::Points shape = loop.stroke(0, 30); // the filter is late now
-    LoopSettings settings = loop.test.loop->settings();
+    LoopSettings settings = loop.test.loop->changes().settings();
     settings.filter.kind = hand::FilterKind::off;
     loop.change(settings);
     shape = loop.tick();
@@ -70,7 +70,7 @@ TEST_SUITE("exchange") {
       std::mt19937 random(seed);
       Clocked loop(seed % 2 == 0 ? Mode::type1 : Mode::type2);
       loop.stroke(0, 15);
-      const LoopSettings before = loop.test.loop->settings();
+      const LoopSettings before = loop.test.loop->changes().settings();
       LoopSettings settings = before;
       while (settings == before)
         settings = test::any_settings(before, random);
@@ -78,7 +78,7 @@ TEST_SUITE("exchange") {
       loop.bent(16);
       // Another loop, of the options that these settings mean, which begins with this shape.
       LoopOptions options = loop.test.options;
-      options.sculptor = loop.test.loop->sculptor_options();
+      options.sculptor = loop.test.loop->changes().sculptor_options();
       const LoopSettings of_sculptor =
           settings_of(options.sculptor, settings.filter, loop.test.placement.units_per_metre);
       CHECK(of_sculptor.mode == settings.mode);
@@ -114,7 +114,7 @@ TEST_SUITE("exchange") {
       Clocked loop(from);
       std::vector<deform::Points> shapes{loop.test.model.vertices};
       loop.stroke(0, 15);
-      const LoopSettings first = loop.test.loop->settings();
+      const LoopSettings first = loop.test.loop->changes().settings();
       LoopSettings settings = with_radius(first, 0.3);
       settings.mode = to;
       const LoopSettings second = settings;
@@ -169,7 +169,8 @@ TEST_SUITE("exchange") {
         const int next = static_cast<int>(random() % 30);
         loop.stroke(counts, next);
         counts = next;
-        if (random() % 2 == 0) loop.change(test::any_settings(loop.test.loop->settings(), random));
+        if (random() % 2 == 0)
+          loop.change(test::any_settings(loop.test.loop->changes().settings(), random));
         if (random() % 3 == 0) loop.test.commands.try_push(Request::commit);
         if (random() % 8 == 0) loop.test.commands.try_push(Request::reset);
         loop.bent(counts, random() % 2 == 0 ? 11ms : 2000ms);
@@ -195,7 +196,7 @@ TEST_SUITE("exchange") {
   TEST_CASE("a change that led nowhere is undone at once, and a new one forgets what was undone") {
     Clocked loop(Mode::type1);
     loop.stroke(0, 10);
-    const LoopSettings first = loop.test.loop->settings();
+    const LoopSettings first = loop.test.loop->changes().settings();
     loop.change(with_radius(first, 0.3));
     loop.bent(10);
     loop.change(first); // within a second
@@ -215,7 +216,7 @@ TEST_SUITE("exchange") {
 
   TEST_CASE("an undo that waits for settings holds back what comes after it, and not for ever") {
     Clocked loop(Mode::type1);
-    const LoopSettings first = loop.test.loop->settings();
+    const LoopSettings first = loop.test.loop->changes().settings();
     loop.stroke(0, 10);
     loop.change(with_radius(first, 0.3));
     loop.bent(10);
@@ -248,7 +249,7 @@ TEST_SUITE("exchange") {
   TEST_CASE("what is shaped between changes within a second is one step") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       Clocked loop(mode);
-      LoopSettings settings = loop.test.loop->settings();
+      LoopSettings settings = loop.test.loop->changes().settings();
       loop.change(with_radius(settings, 0.31)); // nothing is shaped yet: the change alone
       loop.bent(0);
       CHECK(loop.kinds() == std::vector{StepKind::radius});
@@ -295,10 +296,12 @@ TEST_SUITE("exchange") {
     options.sculptor.deformer.supports = {{{0.4, 1.0}, {1.5, 0.25}}, {{3, {0.75, 2.0}}}};
     loop.test.loop = std::make_unique<DeformLoop>(loop.test.model, loop.test.placement,
                                                   loop.test.inputs, options);
-    const LoopSettings first = loop.test.loop->settings();
+    const LoopSettings first = loop.test.loop->changes().settings();
     loop.change(with_radius(first, 0.3));
     loop.bent(5);
-    const auto supports = [&] { return loop.test.loop->sculptor_options().deformer.supports; };
+    const auto supports = [&] {
+      return loop.test.loop->changes().sculptor_options().deformer.supports;
+    };
     CHECK(supports().shared.size() == 1);
     loop.step(Request::undo);
     CHECK(supports().shared == options.sculptor.deformer.supports.shared);
@@ -307,21 +310,21 @@ TEST_SUITE("exchange") {
 
   TEST_CASE("settings that nothing can be done with are refused, and change nothing") {
     Clocked loop(Mode::type1);
-    const LoopSettings before = loop.test.loop->settings();
+    const LoopSettings before = loop.test.loop->changes().settings();
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double radius : {0.0, -0.1, nan, 1e300, std::numeric_limits<double>::infinity()}) {
       LoopSettings settings = before;
       settings.radius_m[3] = radius;
-      CHECK_FALSE(loop.test.loop->change_settings(settings));
+      CHECK_FALSE(loop.test.loop->changes().change_settings(settings));
     }
     LoopSettings settings = before;
     settings.piece_fraction = nan;
-    CHECK_FALSE(loop.test.loop->change_settings(settings));
+    CHECK_FALSE(loop.test.loop->changes().change_settings(settings));
     settings = before;
     settings.filter.min_cutoff_hz = nan;
-    CHECK_FALSE(loop.test.loop->change_settings(settings));
-    CHECK(loop.test.loop->settings() == before);
-    CHECK_FALSE(loop.test.loop->is_changing());
+    CHECK_FALSE(loop.test.loop->changes().change_settings(settings));
+    CHECK(loop.test.loop->changes().settings() == before);
+    CHECK_FALSE(loop.test.loop->changes().is_changing());
     loop.tick();
     CHECK(loop.test.loop->stats().changes == 0);
   }
@@ -329,21 +332,21 @@ TEST_SUITE("exchange") {
   TEST_CASE(
       "of changes that the loop has not taken only the last counts, and none if it leads back") {
     Clocked loop(Mode::type1);
-    const LoopSettings before = loop.test.loop->settings();
+    const LoopSettings before = loop.test.loop->changes().settings();
     loop.change(with_radius(before, 0.2));
     loop.change(with_radius(before, 0.25));
-    CHECK(loop.test.loop->is_changing());
+    CHECK(loop.test.loop->changes().is_changing());
     loop.bent(1);
-    CHECK_FALSE(loop.test.loop->is_changing());
+    CHECK_FALSE(loop.test.loop->changes().is_changing());
     CHECK(loop.test.loop->stats().changes == 1);
     loop.bent(2);
     CHECK(loop.frame().settings == with_radius(before, 0.25));
     loop.change(before);
     loop.change(with_radius(before, 0.25));
-    CHECK_FALSE(loop.test.loop->is_changing());
+    CHECK_FALSE(loop.test.loop->changes().is_changing());
     loop.bent(3);
     CHECK(loop.test.loop->stats().changes == 1);
-    CHECK(loop.test.loop->sculptor_options().deformer.supports.shared.front().radius ==
+    CHECK(loop.test.loop->changes().sculptor_options().deformer.supports.shared.front().radius ==
           doctest::Approx(0.25 * loop.test.placement.units_per_metre));
   }
 
@@ -363,14 +366,15 @@ TEST_SUITE("exchange") {
       int counts = 0;
       for (std::uint64_t tick = 0; tick < ticks; ++tick) {
         if (random() % 12 == 0)
-          test.loop->change_settings(test::any_settings(test.loop->settings(), random));
+          test.loop->changes().change_settings(
+              test::any_settings(test.loop->changes().settings(), random));
         maker.turn(*test.loop);
         if (tick % 300 == 299) // back to coarser models, from which finer ones can be made
           for (int undo = 0; undo < 30; ++undo)
             test.commands.try_push(Request::undo);
         if (random() % 400 == 0 && maker.is_idle(*test.loop))
-          test.loop->change_log(random() % 2 == 0 ? &log : nullptr,
-                                test.loop->frames().front().shape);
+          test.loop->changes().change_log(random() % 2 == 0 ? &log : nullptr,
+                                          test.loop->frames().front().shape);
         if (random() % 8 == 0) test.commands.try_push(requests[random() % requests.size()]);
         if (random() % 8 == 0)
           test.commands.try_push(WristMove::to(Side::left, test.placement.T_stage_wrist[0]));
@@ -387,10 +391,10 @@ TEST_SUITE("exchange") {
         }
         if (random() % 2 == 0 && test.loop->frames().update()) // a reader that comes when it likes
           if (const auto& awaited = test.loop->frames().front().awaited)
-            test.loop->change_to(*awaited);
+            test.loop->changes().change_to(*awaited);
         log.drain([](const auto&) noexcept {});
-        test.loop->take_state();
-        test.loop->refill_undo();
+        test.loop->changes().take_state();
+        test.loop->changes().refill_undo();
       }
       changes += test.loop->stats().changes;
       models += maker.made();
@@ -421,22 +425,23 @@ TEST_SUITE("exchange") {
     };
     for (int turn = 0; turn < 200; ++turn) {
       test.bend(turn % 30, HostClock::now());
-      test.loop->change_settings(test::any_settings(test.loop->settings(), random));
-      if (turn % 10 == 0) test.loop->change_log(&log, test.loop->frames().front().shape);
+      test.loop->changes().change_settings(
+          test::any_settings(test.loop->changes().settings(), random));
+      if (turn % 10 == 0) test.loop->changes().change_log(&log, test.loop->frames().front().shape);
       test.loop->frames().update();
       if (turn % 3 == 0) std::this_thread::sleep_for(1ms);
-      if (test.loop->take_state()) ++logs;
+      if (test.loop->changes().take_state()) ++logs;
       log.drain(read);
     }
     const HostTime latest = HostClock::now() + 10s;
-    while (test.loop->is_changing() && HostClock::now() < latest)
+    while (test.loop->changes().is_changing() && HostClock::now() < latest)
       std::this_thread::sleep_for(1ms);
     over = true;
     thread.join();
     log.drain(read);
-    while (test.loop->take_state())
+    while (test.loop->changes().take_state())
       ++logs;
-    CHECK(last == test.loop->settings());
+    CHECK(last == test.loop->changes().settings());
     CHECK(taken == test.loop->stats().changes);
     CHECK(taken > 20);
     CHECK(logs > 5);

@@ -128,10 +128,10 @@ TEST_SUITE("hold") {
       settings.hold = hold;
       settings.keep_volume = keep;
       const deform::Points before = test.vertices_of(go_on(1));
-      REQUIRE(test.loop->change_settings(settings));
+      REQUIRE(test.loop->changes().change_settings(settings));
       const flow::Frame& taken = go_on(1);
       CHECK(taken.shape.block_count() > 0);
-      while (test.loop->is_changing())
+      while (test.loop->changes().is_changing())
         go_on(1);
       const flow::Frame& frame = go_on(6);
       CHECK(frame.settings == settings);

@@ -47,7 +47,7 @@ struct Player {
           test::bent_sample(hands[at].second, performances[at](number), now - 1ms));
     const Frame& frame = played.tick(number, begin);
     Seen seen;
-    played.loop->layout(frame.model).unpack(frame.shape, seen.vertices);
+    played.loop->changes().layout(frame.model).unpack(frame.shape, seen.vertices);
     for (std::size_t slot = 0; slot < 2; ++slot)
       seen.angles[slot] = frame.hands[slot].angles;
     return seen;

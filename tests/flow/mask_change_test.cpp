@@ -25,12 +25,12 @@ std::shared_ptr<const puppet::Rig> rig_of(const Result<puppet::Puppet>& puppet) 
 }
 
 puppet::Rig masks_of(const Clocked& loop) {
-  const auto& now = loop.test.loop->puppet(loop.test.loop->newest_puppet());
+  const auto& now = loop.test.loop->changes().puppet(loop.test.loop->changes().newest_puppet());
   return now ? *now : puppet::Rig(puppet::Puppet{}, deform::Points(3, 0));
 }
 
 void change(Clocked& loop, const Result<puppet::Puppet>& to) {
-  REQUIRE(loop.test.loop->change_puppet(rig_of(to)));
+  REQUIRE(loop.test.loop->changes().change_puppet(rig_of(to)));
 }
 
 /// Which vertices have other bits.
@@ -111,7 +111,7 @@ TEST_SUITE("mask change") {
       CAPTURE(name_of(mode));
       CAPTURE(int{number});
       Clocked loop(mode);
-      LoopSettings settings = loop.test.loop->settings();
+      LoopSettings settings = loop.test.loop->changes().settings();
       if (mode == Mode::type2) settings.brushes.fill(brush);
       loop.change(settings);
       change(loop, puppet::with_symmetry(masks_of(loop), true, 0.0));
@@ -163,7 +163,7 @@ TEST_SUITE("mask change") {
       shape_and(
           3, 20,
           [&] {
-            LoopSettings settings = loop.test.loop->settings();
+            LoopSettings settings = loop.test.loop->changes().settings();
             settings.radius_m.fill(0.7 * settings.radius_m[0]);
             loop.change(settings);
           },
@@ -179,7 +179,8 @@ TEST_SUITE("mask change") {
       const auto settled = [&](Request request) {
         REQUIRE(loop.test.commands.try_push(request));
         loop.tick();
-        if (loop.frame().awaited) REQUIRE(loop.test.loop->change_to(*loop.frame().awaited));
+        if (loop.frame().awaited)
+          REQUIRE(loop.test.loop->changes().change_to(*loop.frame().awaited));
         loop.tick();
         return loop.tick();
       };
@@ -197,7 +198,7 @@ TEST_SUITE("mask change") {
     test::LoopFixture fixture{.rings_of_ball = 12,
                               .puppet = "version = 1\n[[masks]]\nat = [0, 1, 0]\nradius = 1.2\n"};
     Clocked loop(Mode::type1, fixture);
-    CHECK(loop.test.loop->rig() == nullptr);
+    CHECK(loop.test.loop->changes().first_puppet() == nullptr);
     loop.stroke(0, 20);
     const auto held = [&](const deform::Points& model) {
       const Eigen::VectorXd weights = puppet::mask_weights(masks_of(loop).puppet(), model);
@@ -207,14 +208,14 @@ TEST_SUITE("mask change") {
     const auto held_at_first = held(loop.test.model.vertices);
     for (const Eigen::Index v : moved(loop.test.model.vertices, coarse))
       CHECK_FALSE(held_at_first[v]);
-    FinerModel finer(loop.test.loop->newest_model());
-    REQUIRE(loop.test.loop->hold_still());
+    FinerModel finer(loop.test.loop->changes().newest_model());
+    REQUIRE(loop.test.loop->changes().hold_still());
     loop.tick();
-    REQUIRE(loop.test.loop->is_still());
-    REQUIRE(loop.test.loop->change_model(finer));
+    REQUIRE(loop.test.loop->changes().is_still());
+    REQUIRE(loop.test.loop->changes().change_model(finer));
     const deform::Points before = loop.tick();
     const deform::Points after = loop.stroke(20, 2);
-    const deform::Points& model = loop.test.loop->newest_model().mesh.vertices;
+    const deform::Points& model = loop.test.loop->changes().newest_model().mesh.vertices;
     REQUIRE(after.cols() == model.cols());
     const auto held_now = held(model);
     CHECK(held_now.count() > 2 * held_at_first.count());
@@ -227,11 +228,11 @@ TEST_SUITE("mask change") {
 
   TEST_CASE("hands that play a puppet are given no masks without points") {
     Clocked loop(Mode::type1, {.rings_of_ball = 12, .puppet = test::ball_puppet});
-    const auto refused = loop.test.loop->change_puppet(
+    const auto refused = loop.test.loop->changes().change_puppet(
         rig_of(puppet::parse_puppet("version = 1\ninverted = true\n", "masks")));
     REQUIRE_FALSE(refused);
     CHECK(refused.error().message.find("needs points") != std::string::npos);
-    CHECK(loop.test.loop->next_puppet() == 1);
+    CHECK(loop.test.loop->changes().next_puppet() == 1);
   }
 
   TEST_CASE(
@@ -246,7 +247,7 @@ TEST_SUITE("mask change") {
       test::tick_with_changes(
           test, log, ticks, seed,
           [](const auto& now, auto& random) { return test::any_masks(now, random); }, sum);
-      masks += test.loop->next_puppet();
+      masks += test.loop->changes().next_puppet();
     }
     CHECK(sum.allocations == 0);
     CHECK(sum.frees == 0);

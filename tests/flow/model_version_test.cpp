@@ -27,11 +27,11 @@ struct Versioned : test::Clocked {
   }
   /// With hands that rest.
   deform::Points subdivide() {
-    FinerModel finer(loop().newest_model());
-    REQUIRE(loop().hold_still());
+    FinerModel finer(loop().changes().newest_model());
+    REQUIRE(loop().changes().hold_still());
     tick();
-    REQUIRE(loop().is_still());
-    REQUIRE(loop().change_model(finer));
+    REQUIRE(loop().changes().is_still());
+    REQUIRE(loop().changes().change_model(finer));
     return tick();
   }
 };
@@ -59,7 +59,8 @@ TEST_SUITE("model_version") {
       for (int tick = 0; tick < 3; ++tick)
         CHECK(gap(run.bent(14), finer) < 1e-6);
       CHECK(gap(run.stroke(15, 30), finer) > 1e-2); // the hands still hold it
-      CHECK(run.loop().final_mesh().face_count() == run.loop().newest_model().mesh.face_count());
+      CHECK(run.loop().final_mesh().face_count() ==
+            run.loop().changes().newest_model().mesh.face_count());
     }
   }
 
@@ -73,8 +74,8 @@ TEST_SUITE("model_version") {
         reference.now = run.now;
         run.stroke(0, 10);
         reference.stroke(0, 10);
-        FinerModel finer(run.loop().newest_model());
-        REQUIRE(run.loop().hold_still());
+        FinerModel finer(run.loop().changes().newest_model());
+        REQUIRE(run.loop().changes().hold_still());
         const deform::Points still = run.bent(10);
         REQUIRE(reference.test.commands.try_push(Request::commit));
         CHECK(gap(reference.bent(10), still) == 0.0);
@@ -82,7 +83,7 @@ TEST_SUITE("model_version") {
           CHECK(gap(run.bent(11 + tick), still) == 0.0);
           reference.bent(11 + tick);
         }
-        REQUIRE(run.loop().change_model(finer));
+        REQUIRE(run.loop().changes().change_model(finer));
         CHECK(old_gap(run.bent(11 + late), still) == 0.0);
         reference.bent(11 + late);
         // In type 1 a shape depends on the places alone; in type 2 the way is cut elsewhere.
@@ -96,20 +97,20 @@ TEST_SUITE("model_version") {
   TEST_CASE("what is asked for while the loop holds still is done when it goes on") {
     Versioned run(Mode::type1);
     run.stroke(0, 10);
-    FinerModel finer(run.loop().newest_model());
-    REQUIRE(run.loop().hold_still());
-    CHECK_FALSE(run.loop().hold_still());
+    FinerModel finer(run.loop().changes().newest_model());
+    REQUIRE(run.loop().changes().hold_still());
+    CHECK_FALSE(run.loop().changes().hold_still());
     const deform::Points still = run.bent(10);
-    CHECK_FALSE(run.loop().hold_still());
-    LoopSettings settings = run.loop().settings();
+    CHECK_FALSE(run.loop().changes().hold_still());
+    LoopSettings settings = run.loop().changes().settings();
     settings.radius_m.fill(0.3);
-    REQUIRE(run.loop().change_settings(settings));
+    REQUIRE(run.loop().changes().change_settings(settings));
     REQUIRE(run.test.commands.try_push(Request::let_go));
     CHECK(gap(run.bent(15), still) == 0.0);
     CHECK(run.frame().held);
-    REQUIRE(run.loop().change_model(finer));
+    REQUIRE(run.loop().changes().change_model(finer));
     run.bent(16);
-    CHECK(run.loop().settings() == settings);
+    CHECK(run.loop().changes().settings() == settings);
     const deform::Points kept = run.bent(17);
     CHECK_FALSE(run.frame().held);
     CHECK(run.frame().settings == settings);
@@ -123,23 +124,23 @@ TEST_SUITE("model_version") {
     for (const bool refused : {false, true}) {
       Versioned run(Mode::type1);
       run.stroke(0, 10);
-      FinerModel finer(run.loop().newest_model());
-      REQUIRE(run.loop().hold_still());
+      FinerModel finer(run.loop().changes().newest_model());
+      REQUIRE(run.loop().changes().hold_still());
       const deform::Points still = run.bent(10);
       std::uint32_t seen = 0;
       if (refused)
-        CHECK_FALSE(
-            run.loop().change_model(finer, [&](const ModelVersion& version) -> Result<void> {
+        CHECK_FALSE(run.loop().changes().change_model(
+            finer, [&](const ModelVersion& version) -> Result<void> {
               seen = version.number;
               return Error{Errc::failed, "not wanted"};
             }));
       else
-        run.loop().keep_model();
+        run.loop().changes().keep_model();
       CHECK(seen == (refused ? 1 : 0));
       CHECK(gap(run.bent(11), still) == 0.0);
       CHECK(gap(run.bent(20), still) > 1e-3);
       CHECK(run.frame().model == 0);
-      CHECK_FALSE(run.loop().model(1));
+      CHECK_FALSE(run.loop().changes().model(1));
       run.commit();
       CHECK(run.kinds() == std::vector{StepKind::stroke, StepKind::stroke});
       run.subdivide();
@@ -158,9 +159,9 @@ TEST_SUITE("model_version") {
       keep(run.subdivide());
       run.stroke(9, 20);
       keep(run.commit());
-      LoopSettings settings = run.loop().settings();
+      LoopSettings settings = run.loop().changes().settings();
       settings.radius_m.fill(0.3);
-      REQUIRE(run.loop().change_settings(settings));
+      REQUIRE(run.loop().changes().change_settings(settings));
       keep(run.tick());
       keep(run.subdivide());
       run.stroke(19, 5);
@@ -180,7 +181,7 @@ TEST_SUITE("model_version") {
           CHECK(run.frame().steps.undoable == at);
         }
         CHECK(run.frame().model == 0);
-        CHECK(run.loop().settings() != settings);
+        CHECK(run.loop().changes().settings() != settings);
         for (std::size_t at = 0; at < kinds.size(); ++at) {
           const deform::Points shape = run.step(Request::redo);
           REQUIRE(shape.cols() == shapes[at + 1].cols());
@@ -189,7 +190,7 @@ TEST_SUITE("model_version") {
           CHECK(run.kinds() == kinds);
         }
         CHECK(run.frame().model == 2);
-        CHECK(run.loop().settings() == settings);
+        CHECK(run.loop().changes().settings() == settings);
       }
     }
   }
@@ -203,7 +204,7 @@ TEST_SUITE("model_version") {
     run.step(Request::undo);
     run.step(Request::undo);
     CHECK(run.frame().redo_steps == 2);
-    CHECK(run.loop().model(2));
+    CHECK(run.loop().changes().model(2));
     run.stroke(9, 20);
     run.commit();
     CHECK(run.frame().redo_steps == 0);
@@ -213,11 +214,11 @@ TEST_SUITE("model_version") {
     CHECK(run.frame().model == 3);
     CHECK(old_gap(finer, before) == 0.0);
     run.tick();
-    run.loop().is_changing();
-    CHECK(run.loop().model(0));
-    CHECK_FALSE(run.loop().model(1));
-    CHECK_FALSE(run.loop().model(2));
-    CHECK_FALSE(run.loop().change_to({run.loop().settings(), 1, 0}));
+    run.loop().changes().is_changing();
+    CHECK(run.loop().changes().model(0));
+    CHECK_FALSE(run.loop().changes().model(1));
+    CHECK_FALSE(run.loop().changes().model(2));
+    CHECK_FALSE(run.loop().changes().change_to({run.loop().changes().settings(), 1, 0}));
     run.step(Request::undo);
     CHECK(gap(run.tick(), before) == 0.0);
   }
@@ -228,7 +229,7 @@ TEST_SUITE("model_version") {
     run.commit();
     const deform::Points finer = run.subdivide();
     run.stroke(9, 20);
-    CHECK(gap(run.step(Request::reset), run.loop().newest_model().mesh.vertices) == 0.0);
+    CHECK(gap(run.step(Request::reset), run.loop().changes().newest_model().mesh.vertices) == 0.0);
     CHECK(gap(run.step(Request::undo), finer) > 1e-3); // the stroke
     run.step(Request::undo);
     CHECK(gap(run.tick(), finer) == 0.0);

@@ -69,9 +69,9 @@ public:
     return worst;
   }
   void change_to(Mode mode) {
-    LoopSettings settings = test_.loop->settings();
+    LoopSettings settings = test_.loop->changes().settings();
     settings.mode = mode;
-    REQUIRE(test_.loop->change_settings(settings));
+    REQUIRE(test_.loop->changes().change_settings(settings));
   }
 
 private:

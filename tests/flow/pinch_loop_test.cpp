@@ -54,10 +54,10 @@ TEST_SUITE("pinch_loop") {
       REQUIRE(test.rings[1]->try_push(pinch));
       REQUIRE(test.rings[1]->try_push(pinch));
       CHECK(is_closed(begun != Mode::clay));
-      flow::LoopSettings settings = test.loop->settings();
+      flow::LoopSettings settings = test.loop->changes().settings();
       CHECK(settings.filter.close_pinches);
       const auto change = [&](bool wanted) {
-        REQUIRE(test.loop->change_settings(settings));
+        REQUIRE(test.loop->changes().change_settings(settings));
         CHECK(test::eventually([&] { return is_closed(wanted); }));
       };
       settings.filter.close_pinches = false;

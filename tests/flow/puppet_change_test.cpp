@@ -31,7 +31,7 @@ std::shared_ptr<const puppet::Rig> edited(const Clocked& loop, const Result<pupp
 }
 
 const puppet::Rig& rig(const Clocked& loop) {
-  return *loop.test.loop->puppet(loop.test.loop->newest_puppet());
+  return *loop.test.loop->changes().puppet(loop.test.loop->changes().newest_puppet());
 }
 
 template <class List>
@@ -92,14 +92,14 @@ TEST_SUITE("puppet change") {
     other.now = loop.now;
     CHECK(loop.stroke(0, 15) == other.stroke(0, 15));
     const auto once_more = [&](const Result<puppet::Puppet>& to) {
-      REQUIRE(loop.test.loop->change_puppet(edited(loop, to)));
+      REQUIRE(loop.test.loop->changes().change_puppet(edited(loop, to)));
       CHECK(loop.bent(15) == other.bent(15));
       CHECK(loop.bent(15) == other.bent(15));
     };
     once_more(puppet::with_name(rig(loop), function(loop, "turn"), "otherTurn"));
     once_more(puppet::with_name(rig(loop), function(loop, "otherTurn"), "turn"));
     once_more(puppet::with_radius(rig(loop), point(loop, "east"), 0.7)); // as it was
-    CHECK(loop.test.loop->newest_puppet() == 3);
+    CHECK(loop.test.loop->changes().newest_puppet() == 3);
     CHECK(loop.frame().puppet == 3);
     CHECK(loop.stroke(15, 3) == other.stroke(15, 3));
   }
@@ -116,7 +116,7 @@ TEST_SUITE("puppet change") {
       other.stroke(0, 15);
       const auto puppet = puppet::parse_puppet(to, "to");
       REQUIRE(puppet);
-      REQUIRE(loop.test.loop->change_puppet(rig_of(*puppet, loop.test.model)));
+      REQUIRE(loop.test.loop->changes().change_puppet(rig_of(*puppet, loop.test.model)));
       loop.bent(15);
       other.bent(15);
       for (const int counts : {15, 20, 3, 0}) {
@@ -154,23 +154,23 @@ TEST_SUITE("puppet change") {
           return puppet::with_mirror(rig(loop), false);
         }
       }();
-      REQUIRE(loop.test.loop->change_puppet(edited(loop, next)));
+      REQUIRE(loop.test.loop->changes().change_puppet(edited(loop, next)));
       loop.bent(12);
       shapes.push_back(loop.bent(12));
     }
     const auto steps = loop.kinds();
     CHECK(std::count(steps.begin(), steps.end(), StepKind::puppet) ==
-          static_cast<int>(loop.test.loop->next_puppet()) - 1);
+          static_cast<int>(loop.test.loop->changes().next_puppet()) - 1);
     const auto settled = [&](Request request) {
       REQUIRE(loop.test.commands.try_push(request));
       loop.bent(12);
       REQUIRE(loop.frame().awaited);
-      REQUIRE(loop.test.loop->change_to(*loop.frame().awaited));
+      REQUIRE(loop.test.loop->changes().change_to(*loop.frame().awaited));
       loop.bent(12);
       return loop.bent(12);
     };
     std::size_t at = shapes.size() - 1;
-    const std::size_t first = shapes.size() - loop.test.loop->next_puppet();
+    const std::size_t first = shapes.size() - loop.test.loop->changes().next_puppet();
     for (; at > first; --at)
       CHECK(gap(settled(Request::undo), shapes[at - 1]) < 1e-6);
     CHECK(loop.frame().puppet == 0);
@@ -188,13 +188,13 @@ TEST_SUITE("puppet change") {
       // All points that one of the functions moves, so that it goes, too.
       while (has_named(rig(loop).puppet().functions, "push")) {
         const auto& moves = rig(loop).puppet().functions[function(loop, "push")].moves;
-        REQUIRE(loop.test.loop->change_puppet(
+        REQUIRE(loop.test.loop->changes().change_puppet(
             edited(loop, puppet::without_point(rig(loop), moves.front().point))));
         loop.bent(12);
       }
       const deform::Points without = loop.bent(12);
       CHECK(gap(without, whole) > 1e-2);
-      const int edits = static_cast<int>(loop.test.loop->newest_puppet());
+      const int edits = static_cast<int>(loop.test.loop->changes().newest_puppet());
       if (takes_hold_anew) {
         REQUIRE(loop.test.commands.try_push(Request::take_hold));
         loop.bent(12);
@@ -203,7 +203,7 @@ TEST_SUITE("puppet change") {
         REQUIRE(loop.test.commands.try_push(request));
         loop.bent(12);
         REQUIRE(loop.frame().awaited);
-        REQUIRE(loop.test.loop->change_to(*loop.frame().awaited));
+        REQUIRE(loop.test.loop->changes().change_to(*loop.frame().awaited));
         loop.bent(12);
         return loop.bent(12);
       };
@@ -228,7 +228,7 @@ TEST_SUITE("puppet change") {
     const deform::Points shaped = loop.bent(15);
     const auto puppet = puppet::parse_puppet(other_puppet, "other");
     REQUIRE(puppet);
-    REQUIRE(loop.test.loop->change_puppet(rig_of(*puppet, loop.test.model)));
+    REQUIRE(loop.test.loop->changes().change_puppet(rig_of(*puppet, loop.test.model)));
     const deform::Points taken = loop.bent(15);
     CHECK(gap(loop.bent(15), taken) < 1e-6); // what was shaped stays
     CHECK(gap(taken, shaped) < 1e-3);
@@ -239,7 +239,7 @@ TEST_SUITE("puppet change") {
     REQUIRE(loop.test.commands.try_push(Request::undo));
     loop.bent(15);
     REQUIRE(loop.frame().awaited);
-    REQUIRE(loop.test.loop->change_to(*loop.frame().awaited));
+    REQUIRE(loop.test.loop->changes().change_to(*loop.frame().awaited));
     loop.bent(15);
     loop.bent(15);
     CHECK(loop.frame().function_count == 0);
@@ -254,21 +254,21 @@ TEST_SUITE("puppet change") {
     puppet.points.push_back(puppet.points.front());
     puppet.points.back().name = "beside";
     puppet.points.back().at.x() += 1e-9;
-    const auto refused = loop.test.loop->change_puppet(rig_of(puppet, loop.test.model));
+    const auto refused = loop.test.loop->changes().change_puppet(rig_of(puppet, loop.test.model));
     REQUIRE_FALSE(refused);
     CHECK(refused.error().code == Errc::bad_input);
     CHECK(refused.error().message.find("beside") != std::string::npos);
-    CHECK(loop.test.loop->next_puppet() == 1);
+    CHECK(loop.test.loop->changes().next_puppet() == 1);
     const deform::Points shape = loop.bent(10);
     CHECK(loop.bent(10) == shape);
-    CHECK_FALSE(loop.test.loop->change_puppet(std::uint32_t{7}));
-    REQUIRE(loop.test.loop->hold_still());
-    CHECK_FALSE(loop.test.loop->change_puppet(
+    CHECK_FALSE(loop.test.loop->changes().change_puppet(std::uint32_t{7}));
+    REQUIRE(loop.test.loop->changes().hold_still());
+    CHECK_FALSE(loop.test.loop->changes().change_puppet(
         rig_of(*puppet::parse_puppet(other_puppet, "other"), loop.test.model)));
     loop.bent(10);
-    loop.test.loop->keep_model();
+    loop.test.loop->changes().keep_model();
     loop.bent(10);
-    CHECK(loop.test.loop->change_puppet(
+    CHECK(loop.test.loop->changes().change_puppet(
         rig_of(*puppet::parse_puppet(other_puppet, "other"), loop.test.model)));
   }
 
@@ -297,17 +297,17 @@ TEST_SUITE("puppet change") {
     REQUIRE_FALSE(refused);
     CHECK(refused.error().message.find("101 points") != std::string::npos);
     Clocked loop(Mode::type1, with_puppet);
-    CHECK_FALSE(loop.test.loop->change_puppet(many));
-    REQUIRE(loop.test.loop->change_puppet(along));
+    CHECK_FALSE(loop.test.loop->changes().change_puppet(many));
+    REQUIRE(loop.test.loop->changes().change_puppet(along));
     loop.bent(3);
-    LoopSettings settings = loop.test.loop->settings();
+    LoopSettings settings = loop.test.loop->changes().settings();
     settings.mode = Mode::type2;
-    REQUIRE(loop.test.loop->change_settings(settings));
+    REQUIRE(loop.test.loop->changes().change_settings(settings));
     loop.bent(3);
-    CHECK(loop.test.loop->settings().mode == Mode::type2);
+    CHECK(loop.test.loop->changes().settings().mode == Mode::type2);
     settings.keep_volume = 0.5; // no kernel is known that does along a surface
-    CHECK_FALSE(loop.test.loop->change_settings(settings));
-    CHECK(loop.test.loop->settings().keep_volume == 0.0);
+    CHECK_FALSE(loop.test.loop->changes().change_settings(settings));
+    CHECK(loop.test.loop->changes().settings().keep_volume == 0.0);
   }
 
   TEST_CASE("ticks that take puppets allocate nothing, free nothing, lock nothing") {
@@ -330,7 +330,7 @@ TEST_SUITE("puppet change") {
             return test::any_puppet(now, test.model, random, most);
           },
           sum, is_large ? std::optional(mode) : std::nullopt);
-      puppets += test.loop->next_puppet();
+      puppets += test.loop->changes().next_puppet();
     }
     CHECK(sum.allocations == 0);
     CHECK(sum.frees == 0);

@@ -226,9 +226,9 @@ TEST_SUITE("request") {
   TEST_CASE("a pull is taken back before a change of settings that came before it") {
     Person person(Mode::type1);
     person.move(0, 12);
-    LoopSettings other = person.test.loop->settings();
+    LoopSettings other = person.test.loop->changes().settings();
     other.kernel = deform::Wendland::c4;
-    REQUIRE(person.test.loop->change_settings(other));
+    REQUIRE(person.test.loop->changes().change_settings(other));
     person.bend(12);
     const Points changed = person.shape();
     person.move(12, 25);
@@ -349,7 +349,7 @@ TEST_SUITE("request") {
         std::vector<Points> shapes;
         test::RestraintCounts counts;
         const auto ask = [&](Request request, int bent) {
-          if (refills) person.test.loop->refill_undo();
+          if (refills) person.test.loop->changes().refill_undo();
           const test::Restraint restraint;
           person.test.commands.try_push(request);
           person.bend(bent);
@@ -389,7 +389,7 @@ TEST_SUITE("request") {
     std::atomic<bool> over{false};
     std::thread refills([&] {
       while (!over) {
-        person.test.loop->refill_undo();
+        person.test.loop->changes().refill_undo();
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
     });

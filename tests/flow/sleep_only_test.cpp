@@ -123,16 +123,20 @@ private:
     DeformLoop& loop = *test_.loop;
     while (!over_) {
       std::this_thread::sleep_for(std::chrono::microseconds(300));
-      loop.refill_undo();
+      loop.changes().refill_undo();
       if (loop.frames().update() && loop.frames().front().awaited)
-        loop.change_to(*loop.frames().front().awaited);
+        loop.changes().change_to(*loop.frames().front().awaited);
       maker_.turn(loop);
       test_.commands.try_push(any_command());
       if (random_() % 4 == 0)
-        settings_ += loop.change_settings(test::any_settings(loop.settings(), random_)) ? 1 : 0;
+        settings_ +=
+            loop.changes().change_settings(test::any_settings(loop.changes().settings(), random_))
+                ? 1
+                : 0;
       if (random_() % 4 != 0) continue;
-      const auto masks = test::any_masks(loop.puppet(loop.newest_puppet()), random_);
-      if (masks && loop.change_puppet(masks)) ++masks_;
+      const auto masks =
+          test::any_masks(loop.changes().puppet(loop.changes().newest_puppet()), random_);
+      if (masks && loop.changes().change_puppet(masks)) ++masks_;
     }
   }
   Command any_command() {

@@ -105,7 +105,7 @@ TEST_SUITE("tick_record") {
       loop.tick(0, HostClock::now());
       loop.frames().update();
       deform::Points vertices;
-      loop.layout().unpack(loop.frames().front().shape, vertices);
+      loop.changes().layout().unpack(loop.frames().front().shape, vertices);
       CHECK(vertices == hand.model.vertices);
       CHECK(loop.stats().samples[1] == (name == "input" ? 0 : 1));
     }

@@ -109,20 +109,20 @@ public:
   }
   /// Of the model, as who runs the loop does. Returns what cannot be.
   Result<void> change(const ChangeModel& change) {
-    auto finer =
-        FinerModel::make(loop().newest_model(), change, loop().frames().front().wire.places());
+    auto finer = FinerModel::make(loop().changes().newest_model(), change,
+                                  loop().frames().front().wire.places());
     REQUIRE(finer);
-    REQUIRE(loop().hold_still());
+    REQUIRE(loop().changes().hold_still());
     go();
-    REQUIRE(loop().is_still());
-    auto changed = loop().change_model(*finer);
+    REQUIRE(loop().changes().is_still());
+    auto changed = loop().changes().change_model(*finer);
     go();
     return changed;
   }
   void go_back(Request request) {
     const Frame& frame = ask(request);
     REQUIRE(frame.awaited.has_value());
-    REQUIRE(loop().change_to(*frame.awaited));
+    REQUIRE(loop().changes().change_to(*frame.awaited));
     go(2);
   }
 
@@ -224,7 +224,7 @@ TEST_SUITE("wire") {
     CHECK(drawn.wire.places().size() > 20);
     CHECK(hands.test().vertices_of(drawn) == hands.test().model.vertices);
     REQUIRE(hands.change(cut));
-    const ModelVersion& version = hands.loop().newest_model();
+    const ModelVersion& version = hands.loop().changes().newest_model();
     CHECK(version.number == 1);
     CHECK(deform::check_closed_manifold(version.mesh));
     const auto parts = deform::separate(version.mesh);
@@ -271,7 +271,7 @@ TEST_SUITE("wire") {
     hands.draw();
     REQUIRE(hands.change(cut));
     const auto apart = hands.change({0, ModelSource::joined}); // they touch, and do not overlap
-    CHECK((!apart || deform::separate(hands.loop().newest_model().mesh).size() == 1));
+    CHECK((!apart || deform::separate(hands.loop().changes().newest_model().mesh).size() == 1));
   }
 
   TEST_CASE(
@@ -292,7 +292,7 @@ TEST_SUITE("wire") {
     CHECK(hands.go().parts.count == 2);
     const deform::Points before = hands.test().vertices_of(hands.go());
     REQUIRE(hands.change({0, ModelSource::joined}));
-    const ModelVersion& version = hands.loop().newest_model();
+    const ModelVersion& version = hands.loop().changes().newest_model();
     CHECK(hands.go().parts.count == 1);
     CHECK(deform::check_closed_manifold(version.mesh));
     // Of two balls of radius 1, d apart, the part in common is pi (4 + d) (2 - d)^2 / 12.
@@ -320,7 +320,7 @@ TEST_SUITE("wire") {
     CHECK(hands.go().parts.count == 1);
     const deform::Points before = hands.test().vertices_of(hands.go());
     REQUIRE(hands.change({0, ModelSource::topology}));
-    const ModelVersion& version = hands.loop().newest_model();
+    const ModelVersion& version = hands.loop().changes().newest_model();
     CHECK(hands.go().parts.count == 2);
     CHECK(version.mesh.detail.size() == static_cast<std::size_t>(version.mesh.vertices.cols()));
     const auto& steps = hands.go().steps;
@@ -336,7 +336,7 @@ TEST_SUITE("wire") {
 
   TEST_CASE("a puppet's model is cut as the puppet holds it, plays on, and rests as before") {
     Drawing hands(Mode::type1, test::ball_puppet);
-    const deform::Points rest = hands.loop().newest_model().mesh.vertices;
+    const deform::Points rest = hands.loop().changes().newest_model().mesh.vertices;
     hands.bend(40, 40);
     hands.go(20);
     hands.draw();
@@ -344,7 +344,7 @@ TEST_SUITE("wire") {
     REQUIRE((played - rest).cwiseAbs().maxCoeff() > 0.01);
     REQUIRE(hands.change(cut));
     const Frame& frame = hands.go(5);
-    const ModelVersion& version = hands.loop().newest_model();
+    const ModelVersion& version = hands.loop().changes().newest_model();
     REQUIRE(frame.model == version.number);
     CHECK(deform::separate(version.mesh).size() == 2);
     CHECK(deform::check_closed_manifold(version.mesh));
@@ -385,7 +385,7 @@ TEST_SUITE("wire") {
       CHECK((last.to - last.from).norm() ==
             doctest::Approx(deform::diagonal_of(hands.test().model.vertices)));
       REQUIRE(hands.change(cut));
-      const auto parts = deform::separate(hands.loop().newest_model().mesh);
+      const auto parts = deform::separate(hands.loop().changes().newest_model().mesh);
       REQUIRE(parts.size() == 2);
       for (const deform::Mesh& part : parts) // neither is a crumb
         CHECK(deform::volume_of(part) > 0.2 * deform::volume_of(hands.test().model));
@@ -402,7 +402,7 @@ TEST_SUITE("wire") {
       ChangeModel edit{0, source};
       edit.part = 1;
       REQUIRE(hands.change(edit));
-      const ModelVersion& version = hands.loop().newest_model();
+      const ModelVersion& version = hands.loop().changes().newest_model();
       CHECK(hands.go().parts.count == parts);
       CHECK(deform::check_closed_manifold(version.mesh));
       const auto& steps = hands.go().steps;

@@ -24,7 +24,7 @@ inline std::string segment_name(const std::string& what) {
 inline publish::LoopOutline outline_of(const LoopUnderTest& test) {
   publish::LoopOutline outline;
   outline.model = &test.model;
-  outline.layout = &test.loop->layout();
+  outline.layout = &test.loop->changes().layout();
   outline.mode = test.options.sculptor.mode;
   outline.rate_hz = test.options.rate_hz;
   outline.units_per_metre = test.placement.units_per_metre;

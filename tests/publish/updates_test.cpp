@@ -166,9 +166,9 @@ TEST_SUITE("updates") {
         bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 30);
         test.bend(bent, begin + number * std::chrono::milliseconds(11));
         if (random() % 6 == 0) {
-          auto settings = test::any_settings(test.loop->settings(), random);
+          auto settings = test::any_settings(test.loop->changes().settings(), random);
           settings.brushes = {}; // whose work no field tells
-          test.loop->change_settings(settings);
+          test.loop->changes().change_settings(settings);
         }
         test.frame_after_tick(number - 1);
         const Points published = segment.shape(number);

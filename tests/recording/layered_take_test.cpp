@@ -74,7 +74,7 @@ struct LayeredTake {
       like.rings[slot]->try_push(sample);
     }
     const flow::Frame& frame = played.tick(number, begin);
-    played.loop->layout(frame.model).unpack(frame.shape, shapes.emplace_back());
+    played.loop->changes().layout(frame.model).unpack(frame.shape, shapes.emplace_back());
   }
   void end() { REQUIRE(recorder->end(sum_of(played.loop->final_shape()))); }
 };
@@ -91,7 +91,7 @@ void check_replay(const LayeredTake& take) {
     if (!(*replay)->feed(*entry)) continue;
     flow::DeformLoop& loop = (*replay)->loop();
     loop.frames().update();
-    loop.layout(loop.frames().front().model).unpack(loop.frames().front().shape, shape);
+    loop.changes().layout(loop.frames().front().model).unpack(loop.frames().front().shape, shape);
     REQUIRE(at < take.shapes.size());
     CHECK((shape == take.shapes[at++]));
   }
@@ -198,16 +198,16 @@ TEST_SUITE("layered_take") {
       take.tick(tick, begin, 4);
     }
     flow::InputLog later;
-    take.played.loop->change_log(&later, take.played.loop->frames().front().shape);
+    take.played.loop->changes().change_log(&later, take.played.loop->frames().front().shape);
     take.tick(50, begin, 4);
-    const auto state = take.played.loop->take_state();
+    const auto state = take.played.loop->changes().take_state();
     REQUIRE(state);
     REQUIRE(state->inputs[1].layer);
     CHECK(state->inputs[1].layer->part > 0.0);
     CHECK(state->inputs[1].layer->part < 1.0);
     take.end();
     check_replay(take);
-    continue_from(*state, take.played.loop->layout(), take.setup);
+    continue_from(*state, take.played.loop->changes().layout(), take.setup);
     take.path = folder.path() / "later.nendo";
     take.record(later);
     for (std::uint64_t tick = 51; tick < ticks; ++tick) {
@@ -281,7 +281,7 @@ TEST_SUITE("layered_take") {
     test::RecordedLoop live(Mode::type1, {}, false, false, {}, test::ball_puppet);
     flow::DeformLoop& loop = *live.test.loop;
     live.record({.chunk_time = 5ms});
-    flow::LoopSettings other = loop.settings();
+    flow::LoopSettings other = loop.changes().settings();
     other.kernel = deform::Wendland::c0;
     std::mt19937 random(3);
     std::uint64_t tick = 0;
@@ -298,12 +298,13 @@ TEST_SUITE("layered_take") {
         return settings >= entries && puppets >= entries;
       });
     };
-    REQUIRE(loop.change_settings(other));
+    REQUIRE(loop.changes().change_settings(other));
     CHECK(test::eventually([&] {
       live.test.frame_after_tick(tick++);
-      return !loop.is_changing();
+      return !loop.changes().is_changing();
     }));
-    REQUIRE(live.change_puppet(test::any_puppet(loop.puppet(0), live.test.model, random)));
+    REQUIRE(
+        live.change_puppet(test::any_puppet(loop.changes().puppet(0), live.test.model, random)));
     CHECK(run_until_chunk_with(4));
     REQUIRE(live.end());
 

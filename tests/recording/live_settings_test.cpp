@@ -96,7 +96,7 @@ Replayed replayed(const std::filesystem::path& path, deform::Mesh model) {
     loop.frames().update();
     const flow::Frame& frame = loop.frames().front();
     result.models = std::max(result.models, frame.model);
-    loop.layout(frame.model).unpack(frame.shape, result.shapes.emplace_back());
+    loop.changes().layout(frame.model).unpack(frame.shape, result.shapes.emplace_back());
   }
   CHECK((*replay)->is_exact());
   CHECK(reader->strange() == 0);
@@ -142,19 +142,19 @@ TEST_SUITE("live_settings") {
       flow::DeformLoop& loop = *live->test.loop;
       std::uint64_t tick = 0;
       const auto change_log = [&](flow::InputLog* to) {
-        loop.change_log(to, loop.frames().front().shape);
-        CHECK_FALSE(loop.take_state());
+        loop.changes().change_log(to, loop.frames().front().shape);
+        CHECK_FALSE(loop.changes().take_state());
         live->test.frame_after_tick(tick++);
-        auto state = loop.take_state();
+        auto state = loop.changes().take_state();
         REQUIRE(state);
-        CHECK_FALSE(loop.take_state());
+        CHECK_FALSE(loop.changes().take_state());
         return *std::move(state);
       };
       test::play(*live, 150, seed, true, [](const flow::Frame&) {});
       tick = 1000;
       const flow::LoopState begun = change_log(&log);
       Setup setup = live->setup;
-      continue_from(begun, loop.newest_model().layout(), setup);
+      continue_from(begun, loop.changes().newest_model().layout(), setup);
       other_models += begun.origins.empty() ? 0 : 1;
       for (const auto& origin : begun.origins)
         refined += origin->source == flow::ModelSource::refined ? 1 : 0;
@@ -171,9 +171,10 @@ TEST_SUITE("live_settings") {
       const flow::LoopState ended = change_log(nullptr);
       shapes.push_back(live->test.vertices_of(loop.frames().front()));
       deform::Points last;
-      loop.newest_model().layout().unpack(ended.shape, last);
+      loop.changes().newest_model().layout().unpack(ended.shape, last);
       CHECK(shapes.back() == last);
-      shaped += (last - loop.newest_model().mesh.vertices).cwiseAbs().maxCoeff() > 1e-3 ? 1 : 0;
+      shaped +=
+          (last - loop.changes().newest_model().mesh.vertices).cwiseAbs().maxCoeff() > 1e-3 ? 1 : 0;
       test::play(*live, 50, seed + 200, true, [](const flow::Frame&) {});
       REQUIRE((*recorder)->end(sum_of(last)));
       const auto again = replayed(path, live->test.model);
@@ -203,12 +204,12 @@ TEST_SUITE("live_settings") {
       person.go_on(before);
       flow::DeformLoop& loop = *person.live.test.loop;
       flow::InputLog log;
-      loop.change_log(&log, loop.frames().front().shape);
+      loop.changes().change_log(&log, loop.frames().front().shape);
       person.go_on(1);
-      const auto begun = loop.take_state();
+      const auto begun = loop.changes().take_state();
       REQUIRE(begun);
       Setup setup = person.live.setup;
-      continue_from(*begun, loop.newest_model().layout(), setup);
+      continue_from(*begun, loop.changes().newest_model().layout(), setup);
       const auto path = person.live.folder.path() / "part.nendo";
       auto recorder = Recorder::begin(setup, log, {.file = path});
       REQUIRE(recorder);
@@ -233,8 +234,8 @@ TEST_SUITE("live_settings") {
       for (std::uint64_t tick = 0; tick < 400; ++tick) {
         live.test.bend(static_cast<int>(tick % 25), HostClock::now());
         if (tick % 9 == 4)
-          live.change_puppet(
-              test::any_puppet(loop.puppet(loop.newest_puppet()), live.test.model, random));
+          live.change_puppet(test::any_puppet(loop.changes().puppet(loop.changes().newest_puppet()),
+                                              live.test.model, random));
         if (tick % 20 == 10) live.test.commands.try_push(flow::Request::undo);
         if (tick % 40 == 30) live.test.commands.try_push(flow::Request::redo);
         const std::uint32_t before = loop.frames().front().puppet;
@@ -242,7 +243,7 @@ TEST_SUITE("live_settings") {
         undone += frame.puppet < before ? 1 : 0;
         most = std::max(most, frame.puppet);
         shapes.push_back(live.test.vertices_of(frame));
-        if (frame.awaited) loop.change_to(*frame.awaited);
+        if (frame.awaited) loop.changes().change_to(*frame.awaited);
         if (tick % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(30)); // chunks
       }
       CHECK(most > 20);

@@ -149,9 +149,9 @@ TEST_SUITE("loop_replay") {
     RecordedLoop live(Mode::type1, FilterKind::off, true, false, flow::SwitchAction::none, nullptr,
                       slips);
     auto& test = live.test;
-    before.test.loop->change_log(nullptr, before.test.loop->frames().front().shape);
+    before.test.loop->changes().change_log(nullptr, before.test.loop->frames().front().shape);
     before.test.frame_after_tick(600);
-    const auto state = before.test.loop->take_state();
+    const auto state = before.test.loop->changes().take_state();
     REQUIRE(state);
     for (std::size_t at = 0; at < test.inputs.size(); ++at)
       test.inputs[at].wearer.learned = state->inputs[at].learned;
@@ -213,7 +213,7 @@ TEST_SUITE("loop_replay") {
       std::uint64_t tick = 0;
       const HostTime begin = HostClock::now();
       const auto ask = [&](flow::Request request) {
-        live.test.loop->refill_undo();
+        live.test.loop->changes().refill_undo();
         live.test.commands.try_push(request);
         live.test.bend(static_cast<int>(7 * tick % 25),
                        begin + tick * std::chrono::milliseconds(11));

@@ -36,7 +36,7 @@ struct Clocked {
     deform::Points shape = tick();
     if (frame().awaited) {
       CHECK(frame().shape_jumps == before);
-      REQUIRE(test.loop->change_to(*frame().awaited));
+      REQUIRE(test.loop->changes().change_to(*frame().awaited));
       shape = tick();
       CHECK_FALSE(frame().awaited);
     }
@@ -61,7 +61,9 @@ struct Clocked {
     return shape;
   }
   const flow::Frame& frame() { return test.loop->frames().front(); }
-  void change(const flow::LoopSettings& settings) { REQUIRE(test.loop->change_settings(settings)); }
+  void change(const flow::LoopSettings& settings) {
+    REQUIRE(test.loop->changes().change_settings(settings));
+  }
 };
 
 } // namespace nendo::test

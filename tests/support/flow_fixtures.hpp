@@ -171,7 +171,7 @@ struct LoopUnderTest {
   /// Returns a frame's shape, in the model's order.
   deform::Points vertices_of(const flow::Frame& frame) const {
     deform::Points vertices;
-    loop->layout(frame.model).unpack(frame.shape, vertices);
+    loop->changes().layout(frame.model).unpack(frame.shape, vertices);
     return vertices;
   }
   const flow::Frame& frame_after_tick(std::uint64_t number) {

@@ -16,16 +16,16 @@ public:
 
   /// To be called between two ticks.
   void turn(flow::DeformLoop& loop) {
-    if (!finer_ && random_() % 40 == 0) begin(loop.newest_model());
+    if (!finer_ && random_() % 40 == 0) begin(loop.changes().newest_model());
     if (!finer_ || (late_ > 0 && late_-- > 0)) return;
     if (!asked_) {
-      asked_ = loop.hold_still();
+      asked_ = loop.changes().hold_still();
       late_ = random_() % 8;
-    } else if (loop.is_still()) {
+    } else if (loop.changes().is_still()) {
       give(loop);
     }
   }
-  bool is_idle(flow::DeformLoop& loop) const { return !finer_ && !loop.is_changing(); }
+  bool is_idle(flow::DeformLoop& loop) const { return !finer_ && !loop.changes().is_changing(); }
   int made() const noexcept { return made_; }
 
 private:
@@ -39,10 +39,10 @@ private:
     }
   }
   void give(flow::DeformLoop& loop) {
-    if (finer_->is_of(loop.newest_model()) && random_() % 8 != 0) {
-      made_ += loop.change_model(*finer_) ? 1 : 0;
+    if (finer_->is_of(loop.changes().newest_model()) && random_() % 8 != 0) {
+      made_ += loop.changes().change_model(*finer_) ? 1 : 0;
     } else {
-      loop.keep_model();
+      loop.changes().keep_model();
     }
     finer_.reset();
     asked_ = false;

@@ -43,7 +43,7 @@ private:
       const flow::Frame& frame = test.loop->frames().front();
       holds.follow(frame);
       render::set_hands(frame, holds, scene_frame);
-      test.loop->layout().unpack(frame.shape, scene_frame.vertices);
+      test.loop->changes().layout().unpack(frame.shape, scene_frame.vertices);
       builder.build(scene_frame, {}, scene);
       ++scenes_;
     }

@@ -24,16 +24,16 @@ void tick_with_changes(LoopUnderTest& test, flow::InputLog& log, std::uint64_t t
   flow::DeformLoop& loop = *test.loop;
   for (std::uint64_t tick = 0; tick < ticks; ++tick) {
     if (random() % 12 == 0)
-      if (const auto rig = next_rig(loop.puppet(loop.newest_puppet()), random))
-        static_cast<void>(loop.change_puppet(rig));
+      if (const auto rig = next_rig(loop.changes().puppet(loop.changes().newest_puppet()), random))
+        static_cast<void>(loop.changes().change_puppet(rig));
     if (random() % 30 == 0) {
-      flow::LoopSettings settings = any_settings(loop.settings(), random);
+      flow::LoopSettings settings = any_settings(loop.changes().settings(), random);
       settings.mode = mode.value_or(settings.mode);
-      loop.change_settings(settings);
+      loop.changes().change_settings(settings);
     }
     maker.turn(loop);
     if (random() % 200 == 0 && maker.is_idle(loop))
-      loop.change_log(random() % 2 == 0 ? &log : nullptr, loop.frames().front().shape);
+      loop.changes().change_log(random() % 2 == 0 ? &log : nullptr, loop.frames().front().shape);
     if (random() % 8 == 0) test.commands.try_push(flow::requests[random() % flow::requests.size()]);
     test.bend(static_cast<int>(tick % 40), now += std::chrono::milliseconds(1));
     {
@@ -44,10 +44,10 @@ void tick_with_changes(LoopUnderTest& test, flow::InputLog& log, std::uint64_t t
       sum.locks += restraint.counts().locks;
     }
     if (random() % 2 == 0 && loop.frames().update())
-      if (const auto& awaited = loop.frames().front().awaited) loop.change_to(*awaited);
+      if (const auto& awaited = loop.frames().front().awaited) loop.changes().change_to(*awaited);
     log.drain([](const auto&) noexcept {});
-    loop.take_state();
-    loop.refill_undo();
+    loop.changes().take_state();
+    loop.changes().refill_undo();
   }
 }
 

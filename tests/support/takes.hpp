@@ -89,8 +89,8 @@ struct RecordedLoop {
   bool change_puppet(const std::shared_ptr<const puppet::Rig>& rig) {
     recording::Recorder* const tells = other != nullptr ? other : recorder.get();
     if (tells != nullptr)
-      tells->add_puppet(test.loop->next_puppet(), {rig->puppet().text, rig->starts()});
-    return bool(test.loop->change_puppet(rig));
+      tells->add_puppet(test.loop->changes().next_puppet(), {rig->puppet().text, rig->starts()});
+    return bool(test.loop->changes().change_puppet(rig));
   }
   Result<recording::Recorded> end() {
     return recorder->end(recording::sum_of(test.loop->final_shape()));
@@ -153,17 +153,18 @@ void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed, bool changes
     if (played.test.options.rig && of_changes() % 12 == 0)
       played.test.commands.try_push(any_role(of_changes));
     if (changes && of_changes() % 10 == 0)
-      loop.change_settings(any_settings(loop.settings(), of_changes));
+      loop.changes().change_settings(any_settings(loop.changes().settings(), of_changes));
     if (changes && played.test.options.rig && of_changes() % 15 == 0)
-      played.change_puppet(
-          any_puppet(loop.puppet(loop.newest_puppet()), played.test.model, of_changes));
+      played.change_puppet(any_puppet(loop.changes().puppet(loop.changes().newest_puppet()),
+                                      played.test.model, of_changes));
     if (changes && !played.test.options.rig && of_changes() % 15 == 0)
-      if (const auto masks = any_masks(loop.puppet(loop.newest_puppet()), of_changes))
+      if (const auto masks =
+              any_masks(loop.changes().puppet(loop.changes().newest_puppet()), of_changes))
         played.change_puppet(masks);
     if (changes) maker.turn(loop);
     const flow::Frame& frame = played.test.frame_after_tick(tick);
     see(frame);
-    if (frame.awaited) loop.change_to(*frame.awaited); // as who runs the loop does
+    if (frame.awaited) loop.changes().change_to(*frame.awaited); // as who runs the loop does
   }
 }
 inline void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed = 1) {

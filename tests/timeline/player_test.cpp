@@ -131,19 +131,20 @@ TEST_SUITE("player") {
       for (std::uint64_t tick = 0; tick < 300; ++tick) {
         bent = std::clamp(bent + static_cast<int>(random() % 5) - 2, 0, 30);
         taken.live.test.bend(bent, begin + tick * std::chrono::milliseconds(11));
-        flow::LoopSettings settings = test::any_settings(loop.settings(), random);
-        settings.filter = loop.settings().filter;
+        flow::LoopSettings settings = test::any_settings(loop.changes().settings(), random);
+        settings.filter = loop.changes().settings().filter;
         settings.brushes.fill(brushes ? deform::Brush::inflate : deform::Brush::pull);
         settings.brush_strength = 0.1;
-        if (random() % 15 == 0) loop.change_settings(settings);
+        if (random() % 15 == 0) loop.changes().change_settings(settings);
         if (seed % 3 == 1 && tick % 20 == 7) // masks and symmetry, too
-          if (const auto masks = test::any_masks(loop.puppet(loop.newest_puppet()), random))
+          if (const auto masks =
+                  test::any_masks(loop.changes().puppet(loop.changes().newest_puppet()), random))
             taken.live.change_puppet(masks);
         if (random() % 10 == 0)
           taken.live.test.commands.try_push(flow::requests[random() % flow::requests.size()]);
         const flow::Frame& frame = taken.live.test.frame_after_tick(tick);
         shapes.push_back(taken.live.test.vertices_of(frame));
-        if (frame.awaited) loop.change_to(*frame.awaited);
+        if (frame.awaited) loop.changes().change_to(*frame.awaited);
       }
       const std::uint64_t changes = loop.stats().changes;
       CHECK(changes > 5);
@@ -179,14 +180,14 @@ TEST_SUITE("player") {
       const auto next = [&](int bent) {
         live.bend(bent, begin + tick * std::chrono::milliseconds(11));
         const flow::Frame& frame = taken.live.test.frame_after_tick(tick++);
-        if (frame.awaited) live.loop->change_to(*frame.awaited);
+        if (frame.awaited) live.loop->changes().change_to(*frame.awaited);
       };
       const auto change_model = [&](const flow::ChangeModel& change, int bent) {
-        auto finer = flow::FinerModel::make(live.loop->newest_model(), change);
+        auto finer = flow::FinerModel::make(live.loop->changes().newest_model(), change);
         REQUIRE(finer);
-        REQUIRE(live.loop->hold_still());
+        REQUIRE(live.loop->changes().hold_still());
         next(bent);
-        REQUIRE(live.loop->change_model(*finer));
+        REQUIRE(live.loop->changes().change_model(*finer));
         next(bent);
       };
       const flow::ChangeModel subdivided{0, flow::ModelSource::subdivided};
@@ -235,16 +236,17 @@ TEST_SUITE("player") {
       const auto most = static_cast<std::uint32_t>(live.model.vertices.cols());
       for (int bent = 0; bent < 130; ++bent)
         next(bent);
-      auto finer =
-          flow::FinerModel::make(live.loop->newest_model(), {0, flow::ModelSource::refined, most});
+      auto finer = flow::FinerModel::make(live.loop->changes().newest_model(),
+                                          {0, flow::ModelSource::refined, most});
       REQUIRE(finer);
-      REQUIRE(live.loop->hold_still());
+      REQUIRE(live.loop->changes().hold_still());
       next(130);
-      auto unbounded = flow::FinerModel::make(
-          live.loop->newest_model(), {0, flow::ModelSource::refined, flow::Refine{}.most_vertices});
+      auto unbounded =
+          flow::FinerModel::make(live.loop->changes().newest_model(),
+                                 {0, flow::ModelSource::refined, flow::Refine{}.most_vertices});
       REQUIRE(unbounded);
       CHECK((*unbounded->finish(9, {}))->layout().vertex_count() > most);
-      REQUIRE(live.loop->change_model(*finer));
+      REQUIRE(live.loop->changes().change_model(*finer));
       for (int bent = 130; bent > 120; --bent)
         next(bent);
       const deform::Mesh wanted = live.loop->final_mesh();
@@ -267,9 +269,9 @@ TEST_SUITE("player") {
       "a take in which the filter changes, or which begins in the middle of a run, becomes no "
       "timeline") {
     Taken filtered(Mode::type1);
-    flow::LoopSettings settings = filtered.live.test.loop->settings();
+    flow::LoopSettings settings = filtered.live.test.loop->changes().settings();
     settings.filter.kind = hand::FilterKind::one_euro;
-    filtered.live.test.loop->change_settings(settings);
+    filtered.live.test.loop->changes().change_settings(settings);
     filtered.bend(3);
     REQUIRE(filtered.live.end());
     const auto refused = timeline_of_take(filtered.live.path, filtered.live.test.model, none);
@@ -280,7 +282,7 @@ TEST_SUITE("player") {
     part.bend(3);
     REQUIRE(part.live.end());
     test::RecordedLoop middle(Mode::type1);
-    middle.setup.loop->rest.resize(middle.test.loop->layout().block_count());
+    middle.setup.loop->rest.resize(middle.test.loop->changes().layout().block_count());
     middle.record();
     REQUIRE(middle.end());
     CHECK_FALSE(timeline_of_take(middle.path, middle.test.model, none));

@@ -149,7 +149,7 @@ TEST_SUITE("puppet_timeline") {
       auto& test = take.live.test;
       const HostTime begin = HostClock::now();
       const auto now = [&]() -> const puppet::Rig& {
-        return *test.loop->puppet(test.loop->newest_puppet());
+        return *test.loop->changes().puppet(test.loop->changes().newest_puppet());
       };
       const auto edit = [&](const Result<puppet::Puppet>& to) {
         REQUIRE(to);
@@ -171,7 +171,7 @@ TEST_SUITE("puppet_timeline") {
         const flow::Frame& frame = test.frame_after_tick(tick);
         take.see(frame);
         if (frame.awaited) {
-          REQUIRE(test.loop->change_to(*frame.awaited));
+          REQUIRE(test.loop->changes().change_to(*frame.awaited));
           last_edit = tick + 2;
         }
       }
@@ -215,11 +215,11 @@ TEST_SUITE("puppet_timeline") {
       for (std::uint64_t tick = 0; tick < 200; ++tick) {
         bent = std::clamp(bent + static_cast<int>(random() % 5) - 2, 0, 30);
         test.bend(bent, begin + tick * std::chrono::milliseconds(11));
-        flow::LoopSettings settings = test::any_settings(test.loop->settings(), random);
-        settings.filter = test.loop->settings().filter;
+        flow::LoopSettings settings = test::any_settings(test.loop->changes().settings(), random);
+        settings.filter = test.loop->changes().settings().filter;
         settings.injective = false;
         if (settings.mode == Mode::clay) settings.mode = Mode::type2; // clay takes no puppet
-        if (tick % 15 == 9) test.loop->change_settings(settings);
+        if (tick % 15 == 9) test.loop->changes().change_settings(settings);
         const flow::Command role = test::any_role(random);
         const auto* input = std::get_if<flow::SetRole>(&role);
         if (random() % 8 == 0 && (input == nullptr || input->input.is_angle()))
@@ -228,7 +228,7 @@ TEST_SUITE("puppet_timeline") {
         if (tick % 8 == 0) test.commands.try_push(flow::requests[random() % flow::requests.size()]);
         const flow::Frame& frame = take.live.test.frame_after_tick(tick);
         take.see(frame);
-        if (frame.awaited) test.loop->change_to(*frame.awaited);
+        if (frame.awaited) test.loop->changes().change_to(*frame.awaited);
       }
       const Timeline made = take.made(none).timeline;
       CHECK(count<flow::Mark>(made) > 2);

@@ -36,7 +36,7 @@ struct Seat {
     auto opened = TimelineWindow::open("test", size, "nothing else");
     REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
     window = *std::move(opened);
-    window->set_model(test.loop->layout(),
+    window->set_model(test.loop->changes().layout(),
                       SceneBuilder(test.model, test.placement.units_per_metre));
     const flow::Frame& frame = test.frame_after_tick(0);
     window->follow(frame.shape);

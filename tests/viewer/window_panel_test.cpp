@@ -37,7 +37,7 @@ struct Person {
     window = *std::move(opened);
     flow::LoopSettings settings;
     settings.radius_m.fill(0.1);
-    window->begin(test.loop->layout(), builder, settings);
+    window->begin(test.loop->changes().layout(), builder, settings);
     window->show(frame, true, gauges);
     window->show(frame, false, gauges);
   }

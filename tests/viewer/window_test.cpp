@@ -60,8 +60,8 @@ TEST_SUITE("window") {
     REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
     LiveWindow& window = **opened;
     const SceneBuilder builder(test.model, test.placement.units_per_metre);
-    window.begin(test.loop->layout(), builder, {});
-    const auto blocks = test.loop->layout().block_count();
+    window.begin(test.loop->changes().layout(), builder, {});
+    const auto blocks = test.loop->changes().layout().block_count();
 
     HoldTracker holds;
     for (std::uint64_t tick = 0; tick < 4; ++tick) {
@@ -77,7 +77,7 @@ TEST_SUITE("window") {
       holds.follow(frame);
       SceneFrame scene_frame;
       set_hands(frame, holds, scene_frame);
-      test.loop->layout().unpack(frame.shape, scene_frame.vertices);
+      test.loop->changes().layout().unpack(frame.shape, scene_frame.vertices);
       Scene scene;
       builder.build(scene_frame, {}, scene);
       const Image by_processor = silhouette(scene, window.camera(), size);
@@ -106,8 +106,8 @@ TEST_SUITE("window") {
     LiveWindow& window = **opened;
     flow::LoopSettings settings;
     settings.radius_m.fill(0.1);
-    window.begin(test.loop->layout(), SceneBuilder(test.model, test.placement.units_per_metre),
-                 settings);
+    window.begin(test.loop->changes().layout(),
+                 SceneBuilder(test.model, test.placement.units_per_metre), settings);
     flow::Frame frame = test.frame_after_tick(0);
     frame.undo_steps = frame.redo_steps = 1;
     frame.settings = settings;
@@ -177,7 +177,7 @@ TEST_SUITE("window") {
     LiveWindow& window = **opened;
     const SceneBuilder builder(test.model, test.placement.units_per_metre);
     REQUIRE(builder.origin_m().norm() > 0.1);
-    window.begin(test.loop->layout(), builder, {});
+    window.begin(test.loop->changes().layout(), builder, {});
     const flow::Frame& frame = test.frame_after_tick(0);
     window.show(frame, true, {});
     SimulatedInput input;
@@ -213,7 +213,7 @@ TEST_SUITE("window") {
     REQUIRE(opened);
     LiveWindow& window = **opened;
     const SceneBuilder builder(test.model, test.placement.units_per_metre);
-    window.begin(test.loop->layout(), builder, {});
+    window.begin(test.loop->changes().layout(), builder, {});
     PuppetEditor& editor = window.editor();
     editor.begin(test.model, "ball.obj", nullptr);
     editor.turn(true);

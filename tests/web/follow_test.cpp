@@ -37,7 +37,7 @@ struct Followed {
     std::vector<Record> records;
     streamed.stream->take(records);
     const auto shape = streamed.stream->take_shape();
-    if (const auto& surface = streamed.test.loop->sculptor_options().surface)
+    if (const auto& surface = streamed.test.loop->changes().sculptor_options().surface)
       weights.try_emplace(surface->number(), weights_message(*surface));
     feed.look_at(records);
     if (!room) {
@@ -143,10 +143,10 @@ TEST_SUITE("follow") {
       for (int tick = 0; tick < 600; ++tick) {
         bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
         if (random() % 6 == 0) {
-          auto settings = test::any_settings(streamed.test.loop->settings(), random);
+          auto settings = test::any_settings(streamed.test.loop->changes().settings(), random);
           settings.brushes = {}; // whose work no field tells, nor that of hands in clay
           if (settings.mode == flow::Mode::clay) settings.mode = flow::Mode::type2;
-          streamed.test.loop->change_settings(settings);
+          streamed.test.loop->changes().change_settings(settings);
         }
         const auto shape = streamed.tick(bent);
         followed.pass();
@@ -361,8 +361,8 @@ TEST_SUITE("follow") {
     for (int tick = 0; tick < 1200; ++tick) {
       bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
       if (random() % 20 == 0)
-        streamed.test.loop->change_settings(
-            test::any_settings(streamed.test.loop->settings(), random));
+        streamed.test.loop->changes().change_settings(
+            test::any_settings(streamed.test.loop->changes().settings(), random));
       const auto shape = streamed.tick(bent);
       followed.pass();
       if (!followed.is_up_to_date()) continue;
@@ -391,18 +391,19 @@ TEST_SUITE("follow") {
       for (int tick = 0; tick < 400; ++tick) {
         bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
         if (tick % 20 == 10)
-          static_cast<void>(loop.change_puppet(
-              test::any_puppet(loop.puppet(loop.newest_puppet()), streamed.test.model, random, 5)));
+          static_cast<void>(loop.changes().change_puppet(
+              test::any_puppet(loop.changes().puppet(loop.changes().newest_puppet()),
+                               streamed.test.model, random, 5)));
         if (tick % 60 == 40) streamed.test.commands.try_push(flow::Request::undo);
         const auto shape = streamed.tick(bent);
-        if (const auto& awaited = loop.frames().front().awaited) loop.change_to(*awaited);
+        if (const auto& awaited = loop.frames().front().awaited) loop.changes().change_to(*awaited);
         followed.pass();
         if (!followed.is_up_to_date()) continue;
         worst = std::max(worst, followed.gap(shape));
         ++compared;
       }
       CHECK(followed.client.good);
-      CHECK(loop.next_puppet() > 8);
+      CHECK(loop.changes().next_puppet() > 8);
       CHECK(worst < 1e-5);
       CHECK(compared > 250);
       CHECK(followed.client.weights > 3);

@@ -32,7 +32,7 @@ struct Served {
       : streamed(mode, {.injective = deform::InjectiveOptions{}, .puppet = puppet}),
         server(open_server(limits)) {
     server->present(streamed.stream, streamed.model);
-    if (const auto& surface = streamed.test.loop->sculptor_options().surface)
+    if (const auto& surface = streamed.test.loop->changes().sculptor_options().surface)
       server->add_weights(surface->number(), web::weights_message(*surface));
   }
   ~Served() { end(); }

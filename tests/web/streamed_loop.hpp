@@ -40,7 +40,7 @@ struct StreamedLoop {
                                            static_cast<std::size_t>(2 * points)});
     test.options.sinks = {stream.get()};
     make_loop();
-    model = web::model_message(test.loop->layout(), test.model, test.inputs,
+    model = web::model_message(test.loop->changes().layout(), test.model, test.inputs,
                                {"ball", 1000.0, test.placement.units_per_metre});
   }
 

@@ -140,7 +140,7 @@ bool Stage::draw() {
   Parts& parts = *parts_;
   if (!parts.loop.frames().update()) return false;
   const flow::Frame& frame = parts.loop.frames().front();
-  parts.loop.layout(frame.model).unpack(frame.shape, parts.vertices);
+  parts.loop.changes().layout(frame.model).unpack(frame.shape, parts.vertices);
   parts.model.show(parts.vertices, frame.units_per_metre);
   for (std::size_t slot = 0; slot < parts.hands.size(); ++slot) {
     if (!frame.hands[slot].present) continue;

@@ -1,121 +1,115 @@
-// The part of the loop that prepares other versions of the model, on the thread that asks for them.
-
-#include <nendo/flow/deform_loop.hpp>
+// The part of the broker that prepares other versions of the model.
 
 #include <cassert>
 #include <utility>
 
-#include <nendo/flow/prepared_change.hpp>
+#include <nendo/flow/rig_setup.hpp>
+
+#include "broker_parts.hpp"
 
 namespace nendo::flow {
 
-bool DeformLoop::hold_still() {
-  if (is_changing() || is_still_) return false;
-  next_change().holds_still = true;
-  offer_change();
+ModelVersion& ChangeBroker::first_model() noexcept {
+  return parts_->versions.first();
+}
+
+const ModelVersion& ChangeBroker::newest_model() const noexcept {
+  return *parts_->asked_model;
+}
+
+std::shared_ptr<const ModelVersion> ChangeBroker::model(std::uint32_t number) const noexcept {
+  return parts_->versions.find(number);
+}
+
+bool ChangeBroker::refill_undo() {
+  deform::UndoMemory* const memory = parts_->asked_model->undo_memory.get();
+  return memory == nullptr || memory->refill();
+}
+
+bool ChangeBroker::hold_still() {
+  if (is_changing() || parts_->is_still) return false;
+  parts_->next_change().holds_still = true;
+  parts_->offer();
   return true;
 }
 
-bool DeformLoop::is_still() {
-  return !is_changing() && is_still_;
-}
-
-ModelVersion* DeformLoop::version_numbered(std::uint32_t number) const noexcept {
-  for (const auto& version : versions_)
-    if (version->number == number) return version.get();
-  return nullptr;
+bool ChangeBroker::is_still() {
+  return !is_changing() && parts_->is_still;
 }
 
 Result<void>
-DeformLoop::change_model(FinerModel& finer,
-                         const std::function<Result<void>(const ModelVersion&)>& accepts) {
-  assert(is_still() && finer.is_of(*asked_model_));
-  const bool is_puppets = is_played(puppets_[asked_puppet_].get());
-  auto made = finer.finish(last_number_ + 1, undo_room(), is_puppets);
-  SculptorOptions sculptor = asked_.options;
+ChangeBroker::change_model(FinerModel& finer,
+                           const std::function<Result<void>(const ModelVersion&)>& accepts) {
+  Parts& parts = *parts_;
+  assert(is_still() && finer.is_of(*parts.asked_model));
+  auto made = finer.finish(parts.versions.next_number(), parts.versions.remaining_room(),
+                           is_played(parts.asked_rig()));
+  SculptorOptions sculptor = parts.asked.options;
   const auto check = [&]() -> Result<void> {
     if (!made) return Error{made.error().code, "the model " + made.error().message};
     // A puppet's points may lie too near to each other on another version.
-    if (auto fits = set_model(sculptor, **made); !fits) return fits;
+    if (auto fits = parts.set_model(sculptor, **made); !fits) return fits;
     return accepts ? accepts(**made) : Result<void>();
   };
   if (auto fine = check(); !fine) {
     keep_model();
     return fine;
   }
-  asked_.options = std::move(sculptor);
-  ++last_number_;
-  versions_.push_back(*std::move(made));
-  offer_model(*versions_.back(), finer.change_to(*versions_.back()));
+  parts.asked.options = std::move(sculptor);
+  ModelVersion& version = parts.versions.add(*std::move(made));
+  parts.offer_model(version, finer.change_to(version));
   return {};
 }
 
-void DeformLoop::keep_model() {
+void ChangeBroker::keep_model() {
   assert(is_still());
-  offer_model(*asked_model_, {asked_model_->number});
+  parts_->offer_model(*parts_->asked_model, {parts_->asked_model->number});
 }
 
-bool DeformLoop::change_to(const Awaited& awaited) {
-  ModelVersion* const version = version_numbered(awaited.model);
-  if (version == nullptr || !awaited.settings.are_usable() || awaited.puppet >= puppets_.size())
+bool ChangeBroker::change_to(const Awaited& awaited) {
+  ModelVersion* const version = parts_->versions.find(awaited.model).get();
+  if (version == nullptr || !awaited.settings.are_usable() || awaited.puppet >= next_puppet())
     return false;
-  if (version != asked_model_) {
-    if (is_changing() || is_still_) return false;
-    offer_model(*version, {version->number});
+  if (version != parts_->asked_model) {
+    if (is_changing() || parts_->is_still) return false;
+    parts_->offer_model(*version, {version->number});
   }
-  if (awaited.puppet != asked_puppet_ && !change_puppet(awaited.puppet)) return false;
+  if (awaited.puppet != newest_puppet() && !change_puppet(awaited.puppet)) return false;
   return change_settings(awaited.settings);
 }
 
 /// Offers that version, which must not change until the loop has it.
-void DeformLoop::offer_model(ModelVersion& version, const ChangeModel& model) {
-  PreparedChange& change = next_change();
-  change.model = model;
+void ChangeBroker::Parts::offer_model(ModelVersion& version, const ChangeModel& model) {
+  next_change();
+  change->model = model;
   // A kept version was tried when it was made.
-  if (&version != asked_model_ && !model.is_new())
-    static_cast<void>(set_model(asked_.options, version));
-  Shaping::prepare(asked_, version, control_points(asked_puppet_), change.ready);
-  change.ready.puppet = asked_puppet_;
-  change.ready.is_new_model = model.is_new();
-  if (change.log) change.log->of_other_model = room_for_shape(version);
-  model_before_ = asked_model_;
-  if (&version != asked_model_)
-    change.ready.shape_room.fill({version.number, version.shape.shape()});
-  asked_model_ = &version;
-  offer_change();
-  if (settings_later_) change_settings(*std::exchange(settings_later_, {}));
+  if (&version != asked_model && !model.is_new())
+    static_cast<void>(set_model(asked.options, version));
+  Shaping::prepare(asked, version, control_points(), change->ready);
+  change->ready.puppet = asked_puppet;
+  change->ready.is_new_model = model.is_new();
+  if (change->log) change->log->of_other_model = room_for_shape(version);
+  model_before = asked_model;
+  if (&version != asked_model)
+    change->ready.shape_room.fill({version.number, version.shape.shape()});
+  asked_model = &version;
+  offer();
+  if (settings_later) change_settings(*std::exchange(settings_later, {}));
+}
+
+/// Puts the masks and the puppet's field for that version into the options. Error: the puppet's
+/// points are too near to each other.
+Result<void> ChangeBroker::Parts::set_model(SculptorOptions& sculptor,
+                                            const ModelVersion& version) const {
+  set_masks(asked_rig(), version.mesh, version.layout(), sculptor);
+  return set_surface(sculptor, version);
 }
 
 /// The loop has refused what was asked for last.
-void DeformLoop::go_back() {
-  asked_model_ = model_before_;
-  if (change_->settings) asked_ = change_->before;
-  static_cast<void>(set_model(asked_.options, *asked_model_));
-}
-
-/// Where a new version has taken the way that a redo would have gone, frees those of that way.
-void DeformLoop::free_others(const ChangeModel& taken) {
-  if (!taken.is_new()) return;
-  std::erase_if(versions_, [this](const auto& version) {
-    for (const ModelVersion* at = asked_model_; at != nullptr; at = at->before)
-      if (at == version.get()) return false;
-    return true;
-  });
-}
-
-/// What is left of the memory for undo. Memory that grows is not allocated while the loop holds
-/// still.
-UndoRoom DeformLoop::undo_room() const noexcept {
-  std::size_t used = 0;
-  for (const auto& version : versions_)
-    if (version->undo_memory) used += version->undo_memory->bytes();
-  const std::size_t most = options_.undo_most_bytes;
-  if (most > 0) return {0, most - std::min(most, used)};
-  return {options_.sculptor.deformer.undo_bytes, 0};
-}
-
-bool DeformLoop::refill_undo() {
-  return asked_model_->undo_memory == nullptr || asked_model_->undo_memory->refill();
+void ChangeBroker::Parts::go_back() {
+  asked_model = model_before;
+  if (change->settings) asked = change->before;
+  static_cast<void>(set_model(asked.options, *asked_model));
 }
 
 } // namespace nendo::flow

@@ -100,50 +100,52 @@ void LoopReplay::take(const driver::RecordedSample& sample) noexcept {
 /// gap.
 bool LoopReplay::follow(const flow::ChangeModel& change) {
   const bool is_new = change.is_new();
-  if (!loop_->is_still()) {
+  if (!loop_->changes().is_still()) {
     // What was not made since the recording began is the model with which it began.
     const auto known = versions_.find(change.number);
     const std::uint32_t number = known == versions_.end() ? 0 : known->second;
-    return !is_new && loop_->change_to({loop_->settings(), number, loop_->newest_puppet()});
+    return !is_new && loop_->changes().change_to(
+                          {loop_->changes().settings(), number, loop_->changes().newest_puppet()});
   }
   if (!is_new) {
-    loop_->keep_model();
+    loop_->changes().keep_model();
     return true;
   }
-  auto finer = flow::FinerModel::make(loop_->newest_model(), change, loop_->drawn_wire().places());
+  auto finer =
+      flow::FinerModel::make(loop_->changes().newest_model(), change, loop_->drawn_wire().places());
   if (!finer) {
-    loop_->keep_model();
+    loop_->changes().keep_model();
     return false;
   }
-  if (!loop_->change_model(*finer)) return false;
-  versions_[change.number] = loop_->newest_model().number;
+  if (!loop_->changes().change_model(*finer)) return false;
+  versions_[change.number] = loop_->changes().newest_model().number;
   return true;
 }
 
 /// Makes that puppet, or goes back to it. Returns false if the loop cannot have it.
 bool LoopReplay::follow(const PuppetChange& change) {
   const auto known = puppets_.find(change.number);
-  if (known != puppets_.end()) return bool(loop_->change_puppet(known->second));
-  if (!change.puppet) return bool(loop_->change_puppet(0));
-  auto rig = rig_of(*change.puppet, loop_->model(0)->mesh);
+  if (known != puppets_.end()) return bool(loop_->changes().change_puppet(known->second));
+  if (!change.puppet) return bool(loop_->changes().change_puppet(0));
+  auto rig = rig_of(*change.puppet, loop_->changes().model(0)->mesh);
   if (!rig) return false;
-  puppets_[change.number] = loop_->next_puppet();
-  return bool(loop_->change_puppet(*std::move(rig)));
+  puppets_[change.number] = loop_->changes().next_puppet();
+  return bool(loop_->changes().change_puppet(*std::move(rig)));
 }
 
 bool LoopReplay::feed(const Entry& entry) noexcept {
   if (const auto* sample = std::get_if<driver::RecordedSample>(&entry)) {
     take(*sample);
   } else if (const auto* settings = std::get_if<flow::LoopSettings>(&entry)) {
-    exact_ = loop_->change_settings(*settings) && exact_;
+    exact_ = loop_->changes().change_settings(*settings) && exact_;
   } else if (std::holds_alternative<flow::HoldStill>(entry)) {
-    exact_ = loop_->hold_still() && exact_;
+    exact_ = loop_->changes().hold_still() && exact_;
   } else if (const auto* change = std::get_if<flow::ChangeModel>(&entry)) {
     exact_ = follow(*change) && exact_;
   } else if (const auto* puppet = std::get_if<PuppetChange>(&entry)) {
     exact_ = follow(*puppet) && exact_;
   } else if (const auto* tick = std::get_if<flow::LoggedTick>(&entry)) {
-    loop_->refill_undo();
+    loop_->changes().refill_undo();
     loop_->tick(tick->number, tick->scheduled, tick->woke);
     return true;
   } else if (const auto command = command_in(entry); command && flow::is_for_loop(*command)) {

@@ -245,7 +245,7 @@ Result<NewTake> add_shapes(const std::filesystem::path& from, const std::filesys
     ended = std::get<flow::LoggedTick>(*entry).woke;
     if ((loop.stats().ticks - 1) % every != 0 || !loop.frames().update()) continue;
     const flow::Frame& frame = loop.frames().front();
-    loop.layout(frame.model).unpack(frame.shape, vertices);
+    loop.changes().layout(frame.model).unpack(frame.shape, vertices);
     if (const auto put = copy->put(shape_of(frame.tick, vertices)); !put) return put.error();
   }
   if (const auto put = copy->put(reader->sent()); !put) return put.error();

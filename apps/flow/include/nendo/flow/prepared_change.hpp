@@ -2,7 +2,8 @@
 // What another thread makes for a loop that runs, and hands to it ready. The loop's tick only swaps
 // pointers.
 
-#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -10,9 +11,9 @@
 #include <nendo/flow/input_log.hpp>
 #include <nendo/flow/layer.hpp>
 #include <nendo/flow/placement.hpp>
+#include <nendo/flow/puppet_player.hpp>
 #include <nendo/flow/shaping.hpp>
 #include <nendo/hand/range_adaptation.hpp>
-#include <nendo/puppet/gesture_clutch.hpp>
 #include <nendo/puppet/rig.hpp>
 
 namespace nendo::flow {
@@ -48,17 +49,14 @@ struct LogChange {
 
 /// Another puppet, ready to be played.
 struct ReadyRig {
-  std::uint32_t number = 0;                  ///< DeformLoop::puppet()
-  std::uint32_t before = 0;                  ///< the number of the one that it replaces
-  std::optional<puppet::RigPlayer> player{}; ///< none: hands touch the model
-  std::optional<puppet::GestureClutch> gestures{};
+  std::uint32_t number = 0; ///< ChangeBroker::puppet()
+  std::uint32_t before = 0; ///< the number of the one that it replaces
+  /// None: hands touch the model. The values at which the hands hold its functions are 0, or what
+  /// they were when this puppet was played before.
+  std::optional<PuppetPlayer> puppet{};
   std::optional<double> mirror{};  ///< fingertips shape both sides of this x, model units
   std::vector<std::size_t> from{}; ///< puppet::functions_before()
-  /// The values with which the hands took hold of the shape; of new functions 0, or what they were
-  /// when this puppet was played before.
-  std::vector<double> held_at{};
-  std::vector<double> still_at{}; ///< and those with which they stopped
-  deform::Points tips{};          ///< room for the places of its points
+  deform::Points tips{};           ///< room for the positions of its points
 };
 
 /// What a loop goes on with from a tick on. It swaps pointers, and gives back what it had before.

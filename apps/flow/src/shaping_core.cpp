@@ -1,0 +1,219 @@
+#include <nendo/flow/shaping_core.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include <nendo/flow/rig_setup.hpp>
+#include <nendo/flow/tips_of_hand.hpp>
+
+#include "drawn_blade.hpp"
+
+namespace nendo::flow {
+
+using deform::Points;
+
+namespace {
+
+/// Symmetry adds the images of all points.
+Eigen::Index points_at_first(const CoreOptions& options) {
+  SculptorOptions sculptor = options.shaping.sculptor.options;
+  sculptor.mirror = mirror_of(options.rig.get());
+  return control_points_of(options.rig.get(), sculptor,
+                           static_cast<Eigen::Index>(options.hands.size()));
+}
+
+} // namespace
+
+ShapingCore::ShapingCore(ModelVersion& model, const CoreOptions& options)
+    : units_per_metre_(options.units_per_metre), hands_(options.hands), bodies_(options.bodies),
+      mirror_(mirror_of(options.rig.get())), tips_(Points::Zero(3, points_at_first(options))),
+      shaping_(model, tips_.cols(), options.shaping),
+      blade_(std::make_unique<DrawnBlade>(units_per_metre_)) {
+  if (!is_played(options.rig.get())) return;
+  puppet_.emplace(options.rig);
+  puppet_->player().set_state(options.rig_state);
+}
+
+ShapingCore::~ShapingCore() = default;
+
+Frame ShapingCore::first_frame() const {
+  Frame frame;
+  frame.settings = shaping_.settings();
+  frame.units_per_metre = units_per_metre_;
+  frame.shape = shaping_.sculptor().rest();
+  frame.fields = shaping_.sculptor().fields();
+  frame.surface.vectors.setZero(3, puppet_ ? 2 * tips_.cols() : 0);
+  for (auto& hand : frame.hands)
+    hand.pose.joints.fill(Eigen::Isometry3d::Identity());
+  return frame;
+}
+
+deform::FieldStatus ShapingCore::begin(const Hands& hands, Frame& frame) noexcept {
+  if (puppet_) puppet_->player().take_hold(hands);
+  place(hands, std::nullopt, true, frame);
+  const deform::FieldStatus status = shaping_.begin(tips_);
+  keep_held_values();
+  return status;
+}
+
+void ShapingCore::apply(const Command& command, const Hands& hands) noexcept {
+  if (puppet_ && command == Command(Request::take_hold)) return puppet_->player().take_hold(hands);
+  if (const auto* request = std::get_if<Request>(&command)) return shaping_.ask(*request);
+  if (const auto* wire = std::get_if<DrawWire>(&command)) return draw(*wire);
+  if (puppet_ && is_for_puppet(command)) puppet_->apply(command, hands);
+}
+
+void ShapingCore::toggle_clutch(Side side, const Hands& hands) noexcept {
+  puppet_->player().toggle_clutch(side, hands);
+}
+
+/// Hands that draw hold nothing meanwhile.
+void ShapingCore::draw(const DrawWire& draw) noexcept {
+  if (!draw.on) {
+    blade_->end();
+    if (std::exchange(holds_after_blade_, false)) shaping_.ask(Request::grab);
+    return;
+  }
+  if (!blade_->is_drawn()) holds_after_blade_ = shaping_.is_held();
+  blade_->begin(draw.blade);
+  shaping_.ask(Request::let_go);
+}
+
+void ShapingCore::place(const Hands& hands, std::optional<HostTime> time, bool with_bodies,
+                        Frame& frame) noexcept {
+  if (!puppet_) {
+    place_tips(hands, tips_);
+    if (with_bodies || is_by_hands(shaping_.sculptor().mode())) place_bodies(hands);
+  }
+  blade_->follow(hands, shaping_.model().layout().diagonal() / units_per_metre_);
+  if (!(frame.wire == blade_->path())) frame.wire = blade_->path();
+  if (puppet_) {
+    puppet_->play(shaping_.is_held(), hands, time);
+    puppet_->player().write(tips_);
+  }
+  show_puppet(frame);
+}
+
+void ShapingCore::place_tips(const Hands& hands, Points& tips) noexcept {
+  Eigen::Index column = 0;
+  const auto hand_count = static_cast<Eigen::Index>(hands_.size());
+  const Eigen::Index points = tips.cols() / ((mirror_ ? 2 : 1) * hand_count);
+  for (const Side side : hands_) {
+    write_tips(hands[Placement::index_of(side)]->pose, units_per_metre_, points, column, tips);
+    column += points;
+  }
+  if (mirror_) mirror_half(*mirror_, tips);
+}
+
+/// Hands that hold still press where they stopped, until they continue.
+void ShapingCore::place_bodies(const Hands& hands) noexcept {
+  if (shaping_.is_still()) return;
+  for (const Side side : hands_) {
+    const std::size_t slot = Placement::index_of(side);
+    bodies_->follow(bodies_->count() == 2 ? slot : 0, hands[slot]->pose);
+  }
+}
+
+void ShapingCore::show_puppet(Frame& frame) const noexcept {
+  if (!puppet_) {
+    frame.let_go = {};
+    frame.symmetric = mirror_.has_value();
+    frame.function_count = 0;
+    return;
+  }
+  const puppet::RigPlayer& player = puppet_->player();
+  for (const Side side : {Side::left, Side::right})
+    frame.let_go[Placement::index_of(side)] = player.has_let_go(side);
+  frame.symmetric = player.state().symmetric;
+  frame.function_count = static_cast<std::uint32_t>(player.values().size());
+  for (std::size_t at = 0; at < player.values().size(); ++at)
+    frame.functions[at] = static_cast<float>(player.values()[at]);
+}
+
+void ShapingCore::shape(HostClock::duration time, bool completes, Frame& frame,
+                        LoopStats& stats) noexcept {
+  shaping_.set_time(time);
+  const std::uint64_t holds = shaping_.sculptor().holds();
+  frame.status = shaping_.shape(tips_, frame, stats, completes);
+  if (shaping_.sculptor().holds() != holds) keep_held_values();
+}
+
+void ShapingCore::finish(PreparedChange& change, const Hands& hands, Frame& frame,
+                         LoopStats& stats) noexcept {
+  if (change.holds_still) {
+    shaping_.hold_still(tips_, frame, stats);
+    if (puppet_) puppet_->keep_still_values();
+  }
+  if (change.settings) place_again(hands);
+  if (change.exchanges()) exchange(change, hands, frame, stats);
+}
+
+/// A puppet's points stay where they are.
+void ShapingCore::place_again(const Hands& hands) noexcept {
+  if (puppet_) return puppet_->player().take_hold(hands);
+  place_tips(hands, tips_);
+  place_bodies(hands);
+}
+
+void ShapingCore::exchange(PreparedChange& change, const Hands& hands, Frame& frame,
+                           LoopStats& stats) noexcept {
+  const bool holds_on = shaping_.holds_on(change.ready);
+  if (change.rig) take_puppet(*change.rig, change.ready, hands);
+  if (puppet_ && shaping_.is_still())
+    puppet_->hold_where_stopped();
+  else if (!holds_on)
+    keep_held_values();
+  Points& other_tips = change.ready.tips; // where other points of the hands hold the model
+  if (!puppet_ && other_tips.cols() != tips_.cols()) {
+    place_tips(hands, other_tips);
+    place_bodies(hands);
+  }
+  change.is_refused = !shaping_.exchange(change.ready, tips_, frame, stats);
+  if (shaping_.sculptor().control_points() != tips_.cols()) std::swap(tips_, other_tips);
+}
+
+/// The hands have grabbed where they are.
+void ShapingCore::keep_held_values() noexcept {
+  if (puppet_) puppet_->keep_held_values();
+}
+
+/// `rig` then has what was before. If the shape is still held at the values at which the hands
+/// grabbed it, these are the starts.
+void ShapingCore::take_puppet(ReadyRig& rig, ReadySculptor& ready, const Hands& hands) noexcept {
+  if (rig.puppet) {
+    rig.puppet->take_over(puppet_ ? &*puppet_ : nullptr, rig.from, hands, ready.starts);
+    rig.puppet->player().write(rig.tips);
+  }
+  std::swap(puppet_, rig.puppet);
+  std::swap(mirror_, rig.mirror);
+  std::swap(tips_, rig.tips);
+  if (!puppet_) place_again(hands);
+}
+
+void ShapingCore::begin_anew(LogChange& change, const Hands& hands, Frame& frame,
+                             LoopStats& stats) noexcept {
+  LoopState& state = change.state;
+  if (puppet_) puppet_->reset_gestures();
+  place_again(hands);
+  blade_->clear();
+  holds_after_blade_ = false;
+  if (puppet_) state.rig = puppet_->player().state(); // which has room for it
+  shaping_.begin_anew(tips_, change.log != nullptr, frame, stats);
+  keep_held_values();
+  state.held = shaping_.is_held();
+  const deform::BlockShape& rest = shaping_.sculptor().rest();
+  if (state.shape.block_count() != rest.block_count())
+    std::swap(state.shape, change.of_other_model);
+  state.shape.follow(rest);
+}
+
+bool ShapingCore::has_clutch(Side side) const noexcept {
+  return puppet_ && puppet_->player().rig().puppet().clutch.means[Placement::index_of(side)] ==
+                        puppet::ClutchMeans::wrist_switch;
+}
+
+const WirePath& ShapingCore::completed_wire() const noexcept {
+  return blade_->completed();
+}
+
+} // namespace nendo::flow
