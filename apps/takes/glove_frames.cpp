@@ -5,8 +5,6 @@
 #include <utility>
 #include <variant>
 
-#include <nendo/hand/joint_angles.hpp>
-
 namespace nendo::takes {
 namespace {
 
@@ -70,35 +68,29 @@ GloveFrames::GloveFrames(recording::TakeReader reader)
   for (auto& hand : frame_.hands)
     hand.pose.joints.fill(Eigen::Isometry3d::Identity());
   frame_.held = false;
-  for (const flow::HandInput& input : reader_.setup().hands) {
-    const std::size_t slot = flow::Placement::index_of(input.side);
-    hands_.push_back({slot,
-                      input.first.side,
-                      input.gated,
-                      {input.skeleton(Side::left), input.skeleton(Side::right)},
-                      hand::ActiveCalibration(input.wearer)});
-    flow::HandFrame& hand = frame_.hands[slot];
-    hand.present = true;
-    hand.T_stage_wrist = wrist_of(input.side);
-    follow(hands_.back(), input.first);
+  flow::Placement placement;
+  for (const Side side : {Side::left, Side::right})
+    placement.T_stage_wrist[flow::Placement::index_of(side)] = wrist_of(side);
+  for (flow::HandInput input : reader_.setup().hands) {
+    input.filter = {}; // each pose as its sample tells it
+    hands_.emplace_back(std::move(input), placement, false);
+    frame_.hands[hands_.back().slot].present = true;
+    show(hands_.back());
   }
 }
 
-void GloveFrames::follow(Hand& hand, const GloveSample& sample) noexcept {
-  const hand::Calibration& active = hand.calibration.follow(sample);
-  const GloveSample passed = hand.gated ? hand.gate.pass(sample, active) : sample;
+void GloveFrames::show(const flow::GloveHand& hand) noexcept {
   flow::HandFrame& shown = frame_.hands[hand.slot];
-  shown.left_out = hand.calibration.left_out(sample.side);
-  shown.angles = hand::joint_angles(passed, active, shown.left_out);
-  const auto& skeleton = hand.skeletons[sample.side == Side::left ? 0 : 1];
-  shown.pose = skeleton.pose(shown.angles, shown.T_stage_wrist);
-  shown.swapped = sample.side != hand.glove;
-  hand.latest = sample.arrival;
+  shown.left_out = hand.left_out();
+  shown.angles = hand.angles;
+  shown.T_stage_wrist = hand.T_stage_wrist;
+  shown.pose = hand.skeleton().pose(shown.angles, shown.T_stage_wrist);
+  shown.swapped = hand.latest.side != hand.input.first.side;
 }
 
 void GloveFrames::note_silence(HostTime now) noexcept {
-  for (const Hand& hand : hands_)
-    frame_.hands[hand.slot].silent = now - hand.latest > silent_after;
+  for (const flow::GloveHand& hand : hands_)
+    frame_.hands[hand.slot].silent = now - hand.latest.arrival > silent_after;
 }
 
 bool GloveFrames::next() {
@@ -108,8 +100,9 @@ bool GloveFrames::next() {
       exact_ = exact_ && recorded == nullptr && !std::holds_alternative<recording::Gap>(*entry);
       continue;
     }
-    Hand& hand = hands_[recorded->glove];
-    follow(hand, recorded->sample);
+    flow::GloveHand& hand = hands_[recorded->glove];
+    hand.update(recorded->sample);
+    show(hand);
     ++frame_.hands[hand.slot].samples;
     frame_.tick = frame_.ticks_run++;
     frame_.woke = frame_.scheduled = recorded->sample.arrival;

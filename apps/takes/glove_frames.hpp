@@ -9,8 +9,7 @@
 #include <vector>
 
 #include <nendo/base/result.hpp>
-#include <nendo/hand/active_calibration.hpp>
-#include <nendo/hand/sensor_gate.hpp>
+#include <nendo/flow/glove_hand.hpp>
 #include <nendo/recording/take_reader.hpp>
 
 #include "takes/frame_source.hpp"
@@ -43,25 +42,14 @@ public:
   bool is_exact() const override { return exact_ && reader_.chunks().damage_count() == 0; }
 
 private:
-  /// A hand, and what it needs to follow its glove as flow::DeformLoop does.
-  struct Hand {
-    std::size_t slot;
-    Side glove; ///< the side for which its glove was sewn at first
-    bool gated;
-    std::array<hand::HandSkeleton, 2> skeletons; ///< for a left and for a right glove
-    hand::ActiveCalibration calibration;
-    hand::SensorGate gate{};
-    HostTime latest{};
-  };
-
   explicit GloveFrames(recording::TakeReader reader);
-  void follow(Hand& hand, const GloveSample& sample) noexcept;
+  void show(const flow::GloveHand& hand) noexcept;
   void note_silence(HostTime now) noexcept;
 
   recording::TakeReader reader_;
   deform::Mesh model_;
   deform::BlockLayout layout_;
-  std::vector<Hand> hands_; ///< by the numbers of their gloves
+  std::vector<flow::GloveHand> hands_; ///< by the numbers of their gloves
   flow::Frame frame_;
   bool exact_ = true;
   double rate_hz_ = 0.0;

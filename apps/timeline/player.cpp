@@ -4,26 +4,13 @@
 #include <utility>
 
 #include <nendo/deform/undo_memory.hpp>
-#include <nendo/flow/deform_loop.hpp>
-#include <nendo/flow/finger_supports.hpp>
 #include <nendo/flow/rig_setup.hpp>
-#include <nendo/flow/tips_of_hand.hpp>
 
 namespace nendo::timeline {
 namespace {
 
 // Times in files are decimals, and a frame's is a quotient: what is so near belongs to it.
 constexpr double a_hair = 1e-6; // of a frame
-
-flow::ShapingOptions shaping_options(const Timeline& timeline,
-                                     const flow::SculptorSetup& sculptor) {
-  flow::ShapingOptions options{sculptor};
-  options.most_requests = timeline.events.size() + 1;
-  options.held = timeline.held;
-  options.pull_is_step = timeline.pull_is_step;
-  options.changes_at_once = true;
-  return options;
-}
 
 /// The bodies of all hands, left hand first.
 std::shared_ptr<flow::HandBodies> bodies_of(const Timeline& timeline, const deform::Mesh& model) {
@@ -35,24 +22,39 @@ std::shared_ptr<flow::HandBodies> bodies_of(const Timeline& timeline, const defo
   return std::make_shared<flow::HandBodies>(hands, units, flow::table_under(model, units));
 }
 
-flow::SculptorSetup first_setup(const Timeline& timeline,
-                                std::shared_ptr<const flow::HandBodies> bodies) {
-  flow::SculptorSetup setup{timeline.sculptor,
-                            flow::settings_of(timeline.sculptor, {}, timeline.units_per_metre)};
-  if (timeline.rig)
-    setup.options.hold = flow::Hold::fingertips; // its points hold
-  else
-    setup.options.bodies = std::move(bodies); // if masks are in the way, only for later
-  return setup;
+flow::BrokerOptions broker_options(const Timeline& timeline,
+                                   std::shared_ptr<const flow::HandBodies> bodies) {
+  flow::BrokerOptions options;
+  options.setup = {timeline.sculptor,
+                   flow::settings_of(timeline.sculptor, {}, timeline.units_per_metre)};
+  options.rig = timeline.rig;
+  if (!timeline.masks.empty() && !timeline.rig) {
+    options.rig = timeline.masks.front();
+    options.more_rigs.assign(timeline.masks.begin() + 1, timeline.masks.end());
+  }
+  options.bodies = std::move(bodies);
+  options.hands = options.inputs = timeline.hands.size();
+  options.units_per_metre = timeline.units_per_metre;
+  options.undo_most_bytes = deform::half_of_memory();
+  return options;
 }
 
-flow::UndoRoom undo_room() {
-  return {0, deform::half_of_memory()};
-}
-
-std::shared_ptr<flow::ModelVersion> first_version(const deform::Mesh& model) {
-  return std::make_shared<flow::ModelVersion>(0, model, deform::BlockLayout(model.vertices),
-                                              undo_room(), nullptr);
+flow::CoreOptions core_options(const Timeline& timeline, const flow::SculptorSetup& setup,
+                               std::shared_ptr<flow::HandBodies> bodies) {
+  flow::CoreOptions options;
+  options.shaping.sculptor = setup;
+  options.shaping.most_requests = timeline.events.size() + 1;
+  options.shaping.held = timeline.held;
+  options.shaping.pull_is_step = timeline.pull_is_step;
+  options.shaping.changes_at_once = true;
+  for (const HandTrack& track : timeline.hands)
+    options.hands.push_back(track.side);
+  options.bodies = std::move(bodies);
+  options.units_per_metre = timeline.units_per_metre;
+  options.rig = timeline.rig;
+  if (!timeline.rig && !timeline.masks.empty()) options.rig = timeline.masks.front();
+  options.rig_state = timeline.rig_state;
+  return options;
 }
 
 /// Each subdivision makes at most four corners of one, and a copy two.
@@ -68,11 +70,8 @@ bool are_too_many(const std::vector<Event>& events, const deform::Mesh& model) {
   return false;
 }
 
-/// Makes the puppet's field along the surface, if it needs one and there is none, and its masks.
+/// Makes the puppet's field along the surface, if it needs one and there is none.
 Result<void> complete(Timeline& timeline, const deform::Mesh& model) {
-  const puppet::Rig* const rig = timeline.rig ? timeline.rig.get() : timeline.masks_numbered(0);
-  if (rig != nullptr)
-    flow::set_masks(rig, model, deform::BlockLayout(model.vertices), timeline.sculptor);
   if (!timeline.rig) return {};
   if (const auto fits = puppet::check_fits(timeline.rig->puppet(), model); !fits)
     return Error{Errc::bad_input, "its puppet does not fit the model: " + fits.error().message};
@@ -84,13 +83,6 @@ Result<void> complete(Timeline& timeline, const deform::Mesh& model) {
   return {};
 }
 
-Eigen::Index points_at_first(const Timeline& timeline) {
-  const puppet::Rig* const rig = timeline.rig ? timeline.rig.get() : timeline.masks_numbered(0);
-  flow::SculptorOptions sculptor = timeline.sculptor;
-  sculptor.mirror = flow::mirror_of(rig);
-  return flow::control_points_of(rig, sculptor, static_cast<Eigen::Index>(timeline.hands.size()));
-}
-
 } // namespace
 
 Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Mesh& model) {
@@ -100,34 +92,26 @@ Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Me
     return Error{Errc::bad_input, "the model would be too large when it is subdivided so often, or "
                                   "its parts are copied; take out such an event"};
   if (auto fits = complete(timeline, model); !fits) return fits.error();
-  std::unique_ptr<Player> player(new Player(std::move(timeline), model));
+  const auto bodies = bodies_of(timeline, model);
+  std::unique_ptr<Player> player(new Player(std::move(timeline), model, bodies));
   player->pose_hands(0.0);
-  if (player->puppet_) player->puppet_->take_hold();
-  player->play_puppet();
-  const deform::FieldStatus status = player->shaping_.begin(player->tips_);
+  const deform::FieldStatus status = player->core_.begin(player->hands(), player->frame_);
   if (!is_solved(status))
     return Error{Errc::bad_input, "the hands cannot take hold of the model: " +
                                       std::string(deform::describe(status))};
   return player;
 }
 
-Player::Player(Timeline timeline, const deform::Mesh& model)
-    : timeline_(std::move(timeline)), tips_(deform::Points::Zero(3, points_at_first(timeline_))),
-      bodies_(bodies_of(timeline_, model)), first_(first_setup(timeline_, bodies_)), now_(first_),
-      versions_{first_version(model)},
-      shaping_(*versions_.front(), tips_.cols(), shaping_options(timeline_, first_)),
+Player::Player(Timeline timeline, const deform::Mesh& model,
+               const std::shared_ptr<flow::HandBodies>& bodies)
+    : timeline_(std::move(timeline)), changes_(model, broker_options(timeline_, bodies)),
+      core_(changes_.first_model(), core_options(timeline_, changes_.setup(), bodies)),
+      frame_(core_.first_frame()),
       frames_(static_cast<std::uint64_t>(timeline_.duration_s * timeline_.rate_hz + a_hair) + 1) {
   for (const auto& track : timeline_.hands)
     hands_.push_back({track.side, track.skeleton(), HandCurve(track.keys),
                       flow::Placement::index_of(track.side)});
-  if (timeline_.rig) puppet_.emplace(timeline_);
-  frame_.units_per_metre = timeline_.units_per_metre;
   frame_.held = timeline_.held;
-  frame_.settings = shaping_.settings();
-  frame_.shape = shaping_.sculptor().rest();
-  frame_.fields = shaping_.sculptor().fields();
-  for (auto& hand : frame_.hands)
-    hand.pose.joints.fill(Eigen::Isometry3d::Identity());
 }
 
 double Player::time_of(std::uint64_t frame) const noexcept {
@@ -145,49 +129,24 @@ double Player::last_time_s() const noexcept {
 void Player::pose_hands(double time_s) {
   for (const Hand& hand : hands_) {
     const Key key = hand.curve.at(time_s);
+    puppet::HandState& pose = poses_[hand.slot];
+    pose.angles = key.angles;
+    pose.T_world_wrist = key.wrist_pose();
+    pose.pose = hand.skeleton.pose(key.angles, pose.T_world_wrist);
     flow::HandFrame& shown = frame_.hands[hand.slot];
-    shown.angles = key.angles;
-    shown.T_stage_wrist = key.wrist_pose();
-    shown.pose = hand.skeleton.pose(key.angles, shown.T_stage_wrist);
+    shown.angles = pose.angles;
+    shown.T_stage_wrist = pose.T_world_wrist;
+    shown.pose = pose.pose;
     shown.present = true;
     shown.samples = made_ + 1;
-    if (puppet_)
-      puppet_->pose(hand.side, {shown.angles, shown.pose, shown.T_stage_wrist});
-    else
-      bodies_->follow(bodies_->count() == 2 ? hand.slot : 0, shown.pose);
   }
-  if (puppet_) return;
-  const puppet::Rig* const masks = timeline_.masks_numbered(shaping_.puppet());
-  place_tips(tips_, masks);
-  frame_.symmetric = flow::mirror_of(masks).has_value();
 }
 
-/// Where the hands are in this frame, with those masks.
-void Player::place_tips(deform::Points& tips, const puppet::Rig* masks) const noexcept {
-  const auto mirror = flow::mirror_of(masks);
-  const Eigen::Index points =
-      tips.cols() / ((mirror ? 2 : 1) * static_cast<Eigen::Index>(hands_.size()));
-  Eigen::Index column = 0;
-  for (const Hand& hand : hands_) {
-    flow::write_tips(frame_.hands[hand.slot].pose, timeline_.units_per_metre, points, column, tips);
-    column += points;
-  }
-  if (mirror) flow::mirror_half(*mirror, tips);
-}
-
-void Player::play_puppet() {
-  if (!puppet_) return;
-  std::optional<HostTime> time;
-  if (made_ > 0) time = HostTime{} + from_seconds(time_of(made_)); // a loop has no tick before
-  puppet_->play(shaping_.is_held(), time);
-  const puppet::RigPlayer& player = puppet_->player();
-  player.write(tips_);
-  for (const Side side : {Side::left, Side::right})
-    frame_.let_go[flow::Placement::index_of(side)] = player.has_let_go(side);
-  frame_.symmetric = player.state().symmetric;
-  frame_.function_count = static_cast<std::uint32_t>(player.values().size());
-  for (std::size_t at = 0; at < player.values().size(); ++at)
-    frame_.functions[at] = static_cast<float>(player.values()[at]);
+flow::ShapingCore::Hands Player::hands() const noexcept {
+  flow::ShapingCore::Hands hands{};
+  for (const Hand& hand : hands_)
+    hands[hand.slot] = &poses_[hand.slot];
+  return hands;
 }
 
 void Player::ask(const Event& event) {
@@ -197,94 +156,43 @@ void Player::ask(const Event& event) {
   if (const auto* change = std::get_if<flow::ChangePuppet>(&command)) masks_due_ = change->number;
   if (const auto change = flow::model_asked_by(command)) model_due_ = change;
   if (const auto* change = std::get_if<flow::ChangeModel>(&command)) model_due_ = *change;
-  const auto* request = std::get_if<flow::Request>(&command);
-  // A puppet's hands take hold of its functions.
-  if (request != nullptr && !(puppet_ && *request == flow::Request::take_hold))
-    shaping_.ask(*request);
-  if (puppet_) puppet_->apply(command);
+  core_.apply(command, hands());
 }
 
-std::shared_ptr<const flow::ModelVersion> Player::model(std::uint32_t number) const noexcept {
-  return number < versions_.size() ? versions_[number] : nullptr;
-}
-
-/// Of a puppet. Returns false, and changes nothing, if its points are too near to each other.
-bool Player::set_surface(flow::SculptorOptions& sculptor, const flow::ModelVersion& model) const {
-  if (!timeline_.rig) return true;
-  auto surface = flow::surface_for(*timeline_.rig, model.mesh, model.layout(), sculptor.deformer);
-  if (!surface) return false;
-  sculptor.surface = *std::move(surface);
-  return true;
-}
-
-/// What first_ would be with those masks.
-flow::SculptorSetup Player::first_with(std::uint32_t masks) const {
-  if (masks == 0) return first_;
-  const auto hands = static_cast<Eigen::Index>(hands_.size());
-  return flow::with_control_points(first_,
-                                   flow::of_one_side(first_.options.deformer.supports, 5 * hands),
-                                   timeline_.masks_numbered(masks), hands);
-}
-
-/// As the loop does at the end of a tick. Returns false, and goes on as it was, if nothing can be
-/// done with the settings.
-bool Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
-  const puppet::Rig* const rig =
-      puppet_ ? timeline_.rig.get() : timeline_.masks_numbered(awaited.puppet);
-  if (flow::is_by_hands(awaited.settings.mode) && !flow::can_press(rig)) return false;
-  flow::ModelVersion& model = *versions_[awaited.model];
-  const flow::LoopSettings& before = shaping_.settings();
-  const int hands = puppet_ ? 0 : static_cast<int>(hands_.size());
-  const bool other_masks = awaited.puppet != shaping_.puppet();
-  const flow::SculptorSetup first = first_with(awaited.puppet);
-  flow::SculptorSetup wanted = flow::with_settings(
-      other_masks ? first : now_, first, awaited.settings, hands, timeline_.units_per_metre);
-  wanted.options.surface = now_.options.surface; // the first one may be another version's
-  wanted.options.deformer.mask = now_.options.deformer.mask;
-  const bool same = &model == &shaping_.model() && awaited.settings.kernel == before.kernel &&
-                    awaited.settings.radius_m == before.radius_m;
-  if (!same && !set_surface(wanted.options, model)) return false;
-  if (other_masks || &model != &shaping_.model())
-    flow::set_masks(rig, model.mesh, model.layout(), wanted.options);
-  now_ = std::move(wanted);
-  if (puppet_ && awaited.settings != before) puppet_->take_hold();
-  flow::ReadySculptor ready;
-  const Eigen::Index points =
-      puppet_ ? tips_.cols() : flow::control_points_of(rig, now_.options, hands);
-  flow::Shaping::prepare(now_, model, points, ready);
-  ready.puppet = awaited.puppet;
-  ready.puppet_step =
-      flow::kind_of_edit(timeline_.masks_numbered(shaping_.puppet()), puppet_ ? nullptr : rig);
-  ready.is_new_model = is_new_model;
-  if (&model != &shaping_.model()) ready.shape_room[0] = {model.number, model.shape.shape()};
-  if (other_masks) {
-    tips_.setZero(3, points);
-    place_tips(tips_, rig);
-    frame_.symmetric = flow::mirror_of(rig).has_value();
-  } else if (ready.tips.cols() != tips_.cols()) {
-    place_tips(ready.tips, rig);
-  }
-  shaping_.exchange(ready, tips_, frame_, stats_);
-  if (shaping_.sculptor().control_points() != tips_.cols()) std::swap(tips_, ready.tips);
-  return true;
+/// Does the changes of this frame, as the loop does at the end of a tick.
+void Player::make_changes() {
+  if (const auto change = std::exchange(model_due_, {})) make_model(*change);
+  const auto masks = std::exchange(masks_due_, {});
+  const auto settings = std::exchange(settings_due_, {});
+  if (masks && !changes_.change_puppet(*masks)) was_refused_ = true;
+  if (settings && !changes_.change_settings(*settings)) was_refused_ = true;
+  finish_change();
+  if (!frame_.awaited) return; // by an undo or a redo
+  changes_.change_to(flow::Awaited(*frame_.awaited));
+  finish_change();
 }
 
 void Player::make_model(const flow::ChangeModel& change) {
-  shaping_.hold_still(tips_, frame_, stats_);
-  const auto number = static_cast<std::uint32_t>(versions_.size());
+  changes_.hold_still();
+  finish_change();
   std::span<const deform::WirePlace> wire;
   if (change.source == flow::ModelSource::cut) wire = timeline_.wires[change.number];
-  auto finer = flow::FinerModel::make(shaping_.model(), change, wire);
-  auto made = finer ? finer->finish(number, undo_room())
-                    : Result<std::unique_ptr<flow::ModelVersion>>(finer.error());
-  if (made) {
-    versions_.push_back(*std::move(made));
-    if (change_to({shaping_.settings(), number, shaping_.puppet()}, true)) return;
-    versions_.pop_back();
+  auto finer = flow::FinerModel::make(changes_.newest_model(), change, wire);
+  if (!finer)
+    changes_.keep_model();
+  else if (!changes_.change_model(*finer))
     was_refused_ = true;
-  }
   was_refused_ = was_refused_ || !finer;
-  change_to({shaping_.settings(), shaping_.model().number, shaping_.puppet()});
+  finish_change();
+}
+
+/// Takes the change that was asked for, if there is one.
+void Player::finish_change() {
+  flow::PreparedChange* change = nullptr;
+  if (!changes_.offers().take(change)) return;
+  core_.finish(*change, hands(), frame_, stats_);
+  changes_.offers().done();
+  changes_.is_changing(); // takes back what the change replaced
 }
 
 bool Player::ask_what_is_due(double time_s) {
@@ -303,25 +211,18 @@ bool Player::has_frame_by(double time_s) const noexcept {
 bool Player::next() {
   if (made_ == frames_) return false;
   const double time_s = time_of(made_);
-  // What a puppet is told finds the hands as they were, as in the loop.
+  // A puppet's commands find the hands as they were, as in the loop.
   const bool asked = ask_what_is_due(time_s);
   pose_hands(time_s);
-  play_puppet();
-  if (auto* const memory = versions_[shaping_.model().number]->undo_memory.get()) memory->refill();
-  shaping_.set_time(from_seconds(time_s));
-  frame_.settings = shaping_.settings();
-  // The hands have just taken hold here: without a wish there is nothing to do.
+  std::optional<HostTime> time;
+  if (made_ > 0) time = HostTime{} + from_seconds(time_s); // a loop has no tick before
+  core_.place(hands(), time, true, frame_);
+  changes_.refill_undo();
+  frame_.settings = core_.shaping().settings();
+  // The hands have just grabbed here: without a wish there is nothing to do.
   if (made_ > 0 || asked)
-    frame_.status =
-        shaping_.shape(tips_, frame_, stats_, settings_due_ || masks_due_ || model_due_);
-  if (const auto change = std::exchange(model_due_, {})) make_model(*change);
-  if (settings_due_ || masks_due_) {
-    const flow::Awaited wanted{std::exchange(settings_due_, {}).value_or(shaping_.settings()),
-                               shaping_.model().number,
-                               std::exchange(masks_due_, {}).value_or(shaping_.puppet())};
-    if (!change_to(wanted)) was_refused_ = true;
-  }
-  if (frame_.awaited) change_to(flow::Awaited(*frame_.awaited)); // by an undo or a redo
+    core_.shape(from_seconds(time_s), settings_due_ || masks_due_ || model_due_, frame_, stats_);
+  make_changes();
   describe(made_++);
   return true;
 }

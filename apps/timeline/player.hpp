@@ -1,15 +1,17 @@
 #pragma once
-// Plays a timeline frame by frame, without a clock. Poses come from its keys, fingertips from the
-// poses, and the shape from the fingertips, as in the loop.
+// Plays a timeline frame by frame, without a clock. Its keys make hand poses, and its events
+// changes; the loop's own core makes the shape of them.
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include <nendo/base/result.hpp>
+#include <nendo/flow/change_broker.hpp>
+#include <nendo/flow/shaping_core.hpp>
 
 #include "timeline/hand_curve.hpp"
-#include "timeline/puppet_hands.hpp"
 #include "timeline/timeline.hpp"
 
 namespace nendo::timeline {
@@ -34,17 +36,21 @@ public:
   std::uint64_t frame_count() const noexcept { return frames_; } ///< in all
   const flow::LoopStats& stats() const noexcept { return stats_; }
   /// Returns a version of the model (Frame::model), or null.
-  std::shared_ptr<const flow::ModelVersion> model(std::uint32_t number) const noexcept;
+  std::shared_ptr<const flow::ModelVersion> model(std::uint32_t number) const noexcept {
+    return changes_.model(number);
+  }
   const deform::BlockLayout& layout(std::uint32_t version = 0) const noexcept {
-    return model(version)->layout();
+    return changes_.layout(version);
   }
   /// Returns the timeline, now with a field along the surface if its puppet needs one. Another
   /// player of it over the same model then need not make that again.
   const Timeline& timeline() const noexcept { return timeline_; }
   /// Returns the options in force.
-  const flow::SculptorOptions& sculptor_options() const noexcept { return now_.options; }
+  const flow::SculptorOptions& sculptor_options() const noexcept {
+    return changes_.sculptor_options();
+  }
   /// Returns the present shape, 3 by #vertices. It includes a stroke that has not ended.
-  deform::Points final_shape() { return shaping_.final_shape(tips_); }
+  deform::Points final_shape() { return core_.final_shape(); }
 
 private:
   struct Hand {
@@ -54,27 +60,23 @@ private:
     std::size_t slot;
   };
 
-  Player(Timeline timeline, const deform::Mesh& model);
+  Player(Timeline timeline, const deform::Mesh& model,
+         const std::shared_ptr<flow::HandBodies>& bodies);
   double time_of(std::uint64_t frame) const noexcept;
   void pose_hands(double time_s);
-  void play_puppet();
+  flow::ShapingCore::Hands hands() const noexcept;
   bool ask_what_is_due(double time_s);
   void ask(const Event& event);
-  bool change_to(const flow::Awaited& awaited, bool is_new_model = false);
-  bool set_surface(flow::SculptorOptions& sculptor, const flow::ModelVersion& model) const;
-  flow::SculptorSetup first_with(std::uint32_t masks) const;
-  void place_tips(deform::Points& tips, const puppet::Rig* masks) const noexcept;
+  void make_changes();
   void make_model(const flow::ChangeModel& change);
+  void finish_change();
   void describe(std::uint64_t number);
 
   Timeline timeline_;
   std::vector<Hand> hands_;
-  std::optional<PuppetHands> puppet_;
-  deform::Points tips_;                      ///< the fingertips, or the points of the puppet
-  std::shared_ptr<flow::HandBodies> bodies_; ///< that press clay
-  flow::SculptorSetup first_, now_;          ///< of the timeline, and in force
-  std::vector<std::shared_ptr<flow::ModelVersion>> versions_;
-  flow::Shaping shaping_;
+  std::array<puppet::HandState, 2> poses_; ///< by slot
+  flow::ChangeBroker changes_;
+  flow::ShapingCore core_;
   flow::Frame frame_;
   flow::LoopStats stats_;
   std::size_t next_event_ = 0;
