@@ -223,6 +223,32 @@ TEST_SUITE("model_version") {
     CHECK(gap(run.tick(), before) == 0.0);
   }
 
+  TEST_CASE("an undo that waits for a version undoes what is committed meanwhile in its place") {
+    Versioned run(Mode::type1);
+    run.stroke(0, 10);
+    const deform::Points before = run.commit();
+    const deform::Points finer = run.subdivide();
+    REQUIRE(run.test.commands.try_push(Request::undo));
+    run.tick();
+    REQUIRE(run.frame().awaited);
+    REQUIRE(run.loop().changes().change_to(*run.frame().awaited));
+    REQUIRE(run.test.commands.try_push(Request::commit)); // in the tick that takes the version
+    const deform::Points committed = run.bent(20);
+    CHECK(gap(committed, finer) > 1e-3);
+    CHECK(run.frame().model == 1); // the version is refused
+    CHECK(run.frame().undos == 0);
+    CHECK(run.frame().shape_jumps == 0);
+    CHECK(gap(run.tick(), finer) == 0.0);
+    CHECK(run.frame().undos == 1);
+    CHECK(run.frame().model == 1);
+    CHECK_FALSE(run.loop().changes().is_changing());
+    CHECK(gap(run.step(Request::undo), before) == 0.0);
+    CHECK(run.frame().undos == 2);
+    CHECK(run.frame().model == 0);
+    CHECK(old_gap(run.step(Request::redo), before) == 0.0);
+    CHECK(gap(run.step(Request::redo), committed) == 0.0);
+  }
+
   TEST_CASE("a reset goes back to the subdivided model before the hands") {
     Versioned run(Mode::type2);
     run.stroke(0, 10);

@@ -178,6 +178,29 @@ TEST_SUITE("puppet change") {
       CHECK(gap(settled(Request::redo), shapes[at + 1]) < 1e-6);
   }
 
+  TEST_CASE("an undo over an edit leaves the rest shape from which readers of fields go on") {
+    const std::string text = std::string("distance = \"air\"\n") + test::ball_puppet;
+    Clocked loop(Mode::type1, {.rings_of_ball = 12, .puppet = text.c_str()});
+    loop.stroke(0, 12);
+    const std::uint64_t commits = loop.frame().commits;
+    REQUIRE(loop.test.loop->changes().change_puppet(
+        edited(loop, puppet::with_radius(rig(loop), point(loop, "south"), 0.5))));
+    loop.bent(12);
+    loop.bent(12);
+    for (const Request request : {Request::undo, Request::redo}) {
+      REQUIRE(loop.test.commands.try_push(request));
+      loop.bent(12);
+      REQUIRE(loop.frame().awaited);
+      REQUIRE(loop.test.loop->changes().change_to(*loop.frame().awaited));
+      loop.bent(12);
+      CHECK_FALSE(loop.frame().awaited);
+      CHECK(loop.frame().commits == commits);
+      CHECK(loop.frame().shape_jumps == 0);
+    }
+    CHECK(loop.frame().undos == 1);
+    CHECK(loop.test.loop->stats().redos == 1);
+  }
+
   TEST_CASE("a function that an undo brings back goes on as if it had not been away") {
     for (const bool takes_hold_anew : {false, true}) {
       CAPTURE(takes_hold_anew);

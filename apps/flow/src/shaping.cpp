@@ -101,7 +101,10 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
   sculptor_->tell(frame.surface);
   frame.chain = sculptor_->report();
   count_chain(frame.chain, stats);
-  if (!sculptor_->is_told_by_fields()) ++(frame.surface.field == 0 ? jumps_ : surface_moves_);
+  if (!sculptor_->is_told_by_fields()) {
+    ++shape_jumps_;
+    if (frame.surface.field != 0) ++surface_moves_;
+  }
   shaped_ = sculptor_->moves_anything() ||
             (shaped_ && sculptor_->mode() != Mode::type1); // type 1 begins at the rest
   tell_hands(frame);
@@ -175,7 +178,7 @@ void Shaping::tell(Frame& frame, LoopStats& stats) noexcept {
   stats.forgotten_steps = sculptor_->forgotten_steps();
   frame.commits = stats.commits + otherwise_ended_;
   frame.undos = stats.undos;
-  frame.shape_jumps = stats.undos + stats.redos + stats.resets + surface_moves_ + jumps_;
+  frame.shape_jumps = shape_jumps_;
   frame.surface_moves = surface_moves_;
   frame.undo_steps = undo_steps();
   frame.redo_steps = steps_to_redo();
@@ -226,61 +229,80 @@ bool Shaping::holds_on(const ReadySculptor& ready) const noexcept {
          ready.sculptor->mode() == Mode::type1;
 }
 
+/// Decides what that change is before anything is changed.
+Shaping::Exchange Shaping::decide(const ReadySculptor& ready) const noexcept {
+  const Awaited wanted{ready.settings, ready.model->number, ready.puppet};
+  // After a commit in this tick, the first step that is due may be another one.
+  if (awaited_ == wanted && other_of(steps_due_.front()) == wanted) return Exchange::awaited_step;
+  if (ready.is_new_model) return Exchange::new_step;
+  if (ready.model != model_) return Exchange::refused;
+  const bool is_soon = exchanged_at_ && time_ - *exchanged_at_ < one_step;
+  return is_soon && ready.puppet == puppet_ ? Exchange::same_step : Exchange::new_step;
+}
+
 bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
                        LoopStats& stats) noexcept {
-  ModelVersion& next = *ready.model;
-  const bool other_model = &next != model_;
-  const Awaited before = in_force();
-  const Awaited after{ready.settings, next.number, ready.puppet};
-  const bool other_puppet = ready.puppet != puppet_;
+  const Exchange kind = decide(ready);
+  const bool is_change = kind == Exchange::new_step || kind == Exchange::same_step;
   const bool holds_on = this->holds_on(ready);
-  // A commit in this tick may have come before it, and then something else is to be undone next.
-  const bool is_step_over = awaited_ == after && other_of(steps_due_.front()) == after;
-  const bool is_refused = other_model && !ready.is_new_model && !is_step_over;
-  const bool is_long_ago = !exchanged_at_ || time_ - *exchanged_at_ >= one_step;
-  const bool is_step = ready.is_new_model || other_puppet || (is_long_ago && !is_refused);
-  const bool ends_step = is_step && !is_step_over;
-  holds_on ? sculptor_->drop(ends_step) : sculptor_->release(ends_step);
-  in_step_ = !is_step && !is_step_over && (in_step_ || (held_ && shaped_));
-  if (is_step_over) {
-    const Request step = steps_due_.front();
-    step_to(step, next, before);
-    steps_due_.erase(steps_due_.begin());
-    go_on_with(ready);
-    count(step, stats);
-  } else if (!is_refused) {
-    if (ready.is_new_model) note_model(next, before.settings);
-    go_on_with(ready);
-    if (other_puppet) note_puppet(before, ready.puppet_step);
-    // What comes behind another model is a step of its own.
-    if (settings_ != before.settings) note_settings(before.settings, is_step);
-  }
-  exchanged_at_ = other_model || other_puppet ? std::nullopt : std::optional(time_);
+  const bool is_of_settings = ready.model == model_ && ready.puppet == puppet_;
+  end_stroke(kind, holds_on);
+  if (kind == Exchange::awaited_step) make_awaited_step(ready, stats);
+  if (is_change) make_change(ready, kind);
+  // What follows another model or puppet is a step of its own.
+  exchanged_at_ = is_of_settings ? std::optional(time_) : std::nullopt;
   awaited_.reset();
-  shaped_ = false;
   // Hands that cannot take hold now try it again at each tick.
-  const bool others = tips.cols() != sculptor_->control_points();
-  const Points& held_at = others      ? ready.tips
-                          : holds_on  ? ready.starts
-                          : is_still_ ? still_tips_
-                                      : tips;
-  if (held_) held_ = is_solved(sculptor_->grab_on(held_at));
-  if (held_ && !is_step_over && !is_refused)
+  if (held_) held_ = is_solved(sculptor_->grab_on(held_points(ready, tips, holds_on)));
+  if (held_ && is_change)
     sculptor_->go_on_from(*ready.sculptor,
-                          !other_model || next.origin->source == ModelSource::refined);
+                          ready.model == model_ || model_->origin->source == ModelSource::refined);
   is_still_ = false;
   if (frame.model != model_->number) {
     make_room(frame);
     show_rest(frame);
   }
   // Where the hands hold on, the rest shape stays, and readers go on from it, also over an undo.
-  if (!holds_on)
+  if (!holds_on) {
     ++otherwise_ended_;
-  else if (is_step_over)
-    --jumps_;
+    if (kind == Exchange::awaited_step) ++shape_jumps_;
+  }
   ++stats.changes;
   tell(frame, stats);
-  return !is_refused;
+  return kind != Exchange::refused;
+}
+
+void Shaping::end_stroke(Exchange kind, bool holds_on) noexcept {
+  const bool is_step = kind == Exchange::new_step;
+  holds_on ? sculptor_->drop(is_step) : sculptor_->release(is_step);
+  const bool joins_next = kind == Exchange::same_step || kind == Exchange::refused;
+  in_step_ = joins_next && (in_step_ || (held_ && shaped_));
+  shaped_ = false;
+}
+
+/// Undoes or redoes the change for which the first step that is due has waited.
+void Shaping::make_awaited_step(ReadySculptor& ready, LoopStats& stats) noexcept {
+  const Request step = steps_due_.front();
+  step_to(step, *ready.model, in_force());
+  steps_due_.erase(steps_due_.begin());
+  go_on_with(ready);
+  count(step, stats);
+}
+
+void Shaping::make_change(ReadySculptor& ready, Exchange kind) noexcept {
+  const Awaited before = in_force();
+  if (ready.is_new_model) note_model(*ready.model, before.settings);
+  go_on_with(ready);
+  if (puppet_ != before.puppet) note_puppet(before, ready.puppet_step);
+  if (settings_ != before.settings) note_settings(before.settings, kind == Exchange::new_step);
+}
+
+/// Where the hands take hold in exchange().
+const Points& Shaping::held_points(const ReadySculptor& ready, const Points& tips,
+                                   bool holds_on) const noexcept {
+  if (tips.cols() != sculptor_->control_points()) return ready.tips;
+  if (holds_on) return ready.starts;
+  return is_still_ ? still_tips_ : tips;
 }
 
 /// `ready` then has what was before.

@@ -45,6 +45,7 @@ bool Shaping::take_step(Request step, const Points& tips, LoopStats& stats) noex
                              : step == Request::redo ? sculptor_->redo(tips)
                                                      : sculptor_->reset(tips);
   if (!is_solved(status)) return false;
+  ++shape_jumps_;
   count(step, stats);
   return true;
 }
@@ -80,6 +81,7 @@ bool Shaping::take_change(Request step, const Points& tips, LoopStats& stats) no
   sculptor_->release(false); // there and back: there is nothing to make
   step_over_change(step, *model_, *other);
   if (held_) held_ = is_solved(sculptor_->grab_on(tips));
+  ++shape_jumps_;
   count(step, stats);
   return true;
 }

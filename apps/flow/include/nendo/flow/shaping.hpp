@@ -122,6 +122,14 @@ public:
   void begin_anew(const deform::Points& tips, bool fences, Frame& frame, LoopStats& stats) noexcept;
 
 private:
+  /// What exchange() makes of a change.
+  enum class Exchange : std::uint8_t {
+    awaited_step, ///< the undo or redo that has waited for it (Frame::awaited)
+    new_step,
+    same_step, ///< belongs to the step of the change less than a second before
+    refused    ///< leads to another version that no undo or redo waits for any more
+  };
+
   Awaited in_force() const noexcept { return {settings_, model_->number, puppet_}; }
   deform::FieldStatus shape_by_hands(const deform::Points& tips, Frame& frame, LoopStats& stats,
                                      bool completes) noexcept;
@@ -135,6 +143,12 @@ private:
   bool is_in_hand() const noexcept;
   void take_hold_anew(const deform::Points& tips) noexcept;
   void make_room(Frame& frame) noexcept;
+  Exchange decide(const ReadySculptor& ready) const noexcept;
+  void end_stroke(Exchange kind, bool holds_on) noexcept;
+  void make_awaited_step(ReadySculptor& ready, LoopStats& stats) noexcept;
+  void make_change(ReadySculptor& ready, Exchange kind) noexcept;
+  const deform::Points& held_points(const ReadySculptor& ready, const deform::Points& tips,
+                                    bool holds_on) const noexcept;
   void go_on_with(ReadySculptor& ready) noexcept;
   void tell(Frame& frame, LoopStats& stats) noexcept;
   // In shaping_history.cpp:
@@ -175,8 +189,8 @@ private:
   bool anew_due_ = false;             ///< Request::take_hold
   bool shaped_ = false;               ///< since the hands took hold, or since the last commit
   std::uint64_t otherwise_ended_ = 0; ///< strokes, by a change, without a commit
-  std::uint64_t surface_moves_ = 0;   ///< frames that moved the shape along its surface
-  std::uint64_t jumps_ = 0;           ///< frames that a brush changed, less undos over puppets
+  std::uint64_t shape_jumps_ = 0;     ///< Frame::shape_jumps
+  std::uint64_t surface_moves_ = 0;   ///< Frame::surface_moves
   bool in_step_ = false;              ///< shaped before the last change, and not a step yet
   LoopSettings settings_;             ///< in force
   std::uint32_t puppet_ = 0;          ///< in force
