@@ -246,6 +246,23 @@ TEST_SUITE("exchange") {
     CHECK(loop.frame().awaited == Awaited{with_radius(first, 0.25), 0, 0});
   }
 
+  TEST_CASE("a hundred ticks of brushing are no undo, and an undo is one") {
+    Clocked loop(Mode::type2);
+    LoopSettings settings = loop.test.loop->changes().settings();
+    settings.brushes.fill(deform::Brush::inflate);
+    loop.change(settings);
+    loop.bent(0);
+    for (int round = 0; round < 2; ++round) {
+      loop.stroke(0, 25);
+      loop.stroke(25, 0);
+    }
+    CHECK(loop.frame().undos == 0);
+    CHECK(loop.frame().shape_jumps > 5); // each piece is one, which no field describes
+    REQUIRE(loop.test.commands.try_push(Request::undo));
+    CHECK(gap(loop.bent(0), loop.test.model.vertices) == 0.0);
+    CHECK(loop.frame().undos == 1);
+  }
+
   TEST_CASE("what is shaped between changes within a second is one step") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       Clocked loop(mode);
