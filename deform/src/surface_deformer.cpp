@@ -94,7 +94,7 @@ FieldStatus SurfaceDeformer::take_back(const Points& tips) {
 }
 
 FieldStatus SurfaceDeformer::redo(const Points& tips) {
-  if (redo_steps() == 0) return FieldStatus::ok;
+  if (shape_->redo_steps() == 0) return FieldStatus::ok;
   if (!all_usable(tips)) return FieldStatus::not_finite;
   shape_->parts().redo();
   take_hold(tips);

@@ -280,7 +280,7 @@ FieldStatus Type1Deformer::take_back(const Points& tips) {
 
 FieldStatus Type1Deformer::redo(const Points& tips) {
   assert(tips.cols() == starts_.cols());
-  if (redo_steps() == 0) return FieldStatus::ok;
+  if (shape_->redo_steps() == 0) return FieldStatus::ok;
   const FieldStatus status = build(tips);
   if (!is_solved(status)) return status;
   shape_->parts().redo();

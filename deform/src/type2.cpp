@@ -144,7 +144,7 @@ FieldStatus Type2Deformer::undo(const Points& tips) {
 }
 
 FieldStatus Type2Deformer::redo(const Points& tips) {
-  if (redo_steps() == 0) return FieldStatus::ok;
+  if (shape_->redo_steps() == 0) return FieldStatus::ok;
   const FieldStatus status = take_hold(tips);
   if (!is_solved(status)) return status;
   shape_->parts().redo();

@@ -454,7 +454,7 @@ TEST_SUITE("clay") {
     ball.go(parts, {0, 0, 8}, 2);
     const Mesh first = ball.now();
     ball.clay.begin(parts);
-    CHECK(ball.clay.undo_steps() == 1);
+    CHECK(ball.shape.undo_steps() == 1);
     ball.go(parts, {5, 0, -8}, 8);
     const Mesh second = ball.now();
     CHECK(is_solved(ball.clay.undo(away)));

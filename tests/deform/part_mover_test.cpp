@@ -242,7 +242,7 @@ TEST_SUITE("part_mover") {
     bench.move();
     const Points second = bench.vertices();
     REQUIRE(bench.mover.begin(bench.grips) == FieldStatus::ok);
-    CHECK(bench.mover.undo_steps() == 1);
+    CHECK(bench.shape.undo_steps() == 1);
     const Isometry3d more = any_motion(random, 1.0);
     bench.grips[0].frame = more * bench.grips[0].frame;
     bench.move();

@@ -340,7 +340,7 @@ TEST_SUITE("surface") {
     Points wanted = both.vertices;
     for (int stroke = 0; stroke < 3; ++stroke) {
       REQUIRE(one.deformer->begin(one.tips) == FieldStatus::ok);
-      CHECK(one.deformer->undo_steps() == static_cast<std::size_t>(stroke));
+      CHECK(one.shape->undo_steps() == static_cast<std::size_t>(stroke));
       const Points ends = one.tips + 0.3 * random_vectors(4, random);
       wanted += one.made.displaced(ends - one.tips) - both.vertices;
       one.go_to(ends, 50, random);

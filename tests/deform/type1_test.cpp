@@ -315,9 +315,9 @@ TEST_SUITE("type1") {
         REQUIRE(apply(deformer, end_points(length), out) == FieldStatus::ok);
         REQUIRE(deformer.commit(end_points(length)) == FieldStatus::ok);
       }
-      CHECK(deformer.undo_steps() == std::min<std::size_t>(room, 4));
+      CHECK(deformer.sculpted().undo_steps() == std::min<std::size_t>(room, 4));
       apply(deformer, start_points(), out); // is dropped
-      while (deformer.undo_steps() > 0) {
+      while (deformer.sculpted().undo_steps() > 0) {
         REQUIRE(deformer.undo(start_points()) == FieldStatus::ok);
         CHECK(unpacked(deformer, deformer.rest()) == shapes.back());
         apply(deformer, start_points(), out);
@@ -350,7 +350,7 @@ TEST_SUITE("type1") {
         REQUIRE(apply(deformer, end_points(0.5), out) == FieldStatus::ok);
         REQUIRE(deformer.commit(end_points(0.5)) == FieldStatus::ok);
         const Points committed = unpacked(deformer, deformer.rest());
-        const std::size_t steps = deformer.undo_steps();
+        const std::size_t steps = deformer.sculpted().undo_steps();
         apply(deformer, end_points(3.0), pulled);
         REQUIRE(pulled != committed);
         Points nowhere = start_points();
@@ -360,9 +360,9 @@ TEST_SUITE("type1") {
         CHECK(unpacked(deformer, deformer.rest()) == committed);
         apply(deformer, end_points(3.0), out);
         CHECK(out == committed); // held there
-        CHECK(deformer.undo_steps() == steps);
-        CHECK(deformer.forgotten_steps() == 0);
-        CHECK(deformer.redo_steps() == (room == 10 ? 1 : 0));
+        CHECK(deformer.sculpted().undo_steps() == steps);
+        CHECK(deformer.sculpted().forgotten_steps() == 0);
+        CHECK(deformer.sculpted().redo_steps() == (room == 10 ? 1 : 0));
         REQUIRE(deformer.redo(start_points()) == FieldStatus::ok);
         CHECK(unpacked(deformer, deformer.rest()) == (room == 10 ? pulled : committed));
         if (room == 0) continue;

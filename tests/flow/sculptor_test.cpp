@@ -24,11 +24,20 @@ SculptorOptions options_for(Mode mode) {
   return options;
 }
 
-Points unpacked(const Sculptor& sculptor, const deform::BlockShape& shape) {
-  Points points;
-  sculptor.layout().unpack(shape, points);
-  return points;
-}
+/// A sculptor of two points, with its shape.
+struct Sculpted {
+  deform::SculptedShape shape;
+  Sculptor sculptor;
+
+  Sculpted(const Points& points, const SculptorOptions& options)
+      : shape(points, options.deformer), sculptor(shape, 2, options) {}
+
+  Points unpacked(const deform::BlockShape& of) const {
+    Points points;
+    shape.layout().unpack(of, points);
+    return points;
+  }
+};
 
 } // namespace
 
@@ -41,12 +50,13 @@ TEST_SUITE("sculptor") {
 
   TEST_CASE("in either mode unmoved fingertips leave the model as it is") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
-      Sculptor sculptor(rest, 2, options_for(mode));
+      Sculpted ball(rest, options_for(mode));
+      Sculptor& sculptor = ball.sculptor;
       REQUIRE(sculptor.grab(tips) == FieldStatus::ok);
       deform::BlockShape out;
       for (int turn = 0; turn < 3; ++turn)
         CHECK(sculptor.update(tips, out) == FieldStatus::ok);
-      CHECK(unpacked(sculptor, out) == rest);
+      CHECK(ball.unpacked(out) == rest);
     }
   }
 
@@ -56,11 +66,12 @@ TEST_SUITE("sculptor") {
     Points ends = tips;
     ends.col(0) += Eigen::Vector3d(0.0, 0.1, 0.0);
     for (const Mode mode : {Mode::type1, Mode::type2}) {
-      Sculptor sculptor(rest, 2, options_for(mode));
+      Sculpted ball(rest, options_for(mode));
+      Sculptor& sculptor = ball.sculptor;
       REQUIRE(sculptor.grab(tips) == FieldStatus::ok);
       deform::BlockShape shape;
       REQUIRE(sculptor.finish(ends, shape) == FieldStatus::ok);
-      const Points out = unpacked(sculptor, shape);
+      const Points out = ball.unpacked(shape);
       Eigen::Index touched = 0;
       (rest.colwise() - Eigen::Vector3d(tips.col(0))).colwise().squaredNorm().minCoeff(&touched);
       CHECK((out.col(touched) - ends.col(0)).norm() < test::float_gap);
@@ -76,20 +87,20 @@ TEST_SUITE("sculptor") {
     ends.col(0) += Eigen::Vector3d(0.0, 0.1, 0.0);
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       SculptorOptions options = options_for(mode);
-      Sculptor one(ball, 2, options);
+      Sculpted one(ball, options);
       options.deformer.evaluation.threads = 2;
-      Sculptor two(ball, 2, options);
+      Sculpted two(ball, options);
       deform::BlockShape by_one;
       deform::BlockShape by_two;
-      for (Sculptor* sculptor : {&one, &two})
-        REQUIRE(sculptor->grab(tips) == FieldStatus::ok);
+      for (Sculpted* sculpted : {&one, &two})
+        REQUIRE(sculpted->sculptor.grab(tips) == FieldStatus::ok);
       for (int turn = 0; turn < 20; ++turn) {
         ends(2, 0) += 0.01;
-        one.update(ends, by_one);
-        two.update(ends, by_two);
-        REQUIRE(unpacked(one, by_one) == unpacked(two, by_two));
+        one.sculptor.update(ends, by_one);
+        two.sculptor.update(ends, by_two);
+        REQUIRE(one.unpacked(by_one) == two.unpacked(by_two));
       }
-      CHECK(unpacked(one, by_one) != ball);
+      CHECK(one.unpacked(by_one) != ball);
     }
   }
 }

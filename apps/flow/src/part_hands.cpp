@@ -86,7 +86,7 @@ void PartHands::find_places(std::size_t at) noexcept {
   if (hand.held == deform::no_index) return;
   const Eigen::Vector3d middle = grips_[at].frame.translation();
   const auto distance = [&](std::size_t place) {
-    return (vertex_of(layout(), shape(), place) - middle).norm();
+    return (vertex_of(mover_.layout(), mover_.shape(), place) - middle).norm();
   };
   double least = std::numeric_limits<double>::infinity();
   each_place(*parts_, hand.held,
@@ -112,7 +112,7 @@ void PartHands::tell_contacts() noexcept {
     const std::size_t count = places.empty() ? 0 : std::max(places.size(), holding_parts.size());
     for (std::size_t number = 0; number < count; ++number) {
       deform::ClayContact contact;
-      contact.place = vertex_of(layout(), shape(), places[number % places.size()]);
+      contact.place = vertex_of(mover_.layout(), mover_.shape(), places[number % places.size()]);
       contact.load_mm = held_load_mm;
       contact.body = static_cast<std::uint32_t>(at);
       contact.part = holding_parts[number % holding_parts.size()];

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <numeric>
 #include <type_traits>
-#include <utility>
 
 #include <nendo/deform/surface_stroke.hpp>
 #include <nendo/flow/finger_supports.hpp>
@@ -81,14 +80,6 @@ Deformer make(SculptedShape& shape, Eigen::Index control_points, const SculptorO
   return Type1Deformer(shape, control_points, of_type1(options, control_points));
 }
 
-/// Whose shape is its own: points.
-Deformer make(Points rest, Eigen::Index control_points, const SculptorOptions& options) {
-  if (options.mode == Mode::type2)
-    return Type2Deformer(std::move(rest), control_points, options.piece_length,
-                         brushed(options, control_points));
-  return Type1Deformer(std::move(rest), control_points, of_type1(options, control_points));
-}
-
 /// Of type 1, of type 2 or of whole hands, whose functions have other names.
 template <class Of1, class Of2, class OfHands>
 auto each(Deformer& deformer, const Of1& of_type1, const Of2& of_type2, const OfHands& of_hands) {
@@ -114,16 +105,12 @@ Value along_surface(const Deformer& deformer, Value otherwise, const Function& f
   return type2 == nullptr || type2->along() == nullptr ? otherwise : function(*type2->along());
 }
 
-FieldStatus follow(ClayHands& hands, const Points&, bool ends, BlockShape& out) {
-  const FieldStatus status = hands.press(ends);
-  out.follow(hands.shape());
-  return status;
+FieldStatus follow(ClayHands& hands, const Points&, bool ends) {
+  return hands.press(ends);
 }
 
-FieldStatus follow(PartHands& hands, const Points& tips, bool, BlockShape& out) {
-  const FieldStatus status = hands.follow(tips);
-  out.follow(hands.shape());
-  return status;
+FieldStatus follow(PartHands& hands, const Points& tips, bool) {
+  return hands.follow(tips);
 }
 
 } // namespace
@@ -188,12 +175,10 @@ Eigen::Index SculptorOptions::points_of_hand() const noexcept {
   return all_over ? static_cast<Eigen::Index>(hand::held_point_count) : fingers;
 }
 
-Sculptor::Sculptor(Points rest, Eigen::Index control_points, const SculptorOptions& options)
-    : deformer_(make(std::move(rest), control_points, options)), control_points_(control_points) {}
-
 Sculptor::Sculptor(SculptedShape& shape, Eigen::Index control_points,
                    const SculptorOptions& options)
-    : deformer_(make(shape, control_points, options)), control_points_(control_points) {}
+    : shape_(&shape), deformer_(make(shape, control_points, options)),
+      control_points_(control_points) {}
 
 Mode Sculptor::mode() const noexcept {
   if (std::holds_alternative<ClayHands>(deformer_)) return Mode::clay;
@@ -209,25 +194,24 @@ FieldStatus Sculptor::grab(const Points& tips) noexcept {
 }
 
 FieldStatus Sculptor::update(const Points& tips, BlockShape& out) noexcept {
-  return each(
-      deformer_, [&](auto& type1) { return type1.apply(tips, out); },
-      [&](Type2Deformer& type2) {
-        const FieldStatus status = type2.stroke_to(tips).status;
-        out.follow(type2.shape());
-        return status;
-      },
-      [&](auto& hands) { return follow(hands, tips, false, out); });
+  return shape_to(tips, false, out);
 }
 
 FieldStatus Sculptor::finish(const Points& tips, BlockShape& out) noexcept {
+  return shape_to(tips, true, out);
+}
+
+FieldStatus Sculptor::shape_to(const Points& tips, bool ends, BlockShape& out) noexcept {
+  const auto changed = [&](FieldStatus status) { // which changes the shape itself
+    out.follow(rest());
+    return status;
+  };
   return each(
       deformer_, [&](auto& type1) { return type1.apply(tips, out); },
       [&](Type2Deformer& type2) {
-        const FieldStatus status = type2.end_at(tips).status;
-        out.follow(type2.shape());
-        return status;
+        return changed((ends ? type2.end_at(tips) : type2.stroke_to(tips)).status);
       },
-      [&](auto& hands) { return follow(hands, tips, true, out); });
+      [&](auto& hands) { return changed(follow(hands, tips, ends)); });
 }
 
 FieldStatus Sculptor::commit(const Points& tips) noexcept {
@@ -275,32 +259,6 @@ FieldStatus Sculptor::take_back(const Points& tips) noexcept {
 
 FieldStatus Sculptor::redo(const Points& tips) noexcept {
   return counted(std::visit([&](auto& deformer) { return deformer.redo(tips); }, deformer_));
-}
-
-std::size_t Sculptor::undo_steps() const noexcept {
-  return std::visit([](const auto& deformer) { return deformer.undo_steps(); }, deformer_);
-}
-
-std::size_t Sculptor::redo_steps() const noexcept {
-  return std::visit([](const auto& deformer) { return deformer.redo_steps(); }, deformer_);
-}
-
-std::size_t Sculptor::forgotten_steps() const noexcept {
-  return std::visit([](const auto& deformer) { return deformer.forgotten_steps(); }, deformer_);
-}
-
-const BlockShape& Sculptor::rest() const noexcept {
-  if (const auto* type2 = std::get_if<Type2Deformer>(&deformer_)) return type2->shape();
-  if (const ClayHands* hands = clay()) return hands->shape();
-  if (const PartHands* hands = parts()) return hands->shape();
-  if (const auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->rest();
-  return std::get_if<deform::SurfaceDeformer>(&deformer_)->rest();
-}
-
-const deform::BlockLayout& Sculptor::layout() const noexcept {
-  return std::visit(
-      [](const auto& deformer) -> const deform::BlockLayout& { return deformer.layout(); },
-      deformer_);
 }
 
 const deform::FieldSequence& Sculptor::fields() const noexcept {

@@ -175,7 +175,7 @@ void Shaping::hold_still(const Points& tips, Frame& frame, LoopStats& stats) noe
 void Shaping::tell(Frame& frame, LoopStats& stats) noexcept {
   forget_later();
   stats.undo_steps = steps_to_undo();
-  stats.forgotten_steps = sculptor_->forgotten_steps();
+  stats.forgotten_steps = model_->shape.forgotten_steps();
   frame.commits = stats.commits + otherwise_ended_;
   frame.undos = stats.undos;
   frame.shape_jumps = shape_jumps_;

@@ -36,7 +36,7 @@ void Shaping::take_steps(const Points& tips, LoopStats& stats) noexcept {
 
 /// Returns false if the step cannot be done now.
 bool Shaping::take_step(Request step, const Points& tips, LoopStats& stats) noexcept {
-  if (step == Request::redo && sculptor_->redo_steps() == 0) return true;
+  if (step == Request::redo && model_->shape.redo_steps() == 0) return true;
   if (is_change_next(step)) return take_change(step, tips, stats);
   const auto undone = [&] {
     return is_pulled() ? sculptor_->take_back(tips) : sculptor_->undo(tips);

@@ -68,7 +68,7 @@ FieldStatus ClayDeformer::undo(std::span<const ContactPart> parts) {
 }
 
 FieldStatus ClayDeformer::redo(std::span<const ContactPart> parts) {
-  if (redo_steps() == 0) return FieldStatus::ok;
+  if (shape_->redo_steps() == 0) return FieldStatus::ok;
   if (!work_->accepts(parts)) return FieldStatus::not_finite;
   shape_->parts().redo();
   return take_hold(parts);

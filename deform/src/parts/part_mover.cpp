@@ -240,7 +240,7 @@ FieldStatus PartMover::undo(std::span<const PartGrip> grips) noexcept {
 }
 
 FieldStatus PartMover::redo(std::span<const PartGrip> grips) noexcept {
-  if (redo_steps() == 0) return FieldStatus::ok;
+  if (shape_->redo_steps() == 0) return FieldStatus::ok;
   if (!work_->accepts(grips)) return FieldStatus::not_finite;
   shape_->parts().redo();
   return grab(grips);

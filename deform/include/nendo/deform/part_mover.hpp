@@ -94,9 +94,6 @@ public:
   FieldStatus reset(std::span<const PartGrip> grips) noexcept;
   FieldStatus undo(std::span<const PartGrip> grips) noexcept;
   FieldStatus redo(std::span<const PartGrip> grips) noexcept;
-  std::size_t undo_steps() const noexcept { return shape_->undo_steps(); }
-  std::size_t redo_steps() const noexcept { return shape_->redo_steps(); }
-  std::size_t forgotten_steps() const noexcept { return shape_->forgotten_steps(); }
 
   const BlockLayout& layout() const noexcept { return shape_->layout(); }
   const BlockShape& shape() const noexcept { return shape_->shape(); }

@@ -28,9 +28,6 @@ public:
   FieldStatus undo(const Points& tips);
   FieldStatus take_back(const Points& tips);
   FieldStatus redo(const Points& tips);
-  std::size_t undo_steps() const noexcept { return shape_->undo_steps(); }
-  std::size_t redo_steps() const noexcept { return shape_->redo_steps(); }
-  std::size_t forgotten_steps() const noexcept { return shape_->forgotten_steps(); }
 
   const BlockLayout& layout() const noexcept { return shape_->layout(); }
   const BlockShape& rest() const noexcept { return shape_->shape(); }

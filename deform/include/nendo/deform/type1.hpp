@@ -69,12 +69,9 @@ public:
   /// Makes the rest shape what it was before the last undo, and `tips` the start points. If there
   /// is no such undo, or there was a commit since, nothing changes and the status is ok.
   FieldStatus redo(const Points& tips);
-  /// Returns how many commits can be undone, and how many undone ones can be redone.
-  std::size_t undo_steps() const noexcept { return shape_->undo_steps(); }
-  std::size_t redo_steps() const noexcept { return shape_->redo_steps(); }
-  /// Returns how many commits can no longer be undone because memory ended.
-  std::size_t forgotten_steps() const noexcept { return shape_->forgotten_steps(); }
 
+  /// Returns the shape that the deformer works on, with its history.
+  const SculptedShape& sculpted() const noexcept { return *shape_; }
   const BlockLayout& layout() const noexcept { return shape_->layout(); }
   const BlockShape& rest() const noexcept { return shape_->shape(); }
   /// Returns the fields that make the last apply()'s shape from the rest shape: one, or one for

@@ -80,13 +80,9 @@ public:
   /// one at `tips`. If there is no such undo, or a stroke that changed the shape has ended since,
   /// nothing changes and the status is ok.
   FieldStatus redo(const Points& tips);
-  /// Returns how many strokes before the present one can be undone, and how many undone ones can be
-  /// redone.
-  std::size_t undo_steps() const noexcept { return shape_->undo_steps(); }
-  std::size_t redo_steps() const noexcept { return shape_->redo_steps(); }
-  /// Returns how many strokes can no longer be undone because memory ended.
-  std::size_t forgotten_steps() const noexcept { return shape_->forgotten_steps(); }
 
+  /// Returns the shape that the deformer works on, with its history.
+  const SculptedShape& sculpted() const noexcept { return *shape_; }
   const BlockLayout& layout() const noexcept { return shape_->layout(); }
   /// Returns the shape. BlockShape::follow() brings a copy of it up to date.
   const BlockShape& shape() const noexcept { return shape_->shape(); }

@@ -74,12 +74,7 @@ public:
   deform::FieldStatus reset(const deform::Points&) { return clay_.reset(parts()); }
   deform::FieldStatus undo(const deform::Points&) { return clay_.undo(parts()); }
   deform::FieldStatus redo(const deform::Points&) { return clay_.redo(parts()); }
-  std::size_t undo_steps() const noexcept { return clay_.undo_steps(); }
-  std::size_t redo_steps() const noexcept { return clay_.redo_steps(); }
-  std::size_t forgotten_steps() const noexcept { return clay_.forgotten_steps(); }
 
-  const deform::BlockLayout& layout() const noexcept { return clay_.layout(); }
-  const deform::BlockShape& shape() const noexcept { return clay_.shape(); }
   /// Always empty: what hands do has no formula that is short enough to be told.
   const deform::FieldSequence& fields() const noexcept { return fields_; }
   deform::ChainReport report() const noexcept { return {}; }

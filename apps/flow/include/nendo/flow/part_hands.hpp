@@ -52,12 +52,7 @@ public:
   deform::FieldStatus reset(const deform::Points& tips) { return mover_.reset(grips(tips)); }
   deform::FieldStatus undo(const deform::Points& tips) { return mover_.undo(grips(tips)); }
   deform::FieldStatus redo(const deform::Points& tips) { return mover_.redo(grips(tips)); }
-  std::size_t undo_steps() const noexcept { return mover_.undo_steps(); }
-  std::size_t redo_steps() const noexcept { return mover_.redo_steps(); }
-  std::size_t forgotten_steps() const noexcept { return mover_.forgotten_steps(); }
 
-  const deform::BlockLayout& layout() const noexcept { return mover_.layout(); }
-  const deform::BlockShape& shape() const noexcept { return mover_.shape(); }
   /// Always empty: a part moves as a whole, and others stay.
   const deform::FieldSequence& fields() const noexcept { return fields_; }
   deform::ChainReport report() const noexcept { return {}; }

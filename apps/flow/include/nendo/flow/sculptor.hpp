@@ -79,8 +79,8 @@ std::string in_words(const std::array<deform::Brush, 5>& brushes);
 
 class Sculptor {
 public:
-  Sculptor(deform::Points rest, Eigen::Index control_points, const SculptorOptions& options);
-  /// Works on a shape that other sculptors work on before or after it. `shape` must outlive it.
+  /// Works on a shape that other sculptors work on before or after it. `shape`, which has the
+  /// history, must outlive it.
   Sculptor(deform::SculptedShape& shape, Eigen::Index control_points,
            const SculptorOptions& options);
 
@@ -129,19 +129,13 @@ public:
   /// (Type1Deformer::redo, Type2Deformer::redo). If there is nothing to redo, nothing changes and
   /// the status is ok.
   deform::FieldStatus redo(const deform::Points& tips) noexcept;
-  std::size_t undo_steps() const noexcept;
-  std::size_t redo_steps() const noexcept;
-  /// Returns how many steps can no longer be undone because memory ended.
-  std::size_t forgotten_steps() const noexcept;
 
   /// Returns how often the fingertips took hold of a shape at the tips that a function was given.
   std::uint64_t holds() const noexcept { return holds_; }
 
   /// Returns the shape that remains when no hand holds the model: the rest shape, or the shape at
   /// the end of the last stroke.
-  const deform::BlockShape& rest() const noexcept;
-  /// Returns the layout, which turns shapes in blocks into points in the mesh's order.
-  const deform::BlockLayout& layout() const noexcept;
+  const deform::BlockShape& rest() const noexcept { return shape_->shape(); }
 
   /// Returns the fields of the last update: for type 1 they lead from the rest shape to this shape,
   /// for type 2 from the shape before.
@@ -163,11 +157,14 @@ public:
   const PartHands* parts() const noexcept { return std::get_if<PartHands>(&deformer_); }
 
 private:
+  deform::FieldStatus shape_to(const deform::Points& tips, bool ends,
+                               deform::BlockShape& out) noexcept;
   deform::FieldStatus counted(deform::FieldStatus status) noexcept {
     if (is_solved(status)) ++holds_;
     return status;
   }
 
+  deform::SculptedShape* shape_;
   std::variant<deform::Type1Deformer, deform::Type2Deformer, deform::SurfaceDeformer, ClayHands,
                PartHands>
       deformer_;
