@@ -143,7 +143,7 @@ ClayTrial measure_clay(const ClayTrialOptions& options) {
       [&](Points& points) { shape.layout().unpack(clay.shape(), points); },
       [&] {
         clay.release(true);
-        clay.reset(scene.at(0));
+        clay.go(deform::HistoryMove::reset, scene.at(0));
       });
 }
 

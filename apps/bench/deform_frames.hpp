@@ -91,7 +91,7 @@ public:
     begin();
     best.measure(deformer_.layout().vertex_count(), [&](std::size_t n) { stroke(n); });
   }
-  void begin() { deformer_.undo(starts_); }
+  void begin() { deformer_.go(deform::HistoryMove::undo, starts_); }
   void stroke(std::size_t n) { deformer_.end_at(n % 2 == 0 ? ends_[n % poses] : starts_); }
   const deform::Type2Deformer& deformer() const noexcept { return deformer_; }
 

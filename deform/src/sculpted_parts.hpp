@@ -33,16 +33,20 @@ struct SculptedShape::Parts {
   void revert() noexcept {
     if (std::exchange(is_changed, false)) history.revert(now);
   }
-  void undo() noexcept { history.undo(now); } ///< call keep() or revert() first
-  void redo() noexcept {
-    revert();
-    history.redo(now);
-  }
-  /// Makes the original shape the present one. Both ways are steps in the history.
-  void reset() noexcept {
+  /// What was made since the last step is a step, but in a redo, which drops it.
+  void go(HistoryMove move) noexcept {
+    if (move == HistoryMove::redo) {
+      revert();
+      history.redo(now);
+      return;
+    }
     keep();
-    now.follow(original);
-    history.keep(now.shape, note_of_reset);
+    if (move == HistoryMove::undo) {
+      history.undo(now);
+    } else {
+      now.follow(original);
+      history.keep(now.shape, note_of_reset);
+    }
   }
 };
 

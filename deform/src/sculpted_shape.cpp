@@ -48,11 +48,11 @@ void SculptedShape::mark(const StepNote& note) noexcept {
 
 void SculptedShape::undo_mark() noexcept {
   parts_->revert();
-  parts_->undo();
+  parts_->history.undo(parts_->now);
 }
 
 void SculptedShape::redo_mark() noexcept {
-  parts_->redo();
+  parts_->go(HistoryMove::redo);
 }
 
 const StepNote* SculptedShape::to_undo() const noexcept {

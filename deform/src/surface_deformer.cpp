@@ -66,18 +66,11 @@ void SurfaceDeformer::drop(bool is_step) noexcept {
   coefficients_.all.setZero();
 }
 
-FieldStatus SurfaceDeformer::reset(const Points& tips) {
+FieldStatus SurfaceDeformer::go(HistoryMove move, const Points& tips) {
+  if (move == HistoryMove::redo && shape_->redo_steps() == 0) return FieldStatus::ok;
   if (!all_usable(tips)) return FieldStatus::not_finite;
-  absorb();
-  shape_->parts().reset();
-  take_hold(tips);
-  return FieldStatus::ok;
-}
-
-FieldStatus SurfaceDeformer::undo(const Points& tips) {
-  if (!all_usable(tips)) return FieldStatus::not_finite;
-  shape_->parts().keep(); // what release() left out
-  shape_->parts().undo();
+  if (move == HistoryMove::reset) absorb();
+  shape_->parts().go(move);
   take_hold(tips);
   return FieldStatus::ok;
 }
@@ -89,14 +82,6 @@ FieldStatus SurfaceDeformer::take_back(const Points& tips) {
     absorb();
     parts.history.keep_undone(parts.now, parts.note);
   }
-  take_hold(tips);
-  return FieldStatus::ok;
-}
-
-FieldStatus SurfaceDeformer::redo(const Points& tips) {
-  if (shape_->redo_steps() == 0) return FieldStatus::ok;
-  if (!all_usable(tips)) return FieldStatus::not_finite;
-  shape_->parts().redo();
   take_hold(tips);
   return FieldStatus::ok;
 }

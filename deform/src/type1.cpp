@@ -245,22 +245,13 @@ void Type1Deformer::drop(bool is_step) noexcept {
   fields_.clear();
 }
 
-FieldStatus Type1Deformer::reset(const Points& tips) {
+FieldStatus Type1Deformer::go(HistoryMove move, const Points& tips) {
   assert(tips.cols() == starts_.cols());
+  if (move == HistoryMove::redo && shape_->redo_steps() == 0) return FieldStatus::ok;
   const FieldStatus status = build(tips);
   if (!is_solved(status)) return status;
-  if (in_links_ || !displacements_.isZero(0.0)) absorb();
-  shape_->parts().reset();
-  take_hold();
-  return status;
-}
-
-FieldStatus Type1Deformer::undo(const Points& tips) {
-  assert(tips.cols() == starts_.cols());
-  const FieldStatus status = build(tips);
-  if (!is_solved(status)) return status;
-  shape_->parts().keep(); // what release() left out
-  shape_->parts().undo();
+  if (move == HistoryMove::reset && (in_links_ || !displacements_.isZero(0.0))) absorb();
+  shape_->parts().go(move);
   take_hold();
   return status;
 }
@@ -274,16 +265,6 @@ FieldStatus Type1Deformer::take_back(const Points& tips) {
     if (in_links_ || !displacements_.isZero(0.0)) absorb();
     parts.history.keep_undone(parts.now, parts.note);
   }
-  take_hold();
-  return status;
-}
-
-FieldStatus Type1Deformer::redo(const Points& tips) {
-  assert(tips.cols() == starts_.cols());
-  if (shape_->redo_steps() == 0) return FieldStatus::ok;
-  const FieldStatus status = build(tips);
-  if (!is_solved(status)) return status;
-  shape_->parts().redo();
   take_hold();
   return status;
 }

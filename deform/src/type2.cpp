@@ -105,10 +105,11 @@ void Type2Deformer::forget_last() noexcept {
   if (along_) along_->clear();
 }
 
-FieldStatus Type2Deformer::reset(const Points& tips) {
+FieldStatus Type2Deformer::go(HistoryMove move, const Points& tips) {
+  if (move == HistoryMove::redo && shape_->redo_steps() == 0) return FieldStatus::ok;
   const FieldStatus status = take_hold(tips);
   if (!is_solved(status)) return status;
-  shape_->parts().reset();
+  shape_->parts().go(move);
   forget_last();
   return status;
 }
@@ -132,24 +133,6 @@ StrokeResult Type2Deformer::stroke_to(const Points& tips) {
 
 StrokeResult Type2Deformer::end_at(const Points& tips) {
   return follow(tips, &FingertipCurve::end_at);
-}
-
-FieldStatus Type2Deformer::undo(const Points& tips) {
-  const FieldStatus status = take_hold(tips);
-  if (!is_solved(status)) return status;
-  shape_->parts().keep();
-  shape_->parts().undo();
-  forget_last();
-  return status;
-}
-
-FieldStatus Type2Deformer::redo(const Points& tips) {
-  if (shape_->redo_steps() == 0) return FieldStatus::ok;
-  const FieldStatus status = take_hold(tips);
-  if (!is_solved(status)) return status;
-  shape_->parts().redo();
-  forget_last();
-  return status;
 }
 
 /// A piece without a usable field leaves the shape alone; the curve goes on behind it.

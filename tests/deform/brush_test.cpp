@@ -241,9 +241,9 @@ TEST_SUITE("brush") {
     CHECK(counts.allocations == 0);
     CHECK(counts.locks == 0);
     const Points after = shape_of();
-    deformer.undo(top);
+    deformer.go(HistoryMove::undo, top);
     CHECK(shape_of() == ball.vertices);
-    deformer.redo(top);
+    deformer.go(HistoryMove::redo, top);
     CHECK(shape_of() == after);
   }
 

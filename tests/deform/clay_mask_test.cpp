@@ -129,11 +129,11 @@ TEST_SUITE("clay_mask") {
     const Parts away = finger_from(Vector3d(0.0, 5.0, 0.0));
     for (int round = 0; round < 2; ++round) {
       for (std::size_t at = shapes.size() - 1; at-- > 0;) {
-        REQUIRE(is_solved(ball.clay->undo(away)));
+        REQUIRE(is_solved(ball.clay->go(HistoryMove::undo, away)));
         CHECK(ball.now().vertices == shapes[at]);
       }
       for (std::size_t at = 1; at < shapes.size(); ++at) {
-        REQUIRE(is_solved(ball.clay->redo(away)));
+        REQUIRE(is_solved(ball.clay->go(HistoryMove::redo, away)));
         CHECK(ball.now().vertices == shapes[at]);
       }
     }

@@ -457,16 +457,16 @@ TEST_SUITE("clay") {
     CHECK(ball.shape.undo_steps() == 1);
     ball.go(parts, {5, 0, -8}, 8);
     const Mesh second = ball.now();
-    CHECK(is_solved(ball.clay.undo(away)));
+    CHECK(is_solved(ball.clay.go(HistoryMove::undo, away)));
     CHECK(ball.now().vertices == first.vertices);
-    CHECK(is_solved(ball.clay.undo(away)));
+    CHECK(is_solved(ball.clay.go(HistoryMove::undo, away)));
     CHECK(ball.now().vertices == ball.mesh.vertices);
-    CHECK(is_solved(ball.clay.redo(away)));
-    CHECK(is_solved(ball.clay.redo(away)));
+    CHECK(is_solved(ball.clay.go(HistoryMove::redo, away)));
+    CHECK(is_solved(ball.clay.go(HistoryMove::redo, away)));
     CHECK(ball.now().vertices == second.vertices);
-    CHECK(is_solved(ball.clay.reset(away)));
+    CHECK(is_solved(ball.clay.go(HistoryMove::reset, away)));
     CHECK(ball.now().vertices == ball.mesh.vertices);
-    CHECK(is_solved(ball.clay.undo(away)));
+    CHECK(is_solved(ball.clay.go(HistoryMove::undo, away)));
     CHECK(ball.now().vertices == second.vertices);
   }
 

@@ -272,8 +272,8 @@ TEST_SUITE("deformers") {
         type2.begin(starts);
         type2.stroke_to(ends);
         type2.end_at(starts);
-        type2.undo(ends);
-        type1.undo(ends);
+        type2.go(HistoryMove::undo, ends);
+        type1.go(HistoryMove::undo, ends);
         counts = restraint.counts();
       }
       CHECK(counts.allocations == 0);

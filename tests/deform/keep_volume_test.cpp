@@ -347,10 +347,10 @@ TEST_SUITE("keep volume") {
     REQUIRE(is_solved(deformer.commit(ends)));
     deformer.layout().unpack(deformer.rest(), shape);
     CHECK(shape == moved);
-    REQUIRE(is_solved(deformer.undo(ends)));
+    REQUIRE(is_solved(deformer.go(HistoryMove::undo, ends)));
     deformer.layout().unpack(deformer.rest(), shape);
     CHECK(shape == first);
-    REQUIRE(is_solved(deformer.redo(ends)));
+    REQUIRE(is_solved(deformer.go(HistoryMove::redo, ends)));
     deformer.layout().unpack(deformer.rest(), shape);
     CHECK(shape == moved);
   }

@@ -247,19 +247,19 @@ TEST_SUITE("part_mover") {
     bench.grips[0].frame = more * bench.grips[0].frame;
     bench.move();
     const Points third = bench.vertices();
-    REQUIRE(bench.mover.undo(bench.grips) == FieldStatus::ok);
+    REQUIRE(bench.mover.go(HistoryMove::undo, bench.grips) == FieldStatus::ok);
     CHECK(bench.vertices() == second);
-    REQUIRE(bench.mover.undo(bench.grips) == FieldStatus::ok);
+    REQUIRE(bench.mover.go(HistoryMove::undo, bench.grips) == FieldStatus::ok);
     CHECK(bench.vertices() == first);
-    REQUIRE(bench.mover.redo(bench.grips) == FieldStatus::ok);
-    REQUIRE(bench.mover.redo(bench.grips) == FieldStatus::ok);
+    REQUIRE(bench.mover.go(HistoryMove::redo, bench.grips) == FieldStatus::ok);
+    REQUIRE(bench.mover.go(HistoryMove::redo, bench.grips) == FieldStatus::ok);
     CHECK(bench.vertices() == third);
     bench.move();
     CHECK_FALSE(bench.mover.is_moved());
     bench.grips[0].frame.translation().z() += 0.5;
     bench.move();
     CHECK((bench.vertices() - third).cwiseAbs().maxCoeff() == doctest::Approx(0.5).epsilon(1e-5));
-    REQUIRE(bench.mover.reset(bench.grips) == FieldStatus::ok);
+    REQUIRE(bench.mover.go(HistoryMove::reset, bench.grips) == FieldStatus::ok);
     CHECK(bench.vertices() == first);
   }
 
@@ -284,8 +284,8 @@ TEST_SUITE("part_mover") {
       grips[1].frame.translation().y() = wrong;
       CHECK(bench.mover.move_to(grips) == FieldStatus::not_finite);
       CHECK(bench.mover.begin(grips) == FieldStatus::not_finite);
-      CHECK(bench.mover.undo(grips) == FieldStatus::not_finite);
-      CHECK(bench.mover.reset(grips) == FieldStatus::not_finite);
+      CHECK(bench.mover.go(HistoryMove::undo, grips) == FieldStatus::not_finite);
+      CHECK(bench.mover.go(HistoryMove::reset, grips) == FieldStatus::not_finite);
       CHECK(bench.vertices() == before);
     }
     CHECK(bench.mover.move_to({}) == FieldStatus::not_finite); // not one a hand

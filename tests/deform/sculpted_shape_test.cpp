@@ -91,13 +91,15 @@ TEST_SUITE("sculpted_shape") {
     Type1Deformer last = sculpted.type1(1.0);
     Type2Deformer other = sculpted.type2(1.0);
     for (std::size_t at = 6; at > 0; --at) {
-      CHECK(is_solved(at % 2 == 0 ? last.undo(sculpted.starts) : other.undo(sculpted.starts)));
+      CHECK(is_solved(at % 2 == 0 ? last.go(HistoryMove::undo, sculpted.starts)
+                                  : other.go(HistoryMove::undo, sculpted.starts)));
       CHECK(distance(sculpted.now(), shapes[at - 1]) == 0.0);
     }
     CHECK(sculpted.shape.undo_steps() == 0);
     CHECK(sculpted.shape.redo_steps() == 6);
     for (std::size_t at = 1; at <= 6; ++at) {
-      CHECK(is_solved(at % 2 == 0 ? last.redo(sculpted.starts) : other.redo(sculpted.starts)));
+      CHECK(is_solved(at % 2 == 0 ? last.go(HistoryMove::redo, sculpted.starts)
+                                  : other.go(HistoryMove::redo, sculpted.starts)));
       CHECK(distance(sculpted.now(), shapes[at]) == 0.0);
     }
   }
@@ -110,17 +112,17 @@ TEST_SUITE("sculpted_shape") {
     sculpted.pull(1.5, true);
     CHECK(sculpted.shape.undo_steps() == 1);
     Type2Deformer last = sculpted.type2(1.0);
-    REQUIRE(is_solved(last.undo(sculpted.starts)));
+    REQUIRE(is_solved(last.go(HistoryMove::undo, sculpted.starts)));
     CHECK(distance(sculpted.now(), sculpted.rest) == 0.0);
-    REQUIRE(is_solved(last.redo(sculpted.starts)));
+    REQUIRE(is_solved(last.go(HistoryMove::redo, sculpted.starts)));
     // One that is not yet a step becomes one when it is undone.
     const Points before = sculpted.now();
     sculpted.pull(3.0, false);
     const Points pulled = sculpted.now();
     Type1Deformer undoing = sculpted.type1(1.0);
-    REQUIRE(is_solved(undoing.undo(sculpted.starts)));
+    REQUIRE(is_solved(undoing.go(HistoryMove::undo, sculpted.starts)));
     CHECK(distance(sculpted.now(), before) == 0.0);
-    REQUIRE(is_solved(undoing.redo(sculpted.starts)));
+    REQUIRE(is_solved(undoing.go(HistoryMove::redo, sculpted.starts)));
     CHECK(distance(sculpted.now(), pulled) == 0.0);
   }
 
@@ -142,13 +144,16 @@ TEST_SUITE("sculpted_shape") {
       const Points pulled = sculpted.now();
       Type1Deformer first = sculpted.type1(2.0);
       Type2Deformer second = sculpted.type2(2.0);
-      REQUIRE(is_solved(type1 ? first.reset(sculpted.ends) : second.reset(sculpted.ends)));
+      REQUIRE(is_solved(type1 ? first.go(HistoryMove::reset, sculpted.ends)
+                              : second.go(HistoryMove::reset, sculpted.ends)));
       CHECK(distance(sculpted.now(), sculpted.rest) == 0.0);
       CHECK(sculpted.shape.undo_steps() == 2);
-      REQUIRE(is_solved(type1 ? first.undo(sculpted.ends) : second.undo(sculpted.ends)));
+      REQUIRE(is_solved(type1 ? first.go(HistoryMove::undo, sculpted.ends)
+                              : second.go(HistoryMove::undo, sculpted.ends)));
       CHECK(distance(sculpted.now(), pulled) == 0.0);
       const Points nowhere = Points::Constant(3, 10, std::numeric_limits<double>::quiet_NaN());
-      CHECK_FALSE(is_solved(type1 ? first.reset(nowhere) : second.reset(nowhere)));
+      CHECK_FALSE(is_solved(type1 ? first.go(HistoryMove::reset, nowhere)
+                                  : second.go(HistoryMove::reset, nowhere)));
       CHECK(distance(sculpted.now(), pulled) == 0.0);
     }
   }
@@ -158,21 +163,21 @@ TEST_SUITE("sculpted_shape") {
     sculpted.pull(3.0, true);
     sculpted.pull(2.0, true);
     Type1Deformer deformer = sculpted.type1(1.0);
-    REQUIRE(is_solved(deformer.undo(sculpted.starts)));
+    REQUIRE(is_solved(deformer.go(HistoryMove::undo, sculpted.starts)));
     sculpted.shape.fence(); // and what could be redone is forgotten
     const Points fenced = sculpted.now();
     CHECK(sculpted.shape.undo_steps() == 0);
     CHECK(sculpted.shape.redo_steps() == 0);
-    REQUIRE(is_solved(deformer.undo(sculpted.starts)));
+    REQUIRE(is_solved(deformer.go(HistoryMove::undo, sculpted.starts)));
     CHECK(distance(sculpted.now(), fenced) == 0.0);
     sculpted.stroke(2.0, true);
     CHECK(sculpted.shape.undo_steps() == 1);
-    REQUIRE(is_solved(deformer.undo(sculpted.starts)));
-    REQUIRE(is_solved(deformer.undo(sculpted.starts)));
+    REQUIRE(is_solved(deformer.go(HistoryMove::undo, sculpted.starts)));
+    REQUIRE(is_solved(deformer.go(HistoryMove::undo, sculpted.starts)));
     CHECK(distance(sculpted.now(), fenced) == 0.0);
     sculpted.shape.unfence();
     CHECK(sculpted.shape.undo_steps() == 1);
-    REQUIRE(is_solved(deformer.undo(sculpted.starts)));
+    REQUIRE(is_solved(deformer.go(HistoryMove::undo, sculpted.starts)));
     CHECK(distance(sculpted.now(), sculpted.rest) == 0.0);
   }
 
@@ -200,7 +205,7 @@ TEST_SUITE("sculpted_shape") {
     CHECK(shape.forgotten_steps() > 20);
     shape.unfence();
     while (shape.undo_steps() > 0)
-      REQUIRE(is_solved(deformer.undo(sculpted.starts)));
+      REQUIRE(is_solved(deformer.go(HistoryMove::undo, sculpted.starts)));
   }
 
   TEST_CASE("a shape that begins as another one is that, and resets to its own") {
@@ -211,10 +216,10 @@ TEST_SUITE("sculpted_shape") {
     shape.layout().unpack(shape.shape(), points);
     CHECK(distance(points, sculpted.now()) == 0.0);
     Type2Deformer deformer(shape, 10, 0.1, sculpted.options);
-    REQUIRE(is_solved(deformer.undo(sculpted.starts))); // there is nothing to undo
+    REQUIRE(is_solved(deformer.go(HistoryMove::undo, sculpted.starts))); // there is nothing to undo
     shape.layout().unpack(shape.shape(), points);
     CHECK(distance(points, sculpted.now()) == 0.0);
-    REQUIRE(is_solved(deformer.reset(sculpted.starts)));
+    REQUIRE(is_solved(deformer.go(HistoryMove::reset, sculpted.starts)));
     shape.layout().unpack(shape.shape(), points);
     CHECK(distance(points, sculpted.rest) == 0.0);
   }

@@ -295,14 +295,14 @@ TEST_SUITE("surface") {
       shapes.push_back(shown);
     }
     for (std::size_t step = 4; step-- > 0;) {
-      REQUIRE(deformer.undo(tips) == FieldStatus::ok);
+      REQUIRE(deformer.go(HistoryMove::undo, tips) == FieldStatus::ok);
       REQUIRE(deformer.apply(tips, out) == FieldStatus::ok);
       CHECK(vertices() == shapes[step]);
     }
-    REQUIRE(deformer.redo(tips) == FieldStatus::ok);
+    REQUIRE(deformer.go(HistoryMove::redo, tips) == FieldStatus::ok);
     REQUIRE(deformer.apply(tips, out) == FieldStatus::ok);
     CHECK(vertices() == shapes[1]);
-    REQUIRE(deformer.reset(tips) == FieldStatus::ok);
+    REQUIRE(deformer.go(HistoryMove::reset, tips) == FieldStatus::ok);
     REQUIRE(deformer.apply(tips, out) == FieldStatus::ok);
     CHECK(vertices() == mesh.vertices);
     Points wrong = tips;
@@ -361,15 +361,15 @@ TEST_SUITE("surface") {
       shapes.push_back(one.vertices());
     }
     for (std::size_t stroke = 4; stroke-- > 0;) {
-      REQUIRE(one.deformer->undo(one.tips) == FieldStatus::ok);
+      REQUIRE(one.deformer->go(HistoryMove::undo, one.tips) == FieldStatus::ok);
       CHECK(one.vertices() == shapes[stroke]);
       REQUIRE(one.deformer->stroke_to(one.tips).status == FieldStatus::ok);
       CHECK(one.vertices() == shapes[stroke]); // who holds still moves nothing
     }
-    REQUIRE(one.deformer->redo(one.tips) == FieldStatus::ok);
+    REQUIRE(one.deformer->go(HistoryMove::redo, one.tips) == FieldStatus::ok);
     CHECK(one.vertices() == shapes[1]);
     one.deformer->release(true);
-    REQUIRE(one.deformer->reset(one.tips) == FieldStatus::ok);
+    REQUIRE(one.deformer->go(HistoryMove::reset, one.tips) == FieldStatus::ok);
     CHECK(one.vertices() == one.mesh.vertices);
     Points wrong = one.tips;
     for (const double far : {std::nan(""), 1e90}) {

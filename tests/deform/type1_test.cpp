@@ -318,7 +318,7 @@ TEST_SUITE("type1") {
       CHECK(deformer.sculpted().undo_steps() == std::min<std::size_t>(room, 4));
       apply(deformer, start_points(), out); // is dropped
       while (deformer.sculpted().undo_steps() > 0) {
-        REQUIRE(deformer.undo(start_points()) == FieldStatus::ok);
+        REQUIRE(deformer.go(HistoryMove::undo, start_points()) == FieldStatus::ok);
         CHECK(unpacked(deformer, deformer.rest()) == shapes.back());
         apply(deformer, start_points(), out);
         CHECK(out == shapes.back());
@@ -326,11 +326,11 @@ TEST_SUITE("type1") {
       }
       CHECK(shapes.size() == 4 - std::min<std::size_t>(room, 4));
       const Points last = unpacked(deformer, deformer.rest());
-      CHECK(deformer.undo(end_points(1.0)) == FieldStatus::ok);
+      CHECK(deformer.go(HistoryMove::undo, end_points(1.0)) == FieldStatus::ok);
       CHECK(unpacked(deformer, deformer.rest()) == last);
       Points nowhere = start_points();
       nowhere(0, 0) = std::nan("");
-      CHECK(deformer.undo(nowhere) == FieldStatus::not_finite);
+      CHECK(deformer.go(HistoryMove::undo, nowhere) == FieldStatus::not_finite);
       CHECK(unpacked(deformer, deformer.rest()) == last);
     }
   }
@@ -363,11 +363,11 @@ TEST_SUITE("type1") {
         CHECK(deformer.sculpted().undo_steps() == steps);
         CHECK(deformer.sculpted().forgotten_steps() == 0);
         CHECK(deformer.sculpted().redo_steps() == (room == 10 ? 1 : 0));
-        REQUIRE(deformer.redo(start_points()) == FieldStatus::ok);
+        REQUIRE(deformer.go(HistoryMove::redo, start_points()) == FieldStatus::ok);
         CHECK(unpacked(deformer, deformer.rest()) == (room == 10 ? pulled : committed));
         if (room == 0) continue;
-        if (room == 10) REQUIRE(deformer.undo(start_points()) == FieldStatus::ok);
-        REQUIRE(deformer.undo(start_points()) == FieldStatus::ok);
+        if (room == 10) REQUIRE(deformer.go(HistoryMove::undo, start_points()) == FieldStatus::ok);
+        REQUIRE(deformer.go(HistoryMove::undo, start_points()) == FieldStatus::ok);
         CHECK(unpacked(deformer, deformer.rest()) == unpacked(deformer, deformer.layout().pack()));
       }
   }
@@ -387,7 +387,7 @@ TEST_SUITE("type1") {
       deformer.apply(ends, out);
       deformer.commit(ends);
       deformer.apply(starts, out);
-      deformer.undo(starts);
+      deformer.go(HistoryMove::undo, starts);
       counts = restraint.counts();
     }
     CHECK(counts.allocations == 0);

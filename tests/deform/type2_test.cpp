@@ -232,21 +232,22 @@ TEST_SUITE("type2") {
     Points nowhere = start_points();
     nowhere(0, 0) = std::nan("");
     const Points last = shape_of(deformer);
-    CHECK(deformer.undo(nowhere) == FieldStatus::not_finite); // and nothing has changed
+    CHECK(deformer.go(HistoryMove::undo, nowhere) ==
+          FieldStatus::not_finite); // and nothing has changed
     CHECK(deformer.sculpted().undo_steps() == 2);
     CHECK(shape_of(deformer) == last);
     for (; !shapes.empty(); shapes.pop_back()) {
       CHECK(shape_of(deformer) != shapes.back());
-      CHECK(deformer.undo(start_points()) == FieldStatus::ok);
+      CHECK(deformer.go(HistoryMove::undo, start_points()) == FieldStatus::ok);
       CHECK(shape_of(deformer) == shapes.back());
     }
     CHECK(deformer.sculpted().undo_steps() == 0);
-    CHECK(deformer.undo(start_points()) == FieldStatus::ok);
+    CHECK(deformer.go(HistoryMove::undo, start_points()) == FieldStatus::ok);
     CHECK(shape_of(deformer) == clay);
-    CHECK(deformer.redo(nowhere) == FieldStatus::not_finite);
+    CHECK(deformer.go(HistoryMove::redo, nowhere) == FieldStatus::not_finite);
     CHECK(deformer.sculpted().redo_steps() == 3);
     CHECK(shape_of(deformer) == clay);
-    CHECK(deformer.undo(start_points()) == FieldStatus::ok);
+    CHECK(deformer.go(HistoryMove::undo, start_points()) == FieldStatus::ok);
     CHECK(deformer.end_at(shifted({0, 0.5, 0})).pieces > 0); // it holds the model
   }
 

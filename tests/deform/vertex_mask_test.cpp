@@ -125,9 +125,9 @@ TEST_SUITE("vertex mask") {
       const BlockShape drawn = shape;
       REQUIRE(is_solved(held.commit(starts + 2.0 * way)));
       CHECK(unpacked(layout, held.rest()) == unpacked(layout, drawn));
-      REQUIRE(is_solved(held.undo(starts)));
+      REQUIRE(is_solved(held.go(HistoryMove::undo, starts)));
       CHECK(unpacked(layout, held.rest()) == ball.vertices);
-      REQUIRE(is_solved(held.redo(starts)));
+      REQUIRE(is_solved(held.go(HistoryMove::redo, starts)));
       CHECK(unpacked(layout, held.rest()) == unpacked(layout, drawn));
     }
   }

@@ -12,6 +12,7 @@ namespace nendo::flow {
 
 using deform::BlockShape;
 using deform::FieldStatus;
+using deform::HistoryMove;
 using deform::Points;
 using deform::SculptedShape;
 using deform::Type1Deformer;
@@ -242,23 +243,15 @@ void Sculptor::drop(bool is_step) noexcept {
       [&](auto& hands) { hands.release(is_step); });
 }
 
-FieldStatus Sculptor::reset(const Points& tips) noexcept {
-  return counted(std::visit([&](auto& deformer) { return deformer.reset(tips); }, deformer_));
-}
-
-FieldStatus Sculptor::undo(const Points& tips) noexcept {
-  return counted(std::visit([&](auto& deformer) { return deformer.undo(tips); }, deformer_));
+FieldStatus Sculptor::go(HistoryMove move, const Points& tips) noexcept {
+  return counted(std::visit([&](auto& deformer) { return deformer.go(move, tips); }, deformer_));
 }
 
 FieldStatus Sculptor::take_back(const Points& tips) noexcept {
   return counted(each(
       deformer_, [&](auto& type1) { return type1.take_back(tips); },
-      [&](Type2Deformer& type2) { return type2.undo(tips); },
-      [&](auto& hands) { return hands.undo(tips); }));
-}
-
-FieldStatus Sculptor::redo(const Points& tips) noexcept {
-  return counted(std::visit([&](auto& deformer) { return deformer.redo(tips); }, deformer_));
+      [&](Type2Deformer& type2) { return type2.go(HistoryMove::undo, tips); },
+      [&](auto& hands) { return hands.go(HistoryMove::undo, tips); }));
 }
 
 const deform::FieldSequence& Sculptor::fields() const noexcept {

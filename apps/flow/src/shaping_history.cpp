@@ -10,8 +10,18 @@
 namespace nendo::flow {
 
 using deform::FieldStatus;
+using deform::HistoryMove;
 using deform::Points;
 using deform::StepNote;
+
+namespace {
+
+HistoryMove history_move(Request step) noexcept {
+  if (step == Request::undo) return HistoryMove::undo;
+  return step == Request::redo ? HistoryMove::redo : HistoryMove::reset;
+}
+
+} // namespace
 
 Step Shaping::step_now(StepKind kind) const noexcept {
   return {kind, static_cast<float>(to_seconds(time_))};
@@ -38,12 +48,9 @@ void Shaping::take_steps(const Points& tips, LoopStats& stats) noexcept {
 bool Shaping::take_step(Request step, const Points& tips, LoopStats& stats) noexcept {
   if (step == Request::redo && model_->shape.redo_steps() == 0) return true;
   if (is_change_next(step)) return take_change(step, tips, stats);
-  const auto undone = [&] {
-    return is_pulled() ? sculptor_->take_back(tips) : sculptor_->undo(tips);
-  };
-  const FieldStatus status = step == Request::undo   ? undone()
-                             : step == Request::redo ? sculptor_->redo(tips)
-                                                     : sculptor_->reset(tips);
+  const FieldStatus status = step == Request::undo && is_pulled()
+                                 ? sculptor_->take_back(tips)
+                                 : sculptor_->go(history_move(step), tips);
   if (!is_solved(status)) return false;
   ++shape_jumps_;
   count(step, stats);

@@ -54,23 +54,10 @@ FieldStatus ClayDeformer::take_hold(std::span<const ContactPart> parts) {
   return FieldStatus::ok;
 }
 
-FieldStatus ClayDeformer::reset(std::span<const ContactPart> parts) {
+FieldStatus ClayDeformer::go(HistoryMove move, std::span<const ContactPart> parts) {
+  if (move == HistoryMove::redo && shape_->redo_steps() == 0) return FieldStatus::ok;
   if (!work_->accepts(parts)) return FieldStatus::not_finite;
-  shape_->parts().reset();
-  return take_hold(parts);
-}
-
-FieldStatus ClayDeformer::undo(std::span<const ContactPart> parts) {
-  if (!work_->accepts(parts)) return FieldStatus::not_finite;
-  shape_->parts().keep();
-  shape_->parts().undo();
-  return take_hold(parts);
-}
-
-FieldStatus ClayDeformer::redo(std::span<const ContactPart> parts) {
-  if (shape_->redo_steps() == 0) return FieldStatus::ok;
-  if (!work_->accepts(parts)) return FieldStatus::not_finite;
-  shape_->parts().redo();
+  shape_->parts().go(move);
   return take_hold(parts);
 }
 

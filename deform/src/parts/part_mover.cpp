@@ -226,23 +226,10 @@ FieldStatus PartMover::move_to(std::span<const PartGrip> grips) noexcept {
   return FieldStatus::ok;
 }
 
-FieldStatus PartMover::reset(std::span<const PartGrip> grips) noexcept {
+FieldStatus PartMover::go(HistoryMove move, std::span<const PartGrip> grips) noexcept {
+  if (move == HistoryMove::redo && shape_->redo_steps() == 0) return FieldStatus::ok;
   if (!work_->accepts(grips)) return FieldStatus::not_finite;
-  shape_->parts().reset();
-  return grab(grips);
-}
-
-FieldStatus PartMover::undo(std::span<const PartGrip> grips) noexcept {
-  if (!work_->accepts(grips)) return FieldStatus::not_finite;
-  shape_->parts().keep();
-  shape_->parts().undo();
-  return grab(grips);
-}
-
-FieldStatus PartMover::redo(std::span<const PartGrip> grips) noexcept {
-  if (shape_->redo_steps() == 0) return FieldStatus::ok;
-  if (!work_->accepts(grips)) return FieldStatus::not_finite;
-  shape_->parts().redo();
+  shape_->parts().go(move);
   return grab(grips);
 }
 

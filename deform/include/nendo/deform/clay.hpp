@@ -84,7 +84,7 @@ public:
   ClayDeformer& operator=(ClayDeformer&&) noexcept;
 
   /// Sets where the bodies are, without deforming anything, and ends the stroke before, which
-  /// undo() can then undo. `parts` are those of the first body, and then those of the next. The
+  /// can then be undone. `parts` are those of the first body, and then those of the next. The
   /// status is ok or not_finite, in which case nothing changes.
   FieldStatus begin(std::span<const ContactPart> parts);
   /// Does the same, but without ending the stroke before.
@@ -101,10 +101,8 @@ public:
   /// happens and the status is not_finite. Before begin() or grab(), this is begin().
   const ClayReport& press_to(std::span<const ContactPart> parts);
 
-  /// These do what those of Type2Deformer do; `parts` are where the bodies then are.
-  FieldStatus reset(std::span<const ContactPart> parts);
-  FieldStatus undo(std::span<const ContactPart> parts);
-  FieldStatus redo(std::span<const ContactPart> parts);
+  /// Does what Type2Deformer::go() does; `parts` are where the bodies then are.
+  FieldStatus go(HistoryMove move, std::span<const ContactPart> parts);
 
   const BlockLayout& layout() const noexcept { return shape_->layout(); }
   const BlockShape& shape() const noexcept { return shape_->shape(); }

@@ -35,11 +35,11 @@ struct DeformerOptions {
   BrushOptions brushes{};
   /// What holds vertices where they are; null: all are free. It must be of the shape's layout.
   std::shared_ptr<const VertexMask> mask{};
-  /// Bytes of memory for undo(), of which a step takes 832, and 832 for each block of 64 vertices
+  /// Bytes of memory for undo, of which a step takes 832, and 832 for each block of 64 vertices
   /// that it changed. 0 means that nothing can be undone. The memory of one more shape comes on
   /// top.
   std::size_t undo_bytes = 0;
-  /// Further memory for undo(), or null. Each deformer needs its own, which must outlive it.
+  /// Further memory for undo, or null. Each deformer needs its own, which must outlive it.
   UndoMemory* undo_memory = nullptr;
 };
 

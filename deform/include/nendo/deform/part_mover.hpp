@@ -77,7 +77,7 @@ public:
   PartMover(PartMover&&) noexcept;
   PartMover& operator=(PartMover&&) noexcept;
 
-  /// Ends the stroke before, which undo() can then undo. What hands hold they hold on to, from
+  /// Ends the stroke before, which can then be undone. What hands hold they hold on to, from
   /// where `grips`, one a hand, are now. The status is ok or not_finite, in which case nothing
   /// changes.
   FieldStatus begin(std::span<const PartGrip> grips) noexcept;
@@ -90,10 +90,8 @@ public:
   /// hand closes. Before begin() or grab(), this is begin().
   FieldStatus move_to(std::span<const PartGrip> grips) noexcept;
 
-  /// These do what those of Type2Deformer do; `grips` are where the hands then are.
-  FieldStatus reset(std::span<const PartGrip> grips) noexcept;
-  FieldStatus undo(std::span<const PartGrip> grips) noexcept;
-  FieldStatus redo(std::span<const PartGrip> grips) noexcept;
+  /// Does what Type2Deformer::go() does; `grips` are where the hands then are.
+  FieldStatus go(HistoryMove move, std::span<const PartGrip> grips) noexcept;
 
   const BlockLayout& layout() const noexcept { return shape_->layout(); }
   const BlockShape& shape() const noexcept { return shape_->shape(); }

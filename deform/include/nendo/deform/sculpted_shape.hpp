@@ -15,11 +15,19 @@ namespace nendo::deform {
 
 struct DeformerOptions;
 
+/// What a deformer does with the history of its shape. What it has made of the shape since the last
+/// step becomes a step first, except by a redo, which drops it.
+enum class HistoryMove : std::uint8_t {
+  undo, ///< goes back before the last step; without one, the shape stays
+  redo, ///< goes to the shape before the last undo; without one, nothing happens and all is ok
+  reset ///< goes to the original shape, as a step
+};
+
 class SculptedShape {
 public:
   /// Allocates for the vertices (3 by #vertices) and for the history: DeformerOptions::undo_bytes
   /// and undo_memory. With `first`, which has the layout's size, the shape is that one, and
-  /// `original` is only what reset() of a deformer goes back to.
+  /// `original` is only what HistoryMove::reset goes to.
   SculptedShape(Points original, const DeformerOptions& options, const BlockShape* first = nullptr)
       : SculptedShape(BlockLayout(std::move(original)), options, first) {}
   SculptedShape(BlockLayout layout, const DeformerOptions& options, const BlockShape* first);
@@ -37,8 +45,7 @@ public:
   std::size_t redo_steps() const noexcept;
   /// Returns how many steps can no longer be undone because memory ended.
   std::size_t forgotten_steps() const noexcept;
-  /// Sets what is noted of the steps that deformers make from now on, and of those that reset()
-  /// makes.
+  /// Sets what is noted of the steps that deformers make from now on, and of resets.
   void set_notes(const StepNote& note, const StepNote& of_reset) noexcept;
   /// Adds a step that does not change the shape, for something else that can be undone in its
   /// order.

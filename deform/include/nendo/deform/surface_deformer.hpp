@@ -24,10 +24,8 @@ public:
   FieldStatus commit(const Points& ends);
   void release(bool is_step) noexcept;
   void drop(bool is_step) noexcept;
-  FieldStatus reset(const Points& tips);
-  FieldStatus undo(const Points& tips);
+  FieldStatus go(HistoryMove move, const Points& tips);
   FieldStatus take_back(const Points& tips);
-  FieldStatus redo(const Points& tips);
 
   const BlockLayout& layout() const noexcept { return shape_->layout(); }
   const BlockShape& rest() const noexcept { return shape_->shape(); }

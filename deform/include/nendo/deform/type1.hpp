@@ -52,23 +52,17 @@ public:
   /// Makes the shape that apply() last gave the rest shape, and `ends` the new start points.
   FieldStatus commit(const Points& ends);
   /// Makes the shape that apply() last gave the rest shape, which nothing holds until the next
-  /// grab(). With `is_step`, undo() can go back before it; without, only together with the next
+  /// grab(). With `is_step`, an undo can go back before it; without, only together with the next
   /// commit.
   void release(bool is_step) noexcept;
   /// Does the same, but what was applied since the last commit is not kept: the rest shape stays.
   void drop(bool is_step) noexcept;
-  /// Makes the rest shape what it was at first, and `tips` the start points. What apply() made
-  /// since the last commit is a step of its own.
-  FieldStatus reset(const Points& tips);
-  /// Makes the rest shape what it was before the last commit, and `tips` the start points. What
-  /// apply() made since then is dropped. If no commit can be undone, this is grab(tips).
-  FieldStatus undo(const Points& tips);
+  /// Changes the rest shape, and makes `tips` the start points. What apply() made since the last
+  /// commit is dropped; a reset makes it a step of its own. On failure nothing changes.
+  FieldStatus go(HistoryMove move, const Points& tips);
   /// Takes back what apply() made since the last commit, as a step of its own, and makes `tips` the
-  /// start points. redo() brings it back, unless there was no memory for it. Older steps stay.
+  /// start points. A redo brings it back, unless there was no memory for it. Older steps stay.
   FieldStatus take_back(const Points& tips);
-  /// Makes the rest shape what it was before the last undo, and `tips` the start points. If there
-  /// is no such undo, or there was a commit since, nothing changes and the status is ok.
-  FieldStatus redo(const Points& tips);
 
   /// Returns the shape that the deformer works on, with its history.
   const SculptedShape& sculpted() const noexcept { return *shape_; }

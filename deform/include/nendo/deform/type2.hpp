@@ -56,16 +56,15 @@ public:
   Type2Deformer& operator=(Type2Deformer&&) noexcept;
 
   /// Starts a curve at these fingertips (3 by control_points) without deforming anything, and ends
-  /// the stroke before, which undo() can then undo. The status is ok, not_finite, or, with
+  /// the stroke before, which can then be undone. The status is ok, not_finite, or, with
   /// `injective`, what building a field there gives.
   FieldStatus begin(const Points& tips);
   /// Does the same, but without ending the stroke before.
   FieldStatus grab(const Points& tips) { return take_hold(tips); }
   /// Lets go of the shape until the next begin() or grab(). With `is_step`, the stroke has ended.
   void release(bool is_step) noexcept;
-  /// Makes the shape what it was at first, and begins a new stroke at `tips`. The stroke before is
-  /// a step of its own.
-  FieldStatus reset(const Points& tips);
+  /// Changes the shape, and begins a new stroke at `tips`. On failure the shape stays.
+  FieldStatus go(HistoryMove move, const Points& tips);
   /// Extends the curves to `tips` and deforms by the pieces that are whole. What is left, less than
   /// one and a half pieces, waits for the next call. A jump is made in at most most_pieces, so that
   /// the time of a call is bounded. Does not allocate. A piece without a usable field is skipped.
@@ -73,13 +72,6 @@ public:
   StrokeResult stroke_to(const Points& tips);
   /// Does the same, but deforms all the way to `tips`.
   StrokeResult end_at(const Points& tips);
-  /// Makes the shape what it was before the last stroke that changed it, and begins a new stroke at
-  /// `tips`. If no stroke can be undone, this is begin(tips).
-  FieldStatus undo(const Points& tips);
-  /// Makes the shape what it was before the last undo, drops the present stroke, and begins a new
-  /// one at `tips`. If there is no such undo, or a stroke that changed the shape has ended since,
-  /// nothing changes and the status is ok.
-  FieldStatus redo(const Points& tips);
 
   /// Returns the shape that the deformer works on, with its history.
   const SculptedShape& sculpted() const noexcept { return *shape_; }

@@ -71,9 +71,9 @@ public:
   /// Presses the surface out of where the bodies are now. With `ends`, all of their way is made.
   deform::FieldStatus press(bool ends);
   void release(bool is_step) noexcept;
-  deform::FieldStatus reset(const deform::Points&) { return clay_.reset(parts()); }
-  deform::FieldStatus undo(const deform::Points&) { return clay_.undo(parts()); }
-  deform::FieldStatus redo(const deform::Points&) { return clay_.redo(parts()); }
+  deform::FieldStatus go(deform::HistoryMove move, const deform::Points&) {
+    return clay_.go(move, parts());
+  }
 
   /// Always empty: what hands do has no formula that is short enough to be told.
   const deform::FieldSequence& fields() const noexcept { return fields_; }

@@ -49,9 +49,9 @@ public:
   /// Moves what is held to where the hands are.
   deform::FieldStatus follow(const deform::Points& tips) noexcept;
   void release(bool is_step) noexcept;
-  deform::FieldStatus reset(const deform::Points& tips) { return mover_.reset(grips(tips)); }
-  deform::FieldStatus undo(const deform::Points& tips) { return mover_.undo(grips(tips)); }
-  deform::FieldStatus redo(const deform::Points& tips) { return mover_.redo(grips(tips)); }
+  deform::FieldStatus go(deform::HistoryMove move, const deform::Points& tips) {
+    return mover_.go(move, grips(tips));
+  }
 
   /// Always empty: a part moves as a whole, and others stay.
   const deform::FieldSequence& fields() const noexcept { return fields_; }

@@ -13,9 +13,9 @@ enum class Request : std::uint8_t {
   grab,   ///< the hands take hold of the model
   let_go, ///< and let go of it; what they have shaped stays
   commit, ///< the shape so far becomes the rest shape, and the hands hold it anew
-  undo,   ///< back to the rest shape before the last commit: Sculptor::undo()
-  redo,   ///< forth again, if nothing was committed since: Sculptor::redo()
-  reset,  ///< back to the model as it was loaded, which undo() takes back
+  undo,   ///< back to the rest shape before the last commit (deform::HistoryMove)
+  redo,   ///< undoes the last undo, if nothing was committed since
+  reset,  ///< back to the model as it was loaded, which an undo takes back
   /// The hands that hold the model take hold anew where they are, without a commit
   /// (Shaping::ask()).
   take_hold,

@@ -116,19 +116,12 @@ public:
   void release(bool is_step) noexcept;
   /// Does the same, but in type 1 what the fingertips have pulled since they took hold is not kept.
   void drop(bool is_step) noexcept;
-  /// Goes back to the shape as it was at first (Type1Deformer::reset, Type2Deformer::reset).
-  deform::FieldStatus reset(const deform::Points& tips) noexcept;
-  /// Goes back to the rest shape before the last commit, or to the shape with which the last stroke
-  /// began (Type1Deformer::undo, Type2Deformer::undo). The fingertips then hold it at `tips`. If
+  /// Changes the rest shape, or the shape of the strokes. The fingertips then hold it at `tips`. If
   /// the equations have no solution, nothing changes. It does not allocate.
-  deform::FieldStatus undo(const deform::Points& tips) noexcept;
+  deform::FieldStatus go(deform::HistoryMove move, const deform::Points& tips) noexcept;
   /// Takes back what the fingertips have shaped since the last commit, or in this stroke, as a step
-  /// of its own (Type1Deformer::take_back, Type2Deformer::undo). As undo() else.
+  /// of its own (Type1Deformer::take_back; in other modes an undo). Otherwise as go().
   deform::FieldStatus take_back(const deform::Points& tips) noexcept;
-  /// Goes forward to the shape before the last undo, if nothing was committed since
-  /// (Type1Deformer::redo, Type2Deformer::redo). If there is nothing to redo, nothing changes and
-  /// the status is ok.
-  deform::FieldStatus redo(const deform::Points& tips) noexcept;
 
   /// Returns how often the fingertips took hold of a shape at the tips that a function was given.
   std::uint64_t holds() const noexcept { return holds_; }
