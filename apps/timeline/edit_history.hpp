@@ -1,6 +1,7 @@
 #pragma once
-// A timeline that is being edited. It has the selected key, the steps that can be undone and
-// redone, and whether there are unsaved changes.
+// A timeline that is being edited, with the undo of its edits: of keys and settings in a document,
+// not of shapes (deform::SculptedShape), which are played anew. It has the selected key, and knows
+// whether there are unsaved changes.
 
 #include <cstdint>
 #include <functional>

@@ -1,7 +1,7 @@
 #pragma once
-// The shapes before the last steps, and after the steps that were undone. It keeps only the blocks
-// that each step changed, and a note of each step. When memory ends, the oldest steps make room for
-// new ones.
+// The undo memory of one SculptedShape: the shapes before the last steps, and after the steps that
+// were undone. It keeps only the blocks that each step changed, and a note of each step. When
+// memory ends, the oldest steps make room for new ones.
 
 #include <cstddef>
 #include <cstdint>

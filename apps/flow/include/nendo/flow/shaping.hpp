@@ -151,7 +151,7 @@ private:
                                     bool holds_on) const noexcept;
   void go_on_with(ReadySculptor& ready) noexcept;
   void tell(Frame& frame, LoopStats& stats) noexcept;
-  // In shaping_history.cpp:
+  // In shaping_steps.cpp:
   void take_steps(const deform::Points& tips, LoopStats& stats) noexcept;
   bool take_step(Request step, const deform::Points& tips, LoopStats& stats) noexcept;
   bool take_change(Request step, const deform::Points& tips, LoopStats& stats) noexcept;

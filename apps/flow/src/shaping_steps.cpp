@@ -1,5 +1,6 @@
-// The part of Shaping that goes through the history, which reaches across settings and versions of
-// the model.
+// The part of Shaping that undoes and redoes steps. It stores no shapes: each version of the model
+// has them (deform::SculptedShape), and notes there lead on to other settings, puppets and
+// versions.
 
 #include <nendo/flow/shaping.hpp>
 
