@@ -293,7 +293,7 @@ SurfaceField::Terms SurfaceField::terms() const {
   return terms;
 }
 
-void SurfaceField::tell(const Coefficients& by, SurfaceMove& move) const {
+void SurfaceField::write_move(const Coefficients& by, SurfaceMove& move) const {
   move.field = number_;
   move.count = static_cast<std::uint32_t>(columns_.size());
   if (move.vectors.cols() < static_cast<Index>(columns_.size()))

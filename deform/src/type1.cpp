@@ -13,10 +13,10 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr int most_steps = most_midpoint_fields / 2; // of a way: one and a half radii
+constexpr int max_midpoint_steps = most_midpoint_fields / 2; // of a way: one and a half radii
 
-std::size_t most_fields_of_type1(const DeformerOptions& options) {
-  if (keeps_volume(options)) return 2 * static_cast<std::size_t>(most_steps);
+std::size_t max_fields_of_type1(const DeformerOptions& options) {
+  if (keeps_volume(options)) return 2 * static_cast<std::size_t>(max_midpoint_steps);
   return options.injective ? static_cast<std::size_t>(options.injective->most_links) : 1;
 }
 
@@ -39,7 +39,7 @@ Type1Deformer::Type1Deformer(SculptedShape& shape, Eigen::Index control_points,
       displacements_(starts_), asked_(starts_),
       supports_(rounded(options.supports, shape.layout())), solver_(options.csrbf),
       field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
-      fields_(most_fields_of_type1(options), field_),
+      fields_(max_fields_of_type1(options), field_),
       evaluator_(std::make_unique<BlockEvaluator>(shape.layout(), field_.centres.cols(),
                                                   options.evaluation)),
       weights_(std::make_unique<CardinalWeights>(shape.layout(), control_points, field_,
@@ -48,7 +48,7 @@ Type1Deformer::Type1Deformer(SculptedShape& shape, Eigen::Index control_points,
                                                      : options.evaluation.weight_bytes)),
       masked_(std::make_unique<MaskedStep>(options.mask)) {
   if (keeps_volume(options)) {
-    steps_.emplace(control_points, supports_, options.csrbf, most_steps);
+    steps_.emplace(control_points, supports_, options.csrbf, max_midpoint_steps);
     evaluator_->make_room_for_halves(shape.layout());
   } else if (options.injective) {
     chain_.emplace(control_points, supports_, options.csrbf, *options.injective);

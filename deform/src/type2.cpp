@@ -75,7 +75,7 @@ Type2Deformer::Type2Deformer(SculptedShape& shape, Eigen::Index control_points, 
   make_room(solver_, supports_, pulling_.cols());
   if (!options.injective) return;
   chain_.emplace(pulling_.cols(), supports_, options.csrbf, *options.injective);
-  most_links_ = options.injective->most_links;
+  max_links_ = options.injective->most_links;
 }
 
 Type2Deformer::Type2Deformer(SculptedShape& shape, std::shared_ptr<const SurfaceField> field)
@@ -210,7 +210,7 @@ FieldStatus Type2Deformer::apply(const CsrbfField& field) {
 
 /// Fingertips that are held stay where they are; the next piece tells them anew where to go.
 FieldStatus Type2Deformer::apply_links() {
-  FieldStatus status = chain_->from_here(pulling(next_), most_links_ - report_.links);
+  FieldStatus status = chain_->from_here(pulling(next_), max_links_ - report_.links);
   while (is_solved(status) && chain_->next())
     status = std::max(status, apply(chain_->field()));
   const ChainReport& piece = chain_->report();

@@ -394,7 +394,7 @@ TEST_SUITE("surface") {
       const Points way = one.tips + 0.3 * random_vectors(4, random);
       REQUIRE(one.deformer->stroke_to(way).status == FieldStatus::ok);
       CHECK(one.deformer->fields().fields().empty());
-      one.deformer->along()->tell(move);
+      one.deformer->along()->write_move(move);
       REQUIRE(move.field == one.made.field->number());
       for (std::size_t place = 0; place + 1 < terms.starts.size(); ++place)
         for (std::uint32_t at = terms.starts[place]; at < terms.starts[place + 1]; ++at)

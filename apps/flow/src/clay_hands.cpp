@@ -16,7 +16,7 @@ deform::ClayOptions clay_options(const HandBodies& bodies, double radius_m,
                                  const deform::DeformerOptions& deformer,
                                  bool scales_few_vertices) {
   deform::ClayOptions options;
-  options.units_a_mm = bodies.units_per_metre() / mm_a_metre;
+  options.units_per_mm = bodies.units_per_metre() / mm_a_metre;
   options.radius_mm = mm_a_metre * std::max(radius_m, ClayHands::least_radius_m);
   options.still_bodies = HandBodies::tables;
   options.evaluation = deformer.evaluation;
@@ -88,11 +88,11 @@ std::span<const deform::ContactPart> ClayHands::parts() noexcept {
   return with_images_;
 }
 
-deform::FieldStatus ClayHands::press(bool ends) {
+deform::FieldStatus ClayHands::follow(const deform::Points&, bool ends) {
   is_moved_ = false;
   presses_ = true;
-  constexpr int most_calls = 64; // so that a tick ends, however far a hand has jumped
-  for (int call = 0; call < most_calls; ++call) {
+  constexpr int max_calls = 64; // so that a tick ends, however far a hand has jumped
+  for (int call = 0; call < max_calls; ++call) {
     const deform::ClayReport& report = clay_.press_to(parts());
     is_moved_ = is_moved_ || report.is_moved;
     if (!ends || !is_solved(report.status) || report.behind_mm <= 0.0) break;

@@ -35,8 +35,8 @@ PartHands::PartHands(deform::SculptedShape& shape, std::shared_ptr<const deform:
     : parts_(std::move(parts)), bodies_(std::move(bodies)), hands_(bodies_->count()),
       grips_(bodies_->count()), mover_(shape, parts_, mover_options(*bodies_, std::move(mask))) {
   for (Hand& hand : hands_)
-    hand.places.reserve(most_places);
-  contacts_.reserve(most_places * hands_.size());
+    hand.places.reserve(max_places);
+  contacts_.reserve(max_places * hands_.size());
 }
 
 std::span<const deform::PartGrip> PartHands::grips(const deform::Points& tips) noexcept {
@@ -57,7 +57,7 @@ std::span<const deform::PartGrip> PartHands::grips(const deform::Points& tips) n
   return grips_;
 }
 
-deform::FieldStatus PartHands::follow(const deform::Points& tips) noexcept {
+deform::FieldStatus PartHands::follow(const deform::Points& tips, bool /*ends*/) noexcept {
   const deform::FieldStatus status = mover_.move_to(grips(tips));
   for (std::size_t at = 0; at < hands_.size(); ++at) {
     const std::uint32_t held = mover_.held_by(at);
@@ -95,7 +95,7 @@ void PartHands::find_places(std::size_t at) noexcept {
   std::size_t near = 0;
   each_place(*parts_, hand.held,
              [&](std::size_t place) { near += distance(place) <= reach ? 1U : 0U; });
-  const std::size_t stride = near / most_places + 1;
+  const std::size_t stride = near / max_places + 1;
   std::size_t met = 0;
   each_place(*parts_, hand.held, [&](std::size_t place) {
     if (distance(place) <= reach && met++ % stride == 0) hand.places.push_back(place);

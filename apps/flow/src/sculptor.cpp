@@ -25,9 +25,9 @@ using Deformer =
 
 constexpr Eigen::Index fingers = 5;
 
-/// Of the points that hold the model all over the hands, each of which has what its finger has.
-/// Those of one bone move together, and need not be followed exactly where they come close; links
-/// count on it that they are.
+/// Returns the options for points all over the hands, each of which has its finger's supports.
+/// Points of one bone move together, and need not be followed exactly where they come close. Links
+/// rely on exact points, so injective deformers are not smoothed.
 deform::DeformerOptions held_all_over(const SculptorOptions& options) {
   constexpr double smoothing = 1e-3;
   deform::DeformerOptions deformer = options.deformer;
@@ -43,14 +43,14 @@ deform::DeformerOptions held_all_over(const SculptorOptions& options) {
   return deformer;
 }
 
-/// Of type 1, without a puppet.
+/// Returns the options of type 1 without a puppet.
 deform::DeformerOptions of_type1(const SculptorOptions& options, Eigen::Index control_points) {
   const bool all_over =
       options.points_of_hand() != fingers && control_points % options.points_of_hand() == 0;
   return all_over ? held_all_over(options) : options.deformer;
 }
 
-/// With the brushes of so many fingertips.
+/// Returns the options with the brushes of these fingertips.
 deform::DeformerOptions brushed(const SculptorOptions& options, Eigen::Index control_points) {
   deform::DeformerOptions deformer = options.deformer;
   if (!options.rings || control_points % fingers != 0) return deformer;
@@ -81,7 +81,8 @@ Deformer make(SculptedShape& shape, Eigen::Index control_points, const SculptorO
   return Type1Deformer(shape, control_points, of_type1(options, control_points));
 }
 
-/// Of type 1, of type 2 or of whole hands, whose functions have other names.
+/// Calls the function for deformers of type 1, of type 2 or of whole hands, whose own functions
+/// have different names.
 template <class Of1, class Of2, class OfHands>
 auto each(Deformer& deformer, const Of1& of_type1, const Of2& of_type2, const OfHands& of_hands) {
   return std::visit(
@@ -97,21 +98,13 @@ auto each(Deformer& deformer, const Of1& of_type1, const Of2& of_type2, const Of
       deformer);
 }
 
-/// What `function` returns of what measures distances along the surface; `otherwise`, if nothing
-/// does.
+/// Calls `function` with the part that measures distances along the surface; without one, returns
+/// `otherwise`.
 template <class Value, class Function>
 Value along_surface(const Deformer& deformer, Value otherwise, const Function& function) {
   if (const auto* type1 = std::get_if<deform::SurfaceDeformer>(&deformer)) return function(*type1);
   const auto* type2 = std::get_if<Type2Deformer>(&deformer);
   return type2 == nullptr || type2->along() == nullptr ? otherwise : function(*type2->along());
-}
-
-FieldStatus follow(ClayHands& hands, const Points&, bool ends) {
-  return hands.press(ends);
-}
-
-FieldStatus follow(PartHands& hands, const Points& tips, bool) {
-  return hands.follow(tips);
 }
 
 } // namespace
@@ -203,7 +196,7 @@ FieldStatus Sculptor::finish(const Points& tips, BlockShape& out) noexcept {
 }
 
 FieldStatus Sculptor::shape_to(const Points& tips, bool ends, BlockShape& out) noexcept {
-  const auto changed = [&](FieldStatus status) { // which changes the shape itself
+  const auto changed = [&](FieldStatus status) { // the deformer has changed the rest shape
     out.follow(rest());
     return status;
   };
@@ -212,7 +205,7 @@ FieldStatus Sculptor::shape_to(const Points& tips, bool ends, BlockShape& out) n
       [&](Type2Deformer& type2) {
         return changed((ends ? type2.end_at(tips) : type2.stroke_to(tips)).status);
       },
-      [&](auto& hands) { return changed(follow(hands, tips, ends)); });
+      [&](auto& hands) { return changed(hands.follow(tips, ends)); });
 }
 
 FieldStatus Sculptor::commit(const Points& tips) noexcept {
@@ -222,7 +215,7 @@ FieldStatus Sculptor::commit(const Points& tips) noexcept {
       [&](auto& hands) { return hands.begin(tips); }));
 }
 
-FieldStatus Sculptor::grab_on(const Points& tips) noexcept {
+FieldStatus Sculptor::continue_grab(const Points& tips) noexcept {
   return counted(std::visit([&](auto& deformer) { return deformer.grab(tips); }, deformer_));
 }
 
@@ -260,7 +253,7 @@ const deform::FieldSequence& Sculptor::fields() const noexcept {
       deformer_);
 }
 
-bool Sculptor::is_told_by_fields() const noexcept {
+bool Sculptor::is_described_by_fields() const noexcept {
   if (const auto* type2 = std::get_if<Type2Deformer>(&deformer_))
     return !type2->is_brushed() && !type2->is_masked() &&
            !(type2->along() != nullptr && type2->along()->is_moved());
@@ -270,12 +263,12 @@ bool Sculptor::is_told_by_fields() const noexcept {
   return type1 != nullptr && !type1->is_masked();
 }
 
-void Sculptor::tell(deform::SurfaceMove& move) const noexcept {
-  const bool is_told = along_surface(deformer_, false, [&](const auto& surface) {
-    surface.tell(move);
+void Sculptor::write_move(deform::SurfaceMove& move) const noexcept {
+  const bool is_written = along_surface(deformer_, false, [&](const auto& surface) {
+    surface.write_move(move);
     return true;
   });
-  if (!is_told || (mode() == Mode::type2 && !moves_anything())) move.clear();
+  if (!is_written || (mode() == Mode::type2 && !moves_anything())) move.clear();
 }
 
 bool Sculptor::has_room(const deform::SurfaceMove& move) const noexcept {
@@ -284,7 +277,7 @@ bool Sculptor::has_room(const deform::SurfaceMove& move) const noexcept {
   });
 }
 
-deform::SurfaceMove Sculptor::room_to_tell() const {
+deform::SurfaceMove Sculptor::room_for_move() const {
   deform::SurfaceMove room;
   room.vectors.setZero(3, along_surface(deformer_, Eigen::Index{0}, [](const auto& surface) {
                          return surface.vector_count();

@@ -10,10 +10,10 @@ using deform::Points;
 
 namespace {
 
-// What is shaped between changes that are less than this apart is one step for undo.
-constexpr HostClock::duration one_step = std::chrono::seconds(1);
-// Hands that have been away from clay for so long have ended their stroke.
-constexpr HostClock::duration left_for = std::chrono::milliseconds(300);
+// Changes that are less than this apart are one step, with what is shaped between them.
+constexpr HostClock::duration same_step_time = std::chrono::seconds(1);
+// Hands that have been away from clay for this long have ended their stroke.
+constexpr HostClock::duration contact_timeout = std::chrono::milliseconds(300);
 
 void count_chain(const deform::ChainReport& chain, LoopStats& stats) noexcept {
   stats.most_links = std::max(stats.most_links, chain.links);
@@ -22,7 +22,7 @@ void count_chain(const deform::ChainReport& chain, LoopStats& stats) noexcept {
   if (chain.held_pairs > 0) ++stats.held_apart_ticks;
 }
 
-/// On that version of the model. Allocates.
+/// Makes a sculptor of that version of the model. Allocates.
 std::unique_ptr<Sculptor> sculptor_on(ModelVersion& model, Eigen::Index control_points,
                                       SculptorOptions options) {
   if (options.needs_rings()) {
@@ -56,7 +56,7 @@ void Shaping::ask(Request request) noexcept {
   if (request == Request::grab) hold_wanted_ = true;
   if (request == Request::let_go) hold_wanted_ = false;
   if (request == Request::commit) commit_due_ = held_ || hold_wanted_;
-  if (request == Request::take_hold) anew_due_ = true;
+  if (request == Request::take_hold) regrab_due_ = true;
   if (goes_through_history(request) && steps_due_.size() < steps_due_.capacity())
     steps_due_.push_back(request);
 }
@@ -66,7 +66,7 @@ FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats,
   make_room(frame);
   frame.puppet = puppet_;
   if (!is_still_) take_steps(tips, stats);
-  if (!is_still_ && !awaited_ && std::exchange(anew_due_, false) && held_) take_hold_anew(tips);
+  if (!is_still_ && !awaited_ && std::exchange(regrab_due_, false) && held_) regrab(tips);
   if (!is_still_ && !held_ && hold_wanted_) {
     held_ = is_solved(sculptor_->grab(tips));
     if (held_) ++stats.grabs;
@@ -76,11 +76,11 @@ FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats,
           ? shape_by_hands(tips, frame, stats, completes || (awaited_ && changes_at_once_))
           : show_rest(frame);
   frame.held = held_;
-  tell(frame, stats);
+  write_state(frame, stats);
   return status;
 }
 
-void Shaping::take_hold_anew(const Points& tips) noexcept {
+void Shaping::regrab(const Points& tips) noexcept {
   if (sculptor_->mode() == Mode::type1) {
     const FieldStatus status = is_pulled() ? sculptor_->take_back(tips) : sculptor_->grab(tips);
     shaped_ = shaped_ && !is_solved(status);
@@ -89,7 +89,7 @@ void Shaping::take_hold_anew(const Points& tips) noexcept {
   sculptor_->release(false);
   in_step_ = in_step_ || shaped_;
   shaped_ = false;
-  held_ = is_solved(sculptor_->grab_on(tips)); // if not, it is tried again at each tick
+  held_ = is_solved(sculptor_->continue_grab(tips)); // otherwise each tick tries again
 }
 
 FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats& stats,
@@ -98,30 +98,30 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
   const FieldStatus status = commits || completes ? sculptor_->finish(tips, frame.shape)
                                                   : sculptor_->update(tips, frame.shape);
   frame.fields.follow(sculptor_->fields());
-  sculptor_->tell(frame.surface);
+  sculptor_->write_move(frame.surface);
   frame.chain = sculptor_->report();
   count_chain(frame.chain, stats);
-  if (!sculptor_->is_told_by_fields()) {
+  if (!sculptor_->is_described_by_fields()) {
     ++shape_jumps_;
     if (frame.surface.field != 0) ++surface_moves_;
   }
   shaped_ = sculptor_->moves_anything() ||
             (shaped_ && sculptor_->mode() != Mode::type1); // type 1 begins at the rest
-  tell_hands(frame);
-  follow_clay(frame.clay, stats);
+  write_hands(frame);
+  track_clay(frame.clay, stats);
   // What cannot be committed now stays held, and is tried again at the next tick.
   if (commits && is_solved(status) && is_solved(sculptor_->commit(tips))) {
     ++stats.commits;
     commit_due_ = false;
     shaped_ = in_step_ = false;
     held_ = hold_wanted_;
-  } else if (have_hands_left()) {
-    end_stroke_of_hands(tips);
+  } else if (is_contact_over()) {
+    end_contact(tips);
   }
   return status;
 }
 
-void Shaping::tell_hands(Frame& frame) const noexcept {
+void Shaping::write_hands(Frame& frame) const noexcept {
   const ClayHands* const clay = sculptor_->clay();
   const PartHands* const parts = sculptor_->parts();
   frame.clay = clay == nullptr ? ClayState{} : clay->state();
@@ -131,7 +131,7 @@ void Shaping::tell_hands(Frame& frame) const noexcept {
                                          : std::span<const deform::ClayContact>{});
 }
 
-void Shaping::follow_clay(const ClayState& clay, LoopStats& stats) noexcept {
+void Shaping::track_clay(const ClayState& clay, LoopStats& stats) noexcept {
   if (!clay.is_clay) return;
   if (clay.touching > 0 || sculptor_->moves_anything()) touched_at_ = time_;
   if (clay.touching > 0) ++stats.touching_ticks;
@@ -139,17 +139,17 @@ void Shaping::follow_clay(const ClayState& clay, LoopStats& stats) noexcept {
   stats.clay = clay;
 }
 
-/// The hands are away from the clay, which has come to rest: a stroke in clay is a contact. With
-/// parts, one is from when the first hand takes something until none holds anything.
-bool Shaping::have_hands_left() const noexcept {
+/// Tells whether a stroke of whole hands has ended. In clay, a stroke is a contact, until the hands
+/// are away and the clay has come to rest. With parts, it lasts until no hand holds anything.
+bool Shaping::is_contact_over() const noexcept {
   if (!shaped_ && !in_step_) return false;
   if (const PartHands* const hands = sculptor_->parts()) return !hands->state().is_held();
-  return sculptor_->mode() == Mode::clay && touched_at_ && time_ - *touched_at_ >= left_for;
+  return sculptor_->mode() == Mode::clay && touched_at_ && time_ - *touched_at_ >= contact_timeout;
 }
 
-void Shaping::end_stroke_of_hands(const Points& tips) noexcept {
+void Shaping::end_contact(const Points& tips) noexcept {
   if (!is_solved(sculptor_->commit(tips))) return;
-  ++otherwise_ended_;
+  ++strokes_ended_;
   shaped_ = in_step_ = false;
   touched_at_.reset();
 }
@@ -159,7 +159,7 @@ FieldStatus Shaping::show_rest(Frame& frame) noexcept {
   frame.fields.clear();
   frame.surface.clear();
   frame.chain = {};
-  tell_hands(frame);
+  write_hands(frame);
   return FieldStatus::ok;
 }
 
@@ -168,15 +168,15 @@ void Shaping::hold_still(const Points& tips, Frame& frame, LoopStats& stats) noe
   shaped_ = in_step_ = false;
   is_still_ = true;
   still_tips_ = tips;
-  ++otherwise_ended_;
-  tell(frame, stats);
+  ++strokes_ended_;
+  write_state(frame, stats);
 }
 
-void Shaping::tell(Frame& frame, LoopStats& stats) noexcept {
-  forget_later();
+void Shaping::write_state(Frame& frame, LoopStats& stats) noexcept {
+  forget_redo();
   stats.undo_steps = steps_to_undo();
   stats.forgotten_steps = model_->shape.forgotten_steps();
-  frame.commits = stats.commits + otherwise_ended_;
+  frame.commits = stats.commits + strokes_ended_;
   frame.undos = stats.undos;
   frame.shape_jumps = shape_jumps_;
   frame.surface_moves = surface_moves_;
@@ -188,8 +188,7 @@ void Shaping::tell(Frame& frame, LoopStats& stats) noexcept {
   frame.steps.in_hand = is_in_hand();
 }
 
-/// Takes the room that was made for the present sculptor's fields and for the present version's
-/// shape, if the frame has none.
+/// Gives the frame room for the sculptor's fields and for the version's shape, if it has none.
 void Shaping::make_room(Frame& frame) noexcept {
   if (!frame.fields.has_room_of(sculptor_->fields())) {
     for (auto& room : room_) {
@@ -221,7 +220,7 @@ void Shaping::prepare(const SculptorSetup& setup, ModelVersion& model, Eigen::In
   ready.settings = setup.settings;
   ready.still_tips = ready.starts = ready.tips = Points::Zero(3, control_points);
   ready.room.fill(ready.sculptor->fields());
-  ready.surface_room.fill(ready.sculptor->room_to_tell());
+  ready.surface_room.fill(ready.sculptor->room_for_move());
 }
 
 bool Shaping::holds_on(const ReadySculptor& ready) const noexcept {
@@ -229,14 +228,14 @@ bool Shaping::holds_on(const ReadySculptor& ready) const noexcept {
          ready.sculptor->mode() == Mode::type1;
 }
 
-/// Decides what that change is before anything is changed.
+/// Decides what kind of exchange it is, before anything changes.
 Shaping::Exchange Shaping::decide(const ReadySculptor& ready) const noexcept {
   const Awaited wanted{ready.settings, ready.model->number, ready.puppet};
   // After a commit in this tick, the first step that is due may be another one.
-  if (awaited_ == wanted && other_of(steps_due_.front()) == wanted) return Exchange::awaited_step;
+  if (awaited_ == wanted && target_of(steps_due_.front()) == wanted) return Exchange::awaited_step;
   if (ready.is_new_model) return Exchange::new_step;
   if (ready.model != model_) return Exchange::refused;
-  const bool is_soon = exchanged_at_ && time_ - *exchanged_at_ < one_step;
+  const bool is_soon = exchanged_at_ && time_ - *exchanged_at_ < same_step_time;
   return is_soon && ready.puppet == puppet_ ? Exchange::same_step : Exchange::new_step;
 }
 
@@ -249,11 +248,11 @@ bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
   end_stroke(kind, holds_on);
   if (kind == Exchange::awaited_step) make_awaited_step(ready, stats);
   if (is_change) make_change(ready, kind);
-  // What follows another model or puppet is a step of its own.
+  // Changes after another model or puppet are steps of their own.
   exchanged_at_ = is_of_settings ? std::optional(time_) : std::nullopt;
   awaited_.reset();
-  // Hands that cannot take hold now try it again at each tick.
-  if (held_) held_ = is_solved(sculptor_->grab_on(held_points(ready, tips, holds_on)));
+  // Hands that cannot grab now try again at each tick.
+  if (held_) held_ = is_solved(sculptor_->continue_grab(held_points(ready, tips, holds_on)));
   if (held_ && is_change)
     sculptor_->go_on_from(*ready.sculptor,
                           ready.model == model_ || model_->origin->source == ModelSource::refined);
@@ -262,13 +261,13 @@ bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
     make_room(frame);
     show_rest(frame);
   }
-  // Where the hands hold on, the rest shape stays, and readers go on from it, also over an undo.
+  // Where the hands keep their grip, the rest shape stays, and readers of fields go on from it.
   if (!holds_on) {
-    ++otherwise_ended_;
+    ++strokes_ended_;
     if (kind == Exchange::awaited_step) ++shape_jumps_;
   }
   ++stats.changes;
-  tell(frame, stats);
+  write_state(frame, stats);
   return kind != Exchange::refused;
 }
 
@@ -280,24 +279,24 @@ void Shaping::end_stroke(Exchange kind, bool holds_on) noexcept {
   shaped_ = false;
 }
 
-/// Undoes or redoes the change for which the first step that is due has waited.
+/// Completes the first step that is due.
 void Shaping::make_awaited_step(ReadySculptor& ready, LoopStats& stats) noexcept {
   const Request step = steps_due_.front();
   step_to(step, *ready.model, in_force());
   steps_due_.erase(steps_due_.begin());
-  go_on_with(ready);
+  swap_in(ready);
   count(step, stats);
 }
 
 void Shaping::make_change(ReadySculptor& ready, Exchange kind) noexcept {
   const Awaited before = in_force();
   if (ready.is_new_model) note_model(*ready.model, before.settings);
-  go_on_with(ready);
+  swap_in(ready);
   if (puppet_ != before.puppet) note_puppet(before, ready.puppet_step);
   if (settings_ != before.settings) note_settings(before.settings, kind == Exchange::new_step);
 }
 
-/// Where the hands take hold in exchange().
+/// Returns where the hands grab in exchange(), after it has swapped the sculptors.
 const Points& Shaping::held_points(const ReadySculptor& ready, const Points& tips,
                                    bool holds_on) const noexcept {
   if (tips.cols() != sculptor_->control_points()) return ready.tips;
@@ -305,8 +304,8 @@ const Points& Shaping::held_points(const ReadySculptor& ready, const Points& tip
   return is_still_ ? still_tips_ : tips;
 }
 
-/// `ready` then has what was before.
-void Shaping::go_on_with(ReadySculptor& ready) noexcept {
+/// `ready` then has the previous sculptor.
+void Shaping::swap_in(ReadySculptor& ready) noexcept {
   std::swap(settings_, ready.settings);
   std::swap(sculptor_, ready.sculptor);
   std::swap(room_, ready.room);
@@ -320,7 +319,7 @@ void Shaping::go_on_with(ReadySculptor& ready) noexcept {
 
 void Shaping::begin_anew(const Points& tips, bool fences, Frame& frame, LoopStats& stats) noexcept {
   sculptor_->release(true);
-  shaped_ = in_step_ = commit_due_ = anew_due_ = false;
+  shaped_ = in_step_ = commit_due_ = regrab_due_ = false;
   exchanged_at_.reset();
   touched_at_.reset();
   steps_due_.clear();
@@ -330,8 +329,8 @@ void Shaping::begin_anew(const Points& tips, bool fences, Frame& frame, LoopStat
   if (fences) model_->shape.fence();
   const bool takes_hold = is_solved(sculptor_->grab(tips));
   held_ = hold_wanted_ = held_ && takes_hold;
-  ++otherwise_ended_;
-  tell(frame, stats);
+  ++strokes_ended_;
+  write_state(frame, stats);
 }
 
 Points Shaping::final_shape(const Points& tips) {

@@ -31,7 +31,7 @@ Step Shaping::step_now(StepKind kind) const noexcept {
 void Shaping::count(Request step, LoopStats& stats) noexcept {
   ++(step == Request::undo ? stats.undos : step == Request::redo ? stats.redos : stats.resets);
   shaped_ = in_step_ = false;
-  forget_later();
+  forget_redo();
 }
 
 void Shaping::take_steps(const Points& tips, LoopStats& stats) noexcept {
@@ -39,7 +39,7 @@ void Shaping::take_steps(const Points& tips, LoopStats& stats) noexcept {
                           NotedStep{step_now(StepKind::reset), {}}.note());
   awaited_.reset();
   auto due = steps_due_.begin();
-  // What cannot be done now has changed nothing, and is tried again at the next tick.
+  // A step that cannot be done now has changed nothing, and the next tick tries again.
   while (due != steps_due_.end() && take_step(*due, tips, stats))
     ++due;
   steps_due_.erase(steps_due_.begin(), due);
@@ -58,43 +58,42 @@ bool Shaping::take_step(Request step, const Points& tips, LoopStats& stats) noex
   return true;
 }
 
-/// Tells whether the step is to undo or redo a change. What the hands have shaped since the last
-/// step comes before it. By the old rule (LoopOptions::pull_is_step), what they hold in type 1 goes
-/// with it.
+/// Tells whether the step undoes or redoes a change. An undo of what the hands have shaped since
+/// the last step comes first. By the old rule (LoopOptions::pull_is_step), a pull in type 1 is
+/// dropped together with the change.
 bool Shaping::is_change_next(Request step) const noexcept {
   if (step == Request::reset) return false;
-  const auto other = other_of(step);
+  const auto other = target_of(step);
   if (!other) return false;
   // What hands pull goes on across an edit of their puppet.
   const bool goes_on = other->puppet != puppet_ && is_pulled() && !in_step_;
   return step != Request::undo || goes_on || !is_in_hand();
 }
 
-/// That to which the next step leads, if it is a change.
-std::optional<Awaited> Shaping::other_of(Request step) const noexcept {
+/// Returns what the next step goes to, if it is a change.
+std::optional<Awaited> Shaping::target_of(Request step) const noexcept {
   const StepNote* const note =
       step == Request::undo ? model_->shape.to_undo() : model_->shape.to_redo();
   if (note == nullptr || !is_change(NotedStep::of(*note).step.kind)) return std::nullopt;
   return NotedStep::of(*note).other;
 }
 
-/// Only a sculptor with the other settings, or of the other version, can do it, which another
-/// thread must make.
+/// Returns false if another thread must first make the other sculptor (Frame::awaited).
 bool Shaping::take_change(Request step, const Points& tips, LoopStats& stats) noexcept {
-  const auto other = other_of(step);
+  const auto other = target_of(step);
   if (other != in_force()) {
     awaited_ = other;
     return false;
   }
   sculptor_->release(false); // there and back: there is nothing to make
   step_over_change(step, *model_, *other);
-  if (held_) held_ = is_solved(sculptor_->grab_on(tips));
+  if (held_) held_ = is_solved(sculptor_->continue_grab(tips));
   ++shape_jumps_;
   count(step, stats);
   return true;
 }
 
-/// In the history of that version, the step now leads back to `before`.
+/// Takes the step in the history of that version, where it then leads back to `before`.
 void Shaping::step_over_change(Request step, ModelVersion& version,
                                const Awaited& before) noexcept {
   deform::SculptedShape& shape = version.shape;
@@ -107,7 +106,7 @@ void Shaping::step_over_change(Request step, ModelVersion& version,
   undoes ? shape.undo_mark() : shape.redo_mark();
 }
 
-/// The step between two versions stands in the histories of both.
+/// Takes a step to that version. A step between two versions is in the histories of both.
 void Shaping::step_to(Request step, ModelVersion& next, const Awaited& before) noexcept {
   step_over_change(step, *model_, {before.settings, next.number, before.puppet});
   if (&next == model_) return;
@@ -115,8 +114,8 @@ void Shaping::step_to(Request step, ModelVersion& next, const Awaited& before) n
   if (step == Request::undo) next.behind = model_;
 }
 
-/// Adds a step from these settings to the present ones, or lets the last one, if it is a change of
-/// settings and not `is_step`, lead here.
+/// Adds a step from these settings to the present ones. Without `is_step`, it extends the last step
+/// instead if that was a change of settings.
 void Shaping::note_settings(const LoopSettings& before, bool is_step) noexcept {
   deform::SculptedShape& shape = model_->shape;
   const StepNote* const last = is_step ? nullptr : shape.to_undo();
@@ -131,7 +130,7 @@ void Shaping::note_settings(const LoopSettings& before, bool is_step) noexcept {
     shape.mark(noted.note());
 }
 
-/// Of a model that was not there before.
+/// Returns the kind of the step that makes such a model.
 static StepKind kind_of(ModelSource source) noexcept {
   if (source == ModelSource::refined) return StepKind::refine;
   if (source == ModelSource::cut) return StepKind::cut;
@@ -141,7 +140,7 @@ static StepKind kind_of(ModelSource source) noexcept {
   return source == ModelSource::joined ? StepKind::join : StepKind::subdivide;
 }
 
-/// Adds a step to that new version.
+/// Adds the step to that new version, in both histories.
 void Shaping::note_model(ModelVersion& next, const LoopSettings& before) noexcept {
   const Step step = step_now(kind_of(next.origin->source));
   next.before = model_;
@@ -155,15 +154,15 @@ void Shaping::note_puppet(const Awaited& before, StepKind kind) noexcept {
       NotedStep{step_now(kind), {before.settings, model_->number, before.puppet}}.note());
 }
 
-// What was shaped since the last step is a step of its own. By the old rule, Type-1 drops it
-// together with the commit that it undoes.
+// Counts what was shaped since the last step as a step. By the old rule, type 1 drops it together
+// with the commit that it undoes.
 std::size_t Shaping::undo_steps() const noexcept {
   const std::size_t steps = steps_to_undo();
   if (is_in_hand()) return steps + 1;
   return held_ && shaped_ ? std::max<std::size_t>(steps, 1) : steps;
 }
 
-/// The hands have pulled in type 1, and that is a step of its own.
+/// Tells whether the hands have pulled in type 1, which is a step of its own.
 bool Shaping::is_pulled() const noexcept {
   return held_ && shaped_ && pull_is_step_ && sculptor_->mode() == Mode::type1;
 }
@@ -172,15 +171,15 @@ bool Shaping::is_in_hand() const noexcept {
   return in_step_ || is_pulled() || (held_ && shaped_ && sculptor_->mode() != Mode::type1);
 }
 
-/// Memory that has ended, or a recording that has begun, bars the way to the version before.
-const ModelVersion* Shaping::version_before(const ModelVersion& version) const noexcept {
+/// Returns null if memory has ended there, or if a recording began with that version.
+const ModelVersion* Shaping::previous_version(const ModelVersion& version) const noexcept {
   return &version == fenced_ || version.shape.forgotten_steps() > 0 ? nullptr : version.before;
 }
 
-/// The step between two versions stands in the histories of both, so that one of them counts.
+/// A step between two versions is in the histories of both, and counts once.
 std::size_t Shaping::steps_to_undo() const noexcept {
   std::size_t steps = 0;
-  for (const ModelVersion* at = model_; at != nullptr; at = version_before(*at))
+  for (const ModelVersion* at = model_; at != nullptr; at = previous_version(*at))
     steps += at->shape.undo_steps() - (at != model_ && at->shape.undo_steps() > 0 ? 1 : 0);
   return steps;
 }
@@ -192,17 +191,17 @@ std::size_t Shaping::steps_to_redo() const noexcept {
   return steps;
 }
 
-/// A new step leads elsewhere.
-void Shaping::forget_later() noexcept {
+/// After a new step, no redo leads to another version.
+void Shaping::forget_redo() noexcept {
   if (model_->shape.redo_steps() == 0) model_->behind = nullptr;
 }
 
-/// From the end of an empty list's part for them, the last step first. Then they move to the front.
+/// Fills the list's first part from its end, the last step first, and moves the steps to the front.
 void Shaping::list_undoable(StepList& list) const noexcept {
   std::array<deform::StepNote, StepList::most_undoable> notes;
   std::size_t at = StepList::most_undoable;
   for (const ModelVersion* version = model_; version != nullptr;
-       version = version_before(*version)) {
+       version = previous_version(*version)) {
     const std::size_t count = version->shape.copy_undoable(notes);
     for (std::size_t note = version == model_ ? 0 : 1; note < count && at > 0; ++note)
       list.steps[--at] = NotedStep::of(notes[note]).step;
@@ -214,10 +213,11 @@ void Shaping::list_undoable(StepList& list) const noexcept {
 
 void Shaping::list_undone(StepList& list) const noexcept {
   std::array<deform::StepNote, StepList::most_undone> notes;
-  const std::size_t most = list.undoable + StepList::most_undone;
+  const std::size_t max_count = list.undoable + StepList::most_undone;
   for (const ModelVersion* version = model_; version != nullptr; version = version->behind) {
     const std::size_t count = version->shape.copy_undone(notes);
-    for (std::size_t note = version == model_ ? 0 : 1; note < count && list.count < most; ++note)
+    for (std::size_t note = version == model_ ? 0 : 1; note < count && list.count < max_count;
+         ++note)
       list.steps[list.count++] = NotedStep::of(notes[note]).step;
     if (count < version->shape.redo_steps()) return;
   }

@@ -55,7 +55,7 @@ bool ClayDeformer::Work::holds_any() const noexcept {
 
 void ClayDeformer::Work::go_on_from(const Work& before, bool keeps_volume) noexcept {
   if (before.from_.size() != from_.size() || before.parts_a_body_ != parts_a_body_ ||
-      before.options_.units_a_mm != options_.units_a_mm)
+      before.options_.units_per_mm != options_.units_per_mm)
     return;
   const double scale = before.layout_.unit() / layout_.unit();
   const Vector3d origin = (before.layout_.origin() - layout_.origin()) / layout_.unit();

@@ -72,7 +72,7 @@ CsrbfField room_for(int most, double radius, const BlockLayout& layout) {
 
 ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32_t> triangles,
                          std::size_t bodies, std::size_t parts_a_body, const ClayOptions& options)
-    : layout_(shape.layout()), options_(options), mm_(options.units_a_mm / layout_.unit()),
+    : layout_(shape.layout()), options_(options), mm_(options.units_per_mm / layout_.unit()),
       radius_(options.radius_mm * mm_), parts_a_body_(parts_a_body), from_(bodies * parts_a_body),
       target_(from_), is_(from_), skins_(from_), skins_before_(from_),
       ways_(from_.size(), Eigen::Isometry3d::Identity()), boxes_(bodies, BoxGate::shut()),
@@ -81,15 +81,15 @@ ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32
       problem_(static_cast<std::size_t>(options.most_constraints)),
       frictions_(static_cast<std::size_t>(options.most_constraints)),
       pull_(bodies * Grip::most_held),
-      field_(
-          room_for(most_centres(bodies, options), options.radius_mm * options.units_a_mm, layout_)),
+      field_(room_for(most_centres(bodies, options), options.radius_mm * options.units_per_mm,
+                      layout_)),
       evaluator_(layout_, most_centres(bodies, options), options.evaluation), masked_(options.mask),
       volume_(layout_, options.keeps_volume ? triangles : std::span<const std::uint32_t>{}),
       deep_(bodies), pressed_(from_.size()), around_(BoxGate::shut()) {
   contacts_.reserve(static_cast<std::size_t>(options.most_constraints));
   if (volume_.is_closed()) zones_.emplace(layout_, triangles);
   assert(options.still_bodies <= bodies);
-  assert(options.units_a_mm > 0.0 && options.radius_mm > 0.0 && options.most_constraints > 0);
+  assert(options.units_per_mm > 0.0 && options.radius_mm > 0.0 && options.most_constraints > 0);
   for (std::size_t body = 0; body < bodies; ++body)
     grips_.emplace_back(body * parts_a_body, parts_a_body, mm_);
   for (std::vector<std::uint32_t>& blocks : deep_)

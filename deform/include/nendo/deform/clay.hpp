@@ -19,10 +19,10 @@ namespace nendo::deform {
 
 /// Lengths in millimetres are those of the bodies.
 struct ClayOptions {
-  double units_a_mm = 1.0;  ///< model units a millimetre, > 0
-  double radius_mm = 25.0;  ///< of the functions, > 0: how soft the clay is. About 2.5 fingers'.
-  double friction = 0.5;    ///< Coulomb's coefficient, >= 0
-  bool keeps_volume = true; ///< only of closed, oriented surfaces
+  double units_per_mm = 1.0; ///< model units per millimetre, > 0
+  double radius_mm = 25.0;   ///< of the functions, > 0: how soft the clay is. About 2.5 fingers'.
+  double friction = 0.5;     ///< Coulomb's coefficient, >= 0
+  bool keeps_volume = true;  ///< only of closed, oriented surfaces
   /// A model of so few vertices that bodies touch nearly all is scaled to its volume. False in
   /// older recordings, which then replay bit for bit.
   bool scales_few_vertices = true;
@@ -89,9 +89,9 @@ public:
   FieldStatus begin(std::span<const ContactPart> parts);
   /// Does the same, but without ending the stroke before.
   FieldStatus grab(std::span<const ContactPart> parts) { return take_hold(parts); }
-  /// Behind begin() or grab(): goes on from where the same bodies were for `before`, which has had
-  /// this clay, perhaps with other triangles. What they hold there they hold here. The volume to
-  /// keep is that of `before` if `keeps_volume`. Does nothing for other bodies. Does not allocate.
+  /// Call after begin() or grab(). Continues `before`'s contacts and grips for the same bodies; it
+  /// was the previous deformer of this clay, perhaps with other triangles. The volume to keep is
+  /// that of `before` if `keeps_volume`. Does nothing for other bodies. Does not allocate.
   void go_on_from(const ClayDeformer& before, bool keeps_volume) noexcept;
   /// Lets go until the next begin() or grab(). With `is_step`, the stroke has ended.
   void release(bool is_step) noexcept;

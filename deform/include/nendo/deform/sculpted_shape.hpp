@@ -19,7 +19,7 @@ struct DeformerOptions;
 /// step becomes a step first, except by a redo, which drops it.
 enum class HistoryMove : std::uint8_t {
   undo, ///< goes back before the last step; without one, the shape stays
-  redo, ///< goes to the shape before the last undo; without one, nothing happens and all is ok
+  redo, ///< goes to the shape before the last undo; without one, nothing happens (status ok)
   reset ///< goes to the original shape, as a step
 };
 

@@ -11,7 +11,7 @@
 
 namespace nendo::deform {
 
-/// Its functions do what those of Type1Deformer do, and allocate as little. A deformer belongs to
+/// Its functions do what those of Type1Deformer do, also without allocation. A deformer belongs to
 /// one thread at a time.
 class SurfaceDeformer {
 public:
@@ -29,15 +29,15 @@ public:
 
   const BlockLayout& layout() const noexcept { return shape_->layout(); }
   const BlockShape& rest() const noexcept { return shape_->shape(); }
-  /// Of the vectors that tell() tells.
+  /// Returns how many vectors write_move() writes.
   Eigen::Index vector_count() const noexcept {
     return static_cast<Eigen::Index>(field_->vector_count());
   }
-  /// Always empty: no formula of a place tells what happens there.
+  /// Always empty: there is no closed-form displacement field.
   const FieldSequence& fields() const noexcept { return fields_; }
-  /// Tells by what the last apply() led from the rest shape to its result. Allocates only if `move`
-  /// has no room.
-  void tell(SurfaceMove& move) const { field_->tell(coefficients_, move); }
+  /// Writes what displaced the rest shape in the last apply(). Allocates only if `move` has no
+  /// room.
+  void write_move(SurfaceMove& move) const { field_->write_move(coefficients_, move); }
   ChainReport report() const noexcept { return {}; }
   /// Tells whether the last apply() moved anything.
   bool is_moved() const noexcept { return !coefficients_.all.isZero(0.0F); }
@@ -50,7 +50,7 @@ private:
   std::shared_ptr<const SurfaceField> field_;
   Points starts_;
   Points vectors_;
-  SurfaceField::Coefficients coefficients_; ///< of the last apply(); 0: at rest
+  SurfaceField::Coefficients coefficients_; ///< used by the last apply(); 0: at rest
   FieldSequence fields_;
   bool grabbed_ = false;
 };

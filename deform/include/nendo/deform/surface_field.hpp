@@ -100,8 +100,8 @@ public:
   /// Writes to = from + s, block by block, where s is not 0, and copies the other blocks where they
   /// differ. Does not allocate.
   void displace(const Coefficients& by, const BlockShape& from, BlockShape& to) const noexcept;
-  /// Tells what displace() does with these coefficients. Allocates only if there is no room.
-  void tell(const Coefficients& by, SurfaceMove& move) const;
+  /// Writes what displace() does with these coefficients. Allocates only if `move` has no room.
+  void write_move(const Coefficients& by, SurfaceMove& move) const;
   bool reaches(std::size_t block) const noexcept { return starts_[block] < starts_[block + 1]; }
 
 private:

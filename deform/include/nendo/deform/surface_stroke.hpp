@@ -24,15 +24,15 @@ public:
   /// Makes the shape that of the stroke up to `tips`, which must be usable. If float could not hold
   /// it, nothing happens and the status is not_finite.
   FieldStatus go_to(const Points& tips, SculptedShape::Parts& parts) noexcept;
-  /// Forgets what the last go_to() did, so that is_moved() and tell() do not report it again.
+  /// Forgets what the last go_to() did, so that is_moved() and write_move() do not report it again.
   void clear() noexcept { step_.all.setZero(); }
 
   /// Returns whether the last go_to() moved anything.
   bool is_moved() const noexcept { return !step_.all.isZero(0.0F); }
-  /// Reports by what the last go_to() led from the shape before to its result. Allocates only if
-  /// `move` has no room.
-  void tell(SurfaceMove& move) const { field_->tell(step_, move); }
-  /// Returns how many vectors tell() reports.
+  /// Writes what displaced the previous shape in the last go_to(). Allocates only if `move` has no
+  /// room.
+  void write_move(SurfaceMove& move) const { field_->write_move(step_, move); }
+  /// Returns how many vectors write_move() writes.
   Eigen::Index vector_count() const noexcept {
     return static_cast<Eigen::Index>(field_->vector_count());
   }

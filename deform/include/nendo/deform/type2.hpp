@@ -124,7 +124,7 @@ private:
   std::unique_ptr<BlockEvaluator> evaluator_;
   std::optional<InjectiveChain> chain_;
   std::optional<MidpointChain> steps_; ///< with keep_volume
-  int most_links_ = 0;
+  int max_links_ = 0;
   ChainReport report_;
   std::unique_ptr<MaskedStep> masked_;
   std::unique_ptr<BrushStroke> brushes_; ///< null: all pull, or do nothing

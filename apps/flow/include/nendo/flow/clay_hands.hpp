@@ -68,23 +68,23 @@ public:
   void go_on_from(const ClayHands& before, bool keeps_volume) noexcept {
     clay_.go_on_from(before.clay_, keeps_volume);
   }
-  /// Presses the surface out of where the bodies are now. With `ends`, all of their way is made.
-  deform::FieldStatus press(bool ends);
+  /// Presses the surface out of where the bodies are now. With `ends`, their whole path is made.
+  deform::FieldStatus follow(const deform::Points&, bool ends);
   void release(bool is_step) noexcept;
   deform::FieldStatus go(deform::HistoryMove move, const deform::Points&) {
     return clay_.go(move, parts());
   }
 
-  /// Always empty: what hands do has no formula that is short enough to be told.
+  /// Always empty: no short formula describes what hands do.
   const deform::FieldSequence& fields() const noexcept { return fields_; }
   deform::ChainReport report() const noexcept { return {}; }
-  /// Tells whether the last press() changed the shape.
+  /// Tells whether the last follow() changed the shape.
   bool is_moved() const noexcept { return is_moved_; }
   ClayState state() const noexcept;
   std::span<const deform::ClayContact> contacts() const noexcept { return clay_.contacts(); }
 
 private:
-  /// Of the hands, of their images, and of the table.
+  /// Returns the parts of the hands, of their mirror images and of the table.
   std::span<const deform::ContactPart> parts() noexcept;
 
   std::shared_ptr<const ClayModel> model_;
@@ -94,7 +94,7 @@ private:
   deform::ClayDeformer clay_;
   deform::FieldSequence fields_;
   bool is_moved_ = false;
-  bool presses_ = false; ///< since it was released
+  bool presses_ = false; ///< since the last release
 };
 
 } // namespace nendo::flow

@@ -37,8 +37,8 @@ struct HandFrame {
   SensorMask left_out{};      ///< of its glove: stuck, so that their angles are estimated
 };
 
-/// What an undo or a redo waits for. Whoever runs the loop must ask for it
-/// (DeformLoop::change_to()). None has a default, so that compilers see when one is left out.
+/// What an undo or a redo waits for. The loop's owner must request it (DeformLoop::change_to()). No
+/// member has a default, so that omissions do not compile.
 struct Awaited {
   LoopSettings settings;
   std::uint32_t model;  ///< ModelVersion::number

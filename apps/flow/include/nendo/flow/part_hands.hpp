@@ -30,9 +30,9 @@ struct PartsState {
 };
 
 /// Its functions do what those of deform::PartMover do, for hands whose fingertips are at `tips`,
-/// five columns a hand, model units. A hand is closed if its thumb has met the index or the middle
-/// finger, until these are farther apart again. A part turns with the palm, and goes with the
-/// middle between thumb and fingers. None but the constructor allocates.
+/// five columns per hand, model units. A hand is closed if its thumb has met the index or the
+/// middle finger, until these are farther apart again. A part turns with the palm, and goes with
+/// the middle between thumb and fingers. None but the constructor allocates.
 class PartHands {
 public:
   static constexpr double closed_m = 0.025; ///< from tip to tip
@@ -46,8 +46,8 @@ public:
 
   deform::FieldStatus begin(const deform::Points& tips) { return mover_.begin(grips(tips)); }
   deform::FieldStatus grab(const deform::Points& tips) { return mover_.grab(grips(tips)); }
-  /// Moves what is held to where the hands are.
-  deform::FieldStatus follow(const deform::Points& tips) noexcept;
+  /// Moves what is held to where the hands are, always the whole path.
+  deform::FieldStatus follow(const deform::Points& tips, bool ends) noexcept;
   void release(bool is_step) noexcept;
   deform::FieldStatus go(deform::HistoryMove move, const deform::Points& tips) {
     return mover_.go(move, grips(tips));
@@ -56,13 +56,13 @@ public:
   /// Always empty: a part moves as a whole, and others stay.
   const deform::FieldSequence& fields() const noexcept { return fields_; }
   deform::ChainReport report() const noexcept { return {}; }
-  bool is_moved() const noexcept { return mover_.is_moved(); } ///< by the last follow()
+  bool is_moved() const noexcept { return mover_.is_moved(); } ///< in the last follow()
   PartsState state() const noexcept;
   /// Returns where hands hold parts, as if these were clay that they touch lightly.
   std::span<const deform::ClayContact> contacts() const noexcept { return contacts_; }
 
 private:
-  static constexpr std::size_t most_places = 24; ///< of a hand's contacts
+  static constexpr std::size_t max_places = 24; ///< of a hand's contacts
 
   struct Hand {
     bool is_closed = false;

@@ -25,7 +25,7 @@ enum class Mode : std::uint8_t { type1, type2, clay, parts };
 inline constexpr std::uint8_t mode_count = 4;
 inline constexpr std::string_view mode_names = "type1, type2, clay or parts"; ///< for messages
 
-/// Tells whether whole hands do it. Otherwise points do, which a puppet may have, too.
+/// Tells whether whole hands shape in this mode. Otherwise points do, and a puppet may play.
 constexpr bool is_by_hands(Mode mode) noexcept {
   return mode == Mode::clay || mode == Mode::parts;
 }
@@ -33,8 +33,8 @@ constexpr bool is_by_hands(Mode mode) noexcept {
 std::string_view name_of(Mode mode) noexcept;
 std::optional<Mode> mode_named(std::string_view name) noexcept;
 
-/// What of a hand holds the model in type 1: its five fingertips, or points all over its bones and
-/// its palm (hand/held_points.hpp). Type 2 and keep_volume are for fingertips.
+/// The points of a hand that hold the model in type 1: its five fingertips, or points all over its
+/// bones and its palm (hand/held_points.hpp). Type 2 and keep_volume are for fingertips.
 enum class Hold : std::uint8_t { fingertips, hand };
 
 std::string_view name_of(Hold hold) noexcept; ///< "tips" or "hand"
@@ -88,16 +88,16 @@ public:
 
   Eigen::Index control_points() const noexcept { return control_points_; }
 
-  /// Tells whether fields() tells all that the last update did: not where distances are along the
-  /// surface, nor where a brush or a hand in clay has changed something or a mask holds something.
-  bool is_told_by_fields() const noexcept;
+  /// Tells whether fields() describes the last update completely. It does not where distances are
+  /// along the surface, where a brush or a whole hand changed something, or with a mask.
+  bool is_described_by_fields() const noexcept;
 
   /// Lets the fingertips take hold of the model at `tips` (3 by control_points, model units).
   deform::FieldStatus grab(const deform::Points& tips) noexcept;
-  /// Does the same in the middle of a step, behind release(false).
-  deform::FieldStatus grab_on(const deform::Points& tips) noexcept;
-  /// Behind grab_on(): hands in clay hold on to what they hold in `before`, and if `keeps_volume`
-  /// the clay goes back to the volume that it keeps.
+  /// Does the same in the middle of a step, after release(false).
+  deform::FieldStatus continue_grab(const deform::Points& tips) noexcept;
+  /// Call after continue_grab(). Hands in clay hold on to what they hold in `before`, and if
+  /// `keeps_volume`, the clay keeps the same volume as there.
   void go_on_from(const Sculptor& before, bool keeps_volume) noexcept;
   /// Writes the shape for the fingertips' present places into `out`; blocks that `out` already has
   /// are not written again. Wait-free, except that it may wait for a second thread to finish its
@@ -130,19 +130,19 @@ public:
   /// the end of the last stroke.
   const deform::BlockShape& rest() const noexcept { return shape_->shape(); }
 
-  /// Returns the fields of the last update: for type 1 they lead from the rest shape to this shape,
-  /// for type 2 from the shape before.
+  /// Returns the fields of the last update: for type 1 they displace the rest shape, for type 2 the
+  /// previous shape.
   const deform::FieldSequence& fields() const noexcept;
-  /// Tells by what the last update() led along the surface: for type 1 from the rest shape to this
-  /// shape, for type 2 from the shape before; by nothing, if it measures no distances there.
+  /// Writes what the last update() did along the surface: for type 1 from the rest shape to this
+  /// shape, for type 2 from the previous shape. Clears `move` if no distances are measured there.
   /// Allocates only if `move` has no room.
-  void tell(deform::SurfaceMove& move) const noexcept;
-  bool has_room(const deform::SurfaceMove& move) const noexcept; ///< for tell()
-  /// Returns such room. Allocates.
-  deform::SurfaceMove room_to_tell() const;
+  void write_move(deform::SurfaceMove& move) const noexcept;
+  bool has_room(const deform::SurfaceMove& move) const noexcept; ///< for write_move()
+  /// Returns a move with room for write_move(). Allocates.
+  deform::SurfaceMove room_for_move() const;
   /// Tells whether the last update() moved anything.
   bool moves_anything() const noexcept;
-  /// Returns what the last update() needed to stay injective; all 0 if that is not asked for.
+  /// Returns what the last update() needed to stay injective; all 0 without `injective`.
   deform::ChainReport report() const noexcept;
   /// Returns the hands in clay; null in other modes.
   const ClayHands* clay() const noexcept { return std::get_if<ClayHands>(&deformer_); }
