@@ -14,9 +14,9 @@
 
 #include <nendo/base/result.hpp>
 
-#include "cli/quantities.hpp"
-
 #include "cli/cli.hpp"
+#include "cli/nearest_word.hpp"
+#include "cli/quantities.hpp"
 #include "cli/standard_output.hpp"
 
 namespace nendo::cli {
@@ -112,11 +112,40 @@ CommandModel model_of(const CLI::App& app) {
   return model;
 }
 
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const auto* command : app.get_subcommands(is_shown))
+    names.push_back(command->get_name());
+  return names;
+}
+
 std::string names_of_commands(const CLI::App& app) {
   std::string known;
-  for (const auto* command : app.get_subcommands(is_shown))
-    known += (known.empty() ? "" : ", ") + command->get_name();
+  for (const std::string& name : command_names(app))
+    known += (known.empty() ? "" : ", ") + name;
   return known;
+}
+
+const CLI::App& chosen_command(const CLI::App& program) {
+  const CLI::App* at = &program;
+  while (!at->get_subcommands().empty())
+    at = at->get_subcommands().front();
+  return *at;
+}
+
+/// Says what is wrong with the first argument that no option of the chosen command takes.
+std::string unexpected(const CLI::App& program) {
+  const CLI::App& command = chosen_command(program);
+  const std::vector<std::string> extras = program.remaining(true);
+  if (extras.empty()) return "an argument was not expected";
+  const std::string name = extras.front().substr(0, extras.front().find('='));
+  if (!name.starts_with('-')) return name + ": not expected";
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& each : option->get_lnames())
+      known.push_back("--" + each);
+  const std::string meant = nearest_word(name, known);
+  return "no option " + name + (meant.empty() ? "" : "; did you mean " + meant + "?");
 }
 
 /// Tells a word in place of a command, which --help behind it would hide: help ends the parsing.
@@ -128,9 +157,13 @@ std::optional<std::string> unknown_command(CLI::App& program, int argc, char** a
     if (name.empty() || name.starts_with('-') || at->get_subcommands(is_shown).empty()) break;
     const auto named =
         at->get_subcommands([&](const CLI::App* command) { return command->get_name() == name; });
-    if (named.empty())
-      return "no command " + name + "; there are " + names_of_commands(*at) + " (see " + path +
-             " --help)";
+    if (named.empty()) {
+      const std::string meant = nearest_word(name, command_names(*at));
+      return "no command " + name + "; " +
+             (meant.empty() ? "there are " + names_of_commands(*at)
+                            : "did you mean " + meant + "?") +
+             " (see " + path + " --help)";
+    }
     at = named.front();
     path += ' ' + name;
   }
@@ -282,6 +315,8 @@ int run_program(int argc, char** argv, const std::string& summary,
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
     return output.finish(app.exit(help));
+  } catch (const CLI::ExtrasError&) {
+    return report_usage(app, argc > 1 ? argv[1] : "", unexpected(app));
   } catch (const CLI::ParseError& error) {
     return report_usage(app, argc > 1 ? argv[1] : "", error.what());
   }

@@ -103,7 +103,10 @@ TEST_SUITE("devices") {
     CHECK(nendo::test::nendo({"edit", "show", "--help"}).exit_code == 0);
     const auto option = nendo::test::nendo({"devices", "--jsom"});
     CHECK(option.exit_code == 2);
-    CHECK(is_one_line_about(option.err, "--jsom"));
+    CHECK(is_one_line_about(option.err, "no option --jsom; did you mean --json?"));
+    const auto far = nendo::test::nendo({"devices", "--tango=1"});
+    CHECK(far.exit_code == 2);
+    CHECK(is_one_line_about(far.err, "no option --tango (see nendo devices --help)"));
   }
 
   TEST_CASE("help and version go to standard output") {

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/nearest_word.hpp"
 #include "support/program.hpp"
 
 namespace quantities_test {
@@ -18,6 +20,24 @@ using namespace nendo;
 using nendo::test::is_one_line_about;
 
 TEST_SUITE("quantities") {
+  TEST_CASE("a mistyped word is nearest to the one that was meant, or to none") {
+    const std::vector<std::string> known{"--mode",        "--mesh", "--kernel",
+                                         "--keep-volume", "--out",  "--time"};
+    struct Row {
+      const char *text, *meant;
+    };
+    for (const Row& row :
+         {Row{"--modee", "--mode"}, Row{"--mdoe", "--mode"}, Row{"--Mode", "--mode"},
+          Row{"--keep-volumne", "--keep-volume"}, Row{"--kern", "--kernel"},
+          Row{"--keep", "--keep-volume"}, Row{"--ot", "--out"}, Row{"--tango", ""},
+          Row{"--size", ""}, Row{"", ""}}) {
+      CAPTURE(row.text);
+      CHECK(cli::nearest_word(row.text, known) == row.meant);
+    }
+    CHECK(cli::nearest_word(std::string(1 << 20, '-'), known).empty());
+    CHECK(cli::nearest_word("--mode", {}).empty());
+  }
+
   TEST_CASE("a duration is its number times its unit, and a bare number is seconds") {
     struct Row {
       const char* text;
