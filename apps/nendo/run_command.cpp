@@ -17,6 +17,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "commands/commands.hpp"
 #include "gloves/kept_ranges.hpp"
 #include "gloves/kept_slips.hpp"
 #include "nendo/commands.hpp"
@@ -198,7 +199,10 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
   }
   command.set_footer(
       "A GLOVE is one of" + gloves +
-      "\nWithout --left and --right every identified glove is used, or simulated hands.");
+      "\nWithout --left and --right every identified glove is used, or simulated hands.\nKeys "
+      "while "
+      "it runs, the same in the terminal, in the window and in a browser; some only there:" +
+      commands::key_list(commands::everywhere, "\n  key ", "\n      "));
   command.add_option("--left", run_options.left, "GLOVE on the left hand");
   command.add_option("--right", run_options.right, "GLOVE on the right hand");
   command.add_option("MODEL,--mesh", options.models,

@@ -70,15 +70,26 @@ void BrowserView::update(const RunStatus& status, flow::CommandRing& commands) {
   for (std::size_t slot = 0; slot < gloves.size(); ++slot)
     gloves[slot] = {status.gloves[slot].counts, status.gloves[slot].uncalibrated};
   server_->set_gloves(gloves);
-  server_->set_settings(status.frame.settings, status.recording);
+  server_->set_settings(status.frame.settings, status.facts.recorded, status.frame.wire.is_drawn());
   server_->set_steps(status.frame.steps);
   server_->set_puppet(status.frame.puppet, status.puppet.get());
   server_->set_clay(status.frame);
   follow_weights();
-  while (auto command = server_->next_command()) {
-    if (auto* const change = std::get_if<flow::ChangeSettings>(&*command))
+  wanted_.follow(status.frame.settings);
+  while (auto asked = server_->next_command()) {
+    if (const auto* const row = std::get_if<const commands::Row*>(&*asked)) {
+      const commands::Answer answer = commands::press(**row, status.situation(), wanted_);
+      if (answer.command) commands.try_push(*answer.command);
+      if (answer.refusal != nullptr) server_->report(answer.refusal);
+      continue;
+    }
+    auto& command = std::get<flow::Command>(*asked);
+    if (auto* const change = std::get_if<flow::ChangeSettings>(&command)) {
       keep_numbers(status.frame.settings, change->settings);
-    commands.try_push(*command);
+      wanted_.now = change->settings; // from which the next key goes on
+      wanted_.ask();
+    }
+    commands.try_push(command);
   }
 }
 

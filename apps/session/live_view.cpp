@@ -32,7 +32,6 @@ public:
 
   void loop_begins(const LoopStart& start) override {
     const PlacedLoop& placed = start.placed;
-    gauges_.has_layers = placed.setup.live_layers() != 0;
     const SceneBuilder builder(start.model, placed.setup.placement.units_per_metre);
     window_->begin(placed.loop->changes().layout(), builder, placed.loop->changes().settings());
     window_->show_contacts(options_.contact);
@@ -48,7 +47,7 @@ public:
       if (status.gloves[slot].uncalibrated) gauges_.gloves[slot] += " (uncalibrated)";
       gauges_.counts[slot] = status.gloves[slot].counts;
     }
-    gauges_.recording = status.recording;
+    gauges_.facts = status.facts;
     if (std::exchange(model_, status.frame.model) != status.frame.model) {
       window_->set_model(status.model.layout(),
                          SceneBuilder(status.model.mesh, status.frame.units_per_metre));

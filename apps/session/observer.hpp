@@ -12,6 +12,7 @@
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/model_version.hpp>
 
+#include "commands/commands.hpp"
 #include "session/place_loop.hpp"
 
 namespace nendo::session {
@@ -31,9 +32,11 @@ struct RunStatus {
   const flow::ModelVersion& model; ///< that it is of
   bool fresh = false;              ///< it is another one than at the call before
   const GloveStatuses& gloves;
-  bool recording = false; ///< to a file
+  commands::RunFacts facts{};
   /// The puppet whose functions made the frame; null: none.
   const std::shared_ptr<const puppet::Rig>& puppet;
+
+  commands::Situation situation() const noexcept { return {frame, facts}; }
 };
 
 /// All calls come from the main thread. No call may block for longer than 30 ms.

@@ -7,6 +7,8 @@
 #include <nendo/deform/topology.hpp>
 #include <nendo/deform/triangles.hpp>
 
+#include "commands/commands.hpp"
+
 namespace nendo::session {
 
 namespace {
@@ -133,8 +135,7 @@ std::optional<std::string> RunModels::choose_part() {
   made_.part =
       frame.model == loop.changes().newest_model().number ? frame.parts.chosen : deform::no_index;
   if (made_.part != deform::no_index) return std::nullopt;
-  return "no hand has taken a part of this model yet; take the one that is meant, in mode parts "
-         "(m)";
+  return commands::no_part;
 }
 
 std::optional<std::string> RunModels::begin() {

@@ -8,6 +8,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "commands/commands.hpp"
 
 namespace nendo::session {
 namespace {
@@ -53,8 +54,7 @@ std::string RunSaving::save(flow::DeformLoop& loop) {
 }
 
 std::string RunSaving::save_recording() {
-  if (!recorder_.keeps_last_minute())
-    return "nothing is kept in memory; start with --keep-last 60s";
+  if (!recorder_.keeps_last_minute()) return commands::nothing_kept;
   recorder_.save_last_minute();
   return "what was just done is being kept";
 }

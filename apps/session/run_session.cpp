@@ -69,7 +69,7 @@ public:
     for (Sink* sink : participants_.sinks)
       if (const auto begun = sink->begin(start()); !begun) return begun.error();
     RunPicture picture(options_.picture, model_);
-    RunKeys keys(key_timeout(), recorder_.keeps_last_minute());
+    RunKeys keys(key_timeout());
     observers_.push_back(&keys);
     observers_.insert(observers_.end(), participants_.observers.begin(),
                       participants_.observers.end());
@@ -112,6 +112,11 @@ private:
       observer->report(message);
   }
 
+  commands::RunFacts facts() const {
+    return {recorder_.is_to_file(), recorder_.is_recording(), recorder_.keeps_last_minute(),
+            placed_.setup.live_layers() != 0};
+  }
+
   void save() { report(saving_.save(*placed_.loop)); }
 
   void update_observers(bool fresh) {
@@ -121,12 +126,8 @@ private:
     follow_layers(frame);
     follow_wire(frame);
     follow_stuck(frame);
-    const RunStatus status{frame,
-                           model,
-                           fresh,
-                           gloves_,
-                           recorder_.is_to_file(),
-                           placed_.loop->changes().puppet(frame.puppet)};
+    const RunStatus status{frame,   model,   fresh,
+                           gloves_, facts(), placed_.loop->puppet(frame.puppet)};
     for (Observer* observer : observers_) {
       observer->update(status, commands_);
       if (auto puppet = observer->take_puppet()) puppet_ = std::move(puppet);
@@ -200,8 +201,7 @@ private:
   }
   void punch() noexcept {
     const std::uint32_t live = placed_.setup.live_layers();
-    if (live == 0)
-      return report("the gloves play whole hands here, and no layer; --layer and --over make one");
+    if (live == 0) return report(commands::no_layers);
     const bool on = !is_in_.value_or(true);
     for (std::size_t at = 0; at < placed_.setup.inputs.size(); ++at)
       if ((live >> at & 1U) != 0)
@@ -294,8 +294,8 @@ private:
     if (!flow::is_played(loop.changes().puppet(loop.changes().newest_puppet()).get()) &&
         !flow::is_played(puppet_.get()) && std::holds_alternative<flow::SetSymmetry>(command))
       mask_edits_.push_back(command);
-    else if (!flow::is_played(loop.changes().puppet(loop.changes().newest_puppet()).get()))
-      report("there is no puppet here, and fingertips touch the model; g lets go of it");
+    else if (!flow::is_played(loop.puppet(loop.newest_puppet()).get()))
+      report(commands::no_puppet);
     else if (!loop_commands_.try_push(command))
       report("the loop does not answer, so it was not told how to play the puppet");
   }
@@ -303,7 +303,7 @@ private:
     const bool marks = recorder_.is_recording() && loop_commands_.try_push(flow::Mark{});
     if (marks) ++marks_;
     report(marks ? "mark " + std::to_string(marks_) + " is in the recording"
-                 : "there is no recording to mark; begin one with t");
+                 : commands::no_recording);
   }
 
   // Commands that came just before the end are still obeyed, if the loop ticks at all.

@@ -85,9 +85,8 @@ struct Watch {
     ++pictures;
     const bool fresh = loop.frames().update();
     const flow::Frame& frame = loop.frames().front();
-    observer->update({frame, *loop.changes().model(frame.model), fresh, gloves, false,
-                      loop.changes().puppet(frame.puppet)},
-                     commands);
+    observer->update(
+        {frame, *loop.model(frame.model), fresh, gloves, {}, loop.puppet(frame.puppet)}, commands);
     bool ends = false;
     std::optional<flow::LoopSettings> wanted;
     commands.drain([&](const flow::Command& command) noexcept {

@@ -72,6 +72,10 @@ inline ImGuiKey imgui_key(int key) {
                               std::pair{GLFW_KEY_MINUS, ImGuiKey_Minus},
                               std::pair{GLFW_KEY_EQUAL, ImGuiKey_Equal},
                               std::pair{GLFW_KEY_SLASH, ImGuiKey_Slash},
+                              std::pair{GLFW_KEY_COMMA, ImGuiKey_Comma},
+                              std::pair{GLFW_KEY_PERIOD, ImGuiKey_Period},
+                              std::pair{GLFW_KEY_APOSTROPHE, ImGuiKey_Apostrophe},
+                              std::pair{GLFW_KEY_SEMICOLON, ImGuiKey_Semicolon},
                               std::pair{GLFW_KEY_LEFT_BRACKET, ImGuiKey_LeftBracket},
                               std::pair{GLFW_KEY_RIGHT_BRACKET, ImGuiKey_RightBracket}};
   for (const auto& [number, known] : others)

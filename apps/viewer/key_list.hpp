@@ -1,6 +1,7 @@
 #pragma once
 // The list of keys that `?` shows in every window.
 
+#include <cstdint>
 #include <span>
 
 namespace nendo::viewer {
@@ -10,8 +11,10 @@ struct KeyLine {
   const char* does;
 };
 
-/// Draws the window's own keys, the keys that all windows have, and the uses of the mouse: those of
-/// the camera, then the window's own. `shown` becomes false when the list is closed.
-void draw_key_list(std::span<const KeyLine> own, const char* mouse, bool& shown);
+/// Draws the window's own keys, those that the table of commands has for `places`, and the uses of
+/// the mouse: those of the camera, then the window's own. `shown` becomes false when the list is
+/// closed.
+void draw_key_list(std::span<const KeyLine> own, std::uint8_t places, const char* mouse,
+                   bool& shown);
 
 } // namespace nendo::viewer

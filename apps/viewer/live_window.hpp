@@ -12,6 +12,7 @@
 #include <nendo/flow/command.hpp>
 #include <nendo/flow/frame.hpp>
 
+#include "commands/commands.hpp"
 #include "viewer/hand_mover.hpp"
 #include "viewer/scene_window.hpp"
 
@@ -23,9 +24,8 @@ struct Gauges {
   double rate_hz = 0.0;              ///< wanted
   std::array<std::string, 2> gloves; ///< their names; empty means no glove
   std::array<driver::RecordCounts, 2> counts{};
-  bool recording = false;  ///< to a file
-  bool has_layers = false; ///< gloves play some joints over a recording, or over other gloves
-  std::string report;      ///< the result of the last command that saved something
+  commands::RunFacts facts{};
+  std::string report; ///< the result of the last command that saved something
 };
 
 class PuppetEditor;
@@ -59,7 +59,7 @@ public:
   /// Edits the puppet, if begin() has been called of it, too.
   PuppetEditor& editor() noexcept { return *editor_; }
 
-  /// Returns the line below the panel's buttons: the report, or that there is nothing to undo.
+  /// Returns the line below the panel's buttons: the report, or why a command was not possible.
   const std::string& told() const noexcept;
   /// Returns the settings that the panel shows.
   const flow::LoopSettings& settings() const noexcept;

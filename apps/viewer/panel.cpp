@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "viewer/row_button.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
@@ -56,15 +57,6 @@ void chart(const char* name, const Strip& strip, const char* unit) {
   ImGui::PopID();
 }
 
-// True: pressed, and it can be.
-bool tipped_button(const char* words, const char* what, float width, bool possible = true) {
-  ImGui::BeginDisabled(!possible);
-  const bool chosen = ImGui::Button(words, ImVec2(width, 0.0F));
-  ImGui::EndDisabled();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", what);
-  return chosen && possible;
-}
-
 /// Undoes, or does again, all steps up to the one with that number; 0: also the first of the list.
 void go_to_step(const flow::StepList& list, std::size_t at, Commands& commands) {
   for (std::size_t step = list.undoable + (list.in_hand ? 1 : 0); step > at; --step)
@@ -90,77 +82,28 @@ void LiveWindow::Panel::follow(const flow::Frame& frame, double rate_hz) {
   last_tick = frame.tick;
 }
 
-// In the page's order (apps/web/page/index.html), and with its names.
-void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
+void LiveWindow::Panel::buttons(const commands::Situation& now, const Gauges& gauges,
                                 Commands& commands) {
-  ImGui::TextUnformatted(frame.held ? "The hands hold the model." : "The hands have let go.");
-  const float all = ImGui::GetContentRegionAvail().x;
-  const float half = (all - ImGui::GetStyle().ItemSpacing.x) / 2.0F;
-  bool second = false;
-  const auto button = [&](const char* words, const char* what, bool possible = true) {
-    if (std::exchange(second, !second)) ImGui::SameLine();
-    return tipped_button(words, what, half, possible);
-  };
-  const auto ask = [&](const char* words, const char* what, Request request, bool possible = true) {
-    if (button(words, what, possible)) commands.emplace_back(request);
-  };
-  ask("Grab", "The hands take hold (g)", Request::grab);
-  ask("Let go", "What is shaped stays (l)", Request::let_go);
-  ask("Undo", "Undo the last step (u, ctrl z)", Request::undo, frame.undo_steps > 0);
-  ask("Redo", "Redo what was undone (r, ctrl y)", Request::redo, frame.redo_steps > 0);
-  ask("Commit", "This shape becomes the rest shape (c)", Request::commit);
-  ask("Reset", "Back to the model as it was loaded; undo takes it back (x)", Request::reset);
-  ask("Hold anew", "The hands take hold anew where they are, without a commit (a)",
-      Request::take_hold, frame.held);
-  if (button("Save", "The model as it is now, to a file of its own (s)"))
-    commands.emplace_back(flow::SaveShape{});
-  if (button("Keep", "The recording of what was just done (k)"))
-    commands.emplace_back(flow::SaveRecording{});
-  if (button(gauges.recording ? "End recording" : "Record", "A recording from here on (t)"))
-    commands.emplace_back(flow::SetRecording{!gauges.recording});
-  if (gauges.has_layers && button("Punch", "The gloves' layer comes in, or goes out (o)"))
-    commands.emplace_back(flow::Punch{});
-  model_buttons(frame, commands);
+  ImGui::TextUnformatted(now.frame.held ? "The hands hold the model." : "The hands have let go.");
+  buttons_of(commands::Buttons::hands, 2, now, commands);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.0F, ImGui::GetStyle().FramePadding.y));
+  buttons_of(commands::Buttons::model, 3, now, commands);
+  ImGui::PopStyleVar();
   told = note.empty() ? gauges.report : note;
   if (!told.empty()) ImGui::TextWrapped("%s", told.c_str());
 }
 
-/// What makes another model of the present one, three in a line.
-void LiveWindow::Panel::model_buttons(const flow::Frame& frame, Commands& commands) {
+void LiveWindow::Panel::buttons_of(commands::Buttons group, int in_line,
+                                   const commands::Situation& now, Commands& commands) {
   const float space = ImGui::GetStyle().ItemSpacing.x;
-  const float third = (ImGui::GetContentRegionAvail().x - 2.0F * space) / 3.0F;
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.0F, ImGui::GetStyle().FramePadding.y));
+  const auto count = static_cast<float>(in_line);
+  const float width = (ImGui::GetContentRegionAvail().x - (count - 1.0F) * space) / count;
   int column = 0;
-  const auto ask = [&](const char* words, const char* what, const flow::Command& command,
-                       bool possible = true) {
-    if (column++ % 3 != 0) ImGui::SameLine();
-    if (tipped_button(words, what, third, possible)) commands.push_back(command);
-  };
-  const bool draws = frame.wire.is_drawn();
-  ask(draws ? "Cut" : "Wire",
-      "Draws a wire between the index fingers through the model, and then cuts by it (shift c)",
-      flow::DrawWire{!draws});
-  ask("Knife",
-      "Draws a knife, from the finger that points on, through the model; Cut cuts by it (shift k)",
-      flow::DrawWire{true, flow::Blade::knife}, !draws);
-  ask("Join", "Parts that overlap become one; undo takes it back (shift j)", flow::JoinParts{});
-  ask("Subdivide", "More vertices for finer strokes; undo takes it back (e)", flow::Subdivide{});
-  ask("Refine",
-      "More triangles where the model was stretched, fewer where it was crowded; undo takes it "
-      "back (shift e)",
-      flow::Refine{});
-  ask("Open thin",
-      "Thin necks part, thin walls get a hole, and what is as near fuses; undo takes it back "
-      "(shift o)",
-      flow::ChangeTopology{});
-  if (frame.parts.count > 0) { // in another mode no hand takes a part
-    const bool chosen = frame.parts.chosen != deform::no_index;
-    ask("Copy", "A copy of the part that was taken last, beside it (shift d)", flow::EditPart{},
-        chosen);
-    ask("Remove", "The part that was taken last goes; undo takes it back (shift x)",
-        flow::EditPart{true}, chosen && frame.parts.count > 1);
+  for (const commands::Row& row : commands::table()) {
+    if (row.group != group || (row.is_shown != nullptr && !row.is_shown(now))) continue;
+    if (column++ % in_line != 0) ImGui::SameLine();
+    if (row_button(row, now, width)) ask(row, now, commands);
   }
-  ImGui::PopStyleVar();
 }
 
 void LiveWindow::Panel::parts(SceneWindow& window) {
@@ -340,6 +283,7 @@ void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) co
 
 void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Commands& commands) {
   constexpr float gap = Panel::gap_px;
+  const commands::Situation now{frame, gauges.facts};
   const float high = ImGui::GetIO().DisplaySize.y - 2.0F * gap;
   ImGui::SetNextWindowPos(ImVec2(gap, gap));
   ImGui::SetNextWindowSizeConstraints(ImVec2(Panel::width_px, 0.0F),
@@ -352,7 +296,7 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
   panel_->folded = ImGui::IsWindowCollapsed();
   if (open) {
     ImGui::TextWrapped("%s   (? for keys)", gauges.model.c_str());
-    panel_->buttons(frame, gauges, commands);
+    panel_->buttons(now, gauges, commands);
     panel_->parts(*window_);
     const auto puppet = [&] {
       if (ImGui::CollapsingHeader("Puppet", ImGuiTreeNodeFlags_DefaultOpen))
@@ -363,7 +307,7 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
     if (edits) puppet();
     if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen)) {
       panel_->settings();
-      Panel::masks(*editor_, frame, commands);
+      panel_->masks(*editor_, now, commands);
     }
     if (ImGui::CollapsingHeader("History", ImGuiTreeNodeFlags_DefaultOpen))
       panel_->history(frame, commands);
@@ -377,9 +321,7 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
   }
   ImGui::End();
   if (!commands.empty()) panel_->note.clear();
-  panel_->edits_puppet = editor_->is_on();
-  Panel::puppet_keys(*editor_, commands);
-  panel_->keys(frame, gauges, *window_, commands);
+  panel_->keys(now, *window_, *editor_, commands);
   if (const auto change = panel_->wanted.ask()) commands.push_back(*change);
 }
 

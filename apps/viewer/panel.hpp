@@ -4,9 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include <nendo/flow/wanted_settings.hpp>
 
+#include "commands/commands.hpp"
 #include "viewer/live_window.hpp"
 #include "viewer/puppet_editor.hpp"
 
@@ -39,7 +41,6 @@ struct LiveWindow::Panel {
   bool keys_shown = false;
   bool one_radius = true;
   bool one_brush = true;
-  bool edits_puppet = false;
   std::uint64_t history_shown = 0; ///< the list's version
   bool fold_asked = false;
   bool folded = false;
@@ -50,32 +51,29 @@ struct LiveWindow::Panel {
   int covered_px() const noexcept { return folded ? 0 : static_cast<int>(gap_px + width_px); }
   void follow_settings(const flow::LoopSettings& in_force);
   void follow(const flow::Frame& frame, double rate_hz);
-  void buttons(const flow::Frame& frame, const Gauges& gauges, Commands& commands);
-  static void model_buttons(const flow::Frame& frame, Commands& commands);
+  void buttons(const commands::Situation& now, const Gauges& gauges, Commands& commands);
+  /// Draws the buttons of one group, with so many in a line.
+  void buttons_of(commands::Buttons group, int in_line, const commands::Situation& now,
+                  Commands& commands);
   static void parts(SceneWindow& window);
   void settings();
   void brushes(flow::LoopSettings& chosen);
   /// Lists the steps of the history. A click goes there.
   void history(const flow::Frame& frame, Commands& commands);
   /// Symmetry, and what fingertips leave alone.
-  static void masks(PuppetEditor& editor, const flow::Frame& frame, Commands& commands);
+  void masks(PuppetEditor& editor, const commands::Situation& now, Commands& commands);
   /// Edits the puppet.
   static void puppet(PuppetEditor& editor, Commands& commands);
-  static void puppet_keys(PuppetEditor& editor, Commands& commands);
   static void clay(const flow::Frame& frame);
   void timing(const flow::Frame& frame, const Gauges& gauges) const;
   void hands(const flow::Frame& frame, const Gauges& gauges) const;
   /// What keys do. It also draws their list.
-  void keys(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
+  void keys(const commands::Situation& now, SceneWindow& window, PuppetEditor& editor,
             Commands& commands);
 
 private:
-  void step(flow::Request request, const flow::Frame& frame, Commands& commands);
-  void step_keys(const flow::Frame& frame, Commands& commands);
-  void part_keys(const flow::Frame& frame, Commands& commands);
-  void single_keys(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
-                   Commands& commands);
-  void settings_keys(const flow::Frame& frame);
+  void ask(const commands::Row& row, const commands::Situation& now, Commands& commands);
+  void obey(std::string_view name, SceneWindow& window, PuppetEditor& editor, Commands& commands);
 };
 
 } // namespace nendo::viewer

@@ -9,6 +9,7 @@
 #include "viewer/panel.hpp"
 #include "viewer/puppet_marks.hpp"
 #include "viewer/puppet_tool.hpp"
+#include "viewer/row_button.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
@@ -59,39 +60,39 @@ void name_function(PuppetEditor& editor) {
 void edit_buttons(PuppetEditor& editor, Commands& commands) {
   bool mirrors = editor.rig().puppet().mirrors;
   if (ImGui::Checkbox("mirror", &mirrors)) editor.toggle_mirror();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("What is on one side is on both (j)");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("What is on one side is on both (Y)");
   ImGui::SameLine();
   bool brushes = editor.brushes();
   if (ImGui::Checkbox("brush masks", &brushes)) editor.toggle_brush();
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("Paint what stays; shift erases (z)");
   if (ImGui::Button("Pin")) editor.toggle_pin();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("The place, or the point, stays where it is (o)");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("The place, or the point, stays where it is (P)");
   ImGui::SameLine();
   if (ImGui::Button("Remove")) editor.remove_point();
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("The chosen point goes (Delete)");
   ImGui::SameLine();
   if (ImGui::Button("Save puppet")) commands.emplace_back(flow::SavePuppet{});
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Writes the puppet's file (a)");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Writes the puppet's file (S)");
 }
 
 } // namespace
 
-void LiveWindow::Panel::masks(PuppetEditor& editor, const flow::Frame& frame, Commands& commands) {
-  bool symmetric = frame.symmetric;
-  if (ImGui::Checkbox("symmetry", &symmetric)) commands.emplace_back(flow::SetSymmetry{symmetric});
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("One hand shapes both sides (y)");
+void LiveWindow::Panel::masks(PuppetEditor& editor, const commands::Situation& now,
+                              Commands& commands) {
+  const commands::Row& symmetry = *commands::named("symmetry");
+  bool symmetric = symmetry.is_on_in(now);
+  if (ImGui::Checkbox("symmetry", &symmetric)) ask(symmetry, now, commands);
+  show_help(symmetry, now);
   if (editor.rig().puppet().is_played()) return; // whose masks are edited with it
   ImGui::SameLine();
   bool brushes = editor.brushes();
   if (ImGui::Checkbox("paint masks", &brushes)) editor.toggle_masks();
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("Paint what stays; shift erases (z)");
-  if (ImGui::Button("Clear masks")) commands.emplace_back(flow::SetMask{flow::MaskEdit::clear});
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("Everything moves (Delete, while masks are painted)");
+  const commands::Row& clear = *commands::named("mask clear");
+  if (row_button(clear, now, 0.0F)) ask(clear, now, commands);
   ImGui::SameLine();
-  if (ImGui::Button("Invert")) commands.emplace_back(flow::SetMask{flow::MaskEdit::invert});
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("What was held moves, and the rest is held (shift z)");
+  const commands::Row& invert = *commands::named("mask invert");
+  if (row_button(invert, now, 0.0F)) ask(invert, now, commands);
   if (editor.brushes()) ImGui::TextWrapped("%s", editor.told().c_str());
 }
 
@@ -110,31 +111,6 @@ void LiveWindow::Panel::puppet(PuppetEditor& editor, Commands& commands) {
   choose_finger(editor);
   list_functions(editor);
   name_function(editor);
-}
-
-void LiveWindow::Panel::puppet_keys(PuppetEditor& editor, Commands& commands) {
-  if (!takes_keys() || ImGui::GetIO().KeyCtrl) return;
-  if (pressed(GLFW_KEY_TAB)) editor.turn(!editor.is_on());
-  const bool shifts = ImGui::GetIO().KeyShift;
-  if (pressed(GLFW_KEY_Z)) {
-    if (shifts)
-      commands.emplace_back(flow::SetMask{flow::MaskEdit::invert});
-    else
-      editor.is_on() ? editor.toggle_brush() : editor.toggle_masks();
-  }
-  if (!editor.is_on()) return;
-  if (editor.brushes() && !editor.rig().puppet().is_played()) {
-    if (pressed(GLFW_KEY_ESCAPE)) editor.toggle_masks();
-    if (pressed(GLFW_KEY_DELETE) || pressed(GLFW_KEY_BACKSPACE))
-      commands.emplace_back(flow::SetMask{flow::MaskEdit::clear});
-    if (pressed(GLFW_KEY_A)) commands.emplace_back(flow::SavePuppet{});
-    return;
-  }
-  if (pressed(GLFW_KEY_J)) editor.toggle_mirror();
-  if (pressed(GLFW_KEY_O)) editor.toggle_pin();
-  if (pressed(GLFW_KEY_DELETE) || pressed(GLFW_KEY_BACKSPACE)) editor.remove_point();
-  if (pressed(GLFW_KEY_ESCAPE)) editor.forget_place();
-  if (pressed(GLFW_KEY_A)) commands.emplace_back(flow::SavePuppet{});
 }
 
 } // namespace nendo::viewer

@@ -11,7 +11,9 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include "commands/commands.hpp"
 #include "viewer/quick_input.hpp"
+#include "viewer/row_keys.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
@@ -223,14 +225,14 @@ void SceneWindow::move_camera() {
 }
 
 void SceneWindow::follow_part_keys() {
-  if (!takes_keys() || ImGui::GetIO().KeyCtrl || ImGui::GetIO().KeyShift) return;
-  for (const auto& [key, part] : {std::pair{GLFW_KEY_H, &parts_.hands},
-                                  {GLFW_KEY_B, &parts_.bones},
-                                  {GLFW_KEY_V, &parts_.vectors},
-                                  {GLFW_KEY_D, &parts_.radii},
-                                  {GLFW_KEY_0, &parts_.contacts},
-                                  {GLFW_KEY_F, &facets_}})
-    if (pressed(key)) *part = !*part;
+  if (!takes_keys()) return;
+  for (const auto& [name, part] : {std::pair{"show hands", &parts_.hands},
+                                   {"show bones", &parts_.bones},
+                                   {"show vectors", &parts_.vectors},
+                                   {"show radii", &parts_.radii},
+                                   {"show contact", &parts_.contacts},
+                                   {"show facets", &facets_}})
+    if (is_struck(*commands::named(name))) *part = !*part;
 }
 
 void SceneWindow::follow_view_keys() {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "commands/commands.hpp"
 #include "viewer/key_list.hpp"
 #include "viewer/widgets.hpp"
 
@@ -196,7 +197,7 @@ void TimelineWindow::Panel::keys(const TimelineView& view, EditActions& actions)
   if (pressed(GLFW_KEY_L)) actions.loops = !view.loops;
   if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
   if (pressed(GLFW_KEY_ESCAPE) && !actions.drop) actions.select.emplace();
-  if (keys_shown) draw_key_list(timeline_key_table, mouse_words, keys_shown);
+  if (keys_shown) draw_key_list(timeline_key_table, commands::in_timeline, mouse_words, keys_shown);
 }
 
 void TimelineWindow::Panel::leave(const TimelineView& view, bool wanted, EditActions& actions) {

@@ -6,6 +6,7 @@
 #include <sys/random.h>
 
 #include "web/page.hpp"
+#include "web/page_commands.hpp"
 #include "web/pictures.hpp"
 
 namespace nendo::web {
@@ -34,6 +35,17 @@ std::string head_of(int status, std::string_view type, std::size_t bytes) {
          "\r\nConnection: close\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff"
          "\r\nReferrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin"
          "\r\nCross-Origin-Opener-Policy: same-origin\r\nX-Frame-Options: DENY\r\n";
+}
+
+std::string replaced(std::string_view rest, std::string_view mark, std::string_view by) {
+  std::string text;
+  while (true) {
+    const auto at = rest.find(mark);
+    text += rest.substr(0, at);
+    if (at == std::string_view::npos) return text;
+    text += by;
+    rest.remove_prefix(at + mark.size());
+  }
 }
 
 } // namespace
@@ -70,15 +82,7 @@ std::string switching_head(std::string_view accept) {
 }
 
 std::string page_with(std::string_view nonce) {
-  std::string text;
-  for (std::string_view rest = page(); !rest.empty();) {
-    const auto at = rest.find(nonce_mark);
-    text += rest.substr(0, at);
-    if (at == std::string_view::npos) break;
-    text += nonce;
-    rest.remove_prefix(at + nonce_mark.size());
-  }
-  return text;
+  return replaced(replaced(page(), commands_mark, page_commands()), nonce_mark, nonce);
 }
 
 std::string random_hex(std::size_t bytes) {

@@ -124,13 +124,11 @@ std::optional<flow::Command> clutch_in(Words words) noexcept {
 
 std::optional<flow::Command> mask_in(Words words) noexcept {
   const auto edit = flow::mask_edit_named(words.next());
-  if (!edit) return std::nullopt;
+  if (edit != flow::MaskEdit::hold && edit != flow::MaskEdit::free) return std::nullopt;
   flow::SetMask mask{*edit};
-  if (*edit == flow::MaskEdit::hold || *edit == flow::MaskEdit::free) {
-    std::array<double, 1> radius{};
-    if (!words.take(mask.at) || !words.take(radius)) return std::nullopt;
-    mask.radius = radius[0];
-  }
+  std::array<double, 1> radius{};
+  if (!words.take(mask.at) || !words.take(radius)) return std::nullopt;
+  mask.radius = radius[0];
   if (!words.are_over() || !mask.is_usable()) return std::nullopt;
   return mask;
 }
@@ -145,26 +143,10 @@ std::optional<flow::Command> role_in(Words words) noexcept {
   return flow::SetRole{static_cast<std::uint16_t>(function[0]), *input};
 }
 
-} // namespace
-
-std::optional<flow::Command> parse_command(std::string_view text) noexcept {
-  if (const auto request = flow::request_named(text)) return *request;
-  if (text == "subdivide") return flow::Subdivide{};
-  if (text == "refine") return flow::Refine{};
-  if (text == "wire on") return flow::DrawWire{true};
-  if (text == "wire off") return flow::DrawWire{false};
-  if (text == "knife on") return flow::DrawWire{true, flow::Blade::knife};
-  if (text == "knife off") return flow::DrawWire{false, flow::Blade::knife};
-  if (text == "topology") return flow::ChangeTopology{};
-  if (text == "join") return flow::JoinParts{};
-  if (text == "copy part") return flow::EditPart{};
-  if (text == "remove part") return flow::EditPart{true};
-  if (text == "mark") return flow::Mark{};
-  if (text == "punch") return flow::Punch{};
+// What says more than the name of a row.
+std::optional<flow::Command> command_in(std::string_view text) noexcept {
   if (text == "record") return flow::SetRecording{true};
   if (text == "end recording") return flow::SetRecording{false};
-  if (text == "save") return flow::SaveShape{};
-  if (text == "keep") return flow::SaveRecording{};
   Words words(text);
   const auto first = words.next();
   if (first == "settings") return settings_in(words);
@@ -172,11 +154,22 @@ std::optional<flow::Command> parse_command(std::string_view text) noexcept {
   if (first == "clutch") return clutch_in(words);
   if (first == "role") return role_in(words);
   if (first == "mask") return mask_in(words);
-  if (first == "symmetry") {
-    const auto on = switch_in(words.next());
-    if (on && words.are_over()) return flow::SetSymmetry{*on};
-  }
+  const auto on = switch_in(words.next());
+  if (!on || !words.are_over()) return std::nullopt;
+  if (first == "symmetry") return flow::SetSymmetry{*on};
+  if (first == "wire") return flow::DrawWire{*on};
+  if (first == "knife") return flow::DrawWire{*on, flow::Blade::knife};
   return std::nullopt;
+}
+
+} // namespace
+
+std::optional<ClientCommand> parse_command(std::string_view text) noexcept {
+  const auto* const row = commands::named(text);
+  if (row != nullptr && row->is_for_run() && (row->places & commands::on_page) != 0) return row;
+  const auto command = command_in(text);
+  if (!command) return std::nullopt;
+  return *command;
 }
 
 } // namespace nendo::web

@@ -7,6 +7,8 @@ namespace nendo::web {
 
 /// The text in the page that an answer replaces by its nonce.
 inline constexpr std::string_view nonce_mark = "NENDO-NONCE";
+/// The text that it replaces by page_commands().
+inline constexpr std::string_view commands_mark = "NENDO-COMMANDS";
 
 std::string_view page() noexcept;
 

@@ -47,8 +47,8 @@ void Server::add_weights(std::uint64_t number, std::vector<std::byte> message) {
   work_->add_weights(number, std::move(message));
 }
 
-std::optional<flow::Command> Server::next_command() noexcept {
-  flow::Command command;
+std::optional<ClientCommand> Server::next_command() noexcept {
+  ClientCommand command;
   if (work_->commands.size() == 0 || !work_->commands.try_pop(command)) return std::nullopt;
   return command;
 }
@@ -57,8 +57,8 @@ void Server::report(std::string message) {
   work_->report(std::move(message));
 }
 
-void Server::set_settings(const flow::LoopSettings& settings, bool recorded) {
-  work_->set_settings(settings, recorded);
+void Server::set_settings(const flow::LoopSettings& settings, bool recorded, bool draws) {
+  work_->set_settings(settings, recorded, draws);
 }
 
 void Server::set_puppet(std::uint32_t number, const puppet::Rig* rig) {

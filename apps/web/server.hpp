@@ -15,6 +15,7 @@
 #include <nendo/base/result.hpp>
 #include <nendo/flow/command.hpp>
 
+#include "web/client_commands.hpp"
 #include "web/endpoint.hpp"
 #include "web/frame_stream.hpp"
 #include "web/glove_state.hpp"
@@ -89,12 +90,13 @@ public:
   void add_weights(std::uint64_t number, std::vector<std::byte> message);
   /// Returns the next command of any client, in the order in which they came, or nothing if there
   /// is none now. Only one thread may call it; wait-free.
-  std::optional<flow::Command> next_command() noexcept;
+  std::optional<ClientCommand> next_command() noexcept;
   /// Sends a text for people to all clients. Any thread may call it; does not wait for the network.
   void report(std::string message);
-  /// Sets what the loop runs with and whether it is recorded to a file. Clients are told when they
-  /// come and when it changes. Any thread may call it; does not wait for the network.
-  void set_settings(const flow::LoopSettings& settings, bool recorded);
+  /// Sets what the loop runs with, whether it is recorded to a file, and whether a wire or a knife
+  /// is drawn. Clients are told when they come and when it changes. Any thread may call it; does
+  /// not wait for the network.
+  void set_settings(const flow::LoopSettings& settings, bool recorded, bool draws = false);
   /// Sets the steps of the history. Clients are told when they come and when it changes. Any thread
   /// may call it; does not wait for the network.
   void set_steps(const flow::StepList& steps);

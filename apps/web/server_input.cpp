@@ -103,8 +103,8 @@ void Server::Work::handle(Connection& connection, const std::string& text, HostT
     connection.close(CloseCode::policy, now, refusal_of(text));
     return;
   }
-  // If it is full the run stands still, and asking again is as good.
-  commands.try_push(*command);
+  if (!commands.try_push(*command)) // the run stands still
+    report("The run does not answer, and what was asked of it is dropped.");
 }
 
 } // namespace nendo::web

@@ -79,14 +79,16 @@ void Server::Work::report(std::string message) {
   wake();
 }
 
-void Server::Work::set_settings(const flow::LoopSettings& settings, bool recorded) {
+void Server::Work::set_settings(const flow::LoopSettings& settings, bool recorded, bool draws) {
   {
     const std::scoped_lock lock(mutex_);
-    if (facts_[settings_fact] && settings == settings_ && recorded == recorded_) return;
+    if (facts_[settings_fact] && settings == settings_ && recorded == recorded_ && draws == draws_)
+      return;
     settings_ = settings;
     recorded_ = recorded;
+    draws_ = draws;
     std::vector<std::byte> message(sizeof(SettingsMessage));
-    WireWriter(message).put(message_of(settings, recorded));
+    WireWriter(message).put(message_of(settings, recorded, draws));
     facts_[settings_fact] = std::make_shared<const std::vector<std::byte>>(std::move(message));
   }
   wake();

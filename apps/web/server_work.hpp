@@ -27,7 +27,7 @@ public:
                Pictures pictures);
   void add_weights(std::uint64_t number, std::vector<std::byte> message);
   void report(std::string message);
-  void set_settings(const flow::LoopSettings& settings, bool recorded);
+  void set_settings(const flow::LoopSettings& settings, bool recorded, bool draws);
   void set_steps(const flow::StepList& steps);
   void set_puppet(std::uint32_t number, const puppet::Rig* rig);
   void set_clay(const flow::Frame& frame);
@@ -37,7 +37,7 @@ public:
   // The following members are written by this thread, or shared with it.
   /// Has room for what 16 clients may send in half a second. Commands that find no room are
   /// dropped.
-  flow::CommandRing commands{1024};
+  SpscRing<ClientCommand> commands{1024};
   /// For `missed` of a glove that does not tell: all bits are set, also of the 32 that are sent.
   static constexpr std::uint64_t unknown_count = ~std::uint64_t{0};
   /// Each number is right by itself; they need not be all of the same moment.
@@ -101,6 +101,7 @@ private:
   HostTime next_clay_{}; ///< not before that
   Facts facts_;          ///< as messages; null before they are known
   bool recorded_ = false;
+  bool draws_ = false;
   std::vector<Weights> weights_; ///< the newest last
   std::uint64_t weights_in_use_ = 0;
   Presented presented_;

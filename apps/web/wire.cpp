@@ -147,13 +147,13 @@ UpdateHead head_of(const flow::Frame& frame) noexcept {
   return head;
 }
 
-SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) noexcept {
+SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded, bool draws) noexcept {
   SettingsMessage message;
   message.mode = static_cast<std::uint8_t>(1 + static_cast<int>(settings.mode));
   message.kernel = static_cast<std::uint8_t>(settings.kernel);
   const bool filtered = settings.filter.kind == hand::FilterKind::one_euro;
   message.flags = static_cast<std::uint8_t>((settings.injective ? 1U : 0U) | (filtered ? 2U : 0U) |
-                                            (recorded ? 4U : 0U));
+                                            (recorded ? 4U : 0U) | (draws ? 8U : 0U));
   std::copy(settings.radius_m.begin(), settings.radius_m.end(), message.radius_m);
   for (std::size_t finger = 0; finger < settings.brushes.size(); ++finger)
     message.brushes[finger] = static_cast<std::uint8_t>(settings.brushes[finger]);

@@ -116,7 +116,8 @@ struct SettingsMessage {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::settings);
   std::uint8_t mode = 1;
   std::uint8_t kernel = 0;
-  std::uint8_t flags = 0; ///< bit 0: injective; 1: the one-euro filter; 2: it is recorded
+  /// Bit 0: injective; 1: the one-euro filter; 2: it is recorded; 3: a wire or a knife is drawn.
+  std::uint8_t flags = 0;
   float keep_volume = 0.0F;
   double radius_m[5]{};
   std::uint8_t brushes[5]{};
@@ -191,7 +192,7 @@ private:
 float as_float(double value) noexcept;
 
 UpdateHead head_of(const flow::Frame& frame) noexcept;
-SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) noexcept;
+SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded, bool draws) noexcept;
 /// Returns the message with the steps of the history. Allocates.
 std::vector<std::byte> message_of(const flow::StepList& steps);
 /// Returns the message with the functions of a puppet, or that there is none. Allocates.

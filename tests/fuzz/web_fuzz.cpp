@@ -60,16 +60,18 @@ void check_frames(std::string_view bytes, std::size_t chunk) {
 
 // Whatever is understood is something that a loop may be asked for.
 void check_words(std::string_view text) {
-  const auto command = parse_command(text);
-  if (!command) return;
+  const auto asked = parse_command(text);
+  if (!asked) return;
   require(text.front() != ' ' && text.back() != ' ');
-  if (const auto* move = std::get_if<nendo::flow::WristMove>(&*command)) {
+  const auto* const command = std::get_if<nendo::flow::Command>(&*asked);
+  if (command == nullptr) return; // a row of the table
+  if (const auto* move = std::get_if<nendo::flow::WristMove>(command)) {
     const Eigen::Isometry3d pose = move->pose();
     require(move->is_usable() && pose.matrix().allFinite());
     require(std::abs(pose.linear().determinant() - 1.0) < 1e-9);
   }
-  if (const auto* mask = std::get_if<nendo::flow::SetMask>(&*command)) require(mask->is_usable());
-  const auto* change = std::get_if<nendo::flow::ChangeSettings>(&*command);
+  if (const auto* mask = std::get_if<nendo::flow::SetMask>(command)) require(mask->is_usable());
+  const auto* change = std::get_if<nendo::flow::ChangeSettings>(command);
   if (change == nullptr) return;
   for (const double radius_m : change->settings.radius_m)
     require(radius_m >= min_radius_m && radius_m <= max_radius_m);

@@ -31,10 +31,10 @@ TEST_SUITE("run_keys") {
     const auto out = folder.path() / "shape.obj";
     std::ofstream(folder.path() / "shape-1.obj") << "somebody else's";
     TerminalProgram program({"run", "--right", "sim:sculpt", "--out", out.string()}, 200, 24);
-    REQUIRE(program.tells("keys: g lets go"));
+    REQUIRE(program.tells("keys: ? lists them"));
     REQUIRE(program.tells("ticks"));
     CHECK(program.is_raw());
-    CHECK(program.press('g'));
+    CHECK(program.press('l'));
     REQUIRE(program.tells("  let go"));
     CHECK(program.press('s'));
     REQUIRE(program.tells("shape-2.obj")); // what is there stays
@@ -43,9 +43,13 @@ TEST_SUITE("run_keys") {
       const std::string& text = screen.transcript();
       return text.rfind("ticks") > text.rfind("let go") + 20; // a line of progress without it
     }));
-    CHECK(program.press('?')); // is nothing
+    CHECK(program.press('?'));
+    CHECK(program.tells("k  Keeps the recording of what was just done"));
     CHECK(program.press('r'));
-    CHECK(program.tells("there is nothing to redo"));
+    CHECK(program.tells("There is nothing to redo."));
+    CHECK(program.press('.'));
+    CHECK(program.tells("There is no recording to mark; begin one with t."));
+    CHECK(program.press('B')); // is nothing
     CHECK(program.press('c'));
     CHECK(program.press('u'));
     CHECK(program.press('q'));
@@ -65,7 +69,7 @@ TEST_SUITE("run_keys") {
     const TemporaryFolder folder;
     const auto out = folder.path() / "shape.obj";
     TerminalProgram program({"run", "--right", "sim:sculpt", "--out", out.string()}, 200, 24);
-    REQUIRE(program.tells("[ and ] make the radii smaller, larger"));
+    REQUIRE(program.tells("keys: "));
     REQUIRE(program.tells("ticks"));
     CHECK(program.press('t'));
     REQUIRE(
@@ -107,7 +111,7 @@ TEST_SUITE("run_keys") {
                                "1000s", "--out", (folder.path() / "shape.obj").string()},
                               columns, 24);
       REQUIRE(program.tells(" left"));
-      CHECK(program.press('g'));
+      CHECK(program.press('l'));
       if (columns == 80) REQUIRE(program.tells("  let go"));
       CHECK(program.press('q'));
       CHECK(program.wait() == 0);

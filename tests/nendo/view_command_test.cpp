@@ -100,7 +100,7 @@ struct Maker {
   }
   /// Saves the puppet, and returns how many functions it has; 0: there is no file yet.
   int saved_functions() const {
-    Person::does("key a sleep 0.4");
+    Person::does("key S sleep 0.4");
     const std::string text = test::contents(at("spot.puppet.toml"));
     int count = 0;
     for (auto found = text.find("[functions."); found != std::string::npos;
@@ -199,12 +199,12 @@ TEST_SUITE("view_command") {
     const std::string before = test::contents(maker.at("spot.puppet.toml"));
     // The function that moves the first point gets another way.
     maker.drag(first, {first.x + 8, first.y - 8});
-    REQUIRE(Person::does("key a")); // once: where pictures come late, keys wait for them
+    REQUIRE(Person::does("key S")); // once: where pictures come late, keys wait for them
     CHECK(test::eventually([&] { return test::contents(maker.at("spot.puppet.toml")) != before; }));
     CHECK(before.find("model = \"spot.obj\"") != std::string::npos);
     REQUIRE(Person::does("key --delay 60 Tab"));
     std::this_thread::sleep_for(std::chrono::seconds(1)); // the fingers play it
-    REQUIRE(Person::does("key --delay 60 Tab j"));        // mirrored, and back
+    REQUIRE(Person::does("key --delay 60 Tab Y"));        // mirrored, and back
     REQUIRE(Person::does("key --delay 60 u Tab"));
     std::this_thread::sleep_for(std::chrono::seconds(1));
     REQUIRE(Person::does("key q"));

@@ -60,8 +60,8 @@ public:
   void update(const RunStatus& status, flow::CommandRing& commands) override {
     if (settings.empty() || settings.back() != status.frame.settings)
       settings.push_back(status.frame.settings);
-    if (recorded.empty() || recorded.back() != status.recording)
-      recorded.push_back(status.recording);
+    if (recorded.empty() || recorded.back() != status.facts.recorded)
+      recorded.push_back(status.facts.recorded);
     wrist = status.frame.hands[0].T_stage_wrist.translation();
     CHECK(status.model.number == status.frame.model);
     status.model.layout().unpack(status.frame.shape, shape);

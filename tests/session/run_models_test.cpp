@@ -133,8 +133,8 @@ TEST_SUITE("run_models") {
     CHECK(asker.reports[0].starts_with("the model "));
     CHECK(asker.reports[0].ends_with("; the model stays as it is"));
     CHECK(asker.reports[1] == "the model is one part, which is whole; the model stays as it is");
-    CHECK(asker.reports[2] == "no hand has taken a part of this model yet; take the one that is "
-                              "meant, in mode parts (m)");
+    CHECK(asker.reports[2] == "No hand has taken a part of this model yet; take the one that is "
+                              "meant, in mode parts (m).");
   }
 
   TEST_CASE("the model is refined by itself where hands stretch it, and never beyond the bound") {

@@ -281,7 +281,7 @@ TEST_SUITE("run_session") {
     const auto told = [&](const char* words) {
       return std::count(asker.reports.begin(), asker.reports.end(), words);
     };
-    CHECK(told("there is no recording to mark; begin one with t") == 1);
+    CHECK(told("There is no recording to mark; begin one with t.") == 1);
     CHECK(told("mark 1 is in the recording") == 1);
     CHECK(told("mark 2 is in the recording") == 1);
     REQUIRE(outcome.recordings.size() == 1);

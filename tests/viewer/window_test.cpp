@@ -111,11 +111,12 @@ TEST_SUITE("window") {
     flow::Frame frame = test.frame_after_tick(0);
     frame.undo_steps = frame.redo_steps = 1;
     frame.settings = settings;
+    Gauges gauges;
     const auto type = [&](int key) {
       SimulatedInput input;
       input.taps = {key};
       window.simulate(input);
-      auto commands = window.show(frame, false, {});
+      auto commands = window.show(frame, false, gauges);
       window.simulate({});
       window.show(frame, false, {});
       return commands;
@@ -130,6 +131,8 @@ TEST_SUITE("window") {
       CHECK(type(key) == Commands{request});
     CHECK(type(GLFW_KEY_T) == Commands{flow::SetRecording{true}});
     CHECK(type(GLFW_KEY_S) == Commands{flow::SaveShape{}});
+    CHECK(type(GLFW_KEY_K).empty()); // nothing is kept
+    gauges.facts.keeps_last = true;
     CHECK(type(GLFW_KEY_K) == Commands{flow::SaveRecording{}});
     CHECK(type(GLFW_KEY_Q) == Commands{flow::EndRun{}});
 

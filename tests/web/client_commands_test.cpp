@@ -14,9 +14,13 @@ namespace {
 
 template <class T>
 std::optional<T> parsed_as(std::string_view text) {
-  const auto command = parse_command(text);
-  if (!command || !std::holds_alternative<T>(*command)) return std::nullopt;
-  return std::get<T>(*command);
+  const auto asked = parse_command(text);
+  if (!asked) return std::nullopt;
+  const auto* const row = std::get_if<const commands::Row*>(&*asked);
+  const flow::Command command =
+      row != nullptr ? (*row)->make(false) : std::get<flow::Command>(*asked);
+  if (!std::holds_alternative<T>(command)) return std::nullopt;
+  return std::get<T>(command);
 }
 
 } // namespace
@@ -55,7 +59,7 @@ TEST_SUITE("client_commands") {
           flow::SetRole{3, *puppet::HandSignal::named("left.index_flexion")});
     for (const auto* wrong :
          {"clutch left all", "clutch both all on", "clutch left toe on", "clutch left all maybe",
-          "symmetry", "symmetry yes", "symmetry on on", "role 3", "role 64 left.index_flexion",
+          "symmetry yes", "symmetry on on", "role 3", "role 64 left.index_flexion",
           "role 1.5 left.index_flexion", "role -1 left.index_flexion", "role 3 left.tail",
           "role 3 left.index_flexion now"})
       CHECK_FALSE(parse_command(wrong));

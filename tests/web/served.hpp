@@ -40,8 +40,11 @@ struct Served {
     hands_ = std::thread([this] {
       for (int bent = 0; !over_; ++bent) {
         streamed.test.bend(bent % 40 < 20 ? bent % 40 : 40 - bent % 40, HostClock::now());
-        while (const auto command = server->next_command())
-          streamed.test.commands.try_push(*command);
+        while (const auto asked = server->next_command()) {
+          const auto* const row = std::get_if<const commands::Row*>(&*asked);
+          streamed.test.commands.try_push(row != nullptr ? (*row)->make(false)
+                                                         : std::get<flow::Command>(*asked));
+        }
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
       }
     });

@@ -169,17 +169,18 @@ TEST_SUITE("server") {
     client.send_text("wrist left 1 2 3 0 0 0 1");
     client.send_text("wrist right 0 0 0 0 0 0 1");
     client.send_text("reset");
-    std::vector<flow::Command> commands;
+    std::vector<web::ClientCommand> commands;
     CHECK(eventually([&] {
       while (const auto command = server->next_command())
         commands.push_back(*command);
       return commands.size() == 5;
     }));
-    const std::vector<flow::Command> asked{
-        flow::ChangeSettings{
-            {flow::Mode::type2, deform::Wendland::c6, true, {0.1, 0.1, 0.1, 0.1, 0.2}}},
-        flow::SetRecording{true}, flow::WristMove{Side::left, {1, 2, 3}},
-        flow::WristMove{Side::right}, flow::Request::reset};
+    const flow::LoopSettings settings{
+        flow::Mode::type2, deform::Wendland::c6, true, {0.1, 0.1, 0.1, 0.1, 0.2}};
+    const std::vector<web::ClientCommand> asked{
+        flow::Command(flow::ChangeSettings{settings}), flow::Command(flow::SetRecording{true}),
+        flow::Command(flow::WristMove{Side::left, {1, 2, 3}}),
+        flow::Command(flow::WristMove{Side::right}), commands::named("reset")};
     CHECK(commands == asked);
     CHECK_FALSE(server->next_command());
   }

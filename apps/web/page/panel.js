@@ -6,108 +6,86 @@ const VIEWS = {
   3: { plain: [RIGHT_ANGLE, 0], ctrl: [-RIGHT_ANGLE, 0] },
   7: { plain: [0, RIGHT_ANGLE], ctrl: [0, -RIGHT_ANGLE] },
 }
-const KEYS = [
-  ['g', 'grab: the hands take hold', panel => panel.ask('grab')],
-  ['l', 'let go; what is shaped stays', panel => panel.ask('let go')],
-  ['a', 'take hold anew where the hands are, without a commit', panel => panel.ask('take hold')],
-  ['c', 'commit: this shape becomes the rest shape', panel => panel.ask('commit')],
-  ['u', 'undo the last step', panel => panel.step('undo')],
-  ['r', 'redo what was undone', panel => panel.step('redo')],
-  ['Ctrl Z', 'undo, too; with Shift, or Ctrl Y: redo'],
-  ['x', 'reset: back to the model as it was loaded', panel => panel.ask('reset')],
-  ['t', 'a take: record from here on, and end that', panel => panel.record()],
-  [',', 'of a puppet: the left hand lets go, takes hold again', panel => panel.clutch(0)],
-  ['\'', 'of a puppet: the right hand lets go, takes hold again', panel => panel.clutch(1)],
-  ['y', 'symmetry: one hand shapes both sides, or plays both of a puppet', panel => panel.toggleSymmetry()],
-  ['z', 'clear the masks: everything moves', panel => panel.ask('mask clear')],
-  ['Z', 'invert the masks', panel => panel.ask('mask invert')],
-  ['.', 'mark this moment in the recording', panel => panel.ask('mark')],
-  ['o', 'overdub: the gloves\' layer comes in, or goes out (--over, --layer)', panel => panel.ask('punch')],
-  ['k', 'keep the recording of what was just done (--keep-last)', panel => panel.ask('keep')],
-  ['s', 'save the model as it is now', panel => panel.ask('save')],
-  ['m', 'the next mode', panel => panel.shaping.nextMode(Boolean(panel.update && panel.update.isPuppet))],
-  ['n', 'the next kernel', panel => panel.shaping.nextKernel()],
-  ['[', 'smaller radii', panel => panel.shaping.scale(1 / 1.1)],
-  [']', 'larger radii', panel => panel.shaping.scale(1.1)],
-  ['w', 'the next brush of type 2', panel => panel.shaping.nextBrush()],
-  ['-', 'a weaker brush; below 0 the opposite', panel => panel.shaping.strengthen(-0.1)],
-  ['=', 'a stronger brush', panel => panel.shaping.strengthen(0.1)],
-  ['i', 'the surface never folds, or may', panel => panel.toggle('injective', '')],
-  [';', 'more clay: the volume stays; from all to air', panel => panel.shaping.nextVolume()],
-  ['j', 'the whole hand holds, or its fingertips', panel => panel.toggle('hold', '')],
-  ['e', 'subdivide: the model gets more vertices for finer strokes', panel => panel.ask('subdivide')],
-  ['E', 'refine: more triangles where it was stretched, fewer where it was crowded', panel => panel.ask('refine')],
-  ['h', 'hands on and off', panel => panel.toggle('skin')],
-  ['b', 'bones on and off', panel => panel.toggle('bones')],
-  ['v', 'control vectors on and off', panel => panel.toggle('vectors')],
-  ['d', 'radii on and off', panel => panel.toggle('radii')],
-  ['0', 'where hands touch clay, on and off', panel => panel.toggle('contacts')],
-  ['f', 'facets in place of smooth shading', panel => panel.toggle('facets')],
-  ['1', 'the view from the front; with Ctrl from the back', panel => panel.camera.look(...VIEWS[1].plain)],
-  ['3', 'from the right; with Ctrl from the left', panel => panel.camera.look(...VIEWS[3].plain)],
-  ['7', 'from the top; with Ctrl from the bottom', panel => panel.camera.look(...VIEWS[7].plain)],
-  ['Home', 'all of the model in the picture', panel => panel.camera.frame()],
-  ['p', 'the panel folded and unfolded', panel => panel.fold()],
-  ['?', 'this list', panel => panel.help()],
-]
+// What the page does by itself, of COMMANDS, which the server fills in from its table (apps/commands).
+const OWN = {
+  'show hands': panel => panel.toggle('skin'),
+  'show bones': panel => panel.toggle('bones'),
+  'show vectors': panel => panel.toggle('vectors'),
+  'show radii': panel => panel.toggle('radii'),
+  'show contact': panel => panel.toggle('contacts'),
+  'show facets': panel => panel.toggle('facets'),
+  'view front': panel => panel.camera.look(...VIEWS[1].plain),
+  'view right': panel => panel.camera.look(...VIEWS[3].plain),
+  'view top': panel => panel.camera.look(...VIEWS[7].plain),
+  'frame all': panel => panel.camera.frame(),
+  'fold panel': panel => panel.fold(),
+  'list keys': panel => panel.help(),
+}
 const MOST_UNDOABLE = 48 // that the server tells
 const element = id => document.getElementById(id)
 
 class Panel {
   constructor(ask, shown) {
-    this.ask = request => {
-      if (this.noted) this.tell('')
-      ask(request)
-    }
-    Object.assign(this, { camera: null, live: false, noted: false, settings: null, history: null, puppet: null })
+    Object.assign(this, { ask, camera: null, live: false, settings: null, history: null, puppet: null })
     this.late = new Chart(element('chart-late'), 'late', 'ms')
     this.rate = new Chart(element('chart-rate'), 'ticks a second', 'Hz')
     this.bytes = new Chart(element('chart-bytes'), 'a message', 'bytes')
     this.shaping = new Shaping(this.ask)
-    const requests = [...document.querySelectorAll('[data-request]')]
-    for (const button of requests) button.addEventListener('click', () => this.ask(button.dataset.request))
-    this.steps = requests.filter(button => ['undo', 'redo'].includes(button.dataset.request))
-    this.buttons = [...requests, element('record'), element('symmetry')]
-    element('record').addEventListener('click', () => this.record())
-    element('symmetry').addEventListener('click', () => this.toggleSymmetry())
+    this.buttons = COMMANDS.filter(({ button }) => button).map(command => this.makeButton(command))
     for (const part of ['skin', 'bones', 'vectors', 'radii', 'contacts', 'facets'])
       element('show-' + part).addEventListener('change', event => shown(part, event.target.checked))
     element('help-button').addEventListener('click', () => this.help())
     element('fold-button').addEventListener('click', () => this.fold())
-    for (const [key, words] of KEYS) {
+    for (const { keys, help } of COMMANDS) {
       const row = element('keys').insertRow()
-      row.insertCell().appendChild(document.createElement('kbd')).textContent = key
-      row.insertCell().textContent = words
+      row.insertCell().appendChild(document.createElement('kbd')).textContent = keys.join(', ')
+      row.insertCell().textContent = help
     }
     document.addEventListener('keydown', event => this.press(event))
     this.connected(false)
   }
 
+  makeButton(command) {
+    const button = element('buttons').appendChild(document.createElement('button'))
+    button.dataset.request = command.name
+    button.textContent = command.button
+    button.title = `${command.help} (${command.keys.join(', ')})`
+    button.addEventListener('click', () => this.give(command))
+    return button
+  }
+  // The server says why a command is not possible.
+  give(command) {
+    if (!command.isForRun) return OWN[command.name](this)
+    if (command.isSetting) this.shaping.giveWay()
+    this.ask(command.name)
+  }
   press(event) {
     if (event.altKey || event.metaKey) return
     if (event.target.matches('select')) return // which has keys of its own
     if (event.ctrlKey) return this.pressWithCtrl(event)
     if (event.repeat) return
     if (event.key === 'Home' && event.target.matches('input[type=range]')) return
-    const key = KEYS.find(([name]) => name === event.key)
-    if (key && key[2]) key[2](this)
+    const command = COMMANDS.find(({ keys }) => keys.includes(event.key))
+    if (command) this.give(command)
   }
   pressWithCtrl(event) {
-    const key = event.key.toLowerCase(), view = VIEWS[key]
-    if (key !== 'z' && key !== 'y' && !view) return
+    const key = event.key.toUpperCase(), view = VIEWS[key]
+    const command = COMMANDS.find(({ keys }) => keys.includes(`Ctrl ${event.shiftKey ? 'Shift ' : ''}${key}`))
+    if (!command && !view) return
     event.preventDefault()
     if (view) this.camera.look(...view.ctrl)
-    else this.step(key === 'y' || event.shiftKey ? 'redo' : 'undo')
+    else this.give(command)
   }
   canStep(request) { return Boolean(this.update) && (request === 'undo' ? this.update.canUndo : this.update.canRedo) }
-  // The button is grey then; a key says why nothing happens.
-  step(request) {
-    if (!this.live) return
-    if (this.canStep(request)) this.ask(request)
-    else this.tell(`There is nothing to ${request}.`, true)
+  showOn(name, on) {
+    const button = this.buttons.find(({ dataset }) => dataset.request === name)
+    const command = COMMANDS.find(one => one.name === name)
+    button.textContent = on ? command.buttonOn : command.button
+    button.classList.toggle('on', on)
   }
   showSteps() {
-    for (const button of this.steps) button.disabled = !this.live || !this.canStep(button.dataset.request)
+    for (const button of this.buttons)
+      if (['undo', 'redo'].includes(button.dataset.request)) button.disabled = !this.live || !this.canStep(button.dataset.request)
   }
   fold() {
     const folded = element('panel').classList.toggle('folded')
@@ -120,27 +98,13 @@ class Panel {
     return panel.classList.contains('folded') ? 0 : Math.min(0.4, panel.getBoundingClientRect().right / innerWidth)
   }
   toggle(part, kind = 'show-') { element(kind + part).click() }
-  clutch(slot) {
-    const { update } = this
-    if (update && update.isPuppet) this.ask(`clutch ${slot === 0 ? 'left' : 'right'} all ${update.letGo[slot] ? 'on' : 'off'}`)
-  }
-  toggleSymmetry() {
-    const { update } = this
-    if (update) this.ask(`symmetry ${update.symmetric ? 'off' : 'on'}`)
-  }
-  record() {
-    if (this.settings) this.ask(this.settings.recorded ? 'end recording' : 'record')
-  }
   help() {
     const dialog = element('help')
     if (dialog.open) dialog.close()
     else dialog.showModal()
   }
 
-  tell(words, noted = false) {
-    element('told').textContent = words
-    this.noted = noted // it stays until the next command
-  }
+  tell(words) { element('told').textContent = words }
   say(words) {
     element('banner').textContent = words
     element('banner').hidden = words === ''
@@ -188,8 +152,8 @@ class Panel {
   }
   setSettings(settings) {
     this.settings = settings
-    element('record').textContent = settings.recorded ? 'End recording' : 'Record'
-    element('record').classList.toggle('on', settings.recorded)
+    this.showOn('take', settings.recorded)
+    this.showOn('wire', settings.draws)
     this.shaping.follow(settings)
   }
 
@@ -211,7 +175,7 @@ class Panel {
     const { update, model, settings } = this
     if (!update || !model || !settings) return
     element('hold').textContent = update.held ? 'The hands hold the model.' : 'The hands have let go.'
-    element('symmetry').classList.toggle('on', update.symmetric)
+    this.showOn('symmetry', update.symmetric)
     this.showSteps()
     const lost = update.lost + update.skipped
     element('timing').textContent = `${model.rate} Hz wanted, ${MODES[settings.mode]}\n${update.ticks} ticks, ${update.missed} missed` +

@@ -57,6 +57,11 @@ class Shaping {
     this.ask(`settings ${MODES[mode]} ${kernel} ${injective ? 'injective' : 'free'} ${filtered ? 'one-euro' : 'off'} ${radii.join(' ')} ${brushes.join(' ')} ${strength} ${volume} ${hold}`)
     Object.assign(this, { due: false, askedAt: performance.now() })
   }
+  // Sends what is due, and shows what is in force from then on: the server is about to change it.
+  giveWay() {
+    this.send()
+    this.askedAt = -Infinity
+  }
   choose(input) {
     const { wanted } = this
     if (!wanted) return
@@ -75,11 +80,6 @@ class Shaping {
     if (one && (slider || input.id === 'one-radius')) wanted.radii.fill(wanted.radii[0])
     this.change()
   }
-  // The points of a puppet neither press clay nor move parts.
-  nextMode(isPuppet) {
-    const modes = isPuppet ? 2 : 4
-    if (this.wanted) document.querySelector(`[name=mode][value="${this.wanted.mode % modes + 1}"]`).click()
-  }
   // Brushes are of type 2.
   useStrokes() {
     this.wanted.mode = 2
@@ -90,33 +90,6 @@ class Shaping {
     const { brushes, strength } = this.wanted
     element('brush').value = brushes.every(brush => brush === brushes[0]) ? brushes[0] : ''
     element('strength').value = strength
-  }
-  nextBrush() {
-    const select = element('brush')
-    do select.selectedIndex = (select.selectedIndex + 1) % select.length
-    while (select.value === 'none')
-    this.choose(select)
-  }
-  strengthen(more) {
-    if (!this.wanted) return
-    this.wanted.strength = Math.min(1, Math.max(-1, Math.round(10 * (this.wanted.strength + more)) / 10))
-    this.showBrush()
-    this.change()
-  }
-  nextVolume() {
-    const range = element('volume'), more = Math.floor(4 * range.value + 1) / 4
-    range.value = more > 1 ? 0 : more
-    this.choose(range)
-  }
-  nextKernel() {
-    const select = element('kernel')
-    select.selectedIndex = (select.selectedIndex + 1) % select.length
-    this.choose(select)
-  }
-  scale(factor) {
-    if (!this.wanted) return
-    this.wanted.radii = this.wanted.radii.map(radius => Math.min(MOST_RADIUS, Math.max(LEAST_RADIUS, factor * radius)))
-    this.change()
   }
   show() {
     const { wanted } = this, one = element('one-radius').checked

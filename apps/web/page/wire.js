@@ -70,7 +70,7 @@ function readSettings(buffer) {
     mode: view.getUint8(1), kernel: KERNELS[view.getUint8(2)], injective: (flags & 1) !== 0, filtered: (flags & 2) !== 0,
     brushes: [48, 49, 50, 51, 52].map(at => BRUSHES[view.getUint8(at)]), strength: view.getFloat64(56, true),
     volume: Math.round(1e6 * view.getFloat32(4, true)) / 1e6, hold: HOLDS[view.getUint8(53)],
-    recorded: (flags & 4) !== 0, radii: [8, 16, 24, 32, 40].map(at => view.getFloat64(at, true)),
+    recorded: (flags & 4) !== 0, draws: (flags & 8) !== 0, radii: [8, 16, 24, 32, 40].map(at => view.getFloat64(at, true)),
   }
 }
 

@@ -1,0 +1,443 @@
+#include "commands/commands.hpp"
+
+#include <algorithm>
+#include <variant>
+
+namespace nendo::commands {
+namespace {
+
+using flow::Request;
+using flow::WantedSettings;
+
+consteval std::array<std::string_view, 3> keys(std::string_view first, std::string_view second = {},
+                                               std::string_view third = {}) {
+  return {first, second, third};
+}
+
+template <Request request>
+flow::Command request_of(bool) {
+  return request;
+}
+template <class T>
+flow::Command simple(bool) {
+  return T{};
+}
+template <flow::Blade blade>
+flow::Command draw(bool on) {
+  return flow::DrawWire{!on, blade};
+}
+template <flow::MaskEdit edit>
+flow::Command edit_masks(bool) {
+  return flow::SetMask{edit};
+}
+template <bool removes>
+flow::Command edit_part(bool) {
+  return flow::EditPart{removes};
+}
+template <Side side>
+flow::Command clutch(bool on) {
+  return flow::SetClutch{side, puppet::RigPlayer::all_fingers, !on};
+}
+template <Side side>
+bool plays(const Situation& now) {
+  return !now.frame.let_go[flow::Placement::index_of(side)];
+}
+template <void (WantedSettings::*change)() noexcept>
+void choose(WantedSettings& wanted, const flow::Frame&) {
+  (wanted.*change)();
+}
+
+bool draws(const Situation& now) {
+  return now.frame.wire.is_drawn();
+}
+bool has_parts(const Situation& now) {
+  return now.frame.parts.count > 0; // in another mode no hand takes a part
+}
+const char* without_puppet(const Situation& now) {
+  return now.frame.function_count == 0 ? no_puppet : nullptr;
+}
+const char* without_part(const Situation& now) {
+  return now.frame.parts.chosen == deform::no_index ? no_part : nullptr;
+}
+
+constexpr std::array rows{
+    Row{.name = "grab",
+        .keys = keys("g"),
+        .help = "The hands take hold of the model.",
+        .button = "Grab",
+        .group = Buttons::hands,
+        .make = request_of<Request::grab>},
+    Row{.name = "let go",
+        .keys = keys("l"),
+        .help = "The hands let go; what is shaped stays.",
+        .button = "Let go",
+        .group = Buttons::hands,
+        .make = request_of<Request::let_go>},
+    Row{.name = "undo",
+        .keys = keys("u", "Ctrl Z"),
+        .help = "Undoes the last step, as far back as there is memory (--undo-memory).",
+        .button = "Undo",
+        .group = Buttons::hands,
+        .repeats = true,
+        .make = request_of<Request::undo>,
+        .refusal = [](const Situation& now) -> const char* {
+          return now.frame.undo_steps == 0 ? "There is nothing to undo." : nullptr;
+        }},
+    Row{.name = "redo",
+        .keys = keys("r", "Ctrl Y", "Ctrl Shift Z"),
+        .help = "Does again what was undone.",
+        .button = "Redo",
+        .group = Buttons::hands,
+        .repeats = true,
+        .make = request_of<Request::redo>,
+        .refusal = [](const Situation& now) -> const char* {
+          return now.frame.redo_steps == 0 ? "There is nothing to redo." : nullptr;
+        }},
+    Row{.name = "commit",
+        .keys = keys("c"),
+        .help = "The present shape becomes the rest shape.",
+        .button = "Commit",
+        .group = Buttons::hands,
+        .make = request_of<Request::commit>},
+    Row{.name = "reset",
+        .keys = keys("x"),
+        .help = "Goes back to the model as it was loaded; undo takes it back.",
+        .button = "Reset",
+        .group = Buttons::hands,
+        .make = request_of<Request::reset>},
+    Row{.name = "take hold",
+        .keys = keys("a"),
+        .help = "The hands take hold anew where they are, without a commit.",
+        .button = "Hold anew",
+        .group = Buttons::hands,
+        .make = request_of<Request::take_hold>,
+        .refusal = [](const Situation& now) -> const char* {
+          return now.frame.held ? nullptr : "The hands do not hold the model.";
+        }},
+    Row{.name = "save",
+        .keys = keys("s"),
+        .help = "Saves the model as it is now, in a file of its own.",
+        .button = "Save",
+        .group = Buttons::hands,
+        .make = simple<flow::SaveShape>},
+    Row{.name = "keep",
+        .keys = keys("k"),
+        .help = "Keeps the recording of what was just done (--keep-last).",
+        .button = "Keep",
+        .group = Buttons::hands,
+        .make = simple<flow::SaveRecording>,
+        .refusal = [](const Situation& now) -> const char* {
+          return now.facts.keeps_last ? nullptr : nothing_kept;
+        }},
+    Row{.name = "take",
+        .keys = keys("t"),
+        .help = "Records from here on to a file, and ends that.",
+        .button = "Record",
+        .button_on = "End recording",
+        .group = Buttons::hands,
+        .make = [](bool on) -> flow::Command { return flow::SetRecording{!on}; },
+        .is_on = [](const Situation& now) { return now.facts.recorded; }},
+    Row{.name = "mark",
+        .keys = keys("."),
+        .help = "Marks this moment in the recording.",
+        .button = "Mark",
+        .group = Buttons::hands,
+        .make = simple<flow::Mark>,
+        .refusal = [](const Situation& now) -> const char* {
+          return now.facts.can_mark ? nullptr : no_recording;
+        },
+        .is_shown = [](const Situation& now) { return now.facts.can_mark; }},
+    Row{.name = "punch",
+        .keys = keys("o"),
+        .help = "The layer that the gloves play comes in, or goes out (--over, --layer).",
+        .button = "Punch",
+        .group = Buttons::hands,
+        .make = simple<flow::Punch>,
+        .refusal = [](const Situation& now) -> const char* {
+          return now.facts.has_layers ? nullptr : no_layers;
+        },
+        .is_shown = [](const Situation& now) { return now.facts.has_layers; }},
+    Row{.name = "wire",
+        .keys = keys("C"),
+        .help = "Begins to draw a wire between the index fingers, and then cuts by it; undo takes "
+                "it back.",
+        .button = "Wire",
+        .button_on = "Cut",
+        .group = Buttons::model,
+        .make = draw<flow::Blade::wire>,
+        .is_on = draws},
+    Row{.name = "knife",
+        .keys = keys("K"),
+        .help = "Begins to draw a knife, from the finger that points on, and then cuts by it; undo "
+                "takes it back.",
+        .button = "Knife",
+        .group = Buttons::model,
+        .make = draw<flow::Blade::knife>,
+        .is_on = draws},
+    Row{.name = "join",
+        .keys = keys("J"),
+        .help = "Parts that overlap become one; undo takes it back.",
+        .button = "Join",
+        .group = Buttons::model,
+        .make = simple<flow::JoinParts>},
+    Row{.name = "subdivide",
+        .keys = keys("e"),
+        .help = "The model gets about four times as many vertices; undo takes it back.",
+        .button = "Subdivide",
+        .group = Buttons::model,
+        .make = simple<flow::Subdivide>},
+    Row{.name = "refine",
+        .keys = keys("E"),
+        .help = "The model gets more triangles where it was stretched, and fewer where it was "
+                "crowded; undo takes it back.",
+        .button = "Refine",
+        .group = Buttons::model,
+        .make = simple<flow::Refine>},
+    Row{.name = "topology",
+        .keys = keys("O"),
+        .help = "Thin necks part, thin walls get a hole, and what is as near fuses; undo takes it "
+                "back.",
+        .button = "Open thin",
+        .group = Buttons::model,
+        .make = simple<flow::ChangeTopology>},
+    Row{.name = "copy part",
+        .keys = keys("D"),
+        .help = "A copy of the part that was taken last comes beside it; undo takes it back.",
+        .button = "Copy",
+        .group = Buttons::model,
+        .make = edit_part<false>,
+        .refusal = without_part,
+        .is_shown = has_parts},
+    Row{.name = "remove part",
+        .keys = keys("X"),
+        .help = "The part that was taken last goes; undo takes it back.",
+        .button = "Remove",
+        .group = Buttons::model,
+        .make = edit_part<true>,
+        .refusal = [](const Situation& now) -> const char* {
+          if (const char* const none = without_part(now)) return none;
+          return now.frame.parts.count > 1 ? nullptr : "The model has no other part.";
+        },
+        .is_shown = has_parts},
+    Row{.name = "symmetry",
+        .keys = keys("y"),
+        .help = "One hand shapes both sides, or plays both of a puppet; or each its own.",
+        .button = "Symmetry",
+        .group = Buttons::more,
+        .make = [](bool on) -> flow::Command { return flow::SetSymmetry{!on}; },
+        .is_on = [](const Situation& now) { return now.frame.symmetric; }},
+    Row{.name = "mask clear",
+        .keys = keys("M"),
+        .help = "Clears the masks, and everything moves.",
+        .button = "Clear masks",
+        .group = Buttons::more,
+        .make = edit_masks<flow::MaskEdit::clear>},
+    Row{.name = "mask invert",
+        .keys = keys("Z"),
+        .help = "Inverts the masks: what was held moves, and the rest is held.",
+        .button = "Invert masks",
+        .group = Buttons::more,
+        .make = edit_masks<flow::MaskEdit::invert>},
+    Row{.name = "clutch left",
+        .keys = keys(","),
+        .help = "Of a puppet, the left hand lets go, or takes hold again wherever it is.",
+        .make = clutch<Side::left>,
+        .is_on = plays<Side::left>,
+        .refusal = without_puppet},
+    Row{.name = "clutch right",
+        .keys = keys("'"),
+        .help = "Of a puppet, the right hand lets go, or takes hold again wherever it is.",
+        .make = clutch<Side::right>,
+        .is_on = plays<Side::right>,
+        .refusal = without_puppet},
+    Row{.name = "save puppet",
+        .keys = keys("S"),
+        .help = "Saves the puppet, or the masks.",
+        .make = simple<flow::SavePuppet>},
+    Row{.name = "next mode",
+        .keys = keys("m"),
+        .help = "Chooses the next mode: type 1, type 2, clay or parts.",
+        .choose = [](WantedSettings& wanted,
+                     const flow::Frame& frame) { wanted.next_mode(frame.function_count > 0); }},
+    Row{.name = "next kernel",
+        .keys = keys("n"),
+        .help = "Chooses the next kernel.",
+        .choose = choose<&WantedSettings::next_kernel>},
+    Row{.name = "smaller radii",
+        .keys = keys("["),
+        .help = "Makes the radii smaller.",
+        .repeats = true,
+        .choose = choose<&WantedSettings::reduce_radii>},
+    Row{.name = "larger radii",
+        .keys = keys("]"),
+        .help = "Makes the radii larger.",
+        .repeats = true,
+        .choose = choose<&WantedSettings::enlarge_radii>},
+    Row{.name = "next brush",
+        .keys = keys("w"),
+        .help = "Chooses the next brush of type 2 for all fingers.",
+        .choose = choose<&WantedSettings::next_brush>},
+    Row{.name = "weaker brush",
+        .keys = keys("-"),
+        .help = "Makes the brushes weaker; below 0 they do the opposite.",
+        .repeats = true,
+        .choose = choose<&WantedSettings::weaken>},
+    Row{.name = "stronger brush",
+        .keys = keys("="),
+        .help = "Makes the brushes stronger.",
+        .repeats = true,
+        .choose = choose<&WantedSettings::strengthen>},
+    Row{.name = "folding",
+        .keys = keys("i"),
+        .help = "The surface never folds, or may.",
+        .choose = choose<&WantedSettings::toggle_folding>},
+    Row{.name = "more clay",
+        .keys = keys(";"),
+        .help = "A quarter more of clay, whose volume stays; from all to air.",
+        .choose = choose<&WantedSettings::next_volume>},
+    Row{.name = "whole hand",
+        .keys = keys("j"),
+        .help = "The whole hand holds the model in type 1, or its fingertips.",
+        .choose = choose<&WantedSettings::toggle_hold>},
+    Row{.name = "end run",
+        .keys = keys("q"),
+        .help = "Ends the run; the shape is written.",
+        .places = in_terminal | in_window,
+        .make = simple<flow::EndRun>},
+    Row{.name = "paint masks",
+        .keys = keys("z"),
+        .help = "Masks are painted with the mouse, or no longer: what fingertips leave alone.",
+        .places = in_window},
+    Row{.name = "edit puppet",
+        .keys = keys("Tab"),
+        .help = "The puppet is edited with the mouse, or played.",
+        .places = in_window},
+    Row{.name = "mirror puppet",
+        .keys = keys("Y"),
+        .help = "While the puppet is edited, what is on one side is on both, or no longer.",
+        .places = in_window},
+    Row{.name = "pin point",
+        .keys = keys("P"),
+        .help = "While the puppet is edited, the place or the point stays where it is, or no "
+                "longer.",
+        .places = in_window},
+    Row{.name = "remove point",
+        .keys = keys("Delete", "Backspace"),
+        .help = "The chosen point of the puppet goes, or all masks while they are painted.",
+        .places = in_window},
+    Row{.name = "forget place",
+        .keys = keys("Esc"),
+        .help = "The place of the puppet is no longer chosen, or masks are no longer painted.",
+        .places = in_window},
+    Row{.name = "show hands",
+        .keys = keys("h"),
+        .help = "Shows the hands, or hides them.",
+        .places = in_window | on_page | in_timeline},
+    Row{.name = "show bones",
+        .keys = keys("b"),
+        .help = "Shows the bones, or hides them.",
+        .places = in_window | on_page | in_timeline},
+    Row{.name = "show vectors",
+        .keys = keys("v"),
+        .help = "Shows the control vectors, or hides them.",
+        .places = in_window | on_page | in_timeline},
+    Row{.name = "show radii",
+        .keys = keys("d"),
+        .help = "Shows the radii, or hides them.",
+        .places = in_window | on_page | in_timeline},
+    Row{.name = "show contact",
+        .keys = keys("0"),
+        .help = "Shows where hands touch clay, or hides it.",
+        .places = in_window | on_page | in_timeline},
+    Row{.name = "show facets",
+        .keys = keys("f"),
+        .help = "Shows facets in place of smooth shading, or no longer.",
+        .places = in_window | on_page | in_timeline},
+    Row{.name = "view front",
+        .keys = keys("1"),
+        .help = "Looks from the front, with Ctrl from the back.",
+        .places = in_window | on_page | in_timeline},
+    Row{.name = "view right",
+        .keys = keys("3"),
+        .help = "Looks from the right, with Ctrl from the left.",
+        .places = in_window | on_page | in_timeline},
+    Row{.name = "view top",
+        .keys = keys("7"),
+        .help = "Looks from the top, with Ctrl from the bottom.",
+        .places = in_window | on_page | in_timeline},
+    Row{.name = "frame all",
+        .keys = keys("Home"),
+        .help = "Has all of the model in the picture.",
+        .places = in_window | on_page},
+    Row{.name = "fold panel",
+        .keys = keys("p"),
+        .help = "Folds the panel, or unfolds it.",
+        .places = in_window | on_page},
+    Row{.name = "list keys",
+        .keys = keys("?"),
+        .help = "Lists the keys.",
+        .places = everywhere | in_timeline},
+};
+
+consteval bool are_distinct() {
+  for (const Row& row : rows)
+    for (const Row& other : rows) {
+      if (&row == &other) continue;
+      if (row.name == other.name) return false;
+      for (const std::string_view key : row.keys)
+        if (other.has_key(key)) return false;
+    }
+  return true;
+}
+static_assert(are_distinct(), "two commands have one name or one key");
+
+} // namespace
+
+std::span<const Row> table() noexcept {
+  return rows;
+}
+
+const Row* named(std::string_view name) noexcept {
+  const auto* const found =
+      std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.name == name; });
+  return found == rows.end() ? nullptr : found;
+}
+
+const Row* with_key(std::string_view key, std::uint8_t places) noexcept {
+  const auto* const found = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
+    return (row.places & places) != 0 && row.has_key(key);
+  });
+  return found == rows.end() ? nullptr : found;
+}
+
+Answer press(const Row& row, const Situation& now, flow::WantedSettings& wanted) {
+  Answer answer{std::nullopt, row.refusal_in(now)};
+  if (row.choose != nullptr) {
+    row.choose(wanted, now.frame);
+    answer.command = wanted.ask();
+  } else if (row.make != nullptr) {
+    answer.command = row.make(row.is_on_in(now));
+    if (answer.refusal != nullptr && !std::holds_alternative<Request>(*answer.command))
+      answer.command.reset();
+  }
+  return answer;
+}
+
+std::string keys_of(const Row& row) {
+  std::string text;
+  for (const std::string_view key : row.keys)
+    if (!key.empty()) text += (text.empty() ? "" : ", ") + std::string(key);
+  return text;
+}
+
+std::string key_list(std::uint8_t places, std::string_view before, std::string_view between) {
+  std::string text;
+  for (const Row& row : rows) {
+    if ((row.places & places) == 0) continue;
+    const std::string keys = places == in_terminal ? std::string(row.keys.front()) : keys_of(row);
+    text.append(before).append(keys).append(between).append(row.help);
+  }
+  return text;
+}
+
+} // namespace nendo::commands

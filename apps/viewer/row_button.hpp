@@ -1,0 +1,15 @@
+#pragma once
+// Buttons of the table of commands, for windows.
+
+#include "commands/commands.hpp"
+
+namespace nendo::viewer {
+
+/// Draws the row's button, grey where the command is not possible. A width of 0 is that of its
+/// text. Returns whether it was pressed.
+bool row_button(const commands::Row& row, const commands::Situation& now, float width);
+/// Shows the row's help and keys, or why it is not possible, while the mouse is over the latest
+/// item.
+void show_help(const commands::Row& row, const commands::Situation& now);
+
+} // namespace nendo::viewer

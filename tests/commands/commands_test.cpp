@@ -1,0 +1,221 @@
+// The table of commands: its keys and names make the same commands in the terminal, in the window
+// and on the page, and the pages list what it has.
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "commands/commands.hpp"
+#include "web/client_commands.hpp"
+#include "web/page_commands.hpp"
+#ifdef NENDO_WINDOW
+#include "viewer/row_keys.hpp"
+#endif
+
+namespace commands_test {
+
+using namespace nendo;
+using commands::Row;
+
+namespace {
+
+/// A run in one of two states: nothing is possible or on, or all is.
+struct State {
+  flow::Frame frame;
+  commands::RunFacts facts;
+
+  explicit State(bool all) : facts{all, all, all, all} {
+    frame.settings.radius_m.fill(0.1);
+    frame.undo_steps = frame.redo_steps = all ? 1 : 0;
+    frame.held = frame.symmetric = all;
+    frame.function_count = all ? 3 : 0;
+    frame.parts.count = all ? 2 : 0;
+    frame.parts.chosen = all ? 0 : deform::no_index;
+    if (all) frame.wire.begin(1.0);
+  }
+  commands::Situation now() const { return {frame, facts}; }
+};
+
+commands::Answer press(const Row& row, const State& state) {
+  flow::WantedSettings wanted;
+  wanted.follow(state.frame.settings);
+  return commands::press(row, state.now(), wanted);
+}
+
+/// What a user types in the terminal: one character, or nothing if that cannot be.
+const Row* typed(std::string_view key) {
+  return key.size() == 1 ? commands::with_key(key, commands::in_terminal) : nullptr;
+}
+
+const Row* sent(std::string_view name) {
+  const auto asked = web::parse_command(name);
+  const auto* const row = asked ? std::get_if<const Row*>(&*asked) : nullptr;
+  return row != nullptr ? *row : nullptr;
+}
+
+#ifdef NENDO_WINDOW
+/// The row that obeys a key of a keyboard in the window: all that fit are one.
+const Row* struck(int key, bool control, bool shift) {
+  std::set<const Row*> found;
+  for (const Row& row : commands::table())
+    for (const std::string_view name : row.keys) {
+      const viewer::KeyStroke stroke = viewer::stroke_of(name);
+      if ((row.places & commands::in_window) != 0 && stroke.key == key &&
+          stroke.fits(control, shift))
+        found.insert(&row);
+    }
+  return found.size() == 1 ? *found.begin() : nullptr;
+}
+#endif
+
+bool is_sentence(std::string_view text) {
+  return text.size() > 10 && std::isupper(static_cast<unsigned char>(text.front())) != 0 &&
+         text.ends_with('.') && text.find(". ") == std::string_view::npos &&
+         text.find_first_of("\"\\<\n") == std::string_view::npos;
+}
+
+std::string content_of(const std::string& file) {
+  std::ifstream in(std::string(NENDO_SOURCE) + "/" + file);
+  REQUIRE(in);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string places_of(const Row& row) {
+  std::string text;
+  for (const auto& [bit, name] : {std::pair{commands::in_terminal, "terminal"},
+                                  {commands::in_window, "window"},
+                                  {commands::on_page, "page"}})
+    if ((row.places & bit) != 0) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text == "terminal, window, page" ? "everywhere" : text;
+}
+
+std::string keys_as_code(const Row& row) {
+  std::string text;
+  for (const std::string_view key : row.keys)
+    if (!key.empty()) text += (text.empty() ? "`" : ", `") + std::string(key) + '`';
+  return text;
+}
+
+} // namespace
+
+TEST_SUITE("commands") {
+  TEST_CASE("each command is the same by its key in the terminal and the window, and by its name") {
+    for (const Row& row : commands::table()) {
+      CAPTURE(row.name);
+      if (!row.is_for_run()) continue;
+      const std::string_view key = row.keys.front();
+      REQUIRE(key.size() == 1);
+      CHECK(typed(key) == ((row.places & commands::in_terminal) != 0 ? &row : nullptr));
+      CHECK(sent(row.name) == ((row.places & commands::on_page) != 0 ? &row : nullptr));
+#ifdef NENDO_WINDOW
+      const auto letter = static_cast<unsigned char>(key.front()); // GLFW has ASCII's numbers
+      const int number = std::isalpha(letter) != 0 ? std::toupper(letter) : letter;
+      CHECK(struck(number, false, std::isupper(letter) != 0) ==
+            ((row.places & commands::in_window) != 0 ? &row : nullptr));
+#endif
+      CHECK(press(row, State(true)).command);
+    }
+#ifdef NENDO_WINDOW
+    CHECK(struck('Z', true, false) == commands::named("undo"));
+    CHECK(struck('Y', true, false) == commands::named("redo"));
+    CHECK(struck('Z', true, true) == commands::named("redo"));
+    CHECK(struck('=', false, true) == commands::named("stronger brush")); // as "+" is typed
+    CHECK(struck('G', true, false) == nullptr);
+    CHECK(struck('G', false, true) == nullptr);
+#endif
+    CHECK(typed("h") == nullptr);
+    CHECK(sent("end run") == nullptr);
+    CHECK(sent("show hands") == nullptr);
+  }
+
+  TEST_CASE("what begins something also ends it, and settings are asked for by the same rows") {
+    const State off(false), all(true);
+    const auto asked = [](const char* name, const State& state) {
+      return *press(*commands::named(name), state).command;
+    };
+    CHECK(asked("take", off) == flow::Command(flow::SetRecording{true}));
+    CHECK(asked("take", all) == flow::Command(flow::SetRecording{false}));
+    CHECK(asked("wire", off) == flow::Command(flow::DrawWire{true}));
+    CHECK(asked("wire", all) == flow::Command(flow::DrawWire{false}));
+    CHECK(asked("knife", off) == flow::Command(flow::DrawWire{true, flow::Blade::knife}));
+    CHECK(asked("symmetry", off) == flow::Command(flow::SetSymmetry{true}));
+    CHECK(asked("symmetry", all) == flow::Command(flow::SetSymmetry{false}));
+    CHECK(asked("clutch left", all) ==
+          flow::Command(flow::SetClutch{Side::left, puppet::RigPlayer::all_fingers, false}));
+    for (const Row& row : commands::table()) {
+      if (row.choose == nullptr) continue;
+      CAPTURE(row.name);
+      const auto command = press(row, off).command;
+      REQUIRE(command);
+      const auto* const change = std::get_if<flow::ChangeSettings>(&*command);
+      REQUIRE(change != nullptr);
+      CHECK(change->settings.are_usable());
+      CHECK(change->settings != off.frame.settings);
+    }
+  }
+
+  TEST_CASE("a command that is not possible says why, and only the loop's requests are passed on") {
+    const State none(false);
+    int refused = 0;
+    for (const Row& row : commands::table()) {
+      CAPTURE(row.name);
+      CHECK(row.refusal_in(State(true).now()) == nullptr);
+      if (!row.is_for_run()) continue;
+      const auto answer = press(row, none);
+      const bool is_request =
+          answer.command && std::holds_alternative<flow::Request>(*answer.command);
+      CHECK(answer.command.has_value() == (answer.refusal == nullptr || is_request));
+      if (answer.refusal == nullptr) continue;
+      ++refused;
+      CHECK(is_sentence(answer.refusal));
+    }
+    CHECK(refused == 10);
+  }
+
+  TEST_CASE("each row has a sentence, and each button a text") {
+    for (const Row& row : commands::table()) {
+      CAPTURE(row.name);
+      CHECK(is_sentence(row.help));
+      CHECK(row.button.empty() == (row.group == commands::Buttons::none));
+      CHECK((row.is_for_run() || (row.places & commands::in_terminal) == 0 ||
+             row.name == "list keys"));
+      CHECK_FALSE((row.make != nullptr && row.choose != nullptr));
+    }
+  }
+
+  TEST_CASE("the page has each row, and obeys by itself what is not for the run") {
+    const std::string list = web::page_commands();
+    const std::string panel = content_of("apps/web/page/panel.js");
+    for (const Row& row : commands::table()) {
+      CAPTURE(row.name);
+      const bool is_there = (row.places & commands::on_page) != 0;
+      const std::string name(row.name);
+      CHECK((list.find("{ name: \"" + name + "\", ") != std::string::npos) == is_there);
+      if (!row.is_for_run())
+        CHECK((panel.find("\n  '" + name + "': panel => ") != std::string::npos) == is_there);
+    }
+  }
+
+  TEST_CASE("the pages list what the table has, and nothing else") {
+    std::string keys = "| key | what it does | where |\n|---|---|---|\n";
+    std::string protocol = "| command | |\n|---|---|\n";
+    for (const Row& row : commands::table()) {
+      const std::string help(row.help);
+      keys += "| " + keys_as_code(row) + " | " + help + " | " + places_of(row) + " |\n";
+      if (row.is_for_run() && (row.places & commands::on_page) != 0)
+        protocol += "| `" + std::string(row.name) + "` | " + help + " |\n";
+    }
+    CAPTURE(keys);
+    CAPTURE(protocol);
+    CHECK(content_of("apps/session/README.md").find("\n\n" + keys + "\n") != std::string::npos);
+    CHECK(content_of("apps/web/PROTOCOL.md").find("\n\n" + protocol + "\n") != std::string::npos);
+  }
+}
+
+} // namespace commands_test
