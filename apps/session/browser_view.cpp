@@ -65,7 +65,7 @@ std::vector<std::byte> BrowserView::message_for(const deform::BlockLayout& layou
                             {model_name_, setup.options.rate_hz, setup.placement.units_per_metre});
 }
 
-void BrowserView::update(const RunStatus& status, flow::CommandRing& commands) {
+void BrowserView::update(const RunStatus& status, Asks& asks) {
   web::GloveStates gloves;
   for (std::size_t slot = 0; slot < gloves.size(); ++slot)
     gloves[slot] = {status.gloves[slot].counts, status.gloves[slot].uncalibrated};
@@ -79,7 +79,7 @@ void BrowserView::update(const RunStatus& status, flow::CommandRing& commands) {
   while (auto asked = server_->next_command()) {
     if (const auto* const row = std::get_if<const commands::Row*>(&*asked)) {
       const commands::Answer answer = commands::press(**row, status.situation(), wanted_);
-      if (answer.command) commands.try_push(*answer.command);
+      if (answer.command) asks.emplace_back(*answer.command);
       if (answer.refusal != nullptr) server_->report(answer.refusal);
       continue;
     }
@@ -89,7 +89,7 @@ void BrowserView::update(const RunStatus& status, flow::CommandRing& commands) {
       wanted_.now = change->settings; // from which the next key goes on
       wanted_.ask();
     }
-    commands.try_push(command);
+    asks.emplace_back(command);
   }
 }
 

@@ -24,7 +24,7 @@ public:
   Result<void> prepare(const flow::ModelVersion& version) override;
   /// Browsers then get the new model.
   Result<void> settle() override;
-  void update(const RunStatus& status, flow::CommandRing& commands) override;
+  void update(const RunStatus& status, Asks& asks) override;
   void report(const std::string& message) override { server_->report(message); }
 
 private:

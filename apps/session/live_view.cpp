@@ -39,7 +39,7 @@ public:
     if (edits_) window_->editor().turn(true);
   }
 
-  void update(const RunStatus& status, flow::CommandRing& commands) override {
+  void update(const RunStatus& status, Asks& asks) override {
     for (std::size_t slot = 0; slot < status.gloves.size(); ++slot) {
       gauges_.gloves[slot] = status.gloves[slot].source;
       if (gauges_.gloves[slot].empty())
@@ -54,13 +54,12 @@ public:
       window_->editor().set_model(status.model.mesh);
     }
     window_->editor().follow(status.puppet, status.frame);
-    for (const flow::Command& command : window_->show(status.frame, status.fresh, gauges_))
-      commands.try_push(command);
+    const Commands given = window_->show(status.frame, status.fresh, gauges_);
+    if (auto puppet = window_->editor().take()) asks.emplace_back(std::move(puppet));
+    asks.insert(asks.end(), given.begin(), given.end());
     if (status.fresh) ++shown_;
-    if (options_.frames > 0 && shown_ >= options_.frames) commands.try_push(flow::EndRun{});
+    if (options_.frames > 0 && shown_ >= options_.frames) asks.emplace_back(flow::EndRun{});
   }
-
-  std::shared_ptr<const puppet::Rig> take_puppet() override { return window_->editor().take(); }
 
   void report(const std::string& message) override { gauges_.report = message; }
   bool sets_pace() const noexcept override { return true; }

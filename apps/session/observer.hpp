@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <nendo/driver/record_counts.hpp>
@@ -39,17 +40,19 @@ struct RunStatus {
   commands::Situation situation() const noexcept { return {frame, facts}; }
 };
 
+/// What an observer asks for: a command, or another puppet, not null, with which the loop shall go
+/// on.
+using Ask = std::variant<flow::Command, std::shared_ptr<const puppet::Rig>>;
+using Asks = std::vector<Ask>;
+
 /// All calls come from the main thread. No call may block for longer than 30 ms.
 class Observer {
 public:
   virtual ~Observer() = default;
   /// Called before the loop begins. Its model and hands live as long as the run.
   virtual void loop_begins(const LoopStart& start) { static_cast<void>(start); }
-  /// Called repeatedly while the loop runs. Pushes the commands that were given since the last
-  /// call.
-  virtual void update(const RunStatus& status, flow::CommandRing& commands) = 0;
-  /// Returns, once, another puppet with which the loop shall go on; null: none was asked for.
-  virtual std::shared_ptr<const puppet::Rig> take_puppet() { return nullptr; }
+  /// Called repeatedly while the loop runs. Adds what was asked for since the last call.
+  virtual void update(const RunStatus& status, Asks& asks) = 0;
   /// Tells the person who watches what became of a command.
   virtual void report(const std::string& message) { static_cast<void>(message); }
   /// Tells whether update() waits by itself, as a window waits for its screen.

@@ -40,7 +40,7 @@ RunKeys::RunKeys(std::chrono::milliseconds timeout) : timeout_(timeout) {
   if (keys_.are_available()) cli::note("keys: ? lists them, q ends the run");
 }
 
-void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
+void RunKeys::update(const RunStatus& status, Asks& asks) {
   const auto key = keys_.next(timeout_);
   if (!key) return;
   const auto* const row = commands::with_key({&*key, 1}, commands::in_terminal);
@@ -49,7 +49,7 @@ void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
     return report("keys:" + commands::key_list(commands::in_terminal, "\n  ", "  "));
   wanted_.follow(status.frame.settings);
   const commands::Answer answer = commands::press(*row, status.situation(), wanted_);
-  if (answer.command) commands.try_push(*answer.command);
+  if (answer.command) asks.emplace_back(*answer.command);
   if (answer.refusal != nullptr) report(answer.refusal);
   if (row->choose != nullptr && answer.command) report(words_of(wanted_.now));
 }

@@ -17,7 +17,7 @@ public:
   /// update() waits for a key.
   explicit RunKeys(std::chrono::milliseconds timeout);
 
-  void update(const RunStatus& status, flow::CommandRing& commands) override;
+  void update(const RunStatus& status, Asks& asks) override;
   /// Writes to standard error, also if no keys can come.
   void report(const std::string& message) override;
 

@@ -5,17 +5,15 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include <nendo/deform/undo_memory.hpp>
-#include <nendo/flow/rig_setup.hpp>
 
 #include "cli/cli.hpp"
 #include "gloves/glove_feedback.hpp"
 #include "gloves/stuck_sensors.hpp"
 #include "session/loop_thread.hpp"
-#include "session/mask_edits.hpp"
+#include "session/run_commands.hpp"
 #include "session/run_keys.hpp"
 #include "session/run_models.hpp"
 #include "session/run_picture.hpp"
@@ -49,10 +47,12 @@ public:
         participants_(participants), grants_(std::move(grants)),
         recorder_(options_, placed_, hands_, model_),
         models_(placed_, participants_.sinks, options_.refine_to, options_.changes_topology),
-        saving_(options_, recorder_) {
+        saving_(options_, recorder_),
+        commands_(options_, placed_, participants_.sinks, recorder_, models_, saving_,
+                  [this](const std::string& message) { report(message); }) {
     for (const auto& hand : hands_)
       feedback_.push_back({hand.side, gloves::GloveFeedback(*hand.glove)});
-    options_.loop.commands = &loop_commands_;
+    options_.loop.commands = &commands_.ring();
     const std::size_t most = most_undo_bytes(options_);
     const std::size_t at_once = std::min(undo_bytes_for(model_), most);
     options_.loop.sculptor.deformer.undo_bytes = at_once;
@@ -123,73 +123,17 @@ private:
     const flow::Frame& frame = placed_.loop->frames().front();
     const flow::ModelVersion& model = *placed_.loop->changes().model(frame.model);
     settle_sinks();
-    follow_layers(frame);
-    follow_wire(frame);
+    commands_.follow_frame(frame);
     follow_stuck(frame);
     const RunStatus status{frame,   model,   fresh,
-                           gloves_, facts(), placed_.loop->puppet(frame.puppet)};
-    for (Observer* observer : observers_) {
-      observer->update(status, commands_);
-      if (auto puppet = observer->take_puppet()) puppet_ = std::move(puppet);
-    }
-    commands_.drain([this](const flow::Command& command) noexcept { dispatch(command); });
-    follow_take();
-    for (auto& wrist : wrists_)
-      if (wrist)
-        loop_commands_.try_push(*std::exchange(wrist, {})); // if it is full, the next move counts
-    if (const auto refused = std::exchange(refused_, {}); refused && !refusal_reported_) {
-      refusal_reported_ = true;
-      report("the loop does not answer, so it was not asked to " + std::string(name_of(*refused)));
-    }
-    change_loop(fresh);
+                           gloves_, facts(), placed_.loop->changes().puppet(frame.puppet)};
+    asks_.clear();
+    for (Observer* observer : observers_)
+      observer->update(status, asks_);
+    commands_.obey(asks_);
+    commands_.follow(fresh);
   }
 
-  // Passes on the newest settings when the loop has those before, begins or ends a recording, and
-  // goes on with making a model.
-  void change_loop(bool fresh) {
-    flow::DeformLoop& loop = *placed_.loop;
-    const flow::Frame& frame = loop.frames().front();
-    const bool awaits = frame.awaited.has_value(); // by an undo or a redo
-    if (fresh && awaits && !settings_) tell(models_.go_to(*frame.awaited));
-    if (settings_ && !loop.changes().is_changing() &&
-        !loop.changes().change_settings(*std::exchange(settings_, {})))
-      report("settings that nothing can be done with; the run goes on as it was (puppets "
-             "do not act on clay, and one whose distances go along the surface cannot keep the "
-             "volume)");
-    if (!awaits) edit_masks();
-    if (puppet_ && !awaits && !loop.changes().is_changing() && !recorder_.is_changing() &&
-        !models_.is_handing_over())
-      change_puppet();
-    if (taken_puppet_ && !awaits && !loop.changes().is_changing() && !recorder_.is_changing() &&
-        !models_.is_handing_over())
-      follow_taken_puppet();
-    // A recording has the whole of a wire that cuts in it, or nothing of it.
-    if (record_ && !recorder_.is_changing() && !models_.is_handing_over() && !models_.is_due())
-      recorder_.set_file(*std::exchange(record_, {}), frame);
-    tell(recorder_.follow());
-    tell(models_.follow(!awaits && !recorder_.is_changing()));
-  }
-  // What the take changes, and its loop does not do by itself.
-  void follow_take() noexcept {
-    if (options_.over)
-      options_.over->take.script->for_others().drain([this](const flow::Command& command) noexcept {
-        if (const auto* change = std::get_if<flow::ChangePuppet>(&command))
-          taken_puppet_ = change->number; // only the newest counts
-        else
-          dispatch(command);
-      });
-  }
-  /// Cuts by each wire that has been drawn.
-  void follow_wire(const flow::Frame& frame) {
-    if (std::exchange(wires_, frame.wire.completed()) == frame.wire.completed()) return;
-    if (!frame.wire.is_drawn()) models_.cut(frame.wire);
-  }
-  void follow_layers(const flow::Frame& frame) {
-    if (frame.ticks_run == 0) return;
-    const bool on = (frame.layers_on & placed_.setup.live_layers()) != 0;
-    if (is_in_ && *is_in_ != on) report(on ? "punched in" : "punched out");
-    is_in_ = on;
-  }
   /// Says once of each sensor that it is stuck, or moves again.
   void follow_stuck(const flow::Frame& frame) {
     if (frame.ticks_run == 0) return;
@@ -199,62 +143,6 @@ private:
         report(hand.glove->info().source + ": " + sentence);
     }
   }
-  void punch() noexcept {
-    const std::uint32_t live = placed_.setup.live_layers();
-    if (live == 0) return report(commands::no_layers);
-    const bool on = !is_in_.value_or(true);
-    for (std::size_t at = 0; at < placed_.setup.inputs.size(); ++at)
-      if ((live >> at & 1U) != 0)
-        loop_commands_.try_push(flow::SetLayer{static_cast<std::uint8_t>(at), on});
-  }
-  void change_puppet() {
-    flow::DeformLoop& loop = *placed_.loop;
-    const std::shared_ptr<const puppet::Rig> rig = std::exchange(puppet_, nullptr);
-    const Eigen::Index functions =
-        flow::is_played(rig.get()) ? rig->supports().functions(rig->starts().cols()) : 0;
-    if (!participants_.sinks.empty() &&
-        static_cast<std::size_t>(functions) > frame_capacity(placed_).functions)
-      return report("a puppet with so many points more cannot be published; save it, and begin "
-                    "again with it");
-    recorder_.add_puppet(loop.changes().next_puppet(), *rig);
-    if (const auto changed = loop.changes().change_puppet(rig); !changed)
-      report(changed.error().message);
-  }
-  /// To a puppet of the take, which the loop has already if the take has changed to it before.
-  void follow_taken_puppet() {
-    const std::uint32_t number = *std::exchange(taken_puppet_, {});
-    flow::DeformLoop& loop = *placed_.loop;
-    const auto& puppets = options_.over->take.puppets;
-    const auto of_take = puppets.find(number);
-    const auto known = taken_puppets_.find(number);
-    if (of_take == puppets.end() || known != taken_puppets_.end()) {
-      const auto changed =
-          loop.changes().change_puppet(of_take == puppets.end() ? 0 : known->second);
-      if (!changed) report(changed.error().message);
-      return;
-    }
-    auto rig = recording::rig_of(*of_take->second, loop.changes().model(0)->mesh);
-    if (!rig) return report(rig.error().message);
-    taken_puppets_[number] = loop.changes().next_puppet();
-    puppet_ = *std::move(rig);
-    change_puppet();
-  }
-  // Makes one puppet of all edits that have come.
-  void edit_masks() {
-    const flow::DeformLoop& loop = *placed_.loop;
-    for (const flow::Command& command : std::exchange(mask_edits_, {})) {
-      if (!puppet_) puppet_ = loop.changes().puppet(loop.changes().newest_puppet());
-      auto edited = edited_masks(command, puppet_, loop.changes().model(0)->mesh.vertices);
-      if (edited)
-        puppet_ = *std::move(edited);
-      else
-        report(edited.error().message);
-    }
-    if (puppet_ == loop.changes().puppet(loop.changes().newest_puppet())) puppet_.reset();
-  }
-  void tell(const std::optional<std::string>& message) {
-    if (message) report(*message);
-  }
   void settle_sinks() {
     const std::uint32_t model = placed_.loop->frames().front().model;
     if (std::exchange(shown_model_, model) == model) return;
@@ -262,68 +150,19 @@ private:
       if (const auto settled = sink->settle(); !settled) report(settled.error().message);
   }
 
-  void dispatch(const flow::Command& command) noexcept {
-    const auto* const move = std::get_if<flow::WristMove>(&command);
-    if (move != nullptr && !move->is_usable()) {
-      if (!std::exchange(move_refused_, true)) report(std::string(flow::WristMove::refusal));
-    } else if (move != nullptr) {
-      move_refused_ = false;
-      wrists_[flow::Placement::index_of(move->side)] = *move; // only the newest counts
-    } else if (const auto* request = std::get_if<flow::Request>(&command)) {
-      if (loop_commands_.try_push(command)) {
-        refusal_reported_ = false;
-      } else {
-        refused_ = *request;
-      }
-    }
-    if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
-      settings_ = change->settings; // only the newest count
-    if (const auto* recording = std::get_if<flow::SetRecording>(&command)) record_ = recording->on;
-    if (const auto change = flow::model_asked_by(command)) models_.ask(*change);
-    if (std::holds_alternative<flow::DrawWire>(command)) loop_commands_.try_push(command);
-    if (std::holds_alternative<flow::Mark>(command)) mark();
-    if (std::holds_alternative<flow::Punch>(command)) punch();
-    if (std::holds_alternative<flow::SetMask>(command)) mask_edits_.push_back(command);
-    if (flow::is_for_puppet(command)) play_otherwise(command);
-    ends_ = ends_ || std::holds_alternative<flow::EndRun>(command);
-    saving_.add(command);
-  }
-
-  void play_otherwise(const flow::Command& command) noexcept {
-    const flow::DeformLoop& loop = *placed_.loop;
-    if (!flow::is_played(loop.changes().puppet(loop.changes().newest_puppet()).get()) &&
-        !flow::is_played(puppet_.get()) && std::holds_alternative<flow::SetSymmetry>(command))
-      mask_edits_.push_back(command);
-    else if (!flow::is_played(loop.puppet(loop.newest_puppet()).get()))
-      report(commands::no_puppet);
-    else if (!loop_commands_.try_push(command))
-      report("the loop does not answer, so it was not told how to play the puppet");
-  }
-  void mark() noexcept {
-    const bool marks = recorder_.is_recording() && loop_commands_.try_push(flow::Mark{});
-    if (marks) ++marks_;
-    report(marks ? "mark " + std::to_string(marks_) + " is in the recording"
-                 : commands::no_recording);
-  }
-
   // Commands that came just before the end are still obeyed, if the loop ticks at all.
   void wait_until_taken() {
-    const auto is_due = [this] {
-      return loop_commands_.size() > 0 || settings_ || puppet_ || taken_puppet_ ||
-             !mask_edits_.empty() || record_ || recorder_.is_changing() || models_.is_due() ||
-             models_.is_handing_over() || placed_.loop->changes().is_changing();
-    };
     auto& frames = placed_.loop->frames();
     const HostTime begin = HostClock::now();
     const auto waits_for = [&](milliseconds most) { return HostClock::now() - begin < most; };
     // Only a further frame tells that an undo waits for settings.
-    for (bool is_news = false; waits_for(milliseconds(is_due() ? 1000 : 100));) {
+    for (bool is_news = false; waits_for(milliseconds(commands_.is_due() ? 1000 : 100));) {
       std::this_thread::sleep_for(milliseconds(1));
       const bool fresh = frames.update();
       settle_sinks();
-      change_loop(fresh);
+      commands_.follow(fresh);
       is_news = is_news || fresh;
-      if (is_news && !is_due() && !frames.front().awaited) return;
+      if (is_news && !commands_.is_due() && !frames.front().awaited) return;
     }
   }
 
@@ -343,7 +182,7 @@ private:
     LoopThread thread(loop, options_);
     report_refusals(thread.grants());
     watch(thread, picture);
-    if (ends_) wait_until_taken();
+    if (commands_.ends()) wait_until_taken();
     if (saving_.is_due()) save(); // asked for just before the end
     thread.stop();
     elapsed_s_ = to_seconds(HostClock::now() - thread.start);
@@ -406,7 +245,7 @@ private:
         picture.add(frames.front());
       }
       update_observers(fresh);
-      if (ends_ || ends_with_gloves()) return;
+      if (commands_.ends() || ends_with_gloves()) return;
       if (saving_.is_due_now()) save();
       if (HostClock::now() < next_progress) continue;
       gloves_ = status_of(hands_);
@@ -423,25 +262,13 @@ private:
   const RunParticipants& participants_;
   std::vector<Observer*> observers_;
   std::vector<flow::Grant> grants_;
-  flow::CommandRing commands_{2048}; ///< of all observers
-  flow::CommandRing loop_commands_{256};
-  std::array<std::optional<flow::WristMove>, 2> wrists_; ///< not passed on yet
-  std::optional<flow::Request> refused_;                 ///< the loop had no room for it
-  bool refusal_reported_ = false;                        ///< and no request was accepted since
-  bool move_refused_ = false;                            ///< the latest, of a wrist; it was said
-  bool ends_ = false;                                    ///< somebody has asked for the end
-  std::optional<flow::LoopSettings> settings_;           ///< not passed on yet
-  std::shared_ptr<const puppet::Rig> puppet_;            ///< not passed on yet
-  std::optional<std::uint32_t> taken_puppet_;            ///< likewise, by the take's number
-  std::uint32_t wires_ = 0;                              ///< that have been drawn to their end
-  std::map<std::uint32_t, std::uint32_t> taken_puppets_; ///< the loop's numbers of the take's
-  std::vector<flow::Command> mask_edits_;                ///< likewise, and symmetry
-  std::optional<bool> record_;                           ///< to a file, or not; not done yet
+  Asks asks_;         ///< of all observers, since the last time
   PlacedLoop placed_; ///< outlives what another thread may be making of its model
   RunRecorder recorder_;
   RunModels models_;
   std::uint32_t shown_model_ = 0; ///< of the latest frame
   RunSaving saving_;
+  RunCommands commands_;
   struct Felt {
     Side side;
     gloves::GloveFeedback feedback;
@@ -449,10 +276,8 @@ private:
   std::vector<Felt> feedback_; ///< of all gloves
   GloveStatuses gloves_;
   double elapsed_s_ = 0.0;
-  std::uint64_t marks_ = 0;
   bool end_reported_ = false;                   ///< that all gloves have ended
   std::array<gloves::StuckNotices, 2> stuck_{}; ///< by flow::Placement::index_of(side)
-  std::optional<bool> is_in_;                   ///< the live layers play, in the latest frame
 };
 
 } // namespace

@@ -2,6 +2,8 @@
 
 #include <future>
 #include <thread>
+#include <utility>
+#include <variant>
 
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -72,7 +74,7 @@ private:
 struct Watch {
   session::Observer* observer = nullptr;
   session::GloveStatuses gloves{};
-  flow::CommandRing commands{256};
+  session::Asks asks{};
   flow::CommandRing for_loop{64};
 
   /// Waits some milliseconds, or as long as the observer takes. Returns true if it asks for the
@@ -85,16 +87,23 @@ struct Watch {
     ++pictures;
     const bool fresh = loop.frames().update();
     const flow::Frame& frame = loop.frames().front();
-    observer->update(
-        {frame, *loop.model(frame.model), fresh, gloves, {}, loop.puppet(frame.puppet)}, commands);
+    observer->update({frame,
+                      *loop.changes().model(frame.model),
+                      fresh,
+                      gloves,
+                      {},
+                      loop.changes().puppet(frame.puppet)},
+                     asks);
     bool ends = false;
     std::optional<flow::LoopSettings> wanted;
-    commands.drain([&](const flow::Command& command) noexcept {
-      ends = ends || std::holds_alternative<flow::EndRun>(command);
-      if (is_for_loop(command)) for_loop.try_push(command);
-      if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
+    for (const session::Ask& ask : std::exchange(asks, {})) {
+      const auto* const command = std::get_if<flow::Command>(&ask);
+      if (command == nullptr) continue; // a puppet, which this loop does not have
+      ends = ends || std::holds_alternative<flow::EndRun>(*command);
+      if (is_for_loop(*command)) for_loop.try_push(*command);
+      if (const auto* change = std::get_if<flow::ChangeSettings>(command))
         wanted = change->settings;
-    });
+    }
     if (!wanted && fresh && loop.frames().front().awaited)
       wanted = loop.frames().front().awaited->settings;
     if (wanted) loop.changes().change_settings(*wanted);

@@ -57,7 +57,7 @@ public:
     if (frame.ticks_run != ticks_ + 1) ++leaps; // another loop, or a tick that nobody was shown
     ticks_ = frame.ticks_run;
   }
-  void update(const RunStatus& status, flow::CommandRing& commands) override {
+  void update(const RunStatus& status, Asks& asks) override {
     if (settings.empty() || settings.back() != status.frame.settings)
       settings.push_back(status.frame.settings);
     if (recorded.empty() || recorded.back() != status.facts.recorded)
@@ -70,7 +70,7 @@ public:
     if (asked == changes.size()) content_ = true;
     if (content_) return;
     for (const auto& command : changes[asked])
-      commands.try_push(command);
+      asks.emplace_back(command);
     ++asked;
   }
   void report(const std::string& message) override { reports.push_back(message); }
@@ -100,11 +100,11 @@ private:
 class Ender final : public PacingObserver {
 public:
   explicit Ender(std::vector<const Asker*> askers) : askers_(std::move(askers)) {}
-  void update(const RunStatus&, flow::CommandRing& commands) override {
+  void update(const RunStatus&, Asks& asks) override {
     wait();
     if (std::all_of(askers_.begin(), askers_.end(),
                     [](const Asker* asker) { return asker->is_content(); }))
-      commands.try_push(flow::EndRun{});
+      asks.emplace_back(flow::EndRun{});
   }
 
 private:

@@ -29,11 +29,11 @@ namespace {
 /// Asks for the shape to be saved, and ends the run at once.
 class Saver final : public PacingObserver {
 public:
-  void update(const RunStatus& status, flow::CommandRing& commands) override {
+  void update(const RunStatus& status, Asks& asks) override {
     wait();
     if (!status.fresh || ++frames_ < 60) return;
-    commands.try_push(flow::SaveShape{});
-    commands.try_push(flow::EndRun{});
+    asks.emplace_back(flow::SaveShape{});
+    asks.emplace_back(flow::EndRun{});
   }
   void report(const std::string& message) override { reports.push_back(message); }
 
@@ -47,10 +47,10 @@ private:
 class Onlooker final : public PacingObserver {
 public:
   explicit Onlooker(bool stays) : stays_(stays) {}
-  void update(const RunStatus& status, flow::CommandRing& commands) override {
+  void update(const RunStatus& status, Asks& asks) override {
     wait();
     silent = status.frame.hands[0].silent;
-    if (silent && !reports.empty() && ++frames_after > 50) commands.try_push(flow::EndRun{});
+    if (silent && !reports.empty() && ++frames_after > 50) asks.emplace_back(flow::EndRun{});
   }
   void report(const std::string& message) override { reports.push_back(message); }
   bool stays_open() const noexcept override { return stays_; }
@@ -75,10 +75,10 @@ public:
   void show(const flow::Frame& frame) noexcept override {
     if (frame.ticks_run == 1) waiting = frame.hands[0].samples;
   }
-  void update(const RunStatus& status, flow::CommandRing& commands) override {
+  void update(const RunStatus& status, Asks& asks) override {
     wait();
     if (status.frame.hands[0].samples > 0 && status.frame.hands[1].samples > 0)
-      commands.try_push(flow::EndRun{});
+      asks.emplace_back(flow::EndRun{});
   }
 
   std::atomic<std::uint64_t> waiting{1000}; ///< samples of the left hand, for the first tick
@@ -88,32 +88,31 @@ public:
 class PuppetMaker final : public PacingObserver {
 public:
   explicit PuppetMaker(const deform::Mesh& mesh) : mesh_(mesh) {}
-  void update(const RunStatus& status, flow::CommandRing& commands) override {
+  void update(const RunStatus& status, Asks& asks) override {
     wait();
     if (!status.fresh || ++frames_ % 25 != 0) return;
     const std::size_t step = frames_ / 25;
-    if (step == 1) make(puppet::parse_puppet(test::ball_puppet, "a test's puppet"));
-    if (step == 2) make(puppet::with_radius(*status.puppet, 0, 0.6));
+    if (step == 1) make(puppet::parse_puppet(test::ball_puppet, "a test's puppet"), asks);
+    if (step == 2) make(puppet::with_radius(*status.puppet, 0, 0.6), asks);
     if (step == 3)
       make(puppet::with_function(*status.puppet, {{0, 1, 0}, 0.5}, {0, 0.3, 0},
-                                 *puppet::HandSignal::named("left.index_flexion"), 0.5));
+                                 *puppet::HandSignal::named("left.index_flexion"), 0.5),
+           asks);
     if (step == 4) {
-      commands.try_push(flow::Request::let_go);
-      commands.try_push(flow::Request::undo);
+      asks.emplace_back(flow::Request::let_go);
+      asks.emplace_back(flow::Request::undo);
     }
-    if (step == 6) commands.try_push(flow::EndRun{});
+    if (step == 6) asks.emplace_back(flow::EndRun{});
   }
-  std::shared_ptr<const puppet::Rig> take_puppet() override { return std::exchange(rig_, nullptr); }
   void report(const std::string& message) override { FAIL(message); }
 
 private:
-  void make(const Result<puppet::Puppet>& puppet) {
+  void make(const Result<puppet::Puppet>& puppet, Asks& asks) const {
     REQUIRE(puppet);
-    rig_ = std::make_shared<const puppet::Rig>(*puppet, mesh_);
+    asks.emplace_back(std::make_shared<const puppet::Rig>(*puppet, mesh_));
   }
 
   const deform::Mesh& mesh_;
-  std::shared_ptr<const puppet::Rig> rig_;
   std::size_t frames_ = 0;
 };
 

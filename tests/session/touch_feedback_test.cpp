@@ -70,19 +70,19 @@ public:
   void show(const flow::Frame& frame) noexcept override {
     if (frame.clay.touching > 0 && touched_at_.load() == HostTime{}) touched_at_ = HostClock::now();
   }
-  void update(const RunStatus& status, flow::CommandRing& commands) override {
+  void update(const RunStatus& status, Asks& asks) override {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     if (status.fresh && ++frames_ == 40) {
       const flow::HandFrame& hand = status.frame.hands[1];
       Eigen::Isometry3d wrist = hand.T_stage_wrist;
       const Eigen::Vector3d palm = hand.pose[hand::Joint::middle_proximal].translation();
       wrist.translation() -= 0.035 * palm.normalized(); // the ball is about the origin
-      commands.try_push(flow::WristMove::to(Side::right, wrist));
+      asks.emplace_back(flow::WristMove::to(Side::right, wrist));
     }
     if (touched_at_.load() == HostTime{}) return;
     if (!is_felt_(heard(log_))) return;
     latency_s = to_seconds(HostClock::now() - touched_at_.load());
-    commands.try_push(flow::EndRun{});
+    asks.emplace_back(flow::EndRun{});
   }
   bool sets_pace() const noexcept override { return true; }
 

@@ -1,0 +1,174 @@
+#include "session/run_commands.hpp"
+
+#include <algorithm>
+#include <new>
+#include <utility>
+#include <variant>
+
+#include <nendo/flow/rig_setup.hpp>
+
+#include "session/mask_edits.hpp"
+
+namespace nendo::session {
+
+void RunCommands::follow_frame(const flow::Frame& frame) {
+  if (frame.ticks_run > 0) {
+    const bool on = (frame.layers_on & placed_.setup.live_layers()) != 0;
+    if (is_in_ && *is_in_ != on) report_(on ? "punched in" : "punched out");
+    is_in_ = on;
+  }
+  const bool is_news = std::exchange(wires_, frame.wire.completed()) != frame.wire.completed();
+  if (is_news && !frame.wire.is_drawn()) models_.cut(frame.wire);
+}
+
+// A run goes on where there is no memory for what one command needs.
+void RunCommands::obey(const Asks& asks) {
+  const auto obey_one = [this](const auto& one) {
+    try {
+      dispatch(one);
+    } catch (const std::bad_alloc&) {
+      report_("No memory!"); // short enough to need none
+    }
+  };
+  for (const Ask& ask : asks)
+    std::visit(obey_one, ask);
+  if (options_.over) {
+    flow::Command command;
+    while (options_.over->take.script->for_others().try_pop(command))
+      obey_one(command);
+  }
+  for (auto& wrist : wrists_)
+    if (wrist && for_loop_.try_push(*wrist)) wrist.reset(); // if it is full, the newest waits
+  tell(for_loop_.dropped());
+}
+
+// There is one function for each kind of command, and no other.
+void RunCommands::dispatch(const flow::Command& command) {
+  std::visit([this](const auto& one) { obey(one); }, command);
+}
+
+void RunCommands::obey(const flow::WristMove& move) {
+  if (!move.is_usable()) {
+    if (!std::exchange(move_refused_, true)) report_(std::string(flow::WristMove::refusal));
+    return;
+  }
+  move_refused_ = false;
+  wrists_[flow::Placement::index_of(move.side)] = move; // only the newest counts
+}
+
+void RunCommands::obey(const flow::Mark& mark) {
+  if (!recorder_.is_recording()) return report_(commands::no_recording);
+  if (for_loop_.push(mark)) report_("mark " + std::to_string(++marks_) + " is in the recording");
+}
+
+void RunCommands::obey(const flow::Punch&) {
+  const std::uint32_t live = placed_.setup.live_layers();
+  if (live == 0) return report_(commands::no_layers);
+  const bool on = !is_in_.value_or(true);
+  for (std::size_t at = 0; at < placed_.setup.inputs.size(); ++at)
+    if ((live >> at & 1U) != 0) for_loop_.push(flow::SetLayer{static_cast<std::uint8_t>(at), on});
+}
+
+// The take's loop does not change puppets by itself. Only the newest counts.
+void RunCommands::obey(const flow::ChangePuppet& change) {
+  if (options_.over) taken_puppet_ = change.number;
+}
+
+bool RunCommands::plays_puppet() const {
+  return flow::is_played(
+      placed_.loop->changes().puppet(placed_.loop->changes().newest_puppet()).get());
+}
+
+void RunCommands::obey(const flow::SetSymmetry& symmetry) {
+  if (plays_puppet() || flow::is_played(puppet_.get()))
+    play_otherwise(symmetry);
+  else
+    mask_edits_.emplace_back(symmetry);
+}
+
+void RunCommands::play_otherwise(const flow::Command& command) {
+  if (plays_puppet())
+    for_loop_.push(command);
+  else
+    report_(commands::no_puppet);
+}
+
+bool RunCommands::may_change_puppet() const {
+  flow::DeformLoop& loop = *placed_.loop;
+  return !loop.frames().front().awaited && !loop.changes().is_changing() &&
+         !recorder_.is_changing() && !models_.is_handing_over();
+}
+
+void RunCommands::follow(bool fresh) {
+  flow::DeformLoop& loop = *placed_.loop;
+  const flow::Frame& frame = loop.frames().front();
+  const bool awaits = frame.awaited.has_value(); // by an undo or a redo
+  if (fresh && awaits && !settings_) tell(models_.go_to(*frame.awaited));
+  if (settings_ && !loop.changes().is_changing() &&
+      !loop.changes().change_settings(*std::exchange(settings_, {})))
+    report_("settings that nothing can be done with; the run goes on as it was (puppets "
+            "do not act on clay, and one whose distances go along the surface cannot keep the "
+            "volume)");
+  if (!awaits) edit_masks();
+  if (puppet_ && may_change_puppet()) change_puppet();
+  if (taken_puppet_ && may_change_puppet()) follow_taken_puppet();
+  // A recording has the whole of a wire that cuts in it, or nothing of it.
+  if (record_ && !recorder_.is_changing() && !models_.is_handing_over() && !models_.is_due())
+    recorder_.set_file(*std::exchange(record_, {}), frame);
+  tell(recorder_.follow());
+  tell(models_.follow(!awaits && !recorder_.is_changing()));
+}
+
+bool RunCommands::is_due() const {
+  return for_loop_.size() > 0 || settings_ || puppet_ || taken_puppet_ || !mask_edits_.empty() ||
+         record_ || recorder_.is_changing() || models_.is_due() || models_.is_handing_over() ||
+         placed_.loop->changes().is_changing();
+}
+
+// Makes one puppet of all edits that have come.
+void RunCommands::edit_masks() {
+  const flow::DeformLoop& loop = *placed_.loop;
+  for (const flow::Command& command : std::exchange(mask_edits_, {})) {
+    if (!puppet_) puppet_ = loop.changes().puppet(loop.changes().newest_puppet());
+    auto edited = edited_masks(command, puppet_, loop.changes().model(0)->mesh.vertices);
+    if (edited)
+      puppet_ = *std::move(edited);
+    else
+      report_(edited.error().message);
+  }
+  if (puppet_ == loop.changes().puppet(loop.changes().newest_puppet())) puppet_.reset();
+}
+
+void RunCommands::change_puppet() {
+  flow::DeformLoop& loop = *placed_.loop;
+  const Rig rig = std::exchange(puppet_, nullptr);
+  const Eigen::Index functions =
+      flow::is_played(rig.get()) ? rig->supports().functions(rig->starts().cols()) : 0;
+  if (!sinks_.empty() && static_cast<std::size_t>(functions) > frame_capacity(placed_).functions)
+    return report_("a puppet with so many points more cannot be published; save it, and begin "
+                   "again with it");
+  recorder_.add_puppet(loop.changes().next_puppet(), *rig);
+  if (const auto changed = loop.changes().change_puppet(rig); !changed)
+    report_(changed.error().message);
+}
+
+// To a puppet of the take, which the loop has already if the take has changed to it before.
+void RunCommands::follow_taken_puppet() {
+  const std::uint32_t number = *std::exchange(taken_puppet_, {});
+  flow::DeformLoop& loop = *placed_.loop;
+  const auto& puppets = options_.over->take.puppets;
+  const auto of_take = puppets.find(number);
+  const auto known = taken_puppets_.find(number);
+  if (of_take == puppets.end() || known != taken_puppets_.end()) {
+    const auto changed = loop.changes().change_puppet(of_take == puppets.end() ? 0 : known->second);
+    if (!changed) report_(changed.error().message);
+    return;
+  }
+  auto rig = recording::rig_of(*of_take->second, loop.changes().model(0)->mesh);
+  if (!rig) return report_(rig.error().message);
+  taken_puppets_[number] = loop.changes().next_puppet();
+  puppet_ = *std::move(rig);
+  change_puppet();
+}
+
+} // namespace nendo::session
