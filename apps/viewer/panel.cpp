@@ -149,7 +149,7 @@ void LiveWindow::Panel::brushes(flow::LoopSettings& chosen) {
   if (ImGui::SliderFloat("strength", &strength, -1.0F, 1.0F, "%.1f"))
     chosen.brush_strength =
         std::clamp(std::round(10.0 * static_cast<double>(strength)) / 10.0, -1.0, 1.0);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Below 0 a brush does the opposite (- and =)");
+  show_help("weaker brush");
 }
 
 void LiveWindow::Panel::settings() {
@@ -159,12 +159,11 @@ void LiveWindow::Panel::settings() {
   ImGui::RadioButton("type 1: pull", &mode, 0);
   ImGui::SameLine(half);
   ImGui::RadioButton("clay", &mode, 2);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Whole hands press the surface (m)");
+  show_help("next mode", "Whole hands press the surface.");
   ImGui::RadioButton("type 2: strokes", &mode, 1);
   ImGui::SameLine(half);
   ImGui::RadioButton("parts", &mode, 3);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("A hand that closes takes the part under it, until it opens (m)");
+  show_help("next mode", "A hand that closes takes the part under it, until it opens.");
   chosen.mode = static_cast<flow::Mode>(mode);
   ImGui::PushItemWidth(-label_width);
   if (ImGui::BeginCombo("kernel", kernel_words(chosen.kernel))) {
@@ -177,17 +176,16 @@ void LiveWindow::Panel::settings() {
   if (ImGui::SliderFloat("volume", &clay, 0.0F, 1.0F, "%.2f"))
     chosen.keep_volume =
         std::clamp(std::round(100.0 * static_cast<double>(clay)) / 100.0, 0.0, 1.0);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("From air to clay: what is pressed in comes out nearby (;). Above 0, "
-                      "fingertips hold, and no links keep the surface from folding");
+  show_help("more clay",
+            "From air to clay: what is pressed in comes out nearby. Above 0, fingertips "
+            "hold, and no links keep the surface from folding.");
   bool whole_hand = chosen.hold == flow::Hold::hand;
   ImGui::Checkbox("whole hand", &whole_hand);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("All of a hand holds the model in type 1, not its fingertips alone (j)");
+  show_help("whole hand");
   chosen.hold = whole_hand ? flow::Hold::hand : flow::Hold::fingertips;
   ImGui::SameLine();
   ImGui::Checkbox("never folds", &chosen.injective);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("No field folds the surface (i)");
+  show_help("folding");
   bool smooth = chosen.filter.kind == hand::FilterKind::one_euro;
   ImGui::Checkbox("smooth hands", &smooth);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("The one-euro filter");

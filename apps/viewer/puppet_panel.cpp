@@ -60,19 +60,19 @@ void name_function(PuppetEditor& editor) {
 void edit_buttons(PuppetEditor& editor, Commands& commands) {
   bool mirrors = editor.rig().puppet().mirrors;
   if (ImGui::Checkbox("mirror", &mirrors)) editor.toggle_mirror();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("What is on one side is on both (Y)");
+  show_help("mirror puppet");
   ImGui::SameLine();
   bool brushes = editor.brushes();
   if (ImGui::Checkbox("brush masks", &brushes)) editor.toggle_brush();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Paint what stays; shift erases (z)");
+  show_help("paint masks", "Paint what stays; shift erases.");
   if (ImGui::Button("Pin")) editor.toggle_pin();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("The place, or the point, stays where it is (P)");
+  show_help("pin point");
   ImGui::SameLine();
   if (ImGui::Button("Remove")) editor.remove_point();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("The chosen point goes (Delete)");
+  show_help("remove point");
   ImGui::SameLine();
   if (ImGui::Button("Save puppet")) commands.emplace_back(flow::SavePuppet{});
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Writes the puppet's file (S)");
+  show_help("save puppet");
 }
 
 } // namespace
@@ -87,7 +87,7 @@ void LiveWindow::Panel::masks(PuppetEditor& editor, const commands::Situation& n
   ImGui::SameLine();
   bool brushes = editor.brushes();
   if (ImGui::Checkbox("paint masks", &brushes)) editor.toggle_masks();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Paint what stays; shift erases (z)");
+  show_help("paint masks", "Paint what stays; shift erases.");
   const commands::Row& clear = *commands::named("mask clear");
   if (row_button(clear, now, 0.0F)) ask(clear, now, commands);
   ImGui::SameLine();
@@ -101,8 +101,7 @@ void LiveWindow::Panel::puppet(PuppetEditor& editor, Commands& commands) {
   if (ImGui::Button(is_on ? "Play the puppet" : "Edit the puppet",
                     ImVec2(ImGui::GetContentRegionAvail().x, 0.0F)))
     editor.turn(!is_on);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("Click, bend a finger, drag: what each finger does (Tab)");
+  show_help("edit puppet", "Click, bend a finger, drag: what each finger does.");
   if (!editor.is_on() || editor.paints_masks()) return;
   if (!editor.told().empty()) ImGui::TextWrapped("%s", editor.told().c_str());
   edit_buttons(editor, commands);

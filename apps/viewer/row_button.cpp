@@ -18,13 +18,18 @@ bool row_button(const commands::Row& row, const commands::Situation& now, float 
 }
 
 void show_help(const commands::Row& row, const commands::Situation& now) {
-  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
-  const std::string help = std::string(row.help) + " (" + commands::keys_of(row) + ")";
   const char* const refusal = row.refusal_in(now);
-  if (refusal != nullptr)
-    ImGui::SetTooltip("%s\n%s", help.c_str(), refusal);
-  else
-    ImGui::SetTooltip("%s", help.c_str());
+  std::string text(row.help);
+  if (refusal != nullptr) text.append("\n").append(refusal);
+  show_help(row.name, text);
+}
+
+void show_help(std::string_view name, std::string_view text) {
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  const commands::Row& row = *commands::named(name);
+  const std::string shown =
+      std::string(text.empty() ? row.help : text) + " (" + commands::keys_of(row) + ")";
+  ImGui::SetTooltip("%s", shown.c_str());
 }
 
 } // namespace nendo::viewer

@@ -200,6 +200,14 @@ TEST_SUITE("commands") {
       if (!row.is_for_run())
         CHECK((panel.find("\n  '" + name + "': panel => ") != std::string::npos) == is_there);
     }
+    const std::string html = content_of("apps/web/page/index.html");
+    const std::string mark = "data-help=\"";
+    for (auto at = html.find(mark); at != std::string::npos; at = html.find(mark, at)) {
+      at += mark.size();
+      const std::string name = html.substr(at, html.find('"', at) - at);
+      CAPTURE(name);
+      CHECK(commands::named(name) != nullptr);
+    }
   }
 
   TEST_CASE("the pages list what the table has, and nothing else") {

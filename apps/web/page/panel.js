@@ -22,6 +22,7 @@ const OWN = {
   'list keys': panel => panel.help(),
 }
 const MOST_UNDOABLE = 48 // that the server tells
+const helpOf = ({ help, keys }) => `${help} (${keys.join(', ')})`
 const element = id => document.getElementById(id)
 
 class Panel {
@@ -36,6 +37,8 @@ class Panel {
       element('show-' + part).addEventListener('change', event => shown(part, event.target.checked))
     element('help-button').addEventListener('click', () => this.help())
     element('fold-button').addEventListener('click', () => this.fold())
+    for (const part of document.querySelectorAll('[data-help]'))
+      part.title = helpOf(COMMANDS.find(({ name }) => name === part.dataset.help))
     for (const { keys, help } of COMMANDS) {
       const row = element('keys').insertRow()
       row.insertCell().appendChild(document.createElement('kbd')).textContent = keys.join(', ')
@@ -49,7 +52,7 @@ class Panel {
     const button = element('buttons').appendChild(document.createElement('button'))
     button.dataset.request = command.name
     button.textContent = command.button
-    button.title = `${command.help} (${command.keys.join(', ')})`
+    button.title = helpOf(command)
     button.addEventListener('click', () => this.give(command))
     return button
   }
