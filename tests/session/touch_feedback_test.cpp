@@ -127,25 +127,32 @@ double latency_s(const emulator::EmulatorOptions& glove, const std::string& kind
   return presser.latency_s;
 }
 
+/// Presses until the latency is below the limit, three times at most: a machine that has other work
+/// may be late once or twice, a program that is too slow is so each time.
+void check_latency(const emulator::EmulatorOptions& glove, const std::string& kind,
+                   bool (*is_felt)(const std::string&)) {
+  double latency = -1.0;
+  for (int tries = 0; tries < 3 && !(latency >= 0.0 && latency < most_latency_s); ++tries) {
+    latency = latency_s(glove, kind, is_felt);
+    MESSAGE("latency " << 1e3 * latency << " ms");
+  }
+  CHECK(latency >= 0.0);
+  CHECK(latency < most_latency_s);
+}
+
 } // namespace
 
 TEST_SUITE("touch_feedback") {
   TEST_CASE("a CyberTouch vibrates within 0.3 s of a touch") {
     emulator::EmulatorOptions glove;
     glove.cyberglove.touch = true;
-    const double latency = latency_s(glove, "serial", vibrates);
-    MESSAGE("latency " << 1e3 * latency << " ms");
-    CHECK(latency >= 0.0);
-    CHECK(latency < most_latency_s);
+    check_latency(glove, "serial", vibrates);
   }
 
   TEST_CASE("LucidGloves brake within 0.3 s of a touch") {
     emulator::EmulatorOptions glove;
     glove.glove = "lucidgloves";
-    const double latency = latency_s(glove, "lucidgloves", brakes);
-    MESSAGE("latency " << 1e3 * latency << " ms");
-    CHECK(latency >= 0.0);
-    CHECK(latency < most_latency_s);
+    check_latency(glove, "lucidgloves", brakes);
   }
 }
 
