@@ -7,7 +7,6 @@
 
 #include <nendo/base/advised_command.hpp>
 #include <nendo/base/text.hpp>
-#include <nendo/flow/touching_hand.hpp>
 
 #include "cli/cli.hpp"
 
@@ -15,15 +14,6 @@ namespace nendo::gloves {
 namespace {
 
 using std::chrono::milliseconds;
-
-void note_idle_fingers(const std::string& spec, const flow::TouchingHand& hand) {
-  std::string idle;
-  for (std::size_t at = 0; at < hand::finger_count; ++at) {
-    const auto finger = static_cast<hand::Finger>(at);
-    if (!hand.touches(finger)) idle.append(idle.empty() ? "" : ", ").append(name_of(finger));
-  }
-  if (!idle.empty()) cli::note(spec + ": keeps still what does not reach the model: " + idle);
-}
 
 /// Of a table that is replayed.
 void note_columns_not_read(const driver::GloveInfo& info) {
@@ -51,9 +41,9 @@ Result<void> wait_for_first_sample(OpenHand& hand) {
 } // namespace
 
 Result<std::unique_ptr<driver::Glove>> open_glove(const std::string& spec, std::optional<Side> side,
-                                                  const driver::GloveContext& context) {
+                                                  motions::PlannedHand* planned) {
   cli::install_stop_signals();
-  auto glove = driver::open_glove(spec, side, context);
+  auto glove = driver::open_glove(spec, side, {{}, motions::planned_motions(planned)});
   if (cli::stop_requested())
     return Error{Errc::failed, spec + ": interrupted while its glove was being identified"};
   if (glove) note_columns_not_read((*glove)->info());
@@ -61,8 +51,8 @@ Result<std::unique_ptr<driver::Glove>> open_glove(const std::string& spec, std::
 }
 
 Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side,
-                           EventCount* event_count, const driver::GloveContext& context) {
-  auto glove = open_glove(spec, side, context);
+                           EventCount* event_count, motions::PlannedHand* planned) {
+  auto glove = open_glove(spec, side, planned);
   if (!glove) return glove.error();
   return hand_of(*std::move(glove), side, event_count);
 }
@@ -159,45 +149,6 @@ Result<void> calibrate(std::span<OpenHand> hands, const CalibrationOptions& opti
       *size = length.size(*size);
   }
   return {};
-}
-
-namespace {
-
-Result<driver::SensorMotion> kneading_motion(const driver::SimulatedGloveOptions& options,
-                                             flow::KneadTask task, PlannedHand& planned) {
-  const hand::HandSkeleton skeleton(planned.side.value_or(options.side), planned.size);
-  auto hand = flow::KneadingHand::make(planned.model, skeleton, task, planned.model_size_m);
-  if (!hand) return Error{hand.error().code, options.source + ": " + hand.error().message};
-  planned.wrist_path = hand->wrist();
-  planned.T_stage_wrist = hand->wrist()->at(0.0);
-  return driver::SensorMotion(
-      [hand = *std::move(hand)](double time_s) { return hand.sensor_angles(time_s); });
-}
-
-Result<driver::SensorMotion> touching_motion(const driver::SimulatedGloveOptions& options,
-                                             PlannedHand& planned) {
-  flow::TouchOptions touch;
-  touch.seed = options.seed;
-  touch.model_size_m = planned.model_size_m;
-  const hand::HandSkeleton skeleton(planned.side.value_or(options.side), planned.size);
-  const auto hand = flow::TouchingHand::make(planned.model, skeleton, touch);
-  if (!hand) {
-    return Error{hand.error().code, options.source + ": " + hand.error().message +
-                                        "; choose another model, or another motion, like "
-                                        "sim:sculpt"};
-  }
-  note_idle_fingers(options.source, *hand);
-  planned.T_stage_wrist = hand->wrist_pose();
-  return driver::SensorMotion([hand = *hand](double time_s) { return hand.sensor_angles(time_s); });
-}
-
-} // namespace
-
-driver::GloveContext planned_context(PlannedHand& hand) {
-  return {[&hand](const driver::SimulatedGloveOptions& options) {
-    const auto task = flow::knead_task_named(options.motion);
-    return task ? kneading_motion(options, *task, hand) : touching_motion(options, hand);
-  }};
 }
 
 } // namespace nendo::gloves

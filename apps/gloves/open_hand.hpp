@@ -8,10 +8,10 @@
 #include <string>
 
 #include <nendo/driver/open_glove.hpp>
-#include <nendo/flow/kneading_hand.hpp>
-#include <nendo/flow/placement.hpp>
+#include <nendo/flow/wrist_path.hpp>
 
 #include "gloves/glove_calibration.hpp"
+#include "motions/planned_hand.hpp"
 
 namespace nendo::gloves {
 
@@ -29,17 +29,17 @@ struct OpenHand {
 
 /// Opens a glove as driver::open_glove() does, for a command that a stop signal ends. From then on
 /// these signals set a flag (cli::stop_requested()). If one comes while ports are probed, that is
-/// the error: failed, "interrupted".
+/// the error: failed, "interrupted". Simulated gloves have motions::planned_motions(planned), too.
 Result<std::unique_ptr<driver::Glove>> open_glove(const std::string& spec,
                                                   std::optional<Side> side = std::nullopt,
-                                                  const driver::GloveContext& context = {});
+                                                  motions::PlannedHand* planned = nullptr);
 
 /// Opens the glove for that hand, and says on standard error if it calls itself the other one.
 /// Without `side`, opens it for the hand that it is. Each sample notifies `event_count`. Blocks and
 /// fails as open_glove() does.
 Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = std::nullopt,
                            EventCount* event_count = nullptr,
-                           const driver::GloveContext& context = {});
+                           motions::PlannedHand* planned = nullptr);
 
 /// Does the same with a glove that is already open.
 OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
@@ -68,23 +68,5 @@ bool have_ended(std::span<const OpenHand> hands) noexcept;
 /// if no sample comes, failed if a stop signal comes, and those of find_wearer().
 Result<void> calibrate(std::span<OpenHand> hands, const CalibrationOptions& options,
                        const HandLength& length);
-
-/// A hand that does something to a model.
-struct PlannedHand {
-  const deform::Mesh& model;
-  double model_size_m = 0.8; ///< its longest side, on the stage
-  std::optional<Side> side;  ///< nothing: the hand that the specification names
-  hand::HandSize size{};
-  // Set by the opening, because a real glove would not know it:
-  std::optional<Eigen::Isometry3d> T_stage_wrist{};    ///< where it begins
-  std::shared_ptr<const flow::WristPath> wrist_path{}; ///< null: it stays there
-};
-
-/// Returns the context in which open_glove() can open `sim:touch`, a simulated glove whose hand
-/// touches the model, `sim:press`, `sim:knead` and `sim:grip`, whose hands work on clay, and
-/// `sim:carry`, `sim:bore`, `sim:cut` and `sim:slice`. Opening such a glove takes about 0.2 s, and
-/// says on standard error which fingers cannot reach the model. Opening fails with bad_input if
-/// nothing can be done to the model. `hand` must outlive the opening.
-driver::GloveContext planned_context(PlannedHand& hand);
 
 } // namespace nendo::gloves

@@ -194,9 +194,8 @@ int run(RunArguments& options) {
 void add_shape_options(cli::Command& command, RunArguments& options) {
   session::RunOptions& run_options = options.run;
   std::string gloves;
-  for (const auto& [grammar, summary] : driver::driver_summaries()) {
-    gloves += "\n  " + std::string(grammar) + "\n      " + std::string(summary);
-  }
+  for (const driver::GloveDriver& driver : driver::glove_drivers())
+    gloves.append("\n  ").append(driver.grammar).append("\n      ").append(driver.summary);
   command.set_footer(
       "A GLOVE is one of" + gloves +
       "\nWithout --left and --right every identified glove is used, or simulated hands.\nKeys "

@@ -62,8 +62,8 @@ open_named(const RunOptions& options, const deform::Mesh& whole, EventCount* eve
   for (const auto& [spec, side] :
        {std::pair{&options.left, Side::left}, {&options.right, Side::right}}) {
     if (spec->empty()) continue;
-    gloves::PlannedHand planned{model, options.model_size_m, side, options.length.size({})};
-    auto hand = gloves::open_hand(*spec, side, event_count, gloves::planned_context(planned));
+    motions::PlannedHand planned{model, options.model_size_m, side, options.length.size({})};
+    auto hand = gloves::open_hand(*spec, side, event_count, &planned);
     if (!hand) return hand.error();
     hand->T_stage_wrist = planned.T_stage_wrist;
     hand->wrist_path = std::move(planned.wrist_path);

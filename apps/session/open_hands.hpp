@@ -16,12 +16,11 @@ struct RunHands {
 };
 
 /// Opens and starts the gloves and waits for the first sample of each. If none is named, it uses
-/// the gloves that are identified or, if there are none, simulated hands, and says so. Hands of
-/// sim:touch touch `model`, those of sim:press, sim:knead, sim:grip, sim:carry and sim:bore work on
-/// it. The readers get the priority that belongs to the loop's. With OverrunPolicy::sample,
-/// `event_count` wakes the loop; it must outlive the loop and the gloves. Errors: usage (a switch
-/// action without a wrist switch), and those of open_glove(), gloves::calibrate() and
-/// planned_context().
+/// the gloves that are identified or, if there are none, simulated hands, and says so. Simulated
+/// hands may do something to `model` (motions::planned_motions()). The readers get the priority
+/// that belongs to the loop's. With OverrunPolicy::sample, `event_count` wakes the loop; it must
+/// outlive the loop and the gloves. Errors: usage (a switch action without a wrist switch), and
+/// those of gloves::open_glove() and gloves::calibrate().
 Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
                             EventCount& event_count);
 

@@ -17,14 +17,6 @@
 namespace nendo::driver {
 namespace {
 
-struct Driver {
-  std::string_view kind;
-  std::string_view grammar;
-  std::string_view summary;
-  Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, std::optional<Side> side,
-                                         const GloveContext& context);
-};
-
 /// For the drivers that need no GloveContext.
 template <Result<std::unique_ptr<Glove>> (*open)(const GloveSpec&, std::optional<Side>)>
 Result<std::unique_ptr<Glove>> alone(const GloveSpec& spec, std::optional<Side> side,
@@ -32,27 +24,29 @@ Result<std::unique_ptr<Glove>> alone(const GloveSpec& spec, std::optional<Side> 
   return open(spec, side);
 }
 
-constexpr std::array drivers{
-    Driver{"serial", cyberglove::options_grammar, "a CyberGlove at a serial, USB or Bluetooth port",
-           alone<cyberglove::open_serial>},
-    Driver{"lucidgloves", "lucidgloves:PATH[?baud=N&range=4095|1023&hand=left|right]",
-           "LucidGloves, or what else speaks OpenGloves' encoding, at a serial port",
-           alone<lucidgloves::open_lucidgloves>},
-    Driver{"5dt", "5dt:PATH[?baud=19200|9600&hand=left|right]",
-           "a 5DT Data Glove 5 at a serial port; 9600: a wireless one", alone<fivedt::open_fivedt>},
-    Driver{"forte", "forte:PATH[?link=usb|bluetooth&baud=460800|115200&hand=left|right]",
-           "a BeBop Forte Data Glove at a serial port, by USB or Bluetooth",
-           alone<forte::open_forte>},
-    Driver{"usb", "usb:VID:PID[?serial=TEXT&hand=left|right]",
-           "a P5 (0d7f:0100) or 5DT Ultra (5d70:....) at USB", alone<open_usb_glove>},
-    Driver{"auto", "auto[:left|right]", "the glove that its name or a udev rule makes known",
-           alone<open_auto>},
-    Driver{"sim", "sim[:MOTION][?seed=N&rate=HZ&hand=left|right&sensors=18|22]",
-           "a simulated glove", open_simulated},
-    Driver{"replay", "replay:FILE[?hand=left|right&speed=X&loop=yes|end=hold&rate=HZ]",
-           "a glove as `nendo record` or `nendo run --record` recorded it, or a table of counts "
-           "(.csv, .tsv, .txt)",
-           alone<open_replay>},
+constexpr std::array own_drivers{
+    GloveDriver{"serial", cyberglove::options_grammar,
+                "a CyberGlove at a serial, USB or Bluetooth port", alone<cyberglove::open_serial>},
+    GloveDriver{"lucidgloves", "lucidgloves:PATH[?baud=N&range=4095|1023&hand=left|right]",
+                "LucidGloves, or what else speaks OpenGloves' encoding, at a serial port",
+                alone<lucidgloves::open_lucidgloves>},
+    GloveDriver{"5dt", "5dt:PATH[?baud=19200|9600&hand=left|right]",
+                "a 5DT Data Glove 5 at a serial port; 9600: a wireless one",
+                alone<fivedt::open_fivedt>},
+    GloveDriver{"forte", "forte:PATH[?link=usb|bluetooth&baud=460800|115200&hand=left|right]",
+                "a BeBop Forte Data Glove at a serial port, by USB or Bluetooth",
+                alone<forte::open_forte>},
+    GloveDriver{"usb", "usb:VID:PID[?serial=TEXT&hand=left|right]",
+                "a P5 (0d7f:0100) or 5DT Ultra (5d70:....) at USB", alone<open_usb_glove>},
+    GloveDriver{"auto", "auto[:left|right]", "the glove that its name or a udev rule makes known",
+                alone<open_auto>},
+    GloveDriver{"sim", "sim[:MOTION][?seed=N&rate=HZ&hand=left|right&sensors=18|22]",
+                "a simulated glove", open_simulated},
+    GloveDriver{
+        "replay", "replay:FILE[?hand=left|right&speed=X&loop=yes|end=hold&rate=HZ]",
+        "a glove as `nendo record` or `nendo run --record` recorded it, or a table of counts "
+        "(.csv, .tsv, .txt)",
+        alone<open_replay>},
 };
 
 /// Names the glove as it was typed: its port alone does not tell which of two it was, nor what
@@ -70,7 +64,7 @@ Result<std::unique_ptr<Glove>> open_glove(std::string_view text, std::optional<S
   const auto spec = parse_glove_spec(text);
   if (!spec) return spec.error();
   std::string known;
-  for (const Driver& driver : drivers) {
+  for (const GloveDriver& driver : glove_drivers(context)) {
     if (driver.kind == spec->kind) {
       auto glove = driver.open(*spec, side, context);
       if (!glove) return of_glove(*spec, glove.error());
@@ -82,12 +76,10 @@ Result<std::unique_ptr<Glove>> open_glove(std::string_view text, std::optional<S
                "glove \"" + spec->text + "\": unknown kind " + spec->kind + "; known: " + known};
 }
 
-std::vector<DriverSummary> driver_summaries() {
-  std::vector<DriverSummary> summaries;
-  summaries.reserve(drivers.size());
-  for (const Driver& driver : drivers)
-    summaries.push_back({driver.grammar, driver.summary});
-  return summaries;
+std::vector<GloveDriver> glove_drivers(const GloveContext& context) {
+  std::vector<GloveDriver> drivers(own_drivers.begin(), own_drivers.end());
+  drivers.insert(drivers.end(), context.drivers.begin(), context.drivers.end());
+  return drivers;
 }
 
 } // namespace nendo::driver

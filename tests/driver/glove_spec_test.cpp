@@ -5,7 +5,7 @@
 namespace glove_spec_test {
 
 using nendo::Errc;
-using nendo::driver::driver_summaries;
+using nendo::driver::glove_drivers;
 using nendo::driver::open_glove;
 using nendo::driver::parse_glove_spec;
 
@@ -72,12 +72,29 @@ TEST_SUITE("glove_spec") {
   }
 
   TEST_CASE("every driver has a line of help that begins with its kind") {
-    const auto summaries = driver_summaries();
-    CHECK(summaries.size() >= 3);
-    for (const auto& summary : summaries) {
-      CHECK_FALSE(summary.grammar.empty());
-      CHECK_FALSE(summary.summary.empty());
+    const auto drivers = glove_drivers();
+    CHECK(drivers.size() >= 3);
+    for (const auto& driver : drivers) {
+      CHECK(driver.grammar.starts_with(driver.kind));
+      CHECK_FALSE(driver.summary.empty());
     }
+  }
+
+  TEST_CASE("a program adds kinds of gloves, which are opened and listed like the library's") {
+    nendo::driver::GloveContext context;
+    context.drivers.push_back({"broken", "broken:PATH", "a glove that is broken",
+                               [](const auto& spec, auto, const auto&)
+                                   -> nendo::Result<std::unique_ptr<nendo::driver::Glove>> {
+                                 return nendo::Error{Errc::no_device, "no " + spec.target};
+                               }});
+    const auto broken = open_glove("broken:here", std::nullopt, context);
+    REQUIRE_FALSE(broken);
+    CHECK(broken.error().code == Errc::no_device);
+    CHECK(broken.error().message == "broken:here: no here");
+    CHECK(glove_drivers(context).back().grammar == "broken:PATH");
+    CHECK(open_glove("mouse", std::nullopt, context).error().message.ends_with("broken"));
+    CHECK_FALSE(open_glove("broken:here").error().message.find("unknown kind broken") ==
+                std::string::npos);
   }
 }
 

@@ -88,8 +88,6 @@ TEST_SUITE("simulated_driver") {
       return glove.error().message;
     };
     CHECK(message("dance", {}).find("rest, wave, pinch, grasp, sculpt") != std::string::npos);
-    CHECK(message("dance", {}).find("touch") != std::string::npos);
-    CHECK(message("touch", {}).find("nendo run") != std::string::npos);
     CHECK(message("", {{"colour", "red"}}).find("'colour'") != std::string::npos);
     CHECK(message("", {{"rate", "0"}}).find("1 to 1000") != std::string::npos);
     CHECK(message("", {{"rate", "1001"}}).find("rate is '1001'") != std::string::npos);
@@ -99,6 +97,35 @@ TEST_SUITE("simulated_driver") {
     CHECK(message("", {{"seed", "-1"}}).find("whole number") != std::string::npos);
     CHECK(message("", {{"hand", "both"}}).find("left or right") != std::string::npos);
     CHECK(message("", {{"sensors", "20"}}).find("18 or 22") != std::string::npos);
+  }
+
+  TEST_CASE("a program adds motions by name, and their errors are the opening's") {
+    unsigned made = 0;
+    nendo::driver::GloveContext context;
+    context.motions.push_back({"still", [&](const auto& options) {
+                                 ++made;
+                                 CHECK(options.motion == "still");
+                                 CHECK(options.seed == 7);
+                                 return nendo::driver::SensorMotion([](double) {
+                                   return std::array<double, nendo::sensor_slots>{};
+                                 });
+                               }});
+    context.motions.push_back(
+        {"broken", [](const auto&) { return nendo::Error{Errc::bad_input, "it is broken"}; }});
+    const auto still = open_simulated(spec("still", {{"seed", "7"}}), Side::right, context);
+    REQUIRE(still);
+    CHECK((*still)->info().model.find("motion still") != std::string::npos);
+    CHECK(open_simulated(spec("sculpt"), Side::right, context));
+    CHECK(made == 1);
+    const auto broken = open_simulated(spec("broken"), Side::right, context);
+    REQUIRE_FALSE(broken);
+    CHECK(broken.error().code == Errc::bad_input);
+    CHECK(broken.error().message == "it is broken");
+    const auto dance = open_simulated(spec("dance"), Side::right, context);
+    REQUIRE_FALSE(dance);
+    CHECK(dance.error().code == Errc::usage);
+    CHECK(dance.error().message.ends_with("faces, still, broken"));
+    CHECK(open_simulated(spec("still"), Side::right).error().message.ends_with("faces"));
   }
 
   TEST_CASE(

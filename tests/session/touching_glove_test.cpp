@@ -2,9 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/flow/touching_hand.hpp>
-
 #include "gloves/open_hand.hpp"
+#include "motions/touching_hand.hpp"
 #include "session/open_hands.hpp"
 #include "session/run_session.hpp"
 #include "support/program.hpp"
@@ -28,14 +27,14 @@ TEST_SUITE("touching_glove") {
     const deform::Mesh ball = test::sphere(16, 32, 10.0);
     for (const char* touching :
          {"sim:touch", "sim:touch?seed=3", "sim:press", "sim:knead", "sim:grip?rate=120"}) {
-      gloves::PlannedHand planned{ball, 0.8, Side::right};
-      CHECK(driver::open_glove(touching, Side::right, gloves::planned_context(planned)));
+      motions::PlannedHand planned{ball, 0.8, Side::right};
+      CHECK(gloves::open_glove(touching, Side::right, &planned));
       CHECK(planned.T_stage_wrist);
       CHECK((planned.wrist_path == nullptr) == std::string_view(touching).starts_with("sim:touch"));
     }
     for (const char* other : {"sim", "sim:grasp", "sim:touching", "serial:touch", "", "?"}) {
-      gloves::PlannedHand planned{ball, 0.8, Side::right};
-      (void)driver::open_glove(other, Side::right, gloves::planned_context(planned));
+      motions::PlannedHand planned{ball, 0.8, Side::right};
+      (void)gloves::open_glove(other, Side::right, &planned);
       CHECK_FALSE(planned.T_stage_wrist);
     }
   }
@@ -59,12 +58,13 @@ TEST_SUITE("touching_glove") {
     const flow::Frame& frame = placed->loop->frames().front();
     for (const auto& hand : opened->hands) {
       const std::size_t at = flow::Placement::index_of(hand.side);
-      const auto meant = flow::TouchingHand::make(ball, hand::HandSkeleton(hand.side), {.seed = 7});
+      const auto meant =
+          motions::TouchingHand::make(ball, hand::HandSkeleton(hand.side), {.seed = 7});
       REQUIRE(meant);
       const auto tips = frame.hands[at].pose.fingertip_positions();
       for (std::size_t k = 0; k < hand::finger_count; ++k) {
         const Eigen::Vector3d tip = tips.col(static_cast<Eigen::Index>(k));
-        const flow::TouchTarget target =
+        const motions::TouchTarget target =
             meant->target(static_cast<hand::Finger>(k), to_seconds(hand.first.device_time));
         CHECK((tip - target.place_m()).norm() < most_off_m);
         const double off_m = test::nearest_triangle(ball, frame.units_per_metre * tip).distance /

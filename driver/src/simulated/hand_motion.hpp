@@ -18,7 +18,7 @@ enum class Motion : std::uint8_t {
   pinch,  ///< the thumb meets each finger in turn
   grasp,  ///< the whole hand closes and opens
   sculpt, ///< pull far out by the wrist, press in, knead: cycles of about 8 s
-  faces,  ///< what makes a puppet smile, frown, wonder, wink, pout, talk, laugh, 1.6 s each
+  faces,  ///< for hands that play a face: smile, frown, wonder, wink, pout, talk, laugh, 1.6 s each
 };
 
 /// Returns the motion that one of motion_names() (simulated_glove.hpp) names. Error: usage, naming

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <nendo/driver/simulated_glove.hpp>
 
@@ -125,24 +126,20 @@ Error usage(const GloveSpec& spec, std::string_view what) {
   return Error{Errc::usage, std::string(spec.text).append(": ").append(what)};
 }
 
-/// The motions that need what GloveContext has.
-constexpr std::array<std::string_view, 8> planned_motions{"touch", "press", "knead", "grip",
-                                                          "carry", "bore",  "cut",   "slice"};
-
-bool is_planned(std::string_view motion) noexcept {
-  return std::find(planned_motions.begin(), planned_motions.end(), motion) != planned_motions.end();
-}
-
-Result<std::unique_ptr<Glove>> open_planned(const GloveSpec& spec, std::optional<Side> side,
-                                            const GloveContext& context) {
-  if (!context.planned_motion)
-    return usage(spec, "needs a model to touch, which only nendo run and nendo stress have; use "
-                       "another motion here, like sim:sculpt");
-  const auto options = simulated_glove_options(spec, side);
-  if (!options) return options.error();
-  auto motion = context.planned_motion(*options);
-  if (!motion) return motion.error();
-  return make_simulated_glove(*options, *std::move(motion));
+/// One of this library's motions, or else one that the program adds.
+Result<SensorMotion> motion_of(const GloveSpec& spec, const SimulatedGloveOptions& options,
+                               const std::vector<NamedMotion>& added) {
+  const auto own = find_motion(options.motion);
+  if (own)
+    return SensorMotion([hand = HandMotion(*own, options.side, options.seed)](double time_s) {
+      return hand.at(time_s);
+    });
+  std::string what = own.error().message;
+  for (const NamedMotion& motion : added) {
+    if (motion.name == options.motion) return motion.make(options);
+    what.append(", ").append(motion.name);
+  }
+  return usage(spec, what);
 }
 
 } // namespace
@@ -175,20 +172,11 @@ std::unique_ptr<Glove> make_simulated_glove(const SimulatedGloveOptions& options
 
 Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side,
                                               const GloveContext& context) {
-  if (is_planned(spec.target)) return open_planned(spec, side, context);
-  const auto motion = find_motion(spec.target.empty() ? "sculpt" : spec.target);
-  if (!motion) {
-    std::string what = motion.error().message;
-    for (const std::string_view planned : planned_motions)
-      what.append(", ").append(planned);
-    return usage(spec, what);
-  }
-  auto settings = simulated_glove_options(spec, side);
-  if (!settings) return settings.error();
-  return make_simulated_glove(
-      *settings, [hand = HandMotion(*motion, settings->side, settings->seed)](double time_s) {
-        return hand.at(time_s);
-      });
+  const auto options = simulated_glove_options(spec, side);
+  if (!options) return options.error();
+  auto motion = motion_of(spec, *options, context.motions);
+  if (!motion) return motion.error();
+  return make_simulated_glove(*options, *std::move(motion));
 }
 
 } // namespace nendo::driver

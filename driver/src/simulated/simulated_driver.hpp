@@ -11,8 +11,8 @@
 namespace nendo::driver {
 
 /// Opens a glove with the options of simulated_glove_options() and one of the motions of
-/// hand_motion.hpp. The motion begins with start(). Error: usage, also for the motion that needs a
-/// surface.
+/// hand_motion.hpp or of `context`. The motion begins with start(). Errors: usage; that of the
+/// motion.
 Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side,
                                               const GloveContext& context = {});
 

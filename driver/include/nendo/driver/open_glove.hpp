@@ -1,7 +1,8 @@
 #pragma once
 // From what a user types to an open glove. One grammar everywhere:
 //   serial:/dev/ttyUSB0   serial:/dev/ttyUSB0?baud=38400   auto   auto:left
-//   sim   sim:pinch?seed=7&rate=100&hand=left&sensors=18   replay:take1.nendo?speed=0.5
+//   sim   sim:pinch?seed=7&rate=100&hand=left&sensors=18
+// A program can add kinds of gloves, and motions of simulated ones.
 
 #include <array>
 #include <cstdint>
@@ -44,28 +45,40 @@ struct SimulatedGloveOptions {
   unsigned sensors = 22; ///< or 18
 };
 
-/// What some kinds of gloves need and this library does not know.
+/// A motion of simulated gloves, `sim:NAME`, besides motion_names().
+struct NamedMotion {
+  std::string_view name;
+  /// Called at most once, by open_glove(), which returns its error.
+  std::function<Result<SensorMotion>(const SimulatedGloveOptions&)> make;
+};
+
+struct GloveContext;
+
+/// A kind of glove: how it is named and opened.
+struct GloveDriver {
+  std::string_view kind;    ///< what stands before the colon
+  std::string_view grammar; ///< for `--help`
+  std::string_view summary; ///< what it is, likewise
+  /// Opens and identifies it as open_glove() does.
+  Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, std::optional<Side> side,
+                                         const GloveContext& context);
+};
+
+/// What a program adds to the kinds and motions of this library. Names of the library come first.
 struct GloveContext {
-  /// Makes the motion of a hand that does something to a model: `sim:touch`, `sim:press`,
-  /// `sim:knead`, `sim:grip`, `sim:carry`, `sim:bore`, `sim:cut` or `sim:slice`, which the options
-  /// name. It is called at most once, by open_glove(), and its error is returned. Without it, these
-  /// are usage errors.
-  std::function<Result<SensorMotion>(const SimulatedGloveOptions&)> planned_motion;
+  std::vector<GloveDriver> drivers{};
+  std::vector<NamedMotion> motions{};
 };
 
 /// Opens and identifies the glove; may block, 5 seconds at most. `side` is the hand that the user
 /// wants it for: `auto` opens no other, and a simulated hand is that one (right if any will do).
 /// Errors: usage (kind, option), no_device (missing, or does not answer like a glove),
-/// no_permission; whatever `context` fails with.
+/// no_permission; those of what `context` adds.
 Result<std::unique_ptr<Glove>> open_glove(std::string_view spec,
                                           std::optional<Side> side = std::nullopt,
                                           const GloveContext& context = {});
 
-/// A line a kind of glove, for `--help`: its grammar and what it is.
-struct DriverSummary {
-  std::string_view grammar;
-  std::string_view summary;
-};
-std::vector<DriverSummary> driver_summaries();
+/// Returns the library's drivers, and those of `context` after them.
+std::vector<GloveDriver> glove_drivers(const GloveContext& context = {});
 
 } // namespace nendo::driver

@@ -8,8 +8,8 @@
 #include <span>
 
 #include <nendo/driver/sample.hpp>
-#include <nendo/flow/kneading_hand.hpp>
 #include <nendo/flow/layer.hpp>
+#include <nendo/flow/wrist_path.hpp>
 #include <nendo/hand/active_calibration.hpp>
 #include <nendo/hand/joint_filter.hpp>
 #include <nendo/hand/skeleton.hpp>

@@ -1,9 +1,9 @@
 #pragma once
 // Hands that take the upper part of a model, after it was cut off or not.
 
-#include "knead_plan.hpp"
+#include "motions/knead_plan.hpp"
 
-namespace nendo::flow {
+namespace nendo::motions {
 
 enum class CutTool : std::uint8_t {
   wire,  ///< between both index fingertips, which lead it past the model
@@ -16,4 +16,4 @@ std::unique_ptr<KneadPlan> plan_to_carry(const KneadedModel& model,
 std::unique_ptr<KneadPlan> plan_to_cut(CutTool tool, const KneadedModel& model,
                                        const hand::HandSkeleton& skeleton);
 
-} // namespace nendo::flow
+} // namespace nendo::motions

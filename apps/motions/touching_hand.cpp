@@ -1,13 +1,13 @@
-#include <nendo/flow/touching_hand.hpp>
+#include "motions/touching_hand.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "sensor_angles.hpp"
-#include "touch_plan.hpp"
+#include "motions/sensor_angles.hpp"
+#include "motions/touch_plan.hpp"
 
-namespace nendo::flow {
+namespace nendo::motions {
 
 using hand::Finger;
 
@@ -84,4 +84,4 @@ double TouchingHand::period_s() const noexcept {
   return plan_->score.period_s();
 }
 
-} // namespace nendo::flow
+} // namespace nendo::motions

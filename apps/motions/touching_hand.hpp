@@ -14,7 +14,7 @@
 #include <nendo/hand/joint_angles.hpp>
 #include <nendo/hand/skeleton.hpp>
 
-namespace nendo::flow {
+namespace nendo::motions {
 
 /// The depths are upper bounds: a finger that cannot reach so far goes as far as it can.
 struct TouchOptions {
@@ -22,7 +22,7 @@ struct TouchOptions {
   double press_m = 0.020;
   double pull_m = 0.090;
   double glide_m = 0.012;
-  double model_size_m = PlacementOptions{}.model_size_m;
+  double model_size_m = flow::PlacementOptions{}.model_size_m;
 };
 
 /// The place on the stage that a fingertip is to reach.
@@ -72,4 +72,4 @@ private:
   std::shared_ptr<const TouchPlan> plan_;
 };
 
-} // namespace nendo::flow
+} // namespace nendo::motions

@@ -1,4 +1,4 @@
-#include "touch_score.hpp"
+#include "motions/touch_score.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace touch_score_test {
 
 using namespace nendo;
-using namespace nendo::flow;
+using namespace nendo::motions;
 using hand::Finger;
 
 namespace {

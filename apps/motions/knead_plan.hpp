@@ -4,9 +4,9 @@
 #include <memory>
 #include <optional>
 
-#include <nendo/flow/kneading_hand.hpp>
+#include "motions/kneading_hand.hpp"
 
-namespace nendo::flow {
+namespace nendo::motions {
 
 /// The model on the stage, in metres.
 struct KneadedModel {
@@ -43,4 +43,4 @@ public:
 std::unique_ptr<KneadPlan> plan_of(KneadTask task, const KneadedModel& model,
                                    const hand::HandSkeleton& skeleton);
 
-} // namespace nendo::flow
+} // namespace nendo::motions

@@ -1,12 +1,12 @@
-#include "plan_hands.hpp"
+#include "motions/plan_hands.hpp"
 
 #include <cmath>
 
 #include <nendo/hand/inverse_kinematics.hpp>
 
-#include "touch_score.hpp"
+#include "motions/touch_score.hpp"
 
-namespace nendo::flow {
+namespace nendo::motions {
 
 using Eigen::Isometry3d;
 using Eigen::Matrix3d;
@@ -53,15 +53,6 @@ JointAngles blended(const JointAngles& from, const JointAngles& to, double part)
   return angles;
 }
 
-Isometry3d blended(const Isometry3d& from, const Isometry3d& to, double part) noexcept {
-  const Eigen::Quaterniond before(from.linear());
-  const Eigen::Quaterniond after(to.linear());
-  Isometry3d pose = Isometry3d::Identity();
-  pose.linear() = before.slerp(part, after).toRotationMatrix();
-  pose.translation() = from.translation() + part * (to.translation() - from.translation());
-  return pose;
-}
-
 PinchingFingers::PinchingFingers(const hand::HandSkeleton& skeleton, double open_gap_m,
                                  double closed_gap_m) {
   JointAngles start;
@@ -98,4 +89,4 @@ JointAngles PinchingFingers::pinched(const hand::HandSkeleton& skeleton, const J
   return hand::inverse_kinematics(skeleton, wrist_at(Vector3d::Zero()), targets, start).angles;
 }
 
-} // namespace nendo::flow
+} // namespace nendo::motions

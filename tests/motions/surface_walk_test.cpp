@@ -1,4 +1,4 @@
-#include "surface_walk.hpp"
+#include "motions/surface_walk.hpp"
 
 #include <algorithm>
 #include <random>
@@ -11,7 +11,7 @@
 namespace surface_walk_test {
 
 using namespace nendo;
-using namespace nendo::flow;
+using namespace nendo::motions;
 using Eigen::Vector3d;
 
 namespace {

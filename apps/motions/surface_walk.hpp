@@ -9,7 +9,7 @@
 
 #include <nendo/deform/mesh.hpp>
 
-namespace nendo::flow {
+namespace nendo::motions {
 
 /// A triangle with the normals of its corners' vertices.
 struct SurfaceTriangle {
@@ -56,4 +56,4 @@ private:
 std::vector<SurfacePoint> walk(const SurfacePatch& patch, const Eigen::Vector3d& start_m,
                                const Eigen::Vector3d& direction, double length_m, double step_m);
 
-} // namespace nendo::flow
+} // namespace nendo::motions

@@ -1,4 +1,4 @@
-#include "touch_plan.hpp"
+#include "motions/touch_plan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <nendo/hand/inverse_kinematics.hpp>
 #include <nendo/hand/joint_limits.hpp>
 
-namespace nendo::flow {
+namespace nendo::motions {
 namespace {
 
 using Eigen::Vector3d;
@@ -144,12 +144,13 @@ private:
 };
 
 void Planner::take_hold() {
-  const Fingertips tips_wrist =
+  const flow::Fingertips tips_wrist =
       skeleton_.pose(grip_, Eigen::Isometry3d::Identity()).fingertip_positions();
-  std::array<std::optional<Fingertips>, 2> tips;
-  tips[Placement::index_of(skeleton_.side())] = tips_wrist;
-  const Placement placement = place_hands(model_, tips, {.model_size_m = options_.model_size_m});
-  plan_.T_stage_wrist = placement.T_stage_wrist[Placement::index_of(skeleton_.side())];
+  std::array<std::optional<flow::Fingertips>, 2> tips;
+  tips[flow::Placement::index_of(skeleton_.side())] = tips_wrist;
+  const flow::Placement placement =
+      flow::place_hands(model_, tips, {.model_size_m = options_.model_size_m});
+  plan_.T_stage_wrist = placement.T_stage_wrist[flow::Placement::index_of(skeleton_.side())];
 
   std::mt19937 random(options_.seed);
   const double turn_rad = 2.0 * std::numbers::pi * static_cast<double>(random()) / 4294967296.0;
@@ -310,4 +311,4 @@ Result<TouchPlan> plan_touch(const deform::Mesh& model, const hand::HandSkeleton
   return Planner(model, skeleton, fine).make();
 }
 
-} // namespace nendo::flow
+} // namespace nendo::motions

@@ -1,4 +1,4 @@
-#include <nendo/flow/kneading_hand.hpp>
+#include "motions/kneading_hand.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,29 +12,16 @@
 #include <nendo/deform/cut.hpp>
 #include <nendo/deform/triangles.hpp>
 
-#include "knead_plan.hpp"
-#include "plan_hands.hpp"
-#include "sensor_angles.hpp"
+#include "motions/knead_plan.hpp"
+#include "motions/plan_hands.hpp"
+#include "motions/sensor_angles.hpp"
 
-namespace nendo::flow {
+namespace nendo::motions {
 namespace {
 
 constexpr double knead_step_s = 1.0 / 60.0;
-constexpr std::array<std::string_view, 7> task_names{"press", "knead", "grip", "carry",
-                                                     "bore",  "cut",   "slice"};
-
-/// Which two keys a time lies between, and how far.
-struct Between {
-  std::size_t first;
-  double part;
-};
-
-Between between(double time_s, double step_s, std::size_t keys) noexcept {
-  const double last = static_cast<double>(keys - 1);
-  const double at = time_s > 0.0 && std::isfinite(time_s) ? std::min(time_s / step_s, last) : 0.0;
-  const double whole = std::min(std::floor(at), last - 1.0);
-  return {static_cast<std::size_t>(whole), at - whole};
-}
+constexpr std::array<std::string_view, knead_tasks.size()> task_names{
+    "press", "knead", "grip", "carry", "bore", "cut", "slice"};
 
 /// Tells whether a place is where hands take the upper part, within this part of the height.
 bool is_upper(double y, double low, double height, double within) noexcept {
@@ -124,20 +111,6 @@ std::string_view name_of(KneadTask task) noexcept {
   return task_names[static_cast<std::size_t>(task)];
 }
 
-std::optional<KneadTask> knead_task_named(std::string_view name) noexcept {
-  const auto* const found = std::find(task_names.begin(), task_names.end(), name);
-  if (found == task_names.end()) return std::nullopt;
-  return static_cast<KneadTask>(found - task_names.begin());
-}
-
-WristPath::WristPath(std::vector<Eigen::Isometry3d> poses, double step_s)
-    : poses_(std::move(poses)), step_s_(step_s) {}
-
-Eigen::Isometry3d WristPath::at(double time_s) const noexcept {
-  const auto [first, part] = between(time_s, step_s_, poses_.size());
-  return blended(poses_[first], poses_[first + 1], part);
-}
-
 Result<KneadingHand> KneadingHand::make(const deform::Mesh& model,
                                         const hand::HandSkeleton& skeleton, KneadTask task,
                                         double model_size_m) {
@@ -164,12 +137,12 @@ Result<KneadingHand> KneadingHand::make(const deform::Mesh& model,
   }
   KneadingHand hand;
   hand.keys_ = std::move(keys);
-  hand.wrist_ = std::make_shared<const WristPath>(std::move(poses), knead_step_s);
+  hand.wrist_ = std::make_shared<const flow::WristPath>(std::move(poses), knead_step_s);
   return hand;
 }
 
 hand::JointAngles KneadingHand::angles(double time_s) const noexcept {
-  const auto [first, part] = between(time_s, knead_step_s, keys_->size());
+  const auto [first, part] = wrist_->place(time_s);
   return blended((*keys_)[first], (*keys_)[first + 1], part);
 }
 
@@ -177,4 +150,4 @@ hand::SensorAngles KneadingHand::sensor_angles(double time_s) const noexcept {
   return sensor_angles_of(angles(time_s));
 }
 
-} // namespace nendo::flow
+} // namespace nendo::motions

@@ -1,10 +1,10 @@
-#include "touch_score.hpp"
+#include "motions/touch_score.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
-namespace nendo::flow {
+namespace nendo::motions {
 namespace {
 
 // Of a stroke that is held so long, its corners are extremes, too.
@@ -112,4 +112,4 @@ std::vector<double> TouchScore::extremes_s() const {
   return times_s;
 }
 
-} // namespace nendo::flow
+} // namespace nendo::motions

@@ -6,9 +6,9 @@
 #include <nendo/hand/joint_angles.hpp>
 #include <nendo/hand/skeleton.hpp>
 
-#include "knead_plan.hpp"
+#include "motions/knead_plan.hpp"
 
-namespace nendo::flow {
+namespace nendo::motions {
 
 inline constexpr double away_m = 0.05;       ///< from the model, where a motion begins and ends
 inline constexpr double pinch_gap_m = 0.011; ///< between the tips of thumb and index finger
@@ -21,11 +21,8 @@ hand::JointAngles flat_hand() noexcept;
 /// Bent fingers that are out of the way of a thumb or of a pinch.
 hand::JointAngles fist() noexcept;
 
-/// What lies between two hands' angles, or two wrists' poses, the shorter way round: 0 is `from`,
-/// and 1 is `to`.
+/// What lies between two hands' angles: 0 is `from`, and 1 is `to`.
 hand::JointAngles blended(const hand::JointAngles& from, const hand::JointAngles& to,
-                          double part) noexcept;
-Eigen::Isometry3d blended(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
                           double part) noexcept;
 
 /// Thumb and index finger at a side of the model, from above.
@@ -47,4 +44,4 @@ private:
   Eigen::Matrix3d stage_; ///< outwards, from the thumb to the index finger, across; left: mirrored
 };
 
-} // namespace nendo::flow
+} // namespace nendo::motions

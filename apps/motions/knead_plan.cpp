@@ -1,4 +1,4 @@
-#include "knead_plan.hpp"
+#include "motions/knead_plan.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 
 #include <nendo/hand/hand_body.hpp>
 
-#include "carry_plan.hpp"
-#include "plan_hands.hpp"
+#include "motions/carry_plan.hpp"
+#include "motions/plan_hands.hpp"
 
-namespace nendo::flow {
+namespace nendo::motions {
 namespace {
 
 using Eigen::Isometry3d;
@@ -316,4 +316,4 @@ std::unique_ptr<KneadPlan> plan_of(KneadTask task, const KneadedModel& model,
   return std::make_unique<Wall>(model, skeleton);
 }
 
-} // namespace nendo::flow
+} // namespace nendo::motions

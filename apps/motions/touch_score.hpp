@@ -9,7 +9,7 @@
 #include <nendo/driver/sample.hpp>
 #include <nendo/hand/joints.hpp>
 
-namespace nendo::flow {
+namespace nendo::motions {
 
 /// Goes from 0 to 1, at rest at both ends; it is 0 before and 1 after. Arm and hand movements from
 /// rest to rest have the least jerk that their ends allow (Flash and Hogan 1985), which makes them
@@ -56,4 +56,4 @@ private:
   double period_s_ = 0.0;
 };
 
-} // namespace nendo::flow
+} // namespace nendo::motions

@@ -1,4 +1,4 @@
-#include "surface_walk.hpp"
+#include "motions/surface_walk.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <nendo/deform/triangles.hpp>
 
-namespace nendo::flow {
+namespace nendo::motions {
 namespace {
 
 using Eigen::Vector3d;
@@ -113,4 +113,4 @@ std::vector<SurfacePoint> walk(const SurfacePatch& patch, const Vector3d& start_
   return way;
 }
 
-} // namespace nendo::flow
+} // namespace nendo::motions

@@ -4,13 +4,13 @@
 #include <array>
 #include <vector>
 
-#include <nendo/flow/touching_hand.hpp>
+#include "motions/touching_hand.hpp"
 #include <nendo/hand/angle.hpp>
 
-#include "surface_walk.hpp"
-#include "touch_score.hpp"
+#include "motions/surface_walk.hpp"
+#include "motions/touch_score.hpp"
 
-namespace nendo::flow {
+namespace nendo::motions {
 
 /// The part of one finger.
 struct TouchingFinger {
@@ -42,4 +42,4 @@ struct TouchPlan {
 Result<TouchPlan> plan_touch(const deform::Mesh& model, const hand::HandSkeleton& skeleton,
                              const TouchOptions& options);
 
-} // namespace nendo::flow
+} // namespace nendo::motions

@@ -1,11 +1,11 @@
-#include "carry_plan.hpp"
+#include "motions/carry_plan.hpp"
 
 #include <algorithm>
 #include <numbers>
 
-#include "plan_hands.hpp"
+#include "motions/plan_hands.hpp"
 
-namespace nendo::flow {
+namespace nendo::motions {
 namespace {
 
 using Eigen::Isometry3d;
@@ -90,7 +90,7 @@ public:
     if (part <= 0.0) return cuts;
     const Pose carries = carry_.at(0.0);
     return {blended(cuts.angles, carries.angles, part),
-            blended(cuts.T_stage_wrist, carries.T_stage_wrist, part)};
+            flow::blended(cuts.T_stage_wrist, carries.T_stage_wrist, part)};
   }
 
 private:
@@ -129,4 +129,4 @@ std::unique_ptr<KneadPlan> plan_to_cut(CutTool tool, const KneadedModel& model,
   return std::make_unique<CutAndCarry>(tool, model, skeleton);
 }
 
-} // namespace nendo::flow
+} // namespace nendo::motions

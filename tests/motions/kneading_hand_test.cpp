@@ -1,4 +1,4 @@
-#include <nendo/flow/kneading_hand.hpp>
+#include "motions/kneading_hand.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,13 +18,11 @@
 namespace kneading_hand_test {
 
 using namespace nendo;
-using namespace nendo::flow;
+using namespace nendo::motions;
 
 namespace {
 
 constexpr double size_m = 0.09;
-constexpr std::array tasks{KneadTask::press, KneadTask::knead, KneadTask::grip, KneadTask::carry,
-                           KneadTask::bore,  KneadTask::cut,   KneadTask::slice};
 
 KneadingHand hand_on(const deform::Mesh& model, Side side, KneadTask task) {
   auto made = KneadingHand::make(model, hand::HandSkeleton(side), task, size_m);
@@ -46,16 +44,9 @@ double clearance_m(const KneadingHand& hand, Side side, const deform::Mesh& mode
 } // namespace
 
 TEST_SUITE("kneading_hand") {
-  TEST_CASE("tasks have names") {
-    for (const KneadTask task : tasks)
-      CHECK(knead_task_named(name_of(task)) == task);
-    CHECK_FALSE(knead_task_named("touch").has_value());
-    CHECK_FALSE(knead_task_named("").has_value());
-  }
-
   TEST_CASE("each hand begins and ends beside the model, and goes into it between") {
     const deform::Mesh ball = test::sphere(24, 36, 1.0);
-    for (const KneadTask task : tasks) {
+    for (const KneadTask task : knead_tasks) {
       for (const Side side : {Side::left, Side::right}) {
         CAPTURE(name_of(task));
         CAPTURE(name_of(side));
@@ -74,7 +65,7 @@ TEST_SUITE("kneading_hand") {
     constexpr double step_s = 0.002;
     constexpr double most_speed_m_s = 1.5;
     const deform::Mesh ball = test::sphere(8, 12, 1.0);
-    for (const KneadTask task : tasks) {
+    for (const KneadTask task : knead_tasks) {
       for (const Side side : {Side::left, Side::right}) {
         CAPTURE(name_of(task));
         CAPTURE(name_of(side));

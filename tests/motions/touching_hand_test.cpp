@@ -1,4 +1,4 @@
-#include <nendo/flow/touching_hand.hpp>
+#include "motions/touching_hand.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -22,7 +22,7 @@
 namespace touching_hand_test {
 
 using namespace nendo;
-using namespace nendo::flow;
+using namespace nendo::motions;
 using hand::Finger;
 
 namespace {
@@ -50,18 +50,19 @@ deform::Mesh on_stage(deform::Mesh model) {
   return model;
 }
 
-Fingertips tips_at(const TouchingHand& hand, Side side, double time_s) {
+flow::Fingertips tips_at(const TouchingHand& hand, Side side, double time_s) {
   return hand::HandSkeleton(side)
       .pose(hand.angles(time_s), hand.wrist_pose())
       .fingertip_positions();
 }
 
-// Fingertips on the surface wherever the depth is 0, and in or out of it by the depth elsewhere.
+// flow::Fingertips on the surface wherever the depth is 0, and in or out of it by the depth
+// elsewhere.
 void check_touch(const TouchingHand& hand, Side side, const deform::Mesh& stage) {
   const deform::Points normals = deform::vertex_normals(stage);
   int on_it = 0;
   for (double t = 0.0; t < hand.period_s(); t += 0.613) {
-    const Fingertips tips = tips_at(hand, side, t);
+    const flow::Fingertips tips = tips_at(hand, side, t);
     for (std::size_t k = 0; k < touch_fingers.size(); ++k) {
       const TouchTarget target = hand.target(touch_fingers[k], t);
       const Eigen::Vector3d tip = tips.col(static_cast<Eigen::Index>(k));
@@ -115,7 +116,7 @@ void check_motion(const TouchingHand& hand, Side side) {
           {beyond_rad, now[angle] - limit.soft_most_rad, limit.soft_least_rad - now[angle]});
       fastest_rad_s = std::max(fastest_rad_s, std::abs(now[angle] - before[angle]) / step_s);
     }
-    const Fingertips tips = tips_at(hand, side, t);
+    const flow::Fingertips tips = tips_at(hand, side, t);
     for (std::size_t k = 0; k < touch_fingers.size(); ++k)
       off_m = std::max(off_m, (tips.col(static_cast<Eigen::Index>(k)) -
                                hand.target(touch_fingers[k], t).place_m())
@@ -156,7 +157,7 @@ TEST_SUITE("touching_hand") {
   TEST_CASE("both hands touch a ball, press inwards and pull outwards") {
     check_hands_on(test::sphere(32, 64, 5.0), [](const TouchingHand& hand, Side side) {
       for (double t = 0.0; t < hand.period_s(); t += 0.1) {
-        const Fingertips tips = tips_at(hand, side, t);
+        const flow::Fingertips tips = tips_at(hand, side, t);
         for (std::size_t k = 0; k < touch_fingers.size(); ++k) {
           const double radius_m = tips.col(static_cast<Eigen::Index>(k)).norm();
           const double depth_m = hand.target(touch_fingers[k], t).depth_m;
@@ -217,7 +218,7 @@ TEST_SUITE("touching_hand") {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
       ring.drain([&](const GloveSample& sample) {
         const auto angles = hand::joint_angles(sample, hand::default_calibration());
-        const Fingertips tips =
+        const flow::Fingertips tips =
             hand::HandSkeleton(Side::right).pose(angles, hand.wrist_pose()).fingertip_positions();
         const double time_s = speed * to_seconds(sample.device_time);
         for (std::size_t k = 0; k < touch_fingers.size(); ++k)

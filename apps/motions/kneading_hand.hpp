@@ -2,20 +2,20 @@
 // Simulated hands that work on clay or carry parts: their wrists move, and their fingers bend, by a
 // plan for the model that stands before them.
 
+#include <array>
+#include <cstdint>
 #include <memory>
-#include <optional>
 #include <string_view>
 #include <vector>
 
-#include <Eigen/Geometry>
-
 #include <nendo/base/result.hpp>
 #include <nendo/deform/mesh.hpp>
+#include <nendo/flow/wrist_path.hpp>
 #include <nendo/hand/calibration.hpp>
 #include <nendo/hand/joint_angles.hpp>
 #include <nendo/hand/skeleton.hpp>
 
-namespace nendo::flow {
+namespace nendo::motions {
 
 /// What a hand does. A left hand helps the right one, and can do it alone, too.
 enum class KneadTask : std::uint8_t {
@@ -27,24 +27,10 @@ enum class KneadTask : std::uint8_t {
   cut,   ///< draws a wire through it, below the upper part, from 0.8 s to 2.5 s, and then does that
   slice, ///< the same with a knife, which one hand draws alone
 };
+inline constexpr std::array knead_tasks{KneadTask::press, KneadTask::knead, KneadTask::grip,
+                                        KneadTask::carry, KneadTask::bore,  KneadTask::cut,
+                                        KneadTask::slice};
 std::string_view name_of(KneadTask task) noexcept;
-std::optional<KneadTask> knead_task_named(std::string_view name) noexcept;
-
-/// Where a wrist is at each time.
-class WristPath {
-public:
-  /// Poses on the stage, evenly in time, at least two.
-  WristPath(std::vector<Eigen::Isometry3d> poses, double step_s);
-
-  /// Returns the pose at that time since the beginning: before it the first, after the end the
-  /// last. Between two poses it is a line and the shortest turn. Any thread, wait-free.
-  Eigen::Isometry3d at(double time_s) const noexcept;
-  double length_s() const noexcept { return step_s_ * static_cast<double>(poses_.size() - 1); }
-
-private:
-  std::vector<Eigen::Isometry3d> poses_;
-  double step_s_;
-};
 
 /// The motion: it begins and ends beside the model, and the hand then stays there.
 class KneadingHand {
@@ -60,14 +46,14 @@ public:
   /// Returns the sensors' angles of a glove at that time; joint_angles() turns them into
   /// angles(time_s).
   hand::SensorAngles sensor_angles(double time_s) const noexcept;
-  const std::shared_ptr<const WristPath>& wrist() const noexcept { return wrist_; }
+  const std::shared_ptr<const flow::WristPath>& wrist() const noexcept { return wrist_; }
   double length_s() const noexcept { return wrist_->length_s(); }
 
 private:
   KneadingHand() = default;
 
   std::shared_ptr<const std::vector<hand::JointAngles>> keys_;
-  std::shared_ptr<const WristPath> wrist_;
+  std::shared_ptr<const flow::WristPath> wrist_;
 };
 
-} // namespace nendo::flow
+} // namespace nendo::motions

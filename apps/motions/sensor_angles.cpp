@@ -1,8 +1,8 @@
-#include "sensor_angles.hpp"
+#include "motions/sensor_angles.hpp"
 
 #include <array>
 
-namespace nendo::flow {
+namespace nendo::motions {
 
 using hand::Finger;
 
@@ -37,4 +37,4 @@ hand::SensorAngles sensor_angles_of(const hand::JointAngles& joints) noexcept {
   return sensors;
 }
 
-} // namespace nendo::flow
+} // namespace nendo::motions
