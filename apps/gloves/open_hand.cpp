@@ -7,6 +7,7 @@
 
 #include <nendo/base/advised_command.hpp>
 #include <nendo/base/text.hpp>
+#include <nendo/recording/replay_driver.hpp>
 
 #include "cli/cli.hpp"
 
@@ -40,10 +41,14 @@ Result<void> wait_for_first_sample(OpenHand& hand) {
 
 } // namespace
 
+driver::GloveContext glove_context(motions::PlannedHand* planned) {
+  return {{recording::replay_driver()}, motions::planned_motions(planned)};
+}
+
 Result<std::unique_ptr<driver::Glove>> open_glove(const std::string& spec, std::optional<Side> side,
                                                   motions::PlannedHand* planned) {
   cli::install_stop_signals();
-  auto glove = driver::open_glove(spec, side, {{}, motions::planned_motions(planned)});
+  auto glove = driver::open_glove(spec, side, glove_context(planned));
   if (cli::stop_requested())
     return Error{Errc::failed, spec + ": interrupted while its glove was being identified"};
   if (glove) note_columns_not_read((*glove)->info());

@@ -27,9 +27,13 @@ struct OpenHand {
   std::shared_ptr<const flow::WristPath> wrist_path{}; ///< likewise, of a wrist that moves
 };
 
-/// Opens a glove as driver::open_glove() does, for a command that a stop signal ends. From then on
-/// these signals set a flag (cli::stop_requested()). If one comes while ports are probed, that is
-/// the error: failed, "interrupted". Simulated gloves have motions::planned_motions(planned), too.
+/// Returns what the program adds to the driver's gloves: recordings, and what simulated hands do to
+/// a model (motions::planned_motions()).
+driver::GloveContext glove_context(motions::PlannedHand* planned = nullptr);
+
+/// Opens a glove as driver::open_glove() does with glove_context(), for a command that a stop
+/// signal ends. From then on these signals set a flag (cli::stop_requested()). If one comes while
+/// ports are probed, that is the error: failed, "interrupted".
 Result<std::unique_ptr<driver::Glove>> open_glove(const std::string& spec,
                                                   std::optional<Side> side = std::nullopt,
                                                   motions::PlannedHand* planned = nullptr);

@@ -194,7 +194,7 @@ int run(RunArguments& options) {
 void add_shape_options(cli::Command& command, RunArguments& options) {
   session::RunOptions& run_options = options.run;
   std::string gloves;
-  for (const driver::GloveDriver& driver : driver::glove_drivers())
+  for (const driver::GloveDriver& driver : driver::glove_drivers(gloves::glove_context()))
     gloves.append("\n  ").append(driver.grammar).append("\n      ").append(driver.summary);
   command.set_footer(
       "A GLOVE is one of" + gloves +

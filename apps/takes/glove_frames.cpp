@@ -24,7 +24,7 @@ struct GloveExtent {
 std::vector<GloveExtent> extents_of(recording::TakeReader reader) {
   std::vector<GloveExtent> gloves(reader.setup().hands.size());
   while (const auto entry = reader.next()) {
-    const auto* const recorded = std::get_if<driver::RecordedSample>(&*entry);
+    const auto* const recorded = std::get_if<recording::RecordedSample>(&*entry);
     if (recorded == nullptr || recorded->glove >= gloves.size()) continue;
     GloveExtent& glove = gloves[recorded->glove];
     glove.last = recorded->sample.arrival;
@@ -95,7 +95,7 @@ void GloveFrames::note_silence(HostTime now) noexcept {
 
 bool GloveFrames::next() {
   while (const auto entry = reader_.next()) {
-    const auto* const recorded = std::get_if<driver::RecordedSample>(&*entry);
+    const auto* const recorded = std::get_if<recording::RecordedSample>(&*entry);
     if (recorded == nullptr || recorded->glove >= hands_.size()) {
       exact_ = exact_ && recorded == nullptr && !std::holds_alternative<recording::Gap>(*entry);
       continue;

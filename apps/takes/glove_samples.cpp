@@ -66,7 +66,7 @@ SensorMask GloveSamples::sensors() const {
 bool GloveSamples::next() {
   while (const auto entry = reader_.next()) {
     if (std::holds_alternative<recording::Gap>(*entry)) exact_ = false;
-    const auto* const recorded = std::get_if<driver::RecordedSample>(&*entry);
+    const auto* const recorded = std::get_if<recording::RecordedSample>(&*entry);
     if (recorded == nullptr) continue;
     sample_ = recorded->sample;
     glove_ = recorded->glove;

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include <nendo/base/text.hpp>
-#include <nendo/driver/chunk_file.hpp>
+#include <nendo/recording/chunk_file.hpp>
 #include <nendo/recording/take_tools.hpp>
 
 #include "takes/model_files.hpp"
@@ -150,7 +150,7 @@ bool is_recording(const std::filesystem::path& path) {
   constexpr std::size_t magic_bytes = 8; // before the version
   std::array<char, magic_bytes> begin{};
   std::ifstream file(path, std::ios::binary);
-  const auto wanted = driver::file_header();
+  const auto wanted = recording::file_header();
   return file.read(begin.data(), begin.size()) &&
          std::memcmp(begin.data(), wanted.data(), magic_bytes) == 0;
 }

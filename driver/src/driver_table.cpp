@@ -10,7 +10,6 @@
 #include "fivedt/fivedt_driver.hpp"
 #include "forte/forte_driver.hpp"
 #include "lucidgloves/lucidgloves_driver.hpp"
-#include "replay/replay_driver.hpp"
 #include "simulated/simulated_driver.hpp"
 #include "usb_gloves/open_usb_glove.hpp"
 
@@ -42,11 +41,6 @@ constexpr std::array own_drivers{
                 alone<open_auto>},
     GloveDriver{"sim", "sim[:MOTION][?seed=N&rate=HZ&hand=left|right&sensors=18|22]",
                 "a simulated glove", open_simulated},
-    GloveDriver{
-        "replay", "replay:FILE[?hand=left|right&speed=X&loop=yes|end=hold&rate=HZ]",
-        "a glove as `nendo record` or `nendo run --record` recorded it, or a table of counts "
-        "(.csv, .tsv, .txt)",
-        alone<open_replay>},
 };
 
 /// Names the glove as it was typed: its port alone does not tell which of two it was, nor what

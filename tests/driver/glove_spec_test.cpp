@@ -1,5 +1,9 @@
 #include <nendo/driver/open_glove.hpp>
 
+#include <memory>
+#include <optional>
+#include <string>
+
 #include <doctest/doctest.h>
 
 namespace glove_spec_test {
@@ -93,8 +97,9 @@ TEST_SUITE("glove_spec") {
     CHECK(broken.error().message == "broken:here: no here");
     CHECK(glove_drivers(context).back().grammar == "broken:PATH");
     CHECK(open_glove("mouse", std::nullopt, context).error().message.ends_with("broken"));
-    CHECK_FALSE(open_glove("broken:here").error().message.find("unknown kind broken") ==
-                std::string::npos);
+    for (const std::string unknown : {"broken", "replay"})
+      CHECK(open_glove(unknown + ":here").error().message.find("unknown kind " + unknown) !=
+            std::string::npos);
   }
 }
 

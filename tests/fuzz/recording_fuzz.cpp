@@ -23,16 +23,15 @@ void require(bool law) {
 
 /// A file of the payloads that the input is cut into: a byte for the type, two for the length.
 std::vector<std::byte> framed(std::span<const std::byte> input) {
-  constexpr std::array types{driver::chunk_type("HEAD"), driver::chunk_type("GLOV"),
-                             driver::chunk_type("HAND"), driver::chunk_type("LOOP"),
-                             driver::chunk_type("TAPE"), driver::chunk_type("END "),
-                             driver::chunk_type("WHAT")};
+  constexpr std::array types{chunk_type("HEAD"), chunk_type("GLOV"), chunk_type("HAND"),
+                             chunk_type("LOOP"), chunk_type("TAPE"), chunk_type("END "),
+                             chunk_type("WHAT")};
   std::vector<std::byte> file;
-  ByteWriter(file).bytes(driver::file_header());
+  ByteWriter(file).bytes(file_header());
   ByteReader reader(input);
   for (std::uint32_t number = 0; reader.remaining() > 0; ++number) {
-    const driver::ChunkType type = types[reader.u8() % types.size()];
-    driver::append_chunk(file, type, number, reader.take(reader.u16_le()));
+    const ChunkType type = types[reader.u8() % types.size()];
+    append_chunk(file, type, number, reader.take(reader.u16_le()));
   }
   return file;
 }
@@ -61,7 +60,7 @@ void sum_up(std::span<const std::byte> file, const std::vector<Entry>& entries) 
     samples += glove.samples;
   require(samples == static_cast<std::uint64_t>(
                          std::count_if(entries.begin(), entries.end(), [](const Entry& entry) {
-                           return std::holds_alternative<driver::RecordedSample>(entry);
+                           return std::holds_alternative<RecordedSample>(entry);
                          })));
 }
 

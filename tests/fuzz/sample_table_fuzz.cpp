@@ -6,11 +6,11 @@
 #include <string>
 #include <string_view>
 
-#include "replay/sample_table.hpp"
+#include "sample_table.hpp"
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace nendo::driver;
+  using namespace nendo::recording;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const auto table = parse_sample_table(text, "table", {.rate_hz = 90.0});
   if (!table) {

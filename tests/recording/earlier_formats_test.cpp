@@ -20,10 +20,10 @@ using flow::Mode;
 namespace {
 
 /// What a setup's chunks of that type hold, in their order.
-std::vector<std::vector<std::byte>> payloads_of(const Setup& setup, driver::ChunkType type) {
+std::vector<std::vector<std::byte>> payloads_of(const Setup& setup, ChunkType type) {
   std::uint32_t chunks = 0;
   const auto bytes = setup_bytes(setup, chunks);
-  auto reader = driver::ChunkReader::of(bytes, "test");
+  auto reader = ChunkReader::of(bytes, "test");
   REQUIRE(reader);
   std::vector<std::vector<std::byte>> payloads;
   while (const auto chunk = reader->next())
@@ -35,7 +35,7 @@ std::vector<std::vector<std::byte>> payloads_of(const Setup& setup, driver::Chun
 
 TEST_SUITE("earlier_formats") {
   TEST_CASE("a hand of format 1.0, which ends before what was learned, is read") {
-    constexpr auto type = driver::chunk_type("HAND");
+    constexpr auto type = chunk_type("HAND");
     Setup setup;
     for (const auto& payload :
          payloads_of(test::setup_of(test::LoopUnderTest(Mode::type1)), type)) {
@@ -61,7 +61,7 @@ TEST_SUITE("earlier_formats") {
     for (flow::HandInput& hand : source.hands)
       for (const Side side : {Side::left, Side::right})
         hand.wearer.of(side).size.shape.terms.fill(0.004);
-    constexpr auto type = driver::chunk_type("HAND");
+    constexpr auto type = chunk_type("HAND");
     Setup setup;
     for (const auto& payload : payloads_of(source, type)) {
       const std::span whole(payload);
@@ -83,7 +83,7 @@ TEST_SUITE("earlier_formats") {
   }
 
   TEST_CASE("a loop of format 1.4 undoes pulls by the rule of its time") {
-    constexpr auto type = driver::chunk_type("LOOP");
+    constexpr auto type = chunk_type("LOOP");
     int loops = 0;
     for (const auto& payload :
          payloads_of(test::setup_of(test::LoopUnderTest(Mode::type1)), type)) {
@@ -103,7 +103,7 @@ TEST_SUITE("earlier_formats") {
   }
 
   TEST_CASE("a loop of format 1.12 has the rules of its time in type 2 and in clay") {
-    constexpr auto type = driver::chunk_type("LOOP");
+    constexpr auto type = chunk_type("LOOP");
     const auto payload =
         payloads_of(test::setup_of(test::LoopUnderTest(Mode::type2)), type).front();
     const std::span whole(payload);

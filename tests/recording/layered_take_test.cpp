@@ -267,7 +267,7 @@ TEST_SUITE("layered_take") {
     ByteWriter writer(tape);
     for (const unsigned at : {0U, 1U, 2U, 255U})
       put_entry(writer, flow::SetLayer{static_cast<std::uint8_t>(at), true});
-    driver::append_chunk(bytes, driver::log_chunk, chunks, tape);
+    append_chunk(bytes, log_chunk, chunks, tape);
     auto reader = TakeReader::of(bytes, "test");
     REQUIRE(reader);
     unsigned layers = 0;

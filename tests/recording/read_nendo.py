@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads a recording as the two FORMAT.md (driver/src/replay, apps/recording) describe it, and knows nothing of Nendo's sources: their test.
+"""Reads a recording as apps/recording/FORMAT.md describes it, and knows nothing of Nendo's sources: their test.
 Prints a JSON object for each chunk and for each entry of a tape. Ends with 1 at the first thing that does not fit."""
 import json
 import struct

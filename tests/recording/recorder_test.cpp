@@ -28,7 +28,7 @@ Counts counts_of(const std::filesystem::path& path) {
   REQUIRE(reader);
   Counts counts;
   while (const auto entry = reader->next()) {
-    counts.samples += std::holds_alternative<driver::RecordedSample>(*entry);
+    counts.samples += std::holds_alternative<RecordedSample>(*entry);
     counts.requests += std::holds_alternative<flow::Request>(*entry);
     counts.ticks += std::holds_alternative<flow::LoggedTick>(*entry);
     counts.gaps += std::holds_alternative<Gap>(*entry);

@@ -256,7 +256,7 @@ TEST_SUITE("take_reader") {
              "PUPV") // masks that were asked for, before the tape that names them
         ++at;
       REQUIRE(lines[at]["chunk"] == "TAPE");
-      if (const auto* sample = std::get_if<driver::RecordedSample>(&*entry))
+      if (const auto* sample = std::get_if<RecordedSample>(&*entry))
         CHECK(is_sample(lines[at], sample->glove, sample->sample));
       if (const auto* request = std::get_if<flow::Request>(&*entry))
         CHECK(lines[at]["request"] == static_cast<int>(*request));
@@ -314,16 +314,16 @@ TEST_SUITE("take_reader") {
   TEST_CASE("the setup is complete with the first input log, whatever comes behind it") {
     std::uint32_t chunks = 0;
     const auto setup = setup_bytes(unusual_setup(), chunks);
-    auto source = driver::ChunkReader::of(setup, "test");
+    auto source = ChunkReader::of(setup, "test");
     REQUIRE(source);
     std::vector<std::byte> bytes;
-    ByteWriter(bytes).bytes(driver::file_header());
+    ByteWriter(bytes).bytes(file_header());
     std::vector<std::byte> input_log;
     ByteWriter writer(input_log);
     put_entry(writer, flow::Request::grab);
-    driver::append_chunk(bytes, driver::log_chunk, 0, input_log);
+    append_chunk(bytes, log_chunk, 0, input_log);
     while (const auto chunk = source->next())
-      driver::append_chunk(bytes, chunk->type, chunk->number + 1, chunk->payload);
+      append_chunk(bytes, chunk->type, chunk->number + 1, chunk->payload);
     auto reader = TakeReader::of(bytes, "test");
     REQUIRE(reader);
     while (reader->next()) {
@@ -339,11 +339,10 @@ TEST_SUITE("take_reader") {
   TEST_CASE("numbers that no loop may have are refused, one by one, and never come out") {
     std::uint32_t chunks = 0;
     const auto bytes = setup_bytes(unusual_setup(), chunks);
-    auto reader = driver::ChunkReader::of(bytes, "test");
+    auto reader = ChunkReader::of(bytes, "test");
     REQUIRE(reader);
     while (const auto chunk = reader->next()) {
-      if (chunk->type != driver::chunk_type("LOOP") && chunk->type != driver::chunk_type("HAND"))
-        continue;
+      if (chunk->type != chunk_type("LOOP") && chunk->type != chunk_type("HAND")) continue;
       std::uint64_t refused = 0;
       // NaN, infinity, and the largest of everything, at each place where a number may stand.
       for (const double bad : {std::numeric_limits<double>::quiet_NaN(),

@@ -82,19 +82,19 @@ std::vector<std::byte> with_late_gloves(std::uint8_t gloves) {
   setup.gloves.resize(1);
   std::uint32_t chunks = 0;
   std::vector<std::byte> bytes = setup_bytes(setup, chunks);
-  const auto append = [&](driver::ChunkType type, auto&& fill) {
+  const auto append = [&](ChunkType type, auto&& fill) {
     std::vector<std::byte> payload;
     fill(ByteWriter(payload));
-    driver::append_chunk(bytes, type, chunks++, payload);
+    append_chunk(bytes, type, chunks++, payload);
   };
   const auto put_sample_of = [](ByteWriter writer, std::uint8_t glove) {
-    put_entry(writer, driver::RecordedSample{glove, GloveSample{}});
+    put_entry(writer, RecordedSample{glove, GloveSample{}});
   };
-  append(driver::log_chunk, [&](ByteWriter writer) { put_sample_of(writer, 0); });
+  append(log_chunk, [&](ByteWriter writer) { put_sample_of(writer, 0); });
   for (std::uint8_t glove = 1; glove < gloves; ++glove)
-    append(driver::glove_chunk,
-           [&](ByteWriter writer) { driver::put_glove(writer, {glove, driver::GloveInfo{}}); });
-  append(driver::log_chunk, [&](ByteWriter writer) {
+    append(glove_chunk,
+           [&](ByteWriter writer) { put_glove(writer, {glove, driver::GloveInfo{}}); });
+  append(log_chunk, [&](ByteWriter writer) {
     for (std::uint8_t glove = 0; glove < gloves; ++glove)
       put_sample_of(writer, glove);
   });
@@ -283,7 +283,7 @@ TEST_SUITE("take_tools") {
         ByteWriter writer(payload);
         put_sent(writer, std::span(sent).first(gloves));
         if (cuts) payload.pop_back();
-        driver::append_chunk(bytes, sent_chunk, chunks++, payload);
+        append_chunk(bytes, sent_chunk, chunks++, payload);
         const auto summary = summarise(bytes, "counts");
         REQUIRE(summary);
         const bool fine = gloves == 2 && !cuts;

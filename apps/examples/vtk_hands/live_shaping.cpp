@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <nendo/hand/calibration_store.hpp>
+#include <nendo/recording/replay_driver.hpp>
 
 namespace vtk_hands {
 
@@ -41,7 +42,7 @@ struct LiveShaping::Hand {
 
 Result<std::unique_ptr<LiveShaping::Hand>> LiveShaping::open(const std::string& glove, Side side) {
   constexpr std::chrono::seconds patience(5);
-  auto opened = driver::open_glove(glove, side);
+  auto opened = driver::open_glove(glove, side, {.drivers = {recording::replay_driver()}});
   if (!opened) return opened.error();
   auto hand = std::make_unique<Hand>();
   hand->glove = *std::move(opened);

@@ -10,8 +10,8 @@
 
 #include <nendo/base/crc32c.hpp>
 #include <nendo/base/files.hpp>
-#include <nendo/driver/chunk_file.hpp>
-#include <nendo/driver/sample_record.hpp>
+#include <nendo/recording/chunk_file.hpp>
+#include <nendo/recording/sample_record.hpp>
 
 namespace nendo::recording {
 namespace {
@@ -33,8 +33,8 @@ bool write_chunk(int fd, std::uint32_t number, std::span<const std::byte> payloa
                  std::uint32_t crc) noexcept {
   std::array<std::byte, 4> sum{};
   put_le(sum, 0, crc, 4);
-  return write_all(fd, driver::chunk_header(driver::log_chunk, number, payload)) &&
-         write_all(fd, payload) && write_all(fd, sum);
+  return write_all(fd, chunk_header(log_chunk, number, payload)) && write_all(fd, payload) &&
+         write_all(fd, sum);
 }
 
 } // namespace
@@ -49,9 +49,9 @@ LastMinute::~LastMinute() {
     delete std::exchange(at, at->next.load());
 }
 
-void LastMinute::add_chunk(driver::ChunkType type, std::span<const std::byte> payload) {
+void LastMinute::add_chunk(ChunkType type, std::span<const std::byte> payload) {
   auto added = std::make_unique<Lasting>();
-  driver::append_chunk(added->bytes, type, setup_chunks_ + lasting_count_, payload);
+  append_chunk(added->bytes, type, setup_chunks_ + lasting_count_, payload);
   ++lasting_count_;
   std::atomic<Lasting*>* end = &lasting_;
   while (Lasting* const there = end->load())
@@ -118,7 +118,7 @@ bool LastMinute::write(int fd) const noexcept {
   const std::uint64_t dropped = dropped_.load(std::memory_order_acquire);
   if (dropped > 0) {
     std::array<std::byte, 10> gap{}; // an entry's head, and how many entries
-    gap[0] = static_cast<std::byte>(driver::EntryKind::gap);
+    gap[0] = static_cast<std::byte>(EntryKind::gap);
     gap[1] = std::byte{8};
     put_le(gap, 2, dropped, 8);
     if (!write_chunk(fd, number++, gap, crc32c(gap))) return false;

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <nendo/base/units.hpp>
-#include <nendo/driver/chunk_file.hpp>
+#include <nendo/recording/chunk_file.hpp>
 
 namespace nendo::recording {
 
@@ -29,7 +29,7 @@ public:
 
   /// Adds a chunk behind the setup, which stays whatever is dropped. To be called by the thread
   /// that pushes. Allocates.
-  void add_chunk(driver::ChunkType type, std::span<const std::byte> payload);
+  void add_chunk(ChunkType type, std::span<const std::byte> payload);
 
   /// Adds the payload of an input log chunk with that many entries, which ended at `time`. A
   /// payload larger than an eighth of the memory is dropped. Only one thread may call this.

@@ -92,7 +92,7 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
   return replay;
 }
 
-void LoopReplay::take(const driver::RecordedSample& sample) noexcept {
+void LoopReplay::take(const RecordedSample& sample) noexcept {
   exact_ = sample.glove < rings_.size() && rings_[sample.glove]->try_push(sample.sample) && exact_;
 }
 
@@ -134,7 +134,7 @@ bool LoopReplay::follow(const PuppetChange& change) {
 }
 
 bool LoopReplay::feed(const Entry& entry) noexcept {
-  if (const auto* sample = std::get_if<driver::RecordedSample>(&entry)) {
+  if (const auto* sample = std::get_if<RecordedSample>(&entry)) {
     take(*sample);
   } else if (const auto* settings = std::get_if<flow::LoopSettings>(&entry)) {
     exact_ = loop_->changes().change_settings(*settings) && exact_;

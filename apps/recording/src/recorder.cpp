@@ -107,7 +107,7 @@ private:
   }
 
   void add(const flow::TakenSample& taken) {
-    put({driver::RecordedSample{taken.hand, taken.sample}});
+    put({RecordedSample{taken.hand, taken.sample}});
     ++recorded_.samples;
     auto& edge = switches_[taken.hand % switches_.size()];
     if (options_.keep_on_switch && edge.turned_on(taken.sample.wrist_switch, taken.sample.arrival))
@@ -167,7 +167,7 @@ private:
   void write_chunk() {
     if (payload_.empty()) return;
     if (last_minute_) last_minute_->push(payload_, entries_, HostClock::now());
-    append(driver::log_chunk);
+    append(log_chunk);
     payload_.clear();
     entries_ = 0;
     // A chunk may be the first that is kept, so each tells the settings, if they have changed.
@@ -183,7 +183,7 @@ private:
     append(sent_chunk);
     payload_.clear();
   }
-  void append(driver::ChunkType type) {
+  void append(ChunkType type) {
     if (!file_) return;
     if (const auto written = file_->append(type, payload_); !written) fail(written.error());
     recorded_.bytes = file_->bytes();

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include <nendo/base/crc32c.hpp>
-#include <nendo/driver/sample_record.hpp>
+#include <nendo/recording/sample_record.hpp>
 
 #include "setup_parts.hpp"
 
@@ -65,17 +65,17 @@ Result<std::shared_ptr<const puppet::Rig>> rig_of(const RecordedPuppet& recorded
 std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks) {
   std::vector<std::byte> bytes;
   std::vector<std::byte> payload;
-  ByteWriter(bytes).bytes(driver::file_header());
+  ByteWriter(bytes).bytes(file_header());
   chunks = 0;
-  const auto append = [&](driver::ChunkType type, auto&& fill) {
+  const auto append = [&](ChunkType type, auto&& fill) {
     payload.clear();
     fill(ByteWriter(payload));
-    driver::append_chunk(bytes, type, chunks++, payload);
+    append_chunk(bytes, type, chunks++, payload);
   };
   append(head_chunk, [&](ByteWriter writer) { put_head(writer, setup); });
   for (std::size_t at = 0; at < setup.gloves.size(); ++at) {
-    append(driver::glove_chunk, [&](ByteWriter writer) {
-      driver::put_glove(writer, {static_cast<std::uint8_t>(at), setup.gloves[at]});
+    append(glove_chunk, [&](ByteWriter writer) {
+      put_glove(writer, {static_cast<std::uint8_t>(at), setup.gloves[at]});
     });
   }
   for (std::size_t at = 0; at < setup.hands.size(); ++at) {
@@ -101,7 +101,7 @@ std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks) {
   return bytes;
 }
 
-bool read_setup_chunk(driver::ChunkType type, std::span<const std::byte> payload, Setup& setup) {
+bool read_setup_chunk(ChunkType type, std::span<const std::byte> payload, Setup& setup) {
   ByteReader reader(payload);
   if (type == head_chunk) return read_head(reader, setup);
   if (type == hand_chunk) return read_hand(reader, setup.hands);
@@ -109,8 +109,8 @@ bool read_setup_chunk(driver::ChunkType type, std::span<const std::byte> payload
   if (type == puppet_chunk) return read_puppet(reader, setup.loop);
   if (type == origin_chunk) return read_origin(payload, setup.loop);
   if (type == rest_chunk) return read_rest(payload, setup.loop);
-  if (type != driver::glove_chunk) return true;
-  auto glove = driver::glove_of(payload);
+  if (type != glove_chunk) return true;
+  auto glove = glove_of(payload);
   if (!glove || glove->number != setup.gloves.size()) return false;
   setup.gloves.push_back(std::move(glove->info));
   return true;

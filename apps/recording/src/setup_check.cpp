@@ -35,7 +35,7 @@ std::string reason_of_loop(const LoopSetup& loop) {
   return "a setting of the loop is out of its range; leave out the options that you do not need";
 }
 
-std::string reason_of(driver::ChunkType type, const Setup& setup) {
+std::string reason_of(ChunkType type, const Setup& setup) {
   if (type == hand_chunk)
     return "a hand's size, calibration or filter has a number that no hand has; calibrate again, "
            "or use --calibration none";
@@ -54,7 +54,7 @@ std::string reason_of(driver::ChunkType type, const Setup& setup) {
 Result<void> check_readable(const Setup& setup, std::span<const std::byte> bytes) {
   if (setup.loop && setup.loop->mesh.size() > UINT16_MAX) // a writer cuts texts off there
     return Error{Errc::failed, "this run cannot be recorded: " + reason_of_loop(*setup.loop)};
-  auto chunks = driver::ChunkReader::of(bytes, "the recording");
+  auto chunks = ChunkReader::of(bytes, "the recording");
   if (!chunks) return chunks.error();
   Setup read;
   while (const auto chunk = chunks->next()) {

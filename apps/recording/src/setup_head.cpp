@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include <nendo/driver/sample_record.hpp>
+#include <nendo/recording/sample_record.hpp>
 
 namespace nendo::recording {
 namespace {
@@ -177,18 +177,17 @@ void read_layer(ByteReader& reader, CheckedReader& checked, flow::Layer& layer) 
 
 void put_head(ByteWriter& writer, const Setup& setup) {
   writer.i64_le(setup.begun.time_since_epoch().count());
-  driver::put_time(writer, setup.begun_host);
+  put_time(writer, setup.begun_host);
   writer.text(setup.program);
   writer.text(setup.wearer);
 }
 
 bool read_head(ByteReader& reader, Setup& setup) {
   const std::chrono::nanoseconds begun(reader.i64_le());
-  const HostTime begun_host = driver::read_time(reader);
+  const HostTime begun_host = read_time(reader);
   const std::string_view program = reader.text();
   const std::string_view wearer = reader.text();
-  if (reader.overrun() || !driver::is_usable_time(begun) ||
-      !driver::is_usable_time(begun_host.time_since_epoch()))
+  if (reader.overrun() || !is_usable_time(begun) || !is_usable_time(begun_host.time_since_epoch()))
     return false;
   setup.begun = std::chrono::sys_time<std::chrono::nanoseconds>(begun);
   setup.begun_host = begun_host;
@@ -203,7 +202,7 @@ void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& ha
   const auto& adapt = hand.wearer.adapt;
   writer.u8(static_cast<std::uint8_t>(hand.side));
   put_size(writer, own.size);
-  driver::put_sample_body(writer, {number, hand.first});
+  put_sample_body(writer, {number, hand.first});
   writer.u8(static_cast<std::uint8_t>(hand.gated));
   put_filter_kind(writer, hand.filter, hand.wearer.ends ? ends_bit : 0);
   writer.f64_le(hand.filter.min_cutoff_hz);
@@ -232,7 +231,7 @@ bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
   hand::WearerHand own, other;
   hand.side = checked.one_of(Side::right);
   read_size(checked, own.size);
-  const auto first = driver::read_sample_body(reader);
+  const auto first = read_sample_body(reader);
   if (!first || first->glove != hands.size()) return false;
   hand.first = first->sample;
   hand.gated = reader.u8() != 0;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include <nendo/driver/sample_record.hpp>
 #include <nendo/flow/tick_grid.hpp>
+#include <nendo/recording/sample_record.hpp>
 
 namespace nendo::recording {
 namespace {
@@ -361,7 +361,7 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
   options.most_catch_up = reader.u32_le();
   checked.require(options.most_catch_up >= 1 && options.most_catch_up <= most_catch_up);
   const std::chrono::nanoseconds silent_after(reader.i64_le());
-  checked.require(silent_after.count() >= 0 && driver::is_usable_time(silent_after));
+  checked.require(silent_after.count() >= 0 && is_usable_time(silent_after));
   options.silent_after = silent_after;
   options.switch_action = checked.one_of(flow::SwitchAction::keep);
   options.sculptor.mode = checked.one_of(flow::Mode::parts);

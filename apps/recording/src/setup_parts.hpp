@@ -7,21 +7,21 @@
 
 #include <nendo/base/byte_reader.hpp>
 #include <nendo/base/byte_writer.hpp>
-#include <nendo/driver/sample_record.hpp>
+#include <nendo/recording/sample_record.hpp>
 #include <nendo/recording/setup.hpp>
 
 namespace nendo::recording {
 
-inline constexpr driver::ChunkType head_chunk = driver::chunk_type("HEAD");
-inline constexpr driver::ChunkType hand_chunk = driver::chunk_type("HAND");
-inline constexpr driver::ChunkType loop_chunk = driver::chunk_type("LOOP");
-inline constexpr driver::ChunkType rest_chunk = driver::chunk_type("REST");
-inline constexpr driver::ChunkType origin_chunk = driver::chunk_type("ORIG");
-inline constexpr driver::ChunkType puppet_chunk = driver::chunk_type("PUPP");
+inline constexpr ChunkType head_chunk = chunk_type("HEAD");
+inline constexpr ChunkType hand_chunk = chunk_type("HAND");
+inline constexpr ChunkType loop_chunk = chunk_type("LOOP");
+inline constexpr ChunkType rest_chunk = chunk_type("REST");
+inline constexpr ChunkType origin_chunk = chunk_type("ORIG");
+inline constexpr ChunkType puppet_chunk = chunk_type("PUPP");
 
-constexpr bool is_setup_chunk(driver::ChunkType type) noexcept {
+constexpr bool is_setup_chunk(ChunkType type) noexcept {
   return type == head_chunk || type == hand_chunk || type == loop_chunk || type == rest_chunk ||
-         type == origin_chunk || type == puppet_chunk || type == driver::glove_chunk;
+         type == origin_chunk || type == puppet_chunk || type == glove_chunk;
 }
 
 /// Added to a filter's kind where pinches are closed.

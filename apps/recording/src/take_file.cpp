@@ -49,10 +49,10 @@ Result<TakeFile> TakeFile::create(const std::filesystem::path& path,
   return file;
 }
 
-Result<void> TakeFile::append(driver::ChunkType type, std::span<const std::byte> payload) {
+Result<void> TakeFile::append(ChunkType type, std::span<const std::byte> payload) {
   if (failed_) return {};
   chunk_.clear();
-  driver::append_chunk(chunk_, type, chunks_, payload);
+  append_chunk(chunk_, type, chunks_, payload);
   ++chunks_;
   return write(chunk_);
 }

@@ -12,7 +12,7 @@
 
 #include <nendo/base/descriptor.hpp>
 #include <nendo/base/result.hpp>
-#include <nendo/driver/chunk_file.hpp>
+#include <nendo/recording/chunk_file.hpp>
 
 namespace nendo::recording {
 
@@ -58,7 +58,7 @@ public:
 
   /// Appends a chunk. After an error, a live file ends with the last whole chunk, and later calls
   /// do nothing. Error: failed, which is returned only once.
-  Result<void> append(driver::ChunkType type, std::span<const std::byte> payload);
+  Result<void> append(ChunkType type, std::span<const std::byte> payload);
   /// Writes everything to the disk and makes a copy permanent. Error: failed.
   Result<void> sync();
 

@@ -29,7 +29,7 @@ public:
   }
 
 private:
-  void add_one(const driver::RecordedSample& recorded) {
+  void add_one(const RecordedSample& recorded) {
     if (recorded.glove >= samples_.size()) {
       exact_ = false;
       return;

@@ -8,8 +8,6 @@
 namespace nendo::recording {
 namespace {
 
-using driver::EntryKind;
-
 constexpr std::size_t tick_bytes = 24;
 constexpr std::size_t request_bytes = 1;
 constexpr std::size_t gap_bytes = 8;
@@ -23,21 +21,19 @@ constexpr std::size_t puppet_bytes = 4;
 struct EntryWriter {
   ByteWriter& writer;
 
-  void operator()(const driver::RecordedSample& sample) const {
-    driver::put_sample(writer, sample);
-  }
+  void operator()(const RecordedSample& sample) const { put_sample(writer, sample); }
   void operator()(flow::Request request) const {
-    driver::put_entry_head(writer, EntryKind::request, request_bytes);
+    put_entry_head(writer, EntryKind::request, request_bytes);
     writer.u8(static_cast<std::uint8_t>(request));
   }
   void operator()(const flow::LoggedTick& tick) const {
-    driver::put_entry_head(writer, EntryKind::tick, tick_bytes);
+    put_entry_head(writer, EntryKind::tick, tick_bytes);
     writer.u64_le(tick.number);
-    driver::put_time(writer, tick.scheduled);
-    driver::put_time(writer, tick.woke);
+    put_time(writer, tick.scheduled);
+    put_time(writer, tick.woke);
   }
   void operator()(const flow::WristMove& move) const {
-    driver::put_entry_head(writer, EntryKind::wrist, wrist_bytes);
+    put_entry_head(writer, EntryKind::wrist, wrist_bytes);
     writer.u8(static_cast<std::uint8_t>(move.side));
     for (const double number : move.position_m)
       writer.f64_le(number);
@@ -45,54 +41,53 @@ struct EntryWriter {
       writer.f64_le(number);
   }
   void operator()(const flow::LoopSettings& settings) const {
-    driver::put_entry_head(writer, EntryKind::settings,
-                           settings_bytes + brushes_bytes + hold_bytes);
+    put_entry_head(writer, EntryKind::settings, settings_bytes + brushes_bytes + hold_bytes);
     put_settings(writer, settings);
     put_brushes(writer, settings.brushes, settings.brush_strength);
     put_hold(writer, settings.keep_volume, settings.hold);
   }
   void operator()(const flow::HoldStill&) const {
-    driver::put_entry_head(writer, EntryKind::hold_still, 0);
+    put_entry_head(writer, EntryKind::hold_still, 0);
   }
   void operator()(const flow::ChangeModel& change) const {
-    driver::put_entry_head(writer, EntryKind::model, model_bytes);
+    put_entry_head(writer, EntryKind::model, model_bytes);
     writer.u32_le(change.number);
     writer.u8(static_cast<std::uint8_t>(change.source));
     writer.u32_le(change.most_vertices);
     writer.f64_le(change.seam_width);
     writer.u32_le(change.part);
   }
-  void operator()(const flow::Mark&) const { driver::put_entry_head(writer, EntryKind::mark, 0); }
+  void operator()(const flow::Mark&) const { put_entry_head(writer, EntryKind::mark, 0); }
   void operator()(const flow::SetClutch& clutch) const {
-    driver::put_entry_head(writer, EntryKind::clutch, clutch_bytes);
+    put_entry_head(writer, EntryKind::clutch, clutch_bytes);
     writer.u8(static_cast<std::uint8_t>(clutch.side));
     writer.u8(clutch.finger);
     writer.u8(static_cast<std::uint8_t>(clutch.holds));
   }
   void operator()(const flow::SetRole& role) const {
-    driver::put_entry_head(writer, EntryKind::role, role_bytes);
+    put_entry_head(writer, EntryKind::role, role_bytes);
     writer.u16_le(role.function);
     put_signal(writer, role.input);
   }
   void operator()(const flow::SetSymmetry& symmetry) const {
-    driver::put_entry_head(writer, EntryKind::symmetry, 1);
+    put_entry_head(writer, EntryKind::symmetry, 1);
     writer.u8(static_cast<std::uint8_t>(symmetry.on));
   }
   void operator()(const flow::SetLayer& layer) const {
-    driver::put_entry_head(writer, EntryKind::layer, layer_bytes);
+    put_entry_head(writer, EntryKind::layer, layer_bytes);
     writer.u8(layer.input);
     writer.u8(static_cast<std::uint8_t>(layer.on));
   }
   void operator()(const flow::DrawWire& wire) const {
-    driver::put_entry_head(writer, EntryKind::wire, 1);
+    put_entry_head(writer, EntryKind::wire, 1);
     writer.u8(static_cast<std::uint8_t>(wire.on ? 1U + static_cast<unsigned>(wire.blade) : 0U));
   }
   void operator()(const PuppetChange& change) const {
-    driver::put_entry_head(writer, EntryKind::puppet, puppet_bytes);
+    put_entry_head(writer, EntryKind::puppet, puppet_bytes);
     writer.u32_le(change.number);
   }
   void operator()(const Gap& gap) const {
-    driver::put_entry_head(writer, EntryKind::gap, gap_bytes);
+    put_entry_head(writer, EntryKind::gap, gap_bytes);
     writer.u64_le(gap.entries);
   }
 };
@@ -109,10 +104,10 @@ std::optional<Entry> request_of(std::uint8_t value) {
 std::optional<Entry> tick_of(ByteReader& reader) {
   flow::LoggedTick tick;
   tick.number = reader.u64_le();
-  tick.scheduled = driver::read_time(reader);
-  tick.woke = driver::read_time(reader);
-  if (reader.overrun() || !driver::is_usable_time(tick.scheduled.time_since_epoch()) ||
-      !driver::is_usable_time(tick.woke.time_since_epoch()))
+  tick.scheduled = read_time(reader);
+  tick.woke = read_time(reader);
+  if (reader.overrun() || !is_usable_time(tick.scheduled.time_since_epoch()) ||
+      !is_usable_time(tick.woke.time_since_epoch()))
     return std::nullopt;
   return tick;
 }
@@ -177,7 +172,7 @@ std::optional<Entry> role_of(ByteReader& reader) {
 std::optional<Ending> ending_of(std::span<const std::byte> payload) {
   ByteReader reader(payload);
   Ending ending;
-  ending.host = driver::read_time(reader);
+  ending.host = read_time(reader);
   ending.samples = reader.u64_le();
   ending.requests = reader.u64_le();
   ending.ticks = reader.u64_le();
@@ -187,8 +182,7 @@ std::optional<Ending> ending_of(std::span<const std::byte> payload) {
   shape.vertices = reader.u64_le();
   shape.crc = reader.u32_le();
   if (has_shape) ending.shape = shape;
-  if (reader.overrun() || !driver::is_usable_time(ending.host.time_since_epoch()))
-    return std::nullopt;
+  if (reader.overrun() || !is_usable_time(ending.host.time_since_epoch())) return std::nullopt;
   return ending;
 }
 
@@ -218,7 +212,7 @@ void put_entry(ByteWriter& writer, const Entry& entry) {
 }
 
 void put_ending(ByteWriter& writer, const Ending& ending) {
-  driver::put_time(writer, ending.host);
+  put_time(writer, ending.host);
   for (const std::uint64_t count : {ending.samples, ending.requests, ending.ticks, ending.lost})
     writer.u64_le(count);
   const ShapeSum shape = ending.shape.value_or(ShapeSum{});
@@ -238,24 +232,24 @@ void put_sent(ByteWriter& writer, std::span<const driver::RecordCounts> gloves) 
   }
 }
 
-TakeReader::TakeReader(driver::ChunkReader chunks) : chunks_(std::move(chunks)) {
+TakeReader::TakeReader(ChunkReader chunks) : chunks_(std::move(chunks)) {
   next_chunk(); // the setup stands before the first input log
 }
 
-Result<TakeReader> TakeReader::begin(driver::ChunkReader chunks, const std::string& name) {
+Result<TakeReader> TakeReader::begin(ChunkReader chunks, const std::string& name) {
   TakeReader reader(std::move(chunks));
-  if (reader.chunks_.good_end() > driver::file_header().size()) return reader;
+  if (reader.chunks_.good_end() > file_header().size()) return reader;
   return Error{Errc::bad_input, name + ": is cut off or damaged before anything was recorded"};
 }
 
 Result<TakeReader> TakeReader::open(const std::filesystem::path& path) {
-  auto chunks = driver::ChunkReader::open(path);
+  auto chunks = ChunkReader::open(path);
   if (!chunks) return chunks.error();
   return begin(*std::move(chunks), path.string());
 }
 
 Result<TakeReader> TakeReader::of(std::span<const std::byte> bytes, std::string_view name) {
-  auto chunks = driver::ChunkReader::of(bytes, name);
+  auto chunks = ChunkReader::of(bytes, name);
   if (!chunks) return chunks.error();
   return begin(*std::move(chunks), std::string(name));
 }
@@ -267,9 +261,9 @@ bool TakeReader::next_chunk() {
     gap_due_ = gap_due_ || chunks_.damage_count() > damages_seen_;
     damages_seen_ = chunks_.damage_count();
     if (!chunk) return false;
-    if (chunk->type == driver::log_chunk) {
+    if (chunk->type == log_chunk) {
       setup_done_ = true;
-      records_ = driver::LogEntries(chunk->payload);
+      records_ = LogEntries(chunk->payload);
       return true;
     }
     if (!take_chunk(*chunk)) ++strange_;
@@ -277,7 +271,7 @@ bool TakeReader::next_chunk() {
 }
 
 /// Takes a chunk that is no input log's. Returns false if nendo does not write such a one.
-bool TakeReader::take_chunk(const driver::Chunk& chunk) {
+bool TakeReader::take_chunk(const Chunk& chunk) {
   if (chunk.type == ending_chunk) {
     ending_ = ending_of(chunk.payload);
     return ending_.has_value();
@@ -305,11 +299,11 @@ bool TakeReader::take_chunk(const driver::Chunk& chunk) {
 
 /// Returns nothing if the kind of the entry is unknown. Returns nothing, and makes a gap due, if
 /// the entry cannot be used.
-std::optional<Entry> TakeReader::entry_of(const driver::LogEntry& record) {
+std::optional<Entry> TakeReader::entry_of(const LogEntry& record) {
   ByteReader reader(record.body);
   std::optional<Entry> entry;
   if (record.is(EntryKind::sample)) {
-    const auto sample = driver::sample_of(record);
+    const auto sample = sample_of(record);
     if (sample && sample->glove < setup_.gloves.size()) entry = *sample;
   } else if (record.is(EntryKind::request)) {
     const std::uint8_t request = reader.u8();
@@ -374,7 +368,7 @@ std::optional<Entry> TakeReader::next() {
       ++strange_;
       gap_due_ = true;
     }
-    records_ = driver::LogEntries({});
+    records_ = LogEntries({});
     if (!next_chunk() && !gap_due_) return std::nullopt;
   }
 }

@@ -14,7 +14,7 @@ public:
     next_sequence_.resize(summary.gloves.size());
   }
 
-  void operator()(const driver::RecordedSample& recorded) {
+  void operator()(const RecordedSample& recorded) {
     GloveSummary& glove = summary_.gloves[recorded.glove];
     const GloveSample& sample = recorded.sample;
     auto& expected = next_sequence_[recorded.glove];

@@ -33,7 +33,7 @@ public:
     ByteWriter writer(payload_);
     put_entry(writer, entry);
     ++made_.entries;
-    if (std::holds_alternative<driver::RecordedSample>(entry)) ++ending_.samples;
+    if (std::holds_alternative<RecordedSample>(entry)) ++ending_.samples;
     if (std::holds_alternative<flow::Request>(entry)) ++ending_.requests;
     if (std::holds_alternative<flow::LoggedTick>(entry)) ++ending_.ticks;
     return payload_.size() < chunk_bytes ? Result<void>() : flush();
@@ -80,7 +80,7 @@ private:
 
   Result<void> flush() {
     if (payload_.empty()) return {};
-    auto written = file_.append(driver::log_chunk, payload_);
+    auto written = file_.append(log_chunk, payload_);
     payload_.clear();
     return written;
   }
@@ -116,7 +116,7 @@ public:
     Group group;
     while (auto entry = reader_.next()) {
       const auto* tick = std::get_if<flow::LoggedTick>(&*entry);
-      const auto* sample = std::get_if<driver::RecordedSample>(&*entry);
+      const auto* sample = std::get_if<RecordedSample>(&*entry);
       const bool has_loop = reader_.setup().loop.has_value();
       if (tick != nullptr) group.time = tick->woke;
       if (sample != nullptr && !has_loop) group.time = sample->sample.arrival;
@@ -137,18 +137,17 @@ Error bad_input(const std::filesystem::path& from, const std::string& what) {
   return Error{Errc::bad_input, from.string() + ": " + what};
 }
 
-Result<std::uint64_t> append_all(TakeFile& file, driver::ChunkReader& reader, driver::Chunk chunk) {
+Result<std::uint64_t> append_all(TakeFile& file, ChunkReader& reader, Chunk chunk) {
   std::vector<std::byte> gap;
   ByteWriter writer(gap);
   put_entry(writer, Gap{});
   std::uint64_t chunks = 0;
   std::uint64_t damages = 0;
-  for (std::optional<driver::Chunk> next = chunk; next; next = reader.next()) {
+  for (std::optional<Chunk> next = chunk; next; next = reader.next()) {
     // A gap must not stand among the chunks of the setup, which come before the first input log.
-    const bool here = next->type == driver::log_chunk || next->type == ending_chunk;
+    const bool here = next->type == log_chunk || next->type == ending_chunk;
     if (here && std::exchange(damages, reader.damage_count()) != reader.damage_count()) {
-      if (const auto written = file.append(driver::log_chunk, gap); !written)
-        return written.error();
+      if (const auto written = file.append(log_chunk, gap); !written) return written.error();
     }
     if (const auto written = file.append(next->type, next->payload); !written)
       return written.error();
@@ -165,11 +164,11 @@ std::uint64_t stride(double loop_hz, double wanted_hz) {
 } // namespace
 
 Result<NewTake> repair_take(const std::filesystem::path& from, const std::filesystem::path& to) {
-  auto reader = driver::ChunkReader::open_damaged(from);
+  auto reader = ChunkReader::open_damaged(from);
   if (!reader) return reader.error();
   const auto first = reader->next();
   if (!first) return bad_input(from, "nothing in it is whole; there is nothing to save");
-  auto file = TakeFile::create(to, driver::file_header(), 0, TakeFile::Kind::copy);
+  auto file = TakeFile::create(to, file_header(), 0, TakeFile::Kind::copy);
   if (!file) return file.error();
   const auto chunks = append_all(*file, *reader, *first);
   if (!chunks) return chunks.error();

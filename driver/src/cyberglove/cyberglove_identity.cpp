@@ -5,8 +5,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <nendo/driver/glove_options.hpp>
+
 #include "cyberglove/cyberglove_facts.hpp"
-#include "spec/glove_options.hpp"
 
 namespace nendo::driver::cyberglove {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <nendo/driver/glove_options.hpp>
+
 #include "cyberglove/cyberglove_line.hpp"
 #include "cyberglove/cyberglove_parser.hpp"
-#include "spec/glove_options.hpp"
-#include "spec/glove_spec.hpp"
 #include "spec/number_in.hpp"
 
 namespace nendo::driver::cyberglove {

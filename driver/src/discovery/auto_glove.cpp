@@ -2,9 +2,10 @@
 
 #include <string>
 
+#include <nendo/driver/glove_options.hpp>
+
 #include "cyberglove/cyberglove_driver.hpp"
 #include "discovery/candidates.hpp"
-#include "spec/glove_spec.hpp"
 #include "usb_gloves/open_usb_glove.hpp"
 
 namespace nendo::driver {

@@ -6,10 +6,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include <nendo/driver/glove_options.hpp>
+
 #include "fivedt/fivedt_information.hpp"
 #include "fivedt/fivedt_parser.hpp"
-#include "spec/glove_options.hpp"
-#include "spec/glove_spec.hpp"
 #include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"

@@ -8,9 +8,9 @@
 
 #include <spdlog/spdlog.h>
 
+#include <nendo/driver/glove_options.hpp>
+
 #include "fivedt_usb/fivedt_usb_parser.hpp"
-#include "spec/glove_options.hpp"
-#include "spec/glove_spec.hpp"
 #include "usb/await_report.hpp"
 #include "usb/usb_opener.hpp"
 

@@ -4,9 +4,9 @@
 #include <string_view>
 #include <utility>
 
+#include <nendo/driver/glove_options.hpp>
+
 #include "forte/forte_parser.hpp"
-#include "spec/glove_options.hpp"
-#include "spec/glove_spec.hpp"
 #include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"

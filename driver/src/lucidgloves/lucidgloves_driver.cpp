@@ -10,10 +10,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include <nendo/driver/glove_options.hpp>
+
 #include "lucidgloves/lucidgloves_parser.hpp"
 #include "lucidgloves/lucidgloves_slots.hpp"
-#include "spec/glove_options.hpp"
-#include "spec/glove_spec.hpp"
 #include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"

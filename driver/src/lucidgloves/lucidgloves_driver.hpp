@@ -9,9 +9,9 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/driver/glove.hpp>
+#include <nendo/driver/glove_options.hpp>
 #include <nendo/driver/open_glove.hpp>
 
-#include "spec/glove_options.hpp"
 #include "stream/stream_glove.hpp"
 
 namespace nendo::driver::lucidgloves {

@@ -3,9 +3,9 @@
 #include <array>
 #include <utility>
 
+#include <nendo/driver/glove_options.hpp>
+
 #include "p5/p5_parser.hpp"
-#include "spec/glove_options.hpp"
-#include "spec/glove_spec.hpp"
 #include "usb/await_report.hpp"
 #include "usb/usb_opener.hpp"
 

@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include <nendo/driver/reader_thread.hpp>
 #include <nendo/driver/simulated_glove.hpp>
 
 #include "simulated/hand_motion.hpp"
 #include "simulated/typical_wearer.hpp"
 #include "spec/number_in.hpp"
-#include "stream/reader_thread.hpp"
 
 namespace nendo::driver {
 namespace {

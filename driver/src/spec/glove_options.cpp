@@ -1,5 +1,6 @@
-#include "spec/glove_options.hpp"
+#include <nendo/driver/glove_options.hpp>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,18 @@ Error none_of(const GloveSpec& spec, const std::pair<const std::string, std::str
 }
 
 } // namespace
+
+Result<void> allow_options(const GloveSpec& spec, std::initializer_list<std::string_view> known) {
+  for (const auto& [key, value] : spec.options) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    std::string list;
+    for (const std::string_view name : known)
+      list.append(list.empty() ? "; known: " : ", ").append(name);
+    return Error{Errc::usage, "glove \"" + spec.text + "\": unknown option " + key +
+                                  (list.empty() ? "; it has none" : list)};
+  }
+  return {};
+}
 
 Result<int> number_option(const GloveSpec& spec, std::string_view key,
                           std::initializer_list<int> known) {

@@ -1,4 +1,4 @@
-#include "spec/glove_spec.hpp"
+#include <nendo/driver/open_glove.hpp>
 
 #include <algorithm>
 
@@ -52,18 +52,6 @@ Result<GloveSpec> parse_glove_spec(std::string_view text) {
       return parsed.error();
   }
   return spec;
-}
-
-Result<void> allow_options(const GloveSpec& spec, std::initializer_list<std::string_view> known) {
-  for (const auto& [key, value] : spec.options) {
-    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    std::string list;
-    for (const std::string_view name : known)
-      list += (list.empty() ? "" : ", ") + std::string(name);
-    return usage(spec.text,
-                 "unknown option " + key + (list.empty() ? "; it has none" : "; known: " + list));
-  }
-  return {};
 }
 
 } // namespace nendo::driver

@@ -19,7 +19,7 @@
 
 namespace nendo::driver {
 
-/// `kind:target?key=value&key=value`, taken apart but not yet judged.
+/// `kind:target?key=value&key=value`, taken apart but not yet validated.
 struct GloveSpec {
   std::string text; ///< as typed
   std::string kind;
@@ -38,7 +38,7 @@ using SensorMotion = std::function<std::array<double, sensor_slots>(double time_
 /// What a `sim:` specification asks for.
 struct SimulatedGloveOptions {
   std::string source;            ///< the specification
-  std::string motion = "sculpt"; ///< its name, not yet judged
+  std::string motion = "sculpt"; ///< its name, not yet validated
   std::uint32_t seed = 1;
   double rate_hz = 90.0;
   Side side = Side::right;

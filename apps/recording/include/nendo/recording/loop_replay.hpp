@@ -37,7 +37,7 @@ public:
 
 private:
   LoopReplay() = default;
-  void take(const driver::RecordedSample& sample) noexcept;
+  void take(const RecordedSample& sample) noexcept;
   bool follow(const flow::ChangeModel& change);
   bool follow(const PuppetChange& change);
 

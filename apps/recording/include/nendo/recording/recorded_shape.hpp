@@ -9,7 +9,7 @@
 
 #include <nendo/base/byte_writer.hpp>
 #include <nendo/deform/mesh.hpp>
-#include <nendo/driver/chunk_file.hpp>
+#include <nendo/recording/chunk_file.hpp>
 
 namespace nendo::recording {
 
@@ -18,9 +18,9 @@ struct RecordedShape {
   std::vector<float> xyz; ///< model units, x y z of one vertex after another
 };
 
-inline constexpr driver::ChunkType shape_chunk = driver::chunk_type("SHAP");
+inline constexpr ChunkType shape_chunk = chunk_type("SHAP");
 /// The greatest number of vertices that a chunk has room for.
-inline constexpr std::size_t most_recorded_vertices = (driver::most_payload_bytes - 12) / 12;
+inline constexpr std::size_t most_recorded_vertices = (most_payload_bytes - 12) / 12;
 
 RecordedShape shape_of(std::uint64_t tick, const deform::Points& vertices);
 /// Writes the payload of a chunk. The shape must have at most most_recorded_vertices.

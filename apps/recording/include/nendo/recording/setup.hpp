@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include <nendo/driver/chunk_file.hpp>
 #include <nendo/driver/glove.hpp>
 #include <nendo/flow/deform_loop.hpp>
+#include <nendo/recording/chunk_file.hpp>
 
 namespace nendo::recording {
 
@@ -78,6 +78,6 @@ Result<void> check_readable(const Setup& setup, std::span<const std::byte> bytes
 /// Reads a chunk into `setup`. Returns false if the chunk is of a setup, but holds something that
 /// nendo does not write. Chunks of other types are ignored and give true. The result is finite and
 /// usable without further checks, because enumerators, counts and sizes are checked here.
-bool read_setup_chunk(driver::ChunkType type, std::span<const std::byte> payload, Setup& setup);
+bool read_setup_chunk(ChunkType type, std::span<const std::byte> payload, Setup& setup);
 
 } // namespace nendo::recording

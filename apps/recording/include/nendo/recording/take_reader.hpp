@@ -14,11 +14,11 @@
 #include <variant>
 #include <vector>
 
-#include <nendo/driver/chunk_file.hpp>
 #include <nendo/driver/record_counts.hpp>
-#include <nendo/driver/sample_record.hpp>
 #include <nendo/flow/input_log.hpp>
+#include <nendo/recording/chunk_file.hpp>
 #include <nendo/recording/recorded_shape.hpp>
+#include <nendo/recording/sample_record.hpp>
 #include <nendo/recording/setup.hpp>
 
 namespace nendo::recording {
@@ -36,10 +36,10 @@ struct PuppetChange {
   std::shared_ptr<const RecordedPuppet> puppet; ///< null: the one with which the recording began
 };
 
-using Entry = std::variant<driver::RecordedSample, flow::Request, flow::WristMove,
-                           flow::LoopSettings, flow::HoldStill, flow::ChangeModel, flow::Mark,
-                           flow::SetClutch, flow::SetRole, flow::SetSymmetry, flow::SetLayer,
-                           flow::DrawWire, PuppetChange, flow::LoggedTick, Gap>;
+using Entry = std::variant<RecordedSample, flow::Request, flow::WristMove, flow::LoopSettings,
+                           flow::HoldStill, flow::ChangeModel, flow::Mark, flow::SetClutch,
+                           flow::SetRole, flow::SetSymmetry, flow::SetLayer, flow::DrawWire,
+                           PuppetChange, flow::LoggedTick, Gap>;
 
 template <class One, class Of = Entry>
 inline constexpr bool is_entry = false;
@@ -61,13 +61,13 @@ struct Ending {
 /// glove.
 void put_entry(ByteWriter& writer, const Entry& entry);
 void put_ending(ByteWriter& writer, const Ending& ending);
-inline constexpr driver::ChunkType ending_chunk = driver::chunk_type("END ");
+inline constexpr ChunkType ending_chunk = chunk_type("END ");
 /// Writes a puppet as a chunk, which must stand before the entries that name its number.
 void put_puppet_version(ByteWriter& writer, std::uint32_t number, const RecordedPuppet& puppet);
-inline constexpr driver::ChunkType puppet_version_chunk = driver::chunk_type("PUPV");
+inline constexpr ChunkType puppet_version_chunk = chunk_type("PUPV");
 /// Writes what the gloves have sent so far, by their numbers; there are at most 255.
 void put_sent(ByteWriter& writer, std::span<const driver::RecordCounts> gloves);
-inline constexpr driver::ChunkType sent_chunk = driver::chunk_type("SENT");
+inline constexpr ChunkType sent_chunk = chunk_type("SENT");
 
 class TakeReader {
 public:
@@ -93,23 +93,23 @@ public:
   /// Returns the latest counts of what the gloves sent, by their numbers, as far as next() has
   /// come. Empty if nobody counted, as before format 1.2.
   const std::vector<driver::RecordCounts>& sent() const noexcept { return sent_; }
-  const driver::ChunkReader& chunks() const noexcept { return chunks_; }
+  const ChunkReader& chunks() const noexcept { return chunks_; }
   std::uint64_t shapes() const noexcept { return shapes_; } ///< so far
   /// Returns the number of chunks and entries so far whose checksum is right, but which nendo does
   /// not write.
   std::uint64_t strange() const noexcept { return strange_; }
 
 private:
-  explicit TakeReader(driver::ChunkReader chunks);
-  static Result<TakeReader> begin(driver::ChunkReader chunks, const std::string& name);
+  explicit TakeReader(ChunkReader chunks);
+  static Result<TakeReader> begin(ChunkReader chunks, const std::string& name);
   bool next_chunk();
-  bool take_chunk(const driver::Chunk& chunk);
-  std::optional<Entry> entry_of(const driver::LogEntry& record);
+  bool take_chunk(const Chunk& chunk);
+  std::optional<Entry> entry_of(const LogEntry& record);
 
-  driver::ChunkReader chunks_;
+  ChunkReader chunks_;
   Setup setup_;
   std::map<std::uint32_t, std::shared_ptr<const RecordedPuppet>> puppets_; ///< by their numbers
-  driver::LogEntries records_{{}};
+  LogEntries records_{{}};
   std::optional<Ending> ending_;
   std::vector<driver::RecordCounts> sent_;
   std::optional<RecordedShape> shape_;

@@ -1,5 +1,6 @@
 #pragma once
-// The reader thread of a glove that is in this process: it sleeps to deadlines, and stops at once.
+// For drivers, in this library and in programs: the reader thread of a glove that is in this
+// process. It sleeps to deadlines, and stops at once.
 
 #include <condition_variable>
 #include <functional>

@@ -1,4 +1,4 @@
-#include <nendo/driver/chunk_file.hpp>
+#include <nendo/recording/chunk_file.hpp>
 
 #include <fstream>
 #include <random>
@@ -14,7 +14,7 @@
 namespace chunk_file_test {
 
 using namespace nendo;
-using namespace nendo::driver;
+using namespace nendo::recording;
 
 namespace {
 

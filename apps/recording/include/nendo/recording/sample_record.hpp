@@ -1,5 +1,5 @@
 #pragma once
-// The parts of a recording that belong to gloves (driver/src/replay/FORMAT.md): who they are, and
+// The parts of a recording that belong to gloves (apps/recording/FORMAT.md): who they are, and
 // their samples as entries of an input log.
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 #include <nendo/base/byte_reader.hpp>
 #include <nendo/base/byte_writer.hpp>
-#include <nendo/driver/chunk_file.hpp>
 #include <nendo/driver/glove.hpp>
+#include <nendo/recording/chunk_file.hpp>
 
-namespace nendo::driver {
+namespace nendo::recording {
 
 inline constexpr ChunkType glove_chunk = chunk_type("GLOV"); ///< one for each glove
 inline constexpr ChunkType log_chunk = chunk_type("TAPE");   ///< what happened, in its order
@@ -80,7 +80,7 @@ std::optional<RecordedSample> read_sample_body(ByteReader& reader) noexcept;
 
 struct RecordedGlove {
   std::uint8_t number = 0;
-  GloveInfo info;
+  driver::GloveInfo info;
 };
 
 /// Writes the payload of a GLOV chunk.
@@ -89,4 +89,4 @@ void put_glove(ByteWriter& writer, const RecordedGlove& glove);
 /// written it. In its texts, characters other than printable ASCII become '?'.
 std::optional<RecordedGlove> glove_of(std::span<const std::byte> payload);
 
-} // namespace nendo::driver
+} // namespace nendo::recording

@@ -1,4 +1,4 @@
-#include <nendo/driver/chunk_file.hpp>
+#include <nendo/recording/chunk_file.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -11,7 +11,7 @@
 #include <nendo/base/byte_writer.hpp>
 #include <nendo/base/crc32c.hpp>
 
-namespace nendo::driver {
+namespace nendo::recording {
 namespace {
 
 // As in PNG (its specification, 3.1): a byte that is no ASCII, and both kinds of line ends, so that
@@ -235,4 +235,4 @@ std::optional<Chunk> ChunkReader::next() {
   return std::nullopt;
 }
 
-} // namespace nendo::driver
+} // namespace nendo::recording

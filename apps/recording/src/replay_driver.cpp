@@ -1,4 +1,4 @@
-#include "replay/replay_driver.hpp"
+#include <nendo/recording/replay_driver.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -7,15 +7,14 @@
 #include <stop_token>
 #include <vector>
 
-#include <nendo/driver/sample_record.hpp>
+#include <nendo/base/text.hpp>
+#include <nendo/driver/glove_options.hpp>
+#include <nendo/driver/reader_thread.hpp>
+#include <nendo/recording/sample_record.hpp>
 
-#include "replay/sample_table.hpp"
-#include "spec/glove_options.hpp"
-#include "spec/glove_spec.hpp"
-#include "spec/number_in.hpp"
-#include "stream/reader_thread.hpp"
+#include "sample_table.hpp"
 
-namespace nendo::driver {
+namespace nendo::recording {
 namespace {
 
 struct Settings {
@@ -24,16 +23,16 @@ struct Settings {
   bool holds = false; ///< after its last sample it is silent, and never says that it has ended
 };
 
-Error error_of(const GloveSpec& spec, Errc code, const std::string& what) {
+Error error_of(const driver::GloveSpec& spec, Errc code, const std::string& what) {
   return Error{code, spec.text + ": " + what};
 }
 
-Result<Settings> settings_of(const GloveSpec& spec) {
+Result<Settings> settings_of(const driver::GloveSpec& spec) {
   constexpr double least_speed = 0.01;
   constexpr double most_speed = 100.0;
   Settings settings;
   if (const auto option = spec.options.find("speed"); option != spec.options.end()) {
-    const auto speed = number_in<double>(option->second);
+    const auto speed = to_number(option->second);
     if (!speed || !(*speed >= least_speed && *speed <= most_speed))
       return error_of(spec, Errc::usage, "speed must be a number from 0.01 to 100");
     settings.speed = *speed;
@@ -104,19 +103,20 @@ private:
   std::size_t at_ = 0;
 };
 
-class ReplayedGlove final : public Glove {
+class ReplayedGlove final : public driver::Glove {
 public:
-  ReplayedGlove(const GloveSpec& spec, const Settings& settings, GloveInfo info, OpenSource open)
+  ReplayedGlove(const driver::GloveSpec& spec, const Settings& settings, driver::GloveInfo info,
+                OpenSource open)
       : settings_(settings), info_(std::move(info)), open_(std::move(open)) {
     info_.facts.push_back({"recorded_from", info_.source});
-    info_.kind = GloveKind::recorded;
+    info_.kind = driver::GloveKind::recorded;
     info_.recording = spec.target;
     info_.source = spec.text;
     info_.rate_hz *= settings.speed;
     info_.abilities = {.wrist_switch = info_.abilities.wrist_switch};
   }
 
-  const GloveInfo& info() const noexcept override { return info_; }
+  const driver::GloveInfo& info() const noexcept override { return info_; }
 
   Result<void> start(SampleRing& ring) override {
     ended_.store(false, std::memory_order_relaxed);
@@ -127,8 +127,8 @@ public:
   }
   void stop() noexcept override { reader_.stop(); }
 
-  GloveStats stats() const noexcept override {
-    GloveStats stats;
+  driver::GloveStats stats() const noexcept override {
+    driver::GloveStats stats;
     stats.records = records_.load(std::memory_order_relaxed);
     stats.missed = missed_.load(std::memory_order_relaxed);
     stats.ring_refused = ring_refused_.load(std::memory_order_relaxed);
@@ -138,7 +138,7 @@ public:
 
   bool has_ended() const noexcept override { return ended_.load(std::memory_order_acquire); }
 
-  void set_feedback(const Feedback& /*feedback*/) noexcept override {} // nobody wears it
+  void set_feedback(const driver::Feedback& /*feedback*/) noexcept override {} // nobody wears it
 
 private:
   void replay(const std::stop_token& stop, SampleRing& ring) {
@@ -200,14 +200,14 @@ private:
   }
 
   Settings settings_;
-  GloveInfo info_;
+  driver::GloveInfo info_;
   OpenSource open_;
   std::uint64_t next_sequence_ = 0; ///< used by the reader thread only
   std::atomic<std::uint64_t> records_{0};
   std::atomic<std::uint64_t> missed_{0};
   std::atomic<std::uint64_t> ring_refused_{0};
   std::atomic<bool> ended_{false};
-  ReaderThread reader_; // last: joined before what it uses is gone
+  driver::ReaderThread reader_; // last: joined before what it uses is gone
 };
 
 std::vector<RecordedGlove> gloves_of(ChunkReader reader) {
@@ -220,7 +220,7 @@ std::vector<RecordedGlove> gloves_of(ChunkReader reader) {
   return gloves;
 }
 
-Result<RecordedGlove> choose(const GloveSpec& spec, std::vector<RecordedGlove> gloves,
+Result<RecordedGlove> choose(const driver::GloveSpec& spec, std::vector<RecordedGlove> gloves,
                              std::optional<Side> asked, std::optional<Side> wanted) {
   if (gloves.empty())
     return error_of(spec, Errc::bad_input, "no glove was recorded, or what tells of it is damaged");
@@ -239,8 +239,10 @@ Result<RecordedGlove> choose(const GloveSpec& spec, std::vector<RecordedGlove> g
   return std::move(gloves.front());
 }
 
-Result<std::unique_ptr<Glove>> open_recording(const GloveSpec& spec, const Settings& settings,
-                                              std::optional<Side> asked, std::optional<Side> side) {
+Result<std::unique_ptr<driver::Glove>> open_recording(const driver::GloveSpec& spec,
+                                                      const Settings& settings,
+                                                      std::optional<Side> asked,
+                                                      std::optional<Side> side) {
   if (spec.options.contains("rate"))
     return error_of(spec, Errc::usage,
                     "rate is for tables (.csv, .tsv, .txt); a recording has its times");
@@ -256,7 +258,7 @@ Result<std::unique_ptr<Glove>> open_recording(const GloveSpec& spec, const Setti
   };
   if (const auto source = open(); source == nullptr || !source->next())
     return error_of(spec, Errc::bad_input, "holds no sample of this glove");
-  return std::unique_ptr<Glove>(
+  return std::unique_ptr<driver::Glove>(
       std::make_unique<ReplayedGlove>(spec, settings, std::move(glove->info), open));
 }
 
@@ -267,10 +269,10 @@ bool is_table(const std::string& name) {
   return ending == ".csv" || ending == ".tsv" || ending == ".txt";
 }
 
-Result<std::unique_ptr<Glove>> open_table(const GloveSpec& spec, const Settings& settings,
-                                          TableWishes wishes) {
+Result<std::unique_ptr<driver::Glove>> open_table(const driver::GloveSpec& spec,
+                                                  const Settings& settings, TableWishes wishes) {
   if (const auto option = spec.options.find("rate"); option != spec.options.end()) {
-    const auto rate_hz = number_in<double>(option->second);
+    const auto rate_hz = to_number(option->second);
     if (!rate_hz || !(*rate_hz >= 1.0 && *rate_hz <= 1e4))
       return error_of(spec, Errc::usage, "rate must be a number from 1 to 10000, rows a second");
     wishes.rate_hz = rate_hz;
@@ -278,25 +280,35 @@ Result<std::unique_ptr<Glove>> open_table(const GloveSpec& spec, const Settings&
   auto table = read_sample_table(spec.target, wishes);
   if (!table) return table.error();
   const auto samples = std::make_shared<const std::vector<GloveSample>>(std::move(table->samples));
-  return std::unique_ptr<Glove>(
+  return std::unique_ptr<driver::Glove>(
       std::make_unique<ReplayedGlove>(spec, settings, std::move(table->info), [samples] {
         return std::make_unique<TableSamples>(samples);
       }));
 }
 
-} // namespace
-
-Result<std::unique_ptr<Glove>> open_replay(const GloveSpec& spec, std::optional<Side> side) {
-  if (const auto fine = allow_options(spec, {"hand", "speed", "loop", "end", "rate"}); !fine)
+Result<std::unique_ptr<driver::Glove>> open_replay(const driver::GloveSpec& spec,
+                                                   std::optional<Side> side) {
+  if (const auto fine = driver::allow_options(spec, {"hand", "speed", "loop", "end", "rate"});
+      !fine)
     return fine.error();
   if (spec.target.empty())
     return error_of(spec, Errc::usage, "name the recording, e.g. replay:take1.nendo");
   const auto settings = settings_of(spec);
   if (!settings) return settings.error();
-  const auto asked = hand_option(spec);
+  const auto asked = driver::hand_option(spec);
   if (!asked) return asked.error();
   return is_table(spec.target) ? open_table(spec, *settings, {*asked, side, std::nullopt})
                                : open_recording(spec, *settings, *asked, side);
 }
 
-} // namespace nendo::driver
+} // namespace
+
+driver::GloveDriver replay_driver() noexcept {
+  return {"replay", "replay:FILE[?hand=left|right&speed=X&loop=yes|end=hold&rate=HZ]",
+          "a glove as `nendo record` or `nendo run --record` recorded it, or a table of counts "
+          "(.csv, .tsv, .txt)",
+          [](const driver::GloveSpec& spec, std::optional<Side> side,
+             const driver::GloveContext& /*context*/) { return open_replay(spec, side); }};
+}
+
+} // namespace nendo::recording

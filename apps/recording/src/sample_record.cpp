@@ -1,4 +1,4 @@
-#include <nendo/driver/sample_record.hpp>
+#include <nendo/recording/sample_record.hpp>
 
 #include <algorithm>
 #include <string>
@@ -7,7 +7,7 @@
 
 #include <nendo/base/text.hpp>
 
-namespace nendo::driver {
+namespace nendo::recording {
 namespace {
 
 constexpr std::size_t sample_bytes = 86;
@@ -113,7 +113,7 @@ std::optional<RecordedSample> sample_of(const LogEntry& record) noexcept {
 }
 
 void put_glove(ByteWriter& writer, const RecordedGlove& glove) {
-  const GloveInfo& info = glove.info;
+  const driver::GloveInfo& info = glove.info;
   writer.u8(glove.number);
   writer.u8(static_cast<std::uint8_t>(info.side));
   writer.text(info.source);
@@ -136,7 +136,7 @@ void put_glove(ByteWriter& writer, const RecordedGlove& glove) {
 std::optional<RecordedGlove> glove_of(std::span<const std::byte> payload) {
   ByteReader reader(payload);
   RecordedGlove glove;
-  GloveInfo& info = glove.info;
+  driver::GloveInfo& info = glove.info;
   glove.number = reader.u8();
   const unsigned side = reader.u8();
   info.side = side == 0 ? Side::left : Side::right;
@@ -161,4 +161,4 @@ std::optional<RecordedGlove> glove_of(std::span<const std::byte> payload) {
   return glove;
 }
 
-} // namespace nendo::driver
+} // namespace nendo::recording

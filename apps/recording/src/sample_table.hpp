@@ -11,10 +11,10 @@
 #include <nendo/base/result.hpp>
 #include <nendo/driver/glove.hpp>
 
-namespace nendo::driver {
+namespace nendo::recording {
 
 struct SampleTable {
-  GloveInfo info; ///< what the columns and the times tell
+  driver::GloveInfo info; ///< what the columns and the times tell
   std::vector<GloveSample> samples;
 };
 
@@ -41,4 +41,4 @@ Result<SampleTable> parse_sample_table(std::string_view text, const std::string&
 /// Does the same with a file of at most 1 GiB.
 Result<SampleTable> read_sample_table(const std::filesystem::path& path, const TableWishes& wishes);
 
-} // namespace nendo::driver
+} // namespace nendo::recording

@@ -1,4 +1,4 @@
-#include "replay/sample_table.hpp"
+#include "sample_table.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/driver/open_glove.hpp>
+#include <nendo/recording/replay_driver.hpp>
 
 #include "support/required.hpp"
 #include "support/temporary_folder.hpp"
@@ -17,7 +17,7 @@
 namespace sample_table_test {
 
 using namespace nendo;
-using namespace nendo::driver;
+using namespace nendo::recording;
 
 namespace {
 
@@ -68,7 +68,7 @@ TEST_SUITE("sample_table") {
       CHECK(table->info.side == Side::right);
       CHECK(table->info.sensors == mask_of(std::array{Sensor::index_mcp, Sensor::thumb_roll}));
       CHECK(table->info.counts.most == 4095); // the next converter that counts so far
-      CHECK(table->info.kind == GloveKind::recorded);
+      CHECK(table->info.kind == driver::GloveKind::recorded);
       CHECK(table->info.rate_hz == doctest::Approx(2.0));
     }
   }
@@ -187,7 +187,11 @@ TEST_SUITE("sample_table") {
 
   TEST_CASE("a table is a glove like any other, as often as it is started") {
     const Table table("time_s,index_mcp\n0,1\n0.01,2\n0.02,3\n");
-    const auto glove = test::required(open_glove("replay:" + table.path.string() + "?end=hold"));
+    const auto open = [&](const std::string& options) {
+      return driver::open_glove("replay:" + table.path.string() + options, std::nullopt,
+                                {.drivers = {replay_driver()}});
+    };
+    const auto glove = test::required(open("?end=hold"));
     for (int start = 0; start < 2; ++start) {
       SampleRing ring(16);
       REQUIRE(glove->start(ring));
@@ -200,7 +204,7 @@ TEST_SUITE("sample_table") {
       CHECK(counts == std::vector{1, 2, 3});
       glove->stop();
     }
-    CHECK_FALSE(open_glove("replay:" + table.path.string() + "?rate=0"));
+    CHECK_FALSE(open("?rate=0"));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "replay/sample_table.hpp"
+#include "sample_table.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <nendo/base/table.hpp>
 #include <nendo/base/units.hpp>
 
-namespace nendo::driver {
+namespace nendo::recording {
 namespace {
 
 constexpr double most_count = 65535.0;
@@ -238,7 +238,7 @@ private:
     }
     const double span_s = to_seconds(rows_.back().arrival - rows_.front().arrival);
     table.info.rate_hz = span_s > 0.0 ? static_cast<double>(rows_.size() - 1) / span_s : 0.0;
-    table.info.kind = GloveKind::recorded;
+    table.info.kind = driver::GloveKind::recorded;
     table.info.source = name_;
     table.info.model = "a table of " + std::to_string(columns_.sensors.size()) + " sensors";
     if (const std::string others = table_.columns_not_read(); !others.empty())
@@ -269,4 +269,4 @@ Result<SampleTable> read_sample_table(const std::filesystem::path& path,
   return parse_sample_table(*text, path.string(), wishes);
 }
 
-} // namespace nendo::driver
+} // namespace nendo::recording

@@ -1,11 +1,11 @@
-#include <nendo/driver/open_glove.hpp>
+#include <nendo/recording/replay_driver.hpp>
 
 #include <fstream>
 #include <thread>
 
 #include <doctest/doctest.h>
 
-#include <nendo/driver/sample_record.hpp>
+#include <nendo/recording/sample_record.hpp>
 
 #include "support/eventually.hpp"
 #include "support/required.hpp"
@@ -16,6 +16,7 @@ namespace replay_driver_test {
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::driver;
+using namespace nendo::recording;
 
 namespace {
 
@@ -76,8 +77,12 @@ std::vector<GloveSample> samples_of(Glove& glove, std::size_t wanted) {
   return samples;
 }
 
+Result<std::unique_ptr<Glove>> open_replay(const std::string& spec, std::optional<Side> side = {}) {
+  return open_glove(spec, side, {.drivers = {replay_driver()}});
+}
+
 Errc code_of(const std::string& spec, std::optional<Side> side = {}) {
-  const auto glove = open_glove(spec, side);
+  const auto glove = open_replay(spec, side);
   REQUIRE_FALSE(glove);
   CHECK(glove.error().message.find('\n') == std::string::npos);
   return glove.error().code;
@@ -88,7 +93,7 @@ Errc code_of(const std::string& spec, std::optional<Side> side = {}) {
 TEST_SUITE("replay_driver") {
   TEST_CASE("the samples come again: counts, device times, sequence and its gaps, as far apart") {
     const Take take(12);
-    const auto glove = open_glove(take.spec("?speed=2"), Side::right);
+    const auto glove = open_replay(take.spec("?speed=2"), Side::right);
     REQUIRE(glove);
     CHECK((*glove)->info().side == Side::right);
     CHECK((*glove)->info().rate_hz == 200.0);
@@ -119,7 +124,7 @@ TEST_SUITE("replay_driver") {
 
   TEST_CASE("with loop=yes it begins again, and its sequence goes on") {
     const Take take(3);
-    const auto glove = open_glove(take.spec("?hand=left&loop=yes&speed=10"));
+    const auto glove = open_replay(take.spec("?hand=left&loop=yes&speed=10"));
     REQUIRE(glove);
     const auto samples = samples_of(**glove, 8);
     REQUIRE(samples.size() >= 8);
@@ -132,7 +137,7 @@ TEST_SUITE("replay_driver") {
 
   TEST_CASE("a recording whose time goes backwards does not hurry from pass to pass") {
     const Take take(2, -std::chrono::years(20));
-    const auto glove = open_glove(take.spec("?hand=right&loop=yes"));
+    const auto glove = open_replay(take.spec("?hand=right&loop=yes"));
     REQUIRE(glove);
     const HostTime begin = HostClock::now();
     const auto samples = samples_of(**glove, 20);
@@ -146,7 +151,7 @@ TEST_SUITE("replay_driver") {
 
   TEST_CASE("a replay has ended when its last sample is in the ring, and not before") {
     const Take take(6);
-    const auto glove = open_glove(take.spec("?hand=right"));
+    const auto glove = open_replay(take.spec("?hand=right"));
     REQUIRE(glove);
     CHECK_FALSE((*glove)->has_ended());
     SampleRing ring(64);
@@ -171,7 +176,7 @@ TEST_SUITE("replay_driver") {
     const Take take(6);
     for (const std::string options : {"&end=hold", "&loop=yes", "&end=hold&loop=no"}) {
       CAPTURE(options);
-      const auto glove = open_glove(take.spec("?hand=right&speed=10" + options));
+      const auto glove = open_replay(take.spec("?hand=right&speed=10" + options));
       REQUIRE(glove);
       SampleRing ring(1024);
       test::require_ok((*glove)->start(ring));
@@ -181,7 +186,7 @@ TEST_SUITE("replay_driver") {
       (*glove)->stop();
       CHECK_FALSE((*glove)->has_ended());
     }
-    const auto slow = open_glove(take.spec("?hand=right&speed=0.01"));
+    const auto slow = open_replay(take.spec("?hand=right&speed=0.01"));
     REQUIRE(slow);
     CHECK(samples_of(**slow, 1).size() < 6);
     CHECK_FALSE((*slow)->has_ended());

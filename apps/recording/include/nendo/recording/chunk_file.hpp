@@ -1,5 +1,5 @@
 #pragma once
-// The frame of a recording (driver/src/replay/FORMAT.md): a file header, then chunks, each with a
+// The frame of a recording (apps/recording/FORMAT.md): a file header, then chunks, each with a
 // type, a length, a number and checksums, so that damage is found, costs no more than the chunks
 // that it hit, and a file that ends in the middle of a chunk is good up to there.
 
@@ -15,7 +15,7 @@
 
 #include <nendo/base/files.hpp>
 
-namespace nendo::driver {
+namespace nendo::recording {
 
 /// A chunk's type: four letters, in the order in which they stand in the file.
 using ChunkType = std::uint32_t;
@@ -52,7 +52,7 @@ struct Chunk {
 
 struct ChunkDamage {
   std::uint64_t offset = 0; ///< where it begins
-  std::uint64_t bytes = 0;  ///< of no use; 0 if chunks are missing between two good ones
+  std::uint64_t bytes = 0;  ///< unusable bytes; 0 if chunks are missing between two good ones
   std::string what;         ///< one line
 };
 
@@ -106,10 +106,10 @@ private:
   std::uint64_t end_ = 0;
   std::uint64_t at_ = 0;
   std::uint64_t good_end_ = 0;
-  std::uint64_t checked_ = 0; ///< bytes that were summed up in vain
+  std::uint64_t checked_ = 0; ///< bytes whose checksum failed
   std::uint32_t next_number_ = 0;
   std::vector<ChunkDamage> damages_;
   std::uint64_t damage_count_ = 0;
 };
 
-} // namespace nendo::driver
+} // namespace nendo::recording

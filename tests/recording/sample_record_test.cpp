@@ -1,4 +1,4 @@
-#include <nendo/driver/sample_record.hpp>
+#include <nendo/recording/sample_record.hpp>
 
 #include <limits>
 #include <random>
@@ -8,7 +8,7 @@
 namespace sample_record_test {
 
 using namespace nendo;
-using namespace nendo::driver;
+using namespace nendo::recording;
 
 namespace {
 

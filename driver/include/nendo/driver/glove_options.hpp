@@ -1,6 +1,6 @@
 #pragma once
-// Options by which a user tells what a glove itself may not tell: its hand, and numbers and words
-// out of a short list.
+// For drivers, in this library and in programs: the options of a specification. By these a user
+// tells what a glove itself may not tell: its hand, and numbers and words out of a short list.
 
 #include <initializer_list>
 #include <optional>
@@ -11,6 +11,10 @@
 #include <nendo/driver/open_glove.hpp>
 
 namespace nendo::driver {
+
+/// Fails with the error `usage` if `spec` has an option that is not `known`. The message names the
+/// option and those that are known.
+Result<void> allow_options(const GloveSpec& spec, std::initializer_list<std::string_view> known);
 
 /// Returns the option's number, or the first of `known` if the option is missing. Error: usage,
 /// naming all of `known`.
