@@ -181,8 +181,8 @@ void print_damages(const TakeSummary& summary) {
   }
   if (summary.damage_count > summary.damages.size())
     std::printf("  and %llu more\n", number(summary.damage_count - summary.damages.size()));
-  if (summary.strange > 0)
-    std::printf("  %llu chunks or entries that no nendo writes\n", number(summary.strange));
+  if (summary.unknown_entries > 0)
+    std::printf("  %llu chunks or entries that no nendo writes\n", number(summary.unknown_entries));
   std::uint64_t turned = summary.ticks_out_of_order;
   for (const auto& glove : summary.gloves)
     turned += glove.out_of_order;

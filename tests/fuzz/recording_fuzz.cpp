@@ -90,7 +90,7 @@ void read(std::span<const std::byte> file) {
   std::uint32_t chunks = 0;
   const auto bytes = setup_bytes(setup, chunks);
   const auto again = TakeReader::of(bytes, "again");
-  require(static_cast<bool>(again) && again->strange() == 0);
+  require(static_cast<bool>(again) && again->unknown_entries() == 0);
   std::uint32_t chunks_again = 0;
   require(setup_bytes(again->setup(), chunks_again) == bytes);
 }

@@ -53,7 +53,7 @@ Kept read(const std::filesystem::path& path) {
       kept.missing += gap->entries;
     }
   }
-  kept.damages = reader->chunks().damage_count() + reader->strange();
+  kept.damages = reader->chunks().damage_count() + reader->unknown_entries();
   return kept;
 }
 

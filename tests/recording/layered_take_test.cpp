@@ -97,7 +97,7 @@ void check_replay(const LayeredTake& take) {
   }
   CHECK(at == take.shapes.size());
   CHECK((*replay)->is_exact());
-  CHECK(reader->strange() == 0);
+  CHECK(reader->unknown_entries() == 0);
   REQUIRE(reader->ending());
   CHECK(reader->ending()->shape == sum_of((*replay)->loop().final_shape()));
 }
@@ -274,7 +274,7 @@ TEST_SUITE("layered_take") {
     while (const auto entry = reader->next())
       layers += std::holds_alternative<flow::SetLayer>(*entry) ? 1U : 0U;
     CHECK(layers == 1);
-    CHECK(reader->strange() == 3);
+    CHECK(reader->unknown_entries() == 3);
   }
 
   TEST_CASE("what recorders repeat in each chunk is no change in what is played over") {

@@ -99,7 +99,7 @@ Replayed replayed(const std::filesystem::path& path, deform::Mesh model) {
     loop.changes().layout(frame.model).unpack(frame.shape, result.shapes.emplace_back());
   }
   CHECK((*replay)->is_exact());
-  CHECK(reader->strange() == 0);
+  CHECK(reader->unknown_entries() == 0);
   result.last = loop.final_shape();
   result.changes = loop.stats().changes;
   REQUIRE(reader->ending());
@@ -276,7 +276,7 @@ TEST_SUITE("live_settings") {
     auto reader = TakeReader::of(bytes, "a take");
     REQUIRE(reader);
     CHECK(reader->setup().loop->rest.empty());
-    CHECK(reader->strange() == 1);
+    CHECK(reader->unknown_entries() == 1);
   }
 }
 

@@ -35,7 +35,7 @@ Counts counts_of(const std::filesystem::path& path) {
   }
   counts.damages = reader->chunks().damage_count();
   counts.has_ending = reader->ending().has_value();
-  CHECK(reader->strange() == 0);
+  CHECK(reader->unknown_entries() == 0);
   return counts;
 }
 
@@ -44,7 +44,7 @@ std::vector<driver::RecordCounts> sent_in(const std::filesystem::path& path) {
   REQUIRE(reader);
   while (reader->next()) {
   }
-  CHECK(reader->strange() == 0);
+  CHECK(reader->unknown_entries() == 0);
   return reader->sent();
 }
 

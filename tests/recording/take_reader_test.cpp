@@ -136,7 +136,7 @@ Setup read_back(const std::vector<std::byte>& bytes) {
   auto reader = TakeReader::of(bytes, "test");
   REQUIRE(reader);
   CHECK_FALSE(reader->next().has_value());
-  CHECK(reader->strange() == 0);
+  CHECK(reader->unknown_entries() == 0);
   return reader->setup();
 }
 
@@ -332,7 +332,7 @@ TEST_SUITE("take_reader") {
     CHECK(reader->setup().hands.empty());
     CHECK_FALSE(reader->setup().loop.has_value());
     CHECK(reader->setup().program.empty());
-    CHECK(reader->strange() == chunks);
+    CHECK(reader->unknown_entries() == chunks);
     CHECK(reader->chunks().damage_count() == 0);
   }
 

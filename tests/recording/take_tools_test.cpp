@@ -287,7 +287,7 @@ TEST_SUITE("take_tools") {
         const auto summary = summarise(bytes, "counts");
         REQUIRE(summary);
         const bool fine = gloves == 2 && !cuts;
-        CHECK(summary->strange == (fine ? 0 : 1));
+        CHECK(summary->unknown_entries == (fine ? 0 : 1));
         CHECK(summary->gloves[0].sent.has_value() == fine);
       }
     }
@@ -303,7 +303,7 @@ TEST_SUITE("take_tools") {
       REQUIRE(summary);
       REQUIRE(summary->gloves.size() == 1);
       CHECK(summary->gloves[0].samples == 2);
-      CHECK(summary->strange == 2 * (gloves - 1)); // the gloves, and a sample each
+      CHECK(summary->unknown_entries == 2 * (gloves - 1)); // the gloves, and a sample each
       CHECK_FALSE(summary->is_whole());
     }
   }
@@ -391,7 +391,7 @@ TEST_SUITE("take_tools") {
       CHECK(reader->ending()->shape == sum_of(live.test.loop->final_shape()));
       const auto summary = summarise(with);
       REQUIRE(summary);
-      CHECK(summary->strange + summary->damage_count == 0);
+      CHECK(summary->unknown_entries + summary->damage_count == 0);
       CHECK(summary->counts_agree);
       CHECK(summary->shapes == 5);
       CHECK_FALSE(add_shapes(live.path, with, live.test.model, 100.0)); // is there

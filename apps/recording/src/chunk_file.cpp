@@ -156,7 +156,7 @@ std::optional<ChunkReader::Header> ChunkReader::header_at(std::uint64_t offset) 
   header.type = reader.u32_le();
   header.length = reader.u32_le();
   header.number = reader.u32_le();
-  if (!is_sealed<chunk_header_bytes>(bytes) || header.length > most_payload_bytes)
+  if (!is_sealed<chunk_header_bytes>(bytes) || header.length > max_payload_bytes)
     return std::nullopt;
   return header;
 }
@@ -180,7 +180,7 @@ std::uint64_t ChunkReader::find_header(std::uint64_t from) {
 
 void ChunkReader::damaged(std::uint64_t offset, std::uint64_t bytes, std::string what) {
   ++damage_count_;
-  if (damages_.size() < most_damages) damages_.push_back({offset, bytes, std::move(what)});
+  if (damages_.size() < max_damages) damages_.push_back({offset, bytes, std::move(what)});
 }
 
 void ChunkReader::count_number(std::uint32_t number) {
@@ -201,7 +201,7 @@ std::uint64_t ChunkReader::after_bad_payload(const Header& header) {
   const std::uint64_t behind = at_ + chunk_header_bytes + header.length + chunk_checksum_bytes;
   if (behind <= end_ && (behind == end_ || header_at(behind))) return behind;
   // Headers within headers would be summed up again and again; a disk does not do that to a file.
-  if (checked_ > 8 * end_ + most_payload_bytes) return end_;
+  if (checked_ > 8 * end_ + max_payload_bytes) return end_;
   return find_header(at_ + chunk_header_bytes);
 }
 

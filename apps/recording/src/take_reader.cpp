@@ -266,7 +266,7 @@ bool TakeReader::next_chunk() {
       records_ = LogEntries(chunk->payload);
       return true;
     }
-    if (!take_chunk(*chunk)) ++strange_;
+    if (!take_chunk(*chunk)) ++unknown_entries_;
   }
 }
 
@@ -351,7 +351,7 @@ std::optional<Entry> TakeReader::entry_of(const LogEntry& record) {
     return std::nullopt;
   }
   if (!entry) {
-    ++strange_;
+    ++unknown_entries_;
     gap_due_ = true;
   }
   return entry;
@@ -365,7 +365,7 @@ std::optional<Entry> TakeReader::next() {
       continue;
     }
     if (!records_.ended_well()) {
-      ++strange_;
+      ++unknown_entries_;
       gap_due_ = true;
     }
     records_ = LogEntries({});

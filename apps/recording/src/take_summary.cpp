@@ -104,7 +104,7 @@ Result<TakeSummary> summary_of(Result<TakeReader> reader) {
   summary.good_end = reader->chunks().good_end();
   summary.damage_count = reader->chunks().damage_count();
   summary.damages = reader->chunks().damages();
-  summary.strange = reader->strange();
+  summary.unknown_entries = reader->unknown_entries();
   summary.shapes = reader->shapes();
   summary.counts_agree = agree(summary);
   return summary;
@@ -123,7 +123,7 @@ HostClock::duration TakeSummary::duration() const noexcept {
 }
 
 bool TakeSummary::is_whole() const noexcept {
-  return damage_count == 0 && strange == 0 && counts_agree && ticks_out_of_order == 0 &&
+  return damage_count == 0 && unknown_entries == 0 && counts_agree && ticks_out_of_order == 0 &&
          std::all_of(gloves.begin(), gloves.end(),
                      [](const auto& glove) { return glove.out_of_order == 0; });
 }

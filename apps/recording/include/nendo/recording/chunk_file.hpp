@@ -31,11 +31,11 @@ inline constexpr std::uint16_t format_minor = 13; ///< newer ones add what may b
 inline constexpr std::size_t file_header_bytes = 16;
 inline constexpr std::size_t chunk_header_bytes = 20;
 inline constexpr std::size_t chunk_checksum_bytes = 4; ///< after the payload
-inline constexpr std::size_t most_payload_bytes = std::size_t{1} << 24;
+inline constexpr std::size_t max_payload_bytes = std::size_t{1} << 24;
 
 /// Returns the first bytes of a file. Pure; may be called in a signal handler.
 std::array<std::byte, file_header_bytes> file_header() noexcept;
-/// Returns what stands before `payload`, which has at most most_payload_bytes. `number` counts the
+/// Returns what stands before `payload`, which has at most max_payload_bytes. `number` counts the
 /// chunks of the file, from 0. Pure; may be called in a signal handler.
 std::array<std::byte, chunk_header_bytes> chunk_header(ChunkType type, std::uint32_t number,
                                                        std::span<const std::byte> payload) noexcept;
@@ -73,10 +73,10 @@ public:
   /// in damages().
   std::optional<Chunk> next();
 
-  /// Returns the damage found so far, the first most_damages pieces of it.
+  /// Returns the damage found so far, the first max_damages pieces of it.
   const std::vector<ChunkDamage>& damages() const noexcept { return damages_; }
   std::uint64_t damage_count() const noexcept { return damage_count_; }
-  static constexpr std::size_t most_damages = 100;
+  static constexpr std::size_t max_damages = 100;
   std::uint64_t size() const noexcept { return end_; }
   /// Returns where the last good chunk ended.
   std::uint64_t good_end() const noexcept { return good_end_; }

@@ -20,7 +20,7 @@ struct RecordedShape {
 
 inline constexpr ChunkType shape_chunk = chunk_type("SHAP");
 /// The greatest number of vertices that a chunk has room for.
-inline constexpr std::size_t most_recorded_vertices = (most_payload_bytes - 12) / 12;
+inline constexpr std::size_t most_recorded_vertices = (max_payload_bytes - 12) / 12;
 
 RecordedShape shape_of(std::uint64_t tick, const deform::Points& vertices);
 /// Writes the payload of a chunk. The shape must have at most most_recorded_vertices.

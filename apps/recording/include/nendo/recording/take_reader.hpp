@@ -91,13 +91,13 @@ public:
   /// off.
   const std::optional<Ending>& ending() const noexcept { return ending_; }
   /// Returns the latest counts of what the gloves sent, by their numbers, as far as next() has
-  /// come. Empty if nobody counted, as before format 1.2.
+  /// come. Empty if not recorded, as before format 1.2.
   const std::vector<driver::RecordCounts>& sent() const noexcept { return sent_; }
   const ChunkReader& chunks() const noexcept { return chunks_; }
   std::uint64_t shapes() const noexcept { return shapes_; } ///< so far
   /// Returns the number of chunks and entries so far whose checksum is right, but which nendo does
   /// not write.
-  std::uint64_t strange() const noexcept { return strange_; }
+  std::uint64_t unknown_entries() const noexcept { return unknown_entries_; }
 
 private:
   explicit TakeReader(ChunkReader chunks);
@@ -115,7 +115,7 @@ private:
   std::optional<RecordedShape> shape_;
   std::uint64_t shapes_ = 0;
   std::uint64_t damages_seen_ = 0;
-  std::uint64_t strange_ = 0;
+  std::uint64_t unknown_entries_ = 0;
   bool setup_done_ = false; ///< true from the first input log chunk on
   bool gap_due_ = false;
 };

@@ -50,8 +50,8 @@ struct TakeSummary {
   std::uint64_t bytes = 0;
   std::uint64_t good_end = 0; ///< where the last whole chunk ends
   std::uint64_t damage_count = 0;
-  std::vector<ChunkDamage> damages; ///< the first of them
-  std::uint64_t strange = 0;        ///< TakeReader::strange()
+  std::vector<ChunkDamage> damages;  ///< the first of them
+  std::uint64_t unknown_entries = 0; ///< TakeReader::unknown_entries()
   bool counts_agree = true; ///< the counts of the ending match the entries, unless some are missing
 
   HostClock::duration duration() const noexcept;
