@@ -5,12 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include <nendo/sculpting/calibration_names.hpp>
+
 #include "calibrate/demonstration.hpp"
 #include "calibrate/screen.hpp"
 #include "cli/cli.hpp"
 #include "cli/terminal.hpp"
 #include "gloves/monitor_screen.hpp"
-#include "gloves/stuck_sensors.hpp"
 
 namespace nendo::calibrate {
 namespace {
@@ -54,7 +55,7 @@ struct Session {
   bool tell_left_out() {
     const SensorMask now = guide.left_out();
     if (std::exchange(announced, now) == now) return false;
-    notice = gloves::sensors_in_words(now) + (gloves::is_one(now) ? " stands" : " stand") +
+    notice = sculpting::sensors_in_words(now) + (sculpting::is_one(now) ? " stands" : " stand") +
              " still, whatever the hand does: left out, and estimated from the sensors beside. n "
              "begins again with all sensors.";
     return true;

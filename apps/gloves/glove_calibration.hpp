@@ -1,62 +1,17 @@
 #pragma once
-// Chooses the wearer of a glove: the calibration that is asked for, the stored one, the default, or
-// what is learned while the glove is used; and the size of the hand. The options for both are here.
+// The options by which a command chooses the calibration of a glove and the size of the hand.
 
-#include <array>
-#include <cstdint>
-#include <filesystem>
 #include <optional>
-#include <string>
-#include <string_view>
 
 #include <nendo/base/result.hpp>
-#include <nendo/driver/glove.hpp>
-#include <nendo/hand/calibration_store.hpp>
-#include <nendo/hand/wearer.hpp>
+#include <nendo/hand/skeleton.hpp>
+#include <nendo/sculpting/find_wearer.hpp>
 
 #include "cli/command.hpp"
 
 namespace nendo::gloves {
 
-struct CalibrationOptions {
-  std::string user;         ///< empty: any
-  std::string calibration;  ///< a NAME of `nendo calibration`, or "none"; empty: what is stored
-  bool adapt = false;       ///< learn the wearer's ranges, or the slips of such a calibration
-  std::string left_user{};  ///< the left hand's, in place of `user`
-  std::string right_user{}; ///< likewise
-
-  /// The wearer of that hand; empty: any.
-  const std::string& user_of(Side side) const noexcept;
-  /// All that were given, as "anna", or "left anna, right bob"; empty: none.
-  std::string users() const;
-};
-
-/// Whose hand a glove shows.
-struct FoundCalibration {
-  enum class Kind : std::uint8_t {
-    average,  ///< nobody's
-    stored,   ///< a file's
-    recorded, ///< that of the recording which is replayed
-    learned,  ///< what --adapt learns
-  } kind = Kind::average;
-  std::string user;           ///< the wearer of the file, or of what is learned
-  std::filesystem::path path; ///< the file's
-};
-
-/// Returns "average", "stored", "recorded" or "learned".
-constexpr std::string_view name_of(FoundCalibration::Kind kind) noexcept {
-  constexpr std::array<std::string_view, 4> names{"average", "stored", "recorded", "learned"};
-  return names[static_cast<std::size_t>(kind)];
-}
-
-/// Returns the serial number that the glove reports, or an empty text.
-std::string serial_of(const driver::GloveInfo& glove);
-
-/// Returns the best of the stored calibrations for this user (empty: any), glove and hand. It
-/// points into `stored`.
-std::optional<hand::CalibrationChoice> best_calibration(const hand::CalibrationList& stored,
-                                                        const driver::GloveInfo& glove, Side side,
-                                                        const std::string& user);
+using sculpting::CalibrationOptions;
 
 /// Adds the options --user, --calibration and --adapt; for commands that take two gloves also
 /// --left-user and --right-user.
@@ -76,21 +31,5 @@ struct HandLength {
   hand::HandSize size(const hand::HandSize& known) const noexcept;
 };
 void add_hand_length(cli::Command& command, HandLength& length);
-
-/// Finds the wearer of a glove that is sewn for `side`. For that side the wearer gets the hand that
-/// is asked for, stored, or recorded (if the glove replays); one line on standard error says which
-/// file it is, and whether it may be that of another glove, or that there is none. A simulated
-/// glove gets a stored hand only if it is asked for. For the other side the wearer gets the stored
-/// hand or an average one, and nothing is printed. A user who has calibrations, but none for this
-/// hand and glove, gets an average hand, too, and a line says so. `found`, if given, is set to what
-/// the wearer of `side` has. Blocks. Errors: bad_input (no such file, another hand's, not readable,
-/// a user without any calibration), usage.
-Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
-                                 const CalibrationOptions& options,
-                                 FoundCalibration* found = nullptr);
-
-/// Tells whether angles of that side are an average hand's, though a person wears the glove: it is
-/// neither simulated nor recorded, has the default calibration, and learns none.
-bool is_uncalibrated(const driver::GloveInfo& glove, const hand::Wearer& wearer, Side side);
 
 } // namespace nendo::gloves

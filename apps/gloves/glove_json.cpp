@@ -44,7 +44,8 @@ void add_counts(ordered_json& object, const driver::RecordCounts& counts) {
 }
 
 std::string sample_json(const GloveSample& sample, const hand::Calibration* calibration,
-                        bool with_sources, const FoundCalibration* found, SensorMask left_out) {
+                        bool with_sources, const sculpting::FoundCalibration* found,
+                        SensorMask left_out) {
   ordered_json raw = ordered_json::object();
   ordered_json angles = ordered_json::object();
   const auto angles_rad = calibration != nullptr
@@ -77,7 +78,7 @@ std::string sample_json(const GloveSample& sample, const hand::Calibration* cali
   return cli::json_text(line);
 }
 
-ordered_json calibration_json(const FoundCalibration& found) {
+ordered_json calibration_json(const sculpting::FoundCalibration& found) {
   const auto text_or_null = [](const std::string& text) {
     return text.empty() ? ordered_json() : ordered_json(text);
   };

@@ -9,8 +9,7 @@
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/driver/sample.hpp>
 #include <nendo/hand/calibration.hpp>
-
-#include "gloves/glove_calibration.hpp"
+#include <nendo/sculpting/find_wearer.hpp>
 
 namespace nendo::gloves {
 
@@ -52,11 +51,12 @@ private:
 /// `found` is null. If some sensors are `left_out`, the key left_out has their names, and angle_rad
 /// has estimates for them.
 std::string sample_json(const GloveSample& sample, const hand::Calibration* calibration,
-                        bool with_sources = false, const FoundCalibration* found = nullptr,
+                        bool with_sources = false,
+                        const sculpting::FoundCalibration* found = nullptr,
                         SensorMask left_out = {});
 
 /// Returns an object with the keys kind ("average", "stored", "recorded", "learned"), user and path
 /// (null if there is none): whose hand the angles are.
-nlohmann::ordered_json calibration_json(const FoundCalibration& found);
+nlohmann::ordered_json calibration_json(const sculpting::FoundCalibration& found);
 
 } // namespace nendo::gloves

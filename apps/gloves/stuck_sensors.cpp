@@ -1,6 +1,5 @@
 #include "gloves/stuck_sensors.hpp"
 
-#include <bit>
 #include <chrono>
 #include <thread>
 
@@ -18,21 +17,6 @@ void for_each_of(SensorMask sensors, Visit&& visit) {
 }
 
 } // namespace
-
-bool is_one(SensorMask sensors) noexcept {
-  return std::popcount(sensors.bits) == 1;
-}
-
-std::string sensors_in_words(SensorMask sensors) {
-  std::string text;
-  int left = std::popcount(sensors.bits);
-  for_each_of(sensors, [&](Sensor sensor) {
-    text.append(name_of(sensor));
-    --left;
-    if (left > 0) text += left == 1 ? " and " : ", ";
-  });
-  return text;
-}
 
 std::vector<std::string> StuckNotices::changes(SensorMask left_out, const GloveSample* sample) {
   const SensorMask before = known_.value_or(left_out);

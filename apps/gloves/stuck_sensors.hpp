@@ -11,10 +11,6 @@
 
 namespace nendo::gloves {
 
-/// Returns "index_pip", or "index_pip and ring_mcp", and so on.
-std::string sensors_in_words(SensorMask sensors);
-bool is_one(SensorMask sensors) noexcept;
-
 /// Notices which sensors begin to be left out, and which come back.
 class StuckNotices {
 public:

@@ -18,6 +18,8 @@
 #include <nendo/driver/open_glove.hpp>
 #include <nendo/hand/calibration_file.hpp>
 #include <nendo/hand/calibration_store.hpp>
+#include <nendo/sculpting/calibration_names.hpp>
+#include <nendo/sculpting/find_wearer.hpp>
 
 #include "calibrate/capture_file.hpp"
 #include "calibrate/report.hpp"
@@ -25,7 +27,6 @@
 #include "cli/cli.hpp"
 #include "gloves/glove_calibration.hpp"
 #include "gloves/open_hand.hpp"
-#include "gloves/stuck_sensors.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::calibrate_command {
@@ -193,8 +194,8 @@ void note_quality(Wearer& wearer, const hand::CalibrationFit& fit,
 
 void note_left_out(const std::string& source, SensorMask left_out) {
   if (left_out.bits == 0) return;
-  const bool one = gloves::is_one(left_out);
-  cli::note(printable(source) + ": " + gloves::sensors_in_words(left_out) +
+  const bool one = sculpting::is_one(left_out);
+  cli::note(printable(source) + ": " + sculpting::sensors_in_words(left_out) +
             (one ? " stands" : " stand") +
             " still, whatever the hand does: the calibration is made without " +
             (one ? "it" : "them") + ", and the joint is estimated from the sensors beside");
@@ -305,7 +306,7 @@ int calibrate_glove(const Options& options) {
   const driver::GloveInfo& info = (*glove)->info();
   Wearer wearer = describe(options, info.side, info.counts, info.sensors);
   wearer.about.glove_model = info.model;
-  wearer.about.glove_serial = gloves::serial_of(info);
+  wearer.about.glove_serial = sculpting::serial_of(info);
   if (const auto fine = find_files(wearer, options); !fine) return cli::report(fine.error());
   calibrate::CalibrationGuide guide(poses_for(options), info.counts, options.stiff_sensors);
   std::error_code error;

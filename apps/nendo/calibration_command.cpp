@@ -11,12 +11,11 @@
 #include <nlohmann/json.hpp>
 
 #include <nendo/base/text.hpp>
+#include <nendo/sculpting/calibration_names.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
-#include "gloves/calibration_names.hpp"
 #include "gloves/glove_json.hpp"
-#include "gloves/stuck_sensors.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::calibration_command {
@@ -79,7 +78,7 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
 }
 
 int list(bool json) {
-  const auto stored = gloves::stored_calibrations();
+  const auto stored = sculpting::stored_calibrations(cli::note);
   std::vector<std::vector<std::string>> rows{
       {"user", "hand", "glove", "made", "method", "in force", "path"}};
   for (const auto& file : stored.files) {
@@ -109,7 +108,7 @@ int list(bool json) {
 
 void show_text(const StoredCalibration& file) {
   const WearerCalibration& wearer = file.wearer;
-  std::cout << gloves::title_of(wearer) << '\n'
+  std::cout << sculpting::title_of(wearer) << '\n'
             << printable("made " + hand::rfc3339(wearer.made) + " (" + wearer.method + "), " +
                          (wearer.glove_model.empty() ? "any model" : wearer.glove_model) + ", " +
                          file.path.string())
@@ -130,11 +129,12 @@ void show_text(const StoredCalibration& file) {
   }
   print_table(rows);
   if (wearer.left_out.bits != 0)
-    std::cout << "left out, because stuck: " << gloves::sensors_in_words(wearer.left_out) << '\n';
+    std::cout << "left out, because stuck: " << sculpting::sensors_in_words(wearer.left_out)
+              << '\n';
 }
 
 int show(const std::string& name, bool json) {
-  const auto file = gloves::named_calibration(name);
+  const auto file = sculpting::named_calibration(name, cli::note);
   if (!file) return cli::report(file.error());
   if (!json) {
     show_text(*file);
@@ -192,9 +192,9 @@ ordered_json change_json(const std::string& sensor, const std::vector<double>& d
 }
 
 int diff(const std::string& name_a, const std::string& name_b, bool json) {
-  const auto a = gloves::named_calibration(name_a);
+  const auto a = sculpting::named_calibration(name_a, cli::note);
   if (!a) return cli::report(a.error());
-  const auto b = gloves::named_calibration(name_b);
+  const auto b = sculpting::named_calibration(name_b, cli::note);
   if (!b) return cli::report(b.error());
   if (a->wearer.side != b->wearer.side)
     cli::note("these are calibrations of two hands: one left, one right");
@@ -223,14 +223,14 @@ int path(const std::string& name) {
     std::cout << hand::calibration_folders().own.string() << '\n';
     return 0;
   }
-  const auto file = gloves::named_calibration(name);
+  const auto file = sculpting::named_calibration(name, cli::note);
   if (!file) return cli::report(file.error());
   std::cout << file->path.string() << '\n';
   return 0;
 }
 
 int remove(const std::string& name) {
-  const auto file = gloves::named_calibration(name);
+  const auto file = sculpting::named_calibration(name, cli::note);
   if (!file) return cli::report(file.error());
   const auto kept = hand::retire_calibration(file->path);
   if (!kept) return cli::report(kept.error());

@@ -10,9 +10,9 @@
 
 #include <nendo/base/text.hpp>
 #include <nendo/hand/calibration_exchange.hpp>
+#include <nendo/sculpting/calibration_names.hpp>
 
 #include "cli/cli.hpp"
-#include "gloves/calibration_names.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::calibration_exchange {
@@ -142,7 +142,7 @@ int import_calibration(const ImportOptions& options) {
   const auto kept = hand::write_calibration(*path, *wearer);
   if (!kept) return cli::report(kept.error());
   if (!kept->empty()) cli::note("the earlier one is kept as " + printable(kept->string()));
-  std::cout << "imported for " << gloves::title_of(*wearer) << ": " << printable(path->string())
+  std::cout << "imported for " << sculpting::title_of(*wearer) << ": " << printable(path->string())
             << '\n';
   return 0;
 }
@@ -159,7 +159,7 @@ Result<hand::ExportedCalibration> exported(const WearerCalibration& wearer,
 }
 
 int export_calibration(const ExportOptions& options) {
-  const auto file = gloves::named_calibration(options.name);
+  const auto file = sculpting::named_calibration(options.name, cli::note);
   if (!file) return cli::report(file.error());
   const auto result = exported(file->wearer, options.format);
   if (!result) {

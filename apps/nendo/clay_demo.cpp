@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/sculpting/placing.hpp>
 
 #include "cli/cli.hpp"
 #include "render/picture.hpp"
@@ -43,7 +44,7 @@ session::RunOptions options_for(const Work& work, const std::string& out) {
   run.left = run.right = work.glove;
   run.out = named(out, work.name);
   run.duration_s = work.duration_s;
-  run.model_size_m = session::clay_size_m;
+  run.model_size_m = sculpting::usual_size_m(flow::Mode::clay);
   run.calibration.calibration = "none"; // what is stored is a real hand's
   run.loop.rate_hz = 90.0;
   run.loop.sculptor.mode = flow::Mode::clay;

@@ -13,11 +13,11 @@
 #include <nendo/base/advised_command.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/driver/devices.hpp>
+#include <nendo/sculpting/calibration_names.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
 #include "doctor/doctor.hpp"
-#include "gloves/calibration_names.hpp"
 #include "gloves/open_hand.hpp"
 #include "gloves/stuck_sensors.hpp"
 #include "nendo/commands.hpp"
@@ -28,13 +28,13 @@ namespace {
 /// Sensors that were stuck when somebody was calibrated.
 doctor::Examination check_calibrations() {
   doctor::Examination examination{{}, {"stored calibrations"}};
-  for (const auto& file : gloves::stored_calibrations().files) {
+  for (const auto& file : sculpting::stored_calibrations(cli::note).files) {
     if (file.wearer.left_out.bits == 0) continue;
-    const bool one = gloves::is_one(file.wearer.left_out);
+    const bool one = sculpting::is_one(file.wearer.left_out);
     examination.findings.push_back(
         {doctor::Severity::warning, "stuck_sensor", file.path.string(),
-         gloves::sensors_in_words(file.wearer.left_out) + (one ? " was" : " were") +
-             " stuck when " + gloves::title_of(file.wearer) +
+         sculpting::sensors_in_words(file.wearer.left_out) + (one ? " was" : " were") +
+             " stuck when " + sculpting::title_of(file.wearer) +
              " was calibrated, so what they would measure is estimated",
          "have the glove's sensor or its wire mended, then calibrate again"});
   }

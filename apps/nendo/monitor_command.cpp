@@ -13,6 +13,7 @@
 #include <nendo/driver/open_glove.hpp>
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/hand/active_calibration.hpp>
+#include <nendo/sculpting/find_wearer.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/terminal.hpp"
@@ -41,7 +42,7 @@ struct Monitored {
   SampleRing& ring;
   const hand::Wearer* wearer;                ///< null: counts only
   hand::ActiveCalibration& calibrations;     ///< those of `wearer`, or an average hand's
-  const gloves::FoundCalibration& found;     ///< what was found for the glove's own hand
+  const sculpting::FoundCalibration& found;  ///< what was found for the glove's own hand
   std::uint64_t most;                        ///< samples to show; 0: no end
   const hand::Calibration* active = nullptr; ///< for the latest sample; null: none
   SensorMask left_out{};                     ///< with the latest sample
@@ -60,20 +61,20 @@ struct Monitored {
     return true;
   }
   /// Whose hand a sample of that side shows; null: not known, for another glove was plugged in.
-  const gloves::FoundCalibration* found_for(Side side) const {
+  const sculpting::FoundCalibration* found_for(Side side) const {
     return side == glove.info().side ? &found : nullptr;
   }
   std::string wearer_of(Side side) const {
     const auto* known = found_for(side);
     if (wearer == nullptr || known == nullptr) return {};
-    using Kind = gloves::FoundCalibration::Kind;
+    using Kind = sculpting::FoundCalibration::Kind;
     if (known->kind == Kind::recorded) return "the wearer who was recorded";
     if (known->kind == Kind::average)
       return glove.info().kind == driver::GloveKind::recorded ? "nobody, an average one" : "";
     return known->user;
   }
   bool is_uncalibrated(Side side) const {
-    return wearer != nullptr && gloves::is_uncalibrated(glove.info(), *wearer, side);
+    return wearer != nullptr && sculpting::is_uncalibrated(glove.info(), *wearer, side);
   }
 };
 
@@ -165,10 +166,10 @@ int monitor(const Options& options) {
   const auto glove = gloves::open_glove(options.glove);
   if (!glove) return cli::report(glove.error());
   std::optional<hand::Wearer> wearer;
-  gloves::FoundCalibration whose;
+  sculpting::FoundCalibration whose;
   if (!options.raw) {
-    const auto found =
-        gloves::find_wearer((*glove)->info(), (*glove)->info().side, options.calibration, &whose);
+    const auto found = sculpting::find_wearer((*glove)->info(), (*glove)->info().side,
+                                              options.calibration, cli::note, &whose);
     if (!found) return cli::report(found.error());
     wearer = *found;
   }

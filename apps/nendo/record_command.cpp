@@ -38,7 +38,7 @@ Result<void> check(Options& options) {
     options.duration_s = *seconds;
   }
   if (auto fine = options.length.check(); !fine) return fine;
-  if (auto fine = check(options.calibration); !fine) return fine;
+  if (auto fine = gloves::check(options.calibration); !fine) return fine;
   std::error_code ignored;
   if (std::filesystem::exists(options.out, ignored)) {
     return Error{Errc::failed, "--out " + options.out +

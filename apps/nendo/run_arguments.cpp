@@ -12,6 +12,7 @@
 #include <nendo/deform/refinement.hpp>
 #include <nendo/flow/tick_grid.hpp>
 #include <nendo/puppet/puppet.hpp>
+#include <nendo/sculpting/placing.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/model_files.hpp"
@@ -170,8 +171,7 @@ Result<void> check_puppet(const session::RunOptions& run, bool injective) {
 
 Result<void> set_size(RunArguments& options) {
   session::RunOptions& run = options.run;
-  if (run.loop.sculptor.mode == flow::Mode::clay) run.model_size_m = session::clay_size_m;
-  if (run.loop.sculptor.mode == flow::Mode::parts) run.model_size_m = session::parts_size_m;
+  run.model_size_m = sculpting::usual_size_m(run.loop.sculptor.mode);
   if (options.size.empty()) return {};
   const auto size_m = cli::metres_of(options.size);
   constexpr double least_m = 0.01;
@@ -268,7 +268,7 @@ Result<void> check(RunArguments& options) {
   if (!supports) return supports.error();
   run.supports = *supports;
   if (auto fine = run.length.check(); !fine) return fine;
-  if (auto fine = check(run.calibration); !fine) return fine;
+  if (auto fine = gloves::check(run.calibration); !fine) return fine;
   if (run.out.empty()) run.out = dated_name();
   if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
   run.reading = takes::reading(options.up);

@@ -14,12 +14,12 @@
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/repair.hpp>
 #include <nendo/deform/supports.hpp>
+#include <nendo/sculpting/kept_ranges.hpp>
+#include <nendo/sculpting/kept_slips.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "commands/commands.hpp"
-#include "gloves/kept_ranges.hpp"
-#include "gloves/kept_slips.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/run_arguments.hpp"
 #include "service/service_notice.hpp"
@@ -123,8 +123,8 @@ Result<void> keep_learned(const session::RunOptions& options,
     if (!hand.wearer.adapt || user.empty()) continue;
     const std::size_t slot = flow::Placement::index_of(hand.side);
     if (hand.wearer.ends) {
-      const auto slips = gloves::keep_slips(hand.glove->info(), hand.wearer.ends->side, user,
-                                            stats.slips_counts[slot]);
+      const auto slips = sculpting::keep_slips(hand.glove->info(), hand.wearer.ends->side, user,
+                                               stats.slips_counts[slot]);
       if (!slips) return slips.error();
       cli::note(slips->is_changed
                     ? "how far sensors have slipped is kept in " + printable(slips->path.string()) +
@@ -133,8 +133,8 @@ Result<void> keep_learned(const session::RunOptions& options,
                           printable(slips->path.string()) + " stays as it is");
       continue;
     }
-    const auto kept =
-        gloves::keep_ranges(hand.glove->info(), stats.range_sides[slot], user, stats.ranges[slot]);
+    const auto kept = sculpting::keep_ranges(hand.glove->info(), stats.range_sides[slot], user,
+                                             stats.ranges[slot]);
     if (!kept) return kept.error();
     cli::note(kept->empty() ? std::string(name_of(hand.side)) + " hand: learned nothing, for no "
                                                                 "joint went to and fro"

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <nendo/deform/face_box.hpp>
-#include <nendo/driver/devices.hpp>
 
 #include "cli/cli.hpp"
 
@@ -15,43 +14,16 @@ bool plays(const RunOptions& options, Side side) {
   return !options.live || !(*options.live)[flow::Placement::index_of(side)].is_empty();
 }
 
-// Opens the gloves that the machine has, one for each hand, or simulated ones. A glove that is
-// there but may not be used is an error. If one does not answer, a note says so, and the other hand
-// goes on alone.
 Result<std::vector<gloves::OpenHand>> open_any(const RunOptions& options, EventCount* event_count) {
-  std::vector<gloves::OpenHand> hands;
-  std::vector<std::string> why;
-  for (const Side side : {Side::left, Side::right}) {
-    if (!plays(options, side)) continue;
-    auto hand = gloves::open_hand("auto:" + std::string(name_of(side)), side, event_count);
-    if (hand) {
-      hands.push_back(*std::move(hand));
-    } else if (hand.error().code != Errc::no_device) {
-      return hand.error();
-    } else {
-      why.push_back(hand.error().message);
-    }
-  }
-  const auto candidates = driver::find_gloves();
-  const auto plugged_in = std::count_if(candidates.begin(), candidates.end(),
-                                        [](const auto& c) { return c.identified; });
-  if (static_cast<std::size_t>(plugged_in) > hands.size())
-    for (const auto& reason : why)
-      cli::note(reason);
-  if (!hands.empty()) return hands;
-  const bool both = plays(options, Side::left) && plays(options, Side::right);
-  const std::string simulated = options.puppet_file.empty() ? "sim" : "sim:faces";
-  cli::note("no glove found, so " + std::string(both ? "both hands are" : "the hand is") +
-            " simulated (" + simulated +
-            "); to use a glove name its port, "
-            "e.g. --right serial:/dev/ttyUSB0 (`nendo devices` lists them)");
-  for (const Side side : {Side::left, Side::right}) {
-    if (!plays(options, side)) continue;
-    auto hand = gloves::open_hand(simulated, side, event_count);
-    if (!hand) return hand.error();
-    hands.push_back(*std::move(hand));
-  }
-  return hands;
+  std::vector<Side> sides;
+  for (const Side side : {Side::left, Side::right})
+    if (plays(options, side)) sides.push_back(side);
+  return sculpting::open_found(
+      sides, options.puppet_file.empty() ? "sim" : "sim:faces",
+      [event_count](const std::string& glove, Side side) {
+        return gloves::open_hand(glove, side, event_count);
+      },
+      cli::note);
 }
 
 Result<std::vector<gloves::OpenHand>>

@@ -1,28 +1,17 @@
 #include "session/place_loop.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
-#include <nendo/deform/face_box.hpp>
 #include <nendo/deform/midpoint_chain.hpp>
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/flow/rig_setup.hpp>
 #include <nendo/hand/held_points.hpp>
 #include <nendo/puppet/puppet_edit.hpp>
+#include <nendo/sculpting/placing.hpp>
 
 namespace nendo::session {
 namespace {
-
-// A fraction of the model's longest side, 16 cm on the stage. A finger shapes what is about it, and
-// the supports of its neighbours overlap enough that no ridge is left between two fingers that
-// press together.
-constexpr double default_radius_fraction = 0.2;
-// Of clay, so that a ball of 7.5 cm gives way for 2.4 cm about a hand.
-constexpr double clay_radius_fraction = 0.32;
-// The length of a piece of type 2, as a fraction of the radius. It is far below the step at which a
-// single finger would fold the surface (0.47).
-constexpr double piece_fraction = 0.05;
 
 std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hands,
                                        const RunOptions& options) {
@@ -38,50 +27,17 @@ std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hand
   return inputs;
 }
 
-hand::JointAngles first_angles(const flow::HandInput& hand) {
-  const hand::WearerHand& own = hand.wearer.of(hand.first.side);
-  return hand::joint_angles(hand.first, own.calibration, own.left_out);
-}
-
-/// Hands that press clay begin beside it, from where bent fingers or a moved hand reach it.
-void stand_beside(const std::vector<flow::HandInput>& inputs, const deform::Mesh& model,
-                  flow::Placement& placement) {
-  constexpr double clear_m = 0.010;
-  for (const auto& hand : inputs) {
-    const Side glove = hand.first.side;
-    Eigen::Isometry3d& wrist = placement.T_stage_wrist[flow::Placement::index_of(hand.side)];
-    wrist = flow::beside(model, placement.units_per_metre, hand.skeleton(glove), first_angles(hand),
-                         wrist, clear_m);
-  }
-}
-
 flow::Placement placement_for(const std::vector<gloves::OpenHand>& open,
-                              const std::vector<flow::HandInput>& inputs, const deform::Mesh& whole,
+                              const std::vector<flow::HandInput>& inputs, const deform::Mesh& model,
                               const RunOptions& options) {
-  const auto faces = deform::without_stray_vertices(whole);
-  const deform::Mesh& model = faces ? *faces : whole;
-  std::array<std::optional<flow::Fingertips>, 2> tips;
-  for (const auto& hand : inputs) {
-    const Side glove = hand.first.side;
-    const auto angles = first_angles(hand);
-    tips[flow::Placement::index_of(hand.side)] =
-        hand.skeleton(glove).pose(angles, Eigen::Isometry3d::Identity()).fingertip_positions();
-  }
-  flow::Placement placement =
-      options.puppet_file.empty() && !options.puppet
-          ? flow::place_hands(model, tips, {.model_size_m = options.model_size_m})
-          : flow::place_player(model);
-  if (options.loop.sculptor.mode == flow::Mode::clay) stand_beside(inputs, model, placement);
+  const bool is_for_player = options.puppet || !options.puppet_file.empty();
+  flow::Placement placement = sculpting::place(
+      model, inputs, {options.loop.sculptor.mode, options.model_size_m, is_for_player});
   for (const auto& hand : open) {
     if (hand.T_stage_wrist)
       placement.T_stage_wrist[flow::Placement::index_of(hand.side)] = *hand.T_stage_wrist;
   }
   return placement;
-}
-
-double longest_side(const deform::Mesh& model) {
-  const deform::Box box = deform::box_of_faces(model);
-  return (box.highest - box.lowest).maxCoeff();
 }
 
 Error bad_radius(const std::string& text, const std::string& why) {
@@ -90,20 +46,13 @@ Error bad_radius(const std::string& text, const std::string& why) {
                            "ten, left hand first), or leave it out"};
 }
 
-Result<deform::Supports> supports_for(const std::optional<deform::Supports>& of_two,
-                                      std::size_t hands, flow::Mode mode, double model_size) {
-  if (!of_two)
-    return deform::one_radius(
-        (mode == flow::Mode::clay ? clay_radius_fraction : default_radius_fraction) *
-        (model_size > 0.0 ? model_size : 1.0));
-  auto supports = flow::supports_of_hands(*of_two, static_cast<int>(hands));
+Result<deform::Supports> supports_for(const RunOptions& options, std::size_t hands,
+                                      const deform::Mesh& model) {
+  if (!options.supports) return sculpting::usual_supports(model, options.loop.sculptor.mode);
+  auto supports = flow::supports_of_hands(*options.supports, static_cast<int>(hands));
   if (!supports) return bad_radius("", "is for two hands, and there is one");
   return *std::move(supports);
 }
-
-} // namespace
-
-namespace {
 
 /// Puts the puppet into the options. Error: bad_input, naming its file.
 Result<void> set_rig(const RunOptions& options, const deform::Mesh& model,
@@ -140,15 +89,9 @@ Result<void> set_masks(const RunOptions& options, const deform::Mesh& model, Eig
 
 Result<PlacedLoop> make_loop(PlacedSetup setup, const deform::Mesh& model,
                              const deform::BlockShape* first) {
-  const auto fine = flow::check_points(setup.options.rig.get(), setup.options.sculptor);
-  if (!fine) return fine.error();
-  auto loop = std::make_unique<flow::DeformLoop>(model, setup.placement, setup.inputs,
-                                                 setup.options, first);
-  if (!is_solved(loop->grab_status())) {
-    return Error{Errc::failed, "the hands cannot take hold of the model: " +
-                                   std::string(deform::describe(loop->grab_status()))};
-  }
-  return PlacedLoop{std::move(loop), std::move(setup)};
+  auto loop = sculpting::make_loop(model, setup.placement, setup.inputs, setup.options, first);
+  if (!loop) return loop.error();
+  return PlacedLoop{*std::move(loop), std::move(setup)};
 }
 
 /// The radii of the hand that joins are those of the hand that was there alone.
@@ -209,17 +152,11 @@ std::uint32_t PlacedSetup::live_layers() const noexcept {
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                               const deform::Mesh& model) {
   if (options.over) return place_over(options, hands, model);
-  const double size = longest_side(model);
   flow::LoopOptions loop_options = options.loop;
-  auto& sculptor = loop_options.sculptor;
   auto inputs = inputs_of(hands, options);
-  auto supports = supports_for(options.supports, inputs.size(), sculptor.mode, size);
+  auto supports = supports_for(options, inputs.size(), model);
   if (!supports) return supports.error();
-  sculptor.piece_length = piece_fraction * deform::least_radius(*supports);
-  sculptor.deformer.supports = *std::move(supports);
-  // Live fingertips meet; the exact solution for two that nearly touch would tear the surface
-  // between them.
-  sculptor.deformer.csrbf.merge_fraction = 0.05;
+  sculpting::set_supports(*std::move(supports), loop_options.sculptor);
 
   const auto fine =
       options.puppet

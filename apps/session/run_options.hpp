@@ -15,11 +15,6 @@
 
 namespace nendo::session {
 
-/// The longest side of clay on the stage: hands hold a statue at the fingertips, and clay in the
-/// palms.
-inline constexpr double clay_size_m = 0.075;
-inline constexpr double parts_size_m = 0.25; ///< which a hand can take
-
 /// Where a puppet that was edited goes.
 struct PuppetPlace {
   std::string file;             ///< .toml; empty: nobody can edit one

@@ -13,9 +13,9 @@
 #include <unistd.h>
 
 #include <nendo/driver/record_counts.hpp>
+#include <nendo/sculpting/calibration_names.hpp>
 
 #include "cli/terminal.hpp"
-#include "gloves/stuck_sensors.hpp"
 
 namespace nendo::session {
 namespace {
@@ -94,11 +94,11 @@ void print_percentiles(std::string_view name, const flow::Histogram& histogram) 
 /// Sensors that were left out at the end, or for a while.
 void print_left_out(SensorMask left_out, SensorMask for_a_while) {
   if (left_out.bits != 0)
-    print_row("", gloves::sensors_in_words(left_out) +
-                      (gloves::is_one(left_out) ? " stands" : " stand") +
+    print_row("", sculpting::sensors_in_words(left_out) +
+                      (sculpting::is_one(left_out) ? " stands" : " stand") +
                       " still: left out, and estimated from the sensors beside");
   if (for_a_while.bits != 0)
-    print_row("", gloves::sensors_in_words(for_a_while) +
+    print_row("", sculpting::sensors_in_words(for_a_while) +
                       " stood still for a while: left out meanwhile, and estimated");
 }
 

@@ -8,11 +8,12 @@
 #include <utility>
 
 #include <nendo/deform/undo_memory.hpp>
+#include <nendo/sculpting/loop_thread.hpp>
+#include <nendo/sculpting/placing.hpp>
 
 #include "cli/cli.hpp"
 #include "gloves/glove_feedback.hpp"
 #include "gloves/stuck_sensors.hpp"
-#include "session/loop_thread.hpp"
 #include "session/run_commands.hpp"
 #include "session/run_keys.hpp"
 #include "session/run_models.hpp"
@@ -23,15 +24,6 @@ namespace nendo::session {
 namespace {
 
 using std::chrono::milliseconds;
-
-// Returns the memory for undo at the beginning: room for some dozens of whole shapes, of which
-// strokes mostly change parts.
-std::size_t undo_bytes_for(const deform::Mesh& model) noexcept {
-  constexpr std::size_t most = std::size_t{64} << 20;
-  constexpr std::size_t shapes_of_a_vertex = std::size_t{64} * 3 * sizeof(float);
-  return std::min(most,
-                  shapes_of_a_vertex * static_cast<std::size_t>(model.vertices.cols() + 1000));
-}
 
 std::size_t most_undo_bytes(const RunOptions& options) noexcept {
   return options.undo_memory_mb ? static_cast<std::size_t>(1e6 * *options.undo_memory_mb)
@@ -53,10 +45,7 @@ public:
     for (const auto& hand : hands_)
       feedback_.push_back({hand.side, gloves::GloveFeedback(*hand.glove)});
     options_.loop.commands = &commands_.ring();
-    const std::size_t most = most_undo_bytes(options_);
-    const std::size_t at_once = std::min(undo_bytes_for(model_), most);
-    options_.loop.sculptor.deformer.undo_bytes = at_once;
-    options_.loop.undo_most_bytes = most - at_once;
+    sculpting::set_undo_room(model_, most_undo_bytes(options_), options_.loop);
     options_.loop.sinks.assign(participants_.sinks.begin(), participants_.sinks.end());
   }
 
@@ -179,7 +168,7 @@ private:
   // Runs the loop until it ends, and leaves its shape in model_.
   void run_loop(RunPicture& picture) {
     flow::DeformLoop& loop = *placed_.loop;
-    LoopThread thread(loop, options_);
+    sculpting::LoopThread thread(loop, options_.realtime, ticks_for(options_));
     report_refusals(thread.grants());
     watch(thread, picture);
     if (commands_.ends()) wait_until_taken();
@@ -232,7 +221,7 @@ private:
     }
   }
 
-  void watch(const LoopThread& thread, RunPicture& picture) {
+  void watch(const sculpting::LoopThread& thread, RunPicture& picture) {
     auto& frames = placed_.loop->frames();
     HostTime next_progress = thread.start;
     bool is_news = false;

@@ -1,13 +1,13 @@
-#include "gloves/kept_slips.hpp"
+#include <nendo/sculpting/kept_slips.hpp>
 
 #include <chrono>
 #include <cmath>
 
 #include <nendo/base/text.hpp>
 
-#include "gloves/glove_calibration.hpp"
+#include <nendo/sculpting/find_wearer.hpp>
 
-namespace nendo::gloves {
+namespace nendo::sculpting {
 
 Result<hand::WornEnds> ends_of(const hand::StoredCalibration& file,
                                const driver::GloveInfo& glove) {
@@ -49,4 +49,4 @@ Result<KeptSlips> keep_slips(const driver::GloveInfo& glove, Side side, const st
   return kept;
 }
 
-} // namespace nendo::gloves
+} // namespace nendo::sculpting

@@ -1,14 +1,13 @@
-#include "gloves/calibration_names.hpp"
+#include <nendo/sculpting/calibration_names.hpp>
 
+#include <bit>
 #include <utility>
 #include <vector>
 
 #include <nendo/base/endings.hpp>
 #include <nendo/base/text.hpp>
 
-#include "cli/cli.hpp"
-
-namespace nendo::gloves {
+namespace nendo::sculpting {
 namespace {
 
 using hand::StoredCalibration;
@@ -19,20 +18,20 @@ std::string stem_of(const StoredCalibration& file) {
 
 } // namespace
 
-hand::CalibrationList stored_calibrations() {
+hand::CalibrationList stored_calibrations(const Note& note) {
   auto list = hand::list_calibrations(hand::calibration_folders());
   for (const auto& error : list.unreadable)
-    cli::note(printable(error.message));
+    note(printable(error.message));
   return list;
 }
 
-Result<StoredCalibration> named_calibration(const std::string& name) {
+Result<StoredCalibration> named_calibration(const std::string& name, const Note& note) {
   if (name.find('/') != std::string::npos || ends_in(name, ".toml")) {
     auto wearer = hand::read_calibration(name);
     if (!wearer) return wearer.error();
     return StoredCalibration{name, false, *std::move(wearer)};
   }
-  const auto list = stored_calibrations();
+  const auto list = stored_calibrations(note);
   std::vector<const StoredCalibration*> meant;
   for (const auto& file : list.files) {
     if (stem_of(file) == name) return file; // an own one stands first
@@ -54,4 +53,20 @@ std::string title_of(const hand::WearerCalibration& wearer) {
                    (wearer.glove_serial.empty() ? "any glove" : "glove " + wearer.glove_serial));
 }
 
-} // namespace nendo::gloves
+bool is_one(SensorMask sensors) noexcept {
+  return std::popcount(sensors.bits) == 1;
+}
+
+std::string sensors_in_words(SensorMask sensors) {
+  std::string text;
+  int left = std::popcount(sensors.bits);
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    if (!sensors.has(static_cast<Sensor>(slot))) continue;
+    text.append(name_of(static_cast<Sensor>(slot)));
+    --left;
+    if (left > 0) text += left == 1 ? " and " : ", ";
+  }
+  return text;
+}
+
+} // namespace nendo::sculpting

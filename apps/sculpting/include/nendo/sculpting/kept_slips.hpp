@@ -10,7 +10,7 @@
 #include <nendo/hand/calibration_store.hpp>
 #include <nendo/hand/slip_adaptation.hpp>
 
-namespace nendo::gloves {
+namespace nendo::sculpting {
 
 /// Returns the ends that the sensors reached when this calibration was made for a glove with the
 /// counts of `glove`. Error: bad_input, if it does not tell them, or is of another kind of glove.
@@ -28,4 +28,4 @@ struct KeptSlips {
 Result<KeptSlips> keep_slips(const driver::GloveInfo& glove, Side side, const std::string& user,
                              const hand::SensorAngles& slips_counts);
 
-} // namespace nendo::gloves
+} // namespace nendo::sculpting

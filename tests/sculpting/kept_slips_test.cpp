@@ -1,12 +1,13 @@
-#include "gloves/kept_slips.hpp"
+#include <nendo/sculpting/kept_slips.hpp>
 
 #include <cstdlib>
+#include <string_view>
 
 #include <doctest/doctest.h>
 
 #include <nendo/hand/calibration_file.hpp>
+#include <nendo/sculpting/find_wearer.hpp>
 
-#include "gloves/glove_calibration.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace kept_slips_test {
@@ -43,8 +44,8 @@ struct Home {
   static std::filesystem::path file() {
     return *hand::own_calibration_path("vera", "", Side::right);
   }
-  Result<hand::Wearer> wearer(const gloves::CalibrationOptions& options) const {
-    return gloves::find_wearer(glove, Side::right, options);
+  Result<hand::Wearer> wearer(const sculpting::CalibrationOptions& options) const {
+    return sculpting::find_wearer(glove, Side::right, options, [](std::string_view) {});
   }
 };
 
@@ -53,8 +54,8 @@ struct Home {
 TEST_SUITE("kept_slips") {
   TEST_CASE("--adapt begins from the calibration of a user, or from one that is named") {
     const Home home;
-    for (const gloves::CalibrationOptions& options :
-         {gloves::CalibrationOptions{"vera", "", true}, {"", "vera", true}}) {
+    for (const sculpting::CalibrationOptions& options :
+         {sculpting::CalibrationOptions{"vera", "", true}, {"", "vera", true}}) {
       const auto wearer = home.wearer(options);
       REQUIRE_MESSAGE(wearer, wearer.error().message);
       CHECK(wearer->adapt == home.glove.counts);
@@ -98,11 +99,11 @@ TEST_SUITE("kept_slips") {
     const Home home;
     hand::SensorAngles slips{};
     slips[mcp] = 0.3;
-    const auto none = gloves::keep_slips(home.glove, Side::right, "vera", slips);
+    const auto none = sculpting::keep_slips(home.glove, Side::right, "vera", slips);
     REQUIRE(none);
     CHECK_FALSE(none->is_changed);
     slips[pip] = 7.25;
-    const auto kept = gloves::keep_slips(home.glove, Side::right, "vera", slips);
+    const auto kept = sculpting::keep_slips(home.glove, Side::right, "vera", slips);
     REQUIRE(kept);
     CHECK(kept->is_changed);
     CHECK(kept->path == home.file());
@@ -123,7 +124,7 @@ TEST_SUITE("kept_slips") {
       ++files;
     CHECK(files == 2);
     REQUIRE(hand::retire_calibration(home.file()));
-    CHECK_FALSE(gloves::keep_slips(home.glove, Side::right, "vera", slips));
+    CHECK_FALSE(sculpting::keep_slips(home.glove, Side::right, "vera", slips));
   }
 }
 

@@ -10,7 +10,7 @@
 #include <nendo/hand/calibration_file.hpp>
 #include <nendo/hand/range_adaptation.hpp>
 
-namespace nendo::gloves {
+namespace nendo::sculpting {
 
 /// Tells whether a calibration is what keep_ranges() writes.
 bool is_kept_ranges(const hand::WearerCalibration& wearer);
@@ -27,4 +27,4 @@ Result<std::filesystem::path> keep_ranges(const driver::GloveInfo& glove, Side s
                                           const std::string& user,
                                           const hand::SensorRanges& ranges);
 
-} // namespace nendo::gloves
+} // namespace nendo::sculpting

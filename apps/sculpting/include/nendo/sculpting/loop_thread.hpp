@@ -2,22 +2,25 @@
 // The thread on which a loop runs.
 
 #include <atomic>
+#include <cstdint>
 #include <future>
+#include <limits>
 #include <thread>
 #include <vector>
 
-#include "session/run_session.hpp"
+#include <nendo/flow/deform_loop.hpp>
+#include <nendo/flow/realtime.hpp>
 
-namespace nendo::session {
+namespace nendo::sculpting {
 
 class LoopThread {
 public:
-  /// Starts the loop. It runs until stop() or for the duration in `options`. Both arguments must
-  /// outlive this.
-  LoopThread(flow::DeformLoop& loop, const RunOptions& options)
-      : start(HostClock::now()), thread_([this, &loop, &options] {
-          prepared_.set_value(flow::make_thread_realtime(options.realtime));
-          loop.run(over_, ticks_for(options));
+  /// Starts the loop, which must outlive this. It runs until stop(), or for `most_ticks`.
+  explicit LoopThread(flow::DeformLoop& loop, const flow::RealtimeOptions& realtime = {},
+                      std::uint64_t most_ticks = std::numeric_limits<std::uint64_t>::max())
+      : start(HostClock::now()), thread_([this, &loop, realtime, most_ticks] {
+          prepared_.set_value(flow::make_thread_realtime(realtime));
+          loop.run(over_, most_ticks);
           ended = true;
         }) {}
   ~LoopThread() { stop(); }
@@ -41,4 +44,4 @@ private:
   std::thread thread_;
 };
 
-} // namespace nendo::session
+} // namespace nendo::sculpting

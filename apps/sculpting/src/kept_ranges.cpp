@@ -1,4 +1,4 @@
-#include "gloves/kept_ranges.hpp"
+#include <nendo/sculpting/kept_ranges.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -8,9 +8,9 @@
 #include <nendo/base/text.hpp>
 #include <nendo/hand/calibration_store.hpp>
 
-#include "gloves/glove_calibration.hpp"
+#include <nendo/sculpting/find_wearer.hpp>
 
-namespace nendo::gloves {
+namespace nendo::sculpting {
 namespace {
 
 constexpr const char* method = "adapted";
@@ -94,4 +94,4 @@ Result<std::filesystem::path> keep_ranges(const driver::GloveInfo& glove, Side s
   return path;
 }
 
-} // namespace nendo::gloves
+} // namespace nendo::sculpting

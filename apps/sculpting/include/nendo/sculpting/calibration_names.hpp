@@ -1,0 +1,35 @@
+#pragma once
+// Finds calibrations as users name them: by a path, by a stored file's name without .toml, or by a
+// wearer.
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include <nendo/base/result.hpp>
+#include <nendo/driver/sample.hpp>
+#include <nendo/hand/calibration_store.hpp>
+
+namespace nendo::sculpting {
+
+/// Is told, in one line, what a user should know though nothing failed. It is called on the thread
+/// of the function that it is given to.
+using Note = std::function<void(std::string_view)>;
+
+/// Returns what is stored on this machine, in the folders that the environment gives. Notes which
+/// files cannot be read. Blocks.
+hand::CalibrationList stored_calibrations(const Note& note);
+
+/// Returns the calibration that `name` means. A text with a slash or the ending .toml is a path. A
+/// wearer's name means those of the wearer's calibrations that are in force. Blocks. Errors:
+/// bad_input (there is none, or it cannot be read), usage (several are meant).
+Result<hand::StoredCalibration> named_calibration(const std::string& name, const Note& note);
+
+/// Returns a text such as "Anna, right hand, glove A1".
+std::string title_of(const hand::WearerCalibration& wearer);
+
+/// Returns "index_pip", or "index_pip and ring_mcp", and so on.
+std::string sensors_in_words(SensorMask sensors);
+bool is_one(SensorMask sensors) noexcept;
+
+} // namespace nendo::sculpting

@@ -1,0 +1,129 @@
+#include <nendo/sculpting/open_hand.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include <nendo/driver/devices.hpp>
+
+namespace nendo::sculpting {
+namespace {
+
+using std::chrono::milliseconds;
+
+Result<void> wait_for_sample(OpenHand& hand, const std::function<bool()>& is_stopped) {
+  const double rate_hz = hand.glove->info().rate_hz;
+  // A glove whose rate is not known may send one record a second.
+  const double patience_s = rate_hz > 0.0 ? std::clamp(3.0 / rate_hz, 2.0, 60.0) : 4.0;
+  const HostTime end = HostClock::now() + from_seconds(patience_s);
+  const auto stops = [&] { return is_stopped && is_stopped(); };
+  while (HostClock::now() < end && !stops()) {
+    if (hand.ring->try_pop(hand.first)) return {};
+    std::this_thread::sleep_for(milliseconds(5));
+  }
+  if (stops()) return Error{Errc::failed, "stopped before the first sample came"};
+  return Error{Errc::no_device, hand.glove->info().source + ": opened, but no sample came within " +
+                                    std::to_string(static_cast<int>(patience_s)) +
+                                    " s; is the glove plugged into its interface unit?"};
+}
+
+/// Notes why gloves that are plugged in do not take part.
+void note_silent(const std::vector<std::string>& why, std::size_t opened, const Note& note) {
+  const auto candidates = driver::find_gloves();
+  const auto plugged_in = std::count_if(candidates.begin(), candidates.end(),
+                                        [](const auto& c) { return c.identified; });
+  if (static_cast<std::size_t>(plugged_in) <= opened) return;
+  for (const auto& reason : why)
+    note(reason);
+}
+
+} // namespace
+
+OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
+                 EventCount* event_count, const Note& note) {
+  const Side own_side = glove->info().side;
+  if (side && own_side != *side) {
+    note(glove->info().source + " says that it is a " + std::string(name_of(own_side)) +
+         "-hand glove; it shapes as the " + std::string(name_of(*side)) + " hand, as you asked");
+  }
+  OpenHand hand;
+  hand.side = side.value_or(own_side);
+  hand.ring = std::make_unique<SampleRing>(1024, event_count);
+  hand.glove = std::move(glove);
+  return hand;
+}
+
+Result<std::vector<OpenHand>> open_found(std::span<const Side> sides, const std::string& simulated,
+                                         const OpenNamed& open, const Note& note) {
+  std::vector<OpenHand> hands;
+  std::vector<std::string> why;
+  for (const Side side : sides) {
+    auto hand = open("auto:" + std::string(name_of(side)), side);
+    if (hand) {
+      hands.push_back(*std::move(hand));
+    } else if (hand.error().code != Errc::no_device) {
+      return hand.error();
+    } else {
+      why.push_back(hand.error().message);
+    }
+  }
+  note_silent(why, hands.size(), note);
+  if (!hands.empty()) return hands;
+  note("no glove found, so " + std::string(sides.size() > 1 ? "both hands are" : "the hand is") +
+       " simulated (" + simulated +
+       "); to use a glove name its port, "
+       "e.g. --right serial:/dev/ttyUSB0 (`nendo devices` lists them)");
+  for (const Side side : sides) {
+    auto hand = open(simulated, side);
+    if (!hand) return hand.error();
+    hands.push_back(*std::move(hand));
+  }
+  return hands;
+}
+
+Result<void> start(std::span<OpenHand> hands) {
+  for (OpenHand& hand : hands) {
+    if (auto started = hand.glove->start(*hand.ring); !started) return started;
+  }
+  return {};
+}
+
+Result<void> begin_again(std::span<OpenHand> hands) {
+  const auto is_worn = [](const OpenHand& hand) {
+    return hand.glove->info().kind == driver::GloveKind::device;
+  };
+  for (OpenHand& hand : hands)
+    if (!is_worn(hand)) hand.glove->stop();
+  for (OpenHand& hand : hands) {
+    if (is_worn(hand)) continue;
+    hand.ring->drain([](const GloveSample&) noexcept {});
+    if (auto started = hand.glove->start(*hand.ring); !started) return started;
+  }
+  return {};
+}
+
+bool have_ended(std::span<const OpenHand> hands) noexcept {
+  return std::all_of(hands.begin(), hands.end(),
+                     [](const OpenHand& hand) { return hand.glove->has_ended(); });
+}
+
+Result<void> wait_for_samples(std::span<OpenHand> hands, const std::function<bool()>& is_stopped) {
+  for (OpenHand& hand : hands)
+    if (auto came = wait_for_sample(hand, is_stopped); !came) return came;
+  return {};
+}
+
+Result<void> find_wearers(std::span<OpenHand> hands, const CalibrationOptions& options,
+                          const Note& note) {
+  for (OpenHand& hand : hands) {
+    // A sample tells the side of the glove that sent it, which need not be the identified one.
+    auto wearer = find_wearer(hand.glove->info(), hand.first.side, options, note);
+    if (!wearer) return wearer.error();
+    hand.wearer = *std::move(wearer);
+    hand.uncalibrated = is_uncalibrated(hand.glove->info(), hand.wearer, hand.first.side);
+  }
+  return {};
+}
+
+} // namespace nendo::sculpting
