@@ -8,9 +8,13 @@ endfunction()
 
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/prefix
-  -DCMAKE_CXX_COMPILER=${COMPILER})
-run(${CMAKE_COMMAND} --build ${WORK}/build)
-run(${WORK}/build/consumer)
+foreach(source ${SOURCE} ${TOP}/apps/examples)
+  get_filename_component(name ${source} NAME)
+  run(${CMAKE_COMMAND} -S ${source} -B ${WORK}/${name} -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/prefix
+    -DCMAKE_CXX_COMPILER=${COMPILER})
+  run(${CMAKE_COMMAND} --build ${WORK}/${name})
+endforeach()
+run(${WORK}/consumer/consumer)
+run(${WORK}/examples/live_loop ${TOP}/apps/models/moai.obj ${WORK}/live.obj sim sim)
 # The installed program finds its models beside itself.
 run(${WORK}/prefix/bin/nendo run --duration 0.5 --left sim --right sim --out ${WORK}/shape.obj)

@@ -113,19 +113,17 @@ private:
 };
 
 struct Stage::Parts {
-  Parts(flow::DeformLoop& shaping, const deform::Mesh& mesh) : loop(shaping), model(mesh) {}
+  explicit Parts(sculpting::LiveLoop& loop) : live(loop), model(loop.model()) {}
 
-  flow::DeformLoop& loop;
+  sculpting::LiveLoop& live;
   vtkNew<vtkRenderer> renderer;
   ModelActor model;
   std::array<HandActor, 2> hands;
   std::array<bool, 2> shown{}; ///< hands that the stage has
-  deform::Points vertices;
   bool framed = false;
 };
 
-Stage::Stage(flow::DeformLoop& loop, const deform::Mesh& model)
-    : parts_(std::make_unique<Parts>(loop, model)) {
+Stage::Stage(sculpting::LiveLoop& live) : parts_(std::make_unique<Parts>(live)) {
   parts_->renderer->SetBackground(0.93, 0.93, 0.95);
   parts_->renderer->AddActor(parts_->model.actor);
   window->SetSize(960, 720);
@@ -138,10 +136,9 @@ Stage::~Stage() = default;
 
 bool Stage::draw() {
   Parts& parts = *parts_;
-  if (!parts.loop.frames().update()) return false;
-  const flow::Frame& frame = parts.loop.frames().front();
-  parts.loop.changes().layout(frame.model).unpack(frame.shape, parts.vertices);
-  parts.model.show(parts.vertices, frame.units_per_metre);
+  if (!parts.live.update()) return false;
+  const flow::Frame& frame = parts.live.frame();
+  parts.model.show(parts.live.vertices(), frame.units_per_metre);
   for (std::size_t slot = 0; slot < parts.hands.size(); ++slot) {
     if (!frame.hands[slot].present) continue;
     if (!parts.shown[slot]) parts.hands[slot].add_to(*parts.renderer);

@@ -7,14 +7,14 @@
 #include <vtkNew.h>
 #include <vtkRenderWindow.h>
 
-#include <nendo/flow/deform_loop.hpp>
+#include <nendo/sculpting/live_loop.hpp>
 
 namespace vtk_hands {
 
 class Stage {
 public:
   /// Keeps the loop, which must outlive it.
-  Stage(nendo::flow::DeformLoop& loop, const nendo::deform::Mesh& model);
+  explicit Stage(nendo::sculpting::LiveLoop& live);
   ~Stage();
 
   /// Draws the latest frame, if there is a new one, and returns whether there was. The loop never

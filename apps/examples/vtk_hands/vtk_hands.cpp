@@ -1,7 +1,6 @@
 // Gloves shape a model, and VTK, which the paper used, draws both: in a window, or in pictures of
 // the first and the last moment. VTK wants an X display for pictures, too: xvfb-run.
 
-#include <array>
 #include <charconv>
 #include <chrono>
 #include <iostream>
@@ -9,15 +8,14 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include <vtkCallbackCommand.h>
 #include <vtkInteractorStyleTrackballCamera.h>
 #include <vtkRenderWindowInteractor.h>
 
-#include <nendo/deform/mesh_file.hpp>
-#include <nendo/deform/offset.hpp>
+#include <nendo/sculpting/live_loop.hpp>
 
-#include "live_shaping.hpp"
 #include "stage.hpp"
 
 namespace {
@@ -34,19 +32,19 @@ constexpr auto usage =
 
 struct Arguments {
   std::string model;
-  ShapingOptions shaping;
+  sculpting::LiveOptions live;
   std::string first, last; ///< pictures
   double duration_s = 3.0;
 };
 
 bool set_option(std::string_view name, const std::string& value, Arguments& arguments) {
-  if (name == "--left") return !(arguments.shaping.gloves[0] = value).empty();
-  if (name == "--right") return !(arguments.shaping.gloves[1] = value).empty();
+  if (name == "--left") return !(arguments.live.left = value).empty();
+  if (name == "--right") return !(arguments.live.right = value).empty();
   if (name == "--first") return !(arguments.first = value).empty();
   if (name == "--last") return !(arguments.last = value).empty();
   if (name == "--mode") {
     const auto mode = flow::mode_named(value);
-    arguments.shaping.mode = mode.value_or(flow::Mode::type1);
+    arguments.live.mode = mode.value_or(flow::Mode::type1);
     return mode.has_value();
   }
   if (name != "--duration") return false;
@@ -72,8 +70,8 @@ std::optional<Arguments> parse(const std::vector<std::string>& words) {
     }
     ++at;
   }
-  auto& gloves = arguments.shaping.gloves;
-  if (gloves[0].empty() && gloves[1].empty()) gloves = {"sim:sculpt", "sim:sculpt"};
+  sculpting::LiveOptions& live = arguments.live;
+  if (live.left.empty() && live.right.empty()) live.left = live.right = "sim:sculpt";
   return arguments.model.empty() ? std::nullopt : std::optional(arguments);
 }
 
@@ -83,7 +81,7 @@ bool keep(Stage& stage, const std::string& path) {
   return false;
 }
 
-int write_pictures(Stage& stage, const LiveShaping& shaping, const Arguments& arguments) {
+int write_pictures(Stage& stage, const sculpting::LiveLoop& live, const Arguments& arguments) {
   constexpr std::chrono::milliseconds between(15);
   stage.window->SetOffScreenRendering(1);
   while (!stage.draw())
@@ -91,7 +89,7 @@ int write_pictures(Stage& stage, const LiveShaping& shaping, const Arguments& ar
   if (!keep(stage, arguments.first)) return 1;
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(arguments.duration_s);
-  while (std::chrono::steady_clock::now() < end && !shaping.has_ended()) {
+  while (std::chrono::steady_clock::now() < end && !live.has_ended()) {
     stage.draw();
     std::this_thread::sleep_for(between);
   }
@@ -126,14 +124,11 @@ int main(int argc, char** argv) {
     std::cerr << usage;
     return 2;
   }
-  auto model = deform::read_mesh(arguments->model);
-  if (!model) return fail(model.error());
-  deform::count_from(deform::usual_offset(*model), *model);
-  const auto shaping = LiveShaping::begin(*model, arguments->shaping);
-  if (!shaping) return fail(shaping.error());
-  Stage stage((*shaping)->loop(), *model);
+  auto live = sculpting::LiveLoop::begin(arguments->model, arguments->live);
+  if (!live) return fail(live.error());
+  Stage stage(*live);
   if (!arguments->first.empty() || !arguments->last.empty())
-    return write_pictures(stage, **shaping, *arguments);
+    return write_pictures(stage, *live, *arguments);
   open_window(stage);
   return 0;
 }
