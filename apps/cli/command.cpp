@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include <nendo/base/result.hpp>
+#include <nendo/version.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/nearest_word.hpp"

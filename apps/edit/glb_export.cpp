@@ -1,5 +1,7 @@
 #include "edit/glb_export.hpp"
 
+#include <nendo/version.hpp>
+
 #include "export/gltf_export.hpp"
 #include "takes/timeline_frames.hpp"
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include <nendo/emulator/served_emulator.hpp>
+#include <nendo/version.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"

@@ -11,6 +11,7 @@
 #include <nendo/base/endings.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/up_axis.hpp>
+#include <nendo/version.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"

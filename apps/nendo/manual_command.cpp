@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <nendo/base/files.hpp>
+#include <nendo/version.hpp>
 
 #include "cli/cli.hpp"
 #include "manual/completions.hpp"

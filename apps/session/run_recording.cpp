@@ -6,6 +6,7 @@
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/simd.hpp>
 #include <nendo/driver/record_counts.hpp>
+#include <nendo/version.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/model_files.hpp"
