@@ -1,6 +1,6 @@
 #pragma once
-// Changes of a loop's settings, puppet, model and log. The thread that asks for them makes all that
-// they need; the loop takes them ready at the beginning of its next tick.
+// Changes of a loop's settings, puppet, model and log. The asking thread makes all that they need;
+// the loop takes them ready at the beginning of its next tick.
 
 #include <cstddef>
 #include <cstdint>
@@ -28,8 +28,8 @@ struct BrokerOptions {
   std::size_t undo_most_bytes = 0; ///< UndoRoom::most_bytes, of all versions together
 };
 
-/// For one thread, which may be another than the loop's. Changes that the loop has not taken yet
-/// are taken together.
+/// Asking thread, which may be the loop's, but for the last two functions. Changes that the loop
+/// has not taken yet are taken together.
 class ChangeBroker {
 public:
   /// Copies the model. With `first`, the shape is at first that one, in the blocks of the model's
@@ -117,9 +117,9 @@ public:
   /// is no more room, so that the oldest steps will be dropped.
   bool refill_undo();
 
-  /// The loop takes changes out of this, and says when one is done.
+  /// The loop takes changes out of this, and says when one is done. Loop's thread.
   JobOffer<PreparedChange*>& offers() noexcept;
-  /// Returns the version with which a loop begins, before its first tick.
+  /// Returns the version with which a loop begins, before its first tick. Loop's thread.
   ModelVersion& first_model() noexcept;
 
 private:

@@ -207,7 +207,7 @@ constexpr Command asking_for(const ChangeModel& change) noexcept {
   return Subdivide{};
 }
 
-/// One thread pushes commands, and one thread takes them.
+/// The asking thread pushes commands, and the loop's thread takes them.
 using CommandRing = SpscRing<Command>;
 
 /// Tells whether it is about how a puppet is played.

@@ -17,8 +17,8 @@
 
 namespace nendo::flow {
 
-/// A loop has two threads: one runs its ticks, and one may ask for changes, both wait-free to each
-/// other.
+/// The loop's thread runs its ticks; the asking thread reads frames and asks for changes. Neither
+/// waits for the other.
 class DeformLoop {
 public:
   /// `hands` must be usable (are_usable()). Copies the model and allocates all that a tick
@@ -32,31 +32,29 @@ public:
   DeformLoop(const DeformLoop&) = delete;
   DeformLoop& operator=(const DeformLoop&) = delete;
 
-  /// Runs ticks on the calling thread until `stop` or for `most_ticks` deadlines of the grid, also
-  /// skipped ones. A tick does not allocate or lock; its only system call is the sleep. Call
-  /// make_thread_realtime() first to make wake-ups punctual.
+  /// Runs ticks on the calling thread, which is then the loop's thread, until `stop` or for
+  /// `most_ticks` deadlines of the grid, also skipped ones. A tick does not allocate or lock; its
+  /// only system call is the sleep. Call make_thread_realtime() first to make wake-ups punctual.
   void run(const std::atomic<bool>& stop,
            std::uint64_t most_ticks = std::numeric_limits<std::uint64_t>::max()) noexcept;
-  /// Runs one tick without its sleep, for callers with a clock of their own, on the thread of
-  /// run().
+  /// Runs one tick without its sleep, for callers with a clock of their own. Loop's thread.
   void tick(std::uint64_t number, HostTime scheduled) noexcept;
   /// Repeats a tick from an input log. Durations that are measured of it mean nothing.
   void tick(std::uint64_t number, HostTime scheduled, HostTime woke) noexcept;
 
-  /// The thread that asks for changes uses this. The loop takes them at the beginning of its next
-  /// tick.
+  /// Changes that the loop takes at the beginning of its next tick. Asking thread.
   ChangeBroker& changes() noexcept { return changes_; }
   const ChangeBroker& changes() const noexcept { return changes_; }
 
-  /// One reader thread may poll it while the loop runs.
+  /// The frames, of which the newest may be taken while the loop runs. Asking thread.
   FrameExchange& frames() noexcept;
-  /// Returns ok or merged if the hands could grab the model. Any thread.
+  /// Returns ok or merged if the hands could grab the model. Thread-safe.
   deform::FieldStatus grab_status() const noexcept;
 
-  // On the thread of run(), or when it has returned:
+  // Loop's thread, or any one when run() has returned:
 
   const LoopStats& stats() const noexcept;
-  /// Returns the last wire whose path is complete. Other threads find it in Frame::wire.
+  /// Returns the last wire whose path is complete. The asking thread finds it in Frame::wire.
   const WirePath& drawn_wire() const noexcept;
   /// Completes the last stroke and returns the shape, 3 by #vertices. Allocates.
   deform::Points final_shape();
@@ -69,8 +67,8 @@ private:
              const std::vector<HandInput>& hands, const LoopOptions& options,
              const deform::BlockShape* first, const std::shared_ptr<HandBodies>& bodies);
 
-  ChangeBroker changes_;           ///< for the thread that asks
-  std::unique_ptr<Ticker> ticker_; ///< for the thread of run()
+  ChangeBroker changes_;           ///< asking thread
+  std::unique_ptr<Ticker> ticker_; ///< loop's thread
 };
 
 } // namespace nendo::flow

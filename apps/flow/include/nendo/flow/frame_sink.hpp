@@ -9,8 +9,8 @@ namespace nendo::flow {
 class FrameSink {
 public:
   virtual ~FrameSink() = default;
-  /// Takes a frame. It is called on the loop's thread, as a part of the tick, so it must be
-  /// wait-free, without allocation, lock or system call.
+  /// Takes a frame. Loop's thread: it is a part of the tick, so it must be wait-free, without
+  /// allocation, lock or system call.
   virtual void show(const Frame& frame) noexcept = 0;
 };
 

@@ -18,7 +18,7 @@
 
 namespace nendo::flow {
 
-/// For one thread. Only the constructor allocates.
+/// Loop's thread. Only the constructor allocates.
 struct GloveHand {
   GloveHand(HandInput hand_input, const Placement& placement, bool closes);
 

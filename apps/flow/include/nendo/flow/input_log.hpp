@@ -51,7 +51,7 @@ public:
   std::size_t drain(Sink&& sink) noexcept {
     return ring_.drain(std::forward<Sink>(sink));
   }
-  /// Returns how many entries were refused so far. May be called from any thread.
+  /// Returns how many entries were refused so far. Thread-safe.
   std::uint64_t lost() const noexcept { return ring_.counters().refused; }
 
 private:

@@ -49,7 +49,7 @@ public:
   HostClock::duration length() const noexcept { return length_; }
   const std::optional<Round>& round() const noexcept { return round_; }
 
-  // The loop's thread, wait-free:
+  // Loop's thread, wait-free:
 
   /// Hands all events to `take` that are due when the loop's tick is so much later than its first
   /// one: commands first, as from a loop's rings. Where a round ends, the next one begins in the
@@ -70,12 +70,10 @@ public:
       ended_.store(true, std::memory_order_release);
   }
 
-  // Any thread:
-
-  /// Tells whether all of it has been played. Never, if it repeats.
+  /// Tells whether all of it has been played. Never, if it repeats. Thread-safe.
   bool has_ended() const noexcept { return ended_.load(std::memory_order_acquire); }
   /// What a loop does not obey by itself: changes of settings and puppets, and Subdivide. Whoever
-  /// runs the loop takes them from here.
+  /// runs the loop takes them from here. Asking thread.
   CommandRing& for_others() noexcept { return for_others_; }
 
 private:

@@ -25,7 +25,7 @@ struct SampleRate {
   }
 };
 
-/// The loop's thread writes these counters. Read them when run() has returned.
+/// Loop's thread; others read them when run() has returned.
 struct LoopStats {
   std::uint64_t ticks = 0;
   std::uint64_t overruns = 0; ///< ticks that ended after the next deadline

@@ -40,7 +40,7 @@ struct ModelOrigin {
 /// Makes that version of a mesh again, as it rests. Error: bad_input, without the mesh's name.
 Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& origin);
 
-/// A version does not move in memory. What is const may be read from any thread.
+/// A version does not move in memory. What is const is thread-safe.
 struct ModelVersion {
   /// Allocates. With `first`, the shape is at first that one, in blocks of the layout.
   ModelVersion(std::uint32_t number, deform::Mesh mesh, deform::BlockLayout layout,
@@ -50,14 +50,13 @@ struct ModelVersion {
 
   const std::uint32_t number; ///< 0: the model with which the loop began
   const deform::Mesh mesh;    ///< before the hands; a reset goes back to it
-  /// Made when a brush first needs them, by the thread that asks for changes; the loop never looks.
+  /// Made when a brush first needs them. Asking thread; the loop never looks.
   std::shared_ptr<const deform::VertexRings> rings{};
   std::shared_ptr<const ClayModel> clay{};           ///< likewise, when hands first press it
   std::shared_ptr<const deform::ModelParts> parts{}; ///< likewise, when they first move parts of it
   std::shared_ptr<const ModelOrigin> origin = std::make_shared<ModelOrigin>();
 
-  // What follows belongs to the loop's thread while the loop has this version, and to the thread
-  // that asks for changes otherwise.
+  // Loop's thread while the loop has this version, and asking thread otherwise:
   std::unique_ptr<deform::UndoMemory> undo_memory; ///< null: it does not grow
   deform::SculptedShape shape;
   ModelVersion* before = nullptr; ///< an undo of the first step here leads to the last one there
@@ -71,7 +70,7 @@ deform::BlockShape room_for_shape(const ModelVersion& version);
 /// shape.
 class FinerModel {
 public:
-  /// Subdivides. Any thread may call it while the loop goes on. Allocates.
+  /// Subdivides. Thread-safe, also while the loop runs. Allocates.
   explicit FinerModel(const ModelVersion& from);
   /// Subdivides, or makes ready to refine, to cut by that wire, to join, to edit a part,
   /// or to change the topology, likewise: what the change, which is_new(), says. Error: bad_input,
@@ -92,8 +91,8 @@ public:
   bool is_of_shape() const noexcept { return std::holds_alternative<Remaking>(making_); }
   /// Returns the change to that version.
   ChangeModel change_to(const ModelVersion& version) const noexcept;
-  /// Of one that refines: deform::Refiner::count_unfit() of that shape of `from`. Any thread.
-  /// Allocates.
+  /// Of one that refines: deform::Refiner::count_unfit() of that shape of `from`.
+  /// Thread-safe. Allocates.
   std::size_t count_unfit(const deform::BlockShape& shape) const;
 
   /// The corners of faces of the largest model that can be subdivided: 16 times, a triangle can.

@@ -38,7 +38,7 @@ std::string describe_policy(const PaceOptions& options);
 /// Sets policy and most_catch_up by such a text. Returns false if the text is none of these.
 bool parse_policy(std::string_view text, PaceOptions& options) noexcept;
 
-/// Belongs to one thread. It does not allocate or lock, and its only system call is the wait.
+/// Loop's thread. It does not allocate or lock, and its only system call is the wait.
 class Pacer {
 public:
   struct Due {

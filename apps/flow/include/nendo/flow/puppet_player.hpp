@@ -16,7 +16,7 @@
 
 namespace nendo::flow {
 
-/// For one thread. Only the constructor allocates.
+/// Loop's thread. Only the constructor allocates.
 class PuppetPlayer {
 public:
   using Hands = puppet::RigPlayer::Hands;

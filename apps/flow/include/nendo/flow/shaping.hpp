@@ -95,7 +95,7 @@ public:
   /// they stopped, so that none of their path is lost. Wait-free, without allocation.
   void hold_still(const deform::Points& tips, Frame& frame, LoopStats& stats) noexcept;
   /// Puts another sculptor with that many control points into `ready`, for that version of the
-  /// model. Another thread may call it at any time. For a version that is not in force, the caller
+  /// model. Asking thread, at any time. For a version that is not in force, the caller
   /// makes `shape_room`. Allocates.
   static void prepare(const SculptorSetup& setup, ModelVersion& model, Eigen::Index control_points,
                       ReadySculptor& ready);

@@ -30,7 +30,8 @@ struct CoreOptions {
   puppet::RigState rig_state{}; ///< the state of the puppet's player at first
 };
 
-/// For one thread. The constructor allocates; its functions neither allocate nor wait.
+/// Loop's thread, or that of a player without a loop. The constructor allocates; its functions
+/// neither allocate nor wait.
 class ShapingCore {
 public:
   using Hands = puppet::RigPlayer::Hands;

@@ -44,7 +44,7 @@ struct LiveOptions {
   driver::GloveContext context{};          ///< of driver::open_glove()
 };
 
-/// Owns the gloves, the loop and its thread. One thread at a time, the asking thread, uses it.
+/// Owns the gloves, the loop and its thread. Asking thread: whichever uses it, one at a time.
 /// Whoever needs other rings, sinks or logs makes a flow::DeformLoop.
 class LiveLoop {
 public:
@@ -57,8 +57,6 @@ public:
   ~LiveLoop(); ///< stops the loop and the gloves
   LiveLoop(LiveLoop&& other) noexcept;
   LiveLoop& operator=(LiveLoop&& other) noexcept;
-
-  // All of these are for the asking thread.
 
   /// Takes the newest frame, and returns whether there is one since the last time. Call it often:
   /// it also makes what undos need. Never waits for the loop.

@@ -13,6 +13,7 @@
 
 namespace nendo::sculpting {
 
+/// Asking thread, but for `ended`.
 class LoopThread {
 public:
   /// Starts the loop, which must outlive this. It runs until stop(), or for `most_ticks`.
@@ -36,7 +37,7 @@ public:
   }
 
   const HostTime start;
-  std::atomic<bool> ended{false};
+  std::atomic<bool> ended{false}; ///< the loop has run its ticks, or was stopped. Thread-safe.
 
 private:
   std::atomic<bool> over_{false};

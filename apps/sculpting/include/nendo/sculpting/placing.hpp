@@ -27,8 +27,8 @@ deform::Supports usual_supports(const deform::Mesh& model, flow::Mode mode);
 /// hands need with them.
 void set_supports(deform::Supports supports, flow::SculptorOptions& sculptor);
 
-/// Sets how many bytes undo has at the beginning, and that it may have `most_bytes`. The thread
-/// that asks for changes calls ChangeBroker::refill_undo() now and then.
+/// Sets how many bytes undo has at the beginning, and that it may have `most_bytes`. The
+/// asking thread calls ChangeBroker::refill_undo() now and then.
 void set_undo_room(const deform::Mesh& model, std::size_t most_bytes, flow::LoopOptions& loop);
 
 struct PlacingOptions {
