@@ -64,7 +64,7 @@ Result<WearerCalibration> read_calibration(const std::filesystem::path& path);
 inline constexpr std::size_t most_earlier_versions = 20;
 
 /// Writes a temporary file beside `path`, syncs and renames it, so that `path` is always the old
-/// file or the whole new one. Makes the folder if need be. An old file stays as NAME.<date>.toml
+/// file or the whole new one. Makes the folder if need be. An old file stays as NAME.DATE.toml
 /// beside it (the newest 20 stay); its path is returned, or an empty path if there was none.
 /// Errors: bad_input (as calibration_text()), failed (the disk).
 Result<std::filesystem::path> write_calibration(const std::filesystem::path& path,
