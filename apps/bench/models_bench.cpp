@@ -74,7 +74,6 @@ public:
     options.rate_hz = rate_hz;
     options.sculptor.deformer.supports =
         deform::one_radius(0.2 * deform::diagonal_of(model.vertices));
-    options.sculptor.deformer.csrbf.merge_fraction = 0.05;
     options.undo_most_bytes = std::size_t{1} << 30;
     flow::Placement placement;
     placement.units_per_metre = deform::diagonal_of(model.vertices);

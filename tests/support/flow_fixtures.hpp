@@ -160,7 +160,6 @@ struct LoopUnderTest {
     if (flow::is_played(options.rig.get()))
       options.sculptor.deformer.supports = options.rig->supports();
     options.sculptor.piece_length = 0.02;
-    options.sculptor.deformer.csrbf.merge_fraction = 0.05;
     loop = std::make_unique<flow::DeformLoop>(model, placement, inputs, options);
   }
 

@@ -59,9 +59,7 @@ void set_supports(deform::Supports supports, flow::SculptorOptions& sculptor) {
   constexpr double piece_fraction = 0.05;
   sculptor.piece_length = piece_fraction * deform::least_radius(supports);
   sculptor.deformer.supports = std::move(supports);
-  // Live fingertips meet; the exact solution for two that nearly touch would tear the surface
-  // between them.
-  sculptor.deformer.csrbf.merge_fraction = 0.05;
+  sculptor.deformer.csrbf.merge_fraction = flow::fingertip_merge_fraction;
 }
 
 void set_undo_room(const deform::Mesh& model, std::size_t most_bytes, flow::LoopOptions& loop) {

@@ -40,11 +40,16 @@ enum class Hold : std::uint8_t { fingertips, hand };
 std::string_view name_of(Hold hold) noexcept; ///< "tips" or "hand"
 std::optional<Hold> hold_named(std::string_view name) noexcept;
 
+/// CsrbfOptions::merge_fraction of fingertips, which meet: the exact solution for two that nearly
+/// touch would tear the surface between them.
+inline constexpr double fingertip_merge_fraction = 0.05;
+
 struct SculptorOptions {
   Mode mode = Mode::type1;
   Hold hold = Hold::fingertips;
-  double piece_length = 0.05;       ///< of a cut of type 2, in model units
-  deform::DeformerOptions deformer; ///< but for its brushes
+  double piece_length = 0.05; ///< of a cut of type 2, in model units
+  /// But for its brushes.
+  deform::DeformerOptions deformer{.csrbf = {.merge_fraction = fingertip_merge_fraction}};
   /// Of each finger of each hand, thumb to little finger, in type 2; a puppet's points pull.
   std::array<deform::Brush, 5> brushes{};
   double brush_strength = deform::usual_brush_strength;
