@@ -102,7 +102,11 @@ void capture_poses(const std::filesystem::path& path, std::uint64_t seed,
 TEST_SUITE("stuck_sensor_command") {
   TEST_CASE("info and doctor name a sensor that stands at its end, and only such a one") {
     const FaultyGlove glove({"stick@0s=index_pip:255", "stick@0s=ring_mcp:130"});
-    const auto told = nendo::test::nendo({"info", glove.spec()});
+    // On a busy machine an emulated glove may send nothing for the two seconds that info waits.
+    auto told = nendo::test::nendo({"info", glove.spec()});
+    for (int again = 0; again < 2 && told.out.find("stands at its end") == std::string::npos;
+         ++again)
+      told = nendo::test::nendo({"info", glove.spec()});
     REQUIRE_MESSAGE(told.exit_code == 0, told.err);
     CHECK(told.out.find("index_pip stands at its end (255)") != std::string::npos);
     CHECK(told.out.find("ring_mcp stands") == std::string::npos); // at rest nobody can know
