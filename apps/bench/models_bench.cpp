@@ -94,7 +94,8 @@ public:
   double step_us(flow::Request request) {
     commands_.try_push(request);
     tick_us();
-    if (const auto& awaited = loop_->frames().front().awaited) loop_->changes().change_to(*awaited);
+    if (const auto& awaited = loop_->frames().front().awaited)
+      static_cast<void>(loop_->changes().change_to(*awaited));
     return tick_us();
   }
   /// Of the tick that takes masks: a ball, and in turn all but that.
@@ -218,7 +219,7 @@ void measure_changes(const Options& options) {
     loop.changes().refill_undo();
     if (half == 0) continue;
     settings.radius_m.fill(first_m * (1.0 + 0.01 * static_cast<double>(++changes % 30)));
-    loop.changes().change_settings(settings);
+    static_cast<void>(loop.changes().change_settings(settings));
   }
   stop = cli::stop_requested().load();
   thread.join();

@@ -13,6 +13,7 @@
 #include <nendo/deform/injective_chain.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/midpoint_chain.hpp>
+#include <nendo/flow/compatible.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
@@ -181,8 +182,11 @@ Result<void> check_out(const Options& options) {
 Result<void> deform_file(const Options& options) {
   const auto csrbf = options.kernel.parse();
   if (!csrbf) return csrbf.error();
-  if (options.injective && csrbf->keep_volume > 0.0)
-    return Error{Errc::usage, std::string(session::keep_volume_or_injective)};
+  if (auto fine =
+          flow::all_effective({.injective = options.injective, .keep_volume = csrbf->keep_volume},
+                              flow::Played::nothing, flow::Naming::options);
+      !fine)
+    return fine;
   if (const auto fine = check_out(options); !fine) return fine.error();
   auto model = takes::read_model(options.mesh, takes::reading(options.up));
   if (!model) return model.error();

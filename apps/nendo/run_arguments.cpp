@@ -1,5 +1,7 @@
 #include "nendo/run_arguments.hpp"
 
+#include <array>
+#include <cmath>
 #include <ctime>
 #include <filesystem>
 #include <system_error>
@@ -10,6 +12,7 @@
 #include <nendo/base/endings.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/refinement.hpp>
+#include <nendo/flow/compatible.hpp>
 #include <nendo/flow/tick_grid.hpp>
 #include <nendo/puppet/puppet.hpp>
 #include <nendo/sculpting/placing.hpp>
@@ -47,7 +50,7 @@ Result<void> check_out_puppet(const RunArguments& options) {
   return cli::check_place("--out-puppet", options.out_puppet, {".toml"});
 }
 
-Result<void> check_outputs(const RunArguments& options) {
+Result<void> check_outputs(RunArguments& options) {
   const session::RunOptions& run = options.run;
   const session::ViewOptions& view = options.view;
   if (!view.window && (view.frames > 0 || view.contact || !view.screenshot.empty()))
@@ -95,7 +98,8 @@ Result<void> read_puppet(RunArguments& options) {
 }
 
 /// Reads the file of masks, if one is named.
-Result<void> read_masks(session::RunOptions& run) {
+Result<void> read_masks(RunArguments& options) {
+  session::RunOptions& run = options.run;
   const char* const option = !run.mask_file.empty() ? "--mask" : "--symmetry";
   if ((!run.mask_file.empty() || run.symmetric) && !run.puppet_file.empty())
     return Error{Errc::usage, std::string(option) + ": is of fingertips, and with --puppet hands "
@@ -127,46 +131,20 @@ Result<void> read_take(RunArguments& options) {
   return {};
 }
 
-/// What acts on fingertips, or on a puppet's points, has nothing to do with whole hands.
-Result<void> check_hands(const session::RunOptions& run) {
-  const flow::Mode mode = run.loop.sculptor.mode;
-  if (!flow::is_by_hands(mode)) return {};
-  const bool is_clay = mode == flow::Mode::clay;
-  const auto refuse = [&](const char* option, const char* why) {
-    return Error{Errc::usage, "--mode " + std::string(flow::name_of(mode)) + " and " + option +
-                                  ": " + why + "; give one of them"};
-  };
-  if (!run.puppet_file.empty())
-    return refuse("--puppet", is_clay ? "whole hands press clay, and a puppet has points"
-                                      : "whole hands move parts, and a puppet has points");
-  if (run.loop.sculptor.hold == flow::Hold::hand)
-    return refuse("--hold hand", is_clay
-                                     ? "clay is pressed, and hands hold it only by closing on it"
-                                     : "hands hold a part by closing on it");
-  if (run.loop.sculptor.deformer.csrbf.keep_volume > 0.0)
-    return refuse("--keep-volume",
-                  is_clay ? "clay keeps its volume by itself" : "parts move as they are");
-  return {};
-}
-
-/// What acts on fingertips, or through the air, has nothing to do with a puppet's points.
-Result<void> check_puppet(const session::RunOptions& run, bool injective) {
-  if (!run.puppet) return {};
+/// Of the settings that were asked for, and not of those that a run has by default.
+Result<void> check_settings(RunArguments& options) {
+  const session::RunOptions& run = options.run;
   const flow::SculptorOptions& sculptor = run.loop.sculptor;
-  if (sculptor.hold == flow::Hold::hand)
-    return Error{Errc::usage, "--hold hand: a puppet's own points move it; leave it out"};
-  if (sculptor.needs_rings())
-    return Error{Errc::usage, "--brush " + flow::in_words(sculptor.brushes) +
-                                  ": fingertips have brushes, and a puppet's points pull; give "
-                                  "one of --brush and --puppet"};
-  if (injective)
-    return Error{Errc::usage, "--injective and --puppet: nothing keeps a puppet's surface from "
-                              "folding; give one of them"};
-  if (sculptor.deformer.csrbf.keep_volume > 0.0 && run.puppet->distance != puppet::Distance::air)
-    return Error{Errc::usage, "--keep-volume: " + run.puppet_file +
-                                  " measures its distances along the surface, where no kernel is "
-                                  "known that keeps the volume; use distance = \"air\" in it"};
-  return {};
+  const flow::LoopSettings asked{.mode = sculptor.mode,
+                                 .injective = options.injective,
+                                 .brushes = sculptor.brushes,
+                                 .keep_volume = sculptor.deformer.csrbf.keep_volume,
+                                 .hold = sculptor.hold};
+  constexpr auto naming = flow::Naming::options;
+  if (!run.puppet && !run.puppet_file.empty()) // one that is to be made
+    if (auto fine = flow::compatible(asked, flow::Played::through_air, naming); !fine) return fine;
+  const auto played = run.puppet ? flow::played_by(*run.puppet) : flow::Played::nothing;
+  return flow::all_effective(asked, played, naming);
 }
 
 Result<void> set_size(RunArguments& options) {
@@ -211,78 +189,87 @@ Result<void> check_refinable(const deform::Mesh& model, const RunArguments& opti
           "; only closed models can be refined, so mend it with `nendo repair IN --out OUT`"};
 }
 
-} // namespace
-
-Result<void> check(RunArguments& options) {
-  auto& run = options.run;
-  run.mesh = cli::name_of_files(options.models);
+Result<void> set_shaping(RunArguments& options) {
+  flow::SculptorOptions& sculptor = options.run.loop.sculptor;
   const auto mode = flow::mode_named(options.mode);
   if (!mode && !options.mode.empty())
     return Error{Errc::usage,
                  "--mode " + options.mode + ": unknown; use " + std::string(flow::mode_names)};
-  run.loop.sculptor.mode = mode.value_or(flow::Mode::type1);
-  if (auto fine = options.brush.parse(options.mode, run.loop.sculptor); !fine) return fine;
-  if (auto fine = set_size(options); !fine) return fine;
-  if (auto fine = set_wire(options); !fine) return fine;
+  sculptor.mode = mode.value_or(flow::Mode::type1);
+  if (auto fine = options.brush.parse(options.mode, sculptor); !fine) return fine;
+  const auto csrbf = options.kernel.parse();
+  if (!csrbf) return csrbf.error();
+  sculptor.deformer.csrbf = *csrbf;
+  const auto hold = flow::hold_named(options.hold);
+  if (!hold) return Error{Errc::usage, "--hold " + options.hold + ": unknown; use tips or hand"};
+  sculptor.hold = *hold;
+  if (options.injective && options.not_injective)
+    return Error{Errc::usage, "--injective and --no-injective: give one of them"};
+  const auto supports = session::parse_radius(options.radius);
+  if (!supports) return supports.error();
+  options.run.supports = *supports;
+  const auto filter = options.filter.parse();
+  if (!filter) return filter.error();
+  options.run.filter = *filter;
+  return {};
+}
+
+Result<void> set_switch(RunArguments& options) {
   const auto action = flow::switch_action_named(options.switch_action);
-  if (!action) {
+  if (!action)
     return Error{Errc::usage, "--switch " + options.switch_action +
                                   ": unknown; use none, grab, commit, toggle or keep"};
-  }
-  run.loop.switch_action = *action;
+  options.run.loop.switch_action = *action;
+  return {};
+}
+
+Result<void> set_refine(RunArguments& options) {
+  session::RunOptions& run = options.run;
   run.refine_to = options.refine_to.value_or(0);
   if (options.refine_to && !(run.refine_to >= 4 && run.refine_to <= flow::Refine{}.most_vertices))
     return Error{Errc::usage, fmt::format("--refine {}: use 4 to {} vertices", run.refine_to,
                                           flow::Refine{}.most_vertices)};
-  const auto filter = options.filter.parse();
-  if (!filter) return filter.error();
-  run.filter = *filter;
-  const auto csrbf = options.kernel.parse();
-  if (!csrbf) return csrbf.error();
-  run.loop.sculptor.deformer.csrbf = *csrbf;
-  if (options.injective && csrbf->keep_volume > 0.0)
-    return Error{Errc::usage, std::string(session::keep_volume_or_injective)};
-  const auto hold = flow::hold_named(options.hold);
-  if (!hold) return Error{Errc::usage, "--hold " + options.hold + ": unknown; use tips or hand"};
-  run.loop.sculptor.hold = *hold;
-  if (auto fine = check_hands(run); !fine) return fine;
-  if (*hold == flow::Hold::hand && run.loop.sculptor.mode == flow::Mode::type2)
-    return Error{Errc::usage,
-                 "--hold hand: type 2 follows the ways of fingertips; use --mode type1"};
-  if (*hold == flow::Hold::hand && csrbf->keep_volume > 0.0)
-    return Error{Errc::usage, "--hold hand and --keep-volume: 90 points with matrices take longer "
-                              "than a tick has; give one of them"};
-  if (options.injective && options.not_injective)
-    return Error{Errc::usage, "--injective and --no-injective: give one of them"};
-  if (!(run.loop.rate_hz >= flow::TickGrid::least_rate_hz &&
-        run.loop.rate_hz <= flow::TickGrid::most_rate_hz)) {
-    return Error{Errc::usage, "--rate: use 1 to 10000 ticks a second"};
-  }
-  if (auto fine = options.loop.parse(run.loop, run.realtime); !fine) return fine;
-  if (!std::isfinite(run.duration_s) || run.duration_s < 0.0 || run.duration_s > 1e7) {
-    return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
-  }
-  if (!(run.undo_memory_mb.value_or(0.0) >= 0.0 && run.undo_memory_mb.value_or(0.0) <= 1e6))
-    return Error{Errc::usage, "--undo-memory: use a number of megabytes up to 1000000"};
-  const auto supports = session::parse_radius(options.radius);
-  if (!supports) return supports.error();
-  run.supports = *supports;
-  if (auto fine = run.length.check(); !fine) return fine;
-  if (auto fine = gloves::check(run.calibration); !fine) return fine;
-  if (run.out.empty()) run.out = dated_name();
-  if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
-  run.reading = takes::reading(options.up);
-  if (auto fine = read_puppet(options); !fine) return fine;
   if (run.changes_topology && !options.refine_to)
     return Error{Errc::usage, "--topology: triangles must follow what becomes thin; add --refine, "
                               "as --refine 100000"};
-  if (run.changes_topology && run.puppet)
+  return {};
+}
+
+Result<void> set_pace(RunArguments& options) {
+  session::RunOptions& run = options.run;
+  if (!(run.loop.rate_hz >= flow::TickGrid::least_rate_hz &&
+        run.loop.rate_hz <= flow::TickGrid::most_rate_hz))
+    return Error{Errc::usage, "--rate: use 1 to 10000 ticks a second"};
+  if (auto fine = options.loop.parse(run.loop, run.realtime); !fine) return fine;
+  if (!std::isfinite(run.duration_s) || run.duration_s < 0.0 || run.duration_s > 1e7)
+    return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
+  if (!(run.undo_memory_mb.value_or(0.0) >= 0.0 && run.undo_memory_mb.value_or(0.0) <= 1e6))
+    return Error{Errc::usage, "--undo-memory: use a number of megabytes up to 1000000"};
+  return {};
+}
+
+Result<void> check_gloves(RunArguments& options) {
+  if (auto fine = options.run.length.check(); !fine) return fine;
+  return gloves::check(options.run.calibration);
+}
+
+Result<void> check_recording(RunArguments& options) {
+  session::RunOptions& run = options.run;
+  if (run.out.empty()) run.out = dated_name();
+  return run.recording.check(run.out, run.loop.switch_action);
+}
+
+Result<void> check_topology(RunArguments& options) {
+  if (options.run.changes_topology && options.run.puppet)
     return Error{Errc::usage,
                  "--topology: with a puppet, key O does it when it is wanted; leave out this or "
                  "--puppet"};
-  if (auto fine = check_puppet(run, options.injective); !fine) return fine;
-  if (auto fine = read_masks(run); !fine) return fine;
-  if (auto fine = read_take(options); !fine) return fine;
+  return {};
+}
+
+/// Of what nobody has named.
+Result<void> choose_files(RunArguments& options) {
+  session::RunOptions& run = options.run;
   if (run.mesh.empty() && !run.over)
     run.mesh =
         cli::shipped_model(run.loop.sculptor.mode == flow::Mode::clay ? "clay.ply" : "moai.obj")
@@ -290,7 +277,21 @@ Result<void> check(RunArguments& options) {
   if (options.view.window && run.out_puppet.file.empty() && !run.over)
     run.out_puppet.file =
         std::filesystem::path(cli::short_name(run.mesh)).replace_extension(".puppet.toml").string();
-  return check_outputs(options);
+  return {};
+}
+
+} // namespace
+
+Result<void> check(RunArguments& options) {
+  options.run.mesh = cli::name_of_files(options.models);
+  options.run.reading = takes::reading(options.up);
+  constexpr std::array steps{set_shaping, set_size,       set_wire,       set_switch,
+                             set_refine,  set_pace,       check_gloves,   check_recording,
+                             read_puppet, check_settings, check_topology, read_masks,
+                             read_take,   choose_files,   check_outputs};
+  for (const auto step : steps)
+    if (auto fine = step(options); !fine) return fine;
+  return {};
 }
 
 Result<deform::Mesh> read_model(RunArguments& options) {

@@ -188,10 +188,6 @@ Result<void> BrushArguments::parse(const std::string& mode, flow::SculptorOption
   }
   sculptor.brushes = *brushes;
   sculptor.brush_strength = strength.value_or(sculptor.brush_strength);
-  if (sculptor.needs_rings() && !mode.empty() && mode != "type2")
-    return Error{Errc::usage, "--brush " + brush + ": fingers only " +
-                                  (mode == "clay" ? "press clay" : "pull in type 1") +
-                                  "; use --mode type2"};
   if (mode.empty()) sculptor.mode = flow::Mode::type2;
   return {};
 }

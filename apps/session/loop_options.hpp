@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -57,10 +56,6 @@ struct KernelArguments {
   /// Error: usage, naming the known names.
   Result<deform::CsrbfOptions> parse() const;
 };
-/// Why --keep-volume and --injective do not go together.
-inline constexpr std::string_view keep_volume_or_injective =
-    "--keep-volume and --injective: links are cut for kernels without matrices; give one of them. "
-    "The steps of --keep-volume are short enough for a lone finger not to fold the surface";
 void add_kernel_options(cli::Command& command, KernelArguments& arguments);
 
 /// The options --brush and --strength.

@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include <nendo/flow/compatible.hpp>
 #include <nendo/flow/rig_setup.hpp>
 
 #include "session/mask_edits.hpp"
@@ -104,11 +105,7 @@ void RunCommands::follow(bool fresh) {
   const flow::Frame& frame = loop.frames().front();
   const bool awaits = frame.awaited.has_value(); // by an undo or a redo
   if (fresh && awaits && !settings_) tell(models_.go_to(*frame.awaited));
-  if (settings_ && !loop.changes().is_changing() &&
-      !loop.changes().change_settings(*std::exchange(settings_, {})))
-    report_("settings that nothing can be done with; the run goes on as it was (puppets "
-            "do not act on clay, and one whose distances go along the surface cannot keep the "
-            "volume)");
+  if (settings_ && !loop.changes().is_changing()) change_settings();
   if (!awaits) edit_masks();
   if (puppet_ && may_change_puppet()) change_puppet();
   if (taken_puppet_ && may_change_puppet()) follow_taken_puppet();
@@ -123,6 +120,19 @@ bool RunCommands::is_due() const {
   return for_loop_.size() > 0 || settings_ || puppet_ || taken_puppet_ || !mask_edits_.empty() ||
          record_ || recorder_.is_changing() || models_.is_due() || models_.is_handing_over() ||
          placed_.loop->changes().is_changing();
+}
+
+// Says also which of them has no effect beside another, once.
+void RunCommands::change_settings() {
+  const flow::LoopSettings wanted = *std::exchange(settings_, {});
+  flow::ChangeBroker& changes = placed_.loop->changes();
+  if (const auto changed = changes.change_settings(wanted); !changed)
+    return report_(changed.error().message + "; the run goes on as it was");
+  const puppet::Rig* const rig = changes.puppet(changes.newest_puppet()).get();
+  const auto fine = flow::all_effective(wanted, flow::played_by(rig));
+  const std::string why = fine ? std::string() : fine.error().message;
+  if (!why.empty() && why != no_effect_) report_(why);
+  no_effect_ = why;
 }
 
 // Makes one puppet of all edits that have come.

@@ -79,6 +79,7 @@ private:
   void play_otherwise(const flow::Command& command);
   bool plays_puppet() const;
   bool may_change_puppet() const;
+  void change_settings();
   void edit_masks();
   void change_puppet();
   void follow_taken_puppet();
@@ -98,7 +99,8 @@ private:
   bool move_refused_ = false;                            ///< the latest, of a wrist; it was said
   bool ends_ = false;
   std::optional<flow::LoopSettings> settings_;           ///< not passed on yet
-  Rig puppet_;                                           ///< likewise
+  std::string no_effect_;                                ///< why one of them has none; it was said
+  Rig puppet_;                                           ///< not passed on yet
   std::optional<std::uint32_t> taken_puppet_;            ///< likewise, by the take's number
   std::map<std::uint32_t, std::uint32_t> taken_puppets_; ///< the loop's numbers of the take's
   std::vector<flow::Command> mask_edits_;                ///< likewise, and symmetry

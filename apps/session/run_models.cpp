@@ -63,8 +63,9 @@ std::optional<std::string> RunModels::go_to(const flow::Awaited& awaited) {
   const auto version = loop.changes().model(awaited.model);
   if (version != nullptr && version.get() != &loop.changes().newest_model())
     if (const auto prepared = prepare(*version); !prepared) return prepared.error().message;
-  if (loop.changes().change_to(awaited)) return std::nullopt;
-  return "settings that nothing can be done with; the run goes on as it was";
+  const auto changed = loop.changes().change_to(awaited);
+  if (changed) return std::nullopt;
+  return changed.error().message + "; the run goes on as it was";
 }
 
 std::optional<std::string> RunModels::follow(bool may_begin) {

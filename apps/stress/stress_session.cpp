@@ -106,7 +106,7 @@ struct Watch {
     }
     if (!wanted && fresh && loop.frames().front().awaited)
       wanted = loop.frames().front().awaited->settings;
-    if (wanted) loop.changes().change_settings(*wanted);
+    if (wanted) static_cast<void>(loop.changes().change_settings(*wanted));
     return ends;
   }
 };

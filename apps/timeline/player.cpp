@@ -168,7 +168,7 @@ void Player::make_changes() {
   if (settings && !changes_.change_settings(*settings)) was_refused_ = true;
   finish_change();
   if (!frame_.awaited) return; // by an undo or a redo
-  changes_.change_to(flow::Awaited(*frame_.awaited));
+  static_cast<void>(changes_.change_to(flow::Awaited(*frame_.awaited)));
   finish_change();
 }
 

@@ -248,7 +248,7 @@ TEST_SUITE("clay_loop") {
     for (int tick = 0; tick < 3; ++tick) {
       presses.go(0.0, 1);
       if (const auto awaited = presses.frame().awaited)
-        presses.test().loop->changes().change_to(*awaited);
+        static_cast<void>(presses.test().loop->changes().change_to(*awaited));
     }
     CHECK(presses.frame().settings.mode == Mode::clay);
     CHECK(presses.shape() == pressed);

@@ -383,8 +383,8 @@ TEST_SUITE("exchange") {
       int counts = 0;
       for (std::uint64_t tick = 0; tick < ticks; ++tick) {
         if (random() % 12 == 0)
-          test.loop->changes().change_settings(
-              test::any_settings(test.loop->changes().settings(), random));
+          static_cast<void>(test.loop->changes().change_settings(
+              test::any_settings(test.loop->changes().settings(), random)));
         maker.turn(*test.loop);
         if (tick % 300 == 299) // back to coarser models, from which finer ones can be made
           for (int undo = 0; undo < 30; ++undo)
@@ -408,7 +408,7 @@ TEST_SUITE("exchange") {
         }
         if (random() % 2 == 0 && test.loop->frames().update()) // a reader that comes when it likes
           if (const auto& awaited = test.loop->frames().front().awaited)
-            test.loop->changes().change_to(*awaited);
+            static_cast<void>(test.loop->changes().change_to(*awaited));
         log.drain([](const auto&) noexcept {});
         test.loop->changes().take_state();
         test.loop->changes().refill_undo();
@@ -442,8 +442,8 @@ TEST_SUITE("exchange") {
     };
     for (int turn = 0; turn < 200; ++turn) {
       test.bend(turn % 30, HostClock::now());
-      test.loop->changes().change_settings(
-          test::any_settings(test.loop->changes().settings(), random));
+      static_cast<void>(test.loop->changes().change_settings(
+          test::any_settings(test.loop->changes().settings(), random)));
       if (turn % 10 == 0) test.loop->changes().change_log(&log, test.loop->frames().front().shape);
       test.loop->frames().update();
       if (turn % 3 == 0) std::this_thread::sleep_for(1ms);

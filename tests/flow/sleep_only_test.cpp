@@ -125,14 +125,12 @@ private:
       std::this_thread::sleep_for(std::chrono::microseconds(300));
       loop.changes().refill_undo();
       if (loop.frames().update() && loop.frames().front().awaited)
-        loop.changes().change_to(*loop.frames().front().awaited);
+        static_cast<void>(loop.changes().change_to(*loop.frames().front().awaited));
       maker_.turn(loop);
       test_.commands.try_push(any_command());
-      if (random_() % 4 == 0)
-        settings_ +=
-            loop.changes().change_settings(test::any_settings(loop.changes().settings(), random_))
-                ? 1
-                : 0;
+      if (random_() % 4 == 0 &&
+          loop.changes().change_settings(test::any_settings(loop.changes().settings(), random_)))
+        ++settings_;
       if (random_() % 4 != 0) continue;
       const auto masks =
           test::any_masks(loop.changes().puppet(loop.changes().newest_puppet()), random_);

@@ -168,7 +168,7 @@ TEST_SUITE("updates") {
         if (random() % 6 == 0) {
           auto settings = test::any_settings(test.loop->changes().settings(), random);
           settings.brushes = {}; // whose work no field tells
-          test.loop->changes().change_settings(settings);
+          static_cast<void>(test.loop->changes().change_settings(settings));
         }
         test.frame_after_tick(number - 1);
         const Points published = segment.shape(number);

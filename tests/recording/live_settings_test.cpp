@@ -243,7 +243,7 @@ TEST_SUITE("live_settings") {
         undone += frame.puppet < before ? 1 : 0;
         most = std::max(most, frame.puppet);
         shapes.push_back(live.test.vertices_of(frame));
-        if (frame.awaited) loop.changes().change_to(*frame.awaited);
+        if (frame.awaited) static_cast<void>(loop.changes().change_to(*frame.awaited));
         if (tick % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(30)); // chunks
       }
       CHECK(most > 20);

@@ -114,7 +114,7 @@ TEST_SUITE("live_loop") {
     CHECK(code_of(live->ask(flow::SaveShape{})) == Errc::usage);
     flow::LoopSettings bad = live->settings();
     bad.radius_m[0] = -1.0;
-    CHECK(code_of(live->ask(flow::ChangeSettings{bad})) == Errc::usage);
+    CHECK(code_of(live->ask(flow::ChangeSettings{bad})) == Errc::bad_input);
   }
 }
 

@@ -412,6 +412,20 @@ TEST_SUITE("run_session") {
     CHECK(outcome.stats.changes == 1);
   }
 
+  TEST_CASE("a setting that has no effect beside another is taken, and that is said once") {
+    Run run;
+    flow::LoopSettings both = other_settings;
+    both.keep_volume = 0.5;
+    flow::LoopSettings smaller = both;
+    smaller.radius_m.fill(0.08);
+    Asker asker(Changes{{change(both)}, {change(smaller)}});
+    run.follow({&asker});
+    REQUIRE(asker.reports.size() == 1);
+    CHECK(asker.reports[0].find("never folding") != std::string::npos);
+    REQUIRE(asker.settings.size() == 3);
+    CHECK(asker.settings[2] == smaller);
+  }
+
   TEST_CASE("an observer moves a hand, which stays there through changes and recordings") {
     Run run;
     Asker asker(Changes{{flow::WristMove{Side::left, {-0.5, 0.25, 0.125}, {0, 0, 0, 1}}},

@@ -29,7 +29,7 @@ void tick_with_changes(LoopUnderTest& test, flow::InputLog& log, std::uint64_t t
     if (random() % 30 == 0) {
       flow::LoopSettings settings = any_settings(loop.changes().settings(), random);
       settings.mode = mode.value_or(settings.mode);
-      loop.changes().change_settings(settings);
+      static_cast<void>(loop.changes().change_settings(settings));
     }
     maker.turn(loop);
     if (random() % 200 == 0 && maker.is_idle(loop))
@@ -44,7 +44,8 @@ void tick_with_changes(LoopUnderTest& test, flow::InputLog& log, std::uint64_t t
       sum.locks += restraint.counts().locks;
     }
     if (random() % 2 == 0 && loop.frames().update())
-      if (const auto& awaited = loop.frames().front().awaited) loop.changes().change_to(*awaited);
+      if (const auto& awaited = loop.frames().front().awaited)
+        static_cast<void>(loop.changes().change_to(*awaited));
     log.drain([](const auto&) noexcept {});
     loop.changes().take_state();
     loop.changes().refill_undo();

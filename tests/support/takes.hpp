@@ -153,7 +153,8 @@ void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed, bool changes
     if (played.test.options.rig && of_changes() % 12 == 0)
       played.test.commands.try_push(any_role(of_changes));
     if (changes && of_changes() % 10 == 0)
-      loop.changes().change_settings(any_settings(loop.changes().settings(), of_changes));
+      static_cast<void>(
+          loop.changes().change_settings(any_settings(loop.changes().settings(), of_changes)));
     if (changes && played.test.options.rig && of_changes() % 15 == 0)
       played.change_puppet(any_puppet(loop.changes().puppet(loop.changes().newest_puppet()),
                                       played.test.model, of_changes));
@@ -164,7 +165,8 @@ void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed, bool changes
     if (changes) maker.turn(loop);
     const flow::Frame& frame = played.test.frame_after_tick(tick);
     see(frame);
-    if (frame.awaited) loop.changes().change_to(*frame.awaited); // as who runs the loop does
+    if (frame.awaited)
+      static_cast<void>(loop.changes().change_to(*frame.awaited)); // as who runs the loop does
   }
 }
 inline void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed = 1) {

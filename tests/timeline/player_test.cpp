@@ -135,7 +135,7 @@ TEST_SUITE("player") {
         settings.filter = loop.changes().settings().filter;
         settings.brushes.fill(brushes ? deform::Brush::inflate : deform::Brush::pull);
         settings.brush_strength = 0.1;
-        if (random() % 15 == 0) loop.changes().change_settings(settings);
+        if (random() % 15 == 0) static_cast<void>(loop.changes().change_settings(settings));
         if (seed % 3 == 1 && tick % 20 == 7) // masks and symmetry, too
           if (const auto masks =
                   test::any_masks(loop.changes().puppet(loop.changes().newest_puppet()), random))
@@ -144,7 +144,7 @@ TEST_SUITE("player") {
           taken.live.test.commands.try_push(flow::requests[random() % flow::requests.size()]);
         const flow::Frame& frame = taken.live.test.frame_after_tick(tick);
         shapes.push_back(taken.live.test.vertices_of(frame));
-        if (frame.awaited) loop.changes().change_to(*frame.awaited);
+        if (frame.awaited) static_cast<void>(loop.changes().change_to(*frame.awaited));
       }
       const std::uint64_t changes = loop.stats().changes;
       CHECK(changes > 5);
@@ -180,7 +180,7 @@ TEST_SUITE("player") {
       const auto next = [&](int bent) {
         live.bend(bent, begin + tick * std::chrono::milliseconds(11));
         const flow::Frame& frame = taken.live.test.frame_after_tick(tick++);
-        if (frame.awaited) live.loop->changes().change_to(*frame.awaited);
+        if (frame.awaited) static_cast<void>(live.loop->changes().change_to(*frame.awaited));
       };
       const auto change_model = [&](const flow::ChangeModel& change, int bent) {
         auto finer = flow::FinerModel::make(live.loop->changes().newest_model(), change);
@@ -271,7 +271,7 @@ TEST_SUITE("player") {
     Taken filtered(Mode::type1);
     flow::LoopSettings settings = filtered.live.test.loop->changes().settings();
     settings.filter.kind = hand::FilterKind::one_euro;
-    filtered.live.test.loop->changes().change_settings(settings);
+    static_cast<void>(filtered.live.test.loop->changes().change_settings(settings));
     filtered.bend(3);
     REQUIRE(filtered.live.end());
     const auto refused = timeline_of_take(filtered.live.path, filtered.live.test.model, none);

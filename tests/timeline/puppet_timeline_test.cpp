@@ -219,7 +219,7 @@ TEST_SUITE("puppet_timeline") {
         settings.filter = test.loop->changes().settings().filter;
         settings.injective = false;
         if (settings.mode == Mode::clay) settings.mode = Mode::type2; // clay takes no puppet
-        if (tick % 15 == 9) test.loop->changes().change_settings(settings);
+        if (tick % 15 == 9) static_cast<void>(test.loop->changes().change_settings(settings));
         const flow::Command role = test::any_role(random);
         const auto* input = std::get_if<flow::SetRole>(&role);
         if (random() % 8 == 0 && (input == nullptr || input->input.is_angle()))
@@ -228,7 +228,7 @@ TEST_SUITE("puppet_timeline") {
         if (tick % 8 == 0) test.commands.try_push(flow::requests[random() % flow::requests.size()]);
         const flow::Frame& frame = take.live.test.frame_after_tick(tick);
         take.see(frame);
-        if (frame.awaited) test.loop->changes().change_to(*frame.awaited);
+        if (frame.awaited) static_cast<void>(test.loop->changes().change_to(*frame.awaited));
       }
       const Timeline made = take.made(none).timeline;
       CHECK(count<flow::Mark>(made) > 2);

@@ -146,7 +146,7 @@ TEST_SUITE("follow") {
           auto settings = test::any_settings(streamed.test.loop->changes().settings(), random);
           settings.brushes = {}; // whose work no field tells, nor that of hands in clay
           if (settings.mode == flow::Mode::clay) settings.mode = flow::Mode::type2;
-          streamed.test.loop->changes().change_settings(settings);
+          static_cast<void>(streamed.test.loop->changes().change_settings(settings));
         }
         const auto shape = streamed.tick(bent);
         followed.pass();
@@ -361,8 +361,8 @@ TEST_SUITE("follow") {
     for (int tick = 0; tick < 1200; ++tick) {
       bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
       if (random() % 20 == 0)
-        streamed.test.loop->changes().change_settings(
-            test::any_settings(streamed.test.loop->changes().settings(), random));
+        static_cast<void>(streamed.test.loop->changes().change_settings(
+            test::any_settings(streamed.test.loop->changes().settings(), random)));
       const auto shape = streamed.tick(bent);
       followed.pass();
       if (!followed.is_up_to_date()) continue;
@@ -396,7 +396,8 @@ TEST_SUITE("follow") {
                                streamed.test.model, random, 5)));
         if (tick % 60 == 40) streamed.test.commands.try_push(flow::Request::undo);
         const auto shape = streamed.tick(bent);
-        if (const auto& awaited = loop.frames().front().awaited) loop.changes().change_to(*awaited);
+        if (const auto& awaited = loop.frames().front().awaited)
+          static_cast<void>(loop.changes().change_to(*awaited));
         followed.pass();
         if (!followed.is_up_to_date()) continue;
         worst = std::max(worst, followed.gap(shape));

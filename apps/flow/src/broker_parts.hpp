@@ -22,9 +22,8 @@ struct ChangeBroker::Parts {
   void offer();
   void make_ready();
   void end_log();
-  bool change_settings(const LoopSettings& settings);
-  std::optional<SculptorSetup> setup_for(const SculptorSetup& before,
-                                         const LoopSettings& settings) const;
+  Result<void> change_settings(const LoopSettings& settings);
+  Result<SculptorSetup> setup_for(const SculptorSetup& before, const LoopSettings& settings) const;
   // In change_puppet.cpp:
   Result<void> change_puppet(std::uint32_t number);
   Result<SculptorSetup> setup_with(std::uint32_t puppet) const;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <nendo/base/relax.hpp>
+#include <nendo/flow/compatible.hpp>
 #include <nendo/flow/rig_setup.hpp>
 
 #include "broker_parts.hpp"
@@ -56,24 +57,24 @@ bool ChangeBroker::is_changing() {
   return parts_->take_back_done();
 }
 
-bool ChangeBroker::change_settings(const LoopSettings& settings) {
+Result<void> ChangeBroker::change_settings(const LoopSettings& settings) {
   return parts_->change_settings(settings);
 }
 
-bool ChangeBroker::Parts::change_settings(const LoopSettings& settings) {
-  if (!settings.are_usable()) return false;
+Result<void> ChangeBroker::Parts::change_settings(const LoopSettings& settings) {
+  if (!settings.are_usable()) return Error{Errc::bad_input, "a setting is out of its range"};
   take_back_done();
   if ((is_still && !is_offered) || (change && change->holds_still)) {
     settings_later = settings;
-    return true;
+    return {};
   }
-  if (settings == asked.settings) return true;
+  if (settings == asked.settings) return {};
   next_change();
   if (!change->settings) change->before = asked;
   auto wanted = setup_for(change->before, settings);
   if (!wanted) {
     offer(); // what there was before
-    return false;
+    return wanted.error();
   }
   asked = *std::move(wanted);
   // Settings that the loop has not taken are as if nobody had asked for them.
@@ -81,7 +82,7 @@ bool ChangeBroker::Parts::change_settings(const LoopSettings& settings) {
   if (settings != change->before.settings) change->settings = settings;
   make_ready();
   offer();
-  return true;
+  return {};
 }
 
 /// Makes the sculptor for the change.
@@ -101,24 +102,29 @@ void ChangeBroker::Parts::make_ready() {
   change->ready.puppet_step = kind_of_edit(before, asked_rig());
 }
 
-/// Returns nothing if the settings are not possible.
-std::optional<SculptorSetup> ChangeBroker::Parts::setup_for(const SculptorSetup& before,
-                                                            const LoopSettings& settings) const {
-  const bool presses = can_press(asked_rig());
-  if (!presses && is_by_hands(settings.mode) && settings.mode != asked.settings.mode)
-    return std::nullopt;
+/// A mode that the loop has already goes on: in older recordings puppets are in any mode, and have
+/// any number of points.
+Result<SculptorSetup> ChangeBroker::Parts::setup_for(const SculptorSetup& before,
+                                                     const LoopSettings& settings) const {
+  const puppet::Rig* const rig = asked_rig();
   SculptorSetup setup = with_settings(before, puppets.first_with(asked_puppet), settings,
                                       puppets.hands_of(asked_puppet), units_per_metre);
-  if (settings.mode != asked.settings.mode && !check_points(asked_rig(), setup.options))
-    return std::nullopt;
   setup.options.surface = asked.options.surface; // others may be another version's
   setup.options.deformer.mask = asked.options.deformer.mask;
-  setup.options.bodies = presses ? bodies : nullptr;
+  setup.options.bodies = can_press(rig) ? bodies : nullptr;
+  const bool is_other_mode = settings.mode != asked.settings.mode;
+  LoopSettings judged = settings;
+  if (!is_other_mode) judged.mode = Mode::type1;
+  const Played played = setup.options.is_along_surface() ? Played::along_surface
+                        : is_played(rig)                 ? Played::through_air
+                                                         : Played::nothing;
+  if (auto fine = compatible(judged, played); !fine) return fine.error();
+  if (is_other_mode)
+    if (auto fine = check_points(rig, setup.options); !fine) return fine.error();
   const bool same =
       settings.kernel == asked.settings.kernel && settings.radius_m == asked.settings.radius_m;
-  if (!same && !set_surface(setup.options, *asked_model)) return std::nullopt;
-  // Along a surface, no kernel is known that keeps the volume.
-  if (setup.options.is_along_surface() && settings.keep_volume > 0.0) return std::nullopt;
+  if (!same)
+    if (auto fine = set_surface(setup.options, *asked_model); !fine) return fine.error();
   return setup;
 }
 

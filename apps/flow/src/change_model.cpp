@@ -66,15 +66,18 @@ void ChangeBroker::keep_model() {
   parts_->offer_model(*parts_->asked_model, {parts_->asked_model->number});
 }
 
-bool ChangeBroker::change_to(const Awaited& awaited) {
+Result<void> ChangeBroker::change_to(const Awaited& awaited) {
   ModelVersion* const version = parts_->versions.find(awaited.model).get();
-  if (version == nullptr || !awaited.settings.are_usable() || awaited.puppet >= next_puppet())
-    return false;
+  if (version == nullptr || awaited.puppet >= next_puppet())
+    return Error{Errc::bad_input, "there is no such model, or no such puppet"};
+  if (!awaited.settings.are_usable()) return change_settings(awaited.settings);
   if (version != parts_->asked_model) {
-    if (is_changing() || parts_->is_still) return false;
+    if (is_changing() || parts_->is_still)
+      return Error{Errc::failed, "the model is being changed; try it again"};
     parts_->offer_model(*version, {version->number});
   }
-  if (awaited.puppet != newest_puppet() && !change_puppet(awaited.puppet)) return false;
+  if (awaited.puppet != newest_puppet())
+    if (auto changed = change_puppet(awaited.puppet); !changed) return changed;
   return change_settings(awaited.settings);
 }
 
@@ -94,7 +97,8 @@ void ChangeBroker::Parts::offer_model(ModelVersion& version, const ChangeModel& 
     change->ready.shape_room.fill({version.number, version.shape.shape()});
   asked_model = &version;
   offer();
-  if (settings_later) change_settings(*std::exchange(settings_later, {}));
+  // Those that are not possible with this version are dropped.
+  if (settings_later) static_cast<void>(change_settings(*std::exchange(settings_later, {})));
 }
 
 /// Puts the masks and the puppet's field for that version into the options. Error: the puppet's

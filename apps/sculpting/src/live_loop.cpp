@@ -161,7 +161,8 @@ bool LiveLoop::update() {
   loop.changes().refill_undo();
   if (!loop.frames().update()) return false;
   // Only this thread can make what an undo of settings needs; later frames ask again.
-  if (frame().awaited && !loop.changes().is_changing()) loop.changes().change_to(*frame().awaited);
+  if (frame().awaited && !loop.changes().is_changing())
+    static_cast<void>(loop.changes().change_to(*frame().awaited));
   return true;
 }
 
@@ -180,10 +181,8 @@ const deform::Mesh& LiveLoop::model() const noexcept {
 }
 
 Result<void> LiveLoop::ask(const flow::Command& command) {
-  if (const auto* change = std::get_if<flow::ChangeSettings>(&command)) {
-    if (parts_->loop->changes().change_settings(change->settings)) return {};
-    return Error{Errc::usage, "these settings cannot be used; nothing changed"};
-  }
+  if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
+    return parts_->loop->changes().change_settings(change->settings);
   if (!flow::is_for_loop(command))
     return Error{Errc::usage, "this command is for a session, not for a loop; nothing changed"};
   if (parts_->commands.try_push(command)) return {};

@@ -43,17 +43,18 @@ public:
 
   /// Makes all that these settings need: the stroke in hand then ends, and the fingertips grab the
   /// same shape again. What is shaped between changes that are less than a second apart is one
-  /// step for undo. Settings that were asked for last change nothing. Allocates. Returns false, and
-  /// changes nothing, if they are not usable.
-  bool change_settings(const LoopSettings& settings);
+  /// step for undo. Settings that were asked for last change nothing. Allocates. Error, bad_input:
+  /// why they are not possible (compatible()); nothing changes then.
+  Result<void> change_settings(const LoopSettings& settings);
   /// Returns the settings that were asked for last, and their sculptor's options.
   const LoopSettings& settings() const noexcept { return setup().settings; }
   const SculptorOptions& sculptor_options() const noexcept { return setup().options; }
   const SculptorSetup& setup() const noexcept;
   /// Asks for what an undo or a redo waits for (Frame::awaited): settings, a puppet, or a version
-  /// of the model that is kept. Returns false, and changes nothing, if there are no such, or if the
-  /// loop has yet to take another change of models. Allocates.
-  bool change_to(const Awaited& awaited);
+  /// of the model that is kept. Allocates. Errors, and then nothing changes: bad_input (there are
+  /// no such, or change_settings() does not take them); failed (the loop has yet to take another
+  /// change of models: ask again later).
+  Result<void> change_to(const Awaited& awaited);
 
   /// Lets the input go to `log` from a tick on, or nowhere. That tick keeps what the hands have
   /// shaped, and they grab again; a log gets no undo that leads back before it. Ask take_state()

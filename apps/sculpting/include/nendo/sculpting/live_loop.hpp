@@ -70,8 +70,8 @@ public:
   const deform::Mesh& model() const noexcept;
 
   /// Asks for something: a flow::Request such as undo, a flow::ChangeSettings, a flow::WristMove.
-  /// The loop takes it at the beginning of its next tick. Errors: usage (settings that cannot be
-  /// used, or a command that no loop obeys), failed (the loop is too far behind).
+  /// The loop takes it at the beginning of its next tick. Errors: bad_input (settings that cannot
+  /// be used), usage (a command that no loop obeys), failed (the loop is too far behind).
   Result<void> ask(const flow::Command& command);
   /// Returns the settings that were asked for last, for flow::ChangeSettings.
   const flow::LoopSettings& settings() const noexcept;

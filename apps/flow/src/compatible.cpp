@@ -1,0 +1,132 @@
+#include <nendo/flow/compatible.hpp>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace nendo::flow {
+namespace {
+
+enum class Party : std::uint8_t { mode, hold, brushes, keep_volume, injective, puppet };
+
+bool is_chosen(Party party, const LoopSettings& settings, Played played) noexcept {
+  switch (party) {
+  case Party::mode:
+    return true;
+  case Party::hold:
+    return settings.hold == Hold::hand;
+  case Party::brushes:
+    return std::any_of(settings.brushes.begin(), settings.brushes.end(),
+                       [](deform::Brush brush) { return brush != deform::Brush::pull; });
+  case Party::keep_volume:
+    return settings.keep_volume > 0.0;
+  case Party::injective:
+    return settings.injective;
+  case Party::puppet:
+    return played != Played::nothing;
+  }
+  return false;
+}
+
+std::string words_for(Party party, const LoopSettings& settings, Naming naming) {
+  const bool options = naming == Naming::options;
+  switch (party) {
+  case Party::mode:
+    return (options ? "--mode " : "mode ") + std::string(name_of(settings.mode));
+  case Party::hold:
+    return options ? "--hold hand" : "whole hand";
+  case Party::brushes:
+    return (options ? "--brush " : "brush ") + in_words(settings.brushes);
+  case Party::keep_volume:
+    return options ? "--keep-volume" : "keeping the volume";
+  case Party::injective:
+    return options ? "--injective" : "never folding";
+  case Party::puppet:
+    return options ? "--puppet" : "the puppet";
+  }
+  return {};
+}
+
+/// Both are chosen, and the rest of `applies` is true.
+struct Exclusion {
+  Party one, other;
+  bool (*applies)(Mode mode, Played played);
+  std::string_view reason;
+  bool has_no_effect = true; ///< one of them; otherwise a loop cannot shape with both
+};
+
+constexpr bool always(Mode /*mode*/, Played /*played*/) {
+  return true;
+}
+constexpr bool by_hands(Mode mode, Played /*played*/) {
+  return is_by_hands(mode);
+}
+constexpr bool in_type2(Mode mode, Played /*played*/) {
+  return mode == Mode::type2;
+}
+constexpr bool in_another_type(Mode mode, Played /*played*/) {
+  return mode != Mode::type2;
+}
+constexpr bool along_surface(Mode /*mode*/, Played played) {
+  return played == Played::along_surface;
+}
+
+constexpr std::array exclusions{
+    Exclusion{Party::mode, Party::puppet, by_hands,
+              "whole hands press clay and move parts, and a puppet has points", false},
+    Exclusion{Party::mode, Party::hold, by_hands, "hands hold clay or a part by closing on it"},
+    Exclusion{Party::mode, Party::keep_volume, by_hands,
+              "clay keeps its volume by itself, and parts move as they are"},
+    Exclusion{Party::puppet, Party::hold, always, "a puppet's own points hold the model"},
+    Exclusion{Party::puppet, Party::brushes, always,
+              "fingertips have brushes, and a puppet's points pull"},
+    Exclusion{Party::puppet, Party::injective, always,
+              "nothing promises that a puppet's surface does not fold"},
+    Exclusion{Party::puppet, Party::keep_volume, along_surface,
+              "a puppet's distances go along the surface, where no kernel is known that keeps the "
+              "volume, but distance = \"air\" in its file allows both",
+              false},
+    Exclusion{Party::mode, Party::brushes, in_another_type, "only type 2 has brushes"},
+    Exclusion{Party::mode, Party::hold, in_type2, "type 2 follows the ways of fingertips"},
+    Exclusion{Party::hold, Party::keep_volume, always,
+              "90 points with matrices take longer than a tick has"},
+    Exclusion{Party::keep_volume, Party::injective, always,
+              "links are cut for kernels without matrices, and the steps that keep the volume are "
+              "short enough for a lone finger not to fold the surface"},
+};
+
+Result<void> first_exclusion(const LoopSettings& settings, Played played, Naming naming,
+                             bool with_effects) {
+  const auto* const found =
+      std::find_if(exclusions.begin(), exclusions.end(), [&](const Exclusion& one) {
+        return (with_effects || !one.has_no_effect) && is_chosen(one.one, settings, played) &&
+               is_chosen(one.other, settings, played) && one.applies(settings.mode, played);
+      });
+  if (found == exclusions.end()) return {};
+  return Error{naming == Naming::options ? Errc::usage : Errc::bad_input,
+               words_for(found->one, settings, naming) + " and " +
+                   words_for(found->other, settings, naming) + ": " + std::string(found->reason) +
+                   "; choose one of them"};
+}
+
+} // namespace
+
+Played played_by(const puppet::Puppet& puppet) noexcept {
+  if (!puppet.is_played()) return Played::nothing;
+  return puppet.distance == puppet::Distance::surface ? Played::along_surface : Played::through_air;
+}
+
+Played played_by(const puppet::Rig* rig) noexcept {
+  return rig == nullptr ? Played::nothing : played_by(rig->puppet());
+}
+
+Result<void> compatible(const LoopSettings& settings, Played played, Naming naming) {
+  return first_exclusion(settings, played, naming, false);
+}
+
+Result<void> all_effective(const LoopSettings& settings, Played played, Naming naming) {
+  return first_exclusion(settings, played, naming, true);
+}
+
+} // namespace nendo::flow
