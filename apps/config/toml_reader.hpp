@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include <toml++/toml.h>
 
@@ -38,7 +38,7 @@ public:
       error_ = Error{Errc::bad_input, name_ + ":" + std::to_string(line) + ": " + one_line(what)};
   }
 
-  void allow_only(const toml::table& table, std::initializer_list<std::string_view> keys) {
+  void allow_only(const toml::table& table, const std::vector<std::string_view>& keys) {
     for (const auto& [key, node] : table)
       if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
         complain(node, "unknown key '" + std::string(key.str()) + "'; leave it out");

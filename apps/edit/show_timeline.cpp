@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <nendo/base/text.hpp>
+#include <nendo/flow/setting.hpp>
 
 #include "cli/cli.hpp"
 #include "edit/edit_actions.hpp"
@@ -50,11 +51,31 @@ nlohmann::ordered_json key_json(const Timeline& timeline, const HandTrack& hand,
   return line;
 }
 
+/// The value of a setting; null: not shown.
+struct SettingJson {
+  const flow::LoopSettings& settings;
+
+  template <class T>
+  nlohmann::ordered_json operator()(const flow::ChoiceSetting<T>& choice) const {
+    return choice.name_of(choice.of(settings));
+  }
+  nlohmann::ordered_json operator()(const flow::BrushesSetting& brushes) const {
+    return flow::in_words(brushes.of(settings));
+  }
+  nlohmann::ordered_json operator()(const flow::FilterSetting& /*filter*/) const { return {}; }
+  template <class T>
+  nlohmann::ordered_json operator()(const flow::Setting<T>& setting) const {
+    return setting.of(settings);
+  }
+};
+
 nlohmann::ordered_json settings_json(const flow::LoopSettings& settings) {
-  return {{"mode", name_of(settings.mode)},           {"kernel", deform::name_of(settings.kernel)},
-          {"injective", settings.injective},          {"keep_volume", settings.keep_volume},
-          {"hold", flow::name_of(settings.hold)},     {"radius_m", settings.radius_m},
-          {"piece_fraction", settings.piece_fraction}};
+  nlohmann::ordered_json values;
+  flow::for_each_setting([&](const auto& setting) {
+    auto value = SettingJson{settings}(setting);
+    if (!value.is_null()) values[std::string(setting.name)] = std::move(value);
+  });
+  return values;
 }
 
 nlohmann::ordered_json event_json(const Timeline& timeline, const timeline::Event& event) {

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include <nendo/driver/record_counts.hpp>
+#include <nendo/flow/setting.hpp>
 #include <nendo/sculpting/calibration_names.hpp>
 
 #include "cli/terminal.hpp"
@@ -233,30 +234,13 @@ void print_published(const RunOutcome& outcome) {
   }
 }
 
-namespace {
-
-std::string brush_words(const flow::SculptorOptions& sculptor) {
-  if (sculptor.mode != flow::Mode::type2 || !sculptor.needs_rings()) return {};
-  return ", " + flow::in_words(sculptor.brushes) +
-         fmt::format(" at strength {:g}", sculptor.brush_strength);
-}
-
-std::string hold_words(const flow::SculptorOptions& sculptor) {
-  const double keep_volume = sculptor.deformer.csrbf.keep_volume;
-  return (sculptor.hold == flow::Hold::hand ? ", whole hand" : "") +
-         (keep_volume > 0.0 ? fmt::format(", {:g} of clay", keep_volume) : std::string());
-}
-
-} // namespace
-
 void print_summary_text(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                         const RunOutcome& outcome) {
   const auto& stats = outcome.stats;
-  const flow::SculptorOptions& sculptor = outcome.sculptor;
-  std::cout << fmt::format("\nnendo run: {:.1f} s, {}, {}, radius {:.3g}\n", outcome.elapsed_s,
-                           std::string(flow::name_of(sculptor.mode)) + hold_words(sculptor) +
-                               brush_words(sculptor),
-                           deform::name_of(sculptor.deformer.csrbf.kernel), outcome.radius);
+  const auto settings =
+      flow::settings_of(outcome.sculptor, options.filter, outcome.units_per_metre);
+  std::cout << fmt::format("\nnendo run: {:.1f} s, {}\n", outcome.elapsed_s,
+                           flow::in_words(settings, outcome.units_per_metre));
   for (const auto& hand : hands)
     print_hand(hand, outcome);
   print_holds(options, stats);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <nendo/driver/record_counts.hpp>
+#include <nendo/flow/setting.hpp>
 
 #include "cli/json_line.hpp"
 #include "cli/model_files.hpp"
@@ -119,6 +120,21 @@ ordered_json published_json(const RunOutcome& outcome) {
   return list;
 }
 
+/// Adds those that the sculptor has as they are. The radius is in the model's units.
+void add_settings(ordered_json& line, const RunOutcome& outcome) {
+  const flow::LoopSettings settings = flow::plain_settings_of(outcome.sculptor);
+  flow::for_each_plain_setting([&](const auto& setting) {
+    ordered_json& value = line[std::string(setting.name)];
+    if constexpr (requires { setting.name_of; })
+      value = setting.name_of(setting.of(settings));
+    else if constexpr (requires { setting.choices; })
+      value = flow::in_words(setting.of(settings));
+    else
+      value = setting.of(settings);
+  });
+  line["radius"] = outcome.radius;
+}
+
 } // namespace
 
 void print_progress_json(const flow::Frame& frame, double elapsed_s) {
@@ -147,30 +163,23 @@ void print_progress_json(const flow::Frame& frame, double elapsed_s) {
 void print_summary_json(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                         const RunOutcome& outcome) {
   const auto& stats = outcome.stats;
-  ordered_json line{{"event", "summary"},
-                    {"elapsed_s", outcome.elapsed_s},
-                    {"mode", flow::name_of(outcome.sculptor.mode)},
-                    {"kernel", deform::name_of(outcome.sculptor.deformer.csrbf.kernel)},
-                    {"radius", outcome.radius},
-                    {"brushes", flow::in_words(outcome.sculptor.brushes)},
-                    {"brush_strength", outcome.sculptor.brush_strength},
-                    {"keep_volume", outcome.sculptor.deformer.csrbf.keep_volume},
-                    {"hold", flow::name_of(outcome.sculptor.hold)},
-                    {"rate_hz", options.loop.rate_hz},
-                    {"policy", flow::describe_policy(options.loop)},
-                    {"threads", options.loop.sculptor.deformer.evaluation.threads},
-                    {"realtime", grants_json(outcome.grants)},
-                    {"ticks", stats.ticks},
-                    {"overruns", stats.overruns},
-                    {"missed", stats.missed},
-                    {"failed", stats.failed},
-                    {"switch", flow::name_of(options.loop.switch_action)},
-                    {"grabs", stats.grabs},
-                    {"commits", stats.commits},
-                    {"undos", stats.undos},
-                    {"redos", stats.redos},
-                    {"undo_steps", stats.undo_steps},
-                    {"forgotten_steps", stats.forgotten_steps}};
+  ordered_json line{{"event", "summary"}, {"elapsed_s", outcome.elapsed_s}};
+  add_settings(line, outcome);
+  line.update({{"rate_hz", options.loop.rate_hz},
+               {"policy", flow::describe_policy(options.loop)},
+               {"threads", options.loop.sculptor.deformer.evaluation.threads},
+               {"realtime", grants_json(outcome.grants)},
+               {"ticks", stats.ticks},
+               {"overruns", stats.overruns},
+               {"missed", stats.missed},
+               {"failed", stats.failed},
+               {"switch", flow::name_of(options.loop.switch_action)},
+               {"grabs", stats.grabs},
+               {"commits", stats.commits},
+               {"undos", stats.undos},
+               {"redos", stats.redos},
+               {"undo_steps", stats.undo_steps},
+               {"forgotten_steps", stats.forgotten_steps}});
   for (const auto& hand : hands) {
     const std::size_t slot = flow::Placement::index_of(hand.side);
     const auto glove = hand.glove->stats();

@@ -9,6 +9,7 @@
 
 #include <nendo/flow/deform_loop.hpp>
 #include <nendo/flow/rig_setup.hpp>
+#include <nendo/flow/setting.hpp>
 #include <nendo/flow/tick_grid.hpp>
 
 namespace nendo::timeline {
@@ -57,7 +58,9 @@ std::string complaint_about(const flow::SculptorOptions& sculptor, Eigen::Index 
   const auto& options = sculptor.deformer;
   if (!within(sculptor.piece_length, least_positive, largest))
     return "piece_length must be positive";
-  if (!within(sculptor.brush_strength, -1.0, 1.0)) return "brush_strength must lie within -1 and 1";
+  flow::LoopSettings settings = flow::plain_settings_of(sculptor);
+  settings.radius_m.fill(1.0);
+  if (std::string wrong = flow::complaint_about(settings); !wrong.empty()) return wrong;
   if (options.supports.shared.empty() || !options.supports.are_usable())
     return "supports: radii and weights must be positive, and one at least must be shared";
   for (const auto& own : options.supports.own)
@@ -65,7 +68,6 @@ std::string complaint_about(const flow::SculptorOptions& sculptor, Eigen::Index 
       return "supports: there is no fingertip, or point of a puppet, " + std::to_string(own.point);
   if (!within(options.csrbf.merge_fraction, 0.0, 1.0))
     return "merge_fraction must lie within 0 and 1";
-  if (!within(options.csrbf.keep_volume, 0.0, 1.0)) return "keep_volume must lie within 0 and 1";
   constexpr std::size_t most_weight_bytes = std::size_t{1} << 28;
   if (options.evaluation.weight_bytes > most_weight_bytes)
     return "weight_bytes must be at most " + std::to_string(most_weight_bytes);
@@ -127,10 +129,8 @@ std::string complaint_about(const Event& event, const Timeline& timeline) {
   const puppet::Rig* const rig = timeline.rig.get();
   const flow::Command& command = event.command;
   if (!within(event.time_s, 0.0, longest_s)) return "its time must lie within 0 and 1000000 s";
-  if (const auto* change = std::get_if<flow::ChangeSettings>(&command);
-      change != nullptr && !change->settings.are_usable())
-    return "radii must lie within 1e-9 and 1e9 m, piece_fraction within 0.001 and 1000, "
-           "keep_volume within 0 and 1";
+  if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
+    if (std::string wrong = flow::complaint_about(change->settings); !wrong.empty()) return wrong;
   const bool is_known = std::holds_alternative<flow::Request>(command) ||
                         std::holds_alternative<flow::ChangeSettings>(command) ||
                         changes_model(command) || std::holds_alternative<flow::Mark>(command) ||
@@ -163,21 +163,6 @@ std::string complaint_about(const puppet::Rig* rig, const puppet::RigState& stat
     if (!within(function.asked, -largest, largest))
       return "the puppet: what is asked of a function must be finite";
   return {};
-}
-
-std::string words_of(const flow::LoopSettings& settings) {
-  std::string words = std::string(name_of(settings.mode)) + ", " +
-                      std::string(deform::name_of(settings.kernel)) +
-                      (settings.injective ? ", never folds" : "") +
-                      (settings.keep_volume > 0.0 ? ", keeps volume" : "") +
-                      (settings.hold == flow::Hold::hand ? ", whole hand" : "") + ", radius";
-  const auto [least, most] =
-      std::minmax_element(settings.radius_m.begin(), settings.radius_m.end());
-  char radius[64];
-  std::snprintf(radius, sizeof radius, " %.3g", 100.0 * *least);
-  words += radius;
-  std::snprintf(radius, sizeof radius, " to %.3g", 100.0 * *most);
-  return words + (*least == *most ? "" : radius) + " cm";
 }
 
 std::string words_of(const flow::SetClutch& clutch) {
@@ -263,7 +248,7 @@ std::string in_words(const Timeline& timeline, const Event& event) {
   if (const auto* request = std::get_if<flow::Request>(&event.command))
     return std::string(name_of(*request));
   if (const auto* change = std::get_if<flow::ChangeSettings>(&event.command))
-    return words_of(change->settings);
+    return flow::in_words(change->settings, timeline.units_per_metre);
   if (const auto* clutch = std::get_if<flow::SetClutch>(&event.command)) return words_of(*clutch);
   if (const auto* role = std::get_if<flow::SetRole>(&event.command); role && timeline.rig)
     return timeline.rig->puppet().functions[role->function].name + " listens to " +

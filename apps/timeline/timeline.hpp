@@ -98,8 +98,8 @@ puppet::RigState first_state(const puppet::Rig& rig);
 std::string_view clutched_name(std::uint8_t finger) noexcept;
 std::optional<std::uint8_t> clutched_named(std::string_view name) noexcept;
 
-/// Returns what the event does, in words: "commit", "type2, wendland-c4, radius 12 cm",
-/// "the left index finger lets go".
+/// Returns what the event does, in words: "commit", "type1, wendland-c4, may fold, radius 12 cm
+/// (0.3)", "the left index finger lets go".
 std::string in_words(const Timeline& timeline, const Event& event);
 
 inline constexpr std::size_t most_keys = 1'000'000; ///< of a hand

@@ -7,6 +7,7 @@
 #include <nendo/base/endings.hpp>
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
+#include <nendo/flow/setting.hpp>
 
 #include "timeline/timeline_file.hpp"
 
@@ -60,21 +61,43 @@ std::string brush_names(const std::array<deform::Brush, 5>& brushes) {
   return "[" + names + "]";
 }
 
-std::string brushes_lines(const flow::SculptorOptions& sculptor) {
-  return line("brushes", brush_names(sculptor.brushes)) +
-         line("brush_strength", decimal_text(sculptor.brush_strength));
-}
+/// Returns the value of a setting as it stands in a file.
+struct SettingValue {
+  const flow::LoopSettings& settings;
+
+  template <class T>
+  std::string operator()(const flow::ChoiceSetting<T>& choice) const {
+    return toml_string(choice.name_of(choice.of(settings)));
+  }
+  std::string operator()(const flow::SwitchSetting& on) const {
+    return on.of(settings) ? "true" : "false";
+  }
+  std::string operator()(const flow::NumberSetting& number) const {
+    return decimal_text(number.of(settings));
+  }
+  std::string operator()(const flow::FingersSetting& lengths) const {
+    return list(lengths.of(settings));
+  }
+  std::string operator()(const flow::BrushesSetting& brushes) const {
+    return brush_names(brushes.of(settings));
+  }
+  /// A timeline's hands are smooth already.
+  std::string operator()(const flow::FilterSetting& /*filter*/) const { return {}; }
+};
 
 std::string sculptor_text(const flow::SculptorOptions& sculptor, bool is_puppet) {
   const auto& options = sculptor.deformer;
-  std::string text = "\n[sculptor]\n" + line("mode", toml_string(name_of(sculptor.mode))) +
+  const flow::LoopSettings settings = flow::plain_settings_of(sculptor);
+  const auto set = [value = SettingValue{settings}](const auto& setting) {
+    return line(setting.name, value(setting));
+  };
+  namespace setting = flow::setting;
+  std::string text = "\n[sculptor]\n" + set(setting::mode) +
                      line("piece_length", decimal_text(sculptor.piece_length)) +
-                     brushes_lines(sculptor) +
-                     line("kernel", toml_string(name_of(options.csrbf.kernel))) +
+                     set(setting::brushes) + set(setting::brush_strength) + set(setting::kernel) +
                      line("polynomial", toml_string(name_of(options.csrbf.polynomial))) +
                      line("merge_fraction", decimal_text(options.csrbf.merge_fraction)) +
-                     line("keep_volume", decimal_text(options.csrbf.keep_volume)) +
-                     line("hold", toml_string(name_of(sculptor.hold))) +
+                     set(setting::keep_volume) + set(setting::hold) +
                      line("weight_bytes", std::to_string(options.evaluation.weight_bytes)) +
                      supports_text(options.supports, is_puppet ? "point" : "tip");
   if (is_puppet && sculptor.type2_along_surface) text += line("type2_along_surface", "true");
@@ -89,15 +112,13 @@ std::string sculptor_text(const flow::SculptorOptions& sculptor, bool is_puppet)
 }
 
 std::string settings_text(const flow::LoopSettings& settings) {
-  return "{ mode = " + toml_string(name_of(settings.mode)) +
-         ", kernel = " + toml_string(name_of(settings.kernel)) +
-         ", injective = " + (settings.injective ? "true" : "false") +
-         ", radius_m = " + list(settings.radius_m) +
-         ", piece_fraction = " + decimal_text(settings.piece_fraction) +
-         ", brushes = " + brush_names(settings.brushes) +
-         ", brush_strength = " + decimal_text(settings.brush_strength) +
-         ", keep_volume = " + decimal_text(settings.keep_volume) +
-         ", hold = " + toml_string(name_of(settings.hold)) + " }";
+  std::string text;
+  flow::for_each_setting([&](const auto& setting) {
+    const std::string value = SettingValue{settings}(setting);
+    if (value.empty()) return;
+    text += (text.empty() ? "{ " : ", ") + std::string(setting.name) + " = " + value;
+  });
+  return text + " }";
 }
 
 std::string key_text(const Key& key) {

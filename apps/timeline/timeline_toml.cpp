@@ -5,6 +5,9 @@
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
+
+#include <nendo/flow/setting.hpp>
 
 #include "config/toml_reader.hpp"
 #include "timeline/timeline_file.hpp"
@@ -53,50 +56,82 @@ void read_injective(TomlReader& reader, const toml::table& table,
   options.injective->least_gap = reader.number(*injective, "least_gap");
 }
 
-/// Older files have none.
-void read_brushes(TomlReader& reader, const toml::table& table,
-                  std::array<deform::Brush, 5>& brushes, double& strength) {
-  if (table.get("brush_strength") != nullptr) strength = reader.number(table, "brush_strength");
-  const toml::node* const node = table.get("brushes");
-  if (node == nullptr) return;
-  const toml::array* const names = node->as_array();
-  if (names == nullptr || names->size() != brushes.size())
-    return reader.complain(*node, "brushes must be five names, thumb to little finger");
-  for (std::size_t finger = 0; finger < brushes.size(); ++finger) {
-    const auto name = (*names)[finger].value<std::string>();
-    const auto brush = name ? deform::brush_named(*name) : std::nullopt;
-    if (!brush) return reader.complain((*names)[finger], "this is no brush");
-    brushes[finger] = *brush;
-  }
-}
+/// Reads a setting that a table has, or must have because all files do.
+class SettingReader {
+public:
+  SettingReader(TomlReader& reader, const toml::table& table, flow::LoopSettings& settings)
+      : reader_(&reader), table_(&table), settings_(&settings) {}
 
-/// Older files have neither.
-void read_hold(TomlReader& reader, const toml::table& table, double& keep_volume,
-               flow::Hold& hold) {
-  if (table.get("keep_volume") != nullptr) keep_volume = reader.number(table, "keep_volume");
-  if (table.get("hold") != nullptr) hold = reader.named(table, "hold", flow::hold_named);
-}
+  template <class Setting>
+  void operator()(const Setting& setting) const {
+    if (!setting.is_newer || table_->contains(setting.name)) read(setting);
+  }
+
+private:
+  template <class T>
+  void read(const flow::ChoiceSetting<T>& choice) const {
+    choice.of(*settings_) = reader_->named(*table_, choice.name, choice.named);
+  }
+  void read(const flow::SwitchSetting& on) const {
+    on.of(*settings_) = reader_->truth(*table_, on.name);
+  }
+  void read(const flow::NumberSetting& number) const {
+    number.of(*settings_) = reader_->number(*table_, number.name);
+  }
+  void read(const flow::FingersSetting& lengths) const {
+    if (const toml::node* const node = reader_->find(*table_, lengths.name))
+      lengths.of(*settings_) = reader_->numbers<5>(*node, lengths.name);
+  }
+  void read(const flow::BrushesSetting& brushes) const {
+    auto& of_fingers = brushes.of(*settings_);
+    const toml::node& node = *table_->get(brushes.name);
+    const toml::array* const names = node.as_array();
+    if (names == nullptr || names->size() != of_fingers.size())
+      return reader_->complain(node, "brushes must be five names, thumb to little finger");
+    for (std::size_t finger = 0; finger < of_fingers.size(); ++finger) {
+      const auto name = (*names)[finger].value<std::string>();
+      const auto brush = name ? deform::brush_named(*name) : std::nullopt;
+      if (!brush) return reader_->complain((*names)[finger], "this is no brush");
+      of_fingers[finger] = *brush;
+    }
+  }
+  void read(const flow::FilterSetting& /*filter*/) const {} // no file has it
+
+  TomlReader* reader_;
+  const toml::table* table_;
+  flow::LoopSettings* settings_;
+};
 
 void read_sculptor(TomlReader& reader, const toml::table& root, bool is_puppet,
                    flow::SculptorOptions& sculptor) {
   const toml::table* const table = reader.table(root, "sculptor");
   if (table == nullptr) return;
   // order and storage stand in older files; they are ignored.
-  reader.allow_only(*table, {"mode", "piece_length", "kernel", "polynomial", "merge_fraction",
-                             "order", "storage", "weight_bytes", "shared", "own", "injective",
-                             "brushes", "brush_strength", "keep_volume", "hold",
-                             "type2_along_surface", "clay_scales_few_vertices"});
+  std::vector<std::string_view> keys{"piece_length",
+                                     "polynomial",
+                                     "merge_fraction",
+                                     "order",
+                                     "storage",
+                                     "weight_bytes",
+                                     "shared",
+                                     "own",
+                                     "injective",
+                                     "type2_along_surface",
+                                     "clay_scales_few_vertices"};
+  flow::LoopSettings settings;
+  flow::for_each_plain_setting([&](const auto& setting) {
+    keys.push_back(setting.name);
+    SettingReader(reader, *table, settings)(setting);
+  });
+  reader.allow_only(*table, keys);
+  flow::set_plain_settings(sculptor, settings);
   auto& options = sculptor.deformer;
-  read_hold(reader, *table, options.csrbf.keep_volume, sculptor.hold);
-  read_brushes(reader, *table, sculptor.brushes, sculptor.brush_strength);
-  sculptor.mode = reader.named(*table, "mode", flow::mode_named);
   sculptor.piece_length = reader.number(*table, "piece_length");
   const auto has_rule = [&](const char* name) { // not in older files
     return table->contains(name) && reader.truth(*table, name);
   };
   sculptor.type2_along_surface = has_rule("type2_along_surface");
   sculptor.clay_scales_few_vertices = has_rule("clay_scales_few_vertices");
-  options.csrbf.kernel = reader.named(*table, "kernel", deform::wendland_named);
   options.csrbf.polynomial = reader.named(*table, "polynomial", deform::polynomial_named);
   options.csrbf.merge_fraction = reader.number(*table, "merge_fraction");
   options.evaluation.weight_bytes =
@@ -164,16 +199,12 @@ flow::LoopSettings read_settings(TomlReader& reader, const toml::table& event) {
   flow::LoopSettings settings;
   const toml::table* const table = reader.table(event, "settings");
   if (table == nullptr) return settings;
-  reader.allow_only(*table, {"mode", "kernel", "injective", "radius_m", "piece_fraction", "brushes",
-                             "brush_strength", "keep_volume", "hold"});
-  read_hold(reader, *table, settings.keep_volume, settings.hold);
-  read_brushes(reader, *table, settings.brushes, settings.brush_strength);
-  settings.mode = reader.named(*table, "mode", flow::mode_named);
-  settings.kernel = reader.named(*table, "kernel", deform::wendland_named);
-  settings.injective = reader.truth(*table, "injective");
-  if (const toml::node* const radii = reader.find(*table, "radius_m"))
-    settings.radius_m = reader.numbers<5>(*radii, "radius_m");
-  settings.piece_fraction = reader.number(*table, "piece_fraction");
+  std::vector<std::string_view> keys;
+  flow::for_each_setting([&](const auto& setting) {
+    if (setting.step != flow::StepKind::filter) keys.push_back(setting.name);
+    SettingReader(reader, *table, settings)(setting);
+  });
+  reader.allow_only(*table, keys);
   return settings;
 }
 

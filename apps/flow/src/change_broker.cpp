@@ -6,6 +6,7 @@
 #include <nendo/base/relax.hpp>
 #include <nendo/flow/compatible.hpp>
 #include <nendo/flow/rig_setup.hpp>
+#include <nendo/flow/setting.hpp>
 
 #include "broker_parts.hpp"
 
@@ -62,7 +63,8 @@ Result<void> ChangeBroker::change_settings(const LoopSettings& settings) {
 }
 
 Result<void> ChangeBroker::Parts::change_settings(const LoopSettings& settings) {
-  if (!settings.are_usable()) return Error{Errc::bad_input, "a setting is out of its range"};
+  if (auto wrong = complaint_about(settings); !wrong.empty())
+    return Error{Errc::bad_input, std::move(wrong)};
   take_back_done();
   if ((is_still && !is_offered) || (change && change->holds_still)) {
     settings_later = settings;

@@ -5,10 +5,12 @@
 #include <string>
 #include <string_view>
 
+#include <nendo/flow/setting.hpp>
+
 namespace nendo::flow {
 namespace {
 
-enum class Party : std::uint8_t { mode, hold, brushes, keep_volume, injective, puppet };
+enum class Party : std::uint8_t { mode, hold, brushes, volume, injective, puppet };
 
 bool is_chosen(Party party, const LoopSettings& settings, Played played) noexcept {
   switch (party) {
@@ -19,8 +21,8 @@ bool is_chosen(Party party, const LoopSettings& settings, Played played) noexcep
   case Party::brushes:
     return std::any_of(settings.brushes.begin(), settings.brushes.end(),
                        [](deform::Brush brush) { return brush != deform::Brush::pull; });
-  case Party::keep_volume:
-    return settings.keep_volume > 0.0;
+  case Party::volume:
+    return setting::keep_volume.of(settings) > 0.0;
   case Party::injective:
     return settings.injective;
   case Party::puppet:
@@ -30,20 +32,24 @@ bool is_chosen(Party party, const LoopSettings& settings, Played played) noexcep
 }
 
 std::string words_for(Party party, const LoopSettings& settings, Naming naming) {
-  const bool options = naming == Naming::options;
+  const bool is_option = naming == Naming::options;
+  const auto named = [&](const SettingText& setting, std::string_view value = {}) {
+    return std::string(is_option ? setting.option : setting.words) + (value.empty() ? "" : " ") +
+           std::string(value);
+  };
   switch (party) {
   case Party::mode:
-    return (options ? "--mode " : "mode ") + std::string(name_of(settings.mode));
+    return named(setting::mode, name_of(settings.mode));
   case Party::hold:
-    return options ? "--hold hand" : "whole hand";
+    return named(setting::hold, is_option ? name_of(settings.hold) : "");
   case Party::brushes:
-    return (options ? "--brush " : "brush ") + in_words(settings.brushes);
-  case Party::keep_volume:
-    return options ? "--keep-volume" : "keeping the volume";
+    return named(setting::brushes, in_words(settings.brushes));
+  case Party::volume:
+    return named(setting::keep_volume);
   case Party::injective:
-    return options ? "--injective" : "never folding";
+    return named(setting::injective);
   case Party::puppet:
-    return options ? "--puppet" : "the puppet";
+    return is_option ? "--puppet" : "the puppet";
   }
   return {};
 }
@@ -76,22 +82,22 @@ constexpr std::array exclusions{
     Exclusion{Party::mode, Party::puppet, by_hands,
               "whole hands press clay and move parts, and a puppet has points", false},
     Exclusion{Party::mode, Party::hold, by_hands, "hands hold clay or a part by closing on it"},
-    Exclusion{Party::mode, Party::keep_volume, by_hands,
+    Exclusion{Party::mode, Party::volume, by_hands,
               "clay keeps its volume by itself, and parts move as they are"},
     Exclusion{Party::puppet, Party::hold, always, "a puppet's own points hold the model"},
     Exclusion{Party::puppet, Party::brushes, always,
               "fingertips have brushes, and a puppet's points pull"},
     Exclusion{Party::puppet, Party::injective, always,
               "nothing promises that a puppet's surface does not fold"},
-    Exclusion{Party::puppet, Party::keep_volume, along_surface,
+    Exclusion{Party::puppet, Party::volume, along_surface,
               "a puppet's distances go along the surface, where no kernel is known that keeps the "
               "volume, but distance = \"air\" in its file allows both",
               false},
     Exclusion{Party::mode, Party::brushes, in_another_type, "only type 2 has brushes"},
     Exclusion{Party::mode, Party::hold, in_type2, "type 2 follows the ways of fingertips"},
-    Exclusion{Party::hold, Party::keep_volume, always,
+    Exclusion{Party::hold, Party::volume, always,
               "90 points with matrices take longer than a tick has"},
-    Exclusion{Party::keep_volume, Party::injective, always,
+    Exclusion{Party::volume, Party::injective, always,
               "links are cut for kernels without matrices, and the steps that keep the volume are "
               "short enough for a lone finger not to fold the surface"},
 };

@@ -1,6 +1,7 @@
 #include <nendo/flow/finger_supports.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,20 @@ deform::Supports of_both_sides(deform::Supports supports, Eigen::Index tips) {
 deform::Supports of_one_side(deform::Supports supports, Eigen::Index tips) {
   std::erase_if(supports.own, [&](const deform::OwnSupport& own) { return own.point >= tips; });
   return supports;
+}
+
+std::string radius_text(const std::array<double, 5>& radius_m, double units_per_metre) {
+  const auto [least, most] = std::minmax_element(radius_m.begin(), radius_m.end());
+  const auto in_units = [least = *least, most = *most](double units) {
+    const auto one = [units](double radius) {
+      char text[32];
+      return std::string(text, std::to_chars(text, text + sizeof text, units * radius,
+                                             std::chars_format::general, 3)
+                                   .ptr);
+    };
+    return least == most ? one(least) : one(least) + " to " + one(most);
+  };
+  return in_units(100.0) + " cm (" + in_units(units_per_metre) + ")";
 }
 
 deform::Supports supports_on_model(const std::array<double, 5>& radius_m, double units_per_metre) {

@@ -1,7 +1,5 @@
 #include <nendo/flow/loop_settings.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -9,29 +7,34 @@
 
 namespace nendo::flow {
 
-bool LoopSettings::are_usable() const noexcept {
-  const bool radii = std::all_of(radius_m.begin(), radius_m.end(), [](double radius) {
-    return radius >= least_radius_m && radius <= most_radius_m; // false for NaN
-  });
-  return radii && std::abs(brush_strength) <= 1.0 && keep_volume >= 0.0 && keep_volume <= 1.0 &&
-         piece_fraction >= least_piece_fraction && piece_fraction <= most_piece_fraction &&
-         std::isfinite(filter.min_cutoff_hz) && std::isfinite(filter.beta_hz_per_rad_s) &&
-         std::isfinite(filter.derivative_cutoff_hz);
-}
-
-LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOptions& filter,
-                         double units_per_metre) {
+LoopSettings plain_settings_of(const SculptorOptions& sculptor) noexcept {
   const deform::DeformerOptions& deformer = sculptor.deformer;
   return {.mode = sculptor.mode,
           .kernel = deformer.csrbf.kernel,
           .injective = deformer.injective.has_value(),
-          .radius_m = radii_on_stage(deformer.supports, units_per_metre),
-          .piece_fraction = sculptor.piece_length / deform::least_radius(deformer.supports),
-          .filter = filter,
           .brushes = sculptor.brushes,
           .brush_strength = sculptor.brush_strength,
           .keep_volume = deformer.csrbf.keep_volume,
           .hold = sculptor.hold};
+}
+
+void set_plain_settings(SculptorOptions& sculptor, const LoopSettings& settings) noexcept {
+  sculptor.mode = settings.mode;
+  sculptor.hold = settings.hold;
+  sculptor.deformer.csrbf.kernel = settings.kernel;
+  sculptor.deformer.csrbf.keep_volume = settings.keep_volume;
+  sculptor.brushes = settings.brushes;
+  sculptor.brush_strength = settings.brush_strength;
+}
+
+LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOptions& filter,
+                         double units_per_metre) {
+  const deform::Supports& supports = sculptor.deformer.supports;
+  LoopSettings settings = plain_settings_of(sculptor);
+  settings.radius_m = radii_on_stage(supports, units_per_metre);
+  settings.piece_fraction = sculptor.piece_length / deform::least_radius(supports);
+  settings.filter = filter;
+  return settings;
 }
 
 double scale_of_radii(const LoopSettings& settings, const LoopSettings& first) noexcept {
@@ -54,12 +57,8 @@ SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first
   if (wanted == first.settings) return first;
   SculptorOptions sculptor = now.options;
   deform::DeformerOptions& deformer = sculptor.deformer;
-  sculptor.mode = wanted.mode;
-  sculptor.hold = hands == 0 ? Hold::fingertips : wanted.hold; // a puppet's points hold
-  deformer.csrbf.kernel = wanted.kernel;
-  deformer.csrbf.keep_volume = wanted.keep_volume;
-  sculptor.brushes = wanted.brushes;
-  sculptor.brush_strength = wanted.brush_strength;
+  set_plain_settings(sculptor, wanted);
+  if (hands == 0) sculptor.hold = Hold::fingertips; // a puppet's points hold
   if (wanted.injective != now.settings.injective) {
     deformer.injective.reset();
     if (wanted.injective) deformer.injective.emplace();

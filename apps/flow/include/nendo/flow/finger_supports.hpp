@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include <nendo/deform/supports.hpp>
@@ -30,5 +31,9 @@ deform::Supports supports_on_model(const std::array<double, 5>& radius_m, double
 /// The radii of five fingers on the stage, in metres. supports: a loop's; the largest radius of
 /// each finger's own counts, or of the shared ones if it has none.
 std::array<double, 5> radii_on_stage(const deform::Supports& supports, double units_per_metre);
+
+/// Returns these radii as all messages tell them, on the stage, and in the model's units in
+/// brackets: "13.2 cm (0.248)", or "13.2 to 14 cm (0.248 to 0.263)".
+std::string radius_text(const std::array<double, 5>& radius_m, double units_per_metre);
 
 } // namespace nendo::flow

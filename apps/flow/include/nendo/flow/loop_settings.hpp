@@ -22,12 +22,8 @@ struct LoopSettings {
   double keep_volume = 0.0; ///< 0, air, to 1, clay (deform::CsrbfOptions)
   Hold hold = Hold::fingertips;
 
-  static constexpr double least_radius_m = 1e-9;
-  static constexpr double most_radius_m = 1e9;
-  static constexpr double least_piece_fraction = 1e-3;
-  static constexpr double most_piece_fraction = 1e3;
-
-  /// Tells whether all numbers are finite and within these bounds. A loop takes no others.
+  /// Tells whether all numbers are finite and within their ranges (setting.hpp). A loop takes no
+  /// others.
   bool are_usable() const noexcept;
 
   friend bool operator==(const LoopSettings&, const LoopSettings&) = default;
@@ -41,6 +37,11 @@ constexpr bool closes_pinches(const hand::FilterOptions& filter, Mode mode) noex
 /// Returns the settings of a sculptor. Where a finger has several radii, the largest is its radius.
 LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOptions& filter,
                          double units_per_metre);
+
+/// The same without what depends on the radii, and without the filter.
+LoopSettings plain_settings_of(const SculptorOptions& sculptor) noexcept;
+/// Puts these into the options, but for `injective`.
+void set_plain_settings(SculptorOptions& sculptor, const LoopSettings& settings) noexcept;
 
 /// Returns by what the radii of these settings are larger than those of `first`: the ratio of their
 /// sums.

@@ -1,0 +1,115 @@
+#pragma once
+// The description of the settings, each once: its names, its range, its help. Options, timelines,
+// reports and widgets are made from it; for_each_setting() lets code for one kind serve all of it.
+
+#include <string>
+
+#include <nendo/flow/setting_kinds.hpp>
+
+namespace nendo::flow {
+
+namespace setting {
+
+inline constexpr ChoiceSetting<Mode> mode{
+    {{"mode", "--mode", "mode", "mode",
+      "type1: the rest shape follows the fingertips; type2: strokes along their paths; clay: whole "
+      "hands press; parts: hands that close take parts of the model and move them; without it, "
+      "type1, or type2 with a brush",
+      StepKind::mode},
+     &LoopSettings::mode},
+    mode_names,
+    name_of,
+    mode_named};
+inline constexpr ChoiceSetting<deform::Wendland> kernel{
+    {{"kernel", "--kernel", "kernel", "kernel",
+      "wendland-c0, wendland-c2, wendland-c4 or wendland-c6", StepKind::kernel},
+     &LoopSettings::kernel},
+    "wendland-c0, wendland-c2, wendland-c4 or wendland-c6",
+    deform::name_of,
+    deform::wendland_named};
+inline constexpr SwitchSetting injective{
+    {"injective", "--injective", "never folding", "never folds",
+     "Never fold: in links that each stay injective; points whose ways cross are held apart",
+     StepKind::folding},
+    &LoopSettings::injective};
+inline constexpr FingersSetting radius{
+    {{"radius_m", "--radius", "radius", "radius",
+      "Radius of a fingertip's influence, in the mesh's units, without it 0.2 of its longest side; "
+      "or five with commas between, thumb to little finger; 10+40:0.5 is a mix",
+      StepKind::radius},
+     &LoopSettings::radius_m},
+    {1e-9, 1e9}};
+/// In least radii.
+inline constexpr NumberSetting piece_fraction{
+    {{"piece_fraction", "", "length of a piece", "piece", ""}, &LoopSettings::piece_fraction},
+    {1e-3, 1e3}};
+inline constexpr FilterSetting filter{
+    {"filter", "--filter", "smooth hands", "smooth hands",
+     "off, or one-euro: smooths the joints' angles, at rest more than in motion; the summary says "
+     "how late that makes them",
+     StepKind::filter},
+    &LoopSettings::filter};
+inline constexpr BrushesSetting brushes{
+    {{"brushes", "--brush", "brush", "brush",
+      "What a finger does along its way, in type 2: pull, none, push, inflate, smooth, flatten, "
+      "twist or scale; or five with commas between, thumb to little finger",
+      StepKind::brush, true},
+     &LoopSettings::brushes},
+    "pull, none, push, inflate, smooth, flatten, twist or scale, or five of them with commas "
+    "between, thumb to little finger"};
+inline constexpr NumberSetting brush_strength{
+    {{"brush_strength", "--strength", "strength", "strength",
+      "How much a brush does, -1 to 1, without it 0.5; below 0 it does the opposite",
+      StepKind::brush, true},
+     &LoopSettings::brush_strength},
+    {-1.0, 1.0}};
+inline constexpr NumberSetting keep_volume{
+    {{"keep_volume", "--keep-volume", "keeping the volume", "volume",
+      "From 0, air, to 1, clay: what is pressed in comes out nearby", StepKind::volume, true},
+     &LoopSettings::keep_volume},
+    {0.0, 1.0}};
+inline constexpr ChoiceSetting<Hold> hold{
+    {{"hold", "--hold", "whole hand", "whole hand",
+      "What of a hand holds the model in type 1: tips, or hand, 45 points all over it",
+      StepKind::hold, true},
+     &LoopSettings::hold},
+    "tips or hand",
+    name_of,
+    hold_named};
+
+} // namespace setting
+
+/// Calls see(setting) with each description, in the order in which files have them.
+template <class See>
+constexpr void for_each_setting(const See& see) {
+  see(setting::mode);
+  see(setting::kernel);
+  see(setting::injective);
+  see(setting::radius);
+  see(setting::piece_fraction);
+  see(setting::filter);
+  see(setting::brushes);
+  see(setting::brush_strength);
+  see(setting::keep_volume);
+  see(setting::hold);
+}
+
+/// The same of what SculptorOptions have as it is (set_plain_settings()).
+template <class See>
+constexpr void for_each_plain_setting(const See& see) {
+  see(setting::mode);
+  see(setting::kernel);
+  see(setting::brushes);
+  see(setting::brush_strength);
+  see(setting::keep_volume);
+  see(setting::hold);
+}
+
+/// Returns the first setting that a loop does not take, and within what it must lie, such as
+/// "keep_volume must lie within 0 and 1"; empty: all can be taken. Allocates.
+std::string complaint_about(const LoopSettings& settings);
+/// Returns what they are, as all messages tell it: "type1, wendland-c2, never folds, radius 13.2 cm
+/// (0.248)".
+std::string in_words(const LoopSettings& settings, double units_per_metre);
+
+} // namespace nendo::flow

@@ -1,0 +1,62 @@
+#pragma once
+// The kinds of settings: what each has of its own, and how code reaches its value.
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include <nendo/flow/loop_settings.hpp>
+#include <nendo/flow/step.hpp>
+
+namespace nendo::flow {
+
+/// What a message, a file or a widget needs to know of a setting.
+struct SettingText {
+  std::string_view name;              ///< in timelines and JSON
+  std::string_view option;            ///< of the command line; empty: none
+  std::string_view words;             ///< in messages about a run
+  std::string_view label;             ///< beside a widget
+  std::string_view help;              ///< of the option
+  StepKind step = StepKind::settings; ///< a change of it alone
+  bool is_newer = false;              ///< older timelines do not have it
+};
+
+template <class T>
+struct Setting : SettingText {
+  T LoopSettings::* member = nullptr;
+
+  const T& of(const LoopSettings& settings) const noexcept { return settings.*member; }
+  T& of(LoopSettings& settings) const noexcept { return settings.*member; }
+};
+
+struct Range {
+  double min = 0.0;
+  double max = 0.0;
+
+  constexpr bool has(double value) const noexcept { // false for NaN
+    return value >= min && value <= max;
+  }
+};
+
+using SwitchSetting = Setting<bool>;
+using FilterSetting = Setting<hand::FilterOptions>;
+struct NumberSetting : Setting<double> {
+  Range range; ///< of what a loop takes; it has no unit
+};
+/// A length for each finger, thumb to little finger, in metres on the stage.
+struct FingersSetting : Setting<std::array<double, 5>> {
+  Range range; ///< of what a loop takes
+};
+/// One of several, which have names.
+template <class T>
+struct ChoiceSetting : Setting<T> {
+  std::string_view choices; ///< for messages
+  std::string_view (*name_of)(T choice) noexcept = nullptr;
+  std::optional<T> (*named)(std::string_view name) noexcept = nullptr;
+};
+/// The same for each finger.
+struct BrushesSetting : Setting<std::array<deform::Brush, 5>> {
+  std::string_view choices;
+};
+
+} // namespace nendo::flow

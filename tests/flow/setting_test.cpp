@@ -1,0 +1,127 @@
+// The description of the settings: each stands in it once, and what is made from it agrees.
+
+#include <cstdint>
+#include <limits>
+#include <set>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include <doctest/doctest.h>
+
+#include <nendo/flow/setting.hpp>
+
+namespace setting_test {
+
+using namespace nendo;
+using flow::LoopSettings;
+
+namespace {
+
+LoopSettings usable() {
+  LoopSettings settings;
+  settings.radius_m.fill(0.1);
+  return settings;
+}
+
+/// Changes a setting to another value.
+struct Change {
+  LoopSettings& settings;
+
+  void operator()(const flow::SwitchSetting& on) const { on.of(settings) = !on.of(settings); }
+  void operator()(const flow::NumberSetting& number) const {
+    number.of(settings) = number.range.max;
+  }
+  void operator()(const flow::FingersSetting& lengths) const { lengths.of(settings)[3] = 0.2; }
+  void operator()(const flow::FilterSetting& filter) const {
+    filter.of(settings).beta_hz_per_rad_s = 9.0;
+  }
+  void operator()(const flow::BrushesSetting& brushes) const {
+    brushes.of(settings)[2] = deform::Brush::twist;
+  }
+  template <class T>
+  void operator()(const flow::ChoiceSetting<T>& choice) const {
+    choice.of(settings) = choice.of(settings) == T{} ? static_cast<T>(1) : T{};
+  }
+};
+
+} // namespace
+
+TEST_SUITE("setting") {
+  TEST_CASE("each setting has names of its own, and is its member alone") {
+    std::set<std::string_view> names, options;
+    LoopSettings all = usable();
+    flow::for_each_setting([&](const auto& setting) {
+      CAPTURE(setting.name);
+      CHECK(names.insert(setting.name).second);
+      if (!setting.option.empty()) CHECK(options.insert(setting.option).second);
+      CHECK_FALSE(setting.words.empty());
+      CHECK_FALSE(setting.label.empty());
+      CHECK(setting.help.empty() == setting.option.empty());
+      LoopSettings changed = usable();
+      Change{changed}(setting);
+      CHECK(changed != usable());
+      CHECK(kind_of_change(usable(), changed) == setting.step);
+      setting.of(changed) = setting.of(usable());
+      CHECK(changed == usable());
+      Change{all}(setting);
+    });
+    CHECK(names.size() == 10); // as many as LoopSettings has
+    CHECK(kind_of_change(usable(), all) == flow::StepKind::settings);
+  }
+
+  TEST_CASE("all choices have names that are read back and stand in messages") {
+    flow::for_each_setting([](const auto& setting) {
+      if constexpr (requires { setting.named; }) {
+        for (std::uint8_t number = 0;; ++number) {
+          const auto choice = static_cast<std::decay_t<decltype(setting.of(usable()))>>(number);
+          const std::string name(setting.name_of(choice));
+          CHECK(setting.named(name) == choice);
+          CHECK(setting.choices.find(name) != std::string_view::npos);
+          if (setting.choices.ends_with(name)) break;
+          REQUIRE(number < 10);
+        }
+      }
+    });
+  }
+
+  TEST_CASE("what is out of its range is named, with the range") {
+    CHECK(flow::complaint_about(usable()).empty());
+    CHECK(usable().are_usable());
+    flow::for_each_setting([](const auto& setting) {
+      if constexpr (requires { setting.range; }) {
+        for (const double wrong : {setting.range.min - 1.0, 2.0 * setting.range.max,
+                                   std::numeric_limits<double>::quiet_NaN()}) {
+          LoopSettings settings = usable();
+          if constexpr (requires { setting.of(settings)[0]; })
+            setting.of(settings)[4] = wrong;
+          else
+            setting.of(settings) = wrong;
+          CHECK_FALSE(settings.are_usable());
+          CHECK(flow::complaint_about(settings).starts_with(setting.name));
+        }
+      }
+    });
+    LoopSettings settings = usable();
+    settings.keep_volume = 1.5;
+    CHECK(flow::complaint_about(settings) == "keep_volume must lie within 0 and 1");
+  }
+
+  TEST_CASE("settings are told in one way, radii on the stage and in the model's units") {
+    LoopSettings settings = usable();
+    CHECK(in_words(settings, 2.5) == "type1, wendland-c2, may fold, radius 10 cm (0.25)");
+    settings.mode = flow::Mode::type2;
+    settings.brushes.fill(deform::Brush::inflate);
+    settings.injective = true;
+    settings.radius_m[1] = 0.132;
+    CHECK(in_words(settings, 1000.0) == "type2, inflate at strength 0.5, wendland-c2, never folds, "
+                                        "radius 10 to 13.2 cm (100 to 132)");
+    settings.mode = flow::Mode::type1;
+    settings.hold = flow::Hold::hand;
+    settings.keep_volume = 0.75;
+    CHECK(in_words(settings, 1.0) == "type1, whole hand, wendland-c2, 0.75 of clay, radius 10 to "
+                                     "13.2 cm (0.1 to 0.132)");
+  }
+}
+
+} // namespace setting_test
