@@ -269,8 +269,8 @@ Option Command::add_flag(const std::string& names, bool& value, const std::strin
   return Option(*app_->add_flag(names, value, summary));
 }
 
-std::string Command::first_given(std::initializer_list<const char*> names) const {
-  for (const char* name : names)
+std::string Command::first_given(const std::vector<std::string>& names) const {
+  for (const std::string& name : names)
     if (const CLI::Option* option = app_->get_option_no_throw(name);
         option != nullptr && option->count() > 0)
       return name;

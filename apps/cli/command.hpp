@@ -5,6 +5,7 @@
 #include <functional>
 #include <initializer_list>
 #include <string>
+#include <vector>
 
 #include "cli/command_model.hpp"
 
@@ -63,7 +64,7 @@ public:
   void require_command();
   /// Returns the first of these options, by one name of each, that the arguments have; empty: none.
   /// For the function of on_chosen().
-  std::string first_given(std::initializer_list<const char*> names) const;
+  std::string first_given(const std::vector<std::string>& names) const;
   /// Leaves the command out of all lists, because it is not for users.
   void hide();
   /// Returns everything that was described so far, as --help shows it.

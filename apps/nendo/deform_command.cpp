@@ -19,6 +19,7 @@
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
 #include "session/loop_options.hpp"
+#include "session/setting_options.hpp"
 #include "takes/model_files.hpp"
 
 namespace nendo::app::deform_command {
@@ -33,9 +34,9 @@ struct Options {
   std::string up; ///< empty: y
   std::string radius;
   std::string common_radius;
-  bool injective = false;
   bool force = false;
-  session::KernelArguments kernel;
+  session::SettingArguments settings;
+  std::string polynomial = "none";
 };
 
 Result<std::optional<Support>> common_radius(const Options& options, bool is_used) {
@@ -180,12 +181,12 @@ Result<void> check_out(const Options& options) {
 }
 
 Result<void> deform_file(const Options& options) {
-  const auto csrbf = options.kernel.parse();
+  const auto settings = options.settings.parse();
+  if (!settings) return settings.error();
+  const auto csrbf = session::csrbf_for(*settings, options.polynomial);
   if (!csrbf) return csrbf.error();
-  if (auto fine =
-          flow::all_effective({.injective = options.injective, .keep_volume = csrbf->keep_volume},
-                              flow::Played::nothing, flow::Naming::options);
-      !fine)
+  constexpr auto nothing = flow::Played::nothing;
+  if (auto fine = flow::all_effective(*settings, nothing, flow::Naming::options); !fine)
     return fine;
   if (const auto fine = check_out(options); !fine) return fine.error();
   auto model = takes::read_model(options.mesh, takes::reading(options.up));
@@ -202,7 +203,7 @@ Result<void> deform_file(const Options& options) {
 
   const Points before = mesh.vertices;
   const auto by = csrbf->keep_volume > 0.0 ? deform_keeping_volume
-                  : options.injective      ? deform_in_links
+                  : settings->injective    ? deform_in_links
                                            : deform_at_once;
   const auto status = by(mesh.vertices, *vectors, *supports, *csrbf, options);
   if (!status) return status.error();
@@ -239,10 +240,10 @@ void add(cli::Command& program) {
       "--common-radius", options->common_radius,
       "Radius beside those of a radius column that all control vectors share, so that "
       "any choice has a solution; without it, the least of them with weight 0.01");
-  session::add_kernel_options(command, options->kernel);
-  command.add_flag("--injective", options->injective,
-                   "Never fold: in links that each stay injective; vectors that cross are held "
-                   "apart");
+  options->settings.add(command, flow::setting::kernel);
+  session::add_polynomial_option(command, options->polynomial);
+  options->settings.add(command, flow::setting::keep_volume);
+  options->settings.add(command, flow::setting::injective);
   command.add_option("--out", options->out, "Where to write the result, .obj, .ply or .stl")
       .required();
   command.add_flag("--force", options->force, cli::force_summary);

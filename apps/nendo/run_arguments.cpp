@@ -134,12 +134,7 @@ Result<void> read_take(RunArguments& options) {
 /// Of the settings that were asked for, and not of those that a run has by default.
 Result<void> check_settings(RunArguments& options) {
   const session::RunOptions& run = options.run;
-  const flow::SculptorOptions& sculptor = run.loop.sculptor;
-  const flow::LoopSettings asked{.mode = sculptor.mode,
-                                 .injective = options.injective,
-                                 .brushes = sculptor.brushes,
-                                 .keep_volume = sculptor.deformer.csrbf.keep_volume,
-                                 .hold = sculptor.hold};
+  const flow::LoopSettings& asked = options.asked;
   constexpr auto naming = flow::Naming::options;
   if (!run.puppet && !run.puppet_file.empty()) // one that is to be made
     if (auto fine = flow::compatible(asked, flow::Played::through_air, naming); !fine) return fine;
@@ -190,21 +185,15 @@ Result<void> check_refinable(const deform::Mesh& model, const RunArguments& opti
 }
 
 Result<void> set_shaping(RunArguments& options) {
-  flow::SculptorOptions& sculptor = options.run.loop.sculptor;
-  const auto mode = flow::mode_named(options.mode);
-  if (!mode && !options.mode.empty())
-    return Error{Errc::usage,
-                 "--mode " + options.mode + ": unknown; use " + std::string(flow::mode_names)};
-  sculptor.mode = mode.value_or(flow::Mode::type1);
-  if (auto fine = options.brush.parse(options.mode, sculptor); !fine) return fine;
-  const auto csrbf = options.kernel.parse();
+  const auto settings = options.settings.parse();
+  if (!settings) return settings.error();
+  options.asked = *settings;
+  const auto csrbf = session::csrbf_for(*settings, options.polynomial);
   if (!csrbf) return csrbf.error();
-  sculptor.deformer.csrbf = *csrbf;
-  const auto hold = flow::hold_named(options.hold);
-  if (!hold) return Error{Errc::usage, "--hold " + options.hold + ": unknown; use tips or hand"};
-  sculptor.hold = *hold;
-  if (options.injective && options.not_injective)
-    return Error{Errc::usage, "--injective and --no-injective: give one of them"};
+  flow::set_plain_settings(options.run.loop.sculptor, *settings);
+  options.run.loop.sculptor.deformer.csrbf = *csrbf;
+  if (settings->injective && options.not_injective)
+    return Error{Errc::usage, "--injective and --no-injective: choose one of them"};
   const auto supports = session::parse_radius(options.radius);
   if (!supports) return supports.error();
   options.run.supports = *supports;

@@ -12,6 +12,7 @@
 #include "session/live_view.hpp"
 #include "session/loop_options.hpp"
 #include "session/overdub.hpp"
+#include "session/setting_options.hpp"
 
 namespace nendo::app::run_command {
 
@@ -19,22 +20,20 @@ struct RunArguments {
   session::RunOptions run;
   std::vector<std::string> models; ///< files; several stand side by side
   std::string radius;
-  std::string up;   ///< empty: y
-  std::string mode; ///< empty: type1, or type2 with a brush
-  std::string hold = "tips";
+  std::string up;          ///< empty: y
   std::string wire, knife; ///< FROM:TO, when it is drawn; empty: when asked for
   std::string size;        ///< of the model on the stage; empty: as the mode has it
   std::string switch_action = "none";
   session::FilterArguments filter;
-  session::KernelArguments kernel;
-  session::BrushArguments brush;
+  session::SettingArguments settings;
+  flow::LoopSettings asked; ///< which check() makes of `settings`
+  std::string polynomial = "none";
   session::LoopArguments loop;
   session::ViewOptions view;
   session::OverdubArguments overdub;
   std::string decided_by_take; ///< the first option of the command line that a take decides
   std::vector<std::string> publish;
   std::string web; ///< [ADDR:]PORT; empty: none
-  bool injective = false;
   bool not_injective = false;
   std::optional<std::uint32_t> refine_to;
   std::string out_puppet;

@@ -105,7 +105,7 @@ void note_inside(const deform::Mesh& model, const session::RunOptions& options) 
 /// Turns the guard against folds on, or says that a model of this size goes without.
 void choose_injective(const deform::Mesh& model, RunArguments& options) {
   if (options.not_injective || options.run.puppet || options.run.over) return;
-  if (options.injective || model.vertices.cols() <= most_injective_unasked) {
+  if (options.asked.injective || model.vertices.cols() <= most_injective_unasked) {
     options.run.loop.sculptor.deformer.injective.emplace();
     return;
   }
@@ -212,20 +212,17 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
       "--puppet", run_options.puppet_file,
       "A puppet file, or face, moai or spot: what each finger does to the model, in place of "
       "hands that touch it. In a window with a MODEL, also a file that is to be made");
-  command.add_option(
-      "--mode", options.mode,
-      "type1: the rest shape follows the fingertips; type2: strokes along their paths; clay: whole "
-      "hands press; parts: hands that close take parts of the model and move them; without it, "
-      "type1, or type2 with a brush");
+  namespace setting = flow::setting;
+  session::SettingArguments& settings = options.settings;
+  settings.add(command, setting::mode);
   command.add_option(
       "--size", options.size,
       "The model's longest side on the stage, where the hands are, e.g. 20cm; without "
       "it 80 cm, with --mode clay 7.5 cm, and with parts 25 cm");
-  command.add_option(
-      "--radius", options.radius,
-      "Radius of a fingertip's influence, in the mesh's units, without it 0.2 of its longest side; "
-      "or five with commas between, thumb to little finger; 10+40:0.5 is a mix");
-  session::add_brush_options(command, options.brush);
+  command.add_option(std::string(setting::radius.option), options.radius,
+                     std::string(setting::radius.help));
+  settings.add(command, setting::brushes);
+  settings.add(command, setting::brush_strength);
   command.add_option("--mask", run_options.mask_file,
                      "A file of places that fingertips leave as they are: [[masks]] with at and "
                      "radius, as in a puppet's file; the window paints and saves them");
@@ -247,15 +244,27 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
                    "symmetry, or of x = 0");
   gloves::add_calibration_options(command, run_options.calibration, true);
   gloves::add_hand_length(command, run_options.length);
-  session::add_kernel_options(command, options.kernel);
-  command.add_option("--hold", options.hold,
-                     "What of a hand holds the model in type 1: tips, or hand, 45 points all over "
-                     "it");
-  command.add_flag("--injective", options.injective,
-                   "Never fold: in links that each stay injective; fingertips whose ways cross are "
-                   "held apart. By default with models of up to " +
+  settings.add(command, setting::kernel);
+  session::add_polynomial_option(command, options.polynomial);
+  settings.add(command, setting::keep_volume);
+  settings.add(command, setting::hold);
+  settings.add(command, setting::injective);
+  command.add_flag("--no-injective", options.not_injective,
+                   "Whatever the fingertips ask for; without either, --injective with models of up "
+                   "to " +
                        std::to_string(most_injective_unasked) + " vertices");
-  command.add_flag("--no-injective", options.not_injective, "Whatever the fingertips ask for");
+}
+
+/// The options that the recording of --over decides.
+std::vector<std::string> decided_by_take() {
+  std::vector<std::string> options{"--puppet", "--mask", "--symmetry", "--size"};
+  flow::for_each_setting([&](const flow::SettingText& setting) {
+    if (!setting.option.empty()) options.emplace_back(setting.option);
+  });
+  for (const char* more : {"--polynomial", "--no-injective", "--rate", "--policy", "--switch",
+                           "--filter-min-cutoff", "--filter-beta"})
+    options.emplace_back(more);
+  return options;
 }
 
 void add_run_options(cli::Command& command, const std::shared_ptr<RunArguments>& options) {
@@ -300,10 +309,7 @@ void add_run_options(cli::Command& command, const std::shared_ptr<RunArguments>&
   command.add_option("--frames", options->view.frames,
                      "The window's pictures after which it ends; 0: when it is closed");
   command.on_chosen([options, command] {
-    options->decided_by_take = command.first_given(
-        {"--puppet", "--mask", "--symmetry", "--mode", "--size", "--radius", "--kernel",
-         "--polynomial", "--keep-volume", "--hold", "--injective", "--no-injective", "--rate",
-         "--policy", "--switch", "--filter", "--filter-min-cutoff", "--filter-beta"});
+    options->decided_by_take = command.first_given(decided_by_take());
     return run(*options);
   });
 }

@@ -16,6 +16,7 @@
 #include "cli/terminal.hpp"
 #include "nendo/commands.hpp"
 #include "session/live_view.hpp"
+#include "session/setting_options.hpp"
 #include "stress/report.hpp"
 #include "takes/model_files.hpp"
 
@@ -156,11 +157,12 @@ void add(cli::Command& program) {
   command.add_option("MODEL,--mesh", arguments->run.mesh,
                      "OBJ, PLY, STL or glTF file; without it, the shipped Moai");
   takes::add_up_option(command, arguments->up);
-  command.add_option("--mode", arguments->mode, std::string(flow::mode_names));
+  session::add_setting(command, flow::setting::mode, arguments->mode);
   command.add_option("--changes", arguments->changes_a_minute,
                      "Changes the radius so many times a minute, in every other second, and counts "
                      "the seconds with and without apart");
-  command.add_option("--radius", arguments->radius, "As of nendo run");
+  command.add_option(std::string(flow::setting::radius.option), arguments->radius,
+                     std::string(flow::setting::radius.help));
   command.add_flag("--view", arguments->view,
                    "Looks on with the live window, to see what that costs the loop");
   arguments->loop.add_to(command, true);

@@ -1,9 +1,9 @@
 #include "session/loop_options.hpp"
 
-#include <cmath>
-
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
+
+#include <nendo/flow/setting.hpp>
 
 #include "cli/two_processors.hpp"
 
@@ -119,9 +119,8 @@ Result<hand::FilterOptions> FilterArguments::parse() const {
 
 void add_filter_options(cli::Command& command, FilterArguments& arguments) {
   const hand::FilterOptions usual;
-  command.add_option("--filter", arguments.kind,
-                     "off, or one-euro: smooths the joints' angles, at rest more than in motion; "
-                     "the summary says how late that makes them");
+  const flow::FilterSetting& filter = flow::setting::filter;
+  command.add_option(std::string(filter.option), arguments.kind, std::string(filter.help));
   command.add_option(
       "--filter-min-cutoff", arguments.min_cutoff_hz,
       fmt::format("The filter's cutoff for a joint at rest, Hz; lower is calmer, and later. "
@@ -137,69 +136,27 @@ void add_filter_options(cli::Command& command, FilterArguments& arguments) {
                      "clay; or measured: hands are as the gloves tell, to the millimetre");
 }
 
-Result<deform::CsrbfOptions> KernelArguments::parse() const {
-  deform::CsrbfOptions options;
-  const auto known_kernel = deform::wendland_named(kernel);
-  if (!known_kernel) {
-    return Error{Errc::usage,
-                 "--kernel " + kernel +
-                     ": unknown; use wendland-c0, wendland-c2, wendland-c4 or wendland-c6"};
-  }
-  const auto known_polynomial = deform::polynomial_named(polynomial);
-  if (!known_polynomial) {
+void add_polynomial_option(cli::Command& command, std::string& name) {
+  command.add_option("--polynomial", name,
+                     "none, constant or linear; anything but none moves the whole model");
+}
+
+Result<deform::CsrbfOptions> csrbf_for(const flow::LoopSettings& settings,
+                                       const std::string& polynomial) {
+  const auto known = deform::polynomial_named(polynomial);
+  if (!known)
     return Error{Errc::usage,
                  "--polynomial " + polynomial + ": unknown; use none, constant or linear"};
-  }
-  if (!(keep_volume >= 0.0 && keep_volume <= 1.0))
-    return Error{Errc::usage, "--keep-volume: use 0, air, to 1, clay"};
-  if (keep_volume > 0.0 && *known_polynomial != deform::Polynomial::none)
-    return Error{Errc::usage, "--keep-volume and --polynomial " + polynomial +
-                                  ": a polynomial stretches the whole model; leave it out"};
-  options.kernel = *known_kernel;
-  options.polynomial = *known_polynomial;
-  options.keep_volume = keep_volume;
-  return options;
-}
-
-void add_kernel_options(cli::Command& command, KernelArguments& arguments) {
-  command.add_option("--kernel", arguments.kernel,
-                     "wendland-c0, wendland-c2, wendland-c4 or wendland-c6");
-  command.add_option("--polynomial", arguments.polynomial,
-                     "none, constant or linear; anything but none moves the whole model");
-  command.add_option("--keep-volume", arguments.keep_volume,
-                     "From 0, air, to 1, clay: what is pressed in comes out nearby");
-}
-
-Result<void> BrushArguments::parse(const std::string& mode, flow::SculptorOptions& sculptor) const {
-  if (strength && !(std::abs(*strength) <= 1.0))
-    return Error{Errc::usage, "--strength: use -1 to 1; below 0 a brush does the opposite"};
-  if (brush.empty()) {
-    if (strength)
-      return Error{Errc::usage, "--strength: there is no brush; add --brush, as in "
-                                "--brush inflate"};
-    return {};
-  }
-  const auto brushes = flow::parse_brushes(brush);
-  if (!brushes) {
-    return Error{Errc::usage, "--brush " + brush +
-                                  ": use pull, none, push, inflate, smooth, flatten, twist or "
-                                  "scale, or five of them with commas between, thumb to little "
-                                  "finger"};
-  }
-  sculptor.brushes = *brushes;
-  sculptor.brush_strength = strength.value_or(sculptor.brush_strength);
-  if (mode.empty()) sculptor.mode = flow::Mode::type2;
-  return {};
-}
-
-void add_brush_options(cli::Command& command, BrushArguments& arguments) {
-  command.add_option("--brush", arguments.brush,
-                     "What a finger does along its way, in type 2: pull, none, push, inflate, "
-                     "smooth, flatten, twist or scale; or five with commas between, thumb to "
-                     "little finger");
-  command.add_option(
-      "--strength", arguments.strength,
-      "How much a brush does, -1 to 1, without it 0.5; below 0 it does the opposite");
+  const flow::NumberSetting& volume = flow::setting::keep_volume;
+  if (volume.of(settings) > 0.0 && *known != deform::Polynomial::none)
+    return Error{Errc::usage,
+                 fmt::format("{} and --polynomial {}: a polynomial stretches the whole model; "
+                             "choose one of them",
+                             volume.option, polynomial)};
+  flow::SculptorOptions sculptor;
+  flow::set_plain_settings(sculptor, settings);
+  sculptor.deformer.csrbf.polynomial = *known;
+  return sculptor.deformer.csrbf;
 }
 
 nlohmann::ordered_json grants_json(const std::vector<flow::Grant>& grants) {

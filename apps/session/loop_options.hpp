@@ -47,27 +47,11 @@ struct FilterArguments {
 };
 void add_filter_options(cli::Command& command, FilterArguments& arguments);
 
-/// The options --kernel, --polynomial and --keep-volume.
-struct KernelArguments {
-  std::string kernel = "wendland-c2";
-  std::string polynomial = "none";
-  double keep_volume = 0.0;
-
-  /// Error: usage, naming the known names.
-  Result<deform::CsrbfOptions> parse() const;
-};
-void add_kernel_options(cli::Command& command, KernelArguments& arguments);
-
-/// The options --brush and --strength.
-struct BrushArguments {
-  std::string brush; ///< one name, or five with commas between; empty: pull
-  std::optional<double> strength;
-
-  /// Reads them into the sculptor, which is then of type 2 if `mode` is empty. Error: usage, naming
-  /// what can be used.
-  Result<void> parse(const std::string& mode, flow::SculptorOptions& sculptor) const;
-};
-void add_brush_options(cli::Command& command, BrushArguments& arguments);
+/// Adds --polynomial. What `name` holds is the default.
+void add_polynomial_option(cli::Command& command, std::string& name);
+/// Returns the solver's options for these settings. Error: usage, naming what can be used.
+Result<deform::CsrbfOptions> csrbf_for(const flow::LoopSettings& settings,
+                                       const std::string& polynomial);
 
 /// Returns an object for each right that was asked for, with name, wanted, granted, why and remedy.
 nlohmann::ordered_json grants_json(const std::vector<flow::Grant>& grants);

@@ -8,6 +8,7 @@
 #include "cli/cli.hpp"
 #include "cli/quantities.hpp"
 #include "session/place_loop.hpp"
+#include "session/setting_options.hpp"
 #include "stress/load.hpp"
 
 namespace nendo::stress {
@@ -23,9 +24,8 @@ Result<void> parse_loop(const StressArguments& arguments, session::RunOptions& r
   if (!(arguments.interval_us >= least_us && arguments.interval_us <= most_us))
     return usage("--interval: use 100 to 1000000 microseconds");
   run.loop.rate_hz = 1e6 / arguments.interval_us;
-  const auto mode = flow::mode_named(arguments.mode);
-  if (!mode)
-    return usage("--mode " + arguments.mode + ": unknown; use " + std::string(flow::mode_names));
+  const auto mode = session::parse_setting(flow::setting::mode, arguments.mode);
+  if (!mode) return mode.error();
   run.loop.sculptor.mode = *mode;
   const auto stages = parse_stages(arguments.stages);
   if (!stages) return stages.error();
