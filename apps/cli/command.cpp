@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include <nendo/base/result.hpp>
+#include <nendo/base/text.hpp>
 #include <nendo/version.hpp>
 
 #include "cli/cli.hpp"
@@ -51,7 +52,7 @@ std::string is_duration(const std::string& text) {
 }
 
 std::optional<double> millimetres_of(const std::string& text) {
-  if (const auto length_m = metres_of(text)) return 1e3 * *length_m;
+  if (const auto length_m = to_metres(text)) return 1e3 * *length_m;
   return number_of(text);
 }
 

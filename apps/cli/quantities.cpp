@@ -37,11 +37,6 @@ std::optional<double> seconds_of(std::string_view text) noexcept {
   return in_units(text, units);
 }
 
-std::optional<double> metres_of(std::string_view text) noexcept {
-  constexpr std::array<Unit, 3> units{{{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}}};
-  return in_units(text, units);
-}
-
 std::optional<double> number_of(std::string_view text) noexcept {
   constexpr std::array<Unit, 1> none{{{"", 1.0}}};
   return in_units(text, none);

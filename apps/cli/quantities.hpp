@@ -1,6 +1,6 @@
 #pragma once
-// Durations and lengths as people type them: a number, and mostly a unit. Every option that takes
-// one is read by these two functions.
+// Durations as people type them, a number and mostly a unit, and the words of messages about
+// durations and lengths. nendo::to_metres() reads lengths.
 
 #include <optional>
 #include <string>
@@ -17,10 +17,6 @@ inline constexpr std::string_view length_words = "a length like 1mm, 0.5cm or 0.
 /// Returns the seconds of "90", "90s", "500ms", "10m", "2h" or "1d". A bare number is seconds, and
 /// any finite number will do, 0 and negative ones too. Nothing if the text is no duration.
 std::optional<double> seconds_of(std::string_view text) noexcept;
-
-/// Returns the metres of "5mm", "1.8cm" or "0.2m". A bare number is none, because it has another
-/// meaning for each option. Nothing if the text is no length.
-std::optional<double> metres_of(std::string_view text) noexcept;
 
 /// Returns the number that is all of the text, if it is finite.
 std::optional<double> number_of(std::string_view text) noexcept;

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include <nendo/base/text.hpp>
+
 #include "cli/output_place.hpp"
-#include "cli/quantities.hpp"
 #include "timeline/timeline_file.hpp"
 
 namespace nendo::edit {
@@ -68,7 +69,7 @@ Result<timeline::Tolerance> parse_tolerance(const std::string& text) {
   std::string_view rest = text;
   double value = 0.0;
   timeline::Tolerance tolerance;
-  const auto length_m = cli::metres_of(text);
+  const auto length_m = to_metres(text);
   const bool fine = cut_number(rest, value) && value >= 0.0;
   if (fine && length_m) {
     tolerance.tip_m = tolerance.point_m = *length_m;

@@ -67,8 +67,8 @@ Result<Supports> supports_for(const ControlVectors& vectors, const Options& opti
   if (!shared) {
     return Error{Errc::usage,
                  "--radius " + options.radius +
-                     ": use a length > 0 in the mesh's units, or several with weights, "
-                     "like 10+40:0.5"};
+                     ": use a number > 0, in the mesh's units (there is no stage for lengths "
+                     "like 3cm), or several with weights, like 10+40:0.5"};
   }
   return Supports{std::move(*shared), {}};
 }

@@ -9,6 +9,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <nendo/base/endings.hpp>
+#include <nendo/base/text.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/up_axis.hpp>
 #include <nendo/version.hpp>
@@ -77,7 +78,7 @@ Result<exporting::GltfOptions> parse_tolerance(const std::string& text) {
   exporting::GltfOptions gltf;
   const bool percent = text.ends_with('%');
   const auto number = cli::number_of(percent ? text.substr(0, text.size() - 1) : text);
-  gltf.tolerance_m = cli::metres_of(text);
+  gltf.tolerance_m = to_metres(text);
   gltf.tolerance = number.value_or(0.0) / (percent ? 100.0 : 1.0);
   const double value = gltf.tolerance_m.value_or(gltf.tolerance);
   if (value > 0.0 && value <= most) return gltf;

@@ -10,6 +10,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <nendo/base/endings.hpp>
+#include <nendo/base/text.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/refinement.hpp>
 #include <nendo/flow/compatible.hpp>
@@ -146,12 +147,16 @@ Result<void> set_size(RunArguments& options) {
   session::RunOptions& run = options.run;
   run.model_size_m = sculpting::usual_size_m(run.loop.sculptor.mode);
   if (options.size.empty()) return {};
-  const auto size_m = cli::metres_of(options.size);
+  auto size_m = to_metres(options.size);
+  if (const auto size_cm = cli::number_of(options.size)) {
+    size_m = *size_cm / 100.0;
+    cli::note("--size " + options.size + ": is in centimetres, for it has no unit");
+  }
   constexpr double least_m = 0.01;
   constexpr double most_m = 10.0;
   if (!size_m || !(*size_m >= least_m && *size_m <= most_m))
     return Error{Errc::usage, "--size " + options.size + ": use " + std::string(cli::length_words) +
-                                  ", from 1cm to 10m"};
+                                  ", from 1cm to 10m; a bare number is centimetres"};
   run.model_size_m = *size_m;
   return {};
 }
@@ -194,9 +199,8 @@ Result<void> set_shaping(RunArguments& options) {
   options.run.loop.sculptor.deformer.csrbf = *csrbf;
   if (settings->injective && options.not_injective)
     return Error{Errc::usage, "--injective and --no-injective: choose one of them"};
-  const auto supports = session::parse_radius(options.radius);
-  if (!supports) return supports.error();
-  options.run.supports = *supports;
+  if (const auto supports = session::parse_radius(options.run.radius, 1.0); !supports)
+    return supports.error();
   const auto filter = options.filter.parse();
   if (!filter) return filter.error();
   options.run.filter = *filter;

@@ -19,10 +19,9 @@ namespace nendo::app::run_command {
 struct RunArguments {
   session::RunOptions run;
   std::vector<std::string> models; ///< files; several stand side by side
-  std::string radius;
-  std::string up;          ///< empty: y
-  std::string wire, knife; ///< FROM:TO, when it is drawn; empty: when asked for
-  std::string size;        ///< of the model on the stage; empty: as the mode has it
+  std::string up;                  ///< empty: y
+  std::string wire, knife;         ///< FROM:TO, when it is drawn; empty: when asked for
+  std::string size;                ///< of the model on the stage; empty: as the mode has it
   std::string switch_action = "none";
   session::FilterArguments filter;
   session::SettingArguments settings;

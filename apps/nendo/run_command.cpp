@@ -58,21 +58,23 @@ Result<Views> open_views(const RunArguments& options) {
 
 /// Tells what is hardly meant: a radius in another unit than the model's.
 void note_oddities(const deform::Mesh& model, const RunArguments& options) {
-  if (!options.run.supports) return;
-  const deform::Supports& supports = *options.run.supports;
+  const deform::Box box = deform::box_of_faces(model);
+  const double size = (box.highest - box.lowest).maxCoeff();
+  const auto parsed = session::parse_radius(options.run.radius, size / options.run.model_size_m);
+  if (!parsed || !*parsed) return;
+  const deform::Supports& supports = **parsed;
   double reach = supports.own.empty() ? 0.0 : supports.own.front().support.radius;
   for (const auto& own : supports.own)
     reach = std::min(reach, own.support.radius);
   for (const auto& shared : supports.shared)
     reach = std::max(reach, shared.radius);
-  const deform::Box box = deform::box_of_faces(model);
   deform::Points corners(3, 2); // no fingertip that touches the model is farther from all of it
   corners << box.lowest, box.highest;
   if (!deform::reach_all_of(box, corners, deform::one_radius(reach))) return;
-  cli::note("--radius " + options.radius +
+  cli::note("--radius " + options.run.radius +
             ": a fingertip reaches all of the model, whose longest "
             "side is " +
-            fmt::format("{:.3g}", (box.highest - box.lowest).maxCoeff()) +
+            fmt::format("{:.3g}", size) +
             ", so no part of it stays as it is; use a smaller radius to shape a part");
 }
 
@@ -218,8 +220,8 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
   command.add_option(
       "--size", options.size,
       "The model's longest side on the stage, where the hands are, e.g. 20cm; without "
-      "it 80 cm, with --mode clay 7.5 cm, and with parts 25 cm");
-  command.add_option(std::string(setting::radius.option), options.radius,
+      "it 80 cm, with --mode clay 7.5 cm, and with parts 25 cm; a bare number is centimetres");
+  command.add_option(std::string(setting::radius.option), run_options.radius,
                      std::string(setting::radius.help));
   settings.add(command, setting::brushes);
   settings.add(command, setting::brush_strength);

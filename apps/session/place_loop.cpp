@@ -41,15 +41,17 @@ flow::Placement placement_for(const std::vector<gloves::OpenHand>& open,
 }
 
 Error bad_radius(const std::string& text, const std::string& why) {
-  return {Errc::usage, "--radius" + text + ": " + why +
-                           "; use a length > 0 in the mesh's units, five with commas between (or "
-                           "ten, left hand first), or leave it out"};
+  return {Errc::usage,
+          "--radius" + text + ": " + why +
+              "; use a length > 0 in the model's units, as 0.25, or on the stage, as "
+              "3cm, five with commas between (or ten, left hand first), or leave it out"};
 }
 
-Result<deform::Supports> supports_for(const RunOptions& options, std::size_t hands,
+Result<deform::Supports> supports_for(const std::optional<deform::Supports>& of_two,
+                                      std::size_t hands, flow::Mode mode,
                                       const deform::Mesh& model) {
-  if (!options.supports) return sculpting::usual_supports(model, options.loop.sculptor.mode);
-  auto supports = flow::supports_of_hands(*options.supports, static_cast<int>(hands));
+  if (!of_two) return sculpting::usual_supports(model, mode);
+  auto supports = flow::supports_of_hands(*of_two, static_cast<int>(hands));
   if (!supports) return bad_radius("", "is for two hands, and there is one");
   return *std::move(supports);
 }
@@ -135,10 +137,11 @@ Result<PlacedLoop> place_over(const RunOptions& options, const std::vector<glove
 
 } // namespace
 
-Result<std::optional<deform::Supports>> parse_radius(const std::string& text) {
+Result<std::optional<deform::Supports>> parse_radius(const std::string& text,
+                                                     double units_per_metre) {
   if (text.empty()) return std::optional<deform::Supports>();
-  auto supports = flow::parse_finger_supports(text);
-  if (!supports) return bad_radius(" " + text, "is not a number above 0, nor a list of them");
+  auto supports = flow::parse_finger_supports(text, units_per_metre);
+  if (!supports) return bad_radius(" " + text, "is not a length above 0, nor a list of them");
   return supports;
 }
 
@@ -154,7 +157,10 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
   if (options.over) return place_over(options, hands, model);
   flow::LoopOptions loop_options = options.loop;
   auto inputs = inputs_of(hands, options);
-  auto supports = supports_for(options, inputs.size(), model);
+  const auto placement = placement_for(hands, inputs, model, options);
+  const auto of_two = parse_radius(options.radius, placement.units_per_metre);
+  if (!of_two) return of_two.error();
+  auto supports = supports_for(*of_two, inputs.size(), options.loop.sculptor.mode, model);
   if (!supports) return supports.error();
   sculpting::set_supports(*std::move(supports), loop_options.sculptor);
 
@@ -163,7 +169,6 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
           ? set_rig(options, model, loop_options)
           : set_masks(options, model, 5 * static_cast<Eigen::Index>(inputs.size()), loop_options);
   if (!fine) return fine.error();
-  const auto placement = placement_for(hands, inputs, model, options);
   constexpr Eigen::Index points_to_add = 64;
   PlacedSetup setup{inputs, placement, loop_options,
                     options.out_puppet.file.empty() ? 0 : points_to_add};

@@ -36,7 +36,7 @@ struct LoopStart {
   const std::vector<gloves::OpenHand>& hands;
 };
 
-/// Makes the loop that options.loop describes, with the supports of options.supports, and places
+/// Makes the loop that options.loop describes, with the radii of options.radius, and places
 /// the hands at the model, or makes the loop of options.over, with them as layers. Errors: usage
 /// (radius, or too many layers), failed (the hands cannot take hold of the
 /// model).
@@ -51,7 +51,9 @@ struct FrameCapacity {
 };
 FrameCapacity frame_capacity(const PlacedLoop& placed);
 
-/// Returns the supports that --radius asks for, or nothing if the text is empty. Error: usage.
-Result<std::optional<deform::Supports>> parse_radius(const std::string& text);
+/// Returns the supports of both hands' fingertips that --radius asks for, in model units; nothing
+/// if the text is empty. Error: usage.
+Result<std::optional<deform::Supports>> parse_radius(const std::string& text,
+                                                     double units_per_metre);
 
 } // namespace nendo::session

@@ -38,9 +38,8 @@ struct RunOptions {
   std::uint32_t refine_to = 0;
   bool changes_topology = false; ///< meanwhile, what is thin parts, opens or fuses
   double duration_s = 0.0;       ///< 0: until a stop signal
-  /// The supports of both hands' fingertips in model units (flow::parse_finger_supports). nullopt
-  /// means one radius for all, computed from the model's size.
-  std::optional<deform::Supports> supports{};
+  /// Of fingertips, as parse_radius() reads it; empty: one for all, computed from the model's size.
+  std::string radius;
   double model_size_m = 0.8; ///< the model's longest side, on the stage
   bool json = false;
   bool verbose = false; ///< the summary has what matters to those who look into a deformation, too

@@ -33,9 +33,9 @@ Result<void> parse_loop(const StressArguments& arguments, session::RunOptions& r
   if (const auto fine = arguments.loop.parse(run.loop, run.realtime); !fine) return fine.error();
   if (run.loop.policy == flow::OverrunPolicy::sample && !stages->input)
     return usage("--policy sample: needs the stage input, for samples are what it waits for");
-  const auto supports = session::parse_radius(arguments.radius);
-  if (!supports) return supports.error();
-  run.supports = *supports;
+  run.radius = arguments.radius;
+  if (const auto supports = session::parse_radius(run.radius, 1.0); !supports)
+    return supports.error();
   return {};
 }
 

@@ -11,6 +11,8 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include <nendo/base/text.hpp>
+
 #include "cli/nearest_word.hpp"
 #include "support/program.hpp"
 
@@ -60,12 +62,12 @@ TEST_SUITE("quantities") {
   TEST_CASE("a length has a unit, and metres, centimetres and millimetres agree") {
     for (const char* text : {"250mm", "25cm", "0.25m", "2.5e1cm"}) {
       CAPTURE(text);
-      REQUIRE(cli::metres_of(text));
-      CHECK(*cli::metres_of(text) == doctest::Approx(0.25).epsilon(1e-15));
+      REQUIRE(to_metres(text));
+      CHECK(*to_metres(text) == doctest::Approx(0.25).epsilon(1e-15));
     }
     for (const char* none : {"", "250", "mm", "3 mm", "3km", "3mmm", "nanm", "infmm", "1e308x"}) {
       CAPTURE(none);
-      CHECK_FALSE(cli::metres_of(none));
+      CHECK_FALSE(to_metres(none));
     }
     CHECK(cli::number_of("-2.5e-1") == -0.25);
     for (const char* none : {"", "1mm", "1s", "nan", "inf", "1 "})

@@ -171,6 +171,32 @@ TEST_SUITE("run") {
     }
   }
 
+  TEST_CASE("lengths are taken with a unit and without, and both are told") {
+    const TemporaryFolder folder;
+    const deform::Mesh moai = shipped("moai.obj");
+    const double side =
+        (moai.vertices.rowwise().maxCoeff() - moai.vertices.rowwise().minCoeff()).maxCoeff();
+    const auto run = [&](std::vector<std::string> more) {
+      std::vector<std::string> arguments{
+          "run",        "--right", "sim:rest", "--out", (folder.path() / "shape.ply").string(),
+          "--duration", "200ms"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      const auto done = nendo::test::nendo(arguments);
+      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+      return done;
+    };
+    const auto bare = run({"--size", "20", "--radius", "3cm", "--json"});
+    CHECK(last_object(bare)["radius"].get<double>() == doctest::Approx(0.15 * side));
+    CHECK(bare.err.find("--size 20: is in centimetres") != std::string::npos);
+    const std::string radius = std::to_string(0.15 * side);
+    const auto plain = run({"--size", "20cm", "--radius", radius});
+    CHECK(plain.err.find("centimetres") == std::string::npos);
+    CHECK(plain.out.find("radius 3 cm (") != std::string::npos);
+    const auto mixed =
+        run({"--size", "20cm", "--radius", "1cm,3cm+" + radius + ":0.5,2cm,2cm,2cm"});
+    CHECK(mixed.out.find("radius 1 to 3 cm (") != std::string::npos);
+  }
+
   TEST_CASE("hands press clay, its volume stays, and the recording replays to the same bytes") {
     const TemporaryFolder folder;
     const auto at = [&](const char* name) { return (folder.path() / name).string(); };

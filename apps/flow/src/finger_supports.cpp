@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <utility>
 #include <vector>
+
+#include <nendo/base/text.hpp>
 
 namespace nendo::flow {
 namespace {
@@ -11,10 +14,28 @@ namespace {
 constexpr Eigen::Index fingertips_of_hand = 5;
 constexpr Eigen::Index fingertips_of_two = 2 * fingertips_of_hand;
 
+/// Returns the text with lengths on the stage in model units. Weights, behind a colon, have no
+/// unit.
+std::string in_model_units(std::string_view text, double units_per_metre) {
+  std::string plain;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of(",+:"), text.size());
+    const std::string_view part = text.substr(0, end);
+    const bool is_radius = !plain.ends_with(':');
+    const auto length_m = is_radius ? to_metres(part) : std::nullopt;
+    const double length = length_m.value_or(0.0) * units_per_metre;
+    plain += length_m && std::isfinite(length) ? decimal_text(length) : std::string(part);
+    if (end < text.size()) plain += text[end];
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return plain;
+}
+
 } // namespace
 
-std::optional<deform::Supports> parse_finger_supports(std::string_view text) {
-  return deform::parse_supports_by_point(text, fingertips_of_two);
+std::optional<deform::Supports> parse_finger_supports(std::string_view text,
+                                                      double units_per_metre) {
+  return deform::parse_supports_by_point(in_model_units(text, units_per_metre), fingertips_of_two);
 }
 
 std::optional<deform::Supports> supports_of_hands(const deform::Supports& of_two, int hands) {

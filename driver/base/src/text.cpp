@@ -91,6 +91,18 @@ std::optional<double> to_finite_number(std::string_view field) noexcept {
   return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
+std::optional<double> to_metres(std::string_view field) noexcept {
+  double unit_m = 1.0;
+  if (!field.ends_with('m')) return std::nullopt;
+  field.remove_suffix(1);
+  if (field.ends_with('m') || field.ends_with('c')) {
+    unit_m = field.ends_with('m') ? 1e-3 : 1e-2;
+    field.remove_suffix(1);
+  }
+  const auto number = to_finite_number(field);
+  return number ? std::optional(*number * unit_m) : std::nullopt;
+}
+
 std::optional<std::int64_t> to_integer(std::string_view field) noexcept {
   return parse_whole<std::int64_t>(field);
 }

@@ -12,9 +12,11 @@
 namespace nendo::flow {
 
 /// Parses one radius for all fingertips, or several with commas between (see
-/// deform::parse_supports_by_point), in model units. Returns the supports of both hands' ten
-/// fingertips, left hand first, or nothing if the text is not that.
-std::optional<deform::Supports> parse_finger_supports(std::string_view text);
+/// deform::parse_supports_by_point): in model units, or on the stage, with a unit: "3cm". Returns
+/// the supports of both hands' ten fingertips, left hand first, in model units, or nothing if the
+/// text is not that.
+std::optional<deform::Supports> parse_finger_supports(std::string_view text,
+                                                      double units_per_metre = 1.0);
 
 /// The supports of a loop with that many hands, 1 or 2, of those of two hands. Returns nothing if
 /// there is one hand, and the two hands differ.

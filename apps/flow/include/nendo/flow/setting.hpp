@@ -34,7 +34,8 @@ inline constexpr SwitchSetting injective{
     &LoopSettings::injective};
 inline constexpr FingersSetting radius{
     {{"radius_m", "--radius", "radius", "radius",
-      "Radius of a fingertip's influence, in the mesh's units, without it 0.2 of its longest side; "
+      "Radius of a fingertip's influence, in the model's units, or with a unit on the stage, e.g. "
+      "3cm; without it, 0.2 of the model's longest side; "
       "or five with commas between, thumb to little finger; 10+40:0.5 is a mix",
       StepKind::radius},
      &LoopSettings::radius_m},

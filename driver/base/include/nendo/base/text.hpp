@@ -48,6 +48,9 @@ std::vector<std::string_view> fields_of(std::string_view line, std::size_t most 
 /// and "inf" are numbers, too; use to_finite_number() where they are not wanted.
 std::optional<double> to_number(std::string_view field) noexcept;
 std::optional<double> to_finite_number(std::string_view field) noexcept;
+/// Returns the metres of "5mm", "1.8cm" or "0.2m". Nothing if the field is no finite length, or has
+/// no unit: a bare number has another meaning for each reader.
+std::optional<double> to_metres(std::string_view field) noexcept;
 std::optional<std::int64_t> to_integer(std::string_view field) noexcept;
 
 /// Returns the shortest decimals that read back to the same double. They have a point or an
