@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <utility>
 
+#include <nendo/flow/setting.hpp>
+
 #include "viewer/row_button.hpp"
 #include "viewer/widgets.hpp"
 
@@ -45,6 +47,16 @@ std::array<float, 15> bends_of(const hand::HandPose& pose) {
                                            static_cast<Joint>(metacarpal + joint + 1));
   }
   return bends;
+}
+
+/// Chooses so many values in 1, as `format` shows them.
+void slider(const flow::NumberSetting& number, flow::LoopSettings& chosen, double steps,
+            const char* format) {
+  auto value = static_cast<float>(number.of(chosen));
+  if (ImGui::SliderFloat(number.label.data(), &value, static_cast<float>(number.range.min),
+                         static_cast<float>(number.range.max), format))
+    number.of(chosen) =
+        number.range.nearest(std::round(steps * static_cast<double>(value)) / steps);
 }
 
 void chart(const char* name, const Strip& strip, const char* unit) {
@@ -134,7 +146,8 @@ void LiveWindow::Panel::brushes(flow::LoopSettings& chosen) {
   for (std::size_t finger = 0; finger < (one_brush ? 1 : finger_names.size()); ++finger) {
     deform::Brush& brush = chosen.brushes[finger];
     ImGui::PushID(static_cast<int>(finger));
-    if (ImGui::BeginCombo(one_brush ? "brush" : finger_names[finger], name_of(brush).data())) {
+    if (ImGui::BeginCombo(one_brush ? flow::setting::brushes.label.data() : finger_names[finger],
+                          name_of(brush).data())) {
       for (std::uint8_t number = 0; number < deform::brush_count; ++number) {
         const auto one = static_cast<deform::Brush>(number);
         if (ImGui::Selectable(name_of(one).data(), one == brush)) brush = one;
@@ -145,10 +158,7 @@ void LiveWindow::Panel::brushes(flow::LoopSettings& chosen) {
   }
   if (one_brush) chosen.brushes.fill(chosen.brushes[0]);
   if (chosen.brushes != before) chosen.mode = flow::Mode::type2;
-  auto strength = static_cast<float>(chosen.brush_strength);
-  if (ImGui::SliderFloat("strength", &strength, -1.0F, 1.0F, "%.1f"))
-    chosen.brush_strength =
-        std::clamp(std::round(10.0 * static_cast<double>(strength)) / 10.0, -1.0, 1.0);
+  slider(flow::setting::brush_strength, chosen, 10.0, "%.1f");
   show_help("weaker brush");
 }
 
@@ -166,28 +176,25 @@ void LiveWindow::Panel::settings() {
   show_help("next mode", "A hand that closes takes the part under it, until it opens.");
   chosen.mode = static_cast<flow::Mode>(mode);
   ImGui::PushItemWidth(-label_width);
-  if (ImGui::BeginCombo("kernel", kernel_words(chosen.kernel))) {
+  if (ImGui::BeginCombo(flow::setting::kernel.label.data(), kernel_words(chosen.kernel))) {
     for (const auto kernel : Wanted::kernels)
       if (ImGui::Selectable(kernel_words(kernel), kernel == chosen.kernel)) chosen.kernel = kernel;
     ImGui::EndCombo();
   }
   brushes(chosen);
-  auto clay = static_cast<float>(chosen.keep_volume);
-  if (ImGui::SliderFloat("volume", &clay, 0.0F, 1.0F, "%.2f"))
-    chosen.keep_volume =
-        std::clamp(std::round(100.0 * static_cast<double>(clay)) / 100.0, 0.0, 1.0);
+  slider(flow::setting::keep_volume, chosen, 100.0, "%.2f");
   show_help("more clay",
             "From air to clay: what is pressed in comes out nearby. Above 0, fingertips "
             "hold, and no links keep the surface from folding.");
   bool whole_hand = chosen.hold == flow::Hold::hand;
-  ImGui::Checkbox("whole hand", &whole_hand);
+  ImGui::Checkbox(flow::setting::hold.label.data(), &whole_hand);
   show_help("whole hand");
   chosen.hold = whole_hand ? flow::Hold::hand : flow::Hold::fingertips;
   ImGui::SameLine();
-  ImGui::Checkbox("never folds", &chosen.injective);
+  ImGui::Checkbox(flow::setting::injective.label.data(), &chosen.injective);
   show_help("folding");
   bool smooth = chosen.filter.kind == hand::FilterKind::one_euro;
-  ImGui::Checkbox("smooth hands", &smooth);
+  ImGui::Checkbox(flow::setting::filter.label.data(), &smooth);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("The one-euro filter");
   chosen.filter.kind = smooth ? hand::FilterKind::one_euro : hand::FilterKind::off;
   ImGui::SameLine();
@@ -195,13 +202,13 @@ void LiveWindow::Panel::settings() {
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("Pads of thumb and finger that are nearly together meet, but not in clay");
   ImGui::Checkbox("one radius for all fingers", &one_radius);
+  const flow::FingersSetting& radii = flow::setting::radius;
   for (std::size_t finger = 0; finger < (one_radius ? 1 : finger_names.size()); ++finger) {
     auto radius_cm = static_cast<float>(100.0 * chosen.radius_m[finger]);
-    if (ImGui::SliderFloat(one_radius ? "radius" : finger_names[finger], &radius_cm,
-                           static_cast<float>(100.0 * Wanted::least_radius_m),
-                           static_cast<float>(100.0 * Wanted::most_radius_m), "%.1f cm"))
-      chosen.radius_m[finger] = std::clamp(static_cast<double>(radius_cm) / 100,
-                                           Wanted::least_radius_m, Wanted::most_radius_m);
+    if (ImGui::SliderFloat(one_radius ? radii.label.data() : finger_names[finger], &radius_cm,
+                           static_cast<float>(100.0 * radii.handy.min),
+                           static_cast<float>(100.0 * radii.handy.max), "%.1f cm"))
+      chosen.radius_m[finger] = radii.handy.nearest(static_cast<double>(radius_cm) / 100);
   }
   if (one_radius) chosen.radius_m.fill(chosen.radius_m[0]);
   ImGui::PopItemWidth();

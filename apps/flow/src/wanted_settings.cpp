@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <nendo/flow/setting.hpp>
+
 namespace nendo::flow {
 
 bool WantedSettings::follow(const LoopSettings& in_force) noexcept {
@@ -44,12 +46,13 @@ void WantedSettings::next_brush() noexcept {
 
 /// In whole tenths, so that it comes back to where it was.
 void WantedSettings::add_strength(double more) noexcept {
-  now.brush_strength = std::clamp(std::round(10.0 * (now.brush_strength + more)) / 10.0, -1.0, 1.0);
+  now.brush_strength =
+      setting::brush_strength.range.nearest(std::round(10.0 * (now.brush_strength + more)) / 10.0);
 }
 
 void WantedSettings::scale_radii(double factor) noexcept {
   for (double& radius_m : now.radius_m)
-    radius_m = std::clamp(factor * radius_m, least_radius_m, most_radius_m);
+    radius_m = setting::radius.handy.nearest(factor * radius_m);
 }
 
 bool WantedSettings::has_one_radius() const noexcept {

@@ -39,7 +39,8 @@ inline constexpr FingersSetting radius{
       "or five with commas between, thumb to little finger; 10+40:0.5 is a mix",
       StepKind::radius},
      &LoopSettings::radius_m},
-    {1e-9, 1e9}};
+    {1e-9, 1e9},
+    {0.01, 0.4}};
 /// In least radii.
 inline constexpr NumberSetting piece_fraction{
     {{"piece_fraction", "", "length of a piece", "piece", ""}, &LoopSettings::piece_fraction},

@@ -1,6 +1,7 @@
 #pragma once
 // The kinds of settings: what each has of its own, and how code reaches its value.
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string_view>
@@ -36,6 +37,7 @@ struct Range {
   constexpr bool has(double value) const noexcept { // false for NaN
     return value >= min && value <= max;
   }
+  constexpr double nearest(double value) const noexcept { return std::clamp(value, min, max); }
 };
 
 using SwitchSetting = Setting<bool>;
@@ -46,6 +48,7 @@ struct NumberSetting : Setting<double> {
 /// A length for each finger, thumb to little finger, in metres on the stage.
 struct FingersSetting : Setting<std::array<double, 5>> {
   Range range; ///< of what a loop takes
+  Range handy; ///< that keys and widgets choose from
 };
 /// One of several, which have names.
 template <class T>

@@ -16,9 +16,6 @@ class WantedSettings {
 public:
   static constexpr std::array kernels{deform::Wendland::c0, deform::Wendland::c2,
                                       deform::Wendland::c4, deform::Wendland::c6};
-  /// The range of radii that keys and widgets choose from.
-  static constexpr double least_radius_m = 0.01;
-  static constexpr double most_radius_m = 0.4;
   static constexpr HostClock::duration patience = std::chrono::seconds(1);
 
   LoopSettings now; ///< what is chosen; widgets write here
