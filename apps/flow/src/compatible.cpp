@@ -74,7 +74,7 @@ constexpr bool in_type2(Mode mode, Played /*played*/) {
 constexpr bool in_another_type(Mode mode, Played /*played*/) {
   return mode != Mode::type2;
 }
-constexpr bool along_surface(Mode /*mode*/, Played played) {
+constexpr bool on_surface(Mode /*mode*/, Played played) {
   return played == Played::along_surface;
 }
 
@@ -89,7 +89,7 @@ constexpr std::array exclusions{
               "fingertips have brushes, and a puppet's points pull"},
     Exclusion{Party::puppet, Party::injective, always,
               "nothing promises that a puppet's surface does not fold"},
-    Exclusion{Party::puppet, Party::volume, along_surface,
+    Exclusion{Party::puppet, Party::volume, on_surface,
               "a puppet's distances go along the surface, where no kernel is known that keeps the "
               "volume, but distance = \"air\" in its file allows both",
               false},
