@@ -103,7 +103,7 @@ void add(cli::Command& bench) {
   cli::Command command = bench.add_command(
       "driver", "Latency of the CyberGlove driver, beside that of a bare poll()+read() thread");
   command.add_option("--records", options->latency.records, "Records to measure on each line");
-  command.add_option("--rate", options->latency.rate_hz, "Records a second, 1 to 480");
+  command.add_rate("--rate", options->latency.rate_hz, "Records a second, 1 to 480");
   command.add_flag("--json", options->json, "One JSON object a line");
   command.on_chosen([options] { return bench_driver(*options); });
 }

@@ -47,17 +47,34 @@ std::string short_text(double number) {
   return text.str();
 }
 
-std::string is_duration(const std::string& text) {
-  return seconds_of(text) ? "" : text + ": use " + std::string(duration_words);
-}
-
-std::optional<double> millimetres_of(const std::string& text) {
+std::optional<double> millimetres_of(std::string_view text) noexcept {
   if (const auto length_m = to_metres(text)) return 1e3 * *length_m;
   return number_of(text);
 }
 
-std::string is_in_millimetres(const std::string& text) {
-  return millimetres_of(text) ? "" : text + ": use millimetres, or " + std::string(length_words);
+/// A number with a unit, or without: then it has the unit that --help shows.
+struct Quantity {
+  std::optional<double> (*read)(std::string_view text) noexcept;
+  std::string_view words; ///< what may be typed
+  const char* type;
+  const char* unit; ///< of the default
+};
+
+template <class T>
+CLI::Option* add_quantity(CLI::App& app, const std::string& names, T& value,
+                          const std::string& summary, const Quantity& quantity) {
+  const auto take = [&value, read = quantity.read](const std::string& text) {
+    value = *read(text); // the check has passed
+  };
+  CLI::Option* option = app.add_option_function<std::string>(names, take, summary);
+  option->check([quantity](const std::string& text) {
+    return quantity.read(text) ? std::string() : text + ": use " + std::string(quantity.words);
+  });
+  option->type_name(quantity.type);
+  if constexpr (std::is_same_v<T, double>) {
+    if (!is_blank(value)) option->default_str(short_text(value) + quantity.unit);
+  }
+  return option;
 }
 
 bool is_shown(const CLI::App* command) {
@@ -235,15 +252,8 @@ template Option Command::add_option(const std::string&, std::vector<std::string>
 
 template <class T>
 Option Command::add_duration(const std::string& names, T& seconds, const std::string& summary) {
-  const auto take = [&seconds](const std::string& text) {
-    seconds = *seconds_of(text); // the check has passed
-  };
-  CLI::Option* option = app_->add_option_function<std::string>(names, take, summary);
-  option->check(is_duration)->type_name("TIME");
-  if constexpr (std::is_same_v<T, double>) {
-    if (!is_blank(seconds)) option->default_str(short_text(seconds) + "s");
-  }
-  return Option(*option);
+  return Option(
+      *add_quantity(*app_, names, seconds, summary, {seconds_of, duration_words, "TIME", "s"}));
 }
 
 template Option Command::add_duration(const std::string&, double&, const std::string&);
@@ -253,18 +263,32 @@ template Option Command::add_duration(const std::string&, std::optional<double>&
 template <class T>
 Option Command::add_millimetres(const std::string& names, T& length_mm,
                                 const std::string& summary) {
-  const auto take = [&length_mm](const std::string& text) { length_mm = *millimetres_of(text); };
-  CLI::Option* option = app_->add_option_function<std::string>(names, take, summary);
-  option->check(is_in_millimetres)->type_name("LENGTH");
-  if constexpr (std::is_same_v<T, double>) {
-    if (!is_blank(length_mm)) option->default_str(short_text(length_mm) + "mm");
-  }
-  return Option(*option);
+  return Option(*add_quantity(*app_, names, length_mm, summary,
+                              {millimetres_of, millimetre_words, "LENGTH", "mm"}));
 }
 
 template Option Command::add_millimetres(const std::string&, double&, const std::string&);
 template Option Command::add_millimetres(const std::string&, std::optional<double>&,
                                          const std::string&);
+
+template <class T>
+Option Command::add_microseconds(const std::string& names, T& time_us, const std::string& summary) {
+  return Option(*add_quantity(*app_, names, time_us, summary,
+                              {microseconds_of, microsecond_words, "TIME", "us"}));
+}
+
+template Option Command::add_microseconds(const std::string&, double&, const std::string&);
+template Option Command::add_microseconds(const std::string&, std::optional<double>&,
+                                          const std::string&);
+
+template <class T>
+Option Command::add_rate(const std::string& names, T& rate_hz, const std::string& summary) {
+  return Option(
+      *add_quantity(*app_, names, rate_hz, summary, {hertz_of, rate_words, "RATE", "Hz"}));
+}
+
+template Option Command::add_rate(const std::string&, double&, const std::string&);
+template Option Command::add_rate(const std::string&, std::optional<double>&, const std::string&);
 
 Option Command::add_flag(const std::string& names, bool& value, const std::string& summary) {
   return Option(*app_->add_flag(names, value, summary));

@@ -53,6 +53,12 @@ public:
   /// millimetres, too. T is as for add_duration().
   template <class T>
   Option add_millimetres(const std::string& names, T& length_mm, const std::string& summary);
+  /// Adds an option whose value is a short time, such as 1ms, in microseconds, or a rate, such as
+  /// 90Hz, in hertz. A bare number is that, too. T is as for add_duration().
+  template <class T>
+  Option add_microseconds(const std::string& names, T& time_us, const std::string& summary);
+  template <class T>
+  Option add_rate(const std::string& names, T& rate_hz, const std::string& summary);
   Option add_flag(const std::string& names, bool& value, const std::string& summary);
   /// Lets another option have -h. --help stays.
   void free_short_help();

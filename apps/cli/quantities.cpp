@@ -37,9 +37,27 @@ std::optional<double> seconds_of(std::string_view text) noexcept {
   return in_units(text, units);
 }
 
+std::optional<double> microseconds_of(std::string_view text) noexcept {
+  constexpr std::array<Unit, 4> units{{{"", 1.0}, {"us", 1.0}, {"ms", 1e3}, {"s", 1e6}}};
+  return in_units(text, units);
+}
+
+std::optional<double> hertz_of(std::string_view text) noexcept {
+  constexpr std::array<Unit, 3> units{{{"", 1.0}, {"Hz", 1.0}, {"kHz", 1e3}}};
+  return in_units(text, units);
+}
+
 std::optional<double> number_of(std::string_view text) noexcept {
   constexpr std::array<Unit, 1> none{{{"", 1.0}}};
   return in_units(text, none);
+}
+
+Result<void> check_duration(double seconds, End end) {
+  const bool may_be_missing = end == End::may_be_missing;
+  if (seconds >= 0.0 && seconds <= most_s && (seconds > 0.0 || may_be_missing)) return {};
+  return Error{Errc::usage, "--duration: use " + std::string(duration_words) + ", " +
+                                (may_be_missing ? "up to 10000000 s, or 0 for no end"
+                                                : "above 0, up to 10000000 s: it must end")};
 }
 
 Result<double> parse_duration(const std::string& text, const std::string& option) {

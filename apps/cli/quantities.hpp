@@ -1,6 +1,6 @@
 #pragma once
-// Durations as people type them, a number and mostly a unit, and the words of messages about
-// durations and lengths. nendo::to_metres() reads lengths.
+// Durations and rates as people type them, a number and mostly a unit, and the words of messages
+// about these and lengths. nendo::to_metres() reads lengths.
 
 #include <optional>
 #include <string>
@@ -13,14 +13,27 @@ namespace nendo::cli {
 /// What may be typed for a duration and for a length, for error messages.
 inline constexpr std::string_view duration_words = "seconds, or 500ms, 90s, 10m, 2h, 1d";
 inline constexpr std::string_view length_words = "a length like 1mm, 0.5cm or 0.2m";
+inline constexpr std::string_view millimetre_words =
+    "millimetres, or a length like 1mm, 0.5cm or 0.2m";
+inline constexpr std::string_view microsecond_words = "microseconds, or 250us, 1ms, 0.1s";
+inline constexpr std::string_view rate_words = "a rate like 90, 90Hz or 1kHz";
 
 /// Returns the seconds of "90", "90s", "500ms", "10m", "2h" or "1d". A bare number is seconds, and
 /// any finite number will do, 0 and negative ones too. Nothing if the text is no duration.
 std::optional<double> seconds_of(std::string_view text) noexcept;
 
+/// Returns the microseconds of "250", "250us", "1ms" or "0.1s", and the hertz of "90", "90Hz" or
+/// "1kHz". Nothing if the text is neither.
+std::optional<double> microseconds_of(std::string_view text) noexcept;
+std::optional<double> hertz_of(std::string_view text) noexcept;
+
 /// Returns the number that is all of the text, if it is finite.
 std::optional<double> number_of(std::string_view text) noexcept;
 
+enum class End : bool { needed, may_be_missing };
+/// Checks a --duration: 0 is without an end, in all commands that may have none; otherwise at most
+/// 10000000 s. Error: usage.
+Result<void> check_duration(double seconds, End end = End::may_be_missing);
 /// Returns the seconds of a duration that must be more than 0 and at most 10000000 s. Error: usage,
 /// naming the option.
 Result<double> parse_duration(const std::string& text, const std::string& option = "--duration");

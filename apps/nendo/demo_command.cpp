@@ -2,7 +2,6 @@
 // Moai.
 
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -13,6 +12,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "cli/quantities.hpp"
 #include "export/gltf_export.hpp"
 #include "nendo/clay_demo.hpp"
 #include "nendo/commands.hpp"
@@ -84,9 +84,9 @@ Result<session::RunOptions> run_options(const Options& options) {
   if (!mode || flow::is_by_hands(*mode))
     return Error{Errc::usage, "--mode " + options.mode +
                                   ": use type1 or type2; `nendo demo clay` has a mode of its own"};
-  if (!std::isfinite(options.duration_s) || options.duration_s <= 0.0 ||
-      options.duration_s > longest_s)
-    return Error{Errc::usage, "--duration: use a number of seconds above 0, up to 3600"};
+  if (auto fine = cli::check_duration(options.duration_s, cli::End::needed); !fine)
+    return fine.error();
+  if (options.duration_s > longest_s) return Error{Errc::usage, "--duration: use at most 1h"};
   if (options.what != "face" && options.what != "moai" && options.what != "clay")
     return Error{Errc::usage, options.what + ": there is no such demo; use face, moai or clay"};
   if (!options.record.empty())

@@ -16,6 +16,7 @@
 
 #include "calibrate/practice_hand.hpp"
 #include "cli/cli.hpp"
+#include "cli/quantities.hpp"
 #include "cli/terminal.hpp"
 #include "nendo/commands.hpp"
 
@@ -135,9 +136,7 @@ Result<void> complete(Options& options) {
   if (options.hand != "left" && options.hand != "right") {
     return Error{Errc::usage, "--hand " + options.hand + ": use left or right"};
   }
-  if (!std::isfinite(options.duration_s) || options.duration_s < 0.0) {
-    return Error{Errc::usage, "--duration: use a number of seconds, 0 for no end"};
-  }
+  if (auto fine = cli::check_duration(options.duration_s); !fine) return fine;
   emulator::EmulatorOptions& emulator = options.emulator;
   emulator.side = options.hand == "left" ? Side::left : Side::right;
   emulator.pace =
@@ -218,7 +217,7 @@ void add_glove_options(cli::Command& command, Options& options) {
                     "again and again; without it, SPACE goes on to the next, or 4 s do where no "
                     "keys can come")
       .under(heading);
-  command.add_option("--rate", emulator.rate_hz, "Records a second until the host sets its own")
+  command.add_rate("--rate", emulator.rate_hz, "Records a second until the host sets its own")
       .under(heading);
   command.add_option("--seed", emulator.seed, "Varies motion, noise and faults").under(heading);
   command.add_option("--pace", options.pace, "clock: as a device; host: as fast as the host reads")
@@ -288,7 +287,7 @@ void add(cli::Command& program) {
                   "Symbolic link to make to the pseudo-terminal, e.g. /tmp/glove")
       .required();
   command.add_duration("--duration", options->duration_s,
-                       "How long, e.g. 30s or 10m; without it, until Ctrl-C");
+                       "How long, e.g. 30s or 10m; 0: until Ctrl-C");
   command.add_option("--fault", options->emulator.faults, "What goes wrong, see below")
       .once_each("FAULT");
   command.add_option("--log", options->emulator.log,

@@ -369,9 +369,9 @@ void add(cli::Command& program) {
       .required();
   command.add_option("--format", options->format, "In place of the name's ending")
       .one_of({"glb", "pc2", "mdd", "obj", "ply", "stl", "bvh", "csv"});
-  command.add_option("--rate", options->rate_hz,
-                     "Frames a second, each the nearest that was made; without it .csv has every "
-                     "frame at its own time, .bvh the take's rate, and the others have 24");
+  command.add_rate("--rate", options->rate_hz,
+                   "Frames a second, each the nearest that was made; without it .csv has every "
+                   "frame at its own time, .bvh the take's rate, and the others have 24");
   command.add_flag("--every-frame", options->every_frame,
                    ".glb: every frame of the take, at its own time");
   command.add_flag("--samples", options->samples,

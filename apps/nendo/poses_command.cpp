@@ -16,6 +16,7 @@
 #include <nendo/hand/sensor_gate.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/quantities.hpp"
 #include "export/hands_bvh.hpp"
 #include "gloves/open_hand.hpp"
 #include "gloves/pose_output.hpp"
@@ -27,7 +28,6 @@ namespace nendo::app::poses_command {
 namespace {
 
 constexpr double default_bvh_rate_hz = 90.0;
-constexpr double most_duration_s = 1e7;
 
 struct Options {
   std::vector<std::string> gloves;
@@ -52,9 +52,7 @@ Result<void> check(const Options& options) {
       !(rate_hz >= flow::TickGrid::least_rate_hz && rate_hz <= flow::TickGrid::most_rate_hz)) {
     return Error{Errc::usage, "--rate: use 1 to 10000 poses a second, or leave it out"};
   }
-  if (!(options.duration_s >= 0.0 && options.duration_s <= most_duration_s)) {
-    return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
-  }
+  if (auto fine = cli::check_duration(options.duration_s); !fine) return fine.error();
   if (options.gloves.size() > 2) return Error{Errc::usage, "GLOVE: give one or two gloves"};
   if (auto fine = options.length.check(); !fine) return fine;
   return gloves::check(options.calibration);
@@ -230,9 +228,9 @@ void add(cli::Command& program) {
   command.add_option("--bvh", options->bvh,
                      "Write this file instead of JSON lines; of two gloves, FILE-left.bvh and "
                      "FILE-right.bvh");
-  command.add_option("--rate", options->rate_hz,
-                     "Poses a second, 1 to 10000, each of the newest sample; without it, one a "
-                     "sample, in a BVH file 90 a second");
+  command.add_rate("--rate", options->rate_hz,
+                   "Poses a second, 1 to 10000, each of the newest sample; without it, one a "
+                   "sample, in a BVH file 90 a second");
   command.add_duration("--duration", options->duration_s,
                        "How long, e.g. 30s or 10m; 0: until Ctrl-C, or until a "
                        "recording (replay:FILE) ends");

@@ -23,7 +23,6 @@ namespace {
 struct Options {
   std::vector<std::string> gloves;
   std::string out;
-  std::string duration;
   double duration_s = 0.0; ///< 0: until a stop signal
   gloves::CalibrationOptions calibration;
   gloves::HandLength length;
@@ -32,11 +31,7 @@ struct Options {
 
 Result<void> check(Options& options) {
   if (options.gloves.size() > 2) return Error{Errc::usage, "name one glove, or one for each hand"};
-  if (!options.duration.empty()) {
-    const auto seconds = cli::parse_duration(options.duration);
-    if (!seconds) return seconds.error();
-    options.duration_s = *seconds;
-  }
+  if (auto fine = cli::check_duration(options.duration_s); !fine) return fine;
   if (auto fine = options.length.check(); !fine) return fine;
   if (auto fine = gloves::check(options.calibration); !fine) return fine;
   std::error_code ignored;
@@ -153,10 +148,9 @@ void add(cli::Command& program) {
       .add_option("GLOVE", options->gloves, "One, or one for each hand: serial:/dev/ttyUSB0, sim")
       .required();
   command.add_option("--out", options->out, "The recording, a new file").required();
-  command.add_option(
-      "--duration", options->duration,
-      "How long, e.g. 30s or 10m; without it, until Ctrl-C, or until the gloves end, "
-      "as replay:FILE does");
+  command.add_duration("--duration", options->duration_s,
+                       "How long, e.g. 30s or 10m; 0: until Ctrl-C, or until the gloves end, "
+                       "as replay:FILE does");
   gloves::add_calibration_options(command, options->calibration, true);
   gloves::add_hand_length(command, options->length);
   command.add_flag("--json", options->json, "A summary as one JSON object");

@@ -159,7 +159,7 @@ void add(cli::Command& program) {
   cli::Command shaping = command.add_command(
       "shapes", "Makes a new file with shapes in it, for programs that have no loop");
   shaping.add_option("FILE", options->file, "A recording; it stays as it is").required();
-  shaping.add_option("--rate", options->rate_hz, "Shapes a second, 12 bytes a vertex each");
+  shaping.add_rate("--rate", options->rate_hz, "Shapes a second, 12 bytes a vertex each");
   shaping.add_option("--mesh", options->mesh, "The model, if it is no longer where it was");
   shaping.add_option("--out", options->out, "The new file").required();
   shaping.on_chosen([options] { return shapes(*options); });

@@ -1,7 +1,6 @@
 #include "nendo/run_arguments.hpp"
 
 #include <array>
-#include <cmath>
 #include <ctime>
 #include <filesystem>
 #include <system_error>
@@ -234,8 +233,7 @@ Result<void> set_pace(RunArguments& options) {
         run.loop.rate_hz <= flow::TickGrid::most_rate_hz))
     return Error{Errc::usage, "--rate: use 1 to 10000 ticks a second"};
   if (auto fine = options.loop.parse(run.loop, run.realtime); !fine) return fine;
-  if (!std::isfinite(run.duration_s) || run.duration_s < 0.0 || run.duration_s > 1e7)
-    return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
+  if (auto fine = cli::check_duration(run.duration_s); !fine) return fine;
   if (!(run.undo_memory_mb.value_or(0.0) >= 0.0 && run.undo_memory_mb.value_or(0.0) <= 1e6))
     return Error{Errc::usage, "--undo-memory: use a number of megabytes up to 1000000"};
   return {};

@@ -272,7 +272,7 @@ std::vector<std::string> decided_by_take() {
 void add_run_options(cli::Command& command, const std::shared_ptr<RunArguments>& options) {
   session::RunOptions& run_options = options->run;
   add_shape_options(command, *options);
-  command.add_option("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000");
+  command.add_rate("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000");
   options->loop.add_to(command);
   command.add_option("--switch", options->switch_action,
                      "What the wrist switch does. grab: the hands hold the model while it is on; "

@@ -140,16 +140,17 @@ void add(cli::Command& program) {
   command.free_short_help();
   command.set_footer("It asks for real-time rights and says which were refused; without any it "
                      "measures what an ordinary thread gets.");
-  command.add_option("-i,--interval", arguments->interval_us,
-                     "Microseconds from tick to tick, 100 to 1000000");
+  command.add_microseconds("-i,--interval", arguments->interval_us,
+                           "From tick to tick, 100us to 1s; a bare number is microseconds");
   command.add_option("-D,--duration", arguments->duration,
                      "How long: seconds, or 90s, 10m, 2h, 1d");
   command.add_option("--stages", arguments->stages,
                      "What a tick does: sleep, input, hands, deform, publish, with commas");
   command.add_option("--load", arguments->load,
                      "Work beside it, by processes of its own: cpu, mem, io, with commas");
-  command.add_option("-b,--break", arguments->break_us,
-                     "End at a tick that is later than this many microseconds");
+  command.add_microseconds("-b,--break", arguments->break_us,
+                           "End at a tick that is later than this, e.g. 200us; a bare number is "
+                           "microseconds");
   command.add_duration("--floor", arguments->floor_s,
                        "Seconds to look at the machine alone before; 0: do not");
   command.add_option("--left", arguments->run.left, "GLOVE on the left hand; without any, two sim");

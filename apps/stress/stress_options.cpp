@@ -22,7 +22,7 @@ Result<void> parse_loop(const StressArguments& arguments, session::RunOptions& r
   constexpr double least_us = 1e6 / flow::TickGrid::most_rate_hz;
   constexpr double most_us = 1e6 / flow::TickGrid::least_rate_hz;
   if (!(arguments.interval_us >= least_us && arguments.interval_us <= most_us))
-    return usage("--interval: use 100 to 1000000 microseconds");
+    return usage("--interval: use 100us to 1s");
   run.loop.rate_hz = 1e6 / arguments.interval_us;
   const auto mode = session::parse_setting(flow::setting::mode, arguments.mode);
   if (!mode) return mode.error();

@@ -74,6 +74,30 @@ TEST_SUITE("quantities") {
       CHECK_FALSE(cli::number_of(none));
   }
 
+  TEST_CASE("rates and short times have a unit or not, in all commands the same") {
+    for (const char* text : {"90", "90Hz", "0.09kHz", "9e1"})
+      CHECK(*cli::hertz_of(text) == doctest::Approx(90.0));
+    for (const char* text : {"250", "250us", "0.25ms", "0.00025s"})
+      CHECK(*cli::microseconds_of(text) == doctest::Approx(250.0));
+    for (const char* none : {"", "Hz", "90 Hz", "90hz", "nan", "90rpm"})
+      CHECK_FALSE(cli::hertz_of(none));
+    for (const char* none : {"", "us", "1 ms", "1m", "inf"})
+      CHECK_FALSE(cli::microseconds_of(none));
+  }
+
+  TEST_CASE("a duration of 0 has no end, and what must end refuses it") {
+    CHECK(cli::check_duration(0.0));
+    CHECK(cli::check_duration(1e7));
+    CHECK_FALSE(cli::check_duration(0.0, cli::End::needed));
+    CHECK(cli::check_duration(0.5, cli::End::needed));
+    for (const double wrong : {-1.0, 2e7, std::nan("")})
+      for (const cli::End end : {cli::End::needed, cli::End::may_be_missing}) {
+        const auto refused = cli::check_duration(wrong, end);
+        REQUIRE_FALSE(refused);
+        CHECK(refused.error().message.starts_with("--duration"));
+      }
+  }
+
   TEST_CASE("a time to run for is above 0 and not longer than a recording may be") {
     CHECK(cli::parse_duration("115d"));
     for (const char* none : {"0", "-1", "116d", "never"}) {
