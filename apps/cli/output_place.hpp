@@ -29,9 +29,10 @@ check_distinct(std::initializer_list<std::pair<std::string_view, std::string_vie
 /// file. Error: usage.
 Result<void> check_spares(const std::string& model, std::string_view option, const std::string& out,
                           bool force);
-/// What --help says of --force.
+/// What --help says of --force, in all commands.
 inline constexpr const char* force_summary =
-    "Let --out be the model itself, whose normals, materials and groups are then lost";
+    "Write over what would be lost: the model itself, with its normals, materials and groups, or a "
+    "puppet's file that is there";
 
 /// Returns how a text in the file `from` names the file `to`: by the way from its folder. Error:
 /// usage (no text in quotes can name it).

@@ -72,10 +72,10 @@ Result<std::uint32_t> panels_of(const Options& options) {
 Result<Wanted> check(const Options& options) {
   const auto view = view_named(options.view);
   if (!view)
-    return bad("--view " + options.view,
+    return bad("--camera " + options.view,
                "use front, back, left, right, side, top or AZIMUTH,ELEVATION in degrees");
   const auto size = size_named(options.size);
-  if (!size) return bad("--size " + options.size, "use WIDTHxHEIGHT in pixels, 16 to 8192 each");
+  if (!size) return bad("--pixels " + options.size, "use WIDTHxHEIGHT in pixels, 16 to 8192 each");
   const auto counted = panels_of(options);
   if (!counted) return counted.error();
   const std::uint32_t panels = *counted;
@@ -89,8 +89,8 @@ Result<Wanted> check(const Options& options) {
                "is for several pictures: --turntable, --strip, --key-poses or several times");
   const double pixels = 1.0 * size->width * size->height * panels;
   if (!options.numbered && pixels > 6e7)
-    return bad("--size " + options.size, "too large for " + std::to_string(panels) +
-                                             " pictures on one sheet; use less, or --numbered");
+    return bad("--pixels " + options.size, "too large for " + std::to_string(panels) +
+                                               " pictures on one sheet; use less, or --numbered");
   if (options.colour != "model" && options.colour != "distance")
     return bad("--colour " + options.colour, "use model or distance");
   if (const auto fine = cli::check_place("--out", options.out, {".png"}); !fine)
@@ -282,9 +282,9 @@ void add(cli::Command& program) {
   takes::add_up_option(command, options->up);
   command.add_option("--mesh", options->mesh,
                      "Of a recording: the model, if it is no longer where it was");
-  command.add_option("--view", options->view,
+  command.add_option("--camera", options->view,
                      "front, back, left, right, side, top, or AZIMUTH,ELEVATION in degrees");
-  command.add_option("--size", options->size, "WIDTHxHEIGHT in pixels, of each picture");
+  command.add_option("--pixels", options->size, "WIDTHxHEIGHT in pixels, of each picture");
   command.add_option("--turntable", options->turntable, "So many pictures all round, on one sheet");
   command.add_option("--time", options->times,
                      "Of a recording: the moment, or moments T,T,..., in seconds, on one sheet");

@@ -224,12 +224,12 @@ Result<void> draw_sheet(const Sheet& sheet, const deform::Mesh& model, const Opt
 Result<void> show(const Options& options) {
   const auto view = render::view_named(options.view);
   if (!view)
-    return Error{Errc::usage, "--view " + options.view +
+    return Error{Errc::usage, "--camera " + options.view +
                                   ": use front, back, left, right, side, top or "
                                   "AZIMUTH,ELEVATION in degrees"};
   const auto size = render::size_named(options.size);
   if (!size || 1.0 * size->width * size->height > 1e6)
-    return Error{Errc::usage, "--size " + options.size +
+    return Error{Errc::usage, "--pixels " + options.size +
                                   ": use WIDTHxHEIGHT in pixels, 16 or more each, at most a "
                                   "million together"};
   if (auto fine = cli::check_place("--picture", options.picture, {".png"}); !fine) return fine;
@@ -354,9 +354,9 @@ void add(cli::Command& program) {
   takes::add_up_option(showing, options->up);
   showing.add_option("--picture", options->picture,
                      "Where to draw the model at rest and each function at its most, .png");
-  showing.add_option("--view", options->view,
+  showing.add_option("--camera", options->view,
                      "front, back, left, right, side, top, or AZIMUTH,ELEVATION in degrees");
-  showing.add_option("--size", options->size, "WIDTHxHEIGHT in pixels, of each picture");
+  showing.add_option("--pixels", options->size, "WIDTHxHEIGHT in pixels, of each picture");
   showing.on_chosen([options] { return done(show(*options)); });
 
   cli::Command checking = command.add_command(
@@ -374,7 +374,7 @@ void add(cli::Command& program) {
   takes::add_up_option(making, options->up);
   making.add_option("--out", options->out, "Where to write the puppet, .toml, beside the model")
       .required();
-  making.add_flag("--force", options->force, "Replace a file that is there");
+  making.add_flag("--force", options->force, cli::force_summary);
   making.on_chosen([options] { return done(make(*options)); });
 }
 

@@ -118,13 +118,13 @@ TEST_SUITE("advice") {
     for (const Case& made :
          {Case{std::string(run) + "--filter-beta 1", "--filter one-euro", ""},
           Case{std::string(run) + "--strength 0.5", "--brush inflate", ""},
-           Case{std::string(run) + "ball.obj --topology", "--refine 100000", "--refine 100"},
+          Case{std::string(run) + "ball.obj --topology", "--refine 100000", "--refine 100"},
           Case{std::string(run) + "--puppet masks.toml", "--mask", "--mask masks.toml"},
           Case{std::string(run) + "--threads 2 --priority 5", "--priority 0", ""},
           Case{"nendo deform ball.obj --vectors v.csv --out o.obj", "--radius R", "--radius 0.3"},
           Case{"nendo cut 'my open.obj' --plane 0.1,0.1,0.1,1,2,3 --out p-%d.obj", "--repair", ""},
-          Case{"nendo picture ball.obj --turntable 36 --size 4000x4000 --out p.png", "--numbered",
-               "--size 64x64 --numbered"}}) {
+          Case{"nendo picture ball.obj --turntable 36 --pixels 4000x4000 --out p.png", "--numbered",
+               "--pixels 64x64 --numbered"}}) {
       test::write_file(folder.path() / "v.csv", "x,y,z,dx,dy,dz\n0,0,0,0,0,0.1\n");
       CAPTURE(made.refused);
       const auto refused = type(made.refused);

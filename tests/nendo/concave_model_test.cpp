@@ -26,7 +26,7 @@ std::string saved(const TemporaryFolder& folder, const std::string& name,
 /// Of an L or an arrow, whose notch is in the middle of its box.
 void check_notch_is_seen(const std::string& mesh, const std::string& out) {
   const auto done =
-      test::nendo({"picture", mesh, "--out", out, "--size", "120x120", "--view", "front"});
+      test::nendo({"picture", mesh, "--out", out, "--pixels", "120x120", "--camera", "front"});
   REQUIRE_MESSAGE(done.exit_code == 0, done.err);
   const auto image = render::read_png(out);
   REQUIRE(image);

@@ -179,7 +179,7 @@ TEST_SUITE("edit_command") {
     CHECK(run.shown(other)["hands"]["right"].size() > before["hands"]["left"].size());
     const std::string picture = run.path("other.png");
     const auto drawn =
-        test::nendo({"picture", other, "--time", "1", "--size", "96x96", "--out", picture});
+        test::nendo({"picture", other, "--time", "1", "--pixels", "96x96", "--out", picture});
     CAPTURE(drawn.err);
     CHECK(drawn.exit_code == 0);
     CHECK(contents(picture).substr(1, 3) == "PNG");

@@ -98,12 +98,12 @@ TEST_SUITE("model_formats_command") {
     const std::string in = save("a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
                                          "vertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
                                          "endsolid\n");
-    const auto told = test::nendo({"picture", in, "--out", place("a.png"), "--size", "64x64"});
+    const auto told = test::nendo({"picture", in, "--out", place("a.png"), "--pixels", "64x64"});
     CHECK(told.exit_code == 0);
     CHECK(is_one_line_about(told.err, "add --up z"));
     for (const char* const up : {"y", "z"}) {
-      const auto done = test::nendo(
-          {"picture", in, "--up", up, "--out", place(std::string(up) + ".png"), "--size", "64x64"});
+      const auto done = test::nendo({"picture", in, "--up", up, "--out",
+                                     place(std::string(up) + ".png"), "--pixels", "64x64"});
       CHECK(done.exit_code == 0);
       CHECK(done.err == "");
     }
@@ -113,7 +113,7 @@ TEST_SUITE("model_formats_command") {
 
   TEST_CASE_FIXTURE(Fixture, "a stray vertex changes nothing of a picture") {
     const auto picture = [&](const std::string& in, const std::string& out) {
-      const auto done = test::nendo({"picture", in, "--out", place(out), "--size", "96x96"});
+      const auto done = test::nendo({"picture", in, "--out", place(out), "--pixels", "96x96"});
       CHECK(done.exit_code == 0);
       return done.err;
     };

@@ -48,7 +48,7 @@ std::string two_colours_tga() {
 Pixel middle_of(const fs::path& model, bool upper) {
   const fs::path out = model.parent_path() / "picture.png";
   const auto done = test::nendo(
-      {"picture", model.string(), "--out", out.string(), "--size", "100x100", "--view", "0,0"});
+      {"picture", model.string(), "--out", out.string(), "--pixels", "100x100", "--camera", "0,0"});
   REQUIRE_MESSAGE(done.exit_code == 0, done.err);
   const auto image = render::read_png(out);
   REQUIRE(image);
@@ -179,7 +179,7 @@ TEST_SUITE("model_looks") {
           {two_colours_tga().substr(0, 20), "is cut off"}}) {
       put(folder.path() / "skin.png", contents);
       const auto done = test::nendo({"picture", model.string(), "--out",
-                                     (folder.path() / "p.png").string(), "--size", "32x32"});
+                                     (folder.path() / "p.png").string(), "--pixels", "32x32"});
       CHECK(done.exit_code == 0);
       CHECK(lines_in(done.err) == 1);
       CHECK_MESSAGE(done.err.find("texture 'skin.png': " + std::string(fault)) != std::string::npos,

@@ -35,25 +35,25 @@ struct Folder {
 TEST_SUITE("picture") {
   TEST_CASE("a picture has the size that was asked for, and the same bytes each time") {
     const Folder with;
-    const auto done = with.picture({"--size", "120x90"});
+    const auto done = with.picture({"--pixels", "120x90"});
     REQUIRE_MESSAGE(done.exit_code == 0, done.err);
     const auto image = read_png(with.out);
     REQUIRE(image);
     CHECK(image->size() == Size{120, 90});
     const auto bytes = test::contents(with.out);
-    REQUIRE(with.picture({"--size", "120x90"}).exit_code == 0);
+    REQUIRE(with.picture({"--pixels", "120x90"}).exit_code == 0);
     CHECK(test::contents(with.out) == bytes);
-    REQUIRE(with.picture({"--size", "120x90", "--view", "top"}).exit_code == 0);
+    REQUIRE(with.picture({"--pixels", "120x90", "--camera", "top"}).exit_code == 0);
     CHECK(test::contents(with.out) != bytes);
   }
 
   TEST_CASE("a turntable is one sheet, or numbered files") {
     const Folder with;
-    REQUIRE(with.picture({"--size", "64x64", "--turntable", "4"}).exit_code == 0);
+    REQUIRE(with.picture({"--pixels", "64x64", "--turntable", "4"}).exit_code == 0);
     const auto sheet = read_png(with.out);
     REQUIRE(sheet);
     CHECK(sheet->size().width > 128);
-    REQUIRE(with.picture({"--size", "64x64", "--turntable", "3", "--numbered"}).exit_code == 0);
+    REQUIRE(with.picture({"--pixels", "64x64", "--turntable", "3", "--numbered"}).exit_code == 0);
     for (const char* name : {"ball-00.png", "ball-01.png", "ball-02.png"}) {
       const auto image = read_png(with.folder.path() / name);
       REQUIRE(image);
@@ -71,11 +71,11 @@ TEST_SUITE("picture") {
       CHECK(is_one_line_about(done.err, what));
       CHECK_FALSE(std::filesystem::exists(with.out));
     };
-    refused({"--view", "up"}, "--view up", 2);
+    refused({"--camera", "up"}, "--camera up", 2);
     refused({"--colour", "distance"}, "--colour distance", 2);
     refused({"--colour", "red"}, "--colour red", 2);
-    refused({"--size", "0x0"}, "--size 0x0", 2);
-    refused({"--size", "8192x8192", "--turntable", "9"}, "--size", 2);
+    refused({"--pixels", "0x0"}, "--pixels 0x0", 2);
+    refused({"--pixels", "8192x8192", "--turntable", "9"}, "--pixels", 2);
     refused({"--turntable", "1"}, "--turntable", 2);
     refused({"--turntable", "4", "--strip", "4"}, "--strip", 2);
     refused({"--strip", "3", "--key-poses", "3"}, "--key-poses", 2);
@@ -106,7 +106,7 @@ TEST_SUITE("picture") {
                                    "1.5", "--out", shape, "--record", take});
     REQUIRE_MESSAGE(done.exit_code == 0, done.err);
     const auto drawn = [&](std::vector<std::string> more) {
-      more.insert(more.begin(), {"picture", take, "--out", with.out, "--size", "96x96"});
+      more.insert(more.begin(), {"picture", take, "--out", with.out, "--pixels", "96x96"});
       const auto made = test::nendo(more);
       CAPTURE(made.err);
       CHECK(made.exit_code == 0);
@@ -129,8 +129,8 @@ TEST_SUITE("picture") {
     CHECK(drawn({"--key-poses", "3", "--captions", "a,b,c"}) != plain);
     const auto coloured = drawn({"--time", "1.4", "--colour", "distance"});
     CHECK(coloured != drawn({"--time", "1.4"}));
-    const auto told = test::nendo({"picture", take, "--out", with.out, "--size", "96x96", "--time",
-                                   "1.4", "--colour", "distance"});
+    const auto told = test::nendo({"picture", take, "--out", with.out, "--pixels", "96x96",
+                                   "--time", "1.4", "--colour", "distance"});
     CHECK(told.err.find("dark red went 0.") != std::string::npos);
     const auto image = read_png(with.out);
     REQUIRE(image);
