@@ -68,7 +68,7 @@ std::optional<FunctionMorphs> FunctionMorphs::make(const takes::PlayedPuppet& pu
                                                    const Points& vertices) {
   if (puppet.sculptor.mode != flow::Mode::type1) return std::nullopt;
   // What midpoint steps make is not linear in the functions' values.
-  if (puppet.sculptor.deformer.csrbf.keep_volume > 0.0) return std::nullopt;
+  if (puppet.sculptor.deformer.csrbf.keeps_volume()) return std::nullopt;
   const puppet::Rig& rig = *puppet.rig;
   std::vector<Eigen::Matrix3Xf> ways =
       puppet.sculptor.surface ? ways_along(*puppet.sculptor.surface, rig)

@@ -202,9 +202,9 @@ Result<void> deform_file(const Options& options) {
   note_oddities(mesh, *vectors, *supports, options);
 
   const Points before = mesh.vertices;
-  const auto by = csrbf->keep_volume > 0.0 ? deform_keeping_volume
-                  : settings->injective    ? deform_in_links
-                                           : deform_at_once;
+  const auto by = csrbf->keeps_volume() ? deform_keeping_volume
+                  : settings->injective ? deform_in_links
+                                        : deform_at_once;
   const auto status = by(mesh.vertices, *vectors, *supports, *csrbf, options);
   if (!status) return status.error();
   if (*status == FieldStatus::merged) {

@@ -184,7 +184,7 @@ void print_filter(const hand::FilterOptions& filter, const flow::LoopStats& stat
 
 void print_injective(const RunOptions& options, const flow::LoopStats& stats) {
   const auto& deformer = options.loop.sculptor.deformer;
-  if (!deformer.injective || deformer.csrbf.keep_volume > 0.0) return;
+  if (!deformer.injective || deformer.csrbf.keeps_volume()) return;
   if (options.verbose)
     print_row("injective", fmt::format("at most {} links a tick, bound in one step {:.3g}, least "
                                        "determinant {:.3g}; fingertips held apart in {} ticks",

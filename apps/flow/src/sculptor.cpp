@@ -165,7 +165,7 @@ bool SculptorOptions::is_along_surface() const noexcept {
 
 Eigen::Index SculptorOptions::points_of_hand() const noexcept {
   const bool all_over =
-      hold == Hold::hand && mode == Mode::type1 && deformer.csrbf.keep_volume <= 0.0 && !mirror;
+      hold == Hold::hand && mode == Mode::type1 && !deformer.csrbf.keeps_volume() && !mirror;
   return all_over ? static_cast<Eigen::Index>(hand::held_point_count) : fingers;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <nendo/flow/setting.hpp>
 #include <nendo/flow/tick_grid.hpp>
 #include <nendo/recording/sample_record.hpp>
 
@@ -16,6 +17,11 @@ constexpr std::uint32_t most_links = 1024;
 constexpr std::uint32_t most_catch_up = 1000;               // as parse_policy()
 constexpr double most_points = puppet::Puppet::most_points; // two hands' fingertips, or a puppet's
 constexpr double largest_number = 1e100;                    // as the solver takes
+
+void read_number(CheckedReader& checked, const flow::NumberSetting& number,
+                 flow::LoopSettings& settings) {
+  number.of(settings) = checked.number(number.range.min, number.range.max);
+}
 
 void put_placement(ByteWriter& writer, const flow::Placement& placement) {
   writer.f64_le(placement.units_per_metre);
@@ -149,37 +155,38 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
   if (options.settings) put_settings(writer, *options.settings);
   writer.u32_le(static_cast<std::uint32_t>(plain_origins(loop)));
   writer.u8(static_cast<std::uint8_t>(options.pull_is_step));
-  put_brushes(writer, options.sculptor.brushes, options.sculptor.brush_strength);
-  put_hold(writer, options.sculptor.deformer.csrbf.keep_volume, options.sculptor.hold);
-  if (options.settings) put_hold(writer, options.settings->keep_volume, options.settings->hold);
+  const flow::LoopSettings settings = flow::plain_settings_of(options.sculptor);
+  put_brushes(writer, settings);
+  put_hold(writer, settings);
+  if (options.settings) put_hold(writer, *options.settings);
   put_table(writer, loop.placement);
   writer.u8(static_cast<std::uint8_t>((options.sculptor.type2_along_surface ? 1U : 0U) |
                                       (options.sculptor.clay_scales_few_vertices ? 2U : 0U)));
 }
 
-void put_brushes(ByteWriter& writer, const std::array<deform::Brush, 5>& brushes, double strength) {
-  for (const deform::Brush brush : brushes)
+void put_brushes(ByteWriter& writer, const flow::LoopSettings& settings) {
+  for (const deform::Brush brush : settings.brushes)
     writer.u8(static_cast<std::uint8_t>(brush));
-  writer.f64_le(strength);
+  writer.f64_le(settings.brush_strength);
 }
 
-bool read_brushes(ByteReader& reader, std::array<deform::Brush, 5>& brushes, double& strength) {
+bool read_brushes(ByteReader& reader, flow::LoopSettings& settings) {
   CheckedReader checked(reader);
-  for (deform::Brush& brush : brushes)
+  for (deform::Brush& brush : settings.brushes)
     brush = checked.one_of(deform::Brush::scale);
-  strength = checked.number(-1.0, 1.0);
+  read_number(checked, flow::setting::brush_strength, settings);
   return checked.fine();
 }
 
-void put_hold(ByteWriter& writer, double keep_volume, flow::Hold hold) {
-  writer.f64_le(keep_volume);
-  writer.u8(static_cast<std::uint8_t>(hold));
+void put_hold(ByteWriter& writer, const flow::LoopSettings& settings) {
+  writer.f64_le(flow::setting::keep_volume.of(settings));
+  writer.u8(static_cast<std::uint8_t>(settings.hold));
 }
 
-bool read_hold(ByteReader& reader, double& keep_volume, flow::Hold& hold) {
+bool read_hold(ByteReader& reader, flow::LoopSettings& settings) {
   CheckedReader checked(reader);
-  keep_volume = checked.number(0.0, 1.0);
-  hold = checked.one_of(flow::Hold::hand);
+  read_number(checked, flow::setting::keep_volume, settings);
+  settings.hold = checked.one_of(flow::Hold::hand);
   return checked.fine();
 }
 
@@ -382,20 +389,19 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
     read.origins.assign(subdivisions, std::make_shared<const flow::ModelOrigin>(flow::ModelOrigin{
                                           .source = flow::ModelSource::subdivided}));
   options.pull_is_step = reader.remaining() > 0 && reader.u8() != 0; // since 1.5
-  if (reader.remaining() > 0) {                                      // since 1.6
-    checked.require(
-        read_brushes(reader, options.sculptor.brushes, options.sculptor.brush_strength));
+  flow::LoopSettings settings = flow::plain_settings_of(options.sculptor);
+  if (reader.remaining() > 0) { // since 1.6
+    checked.require(read_brushes(reader, settings));
     if (options.settings) {
-      options.settings->brushes = options.sculptor.brushes;
-      options.settings->brush_strength = options.sculptor.brush_strength;
+      options.settings->brushes = settings.brushes;
+      options.settings->brush_strength = settings.brush_strength;
     }
   }
   if (reader.remaining() > 0) { // since 1.7
-    checked.require(
-        read_hold(reader, options.sculptor.deformer.csrbf.keep_volume, options.sculptor.hold));
-    if (options.settings)
-      checked.require(read_hold(reader, options.settings->keep_volume, options.settings->hold));
+    checked.require(read_hold(reader, settings));
+    if (options.settings) checked.require(read_hold(reader, *options.settings));
   }
+  flow::set_plain_settings(options.sculptor, settings);
   if (reader.remaining() > 0) read.placement.table = read_table(reader, checked); // since 1.7
   const unsigned rules = reader.remaining() > 0 ? reader.u8() : 0U;               // since 1.13
   options.sculptor.type2_along_surface = (rules & 1U) != 0;

@@ -103,14 +103,14 @@ inline constexpr std::size_t most_vertices_of_chunk = std::size_t{1} << 19;
 void put_settings(ByteWriter& writer, const flow::LoopSettings& settings);
 inline constexpr std::size_t settings_bytes = 76;
 /// Writes what stands behind them since format 1.6.
-void put_brushes(ByteWriter& writer, const std::array<deform::Brush, 5>& brushes, double strength);
+void put_brushes(ByteWriter& writer, const flow::LoopSettings& settings);
 inline constexpr std::size_t brushes_bytes = 5 + 8;
-bool read_brushes(ByteReader& reader, std::array<deform::Brush, 5>& brushes, double& strength);
+bool read_brushes(ByteReader& reader, flow::LoopSettings& settings);
 
 /// How clayey the model is, and what of the hands holds it; behind the brushes, too.
-void put_hold(ByteWriter& writer, double keep_volume, flow::Hold hold);
+void put_hold(ByteWriter& writer, const flow::LoopSettings& settings);
 inline constexpr std::size_t hold_bytes = 8 + 1;
-bool read_hold(ByteReader& reader, double& keep_volume, flow::Hold& hold);
+bool read_hold(ByteReader& reader, flow::LoopSettings& settings);
 /// Returns nothing if they are not usable.
 std::optional<flow::LoopSettings> read_settings(ByteReader& reader);
 

@@ -43,8 +43,8 @@ struct EntryWriter {
   void operator()(const flow::LoopSettings& settings) const {
     put_entry_head(writer, EntryKind::settings, settings_bytes + brushes_bytes + hold_bytes);
     put_settings(writer, settings);
-    put_brushes(writer, settings.brushes, settings.brush_strength);
-    put_hold(writer, settings.keep_volume, settings.hold);
+    put_brushes(writer, settings);
+    put_hold(writer, settings);
   }
   void operator()(const flow::HoldStill&) const {
     put_entry_head(writer, EntryKind::hold_still, 0);
@@ -315,9 +315,8 @@ std::optional<Entry> TakeReader::entry_of(const LogEntry& record) {
   } else if (record.is(EntryKind::settings)) {
     auto settings = read_settings(reader);
     bool fine = reader.remaining() == 0 || // before 1.6
-                (settings && read_brushes(reader, settings->brushes, settings->brush_strength));
-    fine = fine && (reader.remaining() == 0 ||
-                    (settings && read_hold(reader, settings->keep_volume, settings->hold)));
+                (settings && read_brushes(reader, *settings));
+    fine = fine && (reader.remaining() == 0 || (settings && read_hold(reader, *settings)));
     if (settings && fine) entry = *settings;
   } else if (record.is(EntryKind::hold_still)) {
     entry = flow::HoldStill{};

@@ -33,6 +33,8 @@ struct CsrbfOptions {
   /// Above 0, start points need not go exactly where they are told to: of a diagonal entry of the
   /// equations, what is added to it. Points that come close together are then not torn apart.
   double smoothing = 0.0;
+
+  bool keeps_volume() const noexcept { return keep_volume > 0.0; }
 };
 
 enum class FieldStatus {

@@ -34,7 +34,8 @@ std::string_view name_of(Mode mode) noexcept;
 std::optional<Mode> mode_named(std::string_view name) noexcept;
 
 /// The points of a hand that hold the model in type 1: its five fingertips, or points all over its
-/// bones and its palm (hand/held_points.hpp). Type 2 and keep_volume are for fingertips.
+/// bones and its palm (hand/held_points.hpp). Type 2, and what keeps the volume, are for
+/// fingertips.
 enum class Hold : std::uint8_t { fingertips, hand };
 
 std::string_view name_of(Hold hold) noexcept; ///< "tips" or "hand"

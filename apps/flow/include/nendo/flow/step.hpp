@@ -24,7 +24,7 @@ enum class StepKind : std::uint8_t {
   subdivide, ///< the model became finer
   brush,     ///< of one finger or more, or their strength
   puppet,    ///< the puppet was edited
-  volume,    ///< LoopSettings::keep_volume
+  volume,    ///< how much of it stays
   hold,      ///< LoopSettings::hold
   mask,      ///< what fingertips leave alone was painted, cleared or inverted
   symmetry,  ///< fingertips shape both sides, or no longer
