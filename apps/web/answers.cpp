@@ -82,7 +82,8 @@ std::string switching_head(std::string_view accept) {
 }
 
 std::string page_with(std::string_view nonce) {
-  return replaced(replaced(page(), commands_mark, page_commands()), nonce_mark, nonce);
+  const std::string settled = replaced(page(), settings_mark, page_settings());
+  return replaced(replaced(settled, commands_mark, page_commands()), nonce_mark, nonce);
 }
 
 std::string random_hex(std::size_t bytes) {

@@ -9,6 +9,8 @@ namespace nendo::web {
 inline constexpr std::string_view nonce_mark = "NENDO-NONCE";
 /// The text that it replaces by page_commands().
 inline constexpr std::string_view commands_mark = "NENDO-COMMANDS";
+/// And by page_settings().
+inline constexpr std::string_view settings_mark = "NENDO-SETTINGS";
 
 std::string_view page() noexcept;
 

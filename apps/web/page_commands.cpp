@@ -2,6 +2,9 @@
 
 #include <string_view>
 
+#include <nendo/base/text.hpp>
+#include <nendo/flow/setting.hpp>
+
 #include "commands/commands.hpp"
 
 namespace nendo::web {
@@ -10,6 +13,10 @@ namespace {
 // A test sees that no text of the table has a quotation mark, a backslash or a "<".
 std::string quoted(std::string_view text) {
   return '"' + std::string(text) + '"';
+}
+
+std::string limits(const flow::Range& range) {
+  return ", min: " + decimal_text(range.min) + ", max: " + decimal_text(range.max);
 }
 
 } // namespace
@@ -27,6 +34,19 @@ std::string page_commands() {
             ", isSetting: " + (row.choose != nullptr ? "true" : "false") + " },";
   }
   return list + "\n]";
+}
+
+std::string page_settings() {
+  std::string list = "{";
+  flow::for_each_setting([&](const auto& setting) {
+    list += "\n  " + std::string(setting.name) + ": { label: " + quoted(setting.label);
+    if constexpr (requires { setting.handy; })
+      list += limits(setting.handy);
+    else if constexpr (requires { setting.range; })
+      list += limits(setting.range);
+    list += " },";
+  });
+  return list + "\n}";
 }
 
 } // namespace nendo::web

@@ -11,6 +11,8 @@
 
 #include <doctest/doctest.h>
 
+#include <nendo/flow/setting.hpp>
+
 #include "commands/commands.hpp"
 #include "web/client_commands.hpp"
 #include "web/page_commands.hpp"
@@ -208,6 +210,25 @@ TEST_SUITE("commands") {
       CAPTURE(name);
       CHECK(commands::named(name) != nullptr);
     }
+  }
+
+  TEST_CASE(
+      "the page's sliders and labels are of settings that are described, and in force there") {
+    const std::string list = web::page_settings();
+    flow::for_each_setting([&](const auto& setting) {
+      CAPTURE(setting.name);
+      const std::string name(setting.name), label(setting.label);
+      CHECK(list.find("\n  " + name + ": { label: \"" + label + "\"") != std::string::npos);
+      CHECK(label.find_first_of("\"\\<") == std::string::npos);
+    });
+    CHECK(list.find("keep_volume: { label: \"volume\", min: 0.0, max: 1.0 }") != std::string::npos);
+    const std::string html = content_of("apps/web/page/index.html");
+    for (const std::string mark : {"data-label=\"", "data-range=\""})
+      for (auto at = html.find(mark); at != std::string::npos; at = html.find(mark, at)) {
+        at += mark.size();
+        const std::string name = html.substr(at, html.find('"', at) - at);
+        CHECK(list.find("\n  " + name + ": {") != std::string::npos);
+      }
   }
 
   TEST_CASE("the pages list what the table has, and nothing else") {

@@ -1,5 +1,5 @@
-// Mode, kernel, radii and filter. What is chosen is asked for at once, once a picture at most.
-const LEAST_RADIUS = 0.01, MOST_RADIUS = 0.4
+// Mode, kernel, radii and filter. What is chosen is asked for at once, once a picture at most. Labels and ranges are those of
+// SETTINGS, which the server fills in from their description (flow/setting.hpp).
 const MODES = { 1: 'type1', 2: 'type2', 3: 'clay', 4: 'parts' }
 const FINGERS = ['thumb', 'index', 'middle', 'ring', 'little']
 const PATIENCE = 1000 // ms, for which what was asked for is shown before what is in force
@@ -11,6 +11,11 @@ const isSame = (a, b) => ['mode', 'kernel', 'injective', 'filtered', 'strength',
 class Shaping {
   constructor(ask) {
     Object.assign(this, { ask, live: false, wanted: null, due: false, askedAt: -Infinity })
+    for (const part of document.querySelectorAll('[data-label]')) part.textContent = SETTINGS[part.dataset.label].label
+    for (const range of document.querySelectorAll('[data-range]')) {
+      const { min, max } = SETTINGS[range.dataset.range]
+      Object.assign(range, { min, max })
+    }
     element('brush').append(...BRUSHES.map(name => new Option(name)))
     this.sliders = FINGERS.map((finger, at) => this.makeSlider(finger, at))
     element('shaping').addEventListener('input', event => this.choose(event.target))
@@ -21,7 +26,7 @@ class Shaping {
     const name = label.appendChild(document.createElement('span'))
     const range = label.appendChild(document.createElement('input'))
     const output = label.appendChild(document.createElement('output'))
-    Object.assign(range, { type: 'range', min: 100 * LEAST_RADIUS, max: 100 * MOST_RADIUS, step: 0.5, id: 'radius-' + finger })
+    Object.assign(range, { type: 'range', min: 100 * SETTINGS.radius_m.min, max: 100 * SETTINGS.radius_m.max, step: 0.5, id: 'radius-' + finger })
     return { label, name, range, output, at }
   }
 
@@ -95,7 +100,7 @@ class Shaping {
     const { wanted } = this, one = element('one-radius').checked
     for (const { label, name, range, output, at } of this.sliders) {
       label.hidden = one && at > 0
-      name.textContent = one ? 'radius' : FINGERS[at]
+      name.textContent = one ? SETTINGS.radius_m.label : FINGERS[at]
       if (Math.abs(range.value / 100 - wanted.radii[at]) > 0.003) range.value = 100 * wanted.radii[at]
       output.textContent = `${(100 * wanted.radii[at]).toFixed(1)} cm`
     }
