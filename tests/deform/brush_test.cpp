@@ -195,6 +195,31 @@ TEST_SUITE("brush") {
     CHECK(volume_of(ball, brushed(ball, Brush::scale, -1.0, top * 0.9, along * 0.5)) < whole);
   }
 
+  TEST_CASE("pinch gathers a sheet about the fingertip, keeps it flat, and below 0 spreads it") {
+    const Mesh sheet = nendo::test::grid(60, 12.0);
+    const Vector3d middle = sheet.vertices.rowwise().mean();
+    const Vector3d up = vertex_normals(sheet).rowwise().mean().normalized();
+    for (const double strength : {0.8, -0.4}) {
+      CAPTURE(strength);
+      // A way along the normal leaves the line where it is.
+      const Points shape = brushed(sheet, Brush::pinch, strength, middle, 0.6 * up);
+      CHECK((up.transpose() * (shape - sheet.vertices)).cwiseAbs().maxCoeff() < 1e-5);
+      double nearer = 0.0, farther = 0.0;
+      for (Eigen::Index v = 0; v < shape.cols(); ++v) {
+        const double before = (sheet.vertices.col(v) - middle).norm();
+        const double change = (shape.col(v) - middle).norm() - before;
+        nearer = std::min(nearer, change);
+        farther = std::max(farther, change);
+        // Towards the line, and not about it.
+        if (before > 1e-9)
+          CHECK((shape.col(v) - middle).cross(sheet.vertices.col(v) - middle).norm() <
+                1e-4 * before);
+      }
+      CHECK((strength > 0.0 ? nearer : -farther) < -0.02);
+      CHECK((strength > 0.0 ? farther : -nearer) < 1e-5);
+    }
+  }
+
   TEST_CASE("a finger pulls as alone, whatever others brush elsewhere") {
     DeformerOptions options;
     options.supports = one_radius(2.0);

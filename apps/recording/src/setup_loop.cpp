@@ -173,7 +173,7 @@ void put_brushes(ByteWriter& writer, const flow::LoopSettings& settings) {
 bool read_brushes(ByteReader& reader, flow::LoopSettings& settings) {
   CheckedReader checked(reader);
   for (deform::Brush& brush : settings.brushes)
-    brush = checked.one_of(deform::Brush::scale);
+    brush = checked.one_of(static_cast<deform::Brush>(deform::brush_count - 1));
   read_number(checked, flow::setting::brush_strength, settings);
   return checked.fine();
 }

@@ -1,7 +1,7 @@
 // What comes from the server: PROTOCOL.md, byte for byte.
 const JOINTS = 26
 const MODEL_HEAD = 88, BONE_BYTES = 28, COAT_BYTES = 24, UPDATE_HEAD = 112, NO_TEXTURE = 0xffffffff
-const BRUSHES = ['pull', 'none', 'push', 'inflate', 'smooth', 'flatten', 'twist', 'scale']
+const BRUSHES = ['pull', 'none', 'push', 'inflate', 'smooth', 'flatten', 'twist', 'scale', 'pinch']
 const KERNELS = ['c0', 'c2', 'c4', 'c6']
 const HOLDS = ['tips', 'hand']
 // Of each joint, whose place hangs on it; the wrist's on none.

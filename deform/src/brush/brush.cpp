@@ -7,8 +7,8 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr std::array<std::string_view, brush_count> names{"pull",   "none",    "push",  "inflate",
-                                                          "smooth", "flatten", "twist", "scale"};
+constexpr std::array<std::string_view, brush_count> names{
+    "pull", "none", "push", "inflate", "smooth", "flatten", "twist", "scale", "pinch"};
 
 } // namespace
 

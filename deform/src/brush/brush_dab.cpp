@@ -57,6 +57,10 @@ bool BrushDabs::find(const Dab& dab, const BoundedShape& shape) noexcept {
   move_each(shape.shape, [&](const Eigen::Vector3d& x, double weight) -> Eigen::Vector3d {
     if (dab.brush == Brush::push) return -dab.way * pushed((x - dab.centre) / dab.radius, weight);
     if (dab.brush == Brush::flatten) return -part * weight * normal_.dot(x - middle_) * normal_;
+    if (dab.brush == Brush::pinch) {
+      const Eigen::Vector3d from_centre = x - dab.centre;
+      return std::expm1(-turns * weight) * (from_centre - normal_.dot(from_centre) * normal_);
+    }
     const Eigen::Vector3d from_axis = x - middle_;
     return Eigen::AngleAxisd(turns * weight, normal_) * from_axis - from_axis;
   });

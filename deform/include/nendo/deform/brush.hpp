@@ -22,8 +22,9 @@ enum class Brush : std::uint8_t {
   flatten, ///< the surface becomes the plane that fits it best
   twist,   ///< the surface turns about its mean normal
   scale,   ///< the surface grows about the fingertip
+  pinch,   ///< vertices gather about the line through the fingertip along the mean normal
 };
-inline constexpr std::uint8_t brush_count = 8;
+inline constexpr std::uint8_t brush_count = 9;
 
 std::string_view name_of(Brush brush) noexcept;
 std::optional<Brush> brush_named(std::string_view name) noexcept;
@@ -36,9 +37,9 @@ struct BrushOptions {
   /// is then worked out of the same shape, so that none of the two comes first.
   bool are_mirrored = false;
   /// How much a brush does on a way of a given length, -1 to 1. At 1, push and inflate lead as far
-  /// as the fingertip goes, and on a way of one radius twist turns by one radian, scale grows by e,
-  /// and smooth and flatten do 86 % of what is left to do. Below 0 each does the opposite, but
-  /// smooth and flatten, which have none. Pull always leads all the way.
+  /// as the fingertip goes, and on a way of one radius twist turns by one radian, scale grows and
+  /// pinch shrinks by e, and smooth and flatten do 86 % of what is left to do. Below 0 each does
+  /// the opposite, but smooth and flatten, which have none. Pull always leads all the way.
   double strength = usual_brush_strength;
   /// Of the model; needed if any brush is neither pull nor none.
   std::shared_ptr<const VertexRings> rings{};

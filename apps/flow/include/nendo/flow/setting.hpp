@@ -54,10 +54,11 @@ inline constexpr FilterSetting filter{
 inline constexpr BrushesSetting brushes{
     {{"brushes", "--brush", "brush", "brush",
       "What a finger does along its way, in type 2: pull, none, push, inflate, smooth, flatten, "
-      "twist or scale; or five with commas between, thumb to little finger",
+      "twist, scale or pinch; or five with commas between, thumb to little finger",
       StepKind::brush, true},
      &LoopSettings::brushes},
-    "pull, none, push, inflate, smooth, flatten, twist or scale, or five of them with commas "
+    "pull, none, push, inflate, smooth, flatten, twist, scale or pinch, or five of them with "
+    "commas "
     "between, thumb to little finger"};
 inline constexpr NumberSetting brush_strength{
     {{"brush_strength", "--strength", "strength", "strength",
