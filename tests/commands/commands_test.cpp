@@ -162,6 +162,24 @@ TEST_SUITE("commands") {
     }
   }
 
+  TEST_CASE("the filter's row turns it on and off, and leaves its cutoffs alone") {
+    flow::Frame frame;
+    frame.settings.filter.min_cutoff_hz = 3.5;
+    const commands::RunFacts facts;
+    for (const auto kind : {hand::FilterKind::one_euro, hand::FilterKind::off}) {
+      flow::WantedSettings wanted;
+      wanted.follow(frame.settings);
+      const auto answer =
+          commands::press(*commands::with_key("F", commands::in_terminal), {frame, facts}, wanted);
+      REQUIRE(answer.command);
+      const auto* const change = std::get_if<flow::ChangeSettings>(&*answer.command);
+      REQUIRE(change != nullptr);
+      CHECK(change->settings.filter.kind == kind);
+      CHECK(change->settings.filter.min_cutoff_hz == 3.5);
+      frame.settings = change->settings;
+    }
+  }
+
   TEST_CASE("a command that is not possible says why, and only the loop's requests are passed on") {
     const State none(false);
     int refused = 0;

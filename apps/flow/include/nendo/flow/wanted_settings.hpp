@@ -34,6 +34,10 @@ public:
   void next_volume() noexcept;
   void toggle_hold() noexcept { now.hold = now.hold == Hold::hand ? Hold::fingertips : Hold::hand; }
   void toggle_folding() noexcept { now.injective = !now.injective; }
+  void toggle_filter() noexcept {
+    const bool is_off = now.filter.kind == hand::FilterKind::off;
+    now.filter.kind = is_off ? hand::FilterKind::one_euro : hand::FilterKind::off;
+  }
   /// Make all radii larger, or smaller, by a tenth, within the range.
   void enlarge_radii() noexcept { scale_radii(1.1); }
   void reduce_radii() noexcept { scale_radii(1.0 / 1.1); }
