@@ -31,9 +31,9 @@ struct LoopCommandName {
 
 bool LoopCommands::push(const flow::Command& command) {
   if (ring_.try_push(command)) {
-    if (told_ == dropped_.size()) {
+    if (reported_ == dropped_.size()) {
       dropped_.clear();
-      told_ = 0;
+      reported_ = 0;
     }
     return true;
   }
@@ -43,10 +43,10 @@ bool LoopCommands::push(const flow::Command& command) {
 }
 
 std::optional<std::string> LoopCommands::dropped() {
-  if (told_ == dropped_.size()) return std::nullopt;
+  if (reported_ == dropped_.size()) return std::nullopt;
   std::string names;
-  for (; told_ < dropped_.size(); ++told_)
-    names += (names.empty() ? "" : ", ") + std::string(dropped_[told_]);
+  for (; reported_ < dropped_.size(); ++reported_)
+    names += (names.empty() ? "" : ", ") + std::string(dropped_[reported_]);
   return "The loop does not answer, so this was dropped: " + names + ".";
 }
 

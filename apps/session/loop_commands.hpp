@@ -31,7 +31,7 @@ public:
 private:
   flow::CommandRing ring_;
   std::vector<std::string_view> dropped_; ///< since the last command that was passed on
-  std::size_t told_ = 0;                  ///< of these
+  std::size_t reported_ = 0;              ///< how many of these dropped() has named
 };
 
 } // namespace nendo::session

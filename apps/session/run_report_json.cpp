@@ -127,7 +127,7 @@ void add_settings(ordered_json& line, const RunOutcome& outcome) {
     ordered_json& value = line[std::string(setting.name)];
     if constexpr (requires { setting.name_of; })
       value = setting.name_of(setting.of(settings));
-    else if constexpr (requires { setting.choices; })
+    else if constexpr (requires { flow::in_words(setting.of(settings)); })
       value = flow::in_words(setting.of(settings));
     else
       value = setting.of(settings);

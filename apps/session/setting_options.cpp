@@ -58,7 +58,9 @@ Result<void> SettingArguments::parse_brushes(flow::LoopSettings& settings) const
   const auto parsed = flow::parse_brushes(text->second);
   if (!parsed)
     return Error{Errc::usage,
-                 fmt::format("{} {}: use {}", brushes.option, text->second, brushes.choices)};
+                 fmt::format("{} {}: use {}, or five of them with commas between, thumb to little "
+                             "finger",
+                             brushes.option, text->second, deform::brush_words())};
   brushes.of(settings) = *parsed;
   if (texts_.at(flow::setting::mode.name).empty()) settings.mode = flow::Mode::type2;
   return {};

@@ -72,7 +72,7 @@ GloveFrames::GloveFrames(recording::TakeReader reader)
   for (const Side side : {Side::left, Side::right})
     placement.T_stage_wrist[flow::Placement::index_of(side)] = wrist_of(side);
   for (flow::HandInput input : reader_.setup().hands) {
-    input.filter = {}; // each pose as its sample tells it
+    input.filter = {}; // poses of samples as they are
     hands_.emplace_back(std::move(input), placement, false);
     frame_.hands[hands_.back().slot].present = true;
     show(hands_.back());

@@ -1,6 +1,6 @@
 #pragma once
 // A timeline that is being edited, with the undo of its edits: of keys and settings in a document,
-// not of shapes (deform::SculptedShape), which are played anew. It has the selected key, and knows
+// not of shapes (deform::SculptedShape), which are played again. It has the selected key, and knows
 // whether there are unsaved changes.
 
 #include <cstdint>

@@ -12,14 +12,11 @@ namespace {
 // Times in files are decimals, and a frame's is a quotient: what is so near belongs to it.
 constexpr double a_hair = 1e-6; // of a frame
 
-/// The bodies of all hands, left hand first.
 std::shared_ptr<flow::HandBodies> bodies_of(const Timeline& timeline, const deform::Mesh& model) {
-  std::vector<hand::HandSkeleton> hands;
-  for (const Side side : {Side::left, Side::right})
-    for (const auto& track : timeline.hands)
-      if (track.side == side) hands.push_back(track.skeleton());
-  const double units = timeline.units_per_metre;
-  return std::make_shared<flow::HandBodies>(hands, units, flow::table_under(model, units));
+  std::array<std::optional<hand::HandSkeleton>, 2> by_side;
+  for (const HandTrack& track : timeline.hands)
+    by_side[flow::Placement::index_of(track.side)] = track.skeleton();
+  return flow::make_bodies(by_side, model, timeline.units_per_metre);
 }
 
 flow::BrokerOptions broker_options(const Timeline& timeline,

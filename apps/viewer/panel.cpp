@@ -195,7 +195,7 @@ void LiveWindow::Panel::settings() {
   show_help("folding");
   bool smooth = chosen.filter.kind == hand::FilterKind::one_euro;
   ImGui::Checkbox(flow::setting::filter.label.data(), &smooth);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("The one-euro filter");
+  show_help("filter");
   chosen.filter.kind = smooth ? hand::FilterKind::one_euro : hand::FilterKind::off;
   ImGui::SameLine();
   ImGui::Checkbox("pinches", &chosen.filter.close_pinches);

@@ -68,7 +68,9 @@ TEST_SUITE("brush") {
     for (std::uint8_t number = 0; number < brush_count; ++number) {
       const auto brush = static_cast<Brush>(number);
       CHECK(brush_named(name_of(brush)) == brush);
+      CHECK(brush_words().find(name_of(brush)) != std::string::npos);
     }
+    CHECK(brush_words().starts_with("pull, none, "));
     CHECK_FALSE(brush_named("paint"));
   }
 

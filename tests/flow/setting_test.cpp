@@ -85,6 +85,12 @@ TEST_SUITE("setting") {
     });
   }
 
+  TEST_CASE("the help of the brushes names each of them") {
+    for (std::uint8_t number = 0; number < deform::brush_count; ++number)
+      CHECK(flow::setting::brushes.help.find(name_of(static_cast<deform::Brush>(number))) !=
+            std::string_view::npos);
+  }
+
   TEST_CASE("what is out of its range is named, with the range") {
     CHECK(flow::complaint_about(usable()).empty());
     CHECK(usable().are_usable());

@@ -19,8 +19,7 @@ bool is_chosen(Party party, const LoopSettings& settings, Played played) noexcep
   case Party::hold:
     return settings.hold == Hold::hand;
   case Party::brushes:
-    return std::any_of(settings.brushes.begin(), settings.brushes.end(),
-                       [](deform::Brush brush) { return brush != deform::Brush::pull; });
+    return !deform::are_all_pull(settings.brushes);
   case Party::volume:
     return setting::keep_volume.of(settings) > 0.0;
   case Party::injective:

@@ -19,16 +19,12 @@ std::vector<const HandInput*> hands_of(const std::vector<HandInput>& inputs) {
   return hands;
 }
 
-/// Returns the bodies of all hands, left hand first.
 std::shared_ptr<HandBodies> bodies_of(const std::vector<HandInput>& inputs,
                                       const Placement& placement, const deform::Mesh& model) {
-  std::vector<hand::HandSkeleton> skeletons;
-  for (const Side side : {Side::left, Side::right})
-    for (const HandInput* hand : hands_of(inputs))
-      if (hand->side == side) skeletons.push_back(hand->skeleton(hand->first.side));
-  const double units = placement.units_per_metre;
-  return std::make_shared<HandBodies>(
-      skeletons, units, placement.table ? *placement.table : table_under(model, units));
+  std::array<std::optional<hand::HandSkeleton>, 2> by_side;
+  for (const HandInput* hand : hands_of(inputs))
+    by_side[Placement::index_of(hand->side)] = hand->skeleton(hand->first.side);
+  return make_bodies(by_side, model, placement.units_per_metre, placement.table);
 }
 
 BrokerOptions broker_options(const std::vector<HandInput>& inputs, const Placement& placement,

@@ -91,4 +91,14 @@ void HandBodies::follow(std::size_t hand, const hand::HandPose& pose) noexcept {
                 std::span(parts_).subspan(hand * parts, parts));
 }
 
+std::shared_ptr<HandBodies>
+make_bodies(const std::array<std::optional<hand::HandSkeleton>, 2>& by_side,
+            const deform::Mesh& model, double units_per_metre, const std::optional<Table>& table) {
+  std::vector<hand::HandSkeleton> hands;
+  for (const auto& hand : by_side)
+    if (hand) hands.push_back(*hand);
+  return std::make_shared<HandBodies>(hands, units_per_metre,
+                                      table ? *table : table_under(model, units_per_metre));
+}
+
 } // namespace nendo::flow

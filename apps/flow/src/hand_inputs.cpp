@@ -105,8 +105,8 @@ void HandInputs::show(const LoopStats& stats, Frame& frame) const noexcept {
   }
 }
 
-void HandInputs::count(std::size_t number, std::size_t samples, HostTime now,
-                       HostClock::duration silent_after, LoopStats& stats) noexcept {
+void HandInputs::count_samples(std::size_t number, std::size_t samples, HostTime now,
+                               HostClock::duration silent_after, LoopStats& stats) noexcept {
   GloveHand& hand = hands_[number];
   const bool silent = now - hand.latest.arrival > silent_after;
   const bool fell_silent = silent && !std::exchange(hand.silent, silent);

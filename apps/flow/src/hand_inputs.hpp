@@ -26,7 +26,6 @@ public:
              const LoopSettings& settings);
 
   std::size_t count() const noexcept { return hands_.size(); }
-  std::span<GloveHand> all() noexcept { return hands_; }
   std::span<const GloveHand> all() const noexcept { return hands_; }
   const GloveHand& operator[](std::size_t number) const noexcept { return hands_[number]; }
   GloveHand& operator[](std::size_t number) noexcept { return hands_[number]; }
@@ -47,8 +46,8 @@ public:
   /// Writes the hands that pose() computed last.
   void show(const LoopStats& stats, Frame& frame) const noexcept;
   /// Counts the samples that an input took out of its ring in this tick.
-  void count(std::size_t number, std::size_t samples, HostTime now,
-             HostClock::duration silent_after, LoopStats& stats) noexcept;
+  void count_samples(std::size_t number, std::size_t samples, HostTime now,
+                     HostClock::duration silent_after, LoopStats& stats) noexcept;
   /// Adds the ages of this tick's samples, and the filters' delays.
   void record_latencies(HostTime done, LoopStats& stats) const noexcept;
 

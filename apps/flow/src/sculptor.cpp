@@ -155,8 +155,7 @@ std::string in_words(const std::array<deform::Brush, 5>& brushes) {
 }
 
 bool SculptorOptions::needs_rings() const noexcept {
-  return std::any_of(brushes.begin(), brushes.end(),
-                     [](deform::Brush brush) { return brush != deform::Brush::pull; });
+  return !deform::are_all_pull(brushes);
 }
 
 bool SculptorOptions::is_along_surface() const noexcept {

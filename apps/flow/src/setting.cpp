@@ -63,10 +63,8 @@ std::string complaint_about(const LoopSettings& settings) {
 std::string in_words(const LoopSettings& settings, double units_per_metre) {
   std::string words(name_of(settings.mode));
   const auto add = [&](const std::string& more) { words += ", " + more; };
-  const bool is_brushed = std::any_of(settings.brushes.begin(), settings.brushes.end(),
-                                      [](deform::Brush one) { return one != deform::Brush::pull; });
   if (settings.hold == Hold::hand) add(std::string(setting::hold.words));
-  if (settings.mode == Mode::type2 && is_brushed)
+  if (settings.mode == Mode::type2 && !deform::are_all_pull(settings.brushes))
     add(in_words(settings.brushes) + " at strength " + shortest_text(settings.brush_strength));
   add(std::string(deform::name_of(settings.kernel)));
   if (settings.keep_volume > 0.0)

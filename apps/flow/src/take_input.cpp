@@ -58,7 +58,7 @@ void DeformLoop::Ticker::take_samples(TickRecord& record) noexcept {
       record.input = record.samples == 0 ? arrival : std::min(record.input, arrival);
       record.samples += static_cast<std::uint32_t>(count);
     }
-    inputs_.count(number, count, record.woke, options_.silent_after, stats_);
+    inputs_.count_samples(number, count, record.woke, options_.silent_after, stats_);
   }
   if (options_.policy == OverrunPolicy::sample && record.samples > 0) record.scheduled = newest;
   update_switches();
@@ -88,7 +88,7 @@ void DeformLoop::Ticker::apply(const Command& command) noexcept {
 
 void DeformLoop::Ticker::update_switches() noexcept {
   if (options_.switch_action != SwitchAction::grab) return;
-  const auto hands = std::as_const(inputs_).all();
+  const auto hands = inputs_.all();
   const bool on = std::any_of(hands.begin(), hands.end(), [this](const GloveHand& hand) {
     return hand.wrist_switch.is_on() && !core_.has_clutch(hand.input.side);
   });

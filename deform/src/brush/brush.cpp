@@ -22,8 +22,15 @@ std::optional<Brush> brush_named(std::string_view name) noexcept {
   return static_cast<Brush>(found - names.begin());
 }
 
-bool BrushOptions::are_all_pull() const noexcept {
-  return std::all_of(of_points.begin(), of_points.end(),
+std::string brush_words() {
+  std::string words(names.front());
+  for (std::size_t at = 1; at < names.size(); ++at)
+    words.append(at + 1 < names.size() ? ", " : " or ").append(names[at]);
+  return words;
+}
+
+bool are_all_pull(std::span<const Brush> brushes) noexcept {
+  return std::all_of(brushes.begin(), brushes.end(),
                      [](Brush brush) { return brush == Brush::pull; });
 }
 

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,6 +30,9 @@ inline constexpr std::uint8_t brush_count = 9;
 
 std::string_view name_of(Brush brush) noexcept;
 std::optional<Brush> brush_named(std::string_view name) noexcept;
+/// Returns all names, as "pull, none, push or inflate".
+std::string brush_words();
+bool are_all_pull(std::span<const Brush> brushes) noexcept; ///< none does anything else
 
 inline constexpr double usual_brush_strength = 0.5;
 
@@ -44,7 +49,7 @@ struct BrushOptions {
   /// Of the model; needed if any brush is neither pull nor none.
   std::shared_ptr<const VertexRings> rings{};
 
-  bool are_all_pull() const noexcept;
+  bool are_all_pull() const noexcept { return deform::are_all_pull(of_points); }
 };
 
 } // namespace nendo::deform

@@ -1,7 +1,10 @@
 #pragma once
 // Hands as the bodies that press clay.
 
+#include <array>
 #include <cstddef>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,5 +48,12 @@ private:
   Table table_;
   double units_per_metre_;
 };
+
+/// Returns the bodies of the hands that there are, by side, left hand first. Without a table it is
+/// table_under() the model. Allocates.
+std::shared_ptr<HandBodies>
+make_bodies(const std::array<std::optional<hand::HandSkeleton>, 2>& by_side,
+            const deform::Mesh& model, double units_per_metre,
+            const std::optional<Table>& table = {});
 
 } // namespace nendo::flow

@@ -52,14 +52,11 @@ inline constexpr FilterSetting filter{
      StepKind::filter},
     &LoopSettings::filter};
 inline constexpr BrushesSetting brushes{
-    {{"brushes", "--brush", "brush", "brush",
-      "What a finger does along its way, in type 2: pull, none, push, inflate, smooth, flatten, "
-      "twist, scale or pinch; or five with commas between, thumb to little finger",
-      StepKind::brush, true},
-     &LoopSettings::brushes},
-    "pull, none, push, inflate, smooth, flatten, twist, scale or pinch, or five of them with "
-    "commas "
-    "between, thumb to little finger"};
+    {"brushes", "--brush", "brush", "brush",
+     "What a finger does along its way, in type 2: pull, none, push, inflate, smooth, flatten, "
+     "twist, scale or pinch; or five with commas between, thumb to little finger",
+     StepKind::brush, true},
+    &LoopSettings::brushes};
 inline constexpr NumberSetting brush_strength{
     {{"brush_strength", "--strength", "strength", "strength",
       "How much a brush does, -1 to 1, without it 0.5; below 0 it does the opposite",

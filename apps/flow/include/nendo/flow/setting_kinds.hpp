@@ -42,6 +42,8 @@ struct Range {
 
 using SwitchSetting = Setting<bool>;
 using FilterSetting = Setting<hand::FilterOptions>;
+/// A choice for each finger, thumb to little finger.
+using BrushesSetting = Setting<std::array<deform::Brush, 5>>;
 struct NumberSetting : Setting<double> {
   Range range; ///< of what a loop takes; it has no unit
 };
@@ -56,10 +58,6 @@ struct ChoiceSetting : Setting<T> {
   std::string_view choices; ///< for messages
   std::string_view (*name_of)(T choice) noexcept = nullptr;
   std::optional<T> (*named)(std::string_view name) noexcept = nullptr;
-};
-/// The same for each finger.
-struct BrushesSetting : Setting<std::array<deform::Brush, 5>> {
-  std::string_view choices;
 };
 
 } // namespace nendo::flow

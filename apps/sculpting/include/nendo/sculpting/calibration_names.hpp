@@ -12,7 +12,7 @@
 
 namespace nendo::sculpting {
 
-/// Is told, in one line, what a user should know though nothing failed. It is called on the thread
+/// Receives, in one line, what a user should know though nothing failed. It is called on the thread
 /// of the function that it is given to.
 using Note = std::function<void(std::string_view)>;
 

@@ -62,7 +62,7 @@ bool have_ended(std::span<const OpenHand> hands) noexcept;
 Result<void> wait_for_samples(std::span<OpenHand> hands,
                               const std::function<bool()>& is_stopped = {});
 
-/// Finds the wearer of each hand, for the side that its first sample tells. Blocks. Errors: those
+/// Finds the wearer of each hand, for the side of its first sample. Blocks. Errors: those
 /// of find_wearer().
 Result<void> find_wearers(std::span<OpenHand> hands, const CalibrationOptions& options,
                           const Note& note);
