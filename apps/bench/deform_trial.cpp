@@ -7,7 +7,7 @@
 
 #include "bench/deform_frames.hpp"
 #include "bench/plain_deformer.hpp"
-#include "block_evaluator.hpp"
+#include "field/block_evaluator.hpp"
 #include "reference/table1.hpp"
 
 namespace nendo::bench {

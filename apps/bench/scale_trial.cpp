@@ -12,7 +12,7 @@
 #include <nendo/deform/type1.hpp>
 
 #include "bench/deform_frames.hpp"
-#include "block_evaluator.hpp"
+#include "field/block_evaluator.hpp"
 #include "reference/table1.hpp"
 
 namespace nendo::bench {

@@ -1,4 +1,4 @@
-#include "block_evaluator.hpp"
+#include "field/block_evaluator.hpp"
 
 #include <algorithm>
 #include <cmath>

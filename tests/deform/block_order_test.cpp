@@ -11,7 +11,7 @@
 
 #include <nendo/deform/vertex_blocks.hpp>
 
-#include "octree_order.hpp"
+#include "geometry/octree_order.hpp"
 #include "support/test_meshes.hpp"
 
 namespace block_order_test {

@@ -1,4 +1,4 @@
-#include "cut/constrained_triangulation.hpp"
+#include "geometry/constrained_triangulation.hpp"
 
 #include <algorithm>
 #include <cmath>

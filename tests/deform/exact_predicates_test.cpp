@@ -1,4 +1,4 @@
-#include "cut/exact_predicates.hpp"
+#include "geometry/exact_predicates.hpp"
 
 #include <cmath>
 #include <random>

@@ -1,4 +1,4 @@
-#include "fingertip_curve.hpp"
+#include "deformer/fingertip_curve.hpp"
 
 #include <cmath>
 #include <numbers>

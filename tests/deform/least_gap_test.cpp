@@ -1,4 +1,4 @@
-#include "least_gap.hpp"
+#include "deformer/least_gap.hpp"
 
 #include <algorithm>
 #include <cmath>

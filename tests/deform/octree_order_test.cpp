@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "octree_order.hpp"
+#include "geometry/octree_order.hpp"
 
 namespace octree_order_test {
 

@@ -6,7 +6,7 @@
 
 #include <nendo/deform/mesh_file.hpp>
 
-#include "cut/triangle_meeting.hpp"
+#include "geometry/triangle_meeting.hpp"
 #include "join/mesh_surface.hpp"
 #include "support/nasty_meshes.hpp"
 #include "support/placed_meshes.hpp"

@@ -1,5 +1,5 @@
-#include "cut/box_tree.hpp"
-#include "cut/triangle_meeting.hpp"
+#include "geometry/box_tree.hpp"
+#include "geometry/triangle_meeting.hpp"
 
 #include <array>
 #include <random>

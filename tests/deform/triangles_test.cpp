@@ -15,7 +15,7 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "cut/triangle_meeting.hpp"
+#include "geometry/triangle_meeting.hpp"
 #include "support/random_polygons.hpp"
 #include "support/test_meshes.hpp"
 

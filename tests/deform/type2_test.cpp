@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "fingertip_curve.hpp"
+#include "deformer/fingertip_curve.hpp"
 #include "nendo/deform/type1.hpp"
 #include "support/fields.hpp"
 #include "support/restraint.hpp"

@@ -12,7 +12,7 @@
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/repair.hpp>
 
-#include "mtl_file.hpp"
+#include "files/mtl_file.hpp"
 
 namespace {
 

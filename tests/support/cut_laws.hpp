@@ -12,8 +12,8 @@
 #include <nendo/deform/cut.hpp>
 #include <nendo/deform/triangles.hpp>
 
-#include "cut/box_tree.hpp"
-#include "cut/triangle_meeting.hpp"
+#include "geometry/box_tree.hpp"
+#include "geometry/triangle_meeting.hpp"
 
 namespace nendo::test {
 

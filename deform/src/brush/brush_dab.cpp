@@ -1,4 +1,4 @@
-#include "brush_dab.hpp"
+#include "brush/brush_dab.hpp"
 
 #include <algorithm>
 #include <cmath>

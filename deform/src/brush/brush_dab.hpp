@@ -10,7 +10,7 @@
 #include <nendo/deform/vertex_mask.hpp>
 #include <nendo/deform/wendland.hpp>
 
-#include "block_evaluator.hpp"
+#include "field/block_evaluator.hpp"
 
 namespace nendo::deform {
 

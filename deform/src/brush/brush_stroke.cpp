@@ -1,4 +1,4 @@
-#include "brush_stroke.hpp"
+#include "brush/brush_stroke.hpp"
 
 #include <algorithm>
 #include <cassert>

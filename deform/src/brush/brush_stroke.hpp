@@ -8,7 +8,7 @@
 #include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 
-#include "brush_dab.hpp"
+#include "brush/brush_dab.hpp"
 
 namespace nendo::deform {
 

@@ -6,7 +6,7 @@
 
 #include <nendo/deform/triangles.hpp>
 
-#include "rows_by_key.hpp"
+#include "geometry/rows_by_key.hpp"
 
 namespace nendo::deform {
 

@@ -1,7 +1,7 @@
 #include <nendo/deform/clay.hpp>
 
 #include "clay/clay_work.hpp"
-#include "sculpted_parts.hpp"
+#include "history/sculpted_parts.hpp"
 
 namespace nendo::deform {
 

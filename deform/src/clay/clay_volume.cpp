@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "block_edit.hpp"
 #include "clay/clay_work.hpp"
+#include "field/block_edit.hpp"
 
 namespace nendo::deform {
 

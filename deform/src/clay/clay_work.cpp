@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "block_edit.hpp"
-#include "usable.hpp"
+#include "field/block_edit.hpp"
+#include "geometry/usable.hpp"
 
 namespace nendo::deform {
 

@@ -7,7 +7,6 @@
 
 #include <nendo/deform/clay.hpp>
 
-#include "block_evaluator.hpp"
 #include "clay/contact_load.hpp"
 #include "clay/contact_points.hpp"
 #include "clay/contact_search.hpp"
@@ -17,7 +16,8 @@
 #include "clay/press_problem.hpp"
 #include "clay/rigid_fit.hpp"
 #include "clay/volume_keeper.hpp"
-#include "masked_step.hpp"
+#include "field/block_evaluator.hpp"
+#include "field/masked_step.hpp"
 
 namespace nendo::deform {
 

@@ -12,7 +12,7 @@
 
 #include <nendo/deform/contact_part.hpp>
 
-#include "block_evaluator.hpp"
+#include "field/block_evaluator.hpp"
 #include "simd/contact_kernels.hpp"
 
 namespace nendo::deform {

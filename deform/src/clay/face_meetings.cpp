@@ -9,7 +9,7 @@
 #include <limits>
 #include <numeric>
 
-#include "cut/triangle_meeting.hpp"
+#include "geometry/triangle_meeting.hpp"
 
 namespace nendo::deform {
 namespace {

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "block_evaluator.hpp"
 #include "clay/marks.hpp"
 #include "clay/volume_keeper.hpp"
-#include "cut/space.hpp"
-#include "rows_by_key.hpp"
+#include "field/block_evaluator.hpp"
+#include "geometry/rows_by_key.hpp"
+#include "geometry/space.hpp"
 #include "simd/contact_kernels.hpp"
 
 namespace nendo::deform {

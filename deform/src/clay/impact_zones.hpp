@@ -11,9 +11,9 @@
 
 #include <nendo/deform/vertex_mask.hpp>
 
-#include "block_evaluator.hpp"
 #include "clay/face_meetings.hpp"
 #include "clay/volume_keeper.hpp"
+#include "field/block_evaluator.hpp"
 
 namespace nendo::deform {
 

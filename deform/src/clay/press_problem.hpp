@@ -12,9 +12,9 @@
 
 #include <Eigen/Core>
 
-#include "block_field.hpp"
 #include "clay/contact_points.hpp"
 #include "clay/slope_grid.hpp"
+#include "field/block_field.hpp"
 #include "simd/press_kernels.hpp"
 
 namespace nendo::deform {

@@ -8,7 +8,7 @@
 
 #include <nendo/deform/vertex_blocks.hpp>
 
-#include "rows_by_key.hpp"
+#include "geometry/rows_by_key.hpp"
 #include "simd/ring_kernels.hpp"
 
 namespace nendo::deform {

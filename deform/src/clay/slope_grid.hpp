@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "block_field.hpp"
+#include "field/block_field.hpp"
 #include "simd/press_kernels.hpp"
 
 namespace nendo::deform {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "block_edit.hpp"
+#include "field/block_edit.hpp"
 
 namespace nendo::deform {
 

@@ -12,9 +12,9 @@
 
 #include <nendo/deform/vertex_blocks.hpp>
 
-#include "block_evaluator.hpp"
 #include "clay/contact_search.hpp"
 #include "clay/ring_layout.hpp"
+#include "field/block_evaluator.hpp"
 #include "simd/ring_kernels.hpp"
 
 namespace nendo::deform {

@@ -1,4 +1,4 @@
-#include "blade.hpp"
+#include "cut/blade.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "cut/space.hpp"
+#include "geometry/space.hpp"
 
 namespace nendo::deform {
 

@@ -5,7 +5,7 @@
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/triangles.hpp>
 
-#include "cut/half_edges.hpp"
+#include "mesh/half_edges.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -99,7 +99,7 @@ ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
   check_faces(face_starts, face_corners, tally);
   if (!tally.check()) return tally.check();
   // Of two edges alike, only their twin sees both.
-  if (std::find(edges.twin.begin(), edges.twin.end(), no_half_edge) != edges.twin.end())
+  if (std::find(edges.twin.begin(), edges.twin.end(), no_index) != edges.twin.end())
     check_edges(face_starts, face_corners, edges, tally);
   if (!tally.check()) return tally.check();
   check_fans(face_starts, edges, tally);

@@ -1,8 +1,8 @@
-#include "cut_assembly.hpp"
+#include "cut/cut_assembly.hpp"
 
 #include <algorithm>
 
-#include "union_find.hpp"
+#include "geometry/union_find.hpp"
 
 namespace nendo::deform {
 namespace {

@@ -1,4 +1,4 @@
-#include "cut_cap.hpp"
+#include "cut/cut_cap.hpp"
 
 #include <algorithm>
 #include <cmath>

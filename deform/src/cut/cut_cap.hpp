@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cut/blade.hpp"
-#include "cut/constrained_triangulation.hpp"
-#include "cut/triangle_meeting.hpp"
+#include "geometry/constrained_triangulation.hpp"
+#include "geometry/triangle_meeting.hpp"
 
 namespace nendo::deform {
 

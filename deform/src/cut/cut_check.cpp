@@ -1,4 +1,4 @@
-#include "cut_check.hpp"
+#include "cut/cut_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include <nendo/deform/triangles.hpp>
 
-#include "cut/box_tree.hpp"
-#include "cut/triangle_meeting.hpp"
+#include "geometry/box_tree.hpp"
+#include "geometry/triangle_meeting.hpp"
 
 namespace nendo::deform {
 namespace {

@@ -1,4 +1,4 @@
-#include "cut_surface.hpp"
+#include "cut/cut_surface.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -277,19 +277,19 @@ void CutSurface::cross() {
 
 /// On a closed two-manifold each crossing has one before it and one behind it, so all form loops.
 void CutSurface::link_loops() {
-  next_.assign(crossings_.size(), no_half_edge);
-  loop_of_.assign(crossings_.size(), no_half_edge);
+  next_.assign(crossings_.size(), no_index);
+  loop_of_.assign(crossings_.size(), no_index);
   for (const CrossedPiece& crossed : crossed_) {
     const bool lone_is_up = is_up(pieces_[crossed.piece].vertices[crossed.lone]);
     const std::uint32_t from = lone_is_up ? crossed.after : crossed.before;
-    assert(next_[from] == no_half_edge);
+    assert(next_[from] == no_index);
     next_[from] = lone_is_up ? crossed.before : crossed.after;
   }
   for (std::uint32_t first = 0; first < crossings_.size(); ++first) {
-    if (loop_of_[first] != no_half_edge) continue;
+    if (loop_of_[first] != no_index) continue;
     const auto number = static_cast<std::uint32_t>(loops_.size());
     loops_.emplace_back();
-    for (std::uint32_t at = first; loop_of_[at] == no_half_edge; at = next_[at]) {
+    for (std::uint32_t at = first; loop_of_[at] == no_index; at = next_[at]) {
       loop_of_[at] = number;
       loops_.back().push_back(at);
     }

@@ -10,8 +10,8 @@
 #include <nendo/deform/triangles.hpp>
 
 #include "cut/blade.hpp"
-#include "cut/half_edges.hpp"
-#include "texture_point.hpp"
+#include "mesh/half_edges.hpp"
+#include "mesh/texture_point.hpp"
 
 namespace nendo::deform {
 

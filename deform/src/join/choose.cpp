@@ -33,7 +33,7 @@ private:
   /// The crossing, and the two old texture points of its edge, or the face that it lies in.
   std::array<std::uint32_t, 3> name_of(std::uint32_t face, std::uint32_t crossing) const {
     const Crossing& point = crossings_.points[crossing];
-    if (point.part != part_) return {crossing, face, no_entry};
+    if (point.part != part_) return {crossing, face, no_index};
     return {crossing, texture_at(face, point.from), texture_at(face, point.to)};
   }
   std::uint32_t texture_at(std::uint32_t face, std::uint32_t corner) const {
@@ -129,12 +129,12 @@ private:
   }
   void number_points() {
     const std::size_t all = first_count() + second_count() + overlay_.crossings.points.size();
-    std::vector<std::uint32_t> numbers(all, no_entry);
+    std::vector<std::uint32_t> numbers(all, no_index);
     for (const Corners& corners : chosen_.surface.faces)
       for (const std::uint32_t at : corners)
         numbers[at] = 0;
     for (std::uint32_t at = 0; at < all; ++at) {
-      if (numbers[at] == no_entry) continue;
+      if (numbers[at] == no_index) continue;
       numbers[at] = static_cast<std::uint32_t>(chosen_.origins.size());
       chosen_.origins.push_back(at);
       add_point(at);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cut/constrained_triangulation.hpp"
+#include "geometry/constrained_triangulation.hpp"
 
 namespace nendo::deform {
 namespace {

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "cut/exact_predicates.hpp"
+#include "geometry/exact_predicates.hpp"
 
 namespace nendo::deform {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "cut/box_tree.hpp"
+#include "geometry/box_tree.hpp"
 #include "join/triangle_surface.hpp"
 
 namespace nendo::deform {

@@ -41,7 +41,7 @@ double triangle_fairness(const SpacePoint& a, const SpacePoint& b, const SpacePo
 }
 
 LiveSurface::LiveSurface(TriangleSurface surface)
-    : surface_(std::move(surface)), edge_at_(surface_.points.size(), no_entry),
+    : surface_(std::move(surface)), edge_at_(surface_.points.size(), no_index),
       gone_(surface_.faces.size(), 0) {
   twins_ = TriangleList(surface_.faces).half_edges(surface_.points.size()).twin;
   for (std::uint32_t edge = 0; edge < twins_.size(); ++edge)
@@ -53,7 +53,7 @@ void LiveSurface::set_detail(std::vector<VertexDetail> detail) {
 }
 
 std::uint32_t LiveSurface::edge_between(std::uint32_t one, std::uint32_t other) const {
-  std::uint32_t found = no_entry;
+  std::uint32_t found = no_index;
   visit_edges(one, [&](std::uint32_t edge) {
     if (to(edge) == other) found = edge;
   });
@@ -74,7 +74,7 @@ void LiveSurface::set(std::uint32_t edge, std::uint32_t corner, std::uint32_t te
 }
 
 std::uint32_t LiveSurface::middle_texture(std::uint32_t edge) {
-  if (surface_.face_texture.empty()) return no_entry;
+  if (surface_.face_texture.empty()) return no_index;
   const TexturePoint& a = surface_.texture_points[texture(edge)];
   const TexturePoint& b = surface_.texture_points[texture(next(edge))];
   TexturePoint middle{};
@@ -117,7 +117,7 @@ std::uint32_t LiveSurface::split(std::uint32_t edge) {
   const std::uint32_t b = from(back);
   const auto middle = static_cast<std::uint32_t>(surface_.points.size());
   surface_.points.push_back(0.5 * (point(a) + point(b)));
-  edge_at_.push_back(no_entry);
+  edge_at_.push_back(no_index);
   add_attributes(a, b);
   const bool is_cut = is_border(edge);
   const std::uint32_t in_face = middle_texture(edge);
@@ -152,7 +152,7 @@ bool LiveSurface::keeps_links(std::uint32_t edge) const {
   const std::uint32_t b = to(edge);
   std::size_t common = 0;
   visit_edges(b, [&](std::uint32_t at) {
-    if (to(at) != a && edge_between(a, to(at)) != no_entry) ++common;
+    if (to(at) != a && edge_between(a, to(at)) != no_index) ++common;
   });
   if (common != 2) return false;
   for (const std::uint32_t tip : {from(last(edge)), from(last(twins_[edge]))}) {
@@ -228,7 +228,7 @@ void LiveSurface::collapse_now(std::uint32_t edge) {
   edge_at_[a] = beside_a;
   edge_at_[c] = beyond_c;
   edge_at_[d] = beyond_d;
-  edge_at_[b] = no_entry;
+  edge_at_[b] = no_index;
   if (!surface_.detail.empty()) surface_.detail[a].is_refined = true;
   note(EdgeOperation::Kind::collapse, a, b);
 }
@@ -261,7 +261,7 @@ bool LiveSurface::can_flip(std::uint32_t edge) const {
   std::size_t at_b = 0;
   visit_edges(from(edge), [&](std::uint32_t) { ++at_a; });
   visit_edges(from(back), [&](std::uint32_t) { ++at_b; });
-  return at_a > 3 && at_b > 3 && edge_between(c, d) == no_entry;
+  return at_a > 3 && at_b > 3 && edge_between(c, d) == no_index;
 }
 
 bool LiveSurface::flip(std::uint32_t edge) {
@@ -300,7 +300,7 @@ bool LiveSurface::repeat(const EdgeOperation& operation) {
       !has_point(operation.from) || !has_point(operation.to))
     return false;
   const std::uint32_t edge = edge_between(operation.from, operation.to);
-  if (edge == no_entry) return false;
+  if (edge == no_index) return false;
   switch (operation.kind) {
   case EdgeOperation::Kind::split:
     split(edge);
@@ -318,10 +318,10 @@ bool LiveSurface::repeat(const EdgeOperation& operation) {
 }
 
 TriangleSurface LiveSurface::take(std::vector<std::uint32_t>* numbers) {
-  std::vector<std::uint32_t> renumbered(surface_.points.size(), no_entry);
+  std::vector<std::uint32_t> renumbered(surface_.points.size(), no_index);
   TriangleSurface kept;
   for (std::uint32_t at = 0; at < surface_.points.size(); ++at) {
-    if (edge_at_[at] == no_entry) continue;
+    if (edge_at_[at] == no_index) continue;
     renumbered[at] = static_cast<std::uint32_t>(kept.points.size());
     kept.points.push_back(surface_.points[at]);
     if (!surface_.colours.empty()) kept.colours.push_back(surface_.colours[at]);

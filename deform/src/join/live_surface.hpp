@@ -44,7 +44,7 @@ public:
   /// What refining must know of each point; none at all, if it was not given.
   const std::vector<VertexDetail>& detail() const noexcept { return surface_.detail; }
   void set_detail(std::vector<VertexDetail> detail);
-  bool has_point(std::uint32_t number) const noexcept { return edge_at_[number] != no_entry; }
+  bool has_point(std::uint32_t number) const noexcept { return edge_at_[number] != no_index; }
   bool has_face(std::uint32_t face) const noexcept { return !gone_[face]; }
   std::size_t face_count() const noexcept { return surface_.faces.size(); }
   double edge_length(std::uint32_t edge) const noexcept {
@@ -61,7 +61,7 @@ public:
       edge = after;
     } while (edge != first);
   }
-  /// Returns the edge from one point to another, or no_entry.
+  /// Returns the edge from one point to another, or no_index.
   std::uint32_t edge_between(std::uint32_t one, std::uint32_t other) const;
   /// Faces on both sides differ in material or names, or texture is cut there.
   bool is_border(std::uint32_t edge) const noexcept;
@@ -82,7 +82,7 @@ public:
   void note_in(std::vector<EdgeOperation>* list) noexcept { noted_ = list; }
 
   /// Returns the surface without what is gone, points and faces in their order. `numbers`, if not
-  /// null, becomes each point's new number, or no_entry. The object is empty afterwards.
+  /// null, becomes each point's new number, or no_index. The object is empty afterwards.
   TriangleSurface take(std::vector<std::uint32_t>* numbers = nullptr);
 
 private:
@@ -95,7 +95,7 @@ private:
     twins_[twin] = edge;
   }
   std::uint32_t texture_or_none(std::uint32_t edge) const noexcept {
-    return surface_.face_texture.empty() ? no_entry : texture(edge);
+    return surface_.face_texture.empty() ? no_index : texture(edge);
   }
   std::uint32_t middle_texture(std::uint32_t edge);
   std::uint32_t add_face(std::uint32_t like);

@@ -7,7 +7,7 @@
 namespace nendo::deform {
 namespace {
 
-static_assert(no_entry == no_index);
+static_assert(no_index == no_index);
 
 bool same_texture(const Texture& a, const Texture& b) {
   if (a.file != b.file) return false;

@@ -97,7 +97,7 @@ private:
     const std::vector<std::uint32_t> twins = TriangleList(faces).half_edges(points).twin;
     Patches patches(faces.size());
     for (std::uint32_t edge = 0; edge < twins.size(); ++edge) {
-      if (twins[edge] == no_half_edge) return false;
+      if (twins[edge] == no_index) return false;
       const Corners& corners = faces[edge / 3];
       if (edge < twins[edge] && !is_seam(part, corners[edge % 3], corners[(edge + 1) % 3]))
         patches.unite(edge / 3, twins[edge] / 3);

@@ -103,7 +103,7 @@ private:
     for (int way = 0; way < 2; ++way, std::swap(stays, goes)) {
       if (!may_go(goes, stays)) continue;
       const std::uint32_t edge = surface_.edge_between(stays, goes);
-      if (edge == no_entry) return false;
+      if (edge == no_index) return false;
       const double longest = limits_.longest * coarseness_between(zone_, stays, goes);
       if (surface_.collapse(edge, {longest, limits_.thin, limits_.least_cosine})) {
         changed_.push_back(stays);
@@ -132,7 +132,7 @@ private:
                            [&](std::uint32_t edge) { around_.push_back(surface_.to(edge)); });
       for (const std::uint32_t other : around_) {
         const std::uint32_t edge = surface_.edge_between(point, other);
-        if (edge == no_entry || !surface_.flip(edge)) continue;
+        if (edge == no_index || !surface_.flip(edge)) continue;
         ++counts_.flips;
         changed_.insert(changed_.end(), {point, other});
       }

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "cut/space.hpp"
+#include "geometry/space.hpp"
 
 namespace nendo::deform {
 

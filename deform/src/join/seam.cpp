@@ -192,7 +192,7 @@ Seam smear_seam(TriangleSurface surface, std::span<const SeamEdge> seam_edges, d
   // Where points were near, edges may have been flipped.
   std::vector<char> is_changed(seam.surface.points.size(), 0);
   for (std::size_t point = 0; point < numbers.size(); ++point)
-    if (numbers[point] != no_entry)
+    if (numbers[point] != no_index)
       is_changed[numbers[point]] =
           point >= old_points || moves[point] || zone.coarseness[point] > 0.0f ? 1 : 0;
   for (std::uint32_t face = 0; face < seam.surface.faces.size(); ++face) {

@@ -4,8 +4,8 @@
 #include <numeric>
 #include <utility>
 
-#include "cut/box_tree.hpp"
-#include "cut/triangle_meeting.hpp"
+#include "geometry/box_tree.hpp"
+#include "geometry/triangle_meeting.hpp"
 
 namespace nendo::deform {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 // Triangles in space, as plain numbers: what joining computes with.
 
-#include "cut/space.hpp"
+#include "geometry/space.hpp"
 
 namespace nendo::deform {
 

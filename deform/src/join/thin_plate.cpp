@@ -20,7 +20,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 class Umbrellas {
 public:
   Umbrellas(const LiveSurface& surface, std::span<const std::uint32_t> free)
-      : numbers_(surface.point_count(), no_entry) {
+      : numbers_(surface.point_count(), no_index) {
     for (const std::uint32_t point : free)
       number(point);
     const std::size_t free_count = points_.size();
@@ -58,7 +58,7 @@ private:
     });
   }
   std::uint32_t number(std::uint32_t point) {
-    if (numbers_[point] == no_entry) {
+    if (numbers_[point] == no_index) {
       numbers_[point] = static_cast<std::uint32_t>(points_.size());
       points_.push_back(point);
     }

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "cut/half_edges.hpp"
 #include "join/space.hpp"
+#include "mesh/half_edges.hpp"
 
 namespace nendo::deform {
 

@@ -11,18 +11,15 @@
 #include <nendo/deform/mesh.hpp>
 
 #include "join/space.hpp"
-#include "texture_point.hpp"
+#include "mesh/texture_point.hpp"
 
 namespace nendo::deform {
 
-/// Stands for no material, group or object; material.hpp calls it no_index.
-inline constexpr std::uint32_t no_entry = std::numeric_limits<std::uint32_t>::max();
-
-/// Indices into the lists of an Appearance, or no_entry.
+/// Indices into the lists of an Appearance, or no_index.
 struct FaceLook {
-  std::uint32_t material = no_entry;
-  std::uint32_t group = no_entry;
-  std::uint32_t object = no_entry;
+  std::uint32_t material = no_index;
+  std::uint32_t group = no_index;
+  std::uint32_t object = no_index;
   bool operator==(const FaceLook&) const = default;
 };
 

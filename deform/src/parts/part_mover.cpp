@@ -9,9 +9,9 @@
 
 #include <nendo/deform/vertex_mask.hpp>
 
-#include "block_edit.hpp"
+#include "field/block_edit.hpp"
+#include "history/sculpted_parts.hpp"
 #include "parts/part_motion.hpp"
-#include "sculpted_parts.hpp"
 
 namespace nendo::deform {
 namespace {

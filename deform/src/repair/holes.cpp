@@ -11,8 +11,8 @@
 #include "cut/blade.hpp"
 #include "cut/cut_assembly.hpp"
 #include "cut/cut_cap.hpp"
-#include "cut/half_edges.hpp"
 #include "join/self_intersections.hpp"
+#include "mesh/half_edges.hpp"
 #include "repair/min_area.hpp"
 
 namespace nendo::deform {
@@ -81,14 +81,14 @@ Result<std::vector<Rim>> HoleFiller::rims() const {
   std::vector<std::uint8_t> done(mesh_.face_corners.size(), 0);
   std::vector<Rim> rims;
   for (std::uint32_t first = 0; first < done.size(); ++first) {
-    if (edges.twin[first] != no_half_edge || done[first] != 0) continue;
+    if (edges.twin[first] != no_index || done[first] != 0) continue;
     Rim rim;
     std::uint32_t edge = first;
     while (done[edge] == 0) {
       done[edge] = 1;
       rim.push_back(edges.next[edge]);
       std::uint32_t before = edges.last[edge];
-      for (std::size_t turned = 0; edges.twin[before] != no_half_edge; ++turned) {
+      for (std::size_t turned = 0; edges.twin[before] != no_index; ++turned) {
         if (turned > done.size()) break;
         before = edges.last[edges.twin[before]];
       }

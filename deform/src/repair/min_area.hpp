@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "cut/space.hpp"
+#include "geometry/space.hpp"
 
 namespace nendo::deform {
 

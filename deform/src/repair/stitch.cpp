@@ -4,7 +4,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "cut/space.hpp"
+#include "geometry/space.hpp"
 
 namespace nendo::deform {
 namespace {

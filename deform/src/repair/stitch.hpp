@@ -7,7 +7,7 @@
 
 #include <nendo/deform/mesh.hpp>
 
-#include "union_find.hpp"
+#include "geometry/union_find.hpp"
 
 namespace nendo::deform {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "cut/space.hpp"
+#include "geometry/space.hpp"
 #include "repair/stitch.hpp"
 
 namespace nendo::deform {

@@ -2,7 +2,7 @@
 #include <chrono>
 #include <numeric>
 
-#include "octree_order.hpp"
+#include "geometry/octree_order.hpp"
 #include "solver/csrbf_state.hpp"
 #include "solver/shared_kernel.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "point_grid.hpp"
+#include "geometry/point_grid.hpp"
 
 namespace nendo::deform {
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "usable.hpp"
+#include "geometry/usable.hpp"
 
 namespace nendo::deform {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "point_grid.hpp"
+#include "geometry/point_grid.hpp"
 #include "solver/shared_kernel.hpp"
 
 namespace nendo::deform {

@@ -1,4 +1,4 @@
-#include "ties.hpp"
+#include "solver/ties.hpp"
 
 #include <algorithm>
 #include <limits>

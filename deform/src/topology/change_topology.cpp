@@ -54,7 +54,7 @@ public:
     std::map<std::uint32_t, Triple> of_face;
     std::vector<std::uint32_t> changed;
     for (const auto& [face, place] : changed_) {
-      if (faces_[face] == no_entry) continue;
+      if (faces_[face] == no_index) continue;
       of_face[faces_[face]] = place;
       changed.push_back(faces_[face]);
     }

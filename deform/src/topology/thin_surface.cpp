@@ -48,7 +48,7 @@ std::vector<std::uint32_t> ThinSurface::ring(std::uint32_t number) const {
   do {
     ring.push_back(at);
     const std::uint32_t face = face_with(number, at);
-    if (face == no_entry || ring.size() > faces.size()) return {};
+    if (face == no_index || ring.size() > faces.size()) return {};
     at = before(surface_.faces[face], number);
   } while (at != first);
   return ring;
@@ -57,7 +57,7 @@ std::vector<std::uint32_t> ThinSurface::ring(std::uint32_t number) const {
 std::uint32_t ThinSurface::face_with(std::uint32_t from, std::uint32_t to) const noexcept {
   for (const std::uint32_t face : faces_at_[from])
     if (after(surface_.faces[face], from) == to) return face;
-  return no_entry;
+  return no_index;
 }
 
 SpacePoint ThinSurface::normal(std::uint32_t number) const {
@@ -249,7 +249,7 @@ int ThinSurface::count_patches(const std::set<std::uint32_t>& faces) const {
 bool ThinSurface::are_tied(std::uint32_t a, std::uint32_t b,
                            const std::set<std::uint32_t>& without) const {
   for (const std::uint32_t face : {face_with(a, b), face_with(b, a)})
-    if (face != no_entry && !without.contains(face)) return true;
+    if (face != no_index && !without.contains(face)) return true;
   return false;
 }
 
@@ -352,7 +352,7 @@ TriangleSurface ThinSurface::take(std::vector<std::uint32_t>& numbers,
                                   std::vector<std::uint32_t>& faces) {
   TriangleSurface kept;
   kept.texture_points = std::move(surface_.texture_points);
-  numbers.assign(surface_.points.size(), no_entry);
+  numbers.assign(surface_.points.size(), no_index);
   for (std::uint32_t at = 0; at < surface_.points.size(); ++at) {
     if (faces_at_[at].empty()) continue;
     numbers[at] = static_cast<std::uint32_t>(kept.points.size());
@@ -360,7 +360,7 @@ TriangleSurface ThinSurface::take(std::vector<std::uint32_t>& numbers,
     if (!surface_.colours.empty()) kept.colours.push_back(surface_.colours[at]);
     if (!surface_.detail.empty()) kept.detail.push_back(surface_.detail[at]);
   }
-  faces.assign(surface_.faces.size(), no_entry);
+  faces.assign(surface_.faces.size(), no_index);
   for (std::uint32_t face = 0; face < surface_.faces.size(); ++face) {
     if (gone_[face]) continue;
     faces[face] = static_cast<std::uint32_t>(kept.faces.size());

@@ -28,10 +28,10 @@ public:
   }
   /// Returns the neighbours of a point, counter-clockwise; nothing if it is gone.
   std::vector<std::uint32_t> ring(std::uint32_t number) const;
-  /// Returns the face with the edge from one to the other, or no_entry.
+  /// Returns the face with the edge from one to the other, or no_index.
   std::uint32_t face_with(std::uint32_t from, std::uint32_t to) const noexcept;
   bool are_neighbours(std::uint32_t a, std::uint32_t b) const noexcept {
-    return face_with(a, b) != no_entry;
+    return face_with(a, b) != no_index;
   }
   /// Twice the area vector of the faces around.
   SpacePoint normal(std::uint32_t number) const;
@@ -47,7 +47,7 @@ public:
   /// Of the faces since the last call, the new ones and those that were moved.
   std::vector<std::uint32_t> take_changed();
   /// Returns the surface without what is gone. `numbers` becomes each point's new number, or
-  /// no_entry; `faces`, each face's. The object is empty afterwards.
+  /// no_index; `faces`, each face's. The object is empty afterwards.
   TriangleSurface take(std::vector<std::uint32_t>& numbers, std::vector<std::uint32_t>& faces);
 
 private:

@@ -3,7 +3,6 @@
 // deformation changes none of it.
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,10 +10,9 @@
 
 #include <Eigen/Core>
 
-namespace nendo::deform {
+#include <nendo/deform/index.hpp>
 
-/// Stands for no material, no name, and so on, where an index would be.
-inline constexpr std::uint32_t no_index = std::numeric_limits<std::uint32_t>::max();
+namespace nendo::deform {
 
 /// A picture file as it was read, of any format. It is not decoded, and may be damaged.
 struct Texture {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <nendo/deform/index.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 
 namespace nendo::deform {
@@ -28,7 +29,7 @@ public:
   const std::vector<Part>& parts() const noexcept { return parts_; } ///< by rising blocks
   /// Returns the weights of the block's vertices; null: all are free.
   const float* of_block(std::size_t block) const noexcept {
-    return numbers_[block] == none ? nullptr : parts_[numbers_[block]].weights.data();
+    return numbers_[block] == no_index ? nullptr : parts_[numbers_[block]].weights.data();
   }
   /// Makes `to` what the weights leave of the way to it from `from`, which has as many blocks.
   /// Where nothing moves, `to` gets the block of `from`, with its stamp. Wait-free, without
@@ -36,10 +37,8 @@ public:
   void hold(const BlockShape& from, BlockShape& to) const noexcept;
 
 private:
-  static constexpr std::uint32_t none = 0xFFFFFFFF;
-
   std::vector<Part> parts_;
-  std::vector<std::uint32_t> numbers_; ///< of each block's part; none
+  std::vector<std::uint32_t> numbers_; ///< of each block's part; no_index
 };
 
 /// Makes `to`, where a block was moved to from `from`, what the weights leave of that way.

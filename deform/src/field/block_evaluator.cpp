@@ -1,0 +1,171 @@
+#include "field/block_evaluator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "field/evaluator_parts.hpp"
+#include "simd/field_kernels.hpp"
+
+namespace nendo::deform {
+
+namespace {
+
+constexpr std::size_t least_shared = 3; // pieces
+
+double extent_of(const std::vector<BlockBounds>& bounds) noexcept {
+  float extent = 0.0F;
+  for (const auto& box : bounds)
+    for (const float side : box.sides)
+      extent = std::max(extent, std::abs(side));
+  return static_cast<double>(extent);
+}
+
+} // namespace
+
+BoundedShape::BoundedShape(BlockShape blocks) : shape(std::move(blocks)) {
+  for (std::size_t block = 0; block < shape.block_count(); ++block)
+    bounds.push_back(bounds_of(shape[block]));
+  extent = extent_of(bounds);
+}
+
+void BoundedShape::follow(const BoundedShape& other) {
+  shape.follow(other.shape);
+  bounds = other.bounds;
+  extent = other.extent;
+}
+
+void ListRoom::reserve(std::size_t entries) {
+  if (lists_ != nullptr && entries <= entries_) return;
+  entries_ = entries;
+  lists_ = hwy::AllocateAligned<std::uint32_t>(group_size * list_room(entries));
+  for (auto& array : names_)
+    array = hwy::AllocateAligned<std::uint32_t>(list_room(entries));
+  for (auto& array : numbers_)
+    array = hwy::AllocateAligned<float>(list_room(entries));
+}
+
+BlockEvaluator::Parts::Parts(const BlockLayout& layout, Eigen::Index entries, int threads)
+    : field(layout, entries), reached(layout.block_count(), 0) {
+  if (threads > 1) worker.emplace();
+  for (auto& room : lists)
+    room.reserve(static_cast<std::size_t>(entries));
+}
+
+BlockEvaluator::BlockEvaluator(const BlockLayout& layout, Eigen::Index entries,
+                               const EvaluationOptions& options)
+    : parts_(std::make_unique<Parts>(layout, entries, options.threads)) {}
+BlockEvaluator::~BlockEvaluator() = default;
+BlockEvaluator::BlockEvaluator(BlockEvaluator&&) noexcept = default;
+BlockEvaluator& BlockEvaluator::operator=(BlockEvaluator&&) noexcept = default;
+
+bool BlockEvaluator::set_field(const CsrbfField& field) noexcept {
+  for (auto& room : parts_->lists)
+    room.reserve(static_cast<std::size_t>(field.centres.cols()));
+  parts_->is_halfway = field.is_halfway;
+  return parts_->field.assign(field, BlockField::Zeros::left_out);
+}
+
+void BlockEvaluator::make_room_for_halves(const BlockLayout& layout) {
+  parts_->places.emplace(layout.pack());
+}
+
+bool BlockEvaluator::fits(const BoundedShape& shape) const noexcept {
+  return shape.extent + parts_->field.bound(shape.extent) <= most_units;
+}
+
+namespace {
+
+/// Over all blocks; `to` may be null.
+BlockPass pass_over(const BoundedShape& from, VertexBlock* to,
+                    BlockEvaluator::Parts& parts) noexcept {
+  const std::size_t blocks = from.shape.block_count();
+  return {.from = from.shape.data(),
+          .to = to,
+          .bounds = from.bounds.data(),
+          .new_bounds = nullptr,
+          .reached = parts.reached.data(),
+          .begin = 0,
+          .end = blocks,
+          .scratch = parts.lists[0].scratch(),
+          .large = leaves_caches(from.shape)};
+}
+
+/// In pieces; calls after(block, reached) for each block.
+template <class After>
+void run(const BlockPass& whole, BlockEvaluator::Parts& parts, const After& after) noexcept {
+  parts.in_pieces(whole.end, least_shared,
+                  [&](std::size_t begin, std::size_t end, std::size_t thread) {
+                    BlockPass piece = whole;
+                    piece.begin = begin;
+                    piece.end = end;
+                    piece.scratch = parts.lists[thread].scratch();
+                    displace_pass(parts.field.view(), piece);
+                    for (std::size_t block = begin; block < end; ++block)
+                      after(block, parts.reached[block] > 0);
+                  });
+}
+
+} // namespace
+
+bool BlockEvaluator::displace(const BoundedShape& from, BlockShape& to) noexcept {
+  if (to.block_count() != from.shape.block_count()) to = from.shape;
+  if (!fits(from)) {
+    to.follow(from.shape);
+    return false;
+  }
+  const std::uint64_t stamp = BlockShape::new_stamp();
+  const BlockPass pass = pass_over(from, to.data(), *parts_);
+  run(pass, *parts_, [&](std::size_t block, bool reached) {
+    reached ? to.set_stamp(block, stamp) : to.follow(from.shape, block);
+  });
+  return true;
+}
+
+/// Bounds on bounds grow with each step: measured before they are believed.
+bool BlockEvaluator::fits_measured(BoundedShape& shape) const noexcept {
+  if (!fits(shape)) shape.extent = extent_of(shape.bounds);
+  return fits(shape);
+}
+
+bool BlockEvaluator::displace(BoundedShape& shape) noexcept {
+  const bool has_places = std::exchange(parts_->has_places, false);
+  if (!fits_measured(shape)) return false;
+  if (parts_->is_halfway) {
+    look(shape);
+    return true;
+  }
+  shape.extent += parts_->field.bound(shape.extent);
+  const std::uint64_t stamp = BlockShape::new_stamp();
+  BlockPass pass = pass_over(has_places ? *parts_->places : shape, shape.shape.data(), *parts_);
+  if (has_places) pass.base = shape.shape.data();
+  pass.new_bounds = shape.bounds.data();
+  run(pass, *parts_, [&](std::size_t block, bool reached) {
+    if (reached) shape.shape.set_stamp(block, stamp);
+  });
+  return true;
+}
+
+/// Of a field that is halfway.
+void BlockEvaluator::look(const BoundedShape& shape) noexcept {
+  BoundedShape& places = *parts_->places;
+  const std::uint64_t stamp = BlockShape::new_stamp();
+  BlockPass pass = pass_over(shape, places.shape.data(), *parts_);
+  pass.new_bounds = places.bounds.data();
+  run(pass, *parts_, [&](std::size_t block, bool reached) {
+    if (reached) {
+      places.shape.set_stamp(block, stamp);
+    } else {
+      places.shape.follow(shape.shape, block);
+      places.bounds[block] = shape.bounds[block];
+    }
+  });
+  places.extent = shape.extent + parts_->field.bound(shape.extent);
+  parts_->has_places = true;
+}
+
+std::size_t BlockEvaluator::count_pairs(const BoundedShape& shape) noexcept {
+  return deform::count_pairs(parts_->field.view(), pass_over(shape, nullptr, *parts_));
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,385 @@
+#include "files/gltf_document.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+#include <nendo/base/text.hpp>
+
+#include "files/gltf_extensions.hpp"
+#include "files/uri.hpp"
+#include "geometry/usable.hpp"
+
+namespace nendo::deform {
+
+using Json = GltfDocument::Json;
+using Bytes = GltfDocument::Bytes;
+
+namespace {
+
+constexpr std::string_view binary_magic = "glTF";
+constexpr std::uint32_t json_chunk = 0x4E4F534A;
+constexpr std::uint32_t binary_chunk = 0x004E4942;
+constexpr std::size_t header_bytes = 12;
+constexpr std::size_t chunk_header_bytes = 8;
+constexpr int most_depth = 64; // of JSON; extras may be deep, glTF itself is not
+constexpr std::size_t most_json_bytes = std::size_t{128} << 20;
+constexpr std::uint64_t most_numbers = std::uint64_t{1} << 28; // of one accessor
+constexpr std::uint64_t most_buffer_bytes = std::uint64_t{4} << 30;
+
+[[noreturn]] void refuse(std::string what) {
+  throw GltfRefusal{std::move(what)};
+}
+
+Bytes bytes_of(std::string_view text) noexcept {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+/// Least significant byte first.
+std::uint32_t integer_at(Bytes bytes, std::size_t at, std::size_t width) noexcept {
+  std::uint32_t number = 0;
+  for (std::size_t k = 0; k < width; ++k)
+    number |= std::uint32_t{bytes[at + k]} << (8 * k);
+  return number;
+}
+
+/// glTF's numbers of component types.
+enum class Component : std::uint32_t {
+  int8 = 5120,
+  uint8 = 5121,
+  int16 = 5122,
+  uint16 = 5123,
+  uint32 = 5125,
+  float32 = 5126
+};
+
+std::size_t size_of_component(std::uint64_t type) {
+  switch (static_cast<Component>(type)) {
+  case Component::int8:
+  case Component::uint8:
+    return 1;
+  case Component::int16:
+  case Component::uint16:
+    return 2;
+  case Component::uint32:
+  case Component::float32:
+    return 4;
+  }
+  refuse("an accessor has a componentType " + std::to_string(type) + ", which glTF does not know");
+}
+
+double decoded(Component type, Bytes bytes, std::size_t at, bool normalized) noexcept {
+  const auto scaled = [&](double value, double greatest) {
+    return normalized ? std::max(value / greatest, -1.0) : value;
+  };
+  switch (type) {
+  case Component::int8:
+    return scaled(static_cast<std::int8_t>(bytes[at]), 127.0);
+  case Component::uint8:
+    return scaled(bytes[at], 255.0);
+  case Component::int16:
+    return scaled(static_cast<std::int16_t>(integer_at(bytes, at, 2)), 32767.0);
+  case Component::uint16:
+    return scaled(integer_at(bytes, at, 2), 65535.0);
+  case Component::uint32:
+    return integer_at(bytes, at, 4);
+  case Component::float32:
+    break;
+  }
+  return static_cast<double>(std::bit_cast<float>(integer_at(bytes, at, 4)));
+}
+
+std::size_t width_of(const std::string& type) {
+  for (const auto& [known, width] :
+       {std::pair{"SCALAR", 1U}, {"VEC2", 2U}, {"VEC3", 3U}, {"VEC4", 4U}, {"MAT4", 16U}})
+    if (type == known) return width;
+  refuse("an accessor is of a type that no model's numbers have");
+}
+
+/// Where the elements of an accessor, or of a part of a sparse one, lie in their view.
+struct Layout {
+  Component component = Component::float32;
+  std::size_t width = 1;
+  std::size_t offset = 0;
+  std::size_t stride = 0;
+};
+
+Layout layout_of(std::uint64_t component, std::size_t width, std::uint64_t offset,
+                 std::uint64_t stride, std::uint64_t count, Bytes view) {
+  const std::size_t element = width * size_of_component(component);
+  if (stride == 0) stride = element;
+  if (stride < element) refuse("a bufferView has a byteStride that is too small for its numbers");
+  // No product may overflow: the count is compared with what the view has room for.
+  const bool fits = offset <= view.size() && view.size() - offset >= element &&
+                    count - 1 <= (view.size() - offset - element) / stride;
+  if (!fits) refuse("an accessor reaches beyond the end of its bufferView");
+  return {static_cast<Component>(component), width, static_cast<std::size_t>(offset),
+          static_cast<std::size_t>(stride)};
+}
+
+} // namespace
+
+bool is_gltf(std::string_view file) noexcept {
+  if (file.starts_with(binary_magic)) return true;
+  const std::size_t first = file.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && file[first] == '{';
+}
+
+const Json* gltf_member(const Json& object, const char* name) {
+  if (!object.is_object()) return nullptr;
+  const auto found = object.find(name);
+  return found == object.end() ? nullptr : &*found;
+}
+
+std::uint64_t gltf_count(const Json& object, const char* name, std::uint64_t otherwise) {
+  const Json* const member = gltf_member(object, name);
+  if (member == nullptr) return otherwise;
+  if (!member->is_number_unsigned())
+    refuse(std::string("\"") + name + "\" is not a whole number from 0 on");
+  return member->get<std::uint64_t>();
+}
+
+std::vector<double> gltf_numbers(const Json& object, const char* name, std::size_t count) {
+  const Json* const member = gltf_member(object, name);
+  if (member == nullptr) return {};
+  std::vector<double> numbers;
+  if (member->is_array() && member->size() == count)
+    for (const Json& number : *member)
+      if (number.is_number() && is_usable(number.get<double>()))
+        numbers.push_back(number.get<double>());
+  if (numbers.size() != count)
+    refuse(std::string("\"") + name + "\" is not a list of " + std::to_string(count) +
+           " finite numbers");
+  return numbers;
+}
+
+std::string gltf_text(const Json& object, const char* name) {
+  const Json* const member = gltf_member(object, name);
+  return member != nullptr && member->is_string() ? member->get<std::string>() : std::string();
+}
+
+namespace {
+
+/// What JSON without an asset is, which each glTF has.
+std::string foreign_json(const Json& root) {
+  constexpr const char* in_its_program =
+      "; open it in the program that made it, and export it as glTF (.glb), OBJ, PLY or STL";
+  const std::string type = gltf_text(root, "type");
+  if (type == "CityJSON") return std::string("is a CityJSON file") + in_its_program;
+  if (type.starts_with("Feature")) return std::string("is a map (GeoJSON)") + in_its_program;
+  if (gltf_member(root, "metadata") != nullptr &&
+      (gltf_member(root, "geometries") != nullptr || gltf_member(root, "vertices") != nullptr ||
+       gltf_member(root, "data") != nullptr))
+    return "is a model in the JSON of three.js; load it in the editor of three.js, and export it "
+           "as GLB there";
+  return "is JSON, but no glTF, because it has no \"asset\"; give the file of a model (.obj, .ply, "
+         ".stl, .glb, .gltf)";
+}
+
+[[noreturn]] void refuse_version(const std::string& version) {
+  if (version.empty()) refuse("does not say its version of glTF; export it once more as glTF 2");
+  refuse("is glTF of version " + in_quotes(version) +
+         ", and only version 2 is read; export it once more as glTF 2");
+}
+
+} // namespace
+
+GltfDocument::GltfDocument(std::string_view file, const ModelFolder* folder) : folder_(folder) {
+  if (file.starts_with(binary_magic))
+    read_binary(file);
+  else
+    read_json(file);
+  const Json* const asset = gltf_member(root_, "asset");
+  if (asset == nullptr && !file.starts_with(binary_magic)) refuse(foreign_json(root_));
+  const std::string version = asset == nullptr ? std::string() : gltf_text(*asset, "version");
+  if (!version.starts_with("2.")) refuse_version(version);
+  require_readable(root_);
+  read_buffers();
+}
+
+void GltfDocument::read_binary(std::string_view file) {
+  const Bytes bytes = bytes_of(file);
+  if (bytes.size() < header_bytes + chunk_header_bytes) refuse("the file is cut off");
+  if (const auto version = integer_at(bytes, 4, 4); version != 2)
+    refuse_version(std::to_string(version));
+  const std::size_t length = integer_at(bytes, 8, 4);
+  if (length > bytes.size() || length < header_bytes + chunk_header_bytes)
+    refuse("the file is cut off");
+  std::size_t at = header_bytes;
+  for (int chunk = 0; chunk < 2 && length - at >= chunk_header_bytes; ++chunk) {
+    const std::size_t size = integer_at(bytes, at, 4);
+    const std::uint32_t type = integer_at(bytes, at + 4, 4);
+    at += chunk_header_bytes;
+    if (size > length - at) refuse("byte " + std::to_string(at) + ": the file is cut off");
+    if (chunk == 0 && type != json_chunk) refuse("byte 16: the first chunk is not JSON");
+    if (chunk == 0) read_json(file.substr(at, size));
+    if (chunk == 1 && type == binary_chunk) binary_ = bytes.subspan(at, size);
+    at += size;
+  }
+}
+
+void GltfDocument::read_json(std::string_view text) {
+  if (text.size() > most_json_bytes) refuse("has more than 128 MiB of JSON");
+  bool too_deep = false;
+  const auto watch = [&](int depth, Json::parse_event_t, Json&) {
+    too_deep = too_deep || depth > most_depth;
+    return !too_deep;
+  };
+  root_ = Json::parse(text.begin(), text.end(), watch, false);
+  if (too_deep) refuse("has JSON of more than " + std::to_string(most_depth) + " levels");
+  if (root_.is_discarded() || !root_.is_object())
+    refuse("has damaged JSON, so it is no glTF model; export it once more");
+}
+
+const Json& GltfDocument::item(const char* list, std::uint64_t index) const {
+  const Json* const items = gltf_member(root_, list);
+  if (items == nullptr || !items->is_array() || index >= items->size())
+    refuse(std::string("names number ") + std::to_string(index) + " of \"" + list + "\", of " +
+           std::to_string(size_of(list)));
+  return (*items)[static_cast<std::size_t>(index)];
+}
+
+std::size_t GltfDocument::size_of(const char* list) const {
+  const Json* const items = gltf_member(root_, list);
+  return items != nullptr && items->is_array() ? items->size() : 0;
+}
+
+FolderFile GltfDocument::file_named(const std::string& uri, std::uint64_t max_bytes) const {
+  if (folder_ == nullptr) return {{}, {}, ": no other file is read here"};
+  return folder_->find(percent_decoded(uri), max_bytes);
+}
+
+void GltfDocument::read_buffers() {
+  const std::size_t count = size_of("buffers");
+  own_.resize(count); // so that its texts stay in their places
+  std::uint64_t left = most_buffer_bytes;
+  for (std::size_t at = 0; at < count; ++at) {
+    const Json& buffer = item("buffers", at);
+    const std::uint64_t length = gltf_count(buffer, "byteLength", 0);
+    const std::string uri = gltf_text(buffer, "uri");
+    Bytes bytes = at == 0 && uri.empty() ? binary_ : Bytes();
+    if (is_data_uri(uri)) {
+      auto data = data_of_uri(uri);
+      if (!data) refuse("has a buffer with a damaged data URI");
+      own_[at] = *std::move(data);
+    } else if (!uri.empty()) {
+      own_[at] = file_named(uri, left).contents.value_or(std::string());
+    }
+    if (!uri.empty()) bytes = bytes_of(own_[at]);
+    left -= own_[at].size();
+    if (bytes.size() < length && !uri.empty() && !is_data_uri(uri))
+      refuse("needs the file '" + printable_uri(uri) + "' of " + std::to_string(length) +
+             " bytes beside it");
+    for (const char* const meshopt : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+      if (bytes.size() < length && gltf_extension(buffer, meshopt) != nullptr)
+        refuse_meshopt(meshopt);
+    if (bytes.size() < length) refuse("has fewer bytes than its buffers should have");
+    buffers_.push_back(bytes.first(static_cast<std::size_t>(length)));
+  }
+}
+
+Bytes GltfDocument::view(std::uint64_t buffer_view) const {
+  const Json& view = item("bufferViews", buffer_view);
+  const std::uint64_t buffer = gltf_count(view, "buffer", 0);
+  item("buffers", buffer);
+  const Bytes bytes = buffers_[static_cast<std::size_t>(buffer)];
+  const std::uint64_t offset = gltf_count(view, "byteOffset", 0);
+  const std::uint64_t length = gltf_count(view, "byteLength", 0);
+  if (offset > bytes.size() || length > bytes.size() - offset)
+    refuse("a bufferView reaches beyond the end of its buffer");
+  return bytes.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
+}
+
+GltfNumbers GltfDocument::numbers(std::uint64_t index) const {
+  const Json& accessor = item("accessors", index);
+  GltfNumbers numbers;
+  numbers.width = width_of(gltf_text(accessor, "type"));
+  const std::uint64_t count = gltf_count(accessor, "count", 0);
+  if (count == 0 || count > most_numbers / numbers.width)
+    refuse("an accessor has " + std::to_string(count) +
+           " elements; from 1 to 2^28 numbers can be "
+           "read");
+  numbers.count = static_cast<std::size_t>(count);
+  if (gltf_member(accessor, "bufferView") == nullptr) {
+    // Zeros cost a file nothing, so they are bounded by what it has otherwise.
+    std::uint64_t bytes = 0;
+    for (const Bytes buffer : buffers_)
+      bytes += buffer.size();
+    if (count > bytes) refuse("an accessor has more zeros than the file has bytes");
+    numbers.values.resize(numbers.count * numbers.width, 0.0);
+  } else {
+    fill(accessor, numbers);
+  }
+  if (gltf_member(accessor, "sparse") != nullptr) fill_sparse(accessor, numbers);
+  for (const double value : numbers.values)
+    if (!is_usable(value)) refuse("a number of an accessor is not finite");
+  return numbers;
+}
+
+void GltfDocument::fill(const Json& accessor, GltfNumbers& numbers) const {
+  const std::uint64_t number = gltf_count(accessor, "bufferView", 0);
+  const Bytes bytes = view(number);
+  const Layout layout =
+      layout_of(gltf_count(accessor, "componentType", 0), numbers.width,
+                gltf_count(accessor, "byteOffset", 0),
+                gltf_count(item("bufferViews", number), "byteStride", 0), numbers.count, bytes);
+  const std::size_t size = size_of_component(static_cast<std::uint64_t>(layout.component));
+  const Json* const normalized = gltf_member(accessor, "normalized");
+  const bool is_normalized = normalized != nullptr && *normalized == true;
+  numbers.values.reserve(numbers.count * numbers.width);
+  for (std::size_t row = 0; row < numbers.count; ++row)
+    for (std::size_t column = 0; column < numbers.width; ++column)
+      numbers.values.push_back(decoded(layout.component, bytes,
+                                       layout.offset + row * layout.stride + column * size,
+                                       is_normalized));
+}
+
+void GltfDocument::fill_sparse(const Json& accessor, GltfNumbers& numbers) const {
+  const Json& sparse = *gltf_member(accessor, "sparse");
+  const Json* const indices = gltf_member(sparse, "indices");
+  const Json* const values = gltf_member(sparse, "values");
+  const std::uint64_t count = gltf_count(sparse, "count", 0);
+  if (indices == nullptr || values == nullptr || count == 0 || count > numbers.count)
+    refuse("a sparse accessor is not whole");
+  const auto part = [&](const Json& of, std::uint64_t component, std::size_t width) {
+    const Bytes bytes = view(gltf_count(of, "bufferView", 0));
+    return std::pair(bytes,
+                     layout_of(component, width, gltf_count(of, "byteOffset", 0), 0, count, bytes));
+  };
+  const auto [places, at_places] = part(*indices, gltf_count(*indices, "componentType", 0), 1);
+  const auto [bytes, at_values] =
+      part(*values, gltf_count(accessor, "componentType", 0), numbers.width);
+  const std::size_t size = size_of_component(static_cast<std::uint64_t>(at_values.component));
+  for (std::size_t k = 0; k < count; ++k) {
+    const double place =
+        decoded(at_places.component, places, at_places.offset + k * at_places.stride, false);
+    if (!(place >= 0.0 && place < static_cast<double>(numbers.count)) ||
+        at_places.component == Component::float32)
+      refuse("a sparse accessor names an element that is not there");
+    const std::size_t row = static_cast<std::size_t>(place) * numbers.width;
+    for (std::size_t column = 0; column < numbers.width; ++column)
+      numbers.values[row + column] =
+          decoded(at_values.component, bytes,
+                  at_values.offset + k * at_values.stride + column * size, false);
+  }
+}
+
+FolderFile GltfDocument::image(const Json& image) const {
+  const std::string uri = gltf_text(image, "uri");
+  if (!uri.empty() && !is_data_uri(uri)) return file_named(uri, ModelFolder::most_texture_bytes);
+  FolderFile file;
+  if (is_data_uri(uri)) {
+    file.contents = data_of_uri(uri);
+  } else if (gltf_member(image, "bufferView") != nullptr) {
+    const Bytes bytes = view(gltf_count(image, "bufferView", 0));
+    file.contents.emplace(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  }
+  if (!file.contents || file.contents->empty()) {
+    file.contents.reset();
+    file.lack = ": has no data in the file; export the model once more";
+  }
+  return file;
+}
+
+} // namespace nendo::deform

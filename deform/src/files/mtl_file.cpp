@@ -1,0 +1,266 @@
+#include "files/mtl_file.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include <nendo/base/text.hpp>
+#include <nendo/deform/drawn_faces.hpp>
+
+#include "files/number_text.hpp"
+#include "files/text_scanner.hpp"
+#include "files/texture_files.hpp"
+
+namespace nendo::deform {
+
+namespace {
+
+std::optional<float> part_of_one(std::string_view field) {
+  const auto number = to_finite_number(field);
+  if (!number) return std::nullopt;
+  return static_cast<float>(std::clamp(*number, 0.0, 1.0));
+}
+
+std::string in_small_letters(std::string_view text) {
+  std::string small(text);
+  for (char& c : small)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return small;
+}
+
+/// What a map_ statement says.
+struct MapStatement {
+  std::string file;
+  bool is_moved = false; ///< by options that scale or move the texture
+};
+
+MapStatement map_statement(TextScanner& scanner) {
+  // How many values each option has at the most. Those that may have fewer have numbers only.
+  static const std::map<std::string_view, int> options{
+      {"-blendu", 1}, {"-blendv", 1},  {"-boost", 1}, {"-bm", 1}, {"-cc", 1},
+      {"-clamp", 1},  {"-imfchan", 1}, {"-mm", 2},    {"-o", 3},  {"-s", 3},
+      {"-t", 3},      {"-texres", 1},  {"-type", 1}};
+  MapStatement statement;
+  std::string_view field = scanner.field();
+  while (options.contains(field)) {
+    const bool of_numbers = options.at(field) == 3;
+    const double usual = field == "-s" ? 1.0 : 0.0;
+    int left = options.at(field);
+    field = scanner.field();
+    while (left-- > 0 && !field.empty() && (!of_numbers || to_number(field))) {
+      if (of_numbers && to_number(field) != usual) statement.is_moved = true;
+      field = scanner.field();
+    }
+  }
+  statement.file = std::string(field);
+  if (const std::string more = joined_fields(scanner); !more.empty()) statement.file += " " + more;
+  return statement;
+}
+
+} // namespace
+
+struct MtlReader::Line {
+  TextScanner& scanner;
+  std::string_view file;
+  std::string keyword;
+};
+
+MtlReader::MtlReader(Appearance& look, NoteSum& notes)
+    : look_(look), notes_(notes), stated_(look.materials.size()),
+      first_texture_(look.textures.size()), material_(look.materials.size()) {
+  for (std::size_t at = 0; at < look.materials.size(); ++at)
+    by_name_.emplace(look.materials[at].name, at);
+}
+
+void MtlReader::read(std::string_view text, std::string_view file) {
+  has_read_ = true;
+  material_ = stated_.size();
+  TextScanner scanner(without_mark(text), TextScanner::Dialect::obj);
+  do {
+    Line line{scanner, file, in_small_letters(scanner.field())};
+    statement(line);
+  } while (scanner.next_line());
+}
+
+void MtlReader::begin_material(std::string name) {
+  const auto found = by_name_.find(name);
+  material_ = found == by_name_.end() ? stated_.size() : found->second;
+  if (material_ < stated_.size()) stated_[material_].described = true;
+}
+
+void MtlReader::statement(Line& line) {
+  if (line.keyword == "newmtl") return begin_material(joined_fields(line.scanner));
+  if (material_ == stated_.size()) return;
+  Stated& stated = stated_[material_];
+  if (line.keyword == "kd") {
+    std::array<double, 3> kd{};
+    for (double& channel : kd) {
+      const auto number = to_finite_number(line.scanner.field());
+      if (!number && &channel == kd.data()) return;
+      channel = number.value_or(kd[0]); // one number is all three
+      colours_.see(channel);
+    }
+    stated.kd = kd;
+  } else if (line.keyword == "d" || line.keyword == "tr") {
+    std::string_view field = line.scanner.field();
+    if (field == "-halo") field = line.scanner.field();
+    if (const auto number = part_of_one(field))
+      (line.keyword == "d" ? stated.d : stated.tr) = number;
+  } else if (line.keyword == "map_kd") {
+    add_texture(line);
+  } else if (line.keyword == "map_d") {
+    notes_.add("opacity texture", map_statement(line.scanner).file,
+               ": is left out, so what it cuts away is seen");
+  } else if (line.keyword.starts_with("map_") || line.keyword == "bump" || line.keyword == "norm" ||
+             line.keyword == "disp") {
+    notes_.add("texture statement", line.keyword, ": is left out; of textures, map_Kd is read");
+  }
+}
+
+void MtlReader::add_texture(Line& line) {
+  MapStatement statement = map_statement(line.scanner);
+  auto name = name_in_folder(statement.file);
+  if (!name) {
+    if (!statement.file.empty())
+      notes_.add("texture", statement.file, ": cannot be the name of a file");
+    return;
+  }
+  if (statement.is_moved)
+    notes_.add("texture", statement.file,
+               ": its options -o, -s and -t are left out, so it is neither moved nor scaled");
+  const auto next = static_cast<std::uint32_t>(look_.textures.size());
+  Named named{std::move(statement.file), std::string(line.file)};
+  const auto [place, is_new] = textures_.emplace(named, next);
+  if (is_new) {
+    look_.textures.push_back({*std::move(name), nullptr});
+    named_.push_back(std::move(named));
+  }
+  look_.materials[material_].texture = place->second;
+}
+
+void MtlReader::finish() {
+  for (std::size_t at = 0; at < stated_.size(); ++at) {
+    settle_colour(at);
+    settle_opacity(at);
+    if (has_read_ && !stated_[at].described)
+      notes_.add("material", look_.materials[at].name,
+                 ": no MTL file describes it, so it has no colour of its own");
+  }
+  if (const std::string note = colours_.note(); !note.empty()) notes_.add("Kd: " + note);
+  settle_hidden(look_, notes_);
+}
+
+void MtlReader::settle_colour(std::size_t at) {
+  if (!stated_[at].kd) return;
+  Material& material = look_.materials[at];
+  Eigen::Vector4f colour = Eigen::Vector4f::Ones();
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    colour[static_cast<Eigen::Index>(channel)] = colours_.part_of((*stated_[at].kd)[channel]);
+  if (material.texture != no_index && colour.head<3>().isZero()) {
+    colour.setOnes();
+    notes_.add("material", material.name,
+               ": its Kd of 0 0 0 would make its texture black, so the texture is shown as it is");
+  }
+  material.colour = colour;
+}
+
+/// d wins over Tr, wherever it stands. Tr is 1 - d, but some programs write d's value there; of
+/// these two meanings, `Tr 1` has the one in which something can be seen.
+void MtlReader::settle_opacity(std::size_t at) {
+  const Stated& stated = stated_[at];
+  if (!stated.d && !stated.tr) return;
+  Material& material = look_.materials[at];
+  if (!material.colour) material.colour = Eigen::Vector4f::Ones();
+  float opacity = stated.d ? *stated.d : 1.0F - *stated.tr;
+  if (!stated.d && *stated.tr == 1.0F) {
+    opacity = 1.0F;
+    notes_.add("material", material.name,
+               ": 'Tr 1' without 'd' is taken as opaque, as MeshLab and openMVS mean it; write "
+               "'d 0' if it is not to be seen");
+  }
+  (*material.colour)[3] = opacity;
+  material.drawn = opacity > 0.0F;
+}
+
+void MtlReader::read_textures(const ModelFolder& folder) {
+  TextureFiles files(folder, notes_);
+  for (std::size_t at = first_texture_; at < look_.textures.size(); ++at) {
+    const Named& named = named_[at - first_texture_];
+    files.read(look_.textures[at], named.name, named.file);
+  }
+}
+
+void settle_hidden(Appearance& look, NoteSum& notes) {
+  const bool all_hidden =
+      !look.face_materials.empty() &&
+      std::all_of(look.face_materials.begin(), look.face_materials.end(),
+                  [&](std::uint32_t of) { return of != no_index && !look.materials[of].drawn; });
+  if (all_hidden) notes.add("all materials have the opacity 0; they are taken as opaque");
+  std::vector<bool> is_used(look.materials.size(), false);
+  for (const std::uint32_t of : look.face_materials)
+    if (of != no_index) is_used[of] = true;
+  for (std::size_t at = 0; at < look.materials.size(); ++at) {
+    Material& material = look.materials[at];
+    if (all_hidden && !material.drawn) {
+      material.drawn = true;
+      if (material.colour) (*material.colour)[3] = 1.0F;
+    }
+    if (is_used[at] && material.drawn && !is_drawn(material))
+      notes.add("material", material.name,
+                ": is more than half transparent, so its faces are not drawn");
+  }
+}
+
+std::string line_name(std::string_view name) {
+  std::string line;
+  for (const char c : trimmed(name)) {
+    const bool is_control = static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+    const bool begins_comment = c == '#' && (line.empty() || line.back() == ' ');
+    const bool is_second_blank = c == ' ' && !line.empty() && line.back() == ' ';
+    if (!is_second_blank) line += is_control || begins_comment ? '_' : c;
+  }
+  if (line.ends_with('\\')) line.back() = '_'; // it would continue the line
+  return line;
+}
+
+std::vector<std::string> unique_names(const std::vector<Material>& materials) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  for (const Material& material : materials) {
+    std::string wanted = line_name(material.name);
+    if (wanted.empty()) wanted = "material";
+    std::string name = wanted;
+    for (std::size_t next = 2; !taken.insert(name).second; ++next)
+      name = wanted + "." + std::to_string(next);
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+std::string mtl_text(const Appearance& look) {
+  std::string text(mtl_mark);
+  const std::vector<std::string> names = unique_names(look.materials);
+  for (std::size_t at = 0; at < names.size(); ++at) {
+    const Material& material = look.materials[at];
+    text += "\nnewmtl " + names[at] + "\n";
+    if (material.colour) {
+      text += "Kd";
+      for (const float channel : material.colour->head<3>()) {
+        text += ' ';
+        append_number(text, channel);
+      }
+      text += '\n';
+    }
+    if (material.colour || !material.drawn) {
+      text += "d ";
+      append_number(text, material.drawn ? (*material.colour)[3] : 0.0F);
+      text += '\n';
+    }
+    const bool has_texture =
+        material.texture != no_index && look.textures[material.texture].contents;
+    if (has_texture) text += "map_Kd " + line_name(look.textures[material.texture].file) + "\n";
+  }
+  return text;
+}
+
+} // namespace nendo::deform

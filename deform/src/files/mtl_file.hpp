@@ -1,0 +1,87 @@
+#pragma once
+// Material files of OBJ: the base colour, its texture, and the opacity.
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nendo/deform/mesh.hpp>
+#include <nendo/deform/read_notes.hpp>
+
+#include "files/colour_range.hpp"
+#include "files/model_folder.hpp"
+
+namespace nendo::deform {
+
+/// How material files of this program begin. Others are never replaced.
+inline constexpr std::string_view mtl_mark = "# nendo\n";
+
+/// Fills in a look's materials from the texts of material files: Kd (taken as linear, as Blender
+/// writes it), d or Tr, and map_Kd. It never fails: a model can do without its materials, so lines
+/// that make no sense are skipped.
+class MtlReader {
+public:
+  /// The look has the materials' names. Both must outlive the reader.
+  MtlReader(Appearance& look, NoteSum& notes);
+
+  /// Reads one file's text. `file` is its name in the model's folder: textures are named from
+  /// there.
+  void read(std::string_view text, std::string_view file = {});
+  /// Decides what needs all files: the range of colours, and what is opaque. Textures have names
+  /// then, but no contents.
+  void finish();
+  /// Reads the textures' contents, after finish(). Blocks.
+  void read_textures(const ModelFolder& folder);
+
+private:
+  struct Stated { ///< of one material
+    bool described = false;
+    std::optional<std::array<double, 3>> kd;
+    std::optional<float> d, tr;
+  };
+  struct Named { ///< one texture of the files
+    std::string name, file;
+    auto operator<=>(const Named&) const = default;
+  };
+  struct Line;
+
+  void begin_material(std::string name);
+  void statement(Line& line);
+  void add_texture(Line& line);
+  void settle_colour(std::size_t material);
+  void settle_opacity(std::size_t material);
+
+  Appearance& look_;
+  NoteSum& notes_;
+  std::map<std::string, std::size_t, std::less<>> by_name_;
+  std::vector<Stated> stated_; ///< of each material
+  std::map<Named, std::uint32_t> textures_;
+  std::vector<Named> named_; ///< of each texture
+  bool has_read_ = false;
+  std::size_t first_texture_ = 0; ///< those before are not from these files
+  std::size_t material_ = 0;      ///< beyond the materials: lines are of none of them
+  ColourRange colours_{ColourNumbers::factors};
+};
+
+/// Makes all materials opaque if each face has one that cannot be seen, for nobody models that, and
+/// notes that and materials whose faces are left out of pictures because one sees through them.
+void settle_hidden(Appearance& look, NoteSum& notes);
+
+/// Returns the materials as a text, under the names that unique_names() gives them.
+std::string mtl_text(const Appearance& look);
+
+/// Returns the materials' names as an OBJ can hold them: none is empty, spans lines or has blanks
+/// at its ends, and no two are alike.
+std::vector<std::string> unique_names(const std::vector<Material>& materials);
+
+/// Returns a name as a line of an OBJ can hold it; it may be empty.
+std::string line_name(std::string_view name);
+
+} // namespace nendo::deform

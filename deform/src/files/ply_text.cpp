@@ -1,0 +1,78 @@
+// The writer of PLY, binary little-endian.
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include <nendo/deform/corner_colours.hpp>
+
+#include "files/mesh_formats.hpp"
+#include "files/srgb.hpp"
+
+namespace nendo::deform {
+
+namespace {
+
+template <class Number>
+void append_little_endian(std::string& text, Number number) {
+  char bytes[sizeof number];
+  std::memcpy(bytes, &number, sizeof number);
+  if constexpr (std::endian::native == std::endian::big)
+    for (std::size_t i = 0; i < sizeof number / 2; ++i)
+      std::swap(bytes[i], bytes[sizeof number - 1 - i]);
+  text.append(bytes, sizeof number);
+}
+
+bool has_large_face(const Mesh& mesh) noexcept {
+  for (std::size_t face = 0; face < mesh.face_count(); ++face)
+    if (mesh.face_starts[face + 1] - mesh.face_starts[face] > 255) return true;
+  return false;
+}
+
+void append_colour(std::string& text, const Eigen::Vector4f& colour) {
+  for (Eigen::Index channel = 0; channel < 4; ++channel) {
+    const float part = channel < 3 ? encoded_of(colour[channel]) : colour[channel];
+    append_little_endian(text,
+                         static_cast<std::uint8_t>(255.0F * std::clamp(part, 0.0F, 1.0F) + 0.5F));
+  }
+}
+
+} // namespace
+
+std::string ply_text(const Mesh& mesh) {
+  // uchar and int are what every reader knows; uint only where a face or the model is too large for
+  // them.
+  const bool large_face = has_large_face(mesh);
+  const bool large_model = mesh.vertices.cols() > std::numeric_limits<std::int32_t>::max();
+  const Eigen::Matrix4Xf colours = mean_vertex_colours(mesh);
+  const bool coloured = colours.cols() > 0 && colours.cols() == mesh.vertices.cols();
+  const std::string colour_properties = "property uchar red\nproperty uchar green\n"
+                                        "property uchar blue\nproperty uchar alpha\n";
+  std::string text = "ply\nformat binary_little_endian 1.0\ncomment nendo\nelement vertex " +
+                     std::to_string(mesh.vertices.cols()) +
+                     "\nproperty double x\nproperty double y\nproperty double z\n" +
+                     (coloured ? colour_properties : "") + "element face " +
+                     std::to_string(mesh.face_count()) + "\nproperty list " +
+                     (large_face ? "uint" : "uchar") + (large_model ? " uint" : " int") +
+                     " vertex_indices\nend_header\n";
+  for (Eigen::Index vertex = 0; vertex < mesh.vertices.cols(); ++vertex) {
+    for (const double coordinate : mesh.vertices.col(vertex))
+      append_little_endian(text, coordinate);
+    if (coloured) append_colour(text, colours.col(vertex));
+  }
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::uint32_t begin = mesh.face_starts[face];
+    const std::uint32_t end = mesh.face_starts[face + 1];
+    if (large_face)
+      append_little_endian(text, end - begin);
+    else
+      append_little_endian(text, static_cast<std::uint8_t>(end - begin));
+    for (std::uint32_t at = begin; at < end; ++at)
+      append_little_endian(text, mesh.face_corners[at]);
+  }
+  return text;
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,33 @@
+#pragma once
+// Which edges of faces lie opposite to each other. Corner k of a face stands for the edge from this
+// corner to the next one, so an edge has the number of its corner.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/index.hpp>
+
+namespace nendo::deform {
+
+struct HalfEdges {
+  std::vector<std::uint32_t> next; ///< the edge behind it in its face
+  std::vector<std::uint32_t> last; ///< the edge before it
+  /// The edge of another face that goes the other way; no_index if there is none, or several.
+  std::vector<std::uint32_t> twin;
+  std::vector<std::uint32_t> out_starts; ///< edges that begin at vertex v: out[out_starts[v]] ...
+  std::vector<std::uint32_t> out;        ///< ... to out[out_starts[v + 1] - 1], in rising order
+};
+
+/// Each corner must be below `vertices`. Allocates.
+HalfEdges half_edges_of(std::span<const std::uint32_t> face_starts,
+                        std::span<const std::uint32_t> face_corners, std::size_t vertices);
+
+/// As the public function, if the edges are at hand.
+ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
+                                    std::span<const std::uint32_t> face_corners,
+                                    const HalfEdges& edges);
+
+} // namespace nendo::deform
