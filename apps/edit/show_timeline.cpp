@@ -51,7 +51,7 @@ nlohmann::ordered_json key_json(const Timeline& timeline, const HandTrack& hand,
   return line;
 }
 
-/// The value of a setting; null: not shown.
+/// The value of a setting.
 struct SettingJson {
   const flow::LoopSettings& settings;
 
@@ -62,7 +62,6 @@ struct SettingJson {
   nlohmann::ordered_json operator()(const flow::BrushesSetting& brushes) const {
     return flow::in_words(brushes.of(settings));
   }
-  nlohmann::ordered_json operator()(const flow::FilterSetting& /*filter*/) const { return {}; }
   template <class T>
   nlohmann::ordered_json operator()(const flow::Setting<T>& setting) const {
     return setting.of(settings);
@@ -71,9 +70,8 @@ struct SettingJson {
 
 nlohmann::ordered_json settings_json(const flow::LoopSettings& settings) {
   nlohmann::ordered_json values;
-  flow::for_each_setting([&](const auto& setting) {
-    auto value = SettingJson{settings}(setting);
-    if (!value.is_null()) values[std::string(setting.name)] = std::move(value);
+  flow::for_each_shape_setting([&](const auto& setting) {
+    values[std::string(setting.name)] = SettingJson{settings}(setting);
   });
   return values;
 }

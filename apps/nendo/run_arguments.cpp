@@ -200,9 +200,7 @@ Result<void> set_shaping(RunArguments& options) {
     return Error{Errc::usage, "--injective and --no-injective: choose one of them"};
   if (const auto supports = session::parse_radius(options.run.radius, 1.0); !supports)
     return supports.error();
-  const auto filter = options.filter.parse();
-  if (!filter) return filter.error();
-  options.run.filter = *filter;
+  options.run.filter = settings->filter;
   return {};
 }
 

@@ -23,7 +23,6 @@ struct RunArguments {
   std::string wire, knife;         ///< FROM:TO, when it is drawn; empty: when asked for
   std::string size;                ///< of the model on the stage; empty: as the mode has it
   std::string switch_action = "none";
-  session::FilterArguments filter;
   session::SettingArguments settings;
   flow::LoopSettings asked; ///< which check() makes of `settings`
   std::string polynomial = "none";

@@ -263,8 +263,7 @@ std::vector<std::string> decided_by_take() {
   flow::for_each_setting([&](const flow::SettingText& setting) {
     if (!setting.option.empty()) options.emplace_back(setting.option);
   });
-  for (const char* more : {"--polynomial", "--no-injective", "--rate", "--policy", "--switch",
-                           "--filter-min-cutoff", "--filter-beta"})
+  for (const char* more : {"--polynomial", "--no-injective", "--rate", "--policy", "--switch"})
     options.emplace_back(more);
   return options;
 }
@@ -281,7 +280,7 @@ void add_run_options(cli::Command& command, const std::shared_ptr<RunArguments>&
                      "done (--keep-last)");
   session::add_recording_options(command, run_options.recording);
   session::add_overdub_options(command, options->overdub);
-  session::add_filter_options(command, options->filter);
+  options->settings.add_filter(command);
   session::add_publish_option(command, options->publish);
   command.add_duration("--duration", run_options.duration_s,
                        "How long, e.g. 30s or 10m; 0: until Ctrl-C, or until the "

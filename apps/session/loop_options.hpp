@@ -1,8 +1,7 @@
 #pragma once
 // The options of the commands that run the loop or deform: the pace, the rights that the loop asks
-// of the system, a second thread, the filter, and the kernel.
+// of the system, a second thread, and the kernel.
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,7 +9,6 @@
 
 #include <nendo/flow/deform_loop.hpp>
 #include <nendo/flow/realtime.hpp>
-#include <nendo/hand/joint_filter.hpp>
 
 #include "cli/command.hpp"
 
@@ -34,18 +32,6 @@ struct LoopArguments {
 private:
   Result<void> check_threads() const;
 };
-
-/// The options --filter, --filter-min-cutoff, --filter-beta and --pinches.
-struct FilterArguments {
-  std::string kind = "off";
-  std::optional<double> min_cutoff_hz; ///< nullopt: hand::FilterOptions' own
-  std::optional<double> beta;          ///< Hz for each rad/s; nullopt: hand::FilterOptions' own
-  std::string pinches = "closed";
-
-  /// Error: usage, naming what can be used.
-  Result<hand::FilterOptions> parse() const;
-};
-void add_filter_options(cli::Command& command, FilterArguments& arguments);
 
 /// Adds --polynomial. What `name` holds is the default.
 void add_polynomial_option(cli::Command& command, std::string& name);

@@ -176,9 +176,11 @@ void print_holds(const RunOptions& options, const flow::LoopStats& stats) {
 void print_filter(const hand::FilterOptions& filter, const flow::LoopStats& stats) {
   if (filter.kind == hand::FilterKind::off) return;
   print_percentiles("filter's lag", stats.filter_moving);
-  print_row("", fmt::format("{}, min cutoff {:g} Hz, beta {:g}: of the joints that move; {:.1f} ms "
-                            "at rest; comes on top of all these",
-                            hand::name_of(filter.kind), filter.min_cutoff_hz,
+  namespace setting = flow::setting;
+  print_row("", fmt::format("{}, {} {:g} {}, {} {:g}: of the joints that move; {:.1f} ms at rest; "
+                            "comes on top of all these",
+                            hand::name_of(filter.kind), setting::min_cutoff.words,
+                            filter.min_cutoff_hz, setting::min_cutoff.unit, setting::beta.words,
                             filter.beta_hz_per_rad_s, to_milliseconds(stats.filter_worst.max())));
 }
 

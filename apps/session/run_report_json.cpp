@@ -58,9 +58,9 @@ ordered_json ranges_json(const hand::SensorRanges& ranges, SensorMask sensors) {
 ordered_json filter_json(const hand::FilterOptions& filter, const flow::LoopStats& stats) {
   ordered_json line{{"kind", hand::name_of(filter.kind)}};
   if (filter.kind == hand::FilterKind::off) return line;
-  line["min_cutoff_hz"] = filter.min_cutoff_hz;
-  line["beta_hz_per_rad_s"] = filter.beta_hz_per_rad_s;
-  line["derivative_cutoff_hz"] = filter.derivative_cutoff_hz;
+  flow::for_each_filter_number([&](const flow::NumberSetting& number) {
+    line[std::string(number.name)] = number.of(filter);
+  });
   line["moving_latency_ms"] = percentiles(stats.filter_moving);
   line["worst_latency_ms"] = percentiles(stats.filter_worst);
   return line;
@@ -206,7 +206,8 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
   line["injective"] = injective_json(options, stats);
   line["clay"] = clay_json(stats, outcome.units_per_metre);
   line["filter"] = filter_json(options.filter, stats);
-  line["pinches"] = options.filter.close_pinches ? "closed" : "measured";
+  line[std::string(flow::setting::pinches.name)] =
+      flow::name_of_pinches(options.filter.close_pinches);
   line["end_to_end_ms"] = percentiles(stats.end_to_end);
   line["wake_latency_ms"] = percentiles(stats.wake_latency);
   line["work_ms"] = percentiles(stats.work);

@@ -9,52 +9,63 @@ void SettingArguments::add(cli::Command& command, const flow::BrushesSetting& br
 }
 
 void SettingArguments::add(cli::Command& command, const flow::NumberSetting& number) {
-  command.add_option(std::string(number.option), numbers_[number.name], std::string(number.help));
+  command.add_option(std::string(number.option), numbers_[number.name],
+                     fmt::format("{} ({}; without it, {:g})", number.help,
+                                 flow::in_words(number.range, number.unit), number.of(usual_)));
 }
 
 void SettingArguments::add(cli::Command& command, const flow::SwitchSetting& on) {
   command.add_flag(std::string(on.option), on.of(switched_), std::string(on.help));
 }
 
+void SettingArguments::add_filter(cli::Command& command) {
+  flow::for_each_filter_setting([&](const auto& setting) {
+    if (!setting.option.empty()) add(command, setting);
+  });
+}
+
 Result<flow::LoopSettings> SettingArguments::parse() const {
   flow::LoopSettings settings = switched_;
-  std::optional<Error> wrong;
+  Result<void> fine;
   flow::for_each_setting([&](const auto& setting) {
-    if (wrong) return;
     if constexpr (requires { setting.named; }) {
       const auto text = texts_.find(setting.name);
-      if (text == texts_.end() || text->second.empty()) return;
-      const auto chosen = parse_setting(setting, text->second);
-      if (chosen)
+      if (!fine || text == texts_.end() || text->second.empty()) return;
+      if (const auto chosen = parse_setting(setting, text->second))
         setting.of(settings) = *chosen;
       else
-        wrong = chosen.error();
-    } else if constexpr (std::is_same_v<decltype(setting), const flow::NumberSetting&>) {
-      const auto number = numbers_.find(setting.name);
-      if (number == numbers_.end() || !number->second) return;
-      setting.of(settings) = *number->second;
-      if (!setting.range.has(*number->second))
-        wrong =
-            Error{Errc::usage, fmt::format("{} {}: use {} to {}", setting.option, *number->second,
-                                           setting.range.min, setting.range.max)};
+        fine = chosen.error();
     }
   });
-  if (wrong) return *wrong;
-  if (const auto fine = parse_brushes(settings); !fine) return fine.error();
+  if (fine) fine = parse_brushes(settings);
+  flow::for_each_setting([&](const auto& setting) {
+    if constexpr (std::is_same_v<decltype(setting), const flow::NumberSetting&>)
+      if (fine) fine = parse_number(setting, settings);
+  });
+  if (!fine) return fine.error();
   return settings;
+}
+
+/// The settings have all that is not a number.
+Result<void> SettingArguments::parse_number(const flow::NumberSetting& number,
+                                            flow::LoopSettings& settings) const {
+  const auto found = numbers_.find(number.name);
+  if (found == numbers_.end() || !found->second) return {};
+  number.of(settings) = *found->second;
+  if (!number.range.has(*found->second))
+    return Error{Errc::usage, fmt::format("{} {}: use {}", number.option, *found->second,
+                                          flow::in_words(number.range, number.unit))};
+  if (number.has_effect != nullptr && !number.has_effect(settings))
+    return Error{Errc::usage, fmt::format("{} {}: has no effect by itself; add {}", number.option,
+                                          *found->second, number.remedy)};
+  return {};
 }
 
 /// Whoever names a brush and no mode wants type 2, which has brushes.
 Result<void> SettingArguments::parse_brushes(flow::LoopSettings& settings) const {
   constexpr const flow::BrushesSetting& brushes = flow::setting::brushes;
   const auto text = texts_.find(brushes.name);
-  const auto strength = numbers_.find(flow::setting::brush_strength.name);
-  if (text == texts_.end() || text->second.empty()) {
-    if (strength == numbers_.end() || !strength->second) return {};
-    return Error{Errc::usage, fmt::format("{}: there is no brush; add --brush, as in "
-                                          "--brush inflate",
-                                          flow::setting::brush_strength.option)};
-  }
+  if (text == texts_.end() || text->second.empty()) return {};
   const auto parsed = flow::parse_brushes(text->second);
   if (!parsed)
     return Error{Errc::usage,

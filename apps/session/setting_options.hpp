@@ -36,12 +36,14 @@ public:
   void add(cli::Command& command, const flow::ChoiceSetting<T>& choice) {
     std::string& text = texts_[choice.name];
     if (choice.name != flow::setting::mode.name) // which a brush may choose
-      text = choice.name_of(choice.of(flow::LoopSettings{}));
+      text = choice.name_of(choice.of(usual_));
     add_setting(command, choice, text);
   }
   void add(cli::Command& command, const flow::BrushesSetting& brushes);
   void add(cli::Command& command, const flow::NumberSetting& number);
   void add(cli::Command& command, const flow::SwitchSetting& on);
+  /// Adds the options of the hands' filter.
+  void add_filter(cli::Command& command);
 
   /// Returns the settings that were asked for; others have their defaults. Error: usage, naming
   /// what can be used.
@@ -49,10 +51,12 @@ public:
 
 private:
   Result<void> parse_brushes(flow::LoopSettings& settings) const;
+  Result<void> parse_number(const flow::NumberSetting& number, flow::LoopSettings& settings) const;
 
   std::map<std::string_view, std::string> texts_;
   std::map<std::string_view, std::optional<double>> numbers_;
-  flow::LoopSettings switched_; ///< has those that are on or off
+  flow::LoopSettings usual_ = flow::usual_settings();
+  flow::LoopSettings switched_ = usual_; ///< has those that are on or off
 };
 
 } // namespace nendo::session

@@ -60,7 +60,7 @@ std::string complaint_about(const flow::SculptorOptions& sculptor, Eigen::Index 
     return "piece_length must be positive";
   flow::LoopSettings settings = flow::plain_settings_of(sculptor);
   settings.radius_m.fill(1.0);
-  if (std::string wrong = flow::complaint_about(settings); !wrong.empty()) return wrong;
+  if (const auto fine = flow::check_ranges(settings); !fine) return fine.error().message;
   if (options.supports.shared.empty() || !options.supports.are_usable())
     return "supports: radii and weights must be positive, and one at least must be shared";
   for (const auto& own : options.supports.own)
@@ -130,7 +130,7 @@ std::string complaint_about(const Event& event, const Timeline& timeline) {
   const flow::Command& command = event.command;
   if (!within(event.time_s, 0.0, longest_s)) return "its time must lie within 0 and 1000000 s";
   if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
-    if (std::string wrong = flow::complaint_about(change->settings); !wrong.empty()) return wrong;
+    if (const auto fine = flow::check_ranges(change->settings); !fine) return fine.error().message;
   const bool is_known = std::holds_alternative<flow::Request>(command) ||
                         std::holds_alternative<flow::ChangeSettings>(command) ||
                         changes_model(command) || std::holds_alternative<flow::Mark>(command) ||

@@ -81,8 +81,6 @@ struct SettingValue {
   std::string operator()(const flow::BrushesSetting& brushes) const {
     return brush_names(brushes.of(settings));
   }
-  /// A timeline's hands are smooth already.
-  std::string operator()(const flow::FilterSetting& /*filter*/) const { return {}; }
 };
 
 std::string sculptor_text(const flow::SculptorOptions& sculptor, bool is_puppet) {
@@ -113,10 +111,9 @@ std::string sculptor_text(const flow::SculptorOptions& sculptor, bool is_puppet)
 
 std::string settings_text(const flow::LoopSettings& settings) {
   std::string text;
-  flow::for_each_setting([&](const auto& setting) {
-    const std::string value = SettingValue{settings}(setting);
-    if (value.empty()) return;
-    text += (text.empty() ? "{ " : ", ") + std::string(setting.name) + " = " + value;
+  flow::for_each_shape_setting([&](const auto& setting) {
+    text += (text.empty() ? "{ " : ", ") + std::string(setting.name) + " = " +
+            SettingValue{settings}(setting);
   });
   return text + " }";
 }

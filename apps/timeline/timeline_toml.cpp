@@ -95,7 +95,6 @@ private:
       of_fingers[finger] = *brush;
     }
   }
-  void read(const flow::FilterSetting& /*filter*/) const {} // no file has it
 
   TomlReader* reader_;
   const toml::table* table_;
@@ -200,8 +199,8 @@ flow::LoopSettings read_settings(TomlReader& reader, const toml::table& event) {
   const toml::table* const table = reader.table(event, "settings");
   if (table == nullptr) return settings;
   std::vector<std::string_view> keys;
-  flow::for_each_setting([&](const auto& setting) {
-    if (setting.step != flow::StepKind::filter) keys.push_back(setting.name);
+  flow::for_each_shape_setting([&](const auto& setting) {
+    keys.push_back(setting.name);
     SettingReader(reader, *table, settings)(setting);
   });
   reader.allow_only(*table, keys);

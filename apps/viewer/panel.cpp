@@ -198,9 +198,8 @@ void LiveWindow::Panel::settings() {
   show_help("filter");
   chosen.filter.kind = smooth ? hand::FilterKind::one_euro : hand::FilterKind::off;
   ImGui::SameLine();
-  ImGui::Checkbox("pinches", &chosen.filter.close_pinches);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("Pads of thumb and finger that are nearly together meet, but not in clay");
+  ImGui::Checkbox(flow::setting::pinches.label.data(), &chosen.filter.close_pinches);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", flow::setting::pinches.help.data());
   ImGui::Checkbox("one radius for all fingers", &one_radius);
   const flow::FingersSetting& radii = flow::setting::radius;
   for (std::size_t finger = 0; finger < (one_radius ? 1 : finger_names.size()); ++finger) {

@@ -33,9 +33,6 @@ struct Change {
     number.of(settings) = number.range.max;
   }
   void operator()(const flow::FingersSetting& lengths) const { lengths.of(settings)[3] = 0.2; }
-  void operator()(const flow::FilterSetting& filter) const {
-    filter.of(settings).beta_hz_per_rad_s = 9.0;
-  }
   void operator()(const flow::BrushesSetting& brushes) const {
     brushes.of(settings)[2] = deform::Brush::twist;
   }
@@ -66,7 +63,7 @@ TEST_SUITE("setting") {
       CHECK(changed == usable());
       Change{all}(setting);
     });
-    CHECK(names.size() == 10); // as many as LoopSettings has
+    CHECK(names.size() == 14); // as many as LoopSettings has, and its filter
     CHECK(kind_of_change(usable(), all) == flow::StepKind::settings);
   }
 
@@ -91,8 +88,30 @@ TEST_SUITE("setting") {
             std::string_view::npos);
   }
 
+  TEST_CASE("a number that others give an effect has none by itself, and its option a remedy") {
+    flow::for_each_setting([](const auto& setting) {
+      if constexpr (requires { setting.has_effect; }) {
+        CAPTURE(setting.name);
+        if (setting.has_effect == nullptr) return;
+        CHECK_FALSE(setting.has_effect(flow::usual_settings()));
+        CHECK(setting.remedy.empty() == setting.option.empty());
+      }
+    });
+    LoopSettings settings = usable();
+    settings.filter.kind = hand::FilterKind::one_euro;
+    CHECK(flow::setting::beta.has_effect(settings));
+    settings.brushes[3] = deform::Brush::inflate;
+    CHECK(flow::setting::brush_strength.has_effect(settings));
+  }
+
+  TEST_CASE("a range is written with its unit") {
+    CHECK(flow::in_words(flow::setting::min_cutoff.range, flow::setting::min_cutoff.unit) ==
+          "0.01 to 1000 Hz");
+    CHECK(flow::in_words(flow::setting::brush_strength.range, "") == "-1 to 1");
+  }
+
   TEST_CASE("what is out of its range is named, with the range") {
-    CHECK(flow::complaint_about(usable()).empty());
+    CHECK(flow::check_ranges(usable()));
     CHECK(usable().are_usable());
     flow::for_each_setting([](const auto& setting) {
       if constexpr (requires { setting.range; }) {
@@ -104,13 +123,18 @@ TEST_SUITE("setting") {
           else
             setting.of(settings) = wrong;
           CHECK_FALSE(settings.are_usable());
-          CHECK(flow::complaint_about(settings).starts_with(setting.name));
+          const auto fine = flow::check_ranges(settings);
+          REQUIRE_FALSE(fine);
+          CHECK(fine.error().message.starts_with(setting.name));
         }
       }
     });
     LoopSettings settings = usable();
     settings.keep_volume = 1.5;
-    CHECK(flow::complaint_about(settings) == "keep_volume must lie within 0 and 1");
+    CHECK(flow::check_ranges(settings).error().message == "keep_volume: use 0 to 1");
+    settings = usable();
+    settings.radius_m[2] = 0.0;
+    CHECK(flow::check_ranges(settings).error().message == "radius_m: use 1e-09 to 1e+09 m");
   }
 
   TEST_CASE("settings are told in one way, radii on the stage and in the model's units") {

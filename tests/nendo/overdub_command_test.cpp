@@ -109,6 +109,7 @@ TEST_SUITE("overdub_command") {
     const std::vector<std::pair<Arguments, std::string>> wrong{
         {{"--over", take, "--mode", "type1"}, "--mode: the recording of --over decides that"},
         {{"--over", take, "--rate", "90"}, "--rate: the recording"},
+        {{"--over", take, "--pinches", "measured"}, "--pinches: the recording"},
         {{"--over", take, "--puppet", "face"}, "--puppet: the recording"},
         {{NENDO_MODELS "/head.obj", "--over", take}, "is not the model of"},
         {{"--over", take, "--layer", "left.toe"}, "--layer left.toe: use left, right"},

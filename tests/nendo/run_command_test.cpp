@@ -530,7 +530,7 @@ TEST_SUITE("run") {
           Case{{"--filter", "one-euro", "--filter-min-cutoff", "nan"}, 2, "--filter-min-cutoff"},
           Case{{"--filter", "one-euro", "--filter-beta", "-1"}, 2, "--filter-beta"},
           Case{{"--filter", "one-euro", "--filter-beta", "inf"}, 2, "--filter-beta"},
-          Case{{"--pinches", "open"}, 2, "closed or measured"},
+          Case{{"--pinches", "open"}, 2, "measured or closed"},
           Case{{"--hand-length", "0.19"}, 2, "millimetres"},
           Case{{"--hand-length", "nan"}, 2, "--hand-length"},
           Case{{"--adapt", "--calibration", "none"}, 2, "--adapt"},

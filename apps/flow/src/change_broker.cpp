@@ -63,8 +63,7 @@ Result<void> ChangeBroker::change_settings(const LoopSettings& settings) {
 }
 
 Result<void> ChangeBroker::Parts::change_settings(const LoopSettings& settings) {
-  if (auto wrong = complaint_about(settings); !wrong.empty())
-    return Error{Errc::bad_input, std::move(wrong)};
+  if (auto fine = check_ranges(settings); !fine) return fine;
   take_back_done();
   if ((is_still && !is_offered) || (change && change->holds_still)) {
     settings_later = settings;

@@ -19,7 +19,7 @@ bool is_chosen(Party party, const LoopSettings& settings, Played played) noexcep
   case Party::hold:
     return settings.hold == Hold::hand;
   case Party::brushes:
-    return !deform::are_all_pull(settings.brushes);
+    return setting::has_brush(settings);
   case Party::volume:
     return setting::keep_volume.of(settings) > 0.0;
   case Party::injective:

@@ -7,6 +7,12 @@
 
 namespace nendo::flow {
 
+LoopSettings usual_settings() noexcept {
+  LoopSettings settings;
+  settings.filter.close_pinches = true;
+  return settings;
+}
+
 LoopSettings plain_settings_of(const SculptorOptions& sculptor) noexcept {
   const deform::DeformerOptions& deformer = sculptor.deformer;
   return {.mode = sculptor.mode,

@@ -1,8 +1,8 @@
 #include <nendo/flow/setting.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
-#include <cmath>
 #include <optional>
 
 #include <nendo/flow/finger_supports.hpp>
@@ -22,28 +22,30 @@ bool is_in_range(const FingersSetting& fingers, const LoopSettings& settings) no
   return std::all_of(lengths.begin(), lengths.end(),
                      [&](double length) { return fingers.range.has(length); });
 }
-bool is_in_range(const FilterSetting& filter, const LoopSettings& settings) noexcept {
-  const hand::FilterOptions& options = filter.of(settings);
-  return std::isfinite(options.min_cutoff_hz) && std::isfinite(options.beta_hz_per_rad_s) &&
-         std::isfinite(options.derivative_cutoff_hz);
-}
 
 std::string shortest_text(double number) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
-std::string range_words(const SettingText& /*setting*/) {
-  return " must be finite";
-}
-template <class Ranged>
-  requires requires(const Ranged& ranged) { ranged.range; }
-std::string range_words(const Ranged& ranged) {
-  return " must lie within " + shortest_text(ranged.range.min) + " and " +
-         shortest_text(ranged.range.max);
-}
+constexpr std::array<std::string_view, 2> pinches_names{"measured", "closed"};
 
 } // namespace
+
+std::string_view name_of_pinches(bool are_closed) noexcept {
+  return pinches_names[are_closed ? 1 : 0];
+}
+
+std::optional<bool> pinches_named(std::string_view name) noexcept {
+  if (name == pinches_names[0]) return false;
+  if (name == pinches_names[1]) return true;
+  return std::nullopt;
+}
+
+std::string in_words(const Range& range, std::string_view unit) {
+  return shortest_text(range.min) + " to " + shortest_text(range.max) + (unit.empty() ? "" : " ") +
+         std::string(unit);
+}
 
 bool LoopSettings::are_usable() const noexcept {
   bool usable = true;
@@ -51,20 +53,22 @@ bool LoopSettings::are_usable() const noexcept {
   return usable;
 }
 
-std::string complaint_about(const LoopSettings& settings) {
-  std::string complaint;
+Result<void> check_ranges(const LoopSettings& settings) {
+  Result<void> fine;
   for_each_setting([&](const auto& setting) {
-    if (complaint.empty() && !is_in_range(setting, settings))
-      complaint = std::string(setting.name) + range_words(setting);
+    if constexpr (requires { setting.range; })
+      if (fine && !is_in_range(setting, settings))
+        fine = Error{Errc::bad_input,
+                     std::string(setting.name) + ": use " + in_words(setting.range, setting.unit)};
   });
-  return complaint;
+  return fine;
 }
 
 std::string in_words(const LoopSettings& settings, double units_per_metre) {
   std::string words(name_of(settings.mode));
   const auto add = [&](const std::string& more) { words += ", " + more; };
   if (settings.hold == Hold::hand) add(std::string(setting::hold.words));
-  if (settings.mode == Mode::type2 && !deform::are_all_pull(settings.brushes))
+  if (settings.mode == Mode::type2 && setting::has_brush(settings))
     add(in_words(settings.brushes) + " at strength " + shortest_text(settings.brush_strength));
   add(std::string(deform::name_of(settings.kernel)));
   if (settings.keep_volume > 0.0)

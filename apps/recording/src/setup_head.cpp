@@ -71,9 +71,8 @@ constexpr unsigned ends_bit = 64;
 /// Tells whether the wearer's ends follow.
 bool read_filter(CheckedReader& checked, hand::FilterOptions& filter) {
   const bool ends_follow = checked.filter_kind(filter, ends_bit) != 0;
-  filter.min_cutoff_hz = bounded_number(checked);
-  filter.beta_hz_per_rad_s = bounded_number(checked);
-  filter.derivative_cutoff_hz = bounded_number(checked);
+  flow::for_each_filter_number(
+      [&](const flow::NumberSetting& number) { number.of(filter) = bounded_number(checked); });
   return ends_follow;
 }
 
@@ -205,9 +204,7 @@ void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& ha
   put_sample_body(writer, {number, hand.first});
   writer.u8(static_cast<std::uint8_t>(hand.gated));
   put_filter_kind(writer, hand.filter, hand.wearer.ends ? ends_bit : 0);
-  writer.f64_le(hand.filter.min_cutoff_hz);
-  writer.f64_le(hand.filter.beta_hz_per_rad_s);
-  writer.f64_le(hand.filter.derivative_cutoff_hz);
+  put_filter_numbers(writer, hand.filter);
   writer.u8(static_cast<std::uint8_t>(adapt.has_value()));
   writer.u16_le(adapt ? adapt->most : 0);
   writer.u8(static_cast<std::uint8_t>(adapt && adapt->whole_range));

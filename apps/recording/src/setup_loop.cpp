@@ -198,9 +198,7 @@ void put_settings(ByteWriter& writer, const flow::LoopSettings& settings) {
   for (const double radius : settings.radius_m)
     writer.f64_le(radius);
   writer.f64_le(settings.piece_fraction);
-  writer.f64_le(settings.filter.min_cutoff_hz);
-  writer.f64_le(settings.filter.beta_hz_per_rad_s);
-  writer.f64_le(settings.filter.derivative_cutoff_hz);
+  put_filter_numbers(writer, settings.filter);
 }
 
 std::optional<flow::LoopSettings> read_settings(ByteReader& reader) {
@@ -213,9 +211,8 @@ std::optional<flow::LoopSettings> read_settings(ByteReader& reader) {
   for (double& radius : settings.radius_m)
     radius = reader.f64_le();
   settings.piece_fraction = reader.f64_le();
-  settings.filter.min_cutoff_hz = reader.f64_le();
-  settings.filter.beta_hz_per_rad_s = reader.f64_le();
-  settings.filter.derivative_cutoff_hz = reader.f64_le();
+  flow::for_each_filter_number(
+      [&](const flow::NumberSetting& number) { number.of(settings) = reader.f64_le(); });
   if (!checked.fine() || !settings.are_usable()) return std::nullopt;
   return settings;
 }

@@ -7,6 +7,7 @@
 
 #include <nendo/base/byte_reader.hpp>
 #include <nendo/base/byte_writer.hpp>
+#include <nendo/flow/setting.hpp>
 #include <nendo/recording/sample_record.hpp>
 #include <nendo/recording/setup.hpp>
 
@@ -31,6 +32,11 @@ inline void put_filter_kind(ByteWriter& writer, const hand::FilterOptions& filte
                             unsigned more = 0) {
   writer.u8(static_cast<std::uint8_t>(static_cast<unsigned>(filter.kind) | more |
                                       (filter.close_pinches ? pinches_bit : 0U)));
+}
+
+inline void put_filter_numbers(ByteWriter& writer, const hand::FilterOptions& filter) {
+  flow::for_each_filter_number(
+      [&](const flow::NumberSetting& number) { writer.f64_le(number.of(filter)); });
 }
 
 /// Reads one value after another and remembers whether all of them were usable. After an unusable

@@ -29,6 +29,10 @@ struct LoopSettings {
   friend bool operator==(const LoopSettings&, const LoopSettings&) = default;
 };
 
+/// Returns what a program begins with that asks for nothing else: pinches are closed. A bare
+/// LoopSettings leaves the hands as they are, for the poses of timelines, which are closed already.
+LoopSettings usual_settings() noexcept;
+
 /// Tells whether hands close pinches: not in clay, which may be between their pads.
 constexpr bool closes_pinches(const hand::FilterOptions& filter, Mode mode) noexcept {
   return filter.close_pinches && mode != Mode::clay;

@@ -3,12 +3,20 @@
 // reports and widgets are made from it; for_each_setting() lets code for one kind serve all of it.
 
 #include <string>
+#include <string_view>
 
+#include <nendo/base/result.hpp>
+#include <nendo/deform/brush.hpp>
+#include <nendo/flow/filter_setting.hpp>
 #include <nendo/flow/setting_kinds.hpp>
 
 namespace nendo::flow {
 
 namespace setting {
+
+inline bool has_brush(const LoopSettings& settings) noexcept {
+  return !deform::are_all_pull(settings.brushes);
+}
 
 inline constexpr ChoiceSetting<Mode> mode{
     {{"mode", "--mode", "mode", "mode",
@@ -40,17 +48,12 @@ inline constexpr FingersSetting radius{
       StepKind::radius},
      &LoopSettings::radius_m},
     {1e-9, 1e9},
+    "m",
     {0.01, 0.4}};
 /// In least radii.
 inline constexpr NumberSetting piece_fraction{
     {{"piece_fraction", "", "length of a piece", "piece", ""}, &LoopSettings::piece_fraction},
     {1e-3, 1e3}};
-inline constexpr FilterSetting filter{
-    {"filter", "--filter", "smooth hands", "smooth hands",
-     "off, or one-euro: smooths the joints' angles, at rest more than in motion; the summary says "
-     "how late that makes them",
-     StepKind::filter},
-    &LoopSettings::filter};
 inline constexpr BrushesSetting brushes{
     {"brushes", "--brush", "brush", "brush",
      "What a finger does along its way, in type 2: pull, none, push, inflate, smooth, flatten, "
@@ -59,13 +62,15 @@ inline constexpr BrushesSetting brushes{
     &LoopSettings::brushes};
 inline constexpr NumberSetting brush_strength{
     {{"brush_strength", "--strength", "strength", "strength",
-      "How much a brush does, -1 to 1, without it 0.5; below 0 it does the opposite",
-      StepKind::brush, true},
+      "How much a brush does; below 0 it does the opposite", StepKind::brush, true},
      &LoopSettings::brush_strength},
-    {-1.0, 1.0}};
+    {-1.0, 1.0},
+    "",
+    has_brush,
+    "--brush inflate"};
 inline constexpr NumberSetting keep_volume{
     {{"keep_volume", "--keep-volume", "keeping the volume", "volume",
-      "From 0, air, to 1, clay: what is pressed in comes out nearby", StepKind::volume, true},
+      "0 is air, and 1 is clay: what is pressed in comes out nearby", StepKind::volume, true},
      &LoopSettings::keep_volume},
     {0.0, 1.0}};
 inline constexpr ChoiceSetting<Hold> hold{
@@ -79,19 +84,26 @@ inline constexpr ChoiceSetting<Hold> hold{
 
 } // namespace setting
 
-/// Calls see(setting) with each description, in the order in which files have them.
+/// Calls see(setting) with each description but those of the filter, in the order in which files
+/// have them.
 template <class See>
-constexpr void for_each_setting(const See& see) {
+constexpr void for_each_shape_setting(const See& see) {
   see(setting::mode);
   see(setting::kernel);
   see(setting::injective);
   see(setting::radius);
   see(setting::piece_fraction);
-  see(setting::filter);
   see(setting::brushes);
   see(setting::brush_strength);
   see(setting::keep_volume);
   see(setting::hold);
+}
+
+/// Calls see(setting) with each description.
+template <class See>
+constexpr void for_each_setting(const See& see) {
+  for_each_shape_setting(see);
+  for_each_filter_setting(see);
 }
 
 /// The same of what SculptorOptions have as it is (set_plain_settings()).
@@ -105,9 +117,11 @@ constexpr void for_each_plain_setting(const See& see) {
   see(setting::hold);
 }
 
-/// Returns the first setting that a loop does not take, and within what it must lie, such as
-/// "keep_volume must lie within 0 and 1"; empty: all can be taken. Allocates.
-std::string complaint_about(const LoopSettings& settings);
+/// Returns a range as messages show it: "0.01 to 1000 Hz". Allocates.
+std::string in_words(const Range& range, std::string_view unit);
+/// Checks that a loop takes all of these. Error: bad_input, naming the first that is out of its
+/// range, and the range: "keep_volume: use 0 to 1". Allocates.
+Result<void> check_ranges(const LoopSettings& settings);
 /// Returns what they are, as all messages tell it: "type1, wendland-c2, never folds, radius 13.2 cm
 /// (0.248)".
 std::string in_words(const LoopSettings& settings, double units_per_metre);

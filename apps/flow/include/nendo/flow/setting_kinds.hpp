@@ -25,9 +25,17 @@ struct SettingText {
 template <class T>
 struct Setting : SettingText {
   T LoopSettings::* member = nullptr;
+  T hand::FilterOptions::* filter_member = nullptr; ///< of LoopSettings::filter, without `member`
 
-  const T& of(const LoopSettings& settings) const noexcept { return settings.*member; }
-  T& of(LoopSettings& settings) const noexcept { return settings.*member; }
+  const T& of(const LoopSettings& settings) const noexcept {
+    return member != nullptr ? settings.*member : settings.filter.*filter_member;
+  }
+  T& of(LoopSettings& settings) const noexcept {
+    return member != nullptr ? settings.*member : settings.filter.*filter_member;
+  }
+  // For the description of a filter's setting.
+  const T& of(const hand::FilterOptions& filter) const noexcept { return filter.*filter_member; }
+  T& of(hand::FilterOptions& filter) const noexcept { return filter.*filter_member; }
 };
 
 struct Range {
@@ -41,21 +49,25 @@ struct Range {
 };
 
 using SwitchSetting = Setting<bool>;
-using FilterSetting = Setting<hand::FilterOptions>;
 /// A choice for each finger, thumb to little finger.
 using BrushesSetting = Setting<std::array<deform::Brush, 5>>;
 struct NumberSetting : Setting<double> {
-  Range range; ///< of what a loop takes; it has no unit
+  Range range;             ///< of what a loop takes
+  std::string_view unit{}; ///< empty: it has none
+  /// Whether other settings give it an effect; null: it always has one.
+  bool (*has_effect)(const LoopSettings& settings) noexcept = nullptr;
+  std::string_view remedy{}; ///< an option that gives it an effect, with an example
 };
 /// A length for each finger, thumb to little finger, in metres on the stage.
 struct FingersSetting : Setting<std::array<double, 5>> {
   Range range; ///< of what a loop takes
+  std::string_view unit{};
   Range handy; ///< that keys and widgets choose from
 };
 /// One of several, which have names.
 template <class T>
 struct ChoiceSetting : Setting<T> {
-  std::string_view choices; ///< for messages
+  std::string_view choices; ///< for messages, in the order of their numbers
   std::string_view (*name_of)(T choice) noexcept = nullptr;
   std::optional<T> (*named)(std::string_view name) noexcept = nullptr;
 };
