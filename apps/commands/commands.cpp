@@ -60,6 +60,27 @@ const char* without_part(const Situation& now) {
   return now.frame.parts.chosen == deform::no_index ? no_part : nullptr;
 }
 
+// Whether one row makes both.
+bool is_alike(Request one, Request other) {
+  return one == other;
+}
+bool is_alike(const flow::DrawWire& one, const flow::DrawWire& other) {
+  return one.blade == other.blade;
+}
+bool is_alike(const flow::SetClutch& one, const flow::SetClutch& other) {
+  return one.side == other.side;
+}
+bool is_alike(const flow::SetMask& one, const flow::SetMask& other) {
+  return one.edit == other.edit;
+}
+bool is_alike(const flow::EditPart& one, const flow::EditPart& other) {
+  return one.removes == other.removes;
+}
+template <class T>
+bool is_alike(const T&, const T&) {
+  return true;
+}
+
 constexpr std::array rows{
     Row{.name = "grab",
         .keys = keys("g"),
@@ -412,6 +433,22 @@ const Row* with_key(std::string_view key, std::uint8_t places) noexcept {
     return (row.places & places) != 0 && row.has_key(key);
   });
   return found == rows.end() ? nullptr : found;
+}
+
+std::string_view name_of(const flow::Command& command) noexcept {
+  if (std::holds_alternative<flow::SetLayer>(command)) return name_of(flow::Punch{});
+  const auto* const found = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
+    if (row.make == nullptr) return false;
+    const flow::Command made = row.make(false);
+    return std::visit(
+        [&made]<class T>(const T& one) {
+          const T* const other = std::get_if<T>(&made);
+          return other != nullptr && is_alike(one, *other);
+        },
+        command);
+  });
+  if (found != rows.end()) return found->name;
+  return std::holds_alternative<flow::SetRole>(command) ? "role" : "a command";
 }
 
 Answer press(const Row& row, const Situation& now, flow::WantedSettings& wanted) {

@@ -74,6 +74,9 @@ std::span<const Row> table() noexcept;
 /// Returns the row of that name, or with that key in one of the places; null: there is none.
 const Row* named(std::string_view name) noexcept;
 const Row* with_key(std::string_view key, std::uint8_t places) noexcept;
+/// Returns the name of the row that makes the command, whatever its numbers are, such as "wire";
+/// "role", or "a command", if no row makes it.
+std::string_view name_of(const flow::Command& command) noexcept;
 
 /// What becomes of a key or a button.
 struct Answer {

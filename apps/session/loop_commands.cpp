@@ -1,33 +1,10 @@
 #include "session/loop_commands.hpp"
 
 #include <algorithm>
-#include <utility>
-#include <variant>
+
+#include "commands/commands.hpp"
 
 namespace nendo::session {
-namespace {
-
-// The names of the table of commands (apps/commands).
-struct LoopCommandName {
-  std::string_view operator()(flow::Request request) const noexcept { return name_of(request); }
-  std::string_view operator()(const flow::WristMove&) const noexcept { return "wrist"; }
-  std::string_view operator()(const flow::Mark&) const noexcept { return "mark"; }
-  std::string_view operator()(const flow::SetLayer&) const noexcept { return "punch"; }
-  std::string_view operator()(const flow::DrawWire& draw) const noexcept {
-    return draw.blade == flow::Blade::wire ? "wire" : "knife";
-  }
-  std::string_view operator()(const flow::SetClutch& clutch) const noexcept {
-    return clutch.side == Side::left ? "clutch left" : "clutch right";
-  }
-  std::string_view operator()(const flow::SetRole&) const noexcept { return "role"; }
-  std::string_view operator()(const flow::SetSymmetry&) const noexcept { return "symmetry"; }
-  template <class Other>
-  std::string_view operator()(const Other&) const noexcept {
-    return "a command"; // none that a loop obeys (flow::is_for_loop())
-  }
-};
-
-} // namespace
 
 bool LoopCommands::push(const flow::Command& command) {
   if (ring_.try_push(command)) {
@@ -37,7 +14,7 @@ bool LoopCommands::push(const flow::Command& command) {
     }
     return true;
   }
-  const std::string_view name = std::visit(LoopCommandName(), command);
+  const std::string_view name = commands::name_of(command);
   if (std::find(dropped_.begin(), dropped_.end(), name) == dropped_.end()) dropped_.push_back(name);
   return false;
 }

@@ -162,6 +162,19 @@ TEST_SUITE("commands") {
     }
   }
 
+  TEST_CASE("each command is named by the row that makes it, whatever its numbers") {
+    for (const Row& row : commands::table()) {
+      CAPTURE(row.name);
+      if (row.make == nullptr) continue;
+      CHECK(commands::name_of(row.make(false)) == row.name);
+      CHECK(commands::name_of(row.make(true)) == row.name);
+    }
+    CHECK(commands::name_of(flow::SetClutch{Side::right, 2, true}) == "clutch right");
+    CHECK(commands::name_of(flow::Refine{7}) == "refine");
+    CHECK(commands::name_of(flow::SetLayer{3, true}) == "punch");
+    CHECK(commands::name_of(flow::SetRole{}) == "role");
+  }
+
   TEST_CASE("the filter's row turns it on and off, and leaves its cutoffs alone") {
     flow::Frame frame;
     frame.settings.filter.min_cutoff_hz = 3.5;
