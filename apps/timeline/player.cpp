@@ -19,38 +19,26 @@ std::shared_ptr<flow::HandBodies> bodies_of(const Timeline& timeline, const defo
   return flow::make_bodies(by_side, model, timeline.units_per_metre);
 }
 
-flow::BrokerOptions broker_options(const Timeline& timeline,
-                                   std::shared_ptr<const flow::HandBodies> bodies) {
-  flow::BrokerOptions options;
+flow::CoreOptions core_options(const Timeline& timeline, const deform::Mesh& model) {
+  flow::CoreOptions options;
   options.setup = {timeline.sculptor,
                    flow::settings_of(timeline.sculptor, {}, timeline.units_per_metre)};
-  options.rig = timeline.rig;
-  if (!timeline.masks.empty() && !timeline.rig) {
-    options.rig = timeline.masks.front();
-    options.more_rigs.assign(timeline.masks.begin() + 1, timeline.masks.end());
-  }
-  options.bodies = std::move(bodies);
-  options.hands = options.inputs = timeline.hands.size();
-  options.units_per_metre = timeline.units_per_metre;
-  options.undo_most_bytes = deform::half_of_memory();
-  return options;
-}
-
-flow::CoreOptions core_options(const Timeline& timeline, const flow::SculptorSetup& setup,
-                               std::shared_ptr<flow::HandBodies> bodies) {
-  flow::CoreOptions options;
-  options.shaping.sculptor = setup;
   options.shaping.most_requests = timeline.events.size() + 1;
   options.shaping.held = timeline.held;
   options.shaping.pull_is_step = timeline.pull_is_step;
   options.shaping.changes_at_once = true;
   for (const HandTrack& track : timeline.hands)
     options.hands.push_back(track.side);
-  options.bodies = std::move(bodies);
+  options.inputs = timeline.hands.size();
+  options.bodies = bodies_of(timeline, model);
   options.units_per_metre = timeline.units_per_metre;
   options.rig = timeline.rig;
-  if (!timeline.rig && !timeline.masks.empty()) options.rig = timeline.masks.front();
   options.rig_state = timeline.rig_state;
+  if (!timeline.masks.empty() && !timeline.rig) {
+    options.rig = timeline.masks.front();
+    options.more_rigs.assign(timeline.masks.begin() + 1, timeline.masks.end());
+  }
+  options.undo_most_bytes = deform::half_of_memory();
   return options;
 }
 
@@ -89,8 +77,8 @@ Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Me
     return Error{Errc::bad_input, "the model would be too large when it is subdivided so often, or "
                                   "its parts are copied; take out such an event"};
   if (auto fits = complete(timeline, model); !fits) return fits.error();
-  const auto bodies = bodies_of(timeline, model);
-  std::unique_ptr<Player> player(new Player(std::move(timeline), model, bodies));
+  const flow::CoreOptions options = core_options(timeline, model);
+  std::unique_ptr<Player> player(new Player(std::move(timeline), model, options));
   player->pose_hands(0.0);
   const deform::FieldStatus status = player->core_.begin(player->hands(), player->frame_);
   if (!is_solved(status))
@@ -99,10 +87,8 @@ Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Me
   return player;
 }
 
-Player::Player(Timeline timeline, const deform::Mesh& model,
-               const std::shared_ptr<flow::HandBodies>& bodies)
-    : timeline_(std::move(timeline)), changes_(model, broker_options(timeline_, bodies)),
-      core_(changes_.first_model(), core_options(timeline_, changes_.setup(), bodies)),
+Player::Player(Timeline timeline, const deform::Mesh& model, const flow::CoreOptions& options)
+    : timeline_(std::move(timeline)), changes_(model, options), core_(changes_, options),
       frame_(core_.first_frame()),
       frames_(static_cast<std::uint64_t>(timeline_.duration_s * timeline_.rate_hz + a_hair) + 1) {
   for (const auto& track : timeline_.hands)

@@ -60,8 +60,7 @@ private:
     std::size_t slot;
   };
 
-  Player(Timeline timeline, const deform::Mesh& model,
-         const std::shared_ptr<flow::HandBodies>& bodies);
+  Player(Timeline timeline, const deform::Mesh& model, const flow::CoreOptions& options);
   double time_of(std::uint64_t frame) const noexcept;
   void pose_hands(double time_s);
   flow::ShapingCore::Hands hands() const noexcept;

@@ -14,7 +14,7 @@
 namespace nendo::flow {
 
 struct ChangeBroker::Parts {
-  Parts(const deform::Mesh& model, const BrokerOptions& options, const deform::BlockShape* first);
+  Parts(const deform::Mesh& model, const CoreOptions& options, const deform::BlockShape* first);
 
   // In change_broker.cpp:
   bool take_back_done();

@@ -14,7 +14,7 @@ namespace nendo::flow {
 
 namespace {
 
-SculptorSetup first_setup(const BrokerOptions& options, const ModelVersion& version) {
+SculptorSetup first_setup(const CoreOptions& options, const ModelVersion& version) {
   SculptorSetup setup = options.setup;
   const puppet::Rig* const rig = options.rig.get();
   if (is_played(rig)) setup.options.hold = Hold::fingertips; // its points hold
@@ -29,18 +29,18 @@ SculptorSetup first_setup(const BrokerOptions& options, const ModelVersion& vers
 
 } // namespace
 
-ChangeBroker::Parts::Parts(const deform::Mesh& model, const BrokerOptions& options,
+ChangeBroker::Parts::Parts(const deform::Mesh& model, const CoreOptions& options,
                            const deform::BlockShape* first)
     : bodies(options.bodies), inputs(options.inputs), units_per_metre(options.units_per_metre),
       versions(model, {options.setup.options.deformer.undo_bytes, options.undo_most_bytes}, first),
       asked(first_setup(options, versions.first())),
-      puppets(asked, options.rig, static_cast<Eigen::Index>(options.hands)),
+      puppets(asked, options.rig, static_cast<Eigen::Index>(options.hands.size())),
       asked_model(&versions.first()) {
   for (const auto& rig : options.more_rigs)
     puppets.add(rig);
 }
 
-ChangeBroker::ChangeBroker(const deform::Mesh& model, const BrokerOptions& options,
+ChangeBroker::ChangeBroker(const deform::Mesh& model, const CoreOptions& options,
                            const deform::BlockShape* first)
     : parts_(std::make_unique<Parts>(model, options, first)) {}
 

@@ -27,32 +27,24 @@ std::shared_ptr<HandBodies> bodies_of(const std::vector<HandInput>& inputs,
   return make_bodies(by_side, model, placement.units_per_metre, placement.table);
 }
 
-BrokerOptions broker_options(const std::vector<HandInput>& inputs, const Placement& placement,
-                             const LoopOptions& options, std::shared_ptr<const HandBodies> bodies) {
-  BrokerOptions broker;
-  broker.setup = {options.sculptor, options.settings
-                                        ? *options.settings
-                                        : settings_of(options.sculptor, inputs.front().filter,
-                                                      placement.units_per_metre)};
-  broker.rig = options.rig;
-  broker.bodies = std::move(bodies);
-  broker.hands = count_hands(inputs);
-  broker.inputs = inputs.size();
-  broker.units_per_metre = placement.units_per_metre;
-  broker.undo_most_bytes = options.undo_most_bytes;
-  return broker;
-}
-
-CoreOptions core_options(const std::vector<HandInput>& inputs, const LoopOptions& options,
-                         double units_per_metre, const SculptorSetup& setup,
-                         std::shared_ptr<HandBodies> bodies) {
-  CoreOptions core{{setup}, {}, std::move(bodies), units_per_metre, options.rig};
+CoreOptions core_options(const std::vector<HandInput>& inputs, const Placement& placement,
+                         const LoopOptions& options, const deform::Mesh& model) {
+  CoreOptions core;
+  core.setup = {options.sculptor, options.settings
+                                      ? *options.settings
+                                      : settings_of(options.sculptor, inputs.front().filter,
+                                                    placement.units_per_metre)};
   if (options.commands != nullptr) core.shaping.most_requests = options.commands->capacity();
   core.shaping.held = options.begins_held();
   core.shaping.pull_is_step = options.pull_is_step;
   for (const HandInput* hand : hands_of(inputs))
     core.hands.push_back(hand->side);
+  core.inputs = inputs.size();
+  core.bodies = bodies_of(inputs, placement, model);
+  core.units_per_metre = placement.units_per_metre;
+  core.rig = options.rig;
   core.rig_state = options.rig_state;
+  core.undo_most_bytes = options.undo_most_bytes;
   return core;
 }
 
@@ -61,16 +53,14 @@ CoreOptions core_options(const std::vector<HandInput>& inputs, const LoopOptions
 DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
                        const std::vector<HandInput>& hands, const LoopOptions& options,
                        const deform::BlockShape* first)
-    : DeformLoop(model, placement, hands, options, first, bodies_of(hands, placement, model)) {}
+    : DeformLoop(model, core_options(hands, placement, options, model), hands, placement, options,
+                 first) {}
 
-DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
-                       const std::vector<HandInput>& hands, const LoopOptions& options,
-                       const deform::BlockShape* first, const std::shared_ptr<HandBodies>& bodies)
-    : changes_(model, broker_options(hands, placement, options, bodies), first),
-      ticker_(std::make_unique<Ticker>(
-          changes_, options,
-          core_options(hands, options, placement.units_per_metre, changes_.setup(), bodies), hands,
-          placement)) {}
+DeformLoop::DeformLoop(const deform::Mesh& model, const CoreOptions& core,
+                       const std::vector<HandInput>& hands, const Placement& placement,
+                       const LoopOptions& options, const deform::BlockShape* first)
+    : changes_(model, core, first),
+      ticker_(std::make_unique<Ticker>(changes_, options, core, hands, placement)) {}
 
 DeformLoop::~DeformLoop() = default;
 

@@ -44,11 +44,12 @@ std::unique_ptr<Sculptor> sculptor_on(ModelVersion& model, Eigen::Index control_
 
 } // namespace
 
-Shaping::Shaping(ModelVersion& model, Eigen::Index control_points, const ShapingOptions& options)
-    : model_(&model), sculptor_(sculptor_on(model, control_points, options.sculptor.options)),
+Shaping::Shaping(ModelVersion& model, const SculptorSetup& setup, Eigen::Index control_points,
+                 const ShapingOptions& options)
+    : model_(&model), sculptor_(sculptor_on(model, control_points, setup.options)),
       still_tips_(Points::Zero(3, control_points)), pull_is_step_(options.pull_is_step),
       changes_at_once_(options.changes_at_once), held_(options.held), hold_wanted_(held_),
-      settings_(options.sculptor.settings) {
+      settings_(setup.settings) {
   steps_due_.reserve(options.most_requests);
 }
 
@@ -57,7 +58,8 @@ void Shaping::ask(Request request) noexcept {
   if (request == Request::let_go) hold_wanted_ = false;
   if (request == Request::commit) commit_due_ = held_ || hold_wanted_;
   if (request == Request::take_hold) regrab_due_ = true;
-  if (goes_through_history(request) && steps_due_.size() < steps_due_.capacity())
+  if (!goes_through_history(request)) return;
+  if (steps_due_.size() < steps_due_.capacity())
     steps_due_.push_back(request);
 }
 

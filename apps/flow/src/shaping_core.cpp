@@ -16,7 +16,7 @@ namespace {
 
 /// Symmetry adds the images of all points.
 Eigen::Index points_at_first(const CoreOptions& options) {
-  SculptorOptions sculptor = options.shaping.sculptor.options;
+  SculptorOptions sculptor = options.setup.options;
   sculptor.mirror = mirror_of(options.rig.get());
   return control_points_of(options.rig.get(), sculptor,
                            static_cast<Eigen::Index>(options.hands.size()));
@@ -24,10 +24,10 @@ Eigen::Index points_at_first(const CoreOptions& options) {
 
 } // namespace
 
-ShapingCore::ShapingCore(ModelVersion& model, const CoreOptions& options)
+ShapingCore::ShapingCore(ChangeBroker& changes, const CoreOptions& options)
     : units_per_metre_(options.units_per_metre), hands_(options.hands), bodies_(options.bodies),
       mirror_(mirror_of(options.rig.get())), tips_(Points::Zero(3, points_at_first(options))),
-      shaping_(model, tips_.cols(), options.shaping),
+      shaping_(changes.first_model(), changes.setup(), tips_.cols(), options.shaping),
       blade_(std::make_unique<DrawnBlade>(units_per_metre_)) {
   if (!is_played(options.rig.get())) return;
   puppet_.emplace(options.rig);

@@ -11,7 +11,7 @@ namespace nendo::flow {
 DeformLoop::Ticker::Ticker(ChangeBroker& changes, const LoopOptions& options,
                            const CoreOptions& core, std::vector<HandInput> hands,
                            const Placement& placement)
-    : options_(options), changes_(changes.offers()), core_(changes.first_model(), core),
+    : options_(options), changes_(changes.offers()), core_(changes, core),
       inputs_(std::move(hands), placement, changes.settings()), frames_(core_.first_frame()) {
   Frame& frame = frames_.back();
   const ShapingCore::Hands poses = inputs_.pose();

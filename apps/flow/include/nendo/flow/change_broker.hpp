@@ -15,16 +15,19 @@
 
 namespace nendo::flow {
 
-/// What the loop begins with.
-struct BrokerOptions {
+/// What a loop or a timeline begins with: for its ChangeBroker, and for its ShapingCore.
+struct CoreOptions {
   SculptorSetup setup; ///< without what a puppet, masks or hands' bodies add to it
-  std::shared_ptr<const puppet::Rig> rig{}; ///< LoopOptions::rig
+  ShapingOptions shaping{};
+  std::vector<Side> hands; ///< one or two, in the order of their control points
+  std::size_t inputs = 1;  ///< hands and layers
+  std::shared_ptr<HandBodies> bodies;
+  double units_per_metre = 1.0;
+  /// A puppet that hands play, or masks and a mirror for their fingertips; null: neither.
+  std::shared_ptr<const puppet::Rig> rig{};
+  puppet::RigState rig_state{}; ///< the state of the puppet's player at first
   /// Further puppets, for change_puppet() by their numbers, from 1 on.
   std::vector<std::shared_ptr<const puppet::Rig>> more_rigs{};
-  std::shared_ptr<const HandBodies> bodies;
-  std::size_t hands = 1;
-  std::size_t inputs = 1; ///< hands and layers
-  double units_per_metre = 1.0;
   std::size_t undo_most_bytes = 0; ///< UndoRoom::most_bytes, of all versions together
 };
 
@@ -34,7 +37,7 @@ class ChangeBroker {
 public:
   /// Copies the model. With `first`, the shape is at first that one, in the blocks of the model's
   /// layout. Allocates.
-  ChangeBroker(const deform::Mesh& model, const BrokerOptions& options,
+  ChangeBroker(const deform::Mesh& model, const CoreOptions& options,
                const deform::BlockShape* first = nullptr);
   ~ChangeBroker();
 

@@ -63,9 +63,9 @@ public:
 
 private:
   class Ticker;
-  DeformLoop(const deform::Mesh& model, const Placement& placement,
-             const std::vector<HandInput>& hands, const LoopOptions& options,
-             const deform::BlockShape* first, const std::shared_ptr<HandBodies>& bodies);
+  DeformLoop(const deform::Mesh& model, const CoreOptions& core,
+             const std::vector<HandInput>& hands, const Placement& placement,
+             const LoopOptions& options, const deform::BlockShape* first);
 
   ChangeBroker changes_;           ///< asking thread
   std::unique_ptr<Ticker> ticker_; ///< loop's thread

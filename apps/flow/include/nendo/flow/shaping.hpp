@@ -16,8 +16,7 @@
 namespace nendo::flow {
 
 struct ShapingOptions {
-  SculptorSetup sculptor;
-  std::size_t most_requests = 64; ///< per tick
+  std::size_t most_requests = 64; ///< undos, redos and resets that may wait; others are refused
   bool held = true;               ///< at first
   bool pull_is_step = true;       ///< LoopOptions::pull_is_step
   /// The caller makes the change that an undo or a redo awaits (Frame::awaited) in the same tick,
@@ -57,7 +56,8 @@ class Shaping {
 public:
   /// Shapes that model, which must outlive this, as must all later models. Allocates all that a
   /// tick needs.
-  Shaping(ModelVersion& model, Eigen::Index control_points, const ShapingOptions& options);
+  Shaping(ModelVersion& model, const SculptorSetup& setup, Eigen::Index control_points,
+          const ShapingOptions& options);
 
   /// Lets the fingertips take hold for the first time (3 by control_points, model units).
   deform::FieldStatus begin(const deform::Points& tips) noexcept { return sculptor_->grab(tips); }

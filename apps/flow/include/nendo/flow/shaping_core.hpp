@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <nendo/deform/mesh.hpp>
+#include <nendo/flow/change_broker.hpp>
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/hand_contact.hpp>
 #include <nendo/flow/loop_stats.hpp>
@@ -20,24 +21,15 @@ namespace nendo::flow {
 
 class DrawnBlade;
 
-struct CoreOptions {
-  ShapingOptions shaping;
-  std::vector<Side> hands; ///< one or two, in the order of their control points
-  std::shared_ptr<HandBodies> bodies;
-  double units_per_metre = 1.0;
-  /// A puppet that hands play, or masks and a mirror for their fingertips; null: neither.
-  std::shared_ptr<const puppet::Rig> rig{};
-  puppet::RigState rig_state{}; ///< the state of the puppet's player at first
-};
-
 /// Loop's thread, or that of a player without a loop. The constructor allocates; its functions
 /// neither allocate nor wait.
 class ShapingCore {
 public:
   using Hands = puppet::RigPlayer::Hands;
 
-  /// The model must outlive the core, as must all versions that come in its place.
-  ShapingCore(ModelVersion& model, const CoreOptions& options);
+  /// `changes` has the first model and its sculptor's setup, and was made with these options. It
+  /// must outlive the core.
+  ShapingCore(ChangeBroker& changes, const CoreOptions& options);
   ~ShapingCore();
 
   /// Returns a frame that has the room that a tick needs.
