@@ -84,7 +84,7 @@ Eigen::Matrix3Xf ControlMorphs::vectors_of(const CsrbfField& field) const {
 
 bool ControlMorphs::add(const flow::Frame& frame, const deform::Points& vertices) {
   const auto fields = frame.fields.fields();
-  if (fields.size() > 1 || frame.commits > 0) return false;
+  if (fields.size() > 1 || frame.rest_changes > 0) return false;
   const CsrbfField* const field = fields.empty() ? nullptr : &fields.front();
   if (field != nullptr) {
     if (field->centres.cols() == 0 || !field->polynomial.isZero(0.0)) return false;

@@ -106,7 +106,7 @@ void FrameRecord::describe(const flow::Frame& frame, std::uint64_t number,
   head.tick = frame.tick;
   head.ticks = frame.ticks_run;
   head.missed = frame.missed;
-  head.commits = frame.commits;
+  head.rest_changes = frame.rest_changes;
   head.shape_jumps = frame.shape_jumps;
   head.scheduled_ns = nanoseconds(frame.scheduled.time_since_epoch());
   head.woke_ns = nanoseconds(frame.woke.time_since_epoch());

@@ -33,7 +33,7 @@ public:
   /// the model.
   virtual std::optional<PlayedPuppet> puppet() const { return std::nullopt; }
   /// Returns the masks of fingertips (flow::LoopOptions::rig) as the take begins; null: none. A
-  /// change of masks commits (Frame::commits).
+  /// change of masks ends a stroke (Frame::rest_changes).
   virtual const puppet::Rig* masks() const { return nullptr; }
   virtual double rate_hz() const = 0;    ///< of the frames, as far as it is even
   virtual double duration_s() const = 0; ///< time_s() of the last frame

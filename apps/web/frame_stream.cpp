@@ -61,9 +61,9 @@ void FrameStream::show(const flow::Frame& frame) noexcept {
   // Clients can follow along the surface.
   const std::uint64_t jumps = frame.shape_jumps - frame.surface_moves;
   const bool jumped = jumps != jumps_;
-  const bool committed = frame.commits != commits_;
+  const bool committed = frame.rest_changes != rest_changes_;
   jumps_ = jumps;
-  commits_ = frame.commits;
+  rest_changes_ = frame.rest_changes;
   // In both cases this frame's shape is the rest shape from now on: a commit makes it so, as does a
   // change of settings, and after an undo the hands have not moved it yet.
   if (jumped || committed) rest_.follow(frame.shape);

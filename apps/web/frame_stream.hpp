@@ -85,7 +85,7 @@ private:
   deform::BlockShape rest_; ///< in Type-1, the shape that fields are applied to; in Type-2, that of
                             ///< the last commit or undo
   std::uint64_t number_ = 0;
-  std::uint64_t commits_ = 0;
+  std::uint64_t rest_changes_ = 0;
   std::uint64_t jumps_ = 0;
   std::vector<std::byte> record_;
   // Shared.

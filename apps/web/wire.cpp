@@ -130,7 +130,7 @@ UpdateHead head_of(const flow::Frame& frame) noexcept {
   head.tick = frame.tick;
   head.ticks = frame.ticks_run;
   head.missed = frame.missed;
-  head.commits = static_cast<std::uint32_t>(frame.commits);
+  head.rest_changes = static_cast<std::uint32_t>(frame.rest_changes);
   head.jumps = static_cast<std::uint32_t>(frame.shape_jumps - frame.surface_moves);
   head.late_us = head.most_late_us = microseconds(frame.woke - frame.scheduled);
   head.since_last_us = microseconds(frame.since_last);

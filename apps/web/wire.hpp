@@ -46,7 +46,7 @@ struct UpdateHead {
   std::uint64_t tick = 0;
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0;
-  std::uint32_t commits = 0;
+  std::uint32_t rest_changes = 0;
   std::uint32_t jumps = 0;
   float late_us = 0.0F;
   float most_late_us = 0.0F;

@@ -103,6 +103,29 @@ TEST_SUITE("exchange") {
     }
   }
 
+  TEST_CASE("a commit or letting go is a commit, and a stroke that a change ends is none") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      CAPTURE(name_of(mode));
+      Clocked loop(mode);
+      loop.stroke(0, 15);
+      loop.change(with_radius(loop.test.loop->changes().settings(), 0.3));
+      loop.bent(15);
+      CHECK(loop.frame().commits == 0);
+      CHECK(loop.frame().rest_changes == 1);
+      loop.stroke(15, 25);
+      REQUIRE(loop.test.commands.try_push(Request::commit));
+      loop.bent(25);
+      CHECK(loop.frame().commits == 1);
+      CHECK(loop.frame().rest_changes == 2);
+      loop.stroke(25, 10);
+      REQUIRE(loop.test.commands.try_push(Request::let_go));
+      loop.bent(10);
+      CHECK(loop.frame().commits == 2);
+      CHECK(loop.frame().rest_changes == 3);
+      CHECK(loop.test.loop->stats().commits == loop.frame().commits);
+    }
+  }
+
   TEST_CASE("undo leads back over changes to the beginning, and redo forth again") {
     for (const auto& [mode, other] : {std::pair{Mode::type1, Mode::type1},
                                       {Mode::type1, Mode::type2},

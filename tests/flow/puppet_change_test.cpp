@@ -182,7 +182,7 @@ TEST_SUITE("puppet change") {
     const std::string text = std::string("distance = \"air\"\n") + test::ball_puppet;
     Clocked loop(Mode::type1, {.rings_of_ball = 12, .puppet = text.c_str()});
     loop.stroke(0, 12);
-    const std::uint64_t commits = loop.frame().commits;
+    const std::uint64_t rest_changes = loop.frame().rest_changes;
     REQUIRE(loop.test.loop->changes().change_puppet(
         edited(loop, puppet::with_radius(rig(loop), point(loop, "south"), 0.5))));
     loop.bent(12);
@@ -194,7 +194,7 @@ TEST_SUITE("puppet change") {
       REQUIRE(loop.test.loop->changes().change_to(*loop.frame().awaited));
       loop.bent(12);
       CHECK_FALSE(loop.frame().awaited);
-      CHECK(loop.frame().commits == commits);
+      CHECK(loop.frame().rest_changes == rest_changes);
       CHECK(loop.frame().shape_jumps == 0);
     }
     CHECK(loop.frame().undos == 1);

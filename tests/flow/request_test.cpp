@@ -64,7 +64,7 @@ TEST_SUITE("request") {
     const Points pulled = person.shape();
     const Frame anew = person.ask(Request::take_hold, 15);
     CHECK(anew.held);
-    CHECK(anew.commits == 0);
+    CHECK(anew.rest_changes == 0);
     CHECK((person.shape() - person.test.model.vertices).cwiseAbs().maxCoeff() <= test::float_gap);
     CHECK(anew.redo_steps == 1);
     CHECK(anew.undo_steps == 0);
@@ -88,7 +88,7 @@ TEST_SUITE("request") {
     Person person(Mode::type2);
     person.move(0, 15);
     const Points before = person.shape();
-    CHECK(person.ask(Request::take_hold, 15).commits == 0);
+    CHECK(person.ask(Request::take_hold, 15).rest_changes == 0);
     CHECK(person.shape() == before);
     person.move(15, 22);
     CHECK((person.shape() - before).cwiseAbs().maxCoeff() > 0.005);

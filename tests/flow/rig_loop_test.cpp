@@ -171,7 +171,7 @@ TEST_SUITE("rig_loop") {
       CHECK(held.functions[at] ==
             doctest::Approx(static_cast<double>(bent.functions[at])).epsilon(1e-5));
     CHECK(after(5, WristSwitch::off).functions != held.functions);
-    CHECK(test.loop->frames().front().commits == 0);
+    CHECK(test.loop->frames().front().rest_changes == 0);
   }
 
   TEST_CASE("no function leaves its limits, however far a hand bends") {

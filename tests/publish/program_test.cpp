@@ -178,7 +178,7 @@ TEST_SUITE("publish_program") {
       CHECK(last["newest"] == summary["ticks"]);
       CHECK(last["seen"] == records.size());
       REQUIRE_FALSE(records.empty());
-      CHECK(records.back()["commits"] == summary["commits"]);
+      CHECK(records.back()["rest_changes"] == summary["commits"]);
       CHECK(records.back()["mode"] == (mode == "type1" ? 1 : 2));
       const auto& to = summary["published"];
       CHECK(to[0]["target"] == "shm:" + name);

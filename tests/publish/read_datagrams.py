@@ -45,7 +45,7 @@ def main():
                 continue
             whole = b"".join(waiting[at] for at in sorted(waiting))
             del updates[number]
-            names = ("number", "generation", "tick", "ticks", "missed", "commits", "shape_jumps")
+            names = ("number", "generation", "tick", "ticks", "missed", "rest_changes", "shape_jumps")
             told = dict(zip(names, struct.unpack_from("<7Q", whole)))
             fields, fields_bytes = struct.unpack_from("<IQ", whole, 108)
             at = 120

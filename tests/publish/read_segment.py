@@ -26,7 +26,7 @@ def hand(at):
 
 
 def record(at, number, generation):
-    names = ("number", "generation", "tick", "ticks", "missed", "commits", "shape_jumps", "scheduled", "woke", "since_last",
+    names = ("number", "generation", "tick", "ticks", "missed", "rest_changes", "shape_jumps", "scheduled", "woke", "since_last",
              "shape_changes")
     if take("Q", at) != 2 * number + 2:
         return None

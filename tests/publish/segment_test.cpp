@@ -40,7 +40,7 @@ TEST_SUITE("segment") {
         const auto& head = test::head_of(record);
         CHECK(head.number == number);
         CHECK(head.tick == frame.tick);
-        CHECK(head.commits == frame.commits);
+        CHECK(head.rest_changes == frame.rest_changes);
         CHECK(head.shape_jumps == frame.shape_jumps);
         CHECK(head.woke_ns == frame.woke.time_since_epoch() / std::chrono::nanoseconds(1));
         CHECK(segment.header().heartbeat_ns == head.woke_ns);

@@ -82,13 +82,13 @@ Points through_fields(const std::vector<std::uint64_t>& record, const Points& fr
 struct Follower {
   Points rest, shape;
   bool knows_rest = true;
-  std::uint64_t number = 0, commits = 0, jumps = 0;
+  std::uint64_t number = 0, rest_changes = 0, jumps = 0;
   int followed = 0, taken = 0;
 
   void follow(const std::vector<std::uint64_t>& record, const Points& published) {
     const auto& head = test::head_of(record);
     const bool missed = head.number != number + 1;
-    const bool committed = head.commits != commits;
+    const bool committed = head.rest_changes != rest_changes;
     const bool undid = head.shape_jumps != jumps;
     if (head.mode == 2) {
       step(!missed && !undid, record, shape, published);
@@ -107,7 +107,7 @@ struct Follower {
       }
     }
     number = head.number;
-    commits = head.commits;
+    rest_changes = head.rest_changes;
     jumps = head.shape_jumps;
   }
 
@@ -142,7 +142,7 @@ TEST_SUITE("updates") {
       }
       CHECK(furthest > 1e-2);
       CHECK(follower.jumps > 2);
-      CHECK(follower.commits > 2);
+      CHECK(follower.rest_changes > 2);
     }
   }
 

@@ -43,7 +43,7 @@ Frames played(const Timeline& timeline) {
   double since_s = 0.0;
   while ((*player)->next()) {
     const flow::Frame& frame = (*player)->frame();
-    const std::uint64_t steps = frame.commits + 1000 * frame.shape_jumps;
+    const std::uint64_t steps = frame.rest_changes + 1000 * frame.shape_jumps;
     if (frame.held && (!held || steps != kept)) since_s = (*player)->time_s();
     held = frame.held;
     kept = steps;

@@ -116,7 +116,7 @@ public:
   std::uint64_t newest = 0; ///< the frame of the last update
   std::uint64_t tick = 0;
   bool held = false;
-  std::uint32_t commits = 0, jumps = 0, lost = 0, skipped = 0;
+  std::uint32_t rest_changes = 0, jumps = 0, lost = 0, skipped = 0;
   std::array<std::array<Eigen::Vector3d, 26>, 2> joints{};
   std::array<std::array<Eigen::Quaterniond, 26>, 2> turns{};
   std::array<Eigen::Quaterniond, 2> forearms{};
@@ -267,7 +267,7 @@ private:
     newest = in.take<std::uint64_t>();
     tick = in.take<std::uint64_t>();
     in.at = 40;
-    commits = in.take<std::uint32_t>();
+    rest_changes = in.take<std::uint32_t>();
     jumps = in.take<std::uint32_t>();
     in.at = 60;
     lost = in.take<std::uint32_t>();

@@ -179,7 +179,7 @@ TEST_SUITE("server_limits") {
     Viewer viewer(served, small_buffer);
     REQUIRE(viewer.follow_until([&] { return viewer.follows() && viewer.held; }));
     viewer.client.send_text("commit");
-    REQUIRE(viewer.follow_until([&] { return viewer.commits == 1; }));
+    REQUIRE(viewer.follow_until([&] { return viewer.rest_changes == 1; }));
     const auto counters = [&] { return served.server->counters(); };
     const auto full = counters().update_bytes + 16 * small_buffer; // takes no more by then
     REQUIRE(eventually([&] { return counters().update_bytes > full; }));

@@ -138,11 +138,11 @@ TEST_SUITE("server") {
     CHECK(viewer.follow_until([&] { return viewer.follows() && viewer.held; }));
     viewer.client.send_text("let go");
     CHECK(viewer.follow_until([&] { return !viewer.held; }));
-    CHECK(viewer.commits == 1);
+    CHECK(viewer.rest_changes == 1);
     viewer.client.send_text("grab");
     CHECK(viewer.follow_until([&] { return viewer.held; }));
     viewer.client.send_text("commit");
-    CHECK(viewer.follow_until([&] { return viewer.commits == 2; }));
+    CHECK(viewer.follow_until([&] { return viewer.rest_changes == 2; }));
     viewer.client.send_text("undo");
     CHECK(viewer.follow_until([&] { return viewer.jumps == 1; }));
     viewer.client.send(client_frame(0x89, "")); // ping
@@ -202,7 +202,7 @@ TEST_SUITE("server") {
         CHECK(viewer.follow_until([&] { return viewer.updates > updates; }));
         viewer.client.send_text(request);
       }
-      CHECK(viewer.follow_until([&] { return viewer.commits >= 2; }));
+      CHECK(viewer.follow_until([&] { return viewer.rest_changes >= 2; }));
       served->end();
       served->streamed.test.loop->frames().update();
       const auto& frame = served->streamed.test.loop->frames().front();

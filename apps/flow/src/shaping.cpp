@@ -58,8 +58,7 @@ void Shaping::ask(Request request) noexcept {
   if (request == Request::let_go) hold_wanted_ = false;
   if (request == Request::commit) commit_due_ = held_ || hold_wanted_;
   if (request == Request::take_hold) regrab_due_ = true;
-  if (!goes_through_history(request)) return;
-  if (steps_due_.size() < steps_due_.capacity())
+  if (goes_through_history(request) && steps_due_.size() < steps_due_.capacity())
     steps_due_.push_back(request);
 }
 
@@ -178,8 +177,9 @@ void Shaping::write_state(Frame& frame, LoopStats& stats) noexcept {
   forget_redo();
   stats.undo_steps = steps_to_undo();
   stats.forgotten_steps = model_->shape.forgotten_steps();
-  frame.commits = stats.commits + strokes_ended_;
+  frame.commits = stats.commits;
   frame.undos = stats.undos;
+  frame.rest_changes = stats.commits + strokes_ended_;
   frame.shape_jumps = shape_jumps_;
   frame.surface_moves = surface_moves_;
   frame.undo_steps = undo_steps();

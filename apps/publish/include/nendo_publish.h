@@ -79,7 +79,7 @@ struct nendo_publish_record {
   uint64_t stage; /* 2 * number + 2: whole */
   uint64_t number;
   uint64_t generation;
-  uint64_t tick, ticks, missed, commits, shape_jumps;
+  uint64_t tick, ticks, missed, rest_changes, shape_jumps;
   int64_t scheduled_ns, woke_ns, since_last_ns; /* CLOCK_MONOTONIC */
   uint64_t shape_changes;                       /* the same as in another record: the same shape */
   double units_per_metre;

@@ -59,7 +59,7 @@ class Holds {
   follow(update) {
     const before = this.before
     const anew = update.held &&
-      (!before || !before.held || update.commits !== before.commits || update.jumps !== before.jumps)
+      (!before || !before.held || update.restChanges !== before.restChanges || update.jumps !== before.jumps)
     if (anew) this.starts = update.hands.map(hand => hand && TIPS.map(tip => hand.joints[tip].place))
     this.before = update
   }

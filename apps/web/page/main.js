@@ -150,7 +150,7 @@ element('scene').addEventListener('webglcontextlost', event => {
 window.nendo = {
   ask, counts,
   vertices: () => Array.from(scene.shape.vertices()),
-  state: () => latest && { number: Number(latest.number), held: latest.held, commits: latest.commits, jumps: latest.jumps,
+  state: () => latest && { number: Number(latest.number), held: latest.held, restChanges: latest.restChanges, jumps: latest.jumps,
     ticks: latest.ticks, loop: panel.model.loop, recorded: panel.settings.recorded, settings: panel.settings, history: panel.history, puppet: panel.puppet,
     wrists: latest.hands.map(hand => hand && { place: hand.joints[1].place, turn: hand.forearm, pixel: scene && scene.pixelOf(hand.joints[1].place) }),
     open: socket.readyState === WebSocket.OPEN, shape: Boolean(scene) && scene.shape.number !== null },

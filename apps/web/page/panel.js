@@ -182,7 +182,7 @@ class Panel {
     this.showSteps()
     const lost = update.lost + update.skipped
     element('timing').textContent = `${model.rate} Hz wanted, ${MODES[settings.mode]}\n${update.ticks} ticks, ${update.missed} missed` +
-      `${lost > 0 ? `, ${lost} not shown` : ''}\n${update.commits} commits`
+      `${lost > 0 ? `, ${lost} not shown` : ''}\n${update.restChanges} changes of the rest shape`
     this.drawClay()
     for (const chart of [this.late, this.rate, this.bytes]) chart.draw()
     update.hands.forEach((hand, slot) => this.drawGlove(hand, slot))

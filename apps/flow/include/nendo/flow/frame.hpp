@@ -67,11 +67,13 @@ struct Frame {
   std::uint64_t ticks_run = 0; ///< how many ticks have run
   std::uint64_t missed = 0;    ///< how many deadlines were skipped
   LoopSettings settings;       ///< with which this frame was made
-  /// How often the shape became the rest shape: a commit, or a change of settings, which ends a
-  /// stroke. One in this frame comes after its fields.
+  /// How often somebody made permanent what the hands had shaped, by a commit or by letting go, and
+  /// how often somebody undid a step: as LoopStats counts them.
   std::uint64_t commits = 0;
-  /// How often somebody undid a step, as LoopStats counts it.
   std::uint64_t undos = 0;
+  /// How often the shape became the rest shape: at a commit, and where a stroke ended without one,
+  /// as with another setting or a contact with clay. One in this frame comes after its fields.
+  std::uint64_t rest_changes = 0;
   /// How often the fields did not lead from the previous frame's shape to this one's: at an undo, a
   /// redo or a reset, and in frames that a brush, clay, parts or a puppet shaped without fields. In
   /// the frame that counts one, a reader that applies fields must copy the whole shape.

@@ -6,21 +6,21 @@
 namespace nendo::flow {
 
 /// Follows a loop's frames, one after another. A hold begins where `held` becomes true, or where a
-/// commit or a jump of the shape is counted. Wait-free.
+/// change of the rest shape or a jump of the shape is counted. Wait-free.
 class HoldWatch {
 public:
   /// Returns true if the fingertips took hold in this frame.
   bool follow(const Frame& frame) noexcept {
-    const bool anew =
-        frame.held && (!held_ || frame.commits != commits_ || frame.shape_jumps != jumps_);
+    const bool anew = frame.held && (!held_ || frame.rest_changes != rest_changes_ ||
+                                     frame.shape_jumps != jumps_);
     held_ = frame.held;
-    commits_ = frame.commits;
+    rest_changes_ = frame.rest_changes;
     jumps_ = frame.shape_jumps;
     return anew;
   }
 
 private:
-  std::uint64_t commits_ = 0;
+  std::uint64_t rest_changes_ = 0;
   std::uint64_t jumps_ = 0;
   bool held_ = false;
 };
