@@ -83,7 +83,7 @@ public:
   flow::DeformLoop& loop() noexcept { return *loop_; }
   double tick_us() {
     const HostTime now = HostClock::now();
-    ring_.try_push(resting_hand(now, static_cast<int>(++number_ % 8)));
+    bend();
     const HostTime begin = HostClock::now();
     loop_->tick(number_, now);
     const double time = us(HostClock::now() - begin);
@@ -108,7 +108,8 @@ public:
       return 0.0;
     return tick_us();
   }
-  /// Of a glove that bends and opens a hand.
+  // No ring is full, since the loop drains both in each tick, and a second thread that runs it has
+  // many ticks between two calls.
   void bend() { ring_.try_push(resting_hand(HostClock::now(), static_cast<int>(++number_ % 8))); }
   void commit() { commands_.try_push(flow::Request::commit); }
 

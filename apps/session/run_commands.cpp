@@ -34,9 +34,14 @@ void RunCommands::obey(const Asks& asks) {
   for (const Ask& ask : asks)
     std::visit(obey_one, ask);
   if (options_.over) {
+    flow::CommandRing& from_take = options_.over->take.script->for_others();
     flow::Command command;
-    while (options_.over->take.script->for_others().try_pop(command))
+    while (from_take.try_pop(command))
       obey_one(command);
+    const std::uint64_t refused = from_take.counters().refused;
+    if (std::exchange(take_refused_, refused) != refused)
+      report_("The run was too busy, so it dropped changes of the recording that plays: " +
+              std::to_string(refused) + " so far.");
   }
   for (auto& wrist : wrists_)
     if (wrist && for_loop_.try_push(*wrist)) wrist.reset(); // if it is full, the newest waits

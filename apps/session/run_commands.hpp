@@ -98,10 +98,11 @@ private:
   std::array<std::optional<flow::WristMove>, 2> wrists_; ///< not passed on yet
   bool move_refused_ = false;                            ///< the latest, of a wrist; it was said
   bool ends_ = false;
-  std::optional<flow::LoopSettings> settings_;           ///< not passed on yet
-  std::string no_effect_;                                ///< why one of them has none; it was said
-  Rig puppet_;                                           ///< not passed on yet
-  std::optional<std::uint32_t> taken_puppet_;            ///< likewise, by the take's number
+  std::optional<flow::LoopSettings> settings_; ///< not passed on yet
+  std::string no_effect_;                      ///< why one of them has none; it was said
+  Rig puppet_;                                 ///< not passed on yet
+  std::optional<std::uint32_t> taken_puppet_;  ///< likewise, by the take's number
+  std::uint64_t take_refused_ = 0; ///< commands of the take that found no room; it was said
   std::map<std::uint32_t, std::uint32_t> taken_puppets_; ///< the loop's numbers of the take's
   std::vector<flow::Command> mask_edits_;                ///< likewise, and symmetry
   std::optional<bool> record_;                           ///< to a file, or not; not done yet

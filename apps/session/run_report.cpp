@@ -164,9 +164,12 @@ void print_holds(const RunOptions& options, const flow::LoopStats& stats) {
     print_row("wrist switch",
               fmt::format("{}; turned on {} times", flow::name_of(options.loop.switch_action),
                           stats.switch_uses[0] + stats.switch_uses[1]));
-  if (stats.commits + stats.grabs + stats.undos == 0) return;
+  if (stats.commits + stats.grabs + stats.undos + stats.refused_steps == 0) return;
   print_row("shapes kept", fmt::format("{} commits, {} grabs, {} undone, {} redone", stats.commits,
                                        stats.grabs, stats.undos, stats.redos));
+  if (stats.refused_steps > 0)
+    print_row("", fmt::format("{} undos, redos and resets were dropped, because too many waited",
+                              stats.refused_steps));
   if (stats.forgotten_steps > 0)
     print_row("undo", fmt::format("reached {} steps back; the {} before went for want of memory, "
                                   "--undo-memory makes more room",

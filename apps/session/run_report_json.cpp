@@ -179,7 +179,8 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
                {"undos", stats.undos},
                {"redos", stats.redos},
                {"undo_steps", stats.undo_steps},
-               {"forgotten_steps", stats.forgotten_steps}});
+               {"forgotten_steps", stats.forgotten_steps},
+               {"refused_steps", stats.refused_steps}});
   for (const auto& hand : hands) {
     const std::size_t slot = flow::Placement::index_of(hand.side);
     const auto glove = hand.glove->stats();

@@ -10,6 +10,8 @@
 #include <unistd.h>
 
 #include "cli/cli.hpp"
+#include "commands/commands.hpp"
+#include "session/loop_commands.hpp"
 #include "session/open_hands.hpp"
 #include "session/run_recording.hpp"
 #include "stress/load.hpp"
@@ -75,15 +77,13 @@ struct Watch {
   session::Observer* observer = nullptr;
   session::GloveStatuses gloves{};
   session::Asks asks{};
-  flow::CommandRing for_loop{64};
+  session::LoopCommands for_loop{64};
+  bool ends = false;                          ///< the observer has asked for the end
+  std::optional<flow::LoopSettings> wanted{}; ///< not passed on yet
 
-  /// Waits some milliseconds, or as long as the observer takes. Returns true if it asks for the
-  /// end.
-  bool update(flow::DeformLoop& loop, std::uint64_t& pictures) {
-    if (observer == nullptr) {
-      std::this_thread::sleep_for(milliseconds(4));
-      return false;
-    }
+  /// Waits some milliseconds, or as long as the observer takes.
+  void update(flow::DeformLoop& loop, std::uint64_t& pictures) {
+    if (observer == nullptr) return std::this_thread::sleep_for(milliseconds(4));
     ++pictures;
     const bool fresh = loop.frames().update();
     const flow::Frame& frame = loop.frames().front();
@@ -94,20 +94,30 @@ struct Watch {
                       {},
                       loop.changes().puppet(frame.puppet)},
                      asks);
-    bool ends = false;
-    std::optional<flow::LoopSettings> wanted;
-    for (const session::Ask& ask : std::exchange(asks, {})) {
-      const auto* const command = std::get_if<flow::Command>(&ask);
-      if (command == nullptr) continue; // a puppet, which this loop does not have
-      ends = ends || std::holds_alternative<flow::EndRun>(*command);
-      if (is_for_loop(*command)) for_loop.try_push(*command);
-      if (const auto* change = std::get_if<flow::ChangeSettings>(command))
-        wanted = change->settings;
-    }
-    if (!wanted && fresh && loop.frames().front().awaited)
-      wanted = loop.frames().front().awaited->settings;
-    if (wanted) static_cast<void>(loop.changes().change_settings(*wanted));
-    return ends;
+    for (const session::Ask& ask : std::exchange(asks, {}))
+      obey(ask);
+    if (const auto dropped = for_loop.dropped()) observer->report(*dropped);
+    if (!wanted && fresh && frame.awaited) wanted = frame.awaited->settings;
+    if (!wanted) return;
+    const auto changed = loop.changes().change_settings(*std::exchange(wanted, {}));
+    if (!changed) observer->report(changed.error().message);
+  }
+
+private:
+  void obey(const session::Ask& ask) {
+    const auto* const command = std::get_if<flow::Command>(&ask);
+    const auto refuse = [this](std::string_view name) {
+      observer->report(std::string(name) + ": nendo stress measures one model; use nendo run");
+    };
+    if (command == nullptr) return refuse("another puppet");
+    if (const auto* change = std::get_if<flow::ChangeSettings>(command))
+      wanted = change->settings;
+    else if (std::holds_alternative<flow::EndRun>(*command))
+      ends = true;
+    else if (is_for_loop(*command))
+      for_loop.push(*command);
+    else
+      refuse(commands::name_of(*command));
   }
 };
 
@@ -117,13 +127,13 @@ void watch(const StressOptions& options, Collector& collector, const std::atomic
   HostTime next_report = outcome.start;
   SettingsChanger changer(options.changes_a_minute);
   while (!ended && !session::is_over(options.run, outcome.start)) {
-    const bool enough = watched.update(loop, outcome.pictures);
+    watched.update(loop, outcome.pictures);
     changer.update(loop, outcome.start);
     collector.collect();
     const auto& worst = outcome.tally.worst();
     outcome.broke =
         options.break_at && !worst.empty() && worst.front().lateness > *options.break_at;
-    outcome.stopped = enough || cli::stop_requested();
+    outcome.stopped = watched.ends || cli::stop_requested();
     if (outcome.broke || outcome.stopped) return;
     if (HostClock::now() < next_report) continue;
     progress(outcome.tally, to_seconds(HostClock::now() - outcome.start));
@@ -188,8 +198,10 @@ Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const d
   if (options.changes_a_minute > 0.0) outcome->by_changes.emplace();
   flow::TickRing ring(records_kept);
   run.loop.records = &ring;
-  Watch watched{observer, session::status_of(hands)};
-  run.loop.commands = &watched.for_loop;
+  Watch watched;
+  watched.observer = observer;
+  watched.gloves = session::status_of(hands);
+  run.loop.commands = &watched.for_loop.ring();
   const auto placed = session::place_loop(run, hands, model);
   if (!placed) return placed.error();
   if (observer != nullptr) observer->loop_begins({*placed, model, hands});

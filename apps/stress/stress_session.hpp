@@ -58,8 +58,8 @@ using StressProgress = std::function<void(const TickTally& tally, double elapsed
 
 /// Measures the floor, starts the load, and runs the loop for its time, until a stop signal, or
 /// until a tick is later than `break_at`. An observer watches as it does in a run, but only
-/// commands to the loop, settings and the end are obeyed. Blocks. Errors: those of open_hands(),
-/// place_loop() and Load::start().
+/// commands to the loop, settings and the end are obeyed; it gets a report of any other. Blocks.
+/// Errors: those of open_hands(), place_loop() and Load::start().
 Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const deform::Mesh& model,
                                                   const StressProgress& progress,
                                                   session::Observer* observer = nullptr);

@@ -126,6 +126,22 @@ TEST_SUITE("exchange") {
     }
   }
 
+  TEST_CASE("undos that find too many waiting are refused and counted") {
+    Clocked loop(Mode::type1);
+    loop.stroke(0, 15);
+    loop.change(with_radius(loop.test.loop->changes().settings(), 0.3));
+    loop.bent(15);
+    const std::size_t room = loop.test.commands.capacity();
+    for (int round = 0; round < 2; ++round) {
+      for (std::size_t at = 0; at < room; ++at)
+        REQUIRE(loop.test.commands.try_push(Request::undo));
+      loop.bent(15);
+      CHECK(loop.frame().awaited); // by the first, for which nobody makes the change
+    }
+    CHECK(loop.frame().steps_due == room);
+    CHECK(loop.test.loop->stats().refused_steps == room);
+  }
+
   TEST_CASE("undo leads back over changes to the beginning, and redo forth again") {
     for (const auto& [mode, other] : {std::pair{Mode::type1, Mode::type1},
                                       {Mode::type1, Mode::type2},

@@ -266,6 +266,14 @@ TEST_SUITE("layer") {
     });
   }
 
+  TEST_CASE("what a script leaves to others and finds no room is counted") {
+    const std::vector<InputScript::Event> events(300, {{}, Command(Subdivide{})});
+    InputScript script(events, begin, 1s);
+    script.play({}, [](const InputLogEntry&) noexcept { CHECK(false); });
+    CHECK(script.for_others().size() + script.for_others().counters().refused == events.size());
+    CHECK(script.for_others().counters().refused > 0);
+  }
+
   TEST_CASE("inputs of which no loop can be made are known") {
     LoopUnderTest like(Mode::type1, {.rings_of_ball = 12});
     const HandInput left = like.inputs[0], right = like.inputs[1];

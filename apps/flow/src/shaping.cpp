@@ -58,8 +58,11 @@ void Shaping::ask(Request request) noexcept {
   if (request == Request::let_go) hold_wanted_ = false;
   if (request == Request::commit) commit_due_ = held_ || hold_wanted_;
   if (request == Request::take_hold) regrab_due_ = true;
-  if (goes_through_history(request) && steps_due_.size() < steps_due_.capacity())
+  if (!goes_through_history(request)) return;
+  if (steps_due_.size() < steps_due_.capacity())
     steps_due_.push_back(request);
+  else
+    ++refused_steps_; // many wait for a change that another thread has yet to make
 }
 
 FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats,
@@ -177,6 +180,7 @@ void Shaping::write_state(Frame& frame, LoopStats& stats) noexcept {
   forget_redo();
   stats.undo_steps = steps_to_undo();
   stats.forgotten_steps = model_->shape.forgotten_steps();
+  stats.refused_steps = refused_steps_;
   frame.commits = stats.commits;
   frame.undos = stats.undos;
   frame.rest_changes = stats.commits + strokes_ended_;

@@ -69,6 +69,7 @@ void DeformLoop::Ticker::tick(const Pacer::Due& due) noexcept {
   record_latencies(record);
   if (options_.input_log != nullptr)
     options_.input_log->tick(record.tick, record.scheduled, record.woke);
+  // The ring counts what it refuses, for its owner.
   if (options_.records != nullptr) options_.records->try_push(record);
   if (change_ != nullptr) end_change();
 }

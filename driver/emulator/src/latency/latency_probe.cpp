@@ -85,7 +85,7 @@ void read_barely(const std::stop_token& stop, int fd, SampleRing& ring) {
     if (count <= 0 || buffer[static_cast<std::size_t>(count - 1)] != 0) continue;
     GloveSample sample;
     sample.arrival = HostClock::now();
-    ring.try_push(sample);
+    ring.try_push(sample); // never full: the next record is written when this one was taken
   }
 }
 

@@ -39,7 +39,7 @@ public:
   explicit InputLog(std::size_t at_least = std::size_t{1} << 14) : ring_(at_least) {}
 
   void sample(std::uint8_t hand, const GloveSample& sample) noexcept {
-    ring_.try_push(TakenSample{hand, sample});
+    ring_.try_push(TakenSample{hand, sample}); // the ring counts what it refuses: lost()
   }
   void command(const Command& command) noexcept { ring_.try_push(command); }
   void tick(std::uint64_t number, HostTime scheduled, HostTime woke) noexcept {

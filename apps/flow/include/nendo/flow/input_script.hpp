@@ -73,7 +73,8 @@ public:
   /// Tells whether all of it has been played. Never, if it repeats. Thread-safe.
   bool has_ended() const noexcept { return ended_.load(std::memory_order_acquire); }
   /// What a loop does not obey by itself: changes of settings and puppets, and Subdivide. Whoever
-  /// runs the loop takes them from here. Asking thread.
+  /// runs the loop takes them from here, and reports how many its counters() say were refused.
+  /// Asking thread.
   CommandRing& for_others() noexcept { return for_others_; }
 
 private:
@@ -82,7 +83,7 @@ private:
     if (is_for_loop(command))
       take(InputLogEntry(command));
     else
-      for_others_.try_push(command);
+      for_others_.try_push(command); // the ring counts what it refuses
   }
   TakenSample now_played(TakenSample taken, HostClock::duration at) noexcept;
   void begin_again() noexcept;

@@ -31,7 +31,8 @@ struct TickStages {
 struct LoopOptions : PaceOptions {
   SculptorOptions sculptor;
   TickStages stages;
-  /// The ring that gets every tick's record, or refuses it if it is full. It must outlive the loop.
+  /// The ring that gets every tick's record, or refuses and counts it (counters()) if it is full.
+  /// It must outlive the loop.
   TickRing* records = nullptr;
   /// The commands, which the loop takes at the beginning of a tick. It must outlive the loop.
   CommandRing* commands = nullptr;

@@ -50,6 +50,7 @@ struct LoopStats {
   std::uint64_t changes = 0;          ///< of settings
   std::uint64_t undo_steps = 0;       ///< as many commits can be undone
   std::uint64_t forgotten_steps = 0;  ///< could not any more, for want of memory
+  std::uint64_t refused_steps = 0;    ///< undos, redos and resets that found too many waiting
   int most_links = 0;                 ///< of a tick; 0 unless the sculptor is injective
   double most_bound = 0.0;            ///< Lipschitz bound of a tick, had it been one link
   double least_determinant = 1.0;     ///< ChainReport::least_determinant of any tick

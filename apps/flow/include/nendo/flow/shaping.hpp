@@ -185,6 +185,7 @@ private:
   bool shaped_ = false;             ///< since the hands took hold, or since the last commit
   std::uint64_t strokes_ended_ = 0; ///< without a commit
   std::uint64_t shape_jumps_ = 0;   ///< Frame::shape_jumps
+  std::uint64_t refused_steps_ = 0; ///< LoopStats::refused_steps
   std::uint64_t surface_moves_ = 0; ///< Frame::surface_moves
   bool in_step_ = false;            ///< something shaped before a change is no step yet
   LoopSettings settings_;           ///< in force
