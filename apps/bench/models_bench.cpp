@@ -140,7 +140,7 @@ Figures measure(const deform::Mesh& model, bool held, unsigned repetitions) {
     const HostTime begin = HostClock::now();
     flow::FinerModel finer(loop.changes().newest_model());
     figures.make_us.push_back(us(HostClock::now() - begin));
-    loop.changes().hold_still();
+    static_cast<void>(loop.changes().hold_still());
     timed.tick_us();
     const HostTime still = HostClock::now();
     loop.changes().is_still(); // which change_model() requires

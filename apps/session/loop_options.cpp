@@ -73,11 +73,8 @@ Result<void> LoopArguments::parse(flow::LoopOptions& loop, flow::RealtimeOptions
     if (!cpus) return cpus.error();
     realtime.affinity = *std::move(cpus);
   }
-  if (!flow::parse_policy(policy, loop)) {
-    return Error{Errc::usage, "--policy " + policy +
-                                  ": use skip, catch-up:N with N from 1 to 1000, re-anchor or "
-                                  "sample"};
-  }
+  if (const auto known = flow::parse_policy(policy, loop); !known)
+    return Error{Errc::usage, "--policy " + known.error().message};
   if (spin != "on" && spin != "off" && spin != "auto")
     return Error{Errc::usage, "--spin " + spin + ": use on, off or auto"};
   // A margin costs the same whatever the rate: at 2 kHz it is a tenth of the processor and more.

@@ -40,11 +40,8 @@ flow::Placement placement_for(const std::vector<gloves::OpenHand>& open,
   return placement;
 }
 
-Error bad_radius(const std::string& text, const std::string& why) {
-  return {Errc::usage,
-          "--radius" + text + ": " + why +
-              "; use a length > 0 in the model's units, as 0.25, or on the stage, as "
-              "3cm, five with commas between (or ten, left hand first), or leave it out"};
+Error bad_radius(const std::string& why) {
+  return {Errc::usage, "--radius " + why};
 }
 
 Result<deform::Supports> supports_for(const std::optional<deform::Supports>& of_two,
@@ -141,8 +138,8 @@ Result<std::optional<deform::Supports>> parse_radius(const std::string& text,
                                                      double units_per_metre) {
   if (text.empty()) return std::optional<deform::Supports>();
   auto supports = flow::parse_finger_supports(text, units_per_metre);
-  if (!supports) return bad_radius(" " + text, "is not a length above 0, nor a list of them");
-  return supports;
+  if (!supports) return bad_radius(supports.error().message);
+  return std::optional(*std::move(supports));
 }
 
 std::uint32_t PlacedSetup::live_layers() const noexcept {

@@ -156,7 +156,7 @@ void Player::make_changes() {
 }
 
 void Player::make_model(const flow::ChangeModel& change) {
-  changes_.hold_still();
+  static_cast<void>(changes_.hold_still());
   finish_change();
   std::span<const deform::WirePlace> wire;
   if (change.source == flow::ModelSource::cut) wire = timeline_.wires[change.number];

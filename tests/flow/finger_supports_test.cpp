@@ -49,6 +49,7 @@ TEST_SUITE("finger_supports") {
     CHECK(same("0.5m,1,1m+3:2,0.125m,5", "4,1,8+3:2,1,5"));
     for (const char* bad : {"3km", "cm", "-3cm", "0cm", "10:2cm", "3 cm", "infm", "3cm+"})
       CHECK_MESSAGE(!parse_finger_supports(bad, units), bad);
+    CHECK(parse_finger_supports("3km").error().message.starts_with("3km: use a length"));
   }
 
   TEST_CASE("all radii are told on the stage, and in the model's units") {

@@ -278,13 +278,18 @@ TEST_SUITE("layer") {
     LoopUnderTest like(Mode::type1, {.rings_of_ball = 12});
     const HandInput left = like.inputs[0], right = like.inputs[1];
     const HandInput layer = test::layer_of(left, AngleSet::all());
-    const auto fits = [](const std::vector<HandInput>& inputs) { return are_usable(inputs); };
+    const auto fits = [](const std::vector<HandInput>& inputs) {
+      return static_cast<bool>(check_inputs(inputs));
+    };
     CHECK(fits({left}));
     CHECK(fits({right, left, layer, layer}));
     CHECK(fits({layer}));
     CHECK(fits({left, layer, right}));
     CHECK_FALSE(fits({}));
     CHECK_FALSE(fits({left, left}));
+    CHECK(
+        check_inputs(std::vector{right, left, left}).error().message ==
+        "input 2 of a loop: the left hand has an input before; make this a layer, or leave it out");
     CHECK_FALSE(fits({layer, left}));
     std::vector<HandInput> many{left};
     many.resize(most_inputs, layer);

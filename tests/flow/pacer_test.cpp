@@ -190,7 +190,9 @@ TEST_SUITE("pacer") {
     for (const char* text : {"", "hurry", "skip:2", "catch-up:", "catch-up:0", "catch-up:1001",
                              "catch-up:-1", "catch-up:2x", "catch-up:99999999999999", "SKIP"}) {
       PaceOptions untouched;
-      CHECK_FALSE(parse_policy(text, untouched));
+      const auto parsed = parse_policy(text, untouched);
+      REQUIRE_FALSE(parsed);
+      CHECK(parsed.error().message.starts_with(std::string(text) + ": use skip, "));
       CHECK(untouched.policy == OverrunPolicy::skip);
       CHECK(untouched.most_catch_up == PaceOptions{}.most_catch_up);
     }

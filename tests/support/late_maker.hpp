@@ -19,7 +19,7 @@ public:
     if (!finer_ && random_() % 40 == 0) begin(loop.changes().newest_model());
     if (!finer_ || (late_ > 0 && late_-- > 0)) return;
     if (!asked_) {
-      asked_ = loop.changes().hold_still();
+      asked_ = static_cast<bool>(loop.changes().hold_still());
       late_ = random_() % 8;
     } else if (loop.changes().is_still()) {
       give(loop);

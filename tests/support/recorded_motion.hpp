@@ -37,7 +37,7 @@ struct RecordedMotion {
       played.test.bend(static_cast<int>(motion.bend_counts * 0.5 * (1.0 - std::cos(turn))), woke);
       if (tick == motion.commit_at_tick) played.test.commands.try_push(flow::Request::commit);
       flow::DeformLoop& loop = *played.test.loop;
-      if (tick == motion.subdivide_at_tick) loop.changes().hold_still();
+      if (tick == motion.subdivide_at_tick) REQUIRE(loop.changes().hold_still());
       if (loop.changes().is_still()) {
         flow::FinerModel finer(loop.changes().newest_model());
         REQUIRE(loop.changes().change_model(finer));

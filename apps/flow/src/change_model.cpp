@@ -26,11 +26,14 @@ bool ChangeBroker::refill_undo() {
   return memory == nullptr || memory->refill();
 }
 
-bool ChangeBroker::hold_still() {
-  if (is_changing() || parts_->is_still) return false;
+Result<void> ChangeBroker::hold_still() {
+  if (is_changing())
+    return Error{Errc::failed, "the loop has yet to take another change; ask again later"};
+  if (parts_->is_still)
+    return Error{Errc::failed, "the loop holds still already; change or keep its model first"};
   parts_->next_change().holds_still = true;
   parts_->offer();
-  return true;
+  return {};
 }
 
 bool ChangeBroker::is_still() {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -33,12 +35,17 @@ std::string in_model_units(std::string_view text, double units_per_metre) {
 
 } // namespace
 
-std::optional<deform::Supports> parse_finger_supports(std::string_view text,
-                                                      double units_per_metre) {
-  return deform::parse_supports_by_point(in_model_units(text, units_per_metre), fingertips_of_two);
+Result<deform::Supports> parse_finger_supports(std::string_view text, double units_per_metre) {
+  auto supports =
+      deform::parse_supports_by_point(in_model_units(text, units_per_metre), fingertips_of_two);
+  if (supports) return *std::move(supports);
+  return Error{Errc::usage, std::string(text) +
+                                ": use a length > 0 in the model's units, as 0.25, or on the "
+                                "stage, as 3cm, or five with commas between (or ten, left hand "
+                                "first)"};
 }
 
-std::optional<deform::Supports> supports_of_hands(const deform::Supports& of_two, int hands) {
+Result<deform::Supports> supports_of_hands(const deform::Supports& of_two, int hands) {
   if (hands == 2) return of_two;
   deform::Supports of_one{of_two.shared, {}};
   std::vector<deform::OwnSupport> of_other;
@@ -47,7 +54,9 @@ std::optional<deform::Supports> supports_of_hands(const deform::Supports& of_two
     own.point %= fingertips_of_hand;
     (is_other ? of_other : of_one.own).push_back(own);
   }
-  if (of_other != of_one.own) return std::nullopt;
+  if (of_other != of_one.own)
+    return Error{Errc::usage, "there is one hand, and the radii of two differ; use one radius, or "
+                              "five with commas between"};
   return of_one;
 }
 

@@ -1,18 +1,25 @@
 #include <nendo/flow/hand_input.hpp>
 
 #include <algorithm>
+#include <string>
 
 #include <nendo/flow/input_script.hpp>
 
 namespace nendo::flow {
 
-bool are_usable(std::span<const HandInput> inputs) noexcept {
+Result<void> check_inputs(std::span<const HandInput> inputs) {
+  if (inputs.empty() || inputs.size() > most_inputs)
+    return Error{Errc::bad_input, std::to_string(inputs.size()) + " inputs of a loop: use 1 to " +
+                                      std::to_string(most_inputs)};
   for (auto input = inputs.begin(); input != inputs.end(); ++input)
     if (!input->layer && std::any_of(inputs.begin(), input, [&](const HandInput& before) {
           return before.side == input->side;
         }))
-      return false;
-  return !inputs.empty() && inputs.size() <= most_inputs;
+      return Error{Errc::bad_input,
+                   "input " + std::to_string(input - inputs.begin()) + " of a loop: the " +
+                       std::string(name_of(input->side)) +
+                       " hand has an input before; make this a layer, or leave it out"};
+  return {};
 }
 
 std::size_t count_hands(std::span<const HandInput> inputs) noexcept {

@@ -8,7 +8,7 @@ namespace nendo::flow {
 
 HandInputs::HandInputs(std::vector<HandInput> inputs, const Placement& placement,
                        const LoopSettings& settings) {
-  assert(are_usable(inputs));
+  assert(check_inputs(inputs));
   for (HandInput& input : inputs) {
     const bool closes = closes_pinches(input.filter, settings.mode);
     hands_.emplace_back(std::move(input), placement, closes);

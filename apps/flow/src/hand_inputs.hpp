@@ -21,7 +21,7 @@ class HandInputs {
 public:
   using Hands = puppet::RigPlayer::Hands;
 
-  /// `inputs` must be usable (are_usable()).
+  /// `inputs` must pass check_inputs().
   HandInputs(std::vector<HandInput> inputs, const Placement& placement,
              const LoopSettings& settings);
 

@@ -24,10 +24,12 @@ std::string describe_policy(const PaceOptions& options) {
   return name;
 }
 
-bool parse_policy(std::string_view text, PaceOptions& options) noexcept {
+Result<void> parse_policy(std::string_view text, PaceOptions& options) {
+  const Error unknown{Errc::usage, std::string(text) + ": use skip, catch-up:N with N from 1 to " +
+                                       std::to_string(most_burst) + ", re-anchor or sample"};
   const std::size_t colon = text.find(':');
   const auto name = std::find(policy_names.begin(), policy_names.end(), text.substr(0, colon));
-  if (name == policy_names.end()) return false;
+  if (name == policy_names.end()) return unknown;
   const auto policy = static_cast<OverrunPolicy>(name - policy_names.begin());
   if (colon != std::string_view::npos) {
     const std::string_view digits = text.substr(colon + 1);
@@ -36,11 +38,11 @@ bool parse_policy(std::string_view text, PaceOptions& options) noexcept {
     const auto [stopped, error] = std::from_chars(digits.data(), end, most);
     if (policy != OverrunPolicy::catch_up || error != std::errc{} || stopped != end || most < 1 ||
         most > most_burst)
-      return false;
+      return unknown;
     options.most_catch_up = most;
   }
   options.policy = policy;
-  return true;
+  return {};
 }
 
 Pacer::Pacer(const PaceOptions& options, HostTime start, EventCount* event_count) noexcept

@@ -258,7 +258,7 @@ bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
   hand.wearer.of(hand.first.side) = own;
   hand.wearer.of(opposite(hand.first.side)) = other;
   hands.push_back(hand);
-  if (flow::are_usable(hands)) return true;
+  if (flow::check_inputs(hands)) return true;
   hands.pop_back();
   return false;
 }

@@ -93,9 +93,9 @@ public:
   // of what they do. Make a FinerModel of newest_model(); ask the loop to hold still; when it does,
   // finish the model and hand it over. No log may begin or end meanwhile.
 
-  /// Lets the hands stop shaping at the end of the next tick (Shaping::hold_still()). Returns
-  /// false, and does nothing, if the loop has yet to take a change or holds still already.
-  bool hold_still();
+  /// Lets the hands stop shaping at the end of the next tick (Shaping::hold_still()). Error:
+  /// failed, if the loop has yet to take a change or holds still already; then nothing changes.
+  Result<void> hold_still();
   /// Tells whether the loop has done so, and waits for a model.
   bool is_still();
   /// Finishes the model, which must be made of newest_model(), for the loop, which must be still.

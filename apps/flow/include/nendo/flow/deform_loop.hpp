@@ -21,7 +21,7 @@ namespace nendo::flow {
 /// waits for the other.
 class DeformLoop {
 public:
-  /// `hands` must be usable (are_usable()). Copies the model and allocates all that a tick
+  /// `hands` must pass check_inputs(). Copies the model and allocates all that a tick
   /// needs. The hands grab the model at their first samples. With SwitchAction::grab they hold it
   /// only while a switch is on. With `first`, the shape is at first that one, in the blocks of the
   /// model's layout.

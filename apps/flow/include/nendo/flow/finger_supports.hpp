@@ -3,24 +3,23 @@
 // loop's supports, for its own fingertips.
 
 #include <array>
-#include <optional>
 #include <string>
 #include <string_view>
 
+#include <nendo/base/result.hpp>
 #include <nendo/deform/supports.hpp>
 
 namespace nendo::flow {
 
 /// Parses one radius for all fingertips, or several with commas between (see
 /// deform::parse_supports_by_point): in model units, or on the stage, with a unit: "3cm". Returns
-/// the supports of both hands' ten fingertips, left hand first, in model units, or nothing if the
-/// text is not that.
-std::optional<deform::Supports> parse_finger_supports(std::string_view text,
-                                                      double units_per_metre = 1.0);
+/// the supports of both hands' ten fingertips, left hand first, in model units. Error: usage,
+/// naming the text and what can be used.
+Result<deform::Supports> parse_finger_supports(std::string_view text, double units_per_metre = 1.0);
 
-/// The supports of a loop with that many hands, 1 or 2, of those of two hands. Returns nothing if
-/// there is one hand, and the two hands differ.
-std::optional<deform::Supports> supports_of_hands(const deform::Supports& of_two, int hands);
+/// Returns the supports of a loop with that many hands, 1 or 2, from those of two hands. Error:
+/// usage, if there is one hand, and the two hands differ.
+Result<deform::Supports> supports_of_hands(const deform::Supports& of_two, int hands);
 
 /// The supports of so many fingertips and of their mirror images, which follow them, of those of
 /// the fingertips alone; and the other way round.

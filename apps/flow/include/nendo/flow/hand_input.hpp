@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include <nendo/base/result.hpp>
 #include <nendo/driver/sample.hpp>
 #include <nendo/flow/layer.hpp>
 #include <nendo/flow/wrist_path.hpp>
@@ -42,9 +43,9 @@ struct HandInput {
   }
 };
 
-/// Tells whether a loop can be made of these: one to most_inputs, and of each side at most one that
-/// is no layer, before its layers.
-bool are_usable(std::span<const HandInput> inputs) noexcept;
+/// Checks that a loop can be made of these: one to most_inputs, and of each side at most one that
+/// is no layer, before its layers. Error: bad_input, naming the input that is wrong.
+Result<void> check_inputs(std::span<const HandInput> inputs);
 /// Returns how many hands shape: one or two.
 std::size_t count_hands(std::span<const HandInput> inputs) noexcept;
 

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include <nendo/base/event_count.hpp>
+#include <nendo/base/result.hpp>
 #include <nendo/flow/spin_margin.hpp>
 #include <nendo/flow/tick_grid.hpp>
 
@@ -35,8 +36,9 @@ struct PaceOptions {
 
 /// Returns "skip", "catch-up" or "catch-up:N" with N from 1 to 1000, "re-anchor", or "sample".
 std::string describe_policy(const PaceOptions& options);
-/// Sets policy and most_catch_up by such a text. Returns false if the text is none of these.
-bool parse_policy(std::string_view text, PaceOptions& options) noexcept;
+/// Sets policy and most_catch_up by such a text. Error: usage, naming the text and these; then
+/// nothing changes.
+Result<void> parse_policy(std::string_view text, PaceOptions& options);
 
 /// Loop's thread. It does not allocate or lock, and its only system call is the wait.
 class Pacer {
