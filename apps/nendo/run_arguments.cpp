@@ -13,6 +13,7 @@
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/refinement.hpp>
 #include <nendo/flow/compatible.hpp>
+#include <nendo/flow/setting.hpp>
 #include <nendo/flow/tick_grid.hpp>
 #include <nendo/puppet/puppet.hpp>
 #include <nendo/sculpting/placing.hpp>
@@ -151,11 +152,10 @@ Result<void> set_size(RunArguments& options) {
     size_m = *size_cm / 100.0;
     cli::note("--size " + options.size + ": is in centimetres, for it has no unit");
   }
-  constexpr double least_m = 0.01;
-  constexpr double most_m = 10.0;
-  if (!size_m || !(*size_m >= least_m && *size_m <= most_m))
+  if (!size_m || !sculpting::model_size_range_m.has(*size_m))
     return Error{Errc::usage, "--size " + options.size + ": use " + std::string(cli::length_words) +
-                                  ", from 1cm to 10m; a bare number is centimetres"};
+                                  ", " + flow::in_words(sculpting::model_size_range_m, "m") +
+                                  "; a bare number is centimetres"};
   run.model_size_m = *size_m;
   return {};
 }

@@ -6,6 +6,7 @@
 #include <nendo/deform/midpoint_chain.hpp>
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/flow/rig_setup.hpp>
+#include <nendo/flow/setting.hpp>
 #include <nendo/hand/held_points.hpp>
 #include <nendo/puppet/puppet_edit.hpp>
 #include <nendo/sculpting/placing.hpp>
@@ -49,8 +50,18 @@ Result<deform::Supports> supports_for(const std::optional<deform::Supports>& of_
                                       const deform::Mesh& model) {
   if (!of_two) return sculpting::usual_supports(model, mode);
   auto supports = flow::supports_of_hands(*of_two, static_cast<int>(hands));
-  if (!supports) return bad_radius("", "is for two hands, and there is one");
-  return *std::move(supports);
+  if (!supports) return bad_radius(supports.error().message);
+  return supports;
+}
+
+/// The limits are on the stage, where the model's size is known.
+Result<void> check_radii(const RunOptions& options, const deform::Supports& supports,
+                         double units_per_metre) {
+  flow::LoopSettings settings;
+  settings.radius_m = flow::radii_on_stage(supports, units_per_metre);
+  if (const auto fine = flow::check_ranges(settings); !fine)
+    return bad_radius(options.radius + ": " + fine.error().message);
+  return {};
 }
 
 /// Puts the puppet into the options. Error: bad_input, naming its file.
@@ -159,6 +170,8 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
   if (!of_two) return of_two.error();
   auto supports = supports_for(*of_two, inputs.size(), options.loop.sculptor.mode, model);
   if (!supports) return supports.error();
+  if (const auto fine = check_radii(options, *supports, placement.units_per_metre); !fine)
+    return fine.error();
   sculpting::set_supports(*std::move(supports), loop_options.sculptor);
 
   const auto fine =

@@ -75,8 +75,6 @@ std::optional<flow::Command> settings_in(Words words) noexcept {
     settings.hold = *hold;
   }
   if (!settings.are_usable()) return std::nullopt;
-  for (const double radius_m : settings.radius_m)
-    if (radius_m < min_radius_m || radius_m > max_radius_m) return std::nullopt;
   settings.mode = *mode;
   settings.kernel = *kernel;
   settings.injective = folds == "injective";

@@ -11,10 +11,6 @@
 
 namespace nendo::web {
 
-/// The range of radii that a client may ask for. It is larger than what fingers can shape with, and
-/// a loop can begin with each of these radii.
-inline constexpr double min_radius_m = 0.001;
-inline constexpr double max_radius_m = 10.0;
 /// How far the length of a quaternion may be from 1. Six decimals for each part are precise enough.
 inline constexpr double max_norm_error = 0.01;
 

@@ -73,8 +73,7 @@ void check_words(std::string_view text) {
   if (const auto* mask = std::get_if<nendo::flow::SetMask>(command)) require(mask->is_usable());
   const auto* change = std::get_if<nendo::flow::ChangeSettings>(command);
   if (change == nullptr) return;
-  for (const double radius_m : change->settings.radius_m)
-    require(radius_m >= min_radius_m && radius_m <= max_radius_m);
+  require(change->settings.are_usable());
 }
 
 } // namespace

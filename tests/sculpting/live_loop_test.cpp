@@ -75,6 +75,7 @@ TEST_SUITE("live_loop") {
     CHECK_FALSE(live->frame().hands[0].present);
     CHECK(live->frame().units_per_metre == doctest::Approx(2.0 / 0.8));
     CHECK(live->settings().radius_m[0] == doctest::Approx(0.16));
+    CHECK(live->settings().filter == flow::usual_settings().filter);
   }
 
   TEST_CASE("the loop does what it is asked for, and an undo of settings leads back") {
@@ -105,6 +106,11 @@ TEST_SUITE("live_loop") {
     options.radius_m = 0.0;
     CHECK(code_of(LiveLoop::begin(ball, options)) == Errc::usage);
     options.radius_m.reset();
+    options.model_size_m = 20.0;
+    const auto large = LiveLoop::begin(ball, options);
+    REQUIRE_FALSE(large);
+    CHECK(large.error().message == "model_size_m: use 0.01 to 10 m");
+    options.model_size_m.reset();
     options.pace.rate_hz = 0.0;
     CHECK(code_of(LiveLoop::begin(ball, options)) == Errc::usage);
     options.pace.rate_hz = 90.0;

@@ -1,5 +1,7 @@
 #include "session/place_loop.hpp"
 
+#include <string>
+
 #include <doctest/doctest.h>
 
 #include "session/open_hands.hpp"
@@ -12,6 +14,27 @@ using namespace nendo::gloves;
 using namespace nendo::session;
 
 TEST_SUITE("place_loop") {
+  TEST_CASE("a radius is refused where it is out of range on the stage") {
+    const auto mesh = test::sphere(12, 24, 1.0); // 0.8 m on the stage
+    RunOptions options;
+    options.right = "sim";
+    EventCount event_count;
+    const auto opened = open_hands(options, mesh, event_count);
+    REQUIRE(opened);
+    for (const char* radius : {"1e10", "1e-10", "1e-10m"}) {
+      CAPTURE(radius);
+      options.radius = radius;
+      const auto placed = place_loop(options, opened->hands, mesh);
+      REQUIRE_FALSE(placed);
+      CHECK(placed.error().message ==
+            "--radius " + options.radius + ": radius_m: use 1e-09 to 1e+09 m");
+    }
+    options.radius = "1,1,1,1,1,2,2,2,2,2";
+    const auto placed = place_loop(options, opened->hands, mesh);
+    REQUIRE_FALSE(placed);
+    CHECK(placed.error().message.find("there is one hand") != std::string::npos);
+  }
+
   TEST_CASE("a loop has the calibration and the size of the glove that is there now") {
     const auto mesh = test::sphere(12, 24, 1.0);
     RunOptions options;

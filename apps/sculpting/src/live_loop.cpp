@@ -8,6 +8,7 @@
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/undo_memory.hpp>
+#include <nendo/flow/setting.hpp>
 #include <nendo/recording/replay_driver.hpp>
 #include <nendo/sculpting/loop_thread.hpp>
 #include <nendo/sculpting/placing.hpp>
@@ -53,19 +54,18 @@ struct LiveLoop::Parts {
 namespace {
 
 Result<void> check(const LiveOptions& options) {
-  const auto is_length = [](const std::optional<double>& length_m) {
-    constexpr double least_m = 1e-6;
-    constexpr double most_m = 1e6;
-    return !length_m || (*length_m >= least_m && *length_m <= most_m);
+  constexpr flow::Range rate_hz{flow::TickGrid::least_rate_hz, flow::TickGrid::most_rate_hz};
+  const flow::FingersSetting& radius = flow::setting::radius;
+  const auto check_one = [](std::string_view name, std::optional<double> value, flow::Range range,
+                            std::string_view unit) -> Result<void> {
+    if (!value || range.has(*value)) return {};
+    return Error{Errc::usage, std::string(name) + ": use " + flow::in_words(range, unit)};
   };
-  if (!is_length(options.model_size_m))
-    return Error{Errc::usage, "model_size_m: use a length > 0 in metres"};
-  if (!is_length(options.radius_m))
-    return Error{Errc::usage, "radius_m: use a length > 0 in metres"};
-  const double rate_hz = options.pace.rate_hz;
-  if (!(rate_hz >= flow::TickGrid::least_rate_hz && rate_hz <= flow::TickGrid::most_rate_hz))
-    return Error{Errc::usage, "pace.rate_hz: use 1 to 10000"};
-  return {};
+  if (auto fine = check_one("model_size_m", options.model_size_m, model_size_range_m, "m"); !fine)
+    return fine;
+  if (auto fine = check_one(radius.name, options.radius_m, radius.range, radius.unit); !fine)
+    return fine;
+  return check_one("pace.rate_hz", options.pace.rate_hz, rate_hz, "Hz");
 }
 
 } // namespace

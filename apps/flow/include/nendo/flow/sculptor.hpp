@@ -48,8 +48,10 @@ inline constexpr double fingertip_merge_fraction = 0.05;
 struct SculptorOptions {
   Mode mode = Mode::type1;
   Hold hold = Hold::fingertips;
-  double piece_length = 0.05; ///< of a cut of type 2, in model units
-  /// But for its brushes.
+  /// Of a cut of type 2, in model units: sculpting::set_supports() chooses it by the radii, as the
+  /// default suits no model.
+  double piece_length = 0.05;
+  /// But for its brushes. Its radii are in model units: sculpting::usual_supports().
   deform::DeformerOptions deformer{.csrbf = {.merge_fraction = fingertip_merge_fraction}};
   /// Of each finger of each hand, thumb to little finger, in type 2; a puppet's points pull.
   std::array<deform::Brush, 5> brushes{};

@@ -19,6 +19,7 @@
 #include <nendo/driver/open_glove.hpp>
 #include <nendo/flow/command.hpp>
 #include <nendo/flow/frame.hpp>
+#include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/loop_stats.hpp>
 #include <nendo/flow/pacer.hpp>
 #include <nendo/flow/realtime.hpp>
@@ -33,15 +34,17 @@ struct LiveOptions {
   std::string left, right;
   CalibrationOptions calibration{}; ///< whose hands wear them
   flow::Mode mode = flow::Mode::type1;
-  /// The longest side of the model on the stage, > 0. Nothing: usual_size_m().
+  /// The longest side of the model on the stage, within model_size_range_m. Nothing:
+  /// usual_size_m().
   std::optional<double> model_size_m{};
-  /// How far a fingertip shapes, on the stage, > 0. Nothing: usual_supports().
+  /// How far a fingertip shapes, on the stage, within flow::setting::radius. Nothing:
+  /// usual_supports().
   std::optional<double> radius_m{};
-  flow::PaceOptions pace{};         ///< 90 Hz
-  flow::RealtimeOptions realtime{}; ///< of the loop's thread
-  hand::FilterOptions filter{};
-  std::optional<std::size_t> undo_bytes{}; ///< nothing: deform::half_of_memory()
-  driver::GloveContext context{};          ///< of driver::open_glove()
+  flow::PaceOptions pace{};                                   ///< 90 Hz
+  flow::RealtimeOptions realtime{};                           ///< of the loop's thread
+  hand::FilterOptions filter = flow::usual_settings().filter; ///< off, but pinches are closed
+  std::optional<std::size_t> undo_bytes{};                    ///< nothing: deform::half_of_memory()
+  driver::GloveContext context{};                             ///< of driver::open_glove()
 };
 
 /// Owns the gloves, the loop and its thread. Asking thread: whichever uses it, one at a time.

@@ -11,8 +11,12 @@
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/supports.hpp>
 #include <nendo/flow/deform_loop.hpp>
+#include <nendo/flow/setting_kinds.hpp>
 
 namespace nendo::sculpting {
+
+/// The longest side that a model may have on the stage, in metres.
+inline constexpr flow::Range model_size_range_m{0.01, 10.0};
 
 /// Returns the longest side of the model on the stage in metres. Hands hold a statue at the
 /// fingertips and clay in the palms, and they can take a part.
