@@ -71,7 +71,6 @@ struct ClayReport {
   double volume_change = 0.0; ///< relative to that when the bodies took hold; 0 if none is kept
 };
 
-/// A deformer belongs to one thread at a time.
 class ClayDeformer {
 public:
   /// Allocates. `triangles` are the vertices of all triangles, three each; without any, or where

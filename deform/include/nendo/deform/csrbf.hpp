@@ -67,8 +67,7 @@ struct SolverEffort {
 
 /// Factorises once for a set of start points, and then solves for any number of displacements. Up
 /// to `lean_size` points, build() and solve() do not allocate, lock or call the system once they
-/// have been called with as many points and supports and with a field of that size. A solver
-/// belongs to one thread at a time.
+/// have been called with as many points and supports and with a field of that size.
 class CsrbfSolver {
 public:
   /// So that two hands and most puppets fit. Up to here a dense factor costs less than finding out

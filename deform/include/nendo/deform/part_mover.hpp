@@ -18,7 +18,7 @@
 namespace nendo::deform {
 
 /// The parts of a mesh: two vertices are of one part if edges lead from the one to the other. They
-/// are numbered from 0 by their first vertices. It does not change, so any thread may use it.
+/// are numbered from 0 by their first vertices. It does not change: thread-safe.
 class ModelParts {
 public:
   /// Allocates. The layout is the mesh's.
@@ -67,7 +67,7 @@ struct PartMoverOptions {
 /// A hand that closes takes the part whose nearest vertex is nearest to its frame's origin, if that
 /// is within reach or within the part's box. The part then goes with the frame, until the hand
 /// opens. What two hands hold goes with both: the line between them leads it, and the mean of their
-/// turns about that line. A mover belongs to one thread at a time.
+/// turns about that line.
 class PartMover {
 public:
   /// Allocates. Call release() before another deformer works on `shape`, which must outlive this.

@@ -11,8 +11,7 @@
 
 namespace nendo::deform {
 
-/// Its functions do what those of Type1Deformer do, also without allocation. A deformer belongs to
-/// one thread at a time.
+/// Its functions do what those of Type1Deformer do, also without allocation.
 class SurfaceDeformer {
 public:
   /// Allocates. The field must be of the shape's layout, and `shape` must outlive the deformer.

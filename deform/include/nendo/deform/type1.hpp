@@ -21,7 +21,7 @@ struct BoundedShape;
 
 /// Shapes are in blocks, in float, and within 1e-5 of the model's diagonal of what displace() makes
 /// in double. Functions do not allocate if `out` has the layout's size and there are at most
-/// CsrbfSolver::lean_size start points. A deformer belongs to one thread at a time.
+/// CsrbfSolver::lean_size start points.
 class Type1Deformer {
 public:
   /// Allocates for the rest shape (3 by #vertices) and for `control_points` start points. With

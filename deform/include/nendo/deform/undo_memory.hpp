@@ -31,16 +31,16 @@ public:
   UndoMemory(const UndoMemory&) = delete;
   UndoMemory& operator=(const UndoMemory&) = delete;
 
-  /// Allocates blocks until `blocks_ahead` of them are free. One thread at a time may call it.
-  /// Returns false if fewer blocks are free because the bound or the machine's memory is reached.
+  /// Allocates blocks until `blocks_ahead` of them are free. Asking thread. Returns false if fewer
+  /// blocks are free because the bound or the machine's memory is reached.
   bool refill();
-  /// Returns how many bytes have been allocated. For the thread that calls refill().
+  /// Returns how many bytes have been allocated. Asking thread.
   std::size_t bytes() const noexcept { return bytes_; }
 
-  /// Takes some blocks; none, with a count of 0, if none are ready. Wait-free; for the deformer's
+  /// Takes some blocks; none, with a count of 0, if none are ready. Wait-free. Loop's
   /// thread.
   SavedChain take() noexcept;
-  /// Tells how many free blocks the deformer has itself. Wait-free; for the deformer's thread.
+  /// Tells how many free blocks the deformer has itself. Wait-free. Loop's thread.
   void tell_free(std::size_t blocks) noexcept { free_.store(blocks, std::memory_order_relaxed); }
 
 private:

@@ -44,7 +44,7 @@ public:
   /// Gives access for writing. Code that changes a block must set a new stamp for each change.
   VertexBlock* data() noexcept { return blocks_.data(); }
   void set_stamp(std::size_t block, std::uint64_t stamp) noexcept { stamps_[block] = stamp; }
-  static std::uint64_t new_stamp() noexcept; ///< wait-free, from any thread
+  static std::uint64_t new_stamp() noexcept; ///< wait-free, thread-safe
 
   /// Copies the block of `other` if its stamp differs. Both shapes must have that block.
   void follow(const BlockShape& other, std::size_t block) noexcept {
@@ -72,7 +72,7 @@ inline Eigen::Vector3f vertex_at(const BlockShape& shape, std::size_t place) noe
 /// Where each vertex of a mesh stands in the blocks, and what the numbers there mean: vertex =
 /// origin + unit * coordinate. The origin is the middle of the model and the unit a power of two of
 /// about half its size, so that float is precise enough for models of any size and place. A layout
-/// does not change, so any thread may use it.
+/// does not change: thread-safe.
 class BlockLayout {
 public:
   /// vertices: 3 by #vertices, kept as the original. Allocates.

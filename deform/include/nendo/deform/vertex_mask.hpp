@@ -13,7 +13,7 @@
 
 namespace nendo::deform {
 
-/// It does not change, so any thread may use it.
+/// It does not change: thread-safe.
 class VertexMask {
 public:
   /// A block of which some vertices are not free.

@@ -14,7 +14,7 @@ namespace nendo::deform {
 
 /// Numbers are places in block order (BlockLayout::order()). Vertices that are at the same place in
 /// the model, as along the seams of a texture, share one ring, so that what is made of rings moves
-/// them alike. Rings do not change, so any thread may use them.
+/// them alike. Rings do not change: thread-safe.
 class VertexRings {
 public:
   /// The layout must be the mesh's. Allocates.

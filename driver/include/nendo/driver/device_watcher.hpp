@@ -17,7 +17,7 @@ struct DeviceEvent {
 };
 
 /// Has no thread of its own: next() waits for the system's events. No event is lost between two
-/// calls.
+/// calls. Asking thread, but for stop().
 class DeviceWatcher {
 public:
   /// Lists what is there and begins to watch. Error: failed (the system allows no more watches).
@@ -36,9 +36,9 @@ public:
   virtual bool sees_usb() const noexcept = 0;
   /// Waits for the next event and returns it; returns nullopt after `timeout`, after stop(), and
   /// when a signal arrived. A device is announced when its node and links are made, or 2 s after it
-  /// was seen. At most one thread may wait.
+  /// was seen.
   virtual std::optional<DeviceEvent> next(std::chrono::milliseconds timeout) = 0;
-  /// Ends a next() that waits, and all later ones. Any thread may call it.
+  /// Ends a next() that waits, and all later ones. Thread-safe.
   virtual void stop() noexcept = 0;
 };
 

@@ -78,6 +78,7 @@ struct GloveStats {
   bool tells_missed = false;      ///< its records let `missed` be counted
 };
 
+/// Asking thread, but for the functions that are thread-safe.
 class Glove {
 public:
   Glove() = default;
@@ -86,7 +87,7 @@ public:
   virtual ~Glove() = default; ///< stops the stream if it runs; may block for a second
 
   /// What was learnt when it was opened. Constant, also where another glove was plugged in
-  /// meanwhile: samples tell their hand and sensors themselves. Any thread.
+  /// meanwhile: samples tell their hand and sensors themselves. Thread-safe.
   virtual const GloveInfo& info() const noexcept = 0;
   /// Starts the reader thread, which is the only producer of `ring`; the ring must outlive stop().
   /// After stop() it may be started again. May block for two seconds. Errors: no_device (it no
@@ -94,16 +95,16 @@ public:
   virtual Result<void> start(SampleRing& ring) = 0;
   /// Ends the stream and joins the reader thread. Idempotent; may block for a second.
   virtual void stop() noexcept = 0;
-  /// Any thread, wait-free.
+  /// Thread-safe, wait-free.
   virtual GloveStats stats() const noexcept = 0;
   /// Returns whether the glove has sent all that it ever will since start(), as a recording has at
   /// its end; all of it that found room is in the ring then. A device may always come back, and so
-  /// never ends. Any thread, wait-free.
+  /// never ends. Thread-safe, wait-free.
   virtual bool has_ended() const noexcept { return false; }
   /// What the glove is to show from now on; the latest counts, and it is shown again after a
   /// reconnect. The reader thread sends it: within 0.2 s, without losing a record of gloves that
-  /// take commands while they stream; a CyberGlove's stream pauses for it. Any thread, does not
-  /// block.
+  /// take commands while they stream; a CyberGlove's stream pauses for it. Thread-safe, does
+  /// not block.
   virtual void set_feedback(const Feedback& feedback) noexcept = 0;
 };
 

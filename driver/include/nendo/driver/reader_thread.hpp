@@ -16,6 +16,7 @@
 
 namespace nendo::driver {
 
+/// Asking thread, but for wait_until(), which the reader calls.
 class ReaderThread {
 public:
   /// Runs `read` until it returns, which it does soon after `stop` was asked for. `source` names

@@ -157,7 +157,7 @@ public:
     return taken;
   }
 
-  // Consumer only, and what any thread may ask: SpscRing's.
+  // SpscRing's: for the consumer; size() and counters() are thread-safe.
   bool try_pop(GloveSample& sample) noexcept { return ring_.try_pop(sample); }
   bool try_pop_or_pause(GloveSample& sample) noexcept { return ring_.try_pop_or_pause(sample); }
   template <class Sink>

@@ -26,7 +26,7 @@ enum class CaptureState : std::uint8_t {
   held,      ///< held() is complete
 };
 
-/// Watches samples until a pose is held. Wait-free, no allocation; for use by one thread.
+/// Watches samples until a pose is held. Wait-free, no allocation.
 class PoseCapture {
 public:
   /// These limits are for 255 counts. Other scales have them in proportion, but never so low that a

@@ -18,7 +18,7 @@ struct CountRanges {
   void widen(Sensor sensor, double counts) noexcept;
 };
 
-/// Watches samples and keeps the ranges. Wait-free, no allocation; for use by one thread.
+/// Watches samples and keeps the ranges. Wait-free, no allocation.
 class RangeCapture {
 public:
   RangeCapture() = default;

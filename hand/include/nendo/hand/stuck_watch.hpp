@@ -13,7 +13,7 @@
 namespace nendo::hand {
 
 /// Watches the samples of a glove. What it finds depends on them alone, so that a replay finds the
-/// same. Wait-free, no allocation; for use by one thread.
+/// same. Wait-free, no allocation.
 class StuckWatch {
 public:
   static constexpr double least_still_s = 3.0;       ///< before a sensor is taken to be stuck

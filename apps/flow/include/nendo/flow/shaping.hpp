@@ -52,6 +52,7 @@ struct ReadySculptor {
   std::array<ShapeRoom, 3> shape_room;
 };
 
+/// Loop's thread, or that of a player without a loop, but for prepare().
 class Shaping {
 public:
   /// Shapes that model, which must outlive this, as must all later models. Allocates all that a
@@ -184,8 +185,8 @@ private:
   bool regrab_due_ = false;         ///< Request::take_hold
   bool shaped_ = false;             ///< since the hands took hold, or since the last commit
   std::uint64_t strokes_ended_ = 0; ///< without a commit
-  std::uint64_t shape_jumps_ = 0;   ///< Frame::shape_jumps
   std::uint64_t refused_steps_ = 0; ///< LoopStats::refused_steps
+  std::uint64_t shape_jumps_ = 0;   ///< Frame::shape_jumps
   std::uint64_t surface_moves_ = 0; ///< Frame::surface_moves
   bool in_step_ = false;            ///< something shaped before a change is no step yet
   LoopSettings settings_;           ///< in force

@@ -19,10 +19,10 @@ public:
     double part = 0.0;
   };
   /// Returns where a time since the beginning lies: before it at the first pose, after the end at
-  /// the last one. A time that is not finite counts as 0. Any thread, wait-free.
+  /// the last one. A time that is not finite counts as 0. Thread-safe, wait-free.
   Place place(double time_s) const noexcept;
-  /// Returns the pose at that time. Between two poses it is a line and the shortest turn. Any
-  /// thread, wait-free.
+  /// Returns the pose at that time. Between two poses it is a line and the shortest turn.
+  /// Thread-safe, wait-free.
   Eigen::Isometry3d at(double time_s) const noexcept;
   double length_s() const noexcept { return step_s_ * static_cast<double>(poses_.size() - 1); }
 

@@ -57,7 +57,7 @@ struct ChunkDamage {
 };
 
 /// Goes through a file, or bytes in memory, from chunk to chunk. Hostile bytes cost time and memory
-/// that the file's size bounds. One thread; blocks for as long as the disk does.
+/// that the file's size bounds. Blocks for as long as the disk does.
 class ChunkReader {
 public:
   /// Opens a recording. Error: bad_input (not a regular file, not a recording, made by a newer

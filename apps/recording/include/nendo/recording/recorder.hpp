@@ -47,6 +47,7 @@ struct Recorded {
   std::vector<driver::RecordCounts> sent{}; ///< at the end, by the gloves' numbers
 };
 
+/// Asking thread, but for the functions that are thread-safe.
 class Recorder {
 public:
   /// Creates the file with the setup in it, and starts the thread. `input_log` must outlive the
@@ -62,11 +63,11 @@ public:
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Requests that what is in memory is written to a file soon. Does nothing without keep_last. Any
-  /// thread may call it. Wait-free.
+  /// Requests that what is in memory is written to a file soon. Does nothing without keep_last.
+  /// Thread-safe, wait-free.
   virtual void save_last_minute() noexcept = 0;
   /// Tells of a puppet (flow::DeformLoop::puppet()) before the loop gets it, for the recording to
-  /// have it. Any thread may call it. It takes a lock, which the loop never does.
+  /// have it. Thread-safe. It takes a lock, which the loop never does.
   virtual void add_puppet(std::uint32_t number, RecordedPuppet puppet) = 0;
   /// To be called after the loop's last tick. Writes the remaining entries and the ending, and
   /// joins the thread. Further calls do nothing and return the same. Error: failed, if anything
