@@ -50,10 +50,10 @@ void check_edges(std::span<const std::uint32_t> starts, std::span<const std::uin
       const std::uint32_t to = corners[edges.next[edge]];
       const auto count = [&](std::uint32_t begin, std::uint32_t end, bool& is_first) {
         std::uint32_t found = 0;
-        for (std::uint32_t at = edges.out_starts[begin]; at < edges.out_starts[begin + 1]; ++at)
-          if (corners[edges.next[edges.out[at]]] == end) {
+        for (const std::uint32_t other : edges.out[begin])
+          if (corners[edges.next[other]] == end) {
             ++found;
-            is_first = is_first && edges.out[at] >= edge;
+            is_first = is_first && other >= edge;
           }
         return found;
       };
@@ -69,12 +69,12 @@ void check_edges(std::span<const std::uint32_t> starts, std::span<const std::uin
 }
 
 void check_fans(std::span<const std::uint32_t> starts, const HalfEdges& edges, FaultTally& tally) {
-  for (std::uint32_t vertex = 0; vertex + 1 < edges.out_starts.size(); ++vertex) {
-    const std::uint32_t count = edges.out_starts[vertex + 1] - edges.out_starts[vertex];
+  for (std::uint32_t vertex = 0; vertex + 1 < edges.out.starts.size(); ++vertex) {
+    const std::size_t count = edges.out[vertex].size();
     if (count == 0) continue;
-    const std::uint32_t first = edges.out[edges.out_starts[vertex]];
+    const std::uint32_t first = edges.out[vertex][0];
     std::uint32_t edge = first;
-    std::uint32_t turned = 0;
+    std::size_t turned = 0;
     do {
       edge = edges.twin[edges.last[edge]];
       ++turned;

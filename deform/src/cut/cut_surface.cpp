@@ -135,8 +135,7 @@ double CutSurface::sag_of(const Piece& piece) const noexcept {
 std::uint32_t CutSurface::piece_at(std::uint32_t from, std::uint32_t to) {
   const auto found = piece_of_edge_.find(way_of(from, to));
   if (found != piece_of_edge_.end()) return found->second;
-  for (std::uint32_t at = edges_.out_starts[from]; at < edges_.out_starts[from + 1]; ++at) {
-    const std::uint32_t edge = edges_.out[at];
+  for (const std::uint32_t edge : edges_.out[from]) {
     if (mesh_.face_corners[edges_.next[edge]] != to) continue;
     const auto behind = std::upper_bound(mesh_.face_starts.begin(), mesh_.face_starts.end(), edge);
     activate(static_cast<std::uint32_t>(behind - mesh_.face_starts.begin() - 1));

@@ -4,8 +4,6 @@
 #include <numbers>
 #include <utility>
 
-#include "join/triangle_edges.hpp"
-
 namespace nendo::deform {
 namespace {
 
@@ -41,36 +39,17 @@ double triangle_fairness(const SpacePoint& a, const SpacePoint& b, const SpacePo
 }
 
 LiveSurface::LiveSurface(TriangleSurface surface)
-    : surface_(std::move(surface)), edge_at_(surface_.points.size(), no_index),
-      gone_(surface_.faces.size(), 0) {
-  twins_ = TriangleList(surface_.faces).half_edges(surface_.points.size()).twin;
-  for (std::uint32_t edge = 0; edge < twins_.size(); ++edge)
-    edge_at_[from(edge)] = edge;
-}
+    : SurfaceMesh(std::move(surface.faces), surface.points.size()), surface_(std::move(surface)) {}
 
 void LiveSurface::set_detail(std::vector<VertexDetail> detail) {
   surface_.detail = std::move(detail);
 }
 
-std::uint32_t LiveSurface::edge_between(std::uint32_t one, std::uint32_t other) const {
-  std::uint32_t found = no_index;
-  visit_edges(one, [&](std::uint32_t edge) {
-    if (to(edge) == other) found = edge;
-  });
-  return found;
-}
-
 bool LiveSurface::is_border(std::uint32_t edge) const noexcept {
-  const std::uint32_t back = twins_[edge];
+  const std::uint32_t back = twin(edge);
   if (!(surface_.looks[edge / 3] == surface_.looks[back / 3])) return true;
   if (surface_.face_texture.empty()) return false;
   return texture(edge) != texture(next(back)) || texture(next(edge)) != texture(back);
-}
-
-void LiveSurface::set(std::uint32_t edge, std::uint32_t corner, std::uint32_t texture) noexcept {
-  surface_.faces[edge / 3][edge % 3] = corner;
-  if (!surface_.face_texture.empty()) surface_.face_texture[edge / 3][edge % 3] = texture;
-  edge_at_[corner] = edge;
 }
 
 std::uint32_t LiveSurface::middle_texture(std::uint32_t edge) {
@@ -97,70 +76,31 @@ void LiveSurface::add_attributes(std::uint32_t a, std::uint32_t b) {
     surface_.detail.push_back({0.5f * (surface_.detail[a].edge + surface_.detail[b].edge), true});
 }
 
-std::uint32_t LiveSurface::add_face(std::uint32_t like) {
-  surface_.faces.push_back({});
-  surface_.looks.push_back(surface_.looks[like]);
-  if (!surface_.face_texture.empty()) surface_.face_texture.push_back({});
-  gone_.push_back(0);
-  twins_.resize(twins_.size() + 3);
-  return static_cast<std::uint32_t>(3 * (surface_.faces.size() - 1));
+/// Of the face at an edge's beginning, and of the new face at its end.
+void LiveSurface::split_look(std::uint32_t edge, std::uint32_t middle_texture) {
+  surface_.looks.push_back(surface_.looks[edge / 3]);
+  if (surface_.face_texture.empty()) return;
+  surface_.face_texture.push_back({middle_texture, texture(next(edge)), texture(last(edge))});
+  set_texture(next(edge), middle_texture);
 }
 
 SpacePoint LiveSurface::area_of(std::uint32_t face) const noexcept {
-  const Corners& corner = surface_.faces[face];
+  const Corners& corner = corners(face);
   return area_vector(point(corner[0]), point(corner[1]), point(corner[2]));
 }
 
 std::uint32_t LiveSurface::split(std::uint32_t edge) {
-  const std::uint32_t back = twins_[edge];
+  const std::uint32_t back = twin(edge);
   const std::uint32_t a = from(edge);
   const std::uint32_t b = from(back);
-  const auto middle = static_cast<std::uint32_t>(surface_.points.size());
   surface_.points.push_back(0.5 * (point(a) + point(b)));
-  edge_at_.push_back(no_index);
   add_attributes(a, b);
   const bool is_cut = is_border(edge);
   const std::uint32_t in_face = middle_texture(edge);
-  const std::uint32_t in_back = is_cut ? middle_texture(back) : in_face;
-  // Each face keeps the half at its edge's beginning; a new one gets the half at its end.
-  const auto halve = [&](std::uint32_t side, std::uint32_t middle_in_side) {
-    const std::uint32_t fresh = add_face(side / 3);
-    const std::uint32_t behind = next(side);
-    const std::uint32_t tip = last(side);
-    set(fresh, middle, middle_in_side);
-    set(next(fresh), from(behind), texture_or_none(behind));
-    set(last(fresh), from(tip), texture_or_none(tip));
-    link(next(fresh), twins_[behind]);
-    set(behind, middle, middle_in_side);
-    link(last(fresh), behind);
-    edge_at_[from(tip)] = tip;
-    return fresh;
-  };
-  const std::uint32_t to_b = halve(edge, in_face);
-  const std::uint32_t to_a = halve(back, in_back);
-  link(edge, to_a);
-  link(back, to_b);
-  edge_at_[a] = edge;
-  edge_at_[b] = back;
+  split_look(edge, in_face);
+  split_look(back, is_cut ? middle_texture(back) : in_face);
   note(EdgeOperation::Kind::split, a, b);
-  return middle;
-}
-
-bool LiveSurface::keeps_links(std::uint32_t edge) const {
-  // The ends share exactly the two tips, and no tip loses its last but two faces.
-  const std::uint32_t a = from(edge);
-  const std::uint32_t b = to(edge);
-  std::size_t common = 0;
-  visit_edges(b, [&](std::uint32_t at) {
-    if (to(at) != a && edge_between(a, to(at)) != no_index) ++common;
-  });
-  if (common != 2) return false;
-  for (const std::uint32_t tip : {from(last(edge)), from(last(twins_[edge]))}) {
-    std::size_t faces = 0;
-    visit_edges(tip, [&](std::uint32_t) { ++faces; });
-    if (faces <= 3) return false;
-  }
-  return true;
+  return SurfaceMesh::split(edge);
 }
 
 bool LiveSurface::keeps_borders(std::uint32_t edge) const {
@@ -180,7 +120,7 @@ bool LiveSurface::keeps_shape(std::uint32_t edge, const CollapseLimits& limits) 
   });
   bool keeps = true;
   visit_edges(b, [&](std::uint32_t at) {
-    if (at == next(edge) || at == twins_[edge]) return; // these two faces go
+    if (at == next(edge) || at == twin(edge)) return; // these two faces go
     const SpacePoint& p = point(to(at));
     const SpacePoint& q = point(from(last(at)));
     keeps = keeps && distance_between(target, p) <= longest_before;
@@ -193,10 +133,6 @@ bool LiveSurface::keeps_shape(std::uint32_t edge, const CollapseLimits& limits) 
   return keeps;
 }
 
-bool LiveSurface::can_collapse(std::uint32_t edge) const {
-  return keeps_links(edge) && keeps_borders(edge);
-}
-
 bool LiveSurface::collapse(std::uint32_t edge, const CollapseLimits& limits) {
   if (!can_collapse(edge) || !keeps_shape(edge, limits)) return false;
   collapse_now(edge);
@@ -204,37 +140,28 @@ bool LiveSurface::collapse(std::uint32_t edge, const CollapseLimits& limits) {
 }
 
 void LiveSurface::collapse_now(std::uint32_t edge) {
-  const std::uint32_t back = twins_[edge];
   const std::uint32_t a = from(edge);
-  const std::uint32_t b = to(edge);
-  // Around the end, from the other side of the edge to this one; a border on the way parts them.
-  std::uint32_t texture_of_a = texture_or_none(next(back));
+  note(EdgeOperation::Kind::collapse, a, to(edge));
+  if (!surface_.face_texture.empty()) move_texture(edge);
+  if (!surface_.detail.empty()) surface_.detail[a].is_refined = true;
+  SurfaceMesh::collapse(edge);
+}
+
+/// Around the end, from the other side of the edge to this one; a border on the way parts them.
+void LiveSurface::move_texture(std::uint32_t edge) {
+  const std::uint32_t back = twin(edge);
+  std::uint32_t texture_of_a = texture(next(back));
   std::vector<std::pair<std::uint32_t, std::uint32_t>> moved;
-  for (std::uint32_t at = back; at != next(edge); at = twins_[last(at)]) {
-    if (at != back && is_border(at)) texture_of_a = texture_or_none(edge);
+  for (std::uint32_t at = back; at != next(edge); at = twin(last(at))) {
+    if (at != back && is_border(at)) texture_of_a = texture(edge);
     moved.emplace_back(at, texture_of_a);
   }
-  const std::uint32_t c = from(last(edge));
-  const std::uint32_t d = from(last(back));
   for (const auto& [out, texture] : moved)
-    if (out / 3 != edge / 3 && out / 3 != back / 3) set(out, a, texture);
-  const std::uint32_t beyond_c = twins_[next(edge)]; // from c to b before
-  const std::uint32_t beside_a = twins_[last(edge)]; // from a to c
-  const std::uint32_t beyond_d = twins_[next(back)]; // from d to a
-  const std::uint32_t beside_b = twins_[last(back)]; // from b to d before
-  link(beyond_c, beside_a);
-  link(beyond_d, beside_b);
-  gone_[edge / 3] = gone_[back / 3] = 1;
-  edge_at_[a] = beside_a;
-  edge_at_[c] = beyond_c;
-  edge_at_[d] = beyond_d;
-  edge_at_[b] = no_index;
-  if (!surface_.detail.empty()) surface_.detail[a].is_refined = true;
-  note(EdgeOperation::Kind::collapse, a, b);
+    set_texture(out, texture);
 }
 
 bool LiveSurface::makes_fairer(std::uint32_t edge) const {
-  const std::uint32_t back = twins_[edge];
+  const std::uint32_t back = twin(edge);
   const std::uint32_t a = from(edge);
   const std::uint32_t b = from(back);
   const std::uint32_t c = from(last(edge));
@@ -252,18 +179,6 @@ bool LiveSurface::makes_fairer(std::uint32_t edge) const {
          cosine(area_vector(point(c), point(d), point(b)), both) >= least_flat_cosine;
 }
 
-bool LiveSurface::can_flip(std::uint32_t edge) const {
-  const std::uint32_t back = twins_[edge];
-  const std::uint32_t c = from(last(edge));
-  const std::uint32_t d = from(last(back));
-  if (is_border(edge) || c == d) return false;
-  std::size_t at_a = 0;
-  std::size_t at_b = 0;
-  visit_edges(from(edge), [&](std::uint32_t) { ++at_a; });
-  visit_edges(from(back), [&](std::uint32_t) { ++at_b; });
-  return at_a > 3 && at_b > 3 && edge_between(c, d) == no_index;
-}
-
 bool LiveSurface::flip(std::uint32_t edge) {
   if (is_border(edge) || !makes_fairer(edge) || !can_flip(edge)) return false;
   flip_now(edge);
@@ -271,28 +186,19 @@ bool LiveSurface::flip(std::uint32_t edge) {
 }
 
 void LiveSurface::flip_now(std::uint32_t edge) {
-  const std::uint32_t back = twins_[edge];
-  const std::uint32_t a = from(edge);
-  const std::uint32_t b = from(back);
-  const std::uint32_t c = from(last(edge));
-  const std::uint32_t d = from(last(back));
-  const std::array<std::uint32_t, 4> beyond{twins_[next(edge)], twins_[last(edge)],
-                                            twins_[next(back)], twins_[last(back)]};
-  const std::uint32_t at_c = texture_or_none(last(edge));
-  const std::uint32_t at_d = texture_or_none(last(back));
-  const std::uint32_t of_a = texture_or_none(edge);
-  const std::uint32_t of_b = texture_or_none(next(edge));
-  set(edge, d, at_d);
-  set(next(edge), c, at_c);
-  set(last(edge), a, of_a);
-  set(back, c, at_c);
-  set(next(back), d, at_d);
-  set(last(back), b, of_b);
-  link(next(edge), beyond[1]); // from c to a
-  link(last(edge), beyond[2]); // from a to d
-  link(next(back), beyond[3]); // from d to b
-  link(last(back), beyond[0]); // from b to c
-  note(EdgeOperation::Kind::flip, a, b);
+  const std::uint32_t back = twin(edge);
+  note(EdgeOperation::Kind::flip, from(edge), from(back));
+  if (!surface_.face_texture.empty()) {
+    const std::uint32_t at_c = texture(last(edge));
+    const std::uint32_t at_d = texture(last(back));
+    set_texture(last(edge), texture(edge));
+    set_texture(last(back), texture(next(edge)));
+    set_texture(edge, at_d);
+    set_texture(next(edge), at_c);
+    set_texture(back, at_c);
+    set_texture(next(back), at_d);
+  }
+  SurfaceMesh::flip(edge);
 }
 
 bool LiveSurface::repeat(const EdgeOperation& operation) {
@@ -318,29 +224,11 @@ bool LiveSurface::repeat(const EdgeOperation& operation) {
 }
 
 TriangleSurface LiveSurface::take(std::vector<std::uint32_t>* numbers) {
-  std::vector<std::uint32_t> renumbered(surface_.points.size(), no_index);
-  TriangleSurface kept;
-  for (std::uint32_t at = 0; at < surface_.points.size(); ++at) {
-    if (edge_at_[at] == no_index) continue;
-    renumbered[at] = static_cast<std::uint32_t>(kept.points.size());
-    kept.points.push_back(surface_.points[at]);
-    if (!surface_.colours.empty()) kept.colours.push_back(surface_.colours[at]);
-    if (!surface_.rest.empty()) kept.rest.push_back(surface_.rest[at]);
-    if (!surface_.detail.empty()) kept.detail.push_back(surface_.detail[at]);
-  }
-  for (std::uint32_t face = 0; face < surface_.faces.size(); ++face) {
-    if (gone_[face]) continue;
-    Corners corners = surface_.faces[face];
-    for (std::uint32_t& corner : corners)
-      corner = renumbered[corner];
-    kept.faces.push_back(corners);
-    kept.looks.push_back(surface_.looks[face]);
-    if (!surface_.face_texture.empty()) kept.face_texture.push_back(surface_.face_texture[face]);
-  }
-  kept.texture_points = std::move(surface_.texture_points);
-  if (numbers != nullptr) *numbers = std::move(renumbered);
-  *this = LiveSurface(TriangleSurface{});
-  return kept;
+  Renumbering made;
+  surface_.faces = SurfaceMesh::take(made);
+  surface_.renumber_columns(made);
+  if (numbers != nullptr) *numbers = std::move(made.points);
+  return std::exchange(surface_, {});
 }
 
 } // namespace nendo::deform

@@ -10,6 +10,7 @@
 #include <nendo/deform/refinement.hpp>
 
 #include "join/triangle_surface.hpp"
+#include "mesh/surface_mesh.hpp"
 
 namespace nendo::deform {
 
@@ -19,50 +20,31 @@ struct CollapseLimits {
   double least_cosine = 0.5; ///< of the angle by which a face's normal turns
 };
 
-class LiveSurface {
+class LiveSurface : private SurfaceMesh {
 public:
   /// The surface must be closed and two-manifold (closed_manifold.hpp). Allocates.
   explicit LiveSurface(TriangleSurface surface);
 
-  // Edge 3 f + k goes from corner k of face f to its next corner; its twin runs back.
-  static std::uint32_t next(std::uint32_t edge) noexcept {
-    return edge % 3 == 2 ? edge - 2 : edge + 1;
-  }
-  static std::uint32_t last(std::uint32_t edge) noexcept {
-    return edge % 3 == 0 ? edge + 2 : edge - 1;
-  }
-  std::uint32_t from(std::uint32_t edge) const noexcept {
-    return surface_.faces[edge / 3][edge % 3];
-  }
-  std::uint32_t to(std::uint32_t edge) const noexcept { return from(next(edge)); }
-  std::uint32_t twin(std::uint32_t edge) const noexcept { return twins_[edge]; }
+  using SurfaceMesh::edge_between;
+  using SurfaceMesh::face_count;
+  using SurfaceMesh::from;
+  using SurfaceMesh::has_face;
+  using SurfaceMesh::has_point;
+  using SurfaceMesh::last;
+  using SurfaceMesh::next;
+  using SurfaceMesh::point_count;
+  using SurfaceMesh::to;
+  using SurfaceMesh::twin;
+  using SurfaceMesh::visit_edges;
 
-  /// The points, those that are gone as well.
-  std::size_t point_count() const noexcept { return surface_.points.size(); }
   const SpacePoint& point(std::uint32_t number) const noexcept { return surface_.points[number]; }
   void move(std::uint32_t number, const SpacePoint& to) noexcept { surface_.points[number] = to; }
   /// What refining must know of each point; none at all, if it was not given.
   const std::vector<VertexDetail>& detail() const noexcept { return surface_.detail; }
   void set_detail(std::vector<VertexDetail> detail);
-  bool has_point(std::uint32_t number) const noexcept { return edge_at_[number] != no_index; }
-  bool has_face(std::uint32_t face) const noexcept { return !gone_[face]; }
-  std::size_t face_count() const noexcept { return surface_.faces.size(); }
   double edge_length(std::uint32_t edge) const noexcept {
     return distance_between(point(from(edge)), point(to(edge)));
   }
-  /// Calls visit(edge) for the edges that begin at a point, one for each neighbour.
-  template <class Visit>
-  void visit_edges(std::uint32_t number, const Visit& visit) const {
-    const std::uint32_t first = edge_at_[number];
-    std::uint32_t edge = first;
-    do {
-      const std::uint32_t after = twins_[last(edge)];
-      visit(edge);
-      edge = after;
-    } while (edge != first);
-  }
-  /// Returns the edge from one point to another, or no_index.
-  std::uint32_t edge_between(std::uint32_t one, std::uint32_t other) const;
   /// Faces on both sides differ in material or names, or texture is cut there.
   bool is_border(std::uint32_t edge) const noexcept;
 
@@ -89,34 +71,30 @@ private:
   std::uint32_t texture(std::uint32_t edge) const noexcept {
     return surface_.face_texture[edge / 3][edge % 3];
   }
-  void set(std::uint32_t edge, std::uint32_t corner, std::uint32_t texture) noexcept;
-  void link(std::uint32_t edge, std::uint32_t twin) noexcept {
-    twins_[edge] = twin;
-    twins_[twin] = edge;
-  }
-  std::uint32_t texture_or_none(std::uint32_t edge) const noexcept {
-    return surface_.face_texture.empty() ? no_index : texture(edge);
+  void set_texture(std::uint32_t edge, std::uint32_t texture) noexcept {
+    surface_.face_texture[edge / 3][edge % 3] = texture;
   }
   std::uint32_t middle_texture(std::uint32_t edge);
-  std::uint32_t add_face(std::uint32_t like);
+  void split_look(std::uint32_t edge, std::uint32_t middle_texture);
   SpacePoint area_of(std::uint32_t face) const noexcept;
   void add_attributes(std::uint32_t a, std::uint32_t b);
   void note(EdgeOperation::Kind kind, std::uint32_t a, std::uint32_t b) {
     if (noted_ != nullptr) noted_->push_back({kind, a, b});
   }
-  bool can_collapse(std::uint32_t edge) const;
+  bool can_collapse(std::uint32_t edge) const {
+    return SurfaceMesh::can_collapse(edge) && keeps_borders(edge);
+  }
   void collapse_now(std::uint32_t edge);
+  void move_texture(std::uint32_t edge);
   bool makes_fairer(std::uint32_t edge) const;
-  bool can_flip(std::uint32_t edge) const;
+  bool can_flip(std::uint32_t edge) const {
+    return !is_border(edge) && SurfaceMesh::can_flip(edge);
+  }
   void flip_now(std::uint32_t edge);
-  bool keeps_links(std::uint32_t edge) const;
   bool keeps_borders(std::uint32_t edge) const;
   bool keeps_shape(std::uint32_t edge, const CollapseLimits& limits) const;
 
-  TriangleSurface surface_;
-  std::vector<std::uint32_t> twins_;
-  std::vector<std::uint32_t> edge_at_; ///< of each point some edge that begins there
-  std::vector<char> gone_;             ///< of each face
+  TriangleSurface surface_; ///< the columns; the mesh has the faces
   std::vector<EdgeOperation>* noted_ = nullptr;
 };
 

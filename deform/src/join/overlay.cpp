@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
-#include "join/triangle_edges.hpp"
+#include "geometry/union_find.hpp"
+#include "mesh/surface_mesh.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -27,27 +27,6 @@ double size_of(std::span<const SpacePoint> points) {
     widen(box, {point, point});
   return distance_between(box.low, box.high);
 }
-
-/// A part's pieces in patches between the crossings.
-class Patches {
-public:
-  explicit Patches(std::size_t faces) : parents_(faces) {
-    std::iota(parents_.begin(), parents_.end(), 0u);
-  }
-  std::uint32_t of(std::uint32_t face) {
-    while (parents_[face] != face)
-      face = parents_[face] = parents_[parents_[face]];
-    return face;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = of(a);
-    b = of(b);
-    parents_[std::max(a, b)] = std::min(a, b);
-  }
-
-private:
-  std::vector<std::uint32_t> parents_;
-};
 
 class OverlayMaker {
 public:
@@ -94,30 +73,30 @@ private:
   bool find_inside(std::uint32_t part) {
     const std::vector<Corners>& faces = result_.pieces[part].faces;
     const std::size_t points = parts_[part].points.size() + result_.crossings.points.size();
-    const std::vector<std::uint32_t> twins = TriangleList(faces).half_edges(points).twin;
-    Patches patches(faces.size());
-    for (std::uint32_t edge = 0; edge < twins.size(); ++edge) {
-      if (twins[edge] == no_index) return false;
-      const Corners& corners = faces[edge / 3];
-      if (edge < twins[edge] && !is_seam(part, corners[edge % 3], corners[(edge + 1) % 3]))
-        patches.unite(edge / 3, twins[edge] / 3);
+    const SurfaceMesh mesh(faces, points);
+    UnionFind patches(faces.size()); // between the crossings
+    for (std::uint32_t edge = 0; edge < 3 * mesh.face_count(); ++edge) {
+      const std::uint32_t twin = mesh.twin(edge);
+      if (twin == no_index) return false;
+      if (edge < twin && !is_seam(part, mesh.from(edge), mesh.to(edge)))
+        patches.join(edge / 3, twin / 3);
     }
     std::vector<std::pair<double, std::uint32_t>> largest(faces.size(), {-1.0, 0});
     for (std::uint32_t face = 0; face < faces.size(); ++face) {
       const Corners& corner = faces[face];
       const SpacePoint area = area_vector(place_of(part, corner[0]), place_of(part, corner[1]),
                                           place_of(part, corner[2]));
-      auto& best = largest[patches.of(face)];
+      auto& best = largest[patches.find(face)];
       if (dot(area, area) > best.first) best = {dot(area, area), face};
     }
     std::vector<char> inside(faces.size());
     for (std::uint32_t face = 0; face < faces.size(); ++face) {
-      if (patches.of(face) == face) {
+      if (patches.find(face) == face) {
         const int is_in = is_inside(middle_of(part, faces[largest[face].second]), parts_[1 - part]);
         if (is_in < 0) return false;
         inside[face] = static_cast<char>(is_in);
       } else {
-        inside[face] = inside[patches.of(face)]; // the least face of a patch comes first
+        inside[face] = inside[patches.find(face)]; // the least face of a patch comes first
       }
     }
     result_.inside[part] = std::move(inside);

@@ -2,6 +2,15 @@
 
 namespace nendo::deform {
 
+void TriangleSurface::renumber_columns(const Renumbering& numbers) {
+  renumber(points, numbers.points);
+  renumber(colours, numbers.points);
+  renumber(rest, numbers.points);
+  renumber(detail, numbers.points);
+  renumber(looks, numbers.faces);
+  renumber(face_texture, numbers.faces);
+}
+
 double volume_of(std::span<const SpacePoint> points, std::span<const Corners> faces) {
   if (points.empty()) return 0.0;
   SpacePoint middle{};

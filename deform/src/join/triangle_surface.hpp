@@ -11,6 +11,7 @@
 #include <nendo/deform/mesh.hpp>
 
 #include "join/space.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "mesh/texture_point.hpp"
 
 namespace nendo::deform {
@@ -34,6 +35,9 @@ struct TriangleSurface {
   std::vector<Corners> face_texture;        ///< of each face's corners, or none at all
   std::vector<SpacePoint> rest;     ///< where each point is before the hands, or none at all
   std::vector<VertexDetail> detail; ///< one for each point, or none at all
+
+  /// Leaves out what points and faces have that are gone, but for the faces' corners.
+  void renumber_columns(const Renumbering& numbers);
 };
 
 /// Returns the volume that closed surfaces enclose: positive if they face outwards.

@@ -7,7 +7,7 @@
 #include <nendo/deform/closed_manifold.hpp>
 
 #include "join/self_intersections.hpp"
-#include "join/triangle_edges.hpp"
+#include "mesh/surface_mesh.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -89,11 +89,11 @@ private:
 /// Edges between faces of the first and faces of the second surface.
 std::vector<SeamEdge> seam_of(const Chosen& chosen) {
   std::vector<SeamEdge> seam;
-  const std::vector<Corners>& faces = chosen.surface.faces;
-  const auto twins = TriangleList(faces).half_edges(chosen.surface.points.size()).twin;
-  for (std::uint32_t edge = 0; edge < twins.size(); ++edge)
-    if (edge < twins[edge] && chosen.face_parts[edge / 3] != chosen.face_parts[twins[edge] / 3])
-      seam.emplace_back(faces[edge / 3][edge % 3], faces[edge / 3][(edge + 1) % 3]);
+  const SurfaceMesh mesh(chosen.surface.faces, chosen.surface.points.size());
+  for (std::uint32_t edge = 0; edge < 3 * mesh.face_count(); ++edge)
+    if (edge < mesh.twin(edge) &&
+        chosen.face_parts[edge / 3] != chosen.face_parts[mesh.twin(edge) / 3])
+      seam.emplace_back(mesh.from(edge), mesh.to(edge));
   return seam;
 }
 
@@ -104,12 +104,16 @@ bool all_are(const std::vector<char>& inside, char value) {
 } // namespace
 
 bool is_closed_solid(const TriangleSurface& surface) {
-  const TriangleList list(surface.faces);
+  std::vector<std::uint32_t> starts{0}, corners;
+  for (const Corners& face : surface.faces) {
+    corners.insert(corners.end(), face.begin(), face.end());
+    starts.push_back(static_cast<std::uint32_t>(corners.size()));
+  }
   const bool is_finite =
       std::all_of(surface.points.begin(), surface.points.end(), [](const SpacePoint& point) {
         return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
       });
-  return is_finite && check_closed_manifold(list.starts, list.corners, surface.points.size()) &&
+  return is_finite && check_closed_manifold(starts, corners, surface.points.size()) &&
          volume_of(surface.points, surface.faces) > 0.0;
 }
 

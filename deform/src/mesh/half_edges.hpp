@@ -1,6 +1,7 @@
 #pragma once
 // Which edges of faces lie opposite to each other. Corner k of a face stands for the edge from this
-// corner to the next one, so an edge has the number of its corner.
+// corner to the next one, so an edge has the number of its corner. The faces may be any polygons,
+// and do not change; surface_mesh.hpp has the triangles that do.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +11,8 @@
 #include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/index.hpp>
 
+#include "geometry/rows_by_key.hpp"
+
 namespace nendo::deform {
 
 struct HalfEdges {
@@ -17,13 +20,17 @@ struct HalfEdges {
   std::vector<std::uint32_t> last; ///< the edge before it
   /// The edge of another face that goes the other way; no_index if there is none, or several.
   std::vector<std::uint32_t> twin;
-  std::vector<std::uint32_t> out_starts; ///< edges that begin at vertex v: out[out_starts[v]] ...
-  std::vector<std::uint32_t> out;        ///< ... to out[out_starts[v + 1] - 1], in rising order
+  RowsByKey<std::uint32_t> out; ///< the edges that begin at each vertex, in rising order
 };
 
 /// Each corner must be below `vertices`. Allocates.
 HalfEdges half_edges_of(std::span<const std::uint32_t> face_starts,
                         std::span<const std::uint32_t> face_corners, std::size_t vertices);
+
+/// Returns HalfEdges::twin of edges whose ends are `from` and `to`. Allocates.
+std::vector<std::uint32_t> twins_of(std::span<const std::uint32_t> from,
+                                    std::span<const std::uint32_t> to,
+                                    const RowsByKey<std::uint32_t>& out);
 
 /// As the public function, if the edges are at hand.
 ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,

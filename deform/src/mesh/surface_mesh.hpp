@@ -1,0 +1,117 @@
+#pragma once
+// Triangles that know their neighbours while they are split, flipped, collapsed, removed and added:
+// the structure of all that edits a surface (refinement, joining, changes of topology, cutting).
+//
+// It has numbers only. What belongs to points, faces or edges stands beside it in columns, which
+// have one entry for each number; whoever edits the mesh lets them grow with it. Numbers of points
+// and faces that are gone are not used again, until take() renumbers what is left.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include <nendo/deform/index.hpp>
+
+#include "geometry/space.hpp"
+
+namespace nendo::deform {
+
+/// The new number of each point and of each face; no_index for those that are gone.
+struct Renumbering {
+  std::vector<std::uint32_t> points, faces;
+};
+
+/// Leaves out of a column what has no new number. A column without entries stays empty.
+template <class Entry>
+void renumber(std::vector<Entry>& column, std::span<const std::uint32_t> numbers) {
+  if (column.empty()) return;
+  std::size_t kept = 0;
+  for (std::size_t at = 0; at < numbers.size(); ++at)
+    if (numbers[at] != no_index) column[kept++] = column[at];
+  column.resize(kept);
+}
+
+class SurfaceMesh {
+public:
+  SurfaceMesh() = default;
+  /// Corners must be below `points`. Edges that do not have exactly one edge against them are at
+  /// the boundary. Allocates, as all functions that add something do.
+  SurfaceMesh(std::vector<Corners> faces, std::size_t points);
+
+  // Edge 3 f + k goes from corner k of face f to its next corner. Its twin runs back.
+  static std::uint32_t next(std::uint32_t edge) noexcept {
+    return edge % 3 == 2 ? edge - 2 : edge + 1;
+  }
+  static std::uint32_t last(std::uint32_t edge) noexcept {
+    return edge % 3 == 0 ? edge + 2 : edge - 1;
+  }
+  std::uint32_t from(std::uint32_t edge) const noexcept { return faces_[edge / 3][edge % 3]; }
+  std::uint32_t to(std::uint32_t edge) const noexcept { return from(next(edge)); }
+  /// no_index at the boundary
+  std::uint32_t twin(std::uint32_t edge) const noexcept { return twins_[edge]; }
+
+  // Counts include what is gone.
+  std::uint32_t point_count() const noexcept { return static_cast<std::uint32_t>(edge_at_.size()); }
+  std::uint32_t face_count() const noexcept { return static_cast<std::uint32_t>(faces_.size()); }
+  /// Returns whether some face has the point.
+  bool has_point(std::uint32_t point) const noexcept { return edge_at_[point] != no_index; }
+  bool has_face(std::uint32_t face) const noexcept { return faces_[face][0] != no_index; }
+  const Corners& corners(std::uint32_t face) const noexcept { return faces_[face]; }
+
+  /// Calls visit(edge) for the edges that begin where `first` does, counter-clockwise from it on.
+  /// None of their faces may be at the boundary there.
+  template <class Visit>
+  void visit_edges_from(std::uint32_t first, const Visit& visit) const {
+    std::uint32_t edge = first;
+    do {
+      const std::uint32_t after = twins_[last(edge)];
+      visit(edge);
+      edge = after;
+    } while (edge != first);
+  }
+  /// The same of a point that has_point().
+  template <class Visit>
+  void visit_edges(std::uint32_t point, const Visit& visit) const {
+    visit_edges_from(edge_at_[point], visit);
+  }
+  /// Returns the edge from one point to another, or no_index.
+  std::uint32_t edge_between(std::uint32_t one, std::uint32_t other) const;
+
+  std::uint32_t add_point();
+  /// Its edges become twins of boundary edges that run back. Returns the face's number.
+  std::uint32_t add_face(const Corners& corners);
+  void remove_faces(std::span<const std::uint32_t> faces);
+  /// Halves an edge by a new point, and both of its faces. Each face keeps the half at its edge's
+  /// beginning. The last two faces have the other halves, the edge's own face first. Returns the
+  /// point.
+  std::uint32_t split(std::uint32_t edge);
+  /// The first half of split(): returns a new face with the half at the edge's end. The user does
+  /// the same to the twin, and then links each half to its twin.
+  std::uint32_t split_face(std::uint32_t edge, std::uint32_t point);
+  void link(std::uint32_t edge, std::uint32_t twin);
+  /// Whether the surface would stay two-manifold.
+  bool can_collapse(std::uint32_t edge) const;
+  /// The edge's end goes into its beginning, and both of its faces go.
+  void collapse(std::uint32_t edge);
+  /// Whether no edge would be there twice, and no point would keep less than three faces.
+  bool can_flip(std::uint32_t edge) const;
+  /// Turns the edge in its two faces, clockwise.
+  void flip(std::uint32_t edge);
+  /// Opens the surface along a loop, each of whose edges ends where the next one begins. What is on
+  /// the right of the loop gets new points instead of the loop's, in their order. Both sides are at
+  /// the boundary then.
+  void open(std::span<const std::uint32_t> loop);
+
+  /// Returns the faces that are left, in their order. The mesh is empty afterwards.
+  std::vector<Corners> take(Renumbering& numbers);
+
+private:
+  std::vector<Corners> faces_; ///< of no_index, those that are gone
+  std::vector<std::uint32_t> twins_;
+  std::vector<std::uint32_t> edge_at_; ///< of each point some edge that begins there
+  std::unordered_map<std::uint64_t, std::uint32_t> boundary_; ///< edges by the points of both ends
+};
+
+} // namespace nendo::deform
