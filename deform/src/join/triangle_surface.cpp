@@ -2,6 +2,17 @@
 
 namespace nendo::deform {
 
+void TriangleSurface::copy_points(std::span<const std::uint32_t> which) {
+  const auto copy = [&](auto& column) {
+    for (std::size_t k = 0; !column.empty() && k < which.size(); ++k)
+      column.push_back(column[which[k]]);
+  };
+  copy(points);
+  copy(colours);
+  copy(rest);
+  copy(detail);
+}
+
 void TriangleSurface::renumber_columns(const Renumbering& numbers) {
   renumber(points, numbers.points);
   renumber(colours, numbers.points);

@@ -36,6 +36,8 @@ struct TriangleSurface {
   std::vector<SpacePoint> rest;     ///< where each point is before the hands, or none at all
   std::vector<VertexDetail> detail; ///< one for each point, or none at all
 
+  /// Appends what these points have.
+  void copy_points(std::span<const std::uint32_t> which);
   /// Leaves out what points and faces have that are gone, but for the faces' corners.
   void renumber_columns(const Renumbering& numbers);
 };

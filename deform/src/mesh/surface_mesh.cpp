@@ -78,20 +78,19 @@ void SurfaceMesh::remove_faces(std::span<const std::uint32_t> faces) {
 std::uint32_t SurfaceMesh::split(std::uint32_t edge) {
   const std::uint32_t back = twins_[edge];
   const std::uint32_t point = add_point();
-  const std::uint32_t at_end = split_face(edge, point);
-  const std::uint32_t at_beginning = split_face(back, point);
-  link(edge, 3 * at_beginning);
-  link(back, 3 * at_end);
+  const std::uint32_t to_end = split_face(edge, point);
+  link(edge, split_face(back, point));
+  link(back, to_end);
   edge_at_[from(edge)] = edge;
   edge_at_[from(back)] = back;
   return point;
 }
 
+/// Gives the half at the edge's end to a new face, and returns that half.
 std::uint32_t SurfaceMesh::split_face(std::uint32_t edge, std::uint32_t point) {
   const std::uint32_t behind = next(edge);
   const std::uint32_t tip = last(edge);
-  const std::uint32_t face = face_count();
-  const std::uint32_t fresh = 3 * face;
+  const std::uint32_t fresh = 3 * face_count();
   faces_.push_back({point, from(behind), from(tip)});
   twins_.resize(twins_.size() + 3, no_index);
   link(next(fresh), twins_[behind]);
@@ -100,9 +99,10 @@ std::uint32_t SurfaceMesh::split_face(std::uint32_t edge, std::uint32_t point) {
   faces_[edge / 3][behind % 3] = point;
   edge_at_[point] = behind;
   edge_at_[from(tip)] = tip;
-  return face;
+  return fresh;
 }
 
+/// With no_index, the edge is at the boundary.
 void SurfaceMesh::link(std::uint32_t edge, std::uint32_t twin) {
   twins_[edge] = twin;
   if (twin == no_index)

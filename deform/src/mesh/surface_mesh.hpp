@@ -1,6 +1,6 @@
 #pragma once
 // Triangles that know their neighbours while they are split, flipped, collapsed, removed and added:
-// the structure of all that edits a surface (refinement, joining, changes of topology, cutting).
+// the structure of all that edits a surface (refinement, joining, changes of topology).
 //
 // It has numbers only. What belongs to points, faces or edges stands beside it in columns, which
 // have one entry for each number; whoever edits the mesh lets them grow with it. Numbers of points
@@ -87,10 +87,6 @@ public:
   /// beginning. The last two faces have the other halves, the edge's own face first. Returns the
   /// point.
   std::uint32_t split(std::uint32_t edge);
-  /// The first half of split(): returns a new face with the half at the edge's end. The user does
-  /// the same to the twin, and then links each half to its twin.
-  std::uint32_t split_face(std::uint32_t edge, std::uint32_t point);
-  void link(std::uint32_t edge, std::uint32_t twin);
   /// Whether the surface would stay two-manifold.
   bool can_collapse(std::uint32_t edge) const;
   /// The edge's end goes into its beginning, and both of its faces go.
@@ -108,6 +104,9 @@ public:
   std::vector<Corners> take(Renumbering& numbers);
 
 private:
+  std::uint32_t split_face(std::uint32_t edge, std::uint32_t point);
+  void link(std::uint32_t edge, std::uint32_t twin);
+
   std::vector<Corners> faces_; ///< of no_index, those that are gone
   std::vector<std::uint32_t> twins_;
   std::vector<std::uint32_t> edge_at_; ///< of each point some edge that begins there

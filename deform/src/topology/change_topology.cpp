@@ -46,7 +46,7 @@ public:
                                                                     place.points.end());
     for (const ThinPlace& place : places)
       if (place.begins && !left_alone.contains(place.points) && !is_touched(place)) change(place);
-    kept = surface_.take(numbers_, faces_);
+    kept = surface_.take(numbers_);
   }
 
   /// Returns the places of which some face meets another now.
@@ -54,9 +54,10 @@ public:
     std::map<std::uint32_t, Triple> of_face;
     std::vector<std::uint32_t> changed;
     for (const auto& [face, place] : changed_) {
-      if (faces_[face] == no_index) continue;
-      of_face[faces_[face]] = place;
-      changed.push_back(faces_[face]);
+      const std::uint32_t number = numbers_.faces[face];
+      if (number == no_index) continue;
+      of_face[number] = place;
+      changed.push_back(number);
     }
     std::set<Triple> places;
     for (const auto& [one, other] : self_intersections_of(kept.points, kept.faces, changed))
@@ -142,7 +143,7 @@ private:
   std::set<std::uint32_t> touched_;
   std::vector<SpacePoint> joined_;
   std::vector<std::pair<std::uint32_t, Triple>> changed_; ///< faces, and by which place
-  std::vector<std::uint32_t> numbers_, faces_;
+  Renumbering numbers_;
 };
 
 } // namespace

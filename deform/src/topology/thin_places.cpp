@@ -29,12 +29,10 @@ void add_necks(const ThinSurface& surface, std::uint32_t a, std::vector<ThinPlac
     if (b < a) continue;
     for (const std::uint32_t c : around) {
       if (c < b || !surface.are_neighbours(b, c)) continue;
-      const auto bounds_face = [&](std::uint32_t from, std::uint32_t to, std::uint32_t third) {
-        const std::uint32_t face = surface.face_with(from, to);
-        const Corners& corners = surface.surface().faces[face];
-        return std::find(corners.begin(), corners.end(), third) != corners.end();
+      const auto opposite = [&](std::uint32_t from, std::uint32_t to) {
+        return surface.from(surface.last(surface.edge_between(from, to)));
       };
-      if (bounds_face(a, b, c) || bounds_face(b, a, c)) continue;
+      if (opposite(a, b) == c || opposite(b, a) == c) continue;
       const double length = distance_between(surface.point(a), surface.point(b)) +
                             distance_between(surface.point(b), surface.point(c)) +
                             distance_between(surface.point(c), surface.point(a));
@@ -66,17 +64,30 @@ void add_sheets(const ThinSurface& surface, std::uint32_t a, const PointGrid& gr
                   });
 }
 
+/// Of each point, twice the area vector of the faces around.
+std::vector<SpacePoint> area_vectors(const ThinSurface& surface) {
+  std::vector<SpacePoint> sums(surface.point_count());
+  for (std::uint32_t face = 0; face < surface.face_count(); ++face) {
+    const Corners& corners = surface.corners(face);
+    const SpacePoint area = area_vector(surface.point(corners[0]), surface.point(corners[1]),
+                                        surface.point(corners[2]));
+    for (const std::uint32_t corner : corners)
+      sums[corner] = sums[corner] + area;
+  }
+  return sums;
+}
+
 } // namespace
 
 std::vector<ThinPlace> thin_places(const ThinSurface& surface) {
   std::vector<ThinPlace> places;
   const std::uint32_t count = surface.point_count();
   if (count == 0) return places;
-  std::vector<SpacePoint> normals;
+  std::vector<SpacePoint> normals = area_vectors(surface);
   Points points(3, static_cast<Eigen::Index>(count));
   double widest = 0.0;
   for (std::uint32_t at = 0; at < count; ++at) {
-    normals.push_back(unit_of(surface.normal(at)));
+    normals[at] = unit_of(normals[at]);
     points.col(static_cast<Eigen::Index>(at)) << surface.point(at)[0], surface.point(at)[1],
         surface.point(at)[2];
     widest = std::max(widest, (goes_on.through_wall + goes_on.aside) * surface.wanted(at));

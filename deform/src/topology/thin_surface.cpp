@@ -13,60 +13,25 @@ namespace {
 constexpr double gap_of_edge = 0.25;    // between the ends of a neck that has parted
 constexpr std::size_t least_faces = 32; // of what is no crumb
 
-std::size_t place_in(const Corners& corners, std::uint32_t point) {
-  return corners[0] == point ? 0 : corners[1] == point ? 1 : 2;
-}
-
-/// The corner behind that one, and the one before it.
-std::uint32_t after(const Corners& corners, std::uint32_t point) {
-  return corners[(place_in(corners, point) + 1) % 3];
-}
-std::uint32_t before(const Corners& corners, std::uint32_t point) {
-  return corners[(place_in(corners, point) + 2) % 3];
-}
-
 } // namespace
 
 ThinSurface::ThinSurface(TriangleSurface surface)
-    : surface_(std::move(surface)), faces_at_(surface_.points.size()),
-      gone_(surface_.faces.size(), 0) {
+    : SurfaceMesh(std::move(surface.faces), surface.points.size()), surface_(std::move(surface)) {
   double sum = 0.0;
-  for (std::uint32_t face = 0; face < surface_.faces.size(); ++face)
-    for (const std::uint32_t corner : surface_.faces[face]) {
-      faces_at_[corner].push_back(face);
-      sum += distance_between(point(corner), point(after(surface_.faces[face], corner)));
-    }
-  mean_edge_ = sum / static_cast<double>(std::max<std::size_t>(1, 3 * surface_.faces.size()));
+  for (std::uint32_t edge = 0; edge < 3 * face_count(); ++edge)
+    sum += distance_between(point(from(edge)), point(to(edge)));
+  mean_edge_ = sum / static_cast<double>(std::max(1U, 3 * face_count()));
 }
 
 std::vector<std::uint32_t> ThinSurface::ring(std::uint32_t number) const {
   std::vector<std::uint32_t> ring;
-  const auto& faces = faces_at_[number];
-  if (faces.empty()) return ring;
-  const std::uint32_t first = after(surface_.faces[faces.front()], number);
-  std::uint32_t at = first;
-  do {
-    ring.push_back(at);
-    const std::uint32_t face = face_with(number, at);
-    if (face == no_index || ring.size() > faces.size()) return {};
-    at = before(surface_.faces[face], number);
-  } while (at != first);
+  if (!has_point(number)) return ring;
+  visit_edges(number, [&](std::uint32_t edge) { ring.push_back(edge); });
+  // From the first face on, whatever was done before.
+  std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
+  for (std::uint32_t& edge : ring)
+    edge = to(edge);
   return ring;
-}
-
-std::uint32_t ThinSurface::face_with(std::uint32_t from, std::uint32_t to) const noexcept {
-  for (const std::uint32_t face : faces_at_[from])
-    if (after(surface_.faces[face], from) == to) return face;
-  return no_index;
-}
-
-SpacePoint ThinSurface::normal(std::uint32_t number) const {
-  SpacePoint sum{0.0, 0.0, 0.0};
-  for (const std::uint32_t face : faces_at_[number]) {
-    const Corners& corners = surface_.faces[face];
-    sum = sum + area_vector(point(corners[0]), point(corners[1]), point(corners[2]));
-  }
-  return sum;
 }
 
 /// The faces around each point of the loop, from the way on to the way back: the left ones, and the
@@ -76,21 +41,19 @@ bool ThinSurface::find_sides(const Triple& loop, SideOfLoop& left, SideOfLoop& r
     side->middle = {0.0, 0.0, 0.0};
   std::array<double, 2> counts{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::uint32_t here = loop[k], next = loop[(k + 1) % 3], last = loop[(k + 2) % 3];
-    const std::vector<std::uint32_t> around = ring(here);
-    const auto begin = std::find(around.begin(), around.end(), next);
-    if (begin == around.end()) return false;
+    const std::uint32_t onward = loop[(k + 1) % 3], back = loop[(k + 2) % 3];
+    const std::uint32_t first = edge_between(loop[k], onward);
+    if (first == no_index) return false;
     bool is_left = true;
-    for (std::size_t step = 0; step < around.size(); ++step) {
-      const auto from = static_cast<std::size_t>(begin - around.begin()) + step;
-      const std::uint32_t one = around[from % around.size()];
-      if (one == last) is_left = false;
+    visit_edges_from(first, [&](std::uint32_t edge) {
+      const std::uint32_t one = to(edge);
+      if (one == back) is_left = false;
       SideOfLoop& side = is_left ? left : right;
-      side.faces.push_back(face_with(here, one));
-      if (one == next || one == last) continue;
+      side.faces.push_back(edge / 3);
+      if (one == onward || one == back) return;
       side.middle = side.middle + point(one);
       ++counts[is_left ? 0 : 1];
-    }
+    });
     if (is_left) return false;
   }
   if (counts[0] == 0.0 || counts[1] == 0.0) return false;
@@ -109,12 +72,11 @@ bool ThinSurface::is_crumb(const Triple& loop, const SideOfLoop& side,
   const std::set<std::uint32_t> beyond(other.faces.begin(), other.faces.end());
   std::vector<std::uint32_t> left_to_see(seen.begin(), seen.end());
   while (!left_to_see.empty()) {
-    const Corners corners = surface_.faces[left_to_see.back()];
+    const std::uint32_t first = 3 * left_to_see.back();
     left_to_see.pop_back();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = corners[k], to = corners[(k + 1) % 3];
-      if (is_of_loop(from) && is_of_loop(to)) continue;
-      const std::uint32_t neighbour = face_with(to, from);
+    for (std::uint32_t edge = first; edge < first + 3; ++edge) {
+      if (is_of_loop(from(edge)) && is_of_loop(to(edge))) continue;
+      const std::uint32_t neighbour = other_face(edge);
       if (beyond.contains(neighbour)) return false; // a handle
       if (!seen.insert(neighbour).second) continue;
       if (seen.size() >= least_faces) return false;
@@ -132,26 +94,14 @@ bool ThinSurface::part(const Triple& loop) {
   const double area = length_of(plane);
   const double way = dot(left.middle - right.middle, plane);
   if (!(area > 0.0) || way == 0.0) return false;
-  const std::uint32_t like_left = face_with(loop[0], loop[1]);
-  const std::uint32_t like_right = face_with(loop[1], loop[0]);
-  Triple copies{};
+  std::array<std::uint32_t, 3> edges{};
   for (std::size_t k = 0; k < 3; ++k)
-    copies[k] = copy_point(loop[k]);
-  for (const std::uint32_t face : right.faces)
-    for (std::uint32_t& corner : surface_.faces[face]) {
-      const auto at = std::find(loop.begin(), loop.end(), corner);
-      if (at != loop.end()) corner = copies[static_cast<std::size_t>(at - loop.begin())];
-    }
-  std::sort(right.faces.begin(), right.faces.end());
-  right.faces.erase(std::unique(right.faces.begin(), right.faces.end()), right.faces.end());
-  for (const std::uint32_t face : right.faces)
-    for (const std::uint32_t corner : surface_.faces[face]) {
-      const auto at = std::find(copies.begin(), copies.end(), corner);
-      if (at == copies.end()) continue;
-      std::erase(faces_at_[loop[static_cast<std::size_t>(at - copies.begin())]], face);
-      faces_at_[corner].push_back(face);
-    }
-  add_face({loop[1], loop[0], loop[2]}, like_left);
+    edges[k] = edge_between(loop[k], loop[(k + 1) % 3]);
+  const std::uint32_t like_right = other_face(edges[0]);
+  const Triple copies{point_count(), point_count() + 1, point_count() + 2};
+  open(edges);
+  surface_.copy_points(loop);
+  add_face({loop[1], loop[0], loop[2]}, edges[0] / 3);
   add_face({copies[0], copies[1], copies[2]}, like_right);
   for (std::size_t k = 0; k < 3; ++k) {
     const double half = 0.5 * gap_of_edge * wanted(loop[k]) / area * (way > 0.0 ? 1.0 : -1.0);
@@ -166,21 +116,17 @@ bool ThinSurface::part(const Triple& loop) {
 std::set<std::uint32_t> ThinSurface::faces_around(const std::vector<std::uint32_t>& points) const {
   std::set<std::uint32_t> faces;
   for (const std::uint32_t point : points)
-    faces.insert(faces_at_[point].begin(), faces_at_[point].end());
+    if (has_point(point)) visit_edges(point, [&](std::uint32_t edge) { faces.insert(edge / 3); });
   return faces;
 }
 
 ThinSurface::Rims ThinSurface::rims_of(const std::set<std::uint32_t>& faces) const {
   std::map<std::uint32_t, std::uint32_t> next;
   Rims rims;
-  for (const std::uint32_t face : faces) {
-    const Corners& corners = surface_.faces[face];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = corners[k], to = corners[(k + 1) % 3];
-      if (!faces.contains(face_with(to, from)) && !next.emplace(from, to).second)
-        rims.doubled.push_back(from);
-    }
-  }
+  for (const std::uint32_t face : faces)
+    for (std::uint32_t edge = 3 * face; edge < 3 * face + 3; ++edge)
+      if (!faces.contains(other_face(edge)) && !next.emplace(from(edge), to(edge)).second)
+        rims.doubled.push_back(from(edge));
   while (rims.doubled.empty() && !next.empty()) {
     std::vector<std::uint32_t>& loop = rims.loops.emplace_back();
     for (auto at = next.begin(); at != next.end(); at = next.find(loop.back())) {
@@ -198,8 +144,7 @@ std::set<std::uint32_t> ThinSurface::without_islands(std::set<std::uint32_t> fac
   constexpr int most_rounds = 16;
   for (int round = 0; round < most_rounds; ++round) {
     const Rims rims = rims_of(faces);
-    for (const std::uint32_t point : rims.doubled)
-      faces.insert(faces_at_[point].begin(), faces_at_[point].end());
+    faces.merge(faces_around(rims.doubled));
     if (rims.doubled.empty() && rims.loops.size() <= 2) break;
     for (std::size_t at = 2; at < rims.loops.size(); ++at)
       if (!fill(rims.loops[at], faces)) return {};
@@ -216,12 +161,12 @@ bool ThinSurface::fill(const std::vector<std::uint32_t>& rim,
     if (faces.insert(face).second) found.push_back(face);
   };
   for (std::size_t at = 0; at < rim.size(); ++at)
-    find(face_with(rim[(at + 1) % rim.size()], rim[at]));
+    find(edge_between(rim[(at + 1) % rim.size()], rim[at]) / 3);
   for (std::size_t at = 0; at < found.size(); ++at) {
     if (found.size() > most_faces) return false;
-    const Corners corners = surface_.faces[found[at]];
-    for (std::size_t k = 0; k < 3; ++k)
-      find(face_with(corners[(k + 1) % 3], corners[k]));
+    const std::uint32_t first = 3 * found[at];
+    for (std::uint32_t edge = first; edge < first + 3; ++edge)
+      find(other_face(edge));
   }
   return true;
 }
@@ -234,12 +179,10 @@ int ThinSurface::count_patches(const std::set<std::uint32_t>& faces) const {
     std::vector<std::uint32_t> to_see{*unseen.begin()};
     unseen.erase(unseen.begin());
     while (!to_see.empty()) {
-      const Corners corners = surface_.faces[to_see.back()];
+      const std::uint32_t first = 3 * to_see.back();
       to_see.pop_back();
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t neighbour = face_with(corners[(k + 1) % 3], corners[k]);
-        if (unseen.erase(neighbour) > 0) to_see.push_back(neighbour);
-      }
+      for (std::uint32_t edge = first; edge < first + 3; ++edge)
+        if (unseen.erase(other_face(edge)) > 0) to_see.push_back(other_face(edge));
     }
   }
   return patches;
@@ -248,8 +191,8 @@ int ThinSurface::count_patches(const std::set<std::uint32_t>& faces) const {
 /// By an edge of a face that is none of these.
 bool ThinSurface::are_tied(std::uint32_t a, std::uint32_t b,
                            const std::set<std::uint32_t>& without) const {
-  for (const std::uint32_t face : {face_with(a, b), face_with(b, a)})
-    if (face != no_index && !without.contains(face)) return true;
+  for (const std::uint32_t edge : {edge_between(a, b), edge_between(b, a)})
+    if (edge != no_index && !without.contains(edge / 3)) return true;
   return false;
 }
 
@@ -299,78 +242,37 @@ int ThinSurface::join_rims(const std::vector<std::uint32_t>& points) {
   const std::vector<Corners> joining = between(rims[0], rims[1]);
   if (joining.empty()) return 0;
   const int patches = count_patches(faces);
-  for (const std::uint32_t face : faces)
-    remove_face(face);
+  remove_faces(std::vector<std::uint32_t>(faces.begin(), faces.end()));
   for (const Corners& corners : joining)
     add_face(corners, *faces.begin());
   return patches;
 }
 
-std::uint32_t ThinSurface::copy_point(std::uint32_t number) {
-  const auto copy = point_count();
-  surface_.points.push_back(surface_.points[number]);
-  if (!surface_.colours.empty()) surface_.colours.push_back(surface_.colours[number]);
-  if (!surface_.detail.empty()) surface_.detail.push_back(surface_.detail[number]);
-  faces_at_.emplace_back();
-  return copy;
-}
-
 /// With the look of another face, and the texture of one of its corners.
 void ThinSurface::add_face(const Corners& corners, std::uint32_t like) {
-  const auto face = static_cast<std::uint32_t>(surface_.faces.size());
-  surface_.faces.push_back(corners);
+  changed_.push_back(SurfaceMesh::add_face(corners));
   surface_.looks.push_back(surface_.looks[like]);
-  if (!surface_.face_texture.empty()) {
-    const std::uint32_t texture = surface_.face_texture[like][0];
-    surface_.face_texture.push_back({texture, texture, texture});
-  }
-  gone_.push_back(0);
-  for (const std::uint32_t corner : corners)
-    faces_at_[corner].push_back(face);
-  changed_.push_back(face);
-}
-
-void ThinSurface::remove_face(std::uint32_t face) {
-  gone_[face] = 1;
-  for (const std::uint32_t corner : surface_.faces[face])
-    std::erase(faces_at_[corner], face);
+  if (surface_.face_texture.empty()) return;
+  const std::uint32_t texture = surface_.face_texture[like][0];
+  surface_.face_texture.push_back({texture, texture, texture});
 }
 
 void ThinSurface::note_around(std::uint32_t number) {
-  changed_.insert(changed_.end(), faces_at_[number].begin(), faces_at_[number].end());
+  visit_edges(number, [&](std::uint32_t edge) { changed_.push_back(edge / 3); });
 }
 
 std::vector<std::uint32_t> ThinSurface::take_changed() {
   std::vector<std::uint32_t> changed = std::exchange(changed_, {});
-  std::erase_if(changed, [this](std::uint32_t face) { return gone_[face] != 0; });
+  std::erase_if(changed, [this](std::uint32_t face) { return !has_face(face); });
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   return changed;
 }
 
-TriangleSurface ThinSurface::take(std::vector<std::uint32_t>& numbers,
-                                  std::vector<std::uint32_t>& faces) {
-  TriangleSurface kept;
-  kept.texture_points = std::move(surface_.texture_points);
-  numbers.assign(surface_.points.size(), no_index);
-  for (std::uint32_t at = 0; at < surface_.points.size(); ++at) {
-    if (faces_at_[at].empty()) continue;
-    numbers[at] = static_cast<std::uint32_t>(kept.points.size());
-    kept.points.push_back(surface_.points[at]);
-    if (!surface_.colours.empty()) kept.colours.push_back(surface_.colours[at]);
-    if (!surface_.detail.empty()) kept.detail.push_back(surface_.detail[at]);
-  }
-  faces.assign(surface_.faces.size(), no_index);
-  for (std::uint32_t face = 0; face < surface_.faces.size(); ++face) {
-    if (gone_[face]) continue;
-    faces[face] = static_cast<std::uint32_t>(kept.faces.size());
-    const Corners& corners = surface_.faces[face];
-    kept.faces.push_back({numbers[corners[0]], numbers[corners[1]], numbers[corners[2]]});
-    kept.looks.push_back(surface_.looks[face]);
-    if (!surface_.face_texture.empty()) kept.face_texture.push_back(surface_.face_texture[face]);
-  }
-  surface_ = {};
-  return kept;
+TriangleSurface ThinSurface::take(Renumbering& numbers) {
+  surface_.faces = SurfaceMesh::take(numbers);
+  surface_.renumber_columns(numbers);
+  return std::exchange(surface_, {});
 }
 
 } // namespace nendo::deform
