@@ -45,7 +45,9 @@ RestraintCounts Restraint::counts() const noexcept {
 
 #if NENDO_COUNTS_RESTRAINT
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): glibc's own names
-// glibc's own entry points, and these definitions in the program take their callers' place.
+// glibc's own entry points, and these definitions in the program take their callers' place. They
+// are not hidden, so that shared libraries find them, too.
+#pragma GCC visibility push(default)
 extern "C" {
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
@@ -109,5 +111,6 @@ int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mutex) {
   return real(condition, mutex);
 }
 }
+#pragma GCC visibility pop
 // NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 #endif

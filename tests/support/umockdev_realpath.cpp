@@ -10,8 +10,10 @@
 #include <dlfcn.h>
 #include <unistd.h>
 
-// The name under which fortified libraries, as Debian's are, call realpath().
-extern "C" char* __realpath_chk(const char* path, char* resolved, std::size_t size);  // NOLINT
+// The name under which fortified libraries, as Debian's are, call realpath(). It is not hidden, so
+// that they find it in this program.
+extern "C" [[gnu::visibility("default")]] char* __realpath_chk(const char* path, char* resolved,
+                                                               std::size_t size);     // NOLINT
 extern "C" char* __realpath_chk(const char* path, char* resolved, std::size_t size) { // NOLINT
   using Realpath = char* (*)(const char*, char*, std::size_t);
   const bool in_sandbox =

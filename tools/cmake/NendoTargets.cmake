@@ -33,7 +33,8 @@ function(nendo_settings target scope)
   if(scope STREQUAL "INTERFACE")
     return()
   endif()
-  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET default)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden
+    VISIBILITY_INLINES_HIDDEN ON)
   # Every target, because some libraries ask for it, and a precompiled header serves only those that are compiled alike.
   target_compile_options(${target} PRIVATE -pthread)
   nendo_harden(${target})

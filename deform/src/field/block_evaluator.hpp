@@ -12,7 +12,7 @@
 namespace nendo::deform {
 
 /// A shape that knows its blocks' bounds.
-struct BoundedShape {
+struct NENDO_API BoundedShape {
   explicit BoundedShape(BlockShape blocks);
   /// Becomes equal to `other`. Allocates only where the sizes differ.
   void follow(const BoundedShape& other);
@@ -24,7 +24,7 @@ struct BoundedShape {
 
 /// An evaluator belongs to one thread at a time. Its functions neither allocate nor wait, except
 /// where they say so.
-class BlockEvaluator {
+class NENDO_API BlockEvaluator {
 public:
   /// Allocates for fields of that many entries.
   BlockEvaluator(const BlockLayout& layout, Eigen::Index entries, const EvaluationOptions& options);

@@ -21,6 +21,6 @@ struct SolverChoices {
 };
 
 /// Returns a solver that orders and stores as it is told.
-CsrbfSolver solver_with(const CsrbfOptions& options, const SolverChoices& choices);
+NENDO_API CsrbfSolver solver_with(const CsrbfOptions& options, const SolverChoices& choices);
 
 } // namespace nendo::deform

@@ -24,8 +24,9 @@ Result<std::unique_ptr<Glove>> open_serial_by(const GloveSpec& spec, HostTime de
 /// Opens the port, finds the line rate unless `options` name it, and identifies and sets up the
 /// glove. The options are set again after every interruption. Errors: those of `open_port`;
 /// no_device; usage, if the glove or its line cannot do what an option asks for.
-Result<std::unique_ptr<Glove>> open_cyberglove(const std::string& source, OpenPort open_port,
-                                               const cyberglove::Options& options,
-                                               HostTime deadline);
+NENDO_API Result<std::unique_ptr<Glove>> open_cyberglove(const std::string& source,
+                                                         OpenPort open_port,
+                                                         const cyberglove::Options& options,
+                                                         HostTime deadline);
 
 } // namespace nendo::driver::cyberglove

@@ -23,7 +23,7 @@ enum class Motion : std::uint8_t {
 
 /// Returns the motion that one of motion_names() (simulated_glove.hpp) names. Error: usage, naming
 /// those there are.
-Result<Motion> find_motion(std::string_view name);
+NENDO_API Result<Motion> find_motion(std::string_view name);
 
 /// The joint angles in radians, by sensor slot. Flexion is positive. Abduction is the angle between
 /// neighbours, positive if they are apart. Slots that no glove has (index_abduction, unused) stay
@@ -40,12 +40,12 @@ JointRange joint_range(Sensor sensor) noexcept;
 
 /// Returns how far a joint is bent, from 0 (straight) to 1 (fully bent), as gloves report it that
 /// calibrate themselves.
-double part_of_range(const JointAngles& angles, Sensor sensor) noexcept;
+NENDO_API double part_of_range(const JointAngles& angles, Sensor sensor) noexcept;
 
 /// The motion of one hand. It starts at time 0 in the relaxed pose and grows to its full size
 /// within a second. Angles are continuously differentiable. Two hands of one seed move alike, but
 /// not in step.
-class HandMotion {
+class NENDO_API HandMotion {
 public:
   HandMotion(Motion motion, Side side, std::uint32_t seed) noexcept;
 

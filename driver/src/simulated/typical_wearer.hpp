@@ -19,9 +19,9 @@ struct NominalSensor {
 
 /// Returns round numbers in the middle of what calibrations of real gloves show, and zeros for
 /// slots that no glove has.
-NominalSensor nominal_sensor(Sensor sensor) noexcept;
+NENDO_API NominalSensor nominal_sensor(Sensor sensor) noexcept;
 
-class TypicalWearer {
+class NENDO_API TypicalWearer {
 public:
   explicit TypicalWearer(std::uint32_t seed) : random_(seed) {}
 

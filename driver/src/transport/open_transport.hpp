@@ -26,7 +26,7 @@ bool is_serial_port(const std::string& path);
 Result<std::unique_ptr<Transport>> open_serialport(const std::string& path, int baud);
 Result<std::unique_ptr<Transport>> open_termios(const std::string& path);
 /// Takes over a descriptor. It must be open, non-blocking and, if it is a terminal, raw.
-std::unique_ptr<Transport> transport_of(int fd);
+NENDO_API std::unique_ptr<Transport> transport_of(int fd);
 /// Returns what a failed attempt to open or lock `path` means to the user.
 Error open_error(const std::string& path, int error_number);
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/vertex_rings.hpp>
 
 namespace nendo::deform {
@@ -28,11 +29,11 @@ enum class Brush : std::uint8_t {
 };
 inline constexpr std::uint8_t brush_count = 9;
 
-std::string_view name_of(Brush brush) noexcept;
-std::optional<Brush> brush_named(std::string_view name) noexcept;
+NENDO_API std::string_view name_of(Brush brush) noexcept;
+NENDO_API std::optional<Brush> brush_named(std::string_view name) noexcept;
 /// Returns all names, as "pull, none, push or inflate".
-std::string brush_words();
-bool are_all_pull(std::span<const Brush> brushes) noexcept; ///< none does anything else
+NENDO_API std::string brush_words();
+NENDO_API bool are_all_pull(std::span<const Brush> brushes) noexcept; ///< none does anything else
 
 inline constexpr double usual_brush_strength = 0.5;
 

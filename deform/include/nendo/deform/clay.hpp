@@ -71,7 +71,7 @@ struct ClayReport {
   double volume_change = 0.0; ///< relative to that when the bodies took hold; 0 if none is kept
 };
 
-class ClayDeformer {
+class NENDO_API ClayDeformer {
 public:
   /// Allocates. `triangles` are the vertices of all triangles, three each; without any, or where
   /// they are no closed surface, no volume is kept. Call release() before another deformer works on

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/mesh.hpp>
 
 namespace nendo::deform {
@@ -35,15 +36,15 @@ struct ManifoldCheck {
 /// around each vertex form one fan. Vertices without a face are no fault. Faces are given as in
 /// Mesh; each corner must be below `vertices`. It looks at connections alone: a surface that cuts
 /// through itself may pass. Allocates.
-ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
-                                    std::span<const std::uint32_t> face_corners,
-                                    std::size_t vertices);
+NENDO_API ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
+                                              std::span<const std::uint32_t> face_corners,
+                                              std::size_t vertices);
 /// The same of a mesh. A face that goes through a vertex twice, as one with a hole by a bridge, is
 /// taken as its triangles (triangles.hpp); then it is no fault.
-ManifoldCheck check_closed_manifold(const Mesh& mesh);
+NENDO_API ManifoldCheck check_closed_manifold(const Mesh& mesh);
 
 /// Returns the fault in words that go behind the mesh's name: "is open at the edge between (0, 1,
 /// 2) and (0, 1, 3), and at 11 others". Empty if there is no fault.
-std::string describe(const ManifoldCheck& check, const Mesh& mesh);
+NENDO_API std::string describe(const ManifoldCheck& check, const Mesh& mesh);
 
 } // namespace nendo::deform

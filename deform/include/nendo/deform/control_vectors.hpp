@@ -22,9 +22,10 @@ struct ControlVectors {
 /// radius, in any order, and at most a million rows. A cell of the radius column is what
 /// parse_supports() takes. `name` is what error messages call the text. Error: bad_input, with the
 /// line and the column.
-Result<ControlVectors> parse_control_vectors(std::string_view text, std::string_view name);
+NENDO_API Result<ControlVectors> parse_control_vectors(std::string_view text,
+                                                       std::string_view name);
 /// Reads such a file. Blocks for as long as the disk does. Error: bad_input, also for a file that
 /// cannot be read.
-Result<ControlVectors> read_control_vectors(const std::filesystem::path& path);
+NENDO_API Result<ControlVectors> read_control_vectors(const std::filesystem::path& path);
 
 } // namespace nendo::deform

@@ -16,8 +16,8 @@ namespace nendo::deform {
 /// moving one point moves the whole model. `none` is the default, and is always solvable.
 enum class Polynomial { none, constant, linear };
 
-std::string_view name_of(Polynomial polynomial) noexcept;
-std::optional<Polynomial> polynomial_named(std::string_view name) noexcept;
+NENDO_API std::string_view name_of(Polynomial polynomial) noexcept;
+NENDO_API std::optional<Polynomial> polynomial_named(std::string_view name) noexcept;
 
 struct CsrbfOptions {
   Wendland kernel = Wendland::c2;
@@ -46,7 +46,7 @@ enum class FieldStatus {
               ///< field is unchanged
 };
 /// Returns what the status means, in words for the user.
-std::string_view describe(FieldStatus status) noexcept;
+NENDO_API std::string_view describe(FieldStatus status) noexcept;
 
 constexpr bool is_solved(FieldStatus status) noexcept {
   return status == FieldStatus::ok || status == FieldStatus::merged;
@@ -68,7 +68,7 @@ struct SolverEffort {
 /// Factorises once for a set of start points, and then solves for any number of displacements. Up
 /// to `lean_size` points, build() and solve() do not allocate, lock or call the system once they
 /// have been called with as many points and supports and with a field of that size.
-class CsrbfSolver {
+class NENDO_API CsrbfSolver {
 public:
   /// So that two hands and most puppets fit. Up to here a dense factor costs less than finding out
   /// how sparse one would be.

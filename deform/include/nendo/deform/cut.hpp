@@ -29,7 +29,7 @@ struct CutWire {
 };
 
 /// Returns the wire that a knife's edge is: it begins at the tip, and `edge` leads along it.
-CutWire knife_cut(std::span<const Eigen::Vector3d> tips, const Eigen::Vector3d& edge);
+NENDO_API CutWire knife_cut(std::span<const Eigen::Vector3d> tips, const Eigen::Vector3d& edge);
 
 struct CutOptions {
   double edge = 0.0; ///< length of the cut faces' edges; 0: the mean where the blade crosses
@@ -67,19 +67,21 @@ struct CutModel {
 /// coordinates if the model has any. The same call gives the same bits. Allocates. Errors, which go
 /// behind the model's name: bad_input (not closed, numbers too large), usage (a blade without
 /// extent), failed (the blade does not go through, or the surface passes through itself there).
-Result<CutModel> cut_model(const Mesh& mesh, const CutPlane& plane, const CutOptions& options = {});
-Result<CutModel> cut_model(const Mesh& mesh, const CutWire& wire, const CutOptions& options = {});
+NENDO_API Result<CutModel> cut_model(const Mesh& mesh, const CutPlane& plane,
+                                     const CutOptions& options = {});
+NENDO_API Result<CutModel> cut_model(const Mesh& mesh, const CutWire& wire,
+                                     const CutOptions& options = {});
 
 /// Returns the parts as meshes of their own, in the order of their first vertices. Vertices and
 /// faces keep their order. Allocates.
-std::vector<Mesh> separate(const CutModel& model);
+NENDO_API std::vector<Mesh> separate(const CutModel& model);
 
 /// Does the same with any mesh: two vertices are of one part if edges lead from the one to the
 /// other.
-std::vector<Mesh> separate(const Mesh& mesh);
+NENDO_API std::vector<Mesh> separate(const Mesh& mesh);
 
 /// Returns the volume that a closed surface encloses, in cubic model units; negative if its faces
 /// face inwards. Faces are taken as triangles.hpp says. Allocates.
-double volume_of(const Mesh& mesh);
+NENDO_API double volume_of(const Mesh& mesh);
 
 } // namespace nendo::deform

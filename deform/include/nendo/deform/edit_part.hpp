@@ -12,10 +12,10 @@ namespace nendo::deform {
 /// part looks like. The copy is aside along x, by 1.05 times the part's width. The others keep
 /// their numbers and bits. Allocates. Error, which goes behind the model's name: bad_input (there
 /// is no such part, or it would be too large).
-Result<Mesh> copied_part(const Mesh& mesh, std::uint32_t part);
+NENDO_API Result<Mesh> copied_part(const Mesh& mesh, std::uint32_t part);
 
 /// Returns the mesh without one of its parts. The others keep their order and bits. Allocates.
 /// Error, likewise: bad_input (there is no such part, or no other).
-Result<Mesh> removed_part(const Mesh& mesh, std::uint32_t part);
+NENDO_API Result<Mesh> removed_part(const Mesh& mesh, std::uint32_t part);
 
 } // namespace nendo::deform

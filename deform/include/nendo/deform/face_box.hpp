@@ -6,19 +6,20 @@
 #include <optional>
 #include <vector>
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/mesh.hpp>
 
 namespace nendo::deform {
 
 /// Returns the axis-aligned bounding box of the finite vertices that faces have; of all finite
 /// vertices, if there is no face.
-Box box_of_faces(const Mesh& mesh) noexcept;
+NENDO_API Box box_of_faces(const Mesh& mesh) noexcept;
 
 /// Returns the vertices that no face has; none, if there is no face: that is a cloud of points.
-std::vector<std::uint32_t> stray_vertices(const Mesh& mesh);
+NENDO_API std::vector<std::uint32_t> stray_vertices(const Mesh& mesh);
 
 /// Returns the faces with the vertices that they have, without look and texture coordinates;
 /// nothing if there is no stray vertex.
-std::optional<Mesh> without_stray_vertices(const Mesh& mesh);
+NENDO_API std::optional<Mesh> without_stray_vertices(const Mesh& mesh);
 
 } // namespace nendo::deform

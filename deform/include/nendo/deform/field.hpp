@@ -5,6 +5,7 @@
 
 #include <span>
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/wendland.hpp>
 
@@ -12,7 +13,7 @@ namespace nendo::deform {
 
 /// A field s(x). It has a few hundred bytes, by which a copy of the model can be deformed
 /// elsewhere.
-struct CsrbfField {
+struct NENDO_API CsrbfField {
   Wendland kernel = Wendland::c2;
   Points centres;        ///< c_i, 3 by #centres, in model units
   Eigen::VectorXd radii; ///< r_i, one a centre, in model units
@@ -31,8 +32,8 @@ struct CsrbfField {
 /// Computes out = points + s(points) for 3 by #points. `out` may be `points` itself, and is resized
 /// only if its size differs. Fields of 256 functions and more are evaluated with the help of a
 /// grid, which allocates memory; the result is the same to the last bit.
-void displace(const CsrbfField& field, const Points& points, Points& out);
+NENDO_API void displace(const CsrbfField& field, const Points& points, Points& out);
 /// Applies fields one after another, with those that are halfway. `out` may be `points` itself.
-void displace(std::span<const CsrbfField> fields, const Points& points, Points& out);
+NENDO_API void displace(std::span<const CsrbfField> fields, const Points& points, Points& out);
 
 } // namespace nendo::deform

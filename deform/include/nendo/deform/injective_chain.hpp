@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/csrbf.hpp>
 #include <nendo/deform/jacobian.hpp>
 
@@ -45,7 +46,7 @@ struct ChainReport {
 ///   for (chain.from_start(ends); chain.next();) displace(chain.field(), shape, shape);
 /// After the constructor nothing allocates, locks or calls the system, up to CsrbfSolver::lean_size
 /// points; next() then takes a bounded time.
-class InjectiveChain {
+class NENDO_API InjectiveChain {
 public:
   InjectiveChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf,
                  InjectiveOptions options);

@@ -2,13 +2,14 @@
 // How much a field stretches, folds or turns space: the derivative of x -> x + s(x), and bounds on
 // it. Nothing here allocates, locks or calls the system, except where it says so.
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/field.hpp>
 
 namespace nendo::deform {
 
 /// Returns I + ds/dx at x. At a centre of Wendland::c0, where s has no derivative, that centre's
 /// term is left out.
-Eigen::Matrix3d jacobian_at(const CsrbfField& field, const Eigen::Vector3d& x) noexcept;
+NENDO_API Eigen::Matrix3d jacobian_at(const CsrbfField& field, const Eigen::Vector3d& x) noexcept;
 
 /// Returns an L with |s(x) - s(y)| <= L |x - y| for all x and y. It is proportional to the field's
 /// coefficients. If L < 1, x -> x + s(x) is a homeomorphism of space: nothing folds, and nothing
@@ -17,11 +18,11 @@ Eigen::Matrix3d jacobian_at(const CsrbfField& field, const Eigen::Vector3d& x) n
 ///   the field's norm in the kernel's native space, which accounts for coefficients that cancel;
 ///   not of fields that keep the volume.
 /// Returns infinity if the field is not finite.
-double lipschitz_bound(const CsrbfField& field) noexcept;
+NENDO_API double lipschitz_bound(const CsrbfField& field) noexcept;
 
 /// Follows points through fields that are applied one after another, and the determinants of the
 /// composition's Jacobian there. A fold is where one is not positive.
-class DeterminantProbe {
+class NENDO_API DeterminantProbe {
 public:
   /// Allocates for this many points.
   void reserve(Eigen::Index points);

@@ -49,6 +49,6 @@ struct Joined {
 /// Errors: bad_input (a part is not closed or not two-manifold, faces inwards, or is too large or
 /// too small to compute with), failed (parts do not touch, or no union was found). The parts stay
 /// as they were. Allocates; blocks for some 80 ms with two parts of 30,000 triangles.
-Result<Joined> join(std::span<const JoinPart> parts, const JoinOptions& options);
+NENDO_API Result<Joined> join(std::span<const JoinPart> parts, const JoinOptions& options);
 
 } // namespace nendo::deform

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/material.hpp>
 
 namespace nendo::deform {
@@ -47,18 +48,18 @@ struct Box {
 };
 
 /// Returns the axis-aligned bounding box of the points that are finite.
-Box finite_box_of(const Points& points) noexcept;
+NENDO_API Box finite_box_of(const Points& points) noexcept;
 
 /// Returns the length of the diagonal of the axis-aligned bounding box, in model units; 0 if there
 /// are no points.
-double diagonal_of(const Points& points) noexcept;
+NENDO_API double diagonal_of(const Points& points) noexcept;
 
 /// Returns what is strange about a mesh, though it can be deformed: it has no faces, or all its
 /// vertices are in one place. The words go behind the mesh's name; empty if nothing is strange.
-std::string_view remark_on(const Mesh& mesh) noexcept;
+NENDO_API std::string_view remark_on(const Mesh& mesh) noexcept;
 
 /// Returns the normals of the vertices, 3 by #vertices, of unit length: the means of the faces'
 /// normals, weighted by area. A vertex without a face of any area has a normal of zero.
-Points vertex_normals(const Mesh& mesh);
+NENDO_API Points vertex_normals(const Mesh& mesh);
 
 } // namespace nendo::deform

@@ -53,21 +53,23 @@ struct ReadModel {
 /// the file. Error: bad_input with the line, the byte offset or the part of the document, for
 /// example if there are no vertices, a coordinate is not finite, an index is wrong, or the file is
 /// cut off.
-Result<ReadModel> parse_model(std::span<const std::byte> bytes, std::string_view name,
-                              const ReadOptions& options = {});
+NENDO_API Result<ReadModel> parse_model(std::span<const std::byte> bytes, std::string_view name,
+                                        const ReadOptions& options = {});
 /// The same, without the notes.
-Result<Mesh> parse_mesh(std::span<const std::byte> bytes, std::string_view name);
+NENDO_API Result<Mesh> parse_mesh(std::span<const std::byte> bytes, std::string_view name);
 
 /// Reads and parses a file, and the materials (MTL), textures and buffers that it names. Those are
 /// read from the file's own folder and below it, and from nowhere else; a model may lack materials
 /// and textures. Blocks for as long as the disk does. Error: bad_input, also when the file is
 /// missing or cannot be read.
-Result<ReadModel> read_model(const std::filesystem::path& path, const ReadOptions& options = {});
+NENDO_API Result<ReadModel> read_model(const std::filesystem::path& path,
+                                       const ReadOptions& options = {});
 /// The same, without the notes.
-Result<Mesh> read_mesh(const std::filesystem::path& path);
+NENDO_API Result<Mesh> read_mesh(const std::filesystem::path& path);
 
 /// Returns what a file of that ending cannot keep of the mesh, as notes (ReadModel::notes).
-std::vector<std::string> lost_in_file(const std::filesystem::path& path, const Mesh& mesh);
+NENDO_API std::vector<std::string> lost_in_file(const std::filesystem::path& path,
+                                                const Mesh& mesh);
 
 /// Writes OBJ, PLY (binary little-endian) or STL (binary), by the ending of the path, in any case.
 /// It turns the model so that the axis `up` of the file points up. It writes a temporary file
@@ -78,7 +80,8 @@ std::vector<std::string> lost_in_file(const std::filesystem::path& path, const M
 /// empty. They never replace a file that was not written by this function. A PLY has colours of
 /// vertices alone, an STL has triangles alone. Blocks for as long as the disk does. Errors: usage
 /// (unknown ending), failed (a file cannot be written, or the model is too large for an STL).
-Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh,
-                        const std::filesystem::path& materials = {}, UpAxis up = UpAxis::y);
+NENDO_API Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh,
+                                  const std::filesystem::path& materials = {},
+                                  UpAxis up = UpAxis::y);
 
 } // namespace nendo::deform

@@ -6,6 +6,7 @@
 
 #include <array>
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/csrbf.hpp>
 
 namespace nendo::deform {
@@ -16,7 +17,7 @@ inline constexpr int most_midpoint_fields = 64;
 /// Call go(), then apply field() to the shape as long as next() is true, in the order in which
 /// displace() applies several fields. A step has two, of which the first is halfway. After the
 /// constructor nothing allocates, locks or calls the system, up to CsrbfSolver::lean_size points.
-class MidpointChain {
+class NENDO_API MidpointChain {
 public:
   /// Steps are a twentieth of the least radius, and the last is what remains, so that the shape is
   /// continuous in the way. A way longer than `most_steps` of them is cut into so many longer ones.

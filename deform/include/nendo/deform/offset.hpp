@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/mesh.hpp>
 
 namespace nendo::deform {
@@ -13,13 +14,13 @@ namespace nendo::deform {
 /// faces is at most four times its size from zero, this is 0, so that most models stay as their
 /// files have them. On another axis it is that middle, to a millionth of the size: the difference
 /// to a vertex of a face is then exact, and so is the sum (Sterbenz 1974). In file coordinates.
-Eigen::Vector3d usual_offset(const Mesh& mesh) noexcept;
+NENDO_API Eigen::Vector3d usual_offset(const Mesh& mesh) noexcept;
 
 /// Makes the vertices count from that place. The model stays where it is.
-void count_from(const Eigen::Vector3d& offset, Mesh& mesh) noexcept;
+NENDO_API void count_from(const Eigen::Vector3d& offset, Mesh& mesh) noexcept;
 
 /// Returns a place of a mesh with that offset as people look for it, in file coordinates:
 /// "(0, 1, 2.5)".
-std::string place_text(const Eigen::Vector3d& place, const Eigen::Vector3d& offset);
+NENDO_API std::string place_text(const Eigen::Vector3d& place, const Eigen::Vector3d& offset);
 
 } // namespace nendo::deform

@@ -19,7 +19,7 @@ namespace nendo::deform {
 
 /// The parts of a mesh: two vertices are of one part if edges lead from the one to the other. They
 /// are numbered from 0 by their first vertices. It does not change: thread-safe.
-class ModelParts {
+class NENDO_API ModelParts {
 public:
   /// Allocates. The layout is the mesh's.
   ModelParts(const Mesh& mesh, const BlockLayout& layout);
@@ -68,7 +68,7 @@ struct PartMoverOptions {
 /// is within reach or within the part's box. The part then goes with the frame, until the hand
 /// opens. What two hands hold goes with both: the line between them leads it, and the mean of their
 /// turns about that line.
-class PartMover {
+class NENDO_API PartMover {
 public:
   /// Allocates. Call release() before another deformer works on `shape`, which must outlive this.
   PartMover(SculptedShape& shape, std::shared_ptr<const ModelParts> parts,

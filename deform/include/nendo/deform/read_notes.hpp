@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo::deform {
 
 /// What a reader left out, changed or guessed (ReadModel::notes).
@@ -15,7 +17,7 @@ using ReadNotes = std::vector<std::string>;
 
 /// Sums notes that differ in their subject alone: the first subject is named, and the others are
 /// counted. So a thousand textures that are missing are one line.
-class NoteSum {
+class NENDO_API NoteSum {
 public:
   /// Adds the note `before 'subject'after`. A subject that was added with these words before counts
   /// once.
@@ -38,9 +40,9 @@ private:
 inline constexpr std::size_t max_notes = 20;
 
 /// Makes each note one printable line, and of those beyond max_notes one that counts them.
-void bound_notes(ReadNotes& notes);
+NENDO_API void bound_notes(ReadNotes& notes);
 
 /// Returns a name for a note: printable, in single quotes, and without the middle if it is long.
-std::string quoted_name(std::string_view name);
+NENDO_API std::string quoted_name(std::string_view name);
 
 } // namespace nendo::deform

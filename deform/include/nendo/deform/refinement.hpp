@@ -46,7 +46,7 @@ struct Refinement {
 /// edges there should be as long as Mesh::detail says. It never makes a self-intersection, keeps
 /// the Euler characteristic and the borders between materials, names and texture islands, and lets
 /// the mesh's bounding box be. The same bits for the same bits.
-class Refiner {
+class NENDO_API Refiner {
 public:
   /// bad_input, without the mesh's name, if it is not finite, closed and two-manifold
   /// (closed_manifold.hpp). Allocates.
@@ -73,9 +73,9 @@ private:
 
 /// Does to a mesh what was done to one of the same faces: Refinement::mesh, to the last bit.
 /// bad_input: it is not closed, or an operation cannot be done to it. Allocates.
-Result<Mesh> refined(const Mesh& mesh, std::span<const EdgeOperation> operations);
+NENDO_API Result<Mesh> refined(const Mesh& mesh, std::span<const EdgeOperation> operations);
 
 /// Returns a refinement's shape in blocks of its mesh's layout. Allocates.
-BlockShape shape_in_blocks(const Eigen::Matrix3Xf& shape, const BlockLayout& layout);
+NENDO_API BlockShape shape_in_blocks(const Eigen::Matrix3Xf& shape, const BlockLayout& layout);
 
 } // namespace nendo::deform

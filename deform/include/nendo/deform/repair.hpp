@@ -51,17 +51,17 @@ struct Repair {
 /// Parts that cannot be closed are left out, as a loose flap is, unless they have more surface than
 /// the rest. Allocates, blocks. Error: bad_input, with what is still wrong and where; the words go
 /// behind the model's name.
-Result<Repair> repair(const Mesh& mesh, const RepairOptions& options = {});
+NENDO_API Result<Repair> repair(const Mesh& mesh, const RepairOptions& options = {});
 
 /// Turns parts outwards whose own volume is negative, but not those that lie in another part, which
 /// are cavities; what lies in a part that is turned is turned with it. The mesh must be closed.
 /// Returns how many faces were turned. Allocates.
-std::size_t turn_outwards(Mesh& mesh);
+NENDO_API std::size_t turn_outwards(Mesh& mesh);
 /// Returns how many faces turn_outwards() would turn. Allocates.
-std::size_t count_inward_faces(const Mesh& mesh);
+NENDO_API std::size_t count_inward_faces(const Mesh& mesh);
 
 /// Returns what was done, one sentence for each kind, in words that go behind the model's name:
 /// "joined 12 vertices with others in the same place". Empty if there was nothing to do.
-std::vector<std::string> lines_of(const Repair& repair);
+NENDO_API std::vector<std::string> lines_of(const Repair& repair);
 
 } // namespace nendo::deform

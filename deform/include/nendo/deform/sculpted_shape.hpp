@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/step_note.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 
@@ -23,7 +24,7 @@ enum class HistoryMove : std::uint8_t {
   reset ///< goes to the original shape, as a step
 };
 
-class SculptedShape {
+class NENDO_API SculptedShape {
 public:
   /// Allocates for the vertices (3 by #vertices) and for the history: DeformerOptions::undo_bytes
   /// and undo_memory. With `first`, which has the layout's size, the shape is that one, and

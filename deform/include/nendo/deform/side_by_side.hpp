@@ -14,6 +14,6 @@ namespace nendo::deform {
 /// one entry; another material of the same name gets a new name. If some have colours or texture
 /// coordinates, the others get white, and (0, 0). Allocates. Error, without a name: bad_input (too
 /// large together).
-Result<Mesh> side_by_side(std::span<const Mesh> models);
+NENDO_API Result<Mesh> side_by_side(std::span<const Mesh> models);
 
 } // namespace nendo::deform

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 
@@ -23,12 +24,12 @@ struct Subdivision {
 /// A concave face that would fold about its middle becomes triangles before (triangles.hpp).
 /// Texture coordinates and vertices' colours follow, and faces keep materials and names. Faces of
 /// fewer than three corners stay. Allocates.
-Subdivision subdivide(const Mesh& mesh);
+NENDO_API Subdivision subdivide(const Mesh& mesh);
 
 /// Returns the shape of the subdivided mesh that a shape of the mesh before means: old vertices
 /// keep their bits, and a new one is moved by the mean of what its parents are moved by. `before`
 /// and `after` are the layouts of both meshes. Allocates.
-BlockShape subdivided(const BlockShape& shape, const BlockLayout& before,
-                      const Subdivision& subdivision, const BlockLayout& after);
+NENDO_API BlockShape subdivided(const BlockShape& shape, const BlockLayout& before,
+                                const Subdivision& subdivision, const BlockLayout& after);
 
 } // namespace nendo::deform

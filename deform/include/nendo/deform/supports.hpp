@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/mesh.hpp>
 
 namespace nendo::deform {
@@ -36,7 +37,7 @@ struct OwnSupport {
   friend bool operator==(const OwnSupport&, const OwnSupport&) = default;
 };
 
-struct Supports {
+struct NENDO_API Supports {
   /// At least one. Every start point has the kernel sum_s w_s psi(d / r_s), with one coefficient.
   std::vector<Support> shared;
   /// Functions with coefficients of their own. Of all fields that interpolate the control vectors,
@@ -52,11 +53,11 @@ struct Supports {
 
 /// Tells whether all of the box is within the largest radius of each of these start points, so that
 /// nothing in it stays where it is. False if the box or the list is empty, or the box is one point.
-bool reach_all_of(const Box& box, const Points& starts, const Supports& supports);
+NENDO_API bool reach_all_of(const Box& box, const Points& starts, const Supports& supports);
 
 /// Returns the least and the largest radius of all functions.
-double least_radius(const Supports& supports) noexcept;
-double largest_radius(const Supports& supports) noexcept;
+NENDO_API double least_radius(const Supports& supports) noexcept;
+NENDO_API double largest_radius(const Supports& supports) noexcept;
 
 /// Returns one shared function with this radius in model units, > 0.
 inline Supports one_radius(double radius) {
@@ -69,19 +70,20 @@ inline constexpr double default_common_weight = 0.01;
 /// radius that all share. Without `common`, the common radius is the least of them, with
 /// default_common_weight, so that no finger reaches farther than it was told to. Where all radii
 /// are equal, the result is that one radius, since the field would be the same.
-Supports with_common(std::vector<OwnSupport> own, std::optional<Support> common = {});
+NENDO_API Supports with_common(std::vector<OwnSupport> own, std::optional<Support> common = {});
 /// Writes the same for one radius a start point. Does not allocate if `out` held as many before. An
 /// empty list gives one radius of 1.
-void assign_radii(Supports& out, const Eigen::VectorXd& radii);
+NENDO_API void assign_radii(Supports& out, const Eigen::VectorXd& radii);
 
 /// Parses a radius like `10`, or several with weights like `10+40:0.5`: "+" stands between supports
 /// and ":" before a weight. Returns nullopt if the text has another form, or if a number is not
 /// finite, above 1e100, or not > 0.
-std::optional<std::vector<Support>> parse_supports(std::string_view text);
+NENDO_API std::optional<std::vector<Support>> parse_supports(std::string_view text);
 /// Parses one such text that all start points share, or several texts with commas between them,
 /// which are the fingers' own supports beside a common radius. The number of texts must divide
 /// `points`; they repeat, so that five texts for the ten fingertips of two hands make both hands
 /// alike. Returns nullopt if the text has another form.
-std::optional<Supports> parse_supports_by_point(std::string_view text, Eigen::Index points);
+NENDO_API std::optional<Supports> parse_supports_by_point(std::string_view text,
+                                                          Eigen::Index points);
 
 } // namespace nendo::deform

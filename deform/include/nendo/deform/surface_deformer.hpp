@@ -12,7 +12,7 @@
 namespace nendo::deform {
 
 /// Its functions do what those of Type1Deformer do, also without allocation.
-class SurfaceDeformer {
+class NENDO_API SurfaceDeformer {
 public:
   /// Allocates. The field must be of the shape's layout, and `shape` must outlive the deformer.
   SurfaceDeformer(SculptedShape& shape, std::shared_ptr<const SurfaceField> field);

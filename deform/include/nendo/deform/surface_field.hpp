@@ -58,7 +58,7 @@ struct SurfaceSetup {
   Eigen::VectorXd mask{};
 };
 
-class SurfaceField {
+class NENDO_API SurfaceField {
 public:
   /// Above it, control vectors of a millimetre would need coefficients of metres.
   static constexpr double most_condition = 1e4;

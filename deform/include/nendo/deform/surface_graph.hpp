@@ -8,13 +8,14 @@
 #include <span>
 #include <vector>
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/mesh.hpp>
 
 namespace nendo::deform {
 
 /// A place on a surface: the corners of a triangle of it, and their barycentric weights, whose sum
 /// is 1. It goes where the surface goes.
-struct SurfacePlace {
+struct NENDO_API SurfacePlace {
   std::array<std::uint32_t, 3> corners{};
   std::array<double, 3> weights{1.0, 0.0, 0.0};
 
@@ -28,13 +29,14 @@ struct SurfacePlace {
 /// Returns the place of the mesh's faces that is nearest to `to`, in model units. The mesh must
 /// have a face.
 /// With `parts` (SurfaceGraph::parts()), only of that part, which must have a face.
-SurfacePlace nearest_place(const Mesh& mesh, const Eigen::Vector3d& to,
-                           std::span<const std::uint32_t> parts = {}, std::uint32_t part = 0);
+NENDO_API SurfacePlace nearest_place(const Mesh& mesh, const Eigen::Vector3d& to,
+                                     std::span<const std::uint32_t> parts = {},
+                                     std::uint32_t part = 0);
 
 /// The ways along a surface: its edges, the diagonals of its faces, and the straight lines across
 /// an edge between two triangles. The shortest of them (Dijkstra 1959) are longer than true
 /// geodesics by some per cent, which does not show where a radius spans ten edges.
-class SurfaceGraph {
+class NENDO_API SurfaceGraph {
 public:
   /// `mesh` must outlive the graph. Allocates.
   explicit SurfaceGraph(const Mesh& mesh);

@@ -13,7 +13,7 @@
 
 namespace nendo::deform {
 
-class SurfaceStroke {
+class NENDO_API SurfaceStroke {
 public:
   /// Allocates; no other function does. The field must be of that layout.
   SurfaceStroke(const BlockLayout& layout, std::shared_ptr<const SurfaceField> field);

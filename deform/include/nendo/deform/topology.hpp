@@ -36,10 +36,10 @@ struct ChangedTopology {
 /// What would make a crumb, or let faces meet, is left alone. The same bits for the same bits.
 /// Error, which goes behind the model's name: bad_input (not finite, not closed, or not
 /// two-manifold). Allocates.
-Result<ChangedTopology> change_topology(const Mesh& mesh);
+NENDO_API Result<ChangedTopology> change_topology(const Mesh& mesh);
 
 /// Returns how many places there are where change_topology() would try something, of a mesh that it
 /// takes; 0 of others. Allocates.
-std::size_t count_thin_places(const Mesh& mesh);
+NENDO_API std::size_t count_thin_places(const Mesh& mesh);
 
 } // namespace nendo::deform

@@ -21,6 +21,7 @@
 #include <span>
 #include <vector>
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/mesh.hpp>
 
 namespace nendo::deform {
@@ -28,7 +29,7 @@ namespace nendo::deform {
 /// Three corners or vertices, counter-clockwise seen from where the face faces to.
 using Triangle = std::array<std::uint32_t, 3>;
 
-class FaceTriangles {
+class NENDO_API FaceTriangles {
 public:
   /// The places of the mesh's vertices decide. The mesh must outlive this.
   explicit FaceTriangles(const Mesh& mesh) : FaceTriangles(mesh, mesh.vertices) {}
@@ -88,18 +89,19 @@ void for_each_triangle(const Mesh& mesh, Visit visit) {
 }
 
 /// Returns the vertex indices of all triangles, three for each.
-std::vector<std::uint32_t> corners_of_triangles(const Mesh& mesh);
+NENDO_API std::vector<std::uint32_t> corners_of_triangles(const Mesh& mesh);
 
 /// Returns the mesh with some faces, one entry for each, replaced by their triangles, about which
 /// `places` decide. Their materials, names and texture coordinates follow.
-Mesh with_split_faces(const Mesh& mesh, const Points& places, const std::vector<bool>& is_split);
+NENDO_API Mesh with_split_faces(const Mesh& mesh, const Points& places,
+                                const std::vector<bool>& is_split);
 
 /// Returns the mesh so that the places of its own vertices give the triangles that `rest` gives:
 /// each face that they would cut in another way is replaced by its triangles. `rest` has the places
 /// of the first vertices; faces with later vertices stay. For a shape that becomes a model.
-Mesh with_triangles_of(Mesh mesh, const Points& rest);
+NENDO_API Mesh with_triangles_of(Mesh mesh, const Points& rest);
 
 /// Returns the model with its vertices in other places, with the triangles that it has.
-Mesh in_shape(const Mesh& model, Points places);
+NENDO_API Mesh in_shape(const Mesh& model, Points places);
 
 } // namespace nendo::deform

@@ -22,7 +22,7 @@ struct BoundedShape;
 /// Shapes are in blocks, in float, and within 1e-5 of the model's diagonal of what displace() makes
 /// in double. Functions do not allocate if `out` has the layout's size and there are at most
 /// CsrbfSolver::lean_size start points.
-class Type1Deformer {
+class NENDO_API Type1Deformer {
 public:
   /// Allocates for the rest shape (3 by #vertices) and for `control_points` start points. With
   /// `injective`, every apply() goes straight from the start points in as many links as it takes,

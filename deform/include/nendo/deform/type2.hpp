@@ -29,7 +29,7 @@ struct StrokeResult {
 
 /// The shape is in blocks, in float, and within 1e-5 of the model's diagonal of what displace()
 /// makes in double of the same piece.
-class Type2Deformer {
+class NENDO_API Type2Deformer {
 public:
   static constexpr int most_pieces = 16; ///< of one call, without `injective`
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include <nendo/base/api.hpp>
 #include <nendo/base/spsc_ring.hpp>
 
 namespace nendo::deform {
@@ -20,10 +21,10 @@ struct SavedChain {
   std::size_t count = 0;
 };
 /// Allocates `count` > 0 blocks and touches them all, so that their first use is no page fault.
-std::unique_ptr<SavedBlock[]> make_saved_blocks(std::size_t count, SavedChain& chain);
+NENDO_API std::unique_ptr<SavedBlock[]> make_saved_blocks(std::size_t count, SavedChain& chain);
 
 /// The memory of one deformer. The deformer keeps the blocks that it has taken and uses them again.
-class UndoMemory {
+class NENDO_API UndoMemory {
 public:
   /// refill() keeps `blocks_ahead` blocks of 832 bytes free until it has allocated `most_bytes`.
   UndoMemory(std::size_t blocks_ahead, std::size_t most_bytes);
@@ -54,6 +55,6 @@ private:
 };
 
 /// Returns half of usable_memory() in bytes: the bound of undo's memory where the user sets none.
-std::size_t half_of_memory();
+NENDO_API std::size_t half_of_memory();
 
 } // namespace nendo::deform

@@ -1,6 +1,7 @@
 #pragma once
 // The areas of the faces around each vertex, of which normals are made.
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/mesh.hpp>
 
 namespace nendo::deform {
@@ -9,6 +10,6 @@ namespace nendo::deform {
 /// squares of `unit`, a length in model units. `places` are the vertices, 3 by #vertices, and the
 /// mesh says which faces there are. A unit near the model's size keeps squares of any model finite.
 /// Allocates.
-Points vertex_areas(const Mesh& mesh, const Points& places, double unit);
+NENDO_API Points vertex_areas(const Mesh& mesh, const Points& places, double unit);
 
 } // namespace nendo::deform

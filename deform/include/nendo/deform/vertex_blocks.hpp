@@ -27,11 +27,11 @@ struct alignas(64) VertexBlock {
 struct alignas(32) BlockBounds {
   std::array<float, 8> sides;
 };
-BlockBounds bounds_of(const VertexBlock& block) noexcept;
+NENDO_API BlockBounds bounds_of(const VertexBlock& block) noexcept;
 
 /// A shape in blocks. Each block has a stamp. Different contents never have the same stamp in a
 /// process, so a copy is brought up to date by copying only the blocks that changed.
-class BlockShape {
+class NENDO_API BlockShape {
 public:
   BlockShape() = default;
   explicit BlockShape(std::vector<VertexBlock> blocks);
@@ -73,7 +73,7 @@ inline Eigen::Vector3f vertex_at(const BlockShape& shape, std::size_t place) noe
 /// origin + unit * coordinate. The origin is the middle of the model and the unit a power of two of
 /// about half its size, so that float is precise enough for models of any size and place. A layout
 /// does not change: thread-safe.
-class BlockLayout {
+class NENDO_API BlockLayout {
 public:
   /// vertices: 3 by #vertices, kept as the original. Allocates.
   explicit BlockLayout(Points vertices);

@@ -14,7 +14,7 @@
 namespace nendo::deform {
 
 /// It does not change: thread-safe.
-class VertexMask {
+class NENDO_API VertexMask {
 public:
   /// A block of which some vertices are not free.
   struct Part {
@@ -42,6 +42,7 @@ private:
 };
 
 /// Makes `to`, where a block was moved to from `from`, what the weights leave of that way.
-void hold_block(const VertexMask::Part& part, const VertexBlock& from, VertexBlock& to) noexcept;
+NENDO_API void hold_block(const VertexMask::Part& part, const VertexBlock& from,
+                          VertexBlock& to) noexcept;
 
 } // namespace nendo::deform

@@ -15,7 +15,7 @@ namespace nendo::deform {
 /// Numbers are places in block order (BlockLayout::order()). Vertices that are at the same place in
 /// the model, as along the seams of a texture, share one ring, so that what is made of rings moves
 /// them alike. Rings do not change: thread-safe.
-class VertexRings {
+class NENDO_API VertexRings {
 public:
   /// The layout must be the mesh's. Allocates.
   VertexRings(const Mesh& mesh, const BlockLayout& layout);
@@ -49,7 +49,7 @@ private:
 /// Returns six times the derivative of the enclosed volume by the vertex's place, in the units of
 /// the shape: the sum of the cross products of its triangles. It points outwards, and its length is
 /// twice the area of the triangles where they are flat.
-Eigen::Vector3d area_normal(const VertexRings& rings, const BlockShape& shape,
-                            std::size_t place) noexcept;
+NENDO_API Eigen::Vector3d area_normal(const VertexRings& rings, const BlockShape& shape,
+                                      std::size_t place) noexcept;
 
 } // namespace nendo::deform

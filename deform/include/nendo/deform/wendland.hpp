@@ -5,6 +5,8 @@
 #include <optional>
 #include <string_view>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo::deform {
 
 enum class Wendland { c0, c2, c4, c6 };
@@ -62,7 +64,7 @@ constexpr double wendland_steepest_at(Wendland kernel) noexcept {
 }
 
 /// Returns the name, for example "wendland-c2".
-std::string_view name_of(Wendland kernel) noexcept;
-std::optional<Wendland> wendland_named(std::string_view name) noexcept;
+NENDO_API std::string_view name_of(Wendland kernel) noexcept;
+NENDO_API std::optional<Wendland> wendland_named(std::string_view name) noexcept;
 
 } // namespace nendo::deform

@@ -18,7 +18,7 @@ struct DeviceEvent {
 
 /// Has no thread of its own: next() waits for the system's events. No event is lost between two
 /// calls. Asking thread, but for stop().
-class DeviceWatcher {
+class NENDO_API DeviceWatcher {
 public:
   /// Lists what is there and begins to watch. Error: failed (the system allows no more watches).
   static Result<std::unique_ptr<DeviceWatcher>> open();

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include <nendo/base/api.hpp>
 #include <nendo/udev/usb_identity.hpp>
 
 namespace nendo::driver {
@@ -57,18 +58,18 @@ struct GloveCandidate {
 
 /// Returns the serial ports and USB gloves, one entry a device, identified gloves first. A device
 /// that is pulled out meanwhile is left out. Blocks for less than a second.
-std::vector<GloveCandidate> find_gloves();
+NENDO_API std::vector<GloveCandidate> find_gloves();
 
 /// Returns the port that a path leads to: follows symbolic links, e.g. /dev/nendo/right to
 /// /dev/ttyUSB0, up to a name that the kernel knows as a serial port. A path that leads nowhere is
 /// returned as it is. Reads the file system; opens nothing.
-std::string resolve_port(const std::string& path);
+NENDO_API std::string resolve_port(const std::string& path);
 
 /// Returns the command that sets the latency timer of this port to 1 ms.
-std::string latency_timer_remedy(const std::string& port);
+NENDO_API std::string latency_timer_remedy(const std::string& port);
 
 /// Returns which of the programs run that open serial adapters unasked: "ModemManager", "brltty".
 /// Reads /proc; blocks briefly.
-std::vector<std::string> running_port_grabbers();
+NENDO_API std::vector<std::string> running_port_grabbers();
 
 } // namespace nendo::driver

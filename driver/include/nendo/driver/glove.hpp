@@ -79,7 +79,7 @@ struct GloveStats {
 };
 
 /// Asking thread, but for the functions that are thread-safe.
-class Glove {
+class NENDO_API Glove {
 public:
   Glove() = default;
   Glove(const Glove&) = delete;

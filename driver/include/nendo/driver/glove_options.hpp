@@ -14,20 +14,21 @@ namespace nendo::driver {
 
 /// Fails with the error `usage` if `spec` has an option that is not `known`. The message names the
 /// option and those that are known.
-Result<void> allow_options(const GloveSpec& spec, std::initializer_list<std::string_view> known);
+NENDO_API Result<void> allow_options(const GloveSpec& spec,
+                                     std::initializer_list<std::string_view> known);
 
 /// Returns the option's number, or the first of `known` if the option is missing. Error: usage,
 /// naming all of `known`.
-Result<int> number_option(const GloveSpec& spec, std::string_view key,
-                          std::initializer_list<int> known);
+NENDO_API Result<int> number_option(const GloveSpec& spec, std::string_view key,
+                                    std::initializer_list<int> known);
 
 /// Returns the option's word, or the first of `known` if the option is missing. Error: usage,
 /// naming all of `known`. `known` must be of literals.
-Result<std::string_view> word_option(const GloveSpec& spec, std::string_view key,
-                                     std::initializer_list<std::string_view> known);
+NENDO_API Result<std::string_view> word_option(const GloveSpec& spec, std::string_view key,
+                                               std::initializer_list<std::string_view> known);
 
 /// Returns the side of `hand=left|right`, or nothing if the option is missing. Error: usage.
-Result<std::optional<Side>> hand_option(const GloveSpec& spec);
+NENDO_API Result<std::optional<Side>> hand_option(const GloveSpec& spec);
 
 /// Decides which hand a glove is on: what the option says, or else the glove, or else the caller's
 /// wish, or else right.
@@ -39,13 +40,13 @@ struct ChosenHand {
   Side side = Side::right;
   std::string_view source; ///< glove, option, caller or assumed
 };
-ChosenHand choose_hand(std::optional<Side> glove, const SideOptions& wishes) noexcept;
+NENDO_API ChosenHand choose_hand(std::optional<Side> glove, const SideOptions& wishes) noexcept;
 
 /// Returns a sentence for people where the option contradicts the glove, or an empty text.
-std::string hand_override(std::optional<Side> glove, const SideOptions& wishes);
+NENDO_API std::string hand_override(std::optional<Side> glove, const SideOptions& wishes);
 
 /// Fails with the error `usage` if `spec` names no port. `example` is a specification that names
 /// one.
-Result<void> require_port(const GloveSpec& spec, std::string_view example);
+NENDO_API Result<void> require_port(const GloveSpec& spec, std::string_view example);
 
 } // namespace nendo::driver

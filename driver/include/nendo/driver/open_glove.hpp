@@ -28,7 +28,7 @@ struct GloveSpec {
 };
 
 /// Error: usage, naming what cannot be read in it.
-Result<GloveSpec> parse_glove_spec(std::string_view text);
+NENDO_API Result<GloveSpec> parse_glove_spec(std::string_view text);
 
 /// Returns the joint angle of each sensor, by slot, in radians, at a time since start() in seconds,
 /// at least 0. Flexion is positive; abduction is the angle between neighbours. The glove's thread
@@ -74,11 +74,11 @@ struct GloveContext {
 /// wants it for: `auto` opens no other, and a simulated hand is that one (right if any will do).
 /// Errors: usage (kind, option), no_device (missing, or does not answer like a glove),
 /// no_permission; those of what `context` adds.
-Result<std::unique_ptr<Glove>> open_glove(std::string_view spec,
-                                          std::optional<Side> side = std::nullopt,
-                                          const GloveContext& context = {});
+NENDO_API Result<std::unique_ptr<Glove>> open_glove(std::string_view spec,
+                                                    std::optional<Side> side = std::nullopt,
+                                                    const GloveContext& context = {});
 
 /// Returns the library's drivers, and those of `context` after them.
-std::vector<GloveDriver> glove_drivers(const GloveContext& context = {});
+NENDO_API std::vector<GloveDriver> glove_drivers(const GloveContext& context = {});
 
 } // namespace nendo::driver

@@ -32,20 +32,20 @@ struct RecordCounts {
   friend bool operator==(const RecordCounts&, const RecordCounts&) = default;
 };
 
-RecordCounts counts_of(const GloveStats& stats) noexcept;
+NENDO_API RecordCounts counts_of(const GloveStats& stats) noexcept;
 /// Returns what was counted since `earlier`.
-RecordCounts since(const RecordCounts& earlier, const RecordCounts& now) noexcept;
+NENDO_API RecordCounts since(const RecordCounts& earlier, const RecordCounts& now) noexcept;
 
 /// Returns the counts with the names that they have in JSON: sent, delivered, missed, refused,
 /// bad_records, clamped_values. `sent` and `missed` have no value where nobody knows them.
-std::array<std::pair<std::string_view, std::optional<std::uint64_t>>, 6>
+NENDO_API std::array<std::pair<std::string_view, std::optional<std::uint64_t>>, 6>
 by_name(const RecordCounts& counts) noexcept;
 /// Returns the same for people: "457 sent, 359 delivered, 98 missed, 0 refused, 0 bad records".
 /// What is not known is said to be so, and clamped values are only named if there are some.
-std::string in_words(const RecordCounts& counts);
+NENDO_API std::string in_words(const RecordCounts& counts);
 
 /// Returns "72.0 records a second of the 90.0 that were asked for" where losses cannot be counted
 /// and the rate shows that there are some, by 5 % or more; else an empty text.
-std::string rate_shortfall(const GloveInfo& info, const GloveStats& stats);
+NENDO_API std::string rate_shortfall(const GloveInfo& info, const GloveStats& stats);
 
 } // namespace nendo::driver

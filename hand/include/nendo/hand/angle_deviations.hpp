@@ -20,7 +20,7 @@ using AngleDeviations = std::array<double, angle_count>;
 /// (CALIBRATION.md): the median error of each group, as that of a normal distribution; a DIP
 /// joint's by how far its PIP joint bends, least at 40 to 65 degrees; of other estimates by those
 /// of the joint that they rest on, and assumed. Finite. Wait-free.
-AngleDeviations angle_deviations(const JointAngles& angles, SensorMask present,
-                                 SensorMask left_out = {}) noexcept;
+NENDO_API AngleDeviations angle_deviations(const JointAngles& angles, SensorMask present,
+                                           SensorMask left_out = {}) noexcept;
 
 } // namespace nendo::hand

@@ -45,6 +45,6 @@ using AngleSources = std::array<AngleSource, angle_count>;
 /// Returns where joint_angles() takes each angle from, for samples of a glove that has these
 /// sensors: GloveInfo::sensors, or any sample's `present`, of which some may be `left_out`. The
 /// result is constant for a glove and what is left out of it. Wait-free.
-AngleSources angle_sources(SensorMask present, SensorMask left_out = {}) noexcept;
+NENDO_API AngleSources angle_sources(SensorMask present, SensorMask left_out = {}) noexcept;
 
 } // namespace nendo::hand

@@ -9,7 +9,7 @@ namespace nendo::hand {
 
 /// Lengths in metres. A bone runs from joint to joint, a distal bone from its joint to the tip of
 /// the finger.
-struct BoneLengths {
+struct NENDO_API BoneLengths {
   static constexpr double least_m = 0.001;
   static constexpr double most_m = 0.200;
 

@@ -24,7 +24,7 @@
 
 namespace nendo::hand {
 
-class BvhFormat {
+class NENDO_API BvhFormat {
 public:
   static constexpr double units_per_metre = 100.0;
   /// The width of a frame count. Blanks behind it fill the width, so that it can be written over.

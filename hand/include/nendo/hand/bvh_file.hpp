@@ -19,7 +19,7 @@
 namespace nendo::hand {
 
 /// A BVH file that is being written. Its functions block as long as the disk does.
-class BvhFile {
+class NENDO_API BvhFile {
 public:
   /// Creates FILE.part, without frames. Errors: usage (a rate that is not above 0 and at most 1e6,
   /// a skeleton that is not finite), failed (the file cannot be written or is not a regular file,

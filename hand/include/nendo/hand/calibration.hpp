@@ -40,7 +40,7 @@ inline constexpr std::array<Coupling, 8> couplings{{
     {Sensor::ring_pinky_abduction, Sensor::pinky_mcp},
 }};
 
-struct Calibration {
+struct NENDO_API Calibration {
   std::array<SensorCalibration, sensor_slots> sensors{};
   /// One factor for each of `couplings`: radians that are added to `of` for each radian that the
   /// line of `by` reads.
@@ -69,6 +69,6 @@ struct Calibration {
 /// the wrist, which turns both ways, from one end to the other. Counts of a bare converter are
 /// taken for a CyberGlove's, whose typical 8-bit values are scaled to `most`. With `most` = 0 every
 /// gain is 0.
-Calibration default_calibration(CountScale scale = {}) noexcept;
+NENDO_API Calibration default_calibration(CountScale scale = {}) noexcept;
 
 } // namespace nendo::hand

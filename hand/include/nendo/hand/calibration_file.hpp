@@ -26,7 +26,7 @@ struct SensorQuality {
   friend bool operator==(const SensorQuality&, const SensorQuality&) = default;
 };
 /// Moves the ends that the wearer reached, as the sensor slips, within what the glove can count.
-void move_ends(SensorQuality& quality, double by_counts, CountScale glove) noexcept;
+NENDO_API void move_ends(SensorQuality& quality, double by_counts, CountScale glove) noexcept;
 
 /// A wearer's calibration with its origin. Texts are one line of UTF-8, at most 200 bytes. A sensor
 /// whose gain is 0 is not calibrated.
@@ -45,20 +45,20 @@ struct WearerCalibration {
 };
 
 /// Returns the counts that the wearer reached, of the sensors of which the calibration tells them.
-CountRanges reached_ends(const WearerCalibration& wearer) noexcept;
+NENDO_API CountRanges reached_ends(const WearerCalibration& wearer) noexcept;
 
 /// Reads the text of a calibration file. The reader is strict: every key must be known, of the
 /// right type, and present. `name` is what errors call the text. Fails with bad_input, "NAME:LINE:
 /// what; remedy".
-Result<WearerCalibration> parse_calibration(std::string_view text, std::string_view name);
+NENDO_API Result<WearerCalibration> parse_calibration(std::string_view text, std::string_view name);
 /// Returns a text that parse_calibration() reads back to the same bits, except that offsets of
 /// uncalibrated sensors become 0. The same calibration gives the same text. Fails with bad_input,
 /// naming what cannot be written.
-Result<std::string> calibration_text(const WearerCalibration& wearer);
+NENDO_API Result<std::string> calibration_text(const WearerCalibration& wearer);
 
 /// Reads a calibration file. Fails with bad_input, also if it is not a regular file or is larger
 /// than 1 MiB.
-Result<WearerCalibration> read_calibration(const std::filesystem::path& path);
+NENDO_API Result<WearerCalibration> read_calibration(const std::filesystem::path& path);
 
 /// How many earlier versions stay beside a calibration file.
 inline constexpr std::size_t most_earlier_versions = 20;
@@ -67,19 +67,19 @@ inline constexpr std::size_t most_earlier_versions = 20;
 /// file or the whole new one. Makes the folder if need be. An old file stays as NAME.DATE.toml
 /// beside it (the newest 20 stay); its path is returned, or an empty path if there was none.
 /// Errors: bad_input (as calibration_text()), failed (the disk).
-Result<std::filesystem::path> write_calibration(const std::filesystem::path& path,
-                                                const WearerCalibration& wearer);
+NENDO_API Result<std::filesystem::path> write_calibration(const std::filesystem::path& path,
+                                                          const WearerCalibration& wearer);
 /// Takes the file out of use: it becomes an earlier version of itself, whose path is returned.
 /// Error: failed.
-Result<std::filesystem::path> retire_calibration(const std::filesystem::path& path);
+NENDO_API Result<std::filesystem::path> retire_calibration(const std::filesystem::path& path);
 /// Tells whether a path is named as an earlier version is.
-bool is_earlier_version(const std::filesystem::path& path);
+NENDO_API bool is_earlier_version(const std::filesystem::path& path);
 
 /// Returns the calibration in the counts of a glove of this scale. A sensor that is not calibrated
 /// gets the default's line. All sensors do if only one of the two scales is a whole range.
-Calibration calibration_for(const WearerCalibration& wearer, CountScale glove) noexcept;
+NENDO_API Calibration calibration_for(const WearerCalibration& wearer, CountScale glove) noexcept;
 
 /// Returns a time as RFC 3339 writes it in UTC: "2026-11-21T19:27:05Z".
-std::string rfc3339(std::chrono::sys_seconds time);
+NENDO_API std::string rfc3339(std::chrono::sys_seconds time);
 
 } // namespace nendo::hand

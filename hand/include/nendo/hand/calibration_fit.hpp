@@ -27,7 +27,7 @@
 namespace nendo::hand {
 
 /// Returns the sensors of a finger's joints, with those of the gaps beside it. Wait-free.
-SensorMask sensors_of(Finger finger) noexcept;
+NENDO_API SensorMask sensors_of(Finger finger) noexcept;
 
 struct PoseReading {
   PoseId pose = PoseId::flat;
@@ -119,7 +119,8 @@ struct CalibrationFit {
 /// Fails with bad_input on: a reading that is not finite, out of scale, saturated or lacks a
 /// sensor; flat or fist missing; a sensor of a finger's first two joints that moves the wrong way
 /// or not at all. Other contradictions refuse nobody; their evidence is set aside.
-Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Side side,
-                                       SensorMask sensors, const FitOptions& options = {});
+NENDO_API Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Side side,
+                                                 SensorMask sensors,
+                                                 const FitOptions& options = {});
 
 } // namespace nendo::hand

@@ -76,19 +76,19 @@ struct CalibrationPose {
 };
 
 /// Returns the description of a pose. Wait-free.
-const CalibrationPose& pose_of(PoseId id) noexcept;
-std::optional<PoseId> pose_named(std::string_view name) noexcept;
+NENDO_API const CalibrationPose& pose_of(PoseId id) noexcept;
+NENDO_API std::optional<PoseId> pose_named(std::string_view name) noexcept;
 
 /// Returns flat and fist, the poses of the quick calibration.
-std::span<const PoseId> quick_poses() noexcept;
+NENDO_API std::span<const PoseId> quick_poses() noexcept;
 /// Returns all poses, in an order that is easy on the hand.
-std::span<const PoseId> full_poses() noexcept;
+NENDO_API std::span<const PoseId> full_poses() noexcept;
 /// Returns the poses that tell how far sensors have slipped, in some twenty seconds: flat, fist and
 /// the four pinches.
-std::span<const PoseId> touch_up_poses() noexcept;
+NENDO_API std::span<const PoseId> touch_up_poses() noexcept;
 /// Returns the poses that a full calibration asks for: all of them, then some once or twice more,
 /// because they tell most, or alone, about a joint. No take asks for the same pose as the take
 /// before it.
-std::span<const PoseId> full_takes() noexcept;
+NENDO_API std::span<const PoseId> full_takes() noexcept;
 
 } // namespace nendo::hand

@@ -21,18 +21,18 @@ struct CalibrationFolders {
 /// Returns $XDG_CONFIG_HOME/nendo/calibrations (without that variable in ~/.config, where the home
 /// folder comes from $HOME or else from the password file), and /etc/nendo/calibrations. Reads the
 /// environment: no other thread may set it meanwhile.
-CalibrationFolders calibration_folders();
+NENDO_API CalibrationFolders calibration_folders();
 
 /// Returns "USER+GLOVE+HAND.toml", where an empty serial number becomes "any". Different users,
 /// gloves and hands give different names. Every name is at most 200 characters of [A-Za-z0-9_+%.-],
 /// whatever the arguments.
-std::string calibration_file_name(const std::string& user, const std::string& glove_serial,
-                                  Side side);
+NENDO_API std::string calibration_file_name(const std::string& user,
+                                            const std::string& glove_serial, Side side);
 
 /// Returns where this user's own calibration of that name is, or would be. Error: failed, without a
 /// folder of this user's own.
-Result<std::filesystem::path> own_calibration_path(const std::string& user,
-                                                   const std::string& glove_serial, Side side);
+NENDO_API Result<std::filesystem::path>
+own_calibration_path(const std::string& user, const std::string& glove_serial, Side side);
 
 struct StoredCalibration {
   std::filesystem::path path;
@@ -47,7 +47,7 @@ struct CalibrationList {
 
 /// Reads the calibrations of both folders except the earlier versions. A missing folder counts as
 /// empty. Blocks.
-CalibrationList list_calibrations(const CalibrationFolders& folders);
+NENDO_API CalibrationList list_calibrations(const CalibrationFolders& folders);
 
 /// What is known of a glove that needs a calibration.
 struct GloveAtHand {
@@ -73,10 +73,11 @@ struct CalibrationChoice {
 /// Returns the best calibration for that glove, or nullopt. It is never one of the other hand, of
 /// another model or of the other kind of counts. Among equally good matches an own file goes before
 /// a shared one, then the newer file, then the one listed first. `files` must outlive the choice.
-std::optional<CalibrationChoice> choose_calibration(const std::vector<StoredCalibration>& files,
-                                                    const GloveAtHand& glove);
+NENDO_API std::optional<CalibrationChoice>
+choose_calibration(const std::vector<StoredCalibration>& files, const GloveAtHand& glove);
 
 /// Tells whether choose_calibration() returns this file for its own user, glove and hand.
-bool is_in_force(const StoredCalibration& file, const std::vector<StoredCalibration>& files);
+NENDO_API bool is_in_force(const StoredCalibration& file,
+                           const std::vector<StoredCalibration>& files);
 
 } // namespace nendo::hand

@@ -30,9 +30,9 @@ struct NearestOfBody {
 /// Returns the nearest place of one part (its `part` is 0). It is exact, inside as well as outside,
 /// also where radii differ. On the medial axis or triangle, where several places are nearest, it
 /// is one of them. Wait-free.
-NearestOfBody nearest_of(const BodyPart& part, const Eigen::Vector3d& place_m) noexcept;
+NENDO_API NearestOfBody nearest_of(const BodyPart& part, const Eigen::Vector3d& place_m) noexcept;
 
-class HandBody {
+class NENDO_API HandBody {
 public:
   /// Three bones a finger and the thumb's three; of the palm, six triangles between metacarpals and
   /// two towards the thumb; and three webs between the fingers.

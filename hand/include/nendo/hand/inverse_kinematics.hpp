@@ -22,7 +22,7 @@ struct AngleLimits {
 };
 
 /// Returns the whole ranges of joint_limits. Wait-free.
-AngleLimits default_angle_limits() noexcept;
+NENDO_API AngleLimits default_angle_limits() noexcept;
 
 struct FingertipTarget {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
@@ -74,9 +74,10 @@ struct InverseSolution {
 /// forearm's end. `start` is the previous pose or the rest pose. What has no target keeps its
 /// angles, clamped to the limits (an angle that is not finite counts as zero). The same input gives
 /// the same result. Wait-free, bounded time, no allocation; the result is finite.
-InverseSolution inverse_kinematics(const HandSkeleton& skeleton,
-                                   const Eigen::Isometry3d& T_world_wrist,
-                                   const FingertipTargets& targets, const JointAngles& start,
-                                   const InverseOptions& options = {}) noexcept;
+NENDO_API InverseSolution inverse_kinematics(const HandSkeleton& skeleton,
+                                             const Eigen::Isometry3d& T_world_wrist,
+                                             const FingertipTargets& targets,
+                                             const JointAngles& start,
+                                             const InverseOptions& options = {}) noexcept;
 
 } // namespace nendo::hand

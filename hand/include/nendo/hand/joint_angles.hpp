@@ -22,7 +22,7 @@ struct FingerAngles {
 
 /// The angles of all joints. All zero is the flat hand with closed fingers and the thumb beside the
 /// index finger.
-struct JointAngles {
+struct NENDO_API JointAngles {
   double thumb_roll_rad = 0.0;      ///< > 0 carries the thumb across in front of the palm
   double thumb_abduction_rad = 0.0; ///< > 0 opens the web between thumb and index finger
   double thumb_mcp_flexion_rad = 0.0;
@@ -65,15 +65,15 @@ struct JointAngles {
 /// more: from the same joints of the fingers beside, too, and where nothing tells them, they are
 /// those of a hand at rest.
 /// Wait-free; the result is finite.
-JointAngles joint_angles(const GloveSample& sample, const Calibration& calibration,
-                         SensorMask left_out = {}) noexcept;
+NENDO_API JointAngles joint_angles(const GloveSample& sample, const Calibration& calibration,
+                                   SensorMask left_out = {}) noexcept;
 
 /// Returns Calibration::angles_rad(), where the angles of sensors that are `left_out` follow from
 /// the others: a finger's flexion from the same joints beside it and from its own other joints, a
 /// gap from the other gaps, the thumb's flexion from its other one; and where nothing tells them,
 /// as of a hand at rest. Without any left out it returns the same bits as that. Wait-free; finite
 /// if the measured angles are.
-SensorAngles filled_angles_rad(const GloveSample& sample, const Calibration& calibration,
-                               SensorMask left_out) noexcept;
+NENDO_API SensorAngles filled_angles_rad(const GloveSample& sample, const Calibration& calibration,
+                                         SensorMask left_out) noexcept;
 
 } // namespace nendo::hand

@@ -18,8 +18,8 @@ namespace nendo::hand {
 enum class FilterKind : std::uint8_t { off, one_euro };
 
 /// Returns "off" or "one-euro".
-std::string_view name_of(FilterKind kind) noexcept;
-std::optional<FilterKind> filter_named(std::string_view name) noexcept;
+NENDO_API std::string_view name_of(FilterKind kind) noexcept;
+NENDO_API std::optional<FilterKind> filter_named(std::string_view name) noexcept;
 
 /// The cutoff of a joint is min_cutoff_hz + beta_hz_per_rad_s |speed|. The defaults were chosen
 /// with a CyberGlove's count of 0.0125 rad at 90 Hz: a flicker between two counts is reduced to a
@@ -45,7 +45,7 @@ struct FilterLatency {
   double moving_s = 0.0;
 };
 
-class JointFilter {
+class NENDO_API JointFilter {
 public:
   /// After a pause longer than this, or if the clock goes back farther, the filter begins anew.
   static constexpr double longest_interval_s = 0.5;

@@ -12,7 +12,7 @@
 namespace nendo::hand {
 
 /// A joint's range of motion, radians: least < soft_least < soft_most < most.
-struct JointLimit {
+struct NENDO_API JointLimit {
   double least_rad;
   double soft_least_rad; ///< below it, angles are compressed
   double soft_most_rad;  ///< above it, angles are compressed

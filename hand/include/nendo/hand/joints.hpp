@@ -8,6 +8,8 @@
 #include <optional>
 #include <string_view>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo::hand {
 
 enum class Joint : std::uint8_t {
@@ -46,18 +48,18 @@ constexpr std::size_t index_of(Joint joint) noexcept {
 }
 
 /// Returns "thumb_metacarpal" and so on.
-std::string_view name_of(Joint joint) noexcept;
+NENDO_API std::string_view name_of(Joint joint) noexcept;
 
 /// Returns the joint that carries this one, or nullopt for the wrist, which is the root. The wrist
 /// carries the palm.
-std::optional<Joint> parent_of(Joint joint) noexcept;
+NENDO_API std::optional<Joint> parent_of(Joint joint) noexcept;
 
 enum class Finger : std::uint8_t { thumb, index, middle, ring, little };
 
 inline constexpr std::size_t finger_count = 5;
 
 /// Returns "thumb" to "little".
-std::string_view name_of(Finger finger) noexcept;
+NENDO_API std::string_view name_of(Finger finger) noexcept;
 
 inline constexpr std::array<Joint, finger_count> fingertips{
     Joint::thumb_tip, Joint::index_tip, Joint::middle_tip, Joint::ring_tip, Joint::little_tip};
@@ -77,8 +79,8 @@ inline constexpr std::size_t paper_node_count = 25;
 
 /// Returns the node of the paper for this joint, or nullopt for the palm, which the paper does not
 /// have.
-std::optional<PaperNode> paper_node_of(Joint joint) noexcept;
+NENDO_API std::optional<PaperNode> paper_node_of(Joint joint) noexcept;
 /// Returns the joint for a node of the paper, or nullopt if the paper has no such node.
-std::optional<Joint> joint_of(PaperNode node) noexcept;
+NENDO_API std::optional<Joint> joint_of(PaperNode node) noexcept;
 
 } // namespace nendo::hand

@@ -19,7 +19,7 @@ inline constexpr double open_pinch_m = 0.022;
 /// more easily. The result depends on nothing else, and changes smoothly with the angles, so that
 /// nothing jumps when a pinch begins or ends. Angles that are not finite are returned as they are.
 /// Wait-free, no allocation.
-JointAngles close_pinches(const JointAngles& angles, const HandSkeleton& skeleton,
-                          SensorMask present, SensorMask left_out = {}) noexcept;
+NENDO_API JointAngles close_pinches(const JointAngles& angles, const HandSkeleton& skeleton,
+                                    SensorMask present, SensorMask left_out = {}) noexcept;
 
 } // namespace nendo::hand

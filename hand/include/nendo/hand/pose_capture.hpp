@@ -27,7 +27,7 @@ enum class CaptureState : std::uint8_t {
 };
 
 /// Watches samples until a pose is held. Wait-free, no allocation.
-class PoseCapture {
+class NENDO_API PoseCapture {
 public:
   /// These limits are for 255 counts. Other scales have them in proportion, but never so low that a
   /// flickering last bit exceeds them.

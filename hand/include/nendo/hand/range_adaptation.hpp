@@ -43,11 +43,11 @@ struct LearnedRanges {
 
 /// Returns the line that such a range leads to in the end; a gain of 0 for one that was not
 /// learned.
-SensorCalibration line_of(std::size_t slot, const SensorRange& range) noexcept;
+NENDO_API SensorCalibration line_of(std::size_t slot, const SensorRange& range) noexcept;
 /// Returns a state from which another learner goes on: its lines are those that the ranges lead to.
-LearnedRanges learned_from(const SensorRanges& ranges, Side side) noexcept;
+NENDO_API LearnedRanges learned_from(const SensorRanges& ranges, Side side) noexcept;
 
-class RangeAdaptation {
+class NENDO_API RangeAdaptation {
 public:
   /// Learning changes the angle of a count at most this fast.
   static constexpr double most_drift_rad_s = 0.1;

@@ -9,7 +9,7 @@
 
 namespace nendo::hand {
 
-struct CountRanges {
+struct NENDO_API CountRanges {
   std::array<double, sensor_slots> low_counts{};
   std::array<double, sensor_slots> high_counts{};
   SensorMask present; ///< the slots for which the two are set; none: nothing is known
@@ -19,7 +19,7 @@ struct CountRanges {
 };
 
 /// Watches samples and keeps the ranges. Wait-free, no allocation.
-class RangeCapture {
+class NENDO_API RangeCapture {
 public:
   RangeCapture() = default;
   /// Continues from the ranges that were seen before.

@@ -11,7 +11,7 @@
 
 namespace nendo::hand {
 
-class SensorGate {
+class NENDO_API SensorGate {
 public:
   /// Fast finger flexion peaks near 20 to 25 rad/s (flicks and taps at full effort); the wrist and
   /// spreading are slower.

@@ -28,7 +28,7 @@ struct HandSize {
   WearerShape shape{};
 };
 
-struct HandPose {
+struct NENDO_API HandPose {
   std::array<Eigen::Isometry3d, joint_count> joints; ///< T_world_joint, by index_of(Joint); metres
 
   const Eigen::Isometry3d& operator[](Joint joint) const noexcept {
@@ -47,7 +47,7 @@ struct ThumbPronation {
   }
 };
 
-class HandSkeleton {
+class NENDO_API HandSkeleton {
 public:
   explicit HandSkeleton(Side side, const HandSize& size = {});
 

@@ -27,7 +27,7 @@ constexpr double least_slip_counts(CountScale counts) noexcept {
   return 0.5 * counts.most / 255.0;
 }
 
-class SlipAdaptation {
+class NENDO_API SlipAdaptation {
 public:
   /// Learning changes angles at most this fast.
   static constexpr double most_drift_rad_s = 0.02;

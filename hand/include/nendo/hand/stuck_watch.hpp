@@ -14,7 +14,7 @@ namespace nendo::hand {
 
 /// Watches the samples of a glove. What it finds depends on them alone, so that a replay finds the
 /// same. Wait-free, no allocation.
-class StuckWatch {
+class NENDO_API StuckWatch {
 public:
   static constexpr double least_still_s = 3.0;       ///< before a sensor is taken to be stuck
   static constexpr double least_swing_counts = 16.0; ///< of 255: about 11 degrees

@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <optional>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo::hand {
 
-class SwingFinder {
+class NENDO_API SwingFinder {
 public:
   struct End {
     double counts = 0.0;

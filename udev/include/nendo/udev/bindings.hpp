@@ -33,20 +33,20 @@ struct Binding {
 /// they show whether the serial number is this adapter's alone. Errors: no_device (`device` is not
 /// among them), usage (it has no adapter, or nothing tells its adapter from another one; the
 /// message says what to do).
-Result<Binding> make_binding(std::string_view device, std::span<const SerialPort> ports, Side side,
-                             bool by_place);
+NENDO_API Result<Binding> make_binding(std::string_view device, std::span<const SerialPort> ports,
+                                       Side side, bool by_place);
 
 /// Returns the binding's rule, one line without the newline. Error: bad_input, if udev could take
 /// the adapter's serial number for something else.
-Result<std::string> rule_of(const Binding& binding);
+NENDO_API Result<std::string> rule_of(const Binding& binding);
 
 /// Returns the file `text` with `rule` as the binding of this hand. It replaces an earlier binding
 /// of the hand or of the same adapter; every other line stays. An empty text becomes a whole file.
-std::string with_binding(std::string_view text, Side side, std::string_view rule);
+NENDO_API std::string with_binding(std::string_view text, Side side, std::string_view rule);
 /// Returns the file `text` without that hand's binding: the same text if there is none, an empty
 /// text if nothing of the user's is left.
-std::string without_binding(std::string_view text, Side side);
+NENDO_API std::string without_binding(std::string_view text, Side side);
 /// Returns the rule of that hand's binding; nullopt if there is none.
-std::optional<std::string> binding_in(std::string_view text, Side side);
+NENDO_API std::optional<std::string> binding_in(std::string_view text, Side side);
 
 } // namespace nendo::udev

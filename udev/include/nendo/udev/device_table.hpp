@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include <nendo/base/api.hpp>
 #include <nendo/udev/usb_identity.hpp>
 
 namespace nendo::udev {
@@ -24,16 +25,16 @@ struct UsbAdapter {
   std::string_view module; ///< the kernel's driver
 };
 
-std::span<const UsbGloveModel> usb_glove_models() noexcept;
-std::span<const UsbAdapter> usb_adapters() noexcept;
+NENDO_API std::span<const UsbGloveModel> usb_glove_models() noexcept;
+NENDO_API std::span<const UsbAdapter> usb_adapters() noexcept;
 /// Returns words, in lower case, that only a glove has in its own description.
-std::span<const std::string_view> glove_names() noexcept;
+NENDO_API std::span<const std::string_view> glove_names() noexcept;
 
 /// Returns the name of the glove with these numbers; an empty text if nendo has no driver for it.
-std::string_view usb_glove_name(UsbId id) noexcept;
+NENDO_API std::string_view usb_glove_name(UsbId id) noexcept;
 /// Returns nullptr if gloves were seen on no adapter with these numbers.
-const UsbAdapter* find_usb_adapter(UsbId id) noexcept;
+NENDO_API const UsbAdapter* find_usb_adapter(UsbId id) noexcept;
 /// Returns true if the text contains one of glove_names(), in upper or lower case.
-bool names_a_glove(std::string text);
+NENDO_API bool names_a_glove(std::string text);
 
 } // namespace nendo::udev

@@ -27,15 +27,15 @@ struct RuleFile {
 
 /// Returns the files of rule_texts() as udev finds them: the first of /etc, /run, /usr/local/lib
 /// and /usr/lib that has a file of that name hides the others.
-std::vector<RuleFile> rules_in_force(const std::filesystem::path& root);
+NENDO_API std::vector<RuleFile> rules_in_force(const std::filesystem::path& root);
 /// Returns the same for the administrator's folder alone, /etc/udev/rules.d.
-std::vector<RuleFile> rules_in_etc(const std::filesystem::path& root);
+NENDO_API std::vector<RuleFile> rules_in_etc(const std::filesystem::path& root);
 /// Returns the administrator's folder.
-std::filesystem::path etc_rules(const std::filesystem::path& root);
+NENDO_API std::filesystem::path etc_rules(const std::filesystem::path& root);
 
 /// Returns the file of bindings, which binding_in() reads; an empty text if there is none. Error:
 /// bad_input.
-Result<std::string> read_bindings(const std::filesystem::path& root);
+NENDO_API Result<std::string> read_bindings(const std::filesystem::path& root);
 
 struct RuleChange {
   std::filesystem::path path;
@@ -43,10 +43,10 @@ struct RuleChange {
 };
 /// Writes or removes a file, whole or not at all. Everybody may read a written one. Blocks as the
 /// disk does. Errors: no_permission (the message asks for sudo), failed (also if it is a link).
-Result<void> apply(const RuleChange& change);
+NENDO_API Result<void> apply(const RuleChange& change);
 
 /// Makes the running udev read its rules again and apply them to USB devices and ports that are
 /// plugged in. Returns one line that says what came of it. Blocks while udevadm runs.
-std::string refresh_udev();
+NENDO_API std::string refresh_udev();
 
 } // namespace nendo::udev

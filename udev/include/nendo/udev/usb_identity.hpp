@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo::udev {
 
 /// The numbers of a model. Many adapters with different devices behind them share one pair.
@@ -15,7 +17,7 @@ struct UsbId {
 };
 
 /// Returns the numbers as `lsusb` shows them, e.g. "0d7f:0100".
-std::string to_string(UsbId id);
+NENDO_API std::string to_string(UsbId id);
 
 /// A USB device as the kernel describes it. Strings are printable ASCII; other bytes became '?'.
 struct UsbIdentity {

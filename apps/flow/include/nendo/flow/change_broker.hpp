@@ -33,7 +33,7 @@ struct CoreOptions {
 
 /// Asking thread, which may be the loop's, but for the last two functions. Changes that the loop
 /// has not taken yet are taken together.
-class ChangeBroker {
+class NENDO_API ChangeBroker {
 public:
   /// Copies the model. With `first`, the shape is at first that one, in the blocks of the model's
   /// layout. Allocates.

@@ -17,7 +17,7 @@ namespace nendo::flow {
 
 /// The corners of a model's triangles, three each, and the volume that the clay had at first, in
 /// the model's own units.
-struct ClayModel {
+struct NENDO_API ClayModel {
   explicit ClayModel(const deform::Mesh& mesh);
   /// Of a mesh that was refined: the clay is the same, and rest shapes of other triangles enclose a
   /// little less.
@@ -42,16 +42,17 @@ struct ClayState {
 
 /// Returns how hard a hand presses there, from 0 to 1: half of it by the pressure that stays, half
 /// by how fast it presses on.
-float strength_of(const deform::ClayContact& contact) noexcept;
+NENDO_API float strength_of(const deform::ClayContact& contact) noexcept;
 
 /// How hard each finger, thumb to little finger, and the palm press, from 0 to 1.
 using HandTouch = std::array<float, hand::finger_count + 1>;
 /// Returns that of a body: HandBodies counts them.
-HandTouch touch_of(std::span<const deform::ClayContact> contacts, std::size_t body) noexcept;
+NENDO_API HandTouch touch_of(std::span<const deform::ClayContact> contacts,
+                             std::size_t body) noexcept;
 
 /// Its functions do what those of deform::Type2Deformer do; the bodies, and not the fingertips,
 /// tell where the hands are. None but the constructors allocates.
-class ClayHands {
+class NENDO_API ClayHands {
 public:
   /// `radius_m` tells how far clay gives way about a hand, on the stage; less than least_radius_m
   /// counts as that, because palms crease the surface otherwise. `shape` must outlive this.

@@ -86,10 +86,10 @@ enum class MaskEdit : std::uint8_t {
   clear,  ///< everything moves
   invert, ///< what was held moves, and the rest is held
 };
-std::string_view name_of(MaskEdit edit) noexcept;
-std::optional<MaskEdit> mask_edit_named(std::string_view name) noexcept;
+NENDO_API std::string_view name_of(MaskEdit edit) noexcept;
+NENDO_API std::optional<MaskEdit> mask_edit_named(std::string_view name) noexcept;
 /// Edits the masks of the fingertips, or of the puppet that is played.
-struct SetMask {
+struct NENDO_API SetMask {
   MaskEdit edit = MaskEdit::clear;
   std::array<double, 3> at{}; ///< of the model before anybody has shaped it, model units
   double radius = 0.0;        ///< model units, > 0; what is in the ball is held half at least

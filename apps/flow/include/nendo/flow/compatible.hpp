@@ -13,19 +13,20 @@ namespace nendo::flow {
 /// What a puppet measures its distances along. Without a puppet, fingertips and hands touch.
 enum class Played : std::uint8_t { nothing, through_air, along_surface };
 
-Played played_by(const puppet::Puppet& puppet) noexcept;
+NENDO_API Played played_by(const puppet::Puppet& puppet) noexcept;
 /// The same; null: nothing is played.
-Played played_by(const puppet::Rig* rig) noexcept;
+NENDO_API Played played_by(const puppet::Rig* rig) noexcept;
 
 /// How a message names a setting: as the command line has it, or in words.
 enum class Naming : std::uint8_t { options, words };
 
 /// Tells whether a loop can shape with all of these. Error, in one line: which two exclude each
 /// other, why, and what to do; usage where it names options, otherwise bad_input. Allocates.
-Result<void> compatible(const LoopSettings& settings, Played played, Naming naming = Naming::words);
+NENDO_API Result<void> compatible(const LoopSettings& settings, Played played,
+                                  Naming naming = Naming::words);
 /// Tells the same, and whether each of them has an effect. A loop takes settings of which one has
 /// none, so that people choose them in any order; on the command line they are a mistake.
-Result<void> all_effective(const LoopSettings& settings, Played played,
-                           Naming naming = Naming::words);
+NENDO_API Result<void> all_effective(const LoopSettings& settings, Played played,
+                                     Naming naming = Naming::words);
 
 } // namespace nendo::flow

@@ -19,7 +19,7 @@ namespace nendo::flow {
 
 /// The loop's thread runs its ticks; the asking thread reads frames and asks for changes. Neither
 /// waits for the other.
-class DeformLoop {
+class NENDO_API DeformLoop {
 public:
   /// `hands` must pass check_inputs(). Copies the model and allocates all that a tick
   /// needs. The hands grab the model at their first samples. With SwitchAction::grab they hold it

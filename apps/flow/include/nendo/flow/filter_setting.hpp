@@ -11,8 +11,8 @@
 namespace nendo::flow {
 
 /// Returns "measured" or "closed".
-std::string_view name_of_pinches(bool are_closed) noexcept;
-std::optional<bool> pinches_named(std::string_view name) noexcept;
+NENDO_API std::string_view name_of_pinches(bool are_closed) noexcept;
+NENDO_API std::optional<bool> pinches_named(std::string_view name) noexcept;
 
 namespace setting {
 

@@ -6,7 +6,7 @@
 
 namespace nendo::flow {
 
-class FrameSink {
+class NENDO_API FrameSink {
 public:
   virtual ~FrameSink() = default;
   /// Takes a frame. Loop's thread: it is a part of the tick, so it must be wait-free, without

@@ -19,7 +19,7 @@
 namespace nendo::flow {
 
 /// Loop's thread. Only the constructor allocates.
-struct GloveHand {
+struct NENDO_API GloveHand {
   GloveHand(HandInput hand_input, const Placement& placement, bool closes);
 
   /// Updates `latest` and `angles` by the next sample. Returns true if the switch at the wrist was

@@ -17,18 +17,19 @@ namespace nendo::flow {
 
 /// Writes the parts of a hand in that pose, on the stage, into HandBody::part_count parts in model
 /// units. Each part's surface goes with the joint that carries it. Wait-free, no allocation.
-void contact_parts(hand::HandBody& body, const hand::HandPose& pose, double units_per_metre,
-                   std::span<deform::ContactPart> parts) noexcept;
+NENDO_API void contact_parts(hand::HandBody& body, const hand::HandPose& pose,
+                             double units_per_metre, std::span<deform::ContactPart> parts) noexcept;
 
 /// Returns T_stage_wrist, moved away from the model's middle until the hand is `clear_m` from all
 /// vertices, of which some thousands are looked at. Hands that begin to press clay must not be in
 /// it. Allocates.
-Eigen::Isometry3d beside(const deform::Mesh& model, double units_per_metre,
-                         const hand::HandSkeleton& skeleton, const hand::JointAngles& angles,
-                         const Eigen::Isometry3d& T_stage_wrist, double clear_m);
+NENDO_API Eigen::Isometry3d beside(const deform::Mesh& model, double units_per_metre,
+                                   const hand::HandSkeleton& skeleton,
+                                   const hand::JointAngles& angles,
+                                   const Eigen::Isometry3d& T_stage_wrist, double clear_m);
 
 /// The bodies of one hand or two, where they are now, and the table on which the model lies.
-class HandBodies {
+class NENDO_API HandBodies {
 public:
   /// Allocates. All hands are in the pose of zero angles.
   HandBodies(std::span<const hand::HandSkeleton> hands, double units_per_metre, const Table& table);
@@ -51,7 +52,7 @@ private:
 
 /// Returns the bodies of the hands that there are, by side, left hand first. Without a table it is
 /// table_under() the model. Allocates.
-std::shared_ptr<HandBodies>
+NENDO_API std::shared_ptr<HandBodies>
 make_bodies(const std::array<std::optional<hand::HandSkeleton>, 2>& by_side,
             const deform::Mesh& model, double units_per_metre,
             const std::optional<Table>& table = {});

@@ -45,8 +45,8 @@ struct HandInput {
 
 /// Checks that a loop can be made of these: one to most_inputs, and of each side at most one that
 /// is no layer, before its layers. Error: bad_input, naming the input that is wrong.
-Result<void> check_inputs(std::span<const HandInput> inputs);
+NENDO_API Result<void> check_inputs(std::span<const HandInput> inputs);
 /// Returns how many hands shape: one or two.
-std::size_t count_hands(std::span<const HandInput> inputs) noexcept;
+NENDO_API std::size_t count_hands(std::span<const HandInput> inputs) noexcept;
 
 } // namespace nendo::flow

@@ -10,7 +10,7 @@
 
 namespace nendo::flow {
 
-class Histogram {
+class NENDO_API Histogram {
 public:
   using Nanoseconds = std::chrono::nanoseconds;
 

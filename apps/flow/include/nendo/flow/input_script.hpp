@@ -15,7 +15,7 @@ namespace nendo::flow {
 /// The inputs that a loop may have: the hands and the layers over them.
 inline constexpr std::size_t most_inputs = 16;
 
-class InputScript {
+class NENDO_API InputScript {
 public:
   /// Something that the loop took: a TakenSample or a Command, never a tick.
   struct Event {

@@ -3,6 +3,7 @@
 // shape is the new model's rest. A puppet's shape is what it does at that moment, and its rest
 // stays.
 
+#include <nendo/base/api.hpp>
 #include <nendo/deform/mesh.hpp>
 
 namespace nendo::flow {
@@ -13,7 +14,7 @@ namespace nendo::flow {
 /// spread evenly, each being the mean of its neighbours', and a part without any vertex of the
 /// shape rests where it is. Takes up to twice as long as a cut, and allocates. The same bits for
 /// the same arguments.
-deform::Points kept_rest(const deform::Mesh& made, const deform::Points& shape,
-                         const deform::Points& rest);
+NENDO_API deform::Points kept_rest(const deform::Mesh& made, const deform::Points& shape,
+                                   const deform::Points& rest);
 
 } // namespace nendo::flow

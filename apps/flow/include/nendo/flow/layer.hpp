@@ -30,19 +30,19 @@ struct AngleSet {
 
 /// Returns the angles of a part of a hand: thumb, index, middle, ring, little, palm, wrist, or one
 /// angle by its name (hand::angle_names). Returns nothing if there is no such part.
-std::optional<AngleSet> angles_named(std::string_view part) noexcept;
+NENDO_API std::optional<AngleSet> angles_named(std::string_view part) noexcept;
 
 /// Parses what a layer plays, of both hands by Placement::index_of(side): parts with commas
 /// between, each a hand (left, right), or a hand, a point and one of its parts, such as
 /// "left.index,right". Returns nothing if the text is not that.
-std::optional<std::array<AngleSet, 2>> parse_layer(std::string_view text) noexcept;
+NENDO_API std::optional<std::array<AngleSet, 2>> parse_layer(std::string_view text) noexcept;
 
 /// Returns what that parses as the angles of that hand, with whole parts by their names.
-std::string in_words(Side side, AngleSet angles);
+NENDO_API std::string in_words(Side side, AngleSet angles);
 
 /// What makes a layer of an input. Where no input before it is of the same hand, it lies over that
 /// hand at rest, in the pose of its own first sample.
-struct Layer {
+struct NENDO_API Layer {
   /// How long it takes to come in and to go out, so that nothing jumps.
   static constexpr HostClock::duration blend_time = std::chrono::milliseconds(150);
   /// No tick goes farther than this of that time, however late it is.

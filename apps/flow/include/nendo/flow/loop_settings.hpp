@@ -9,7 +9,7 @@
 
 namespace nendo::flow {
 
-struct LoopSettings {
+struct NENDO_API LoopSettings {
   Mode mode = Mode::type1;
   deform::Wendland kernel = deform::Wendland::c2;
   bool injective = false;           ///< the surface never folds, unless it keeps its volume
@@ -31,7 +31,7 @@ struct LoopSettings {
 
 /// Returns what a program begins with that asks for nothing else: pinches are closed. A bare
 /// LoopSettings leaves the hands as they are, for the poses of timelines, which are closed already.
-LoopSettings usual_settings() noexcept;
+NENDO_API LoopSettings usual_settings() noexcept;
 
 /// Tells whether hands close pinches: not in clay, which may be between their pads.
 constexpr bool closes_pinches(const hand::FilterOptions& filter, Mode mode) noexcept {
@@ -39,17 +39,17 @@ constexpr bool closes_pinches(const hand::FilterOptions& filter, Mode mode) noex
 }
 
 /// Returns the settings of a sculptor. Where a finger has several radii, the largest is its radius.
-LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOptions& filter,
-                         double units_per_metre);
+NENDO_API LoopSettings settings_of(const SculptorOptions& sculptor,
+                                   const hand::FilterOptions& filter, double units_per_metre);
 
 /// The same without what depends on the radii, and without the filter.
-LoopSettings plain_settings_of(const SculptorOptions& sculptor) noexcept;
+NENDO_API LoopSettings plain_settings_of(const SculptorOptions& sculptor) noexcept;
 /// Puts these into the options, but for `injective`.
-void set_plain_settings(SculptorOptions& sculptor, const LoopSettings& settings) noexcept;
+NENDO_API void set_plain_settings(SculptorOptions& sculptor, const LoopSettings& settings) noexcept;
 
 /// Returns by what the radii of these settings are larger than those of `first`: the ratio of their
 /// sums.
-double scale_of_radii(const LoopSettings& settings, const LoopSettings& first) noexcept;
+NENDO_API double scale_of_radii(const LoopSettings& settings, const LoopSettings& first) noexcept;
 
 /// The options of a sculptor, and the settings that they mean.
 struct SculptorSetup {
@@ -58,12 +58,13 @@ struct SculptorSetup {
 };
 
 /// Returns these supports with radii that many times as large.
-deform::Supports scaled(deform::Supports supports, double scale);
+NENDO_API deform::Supports scaled(deform::Supports supports, double scale);
 
 /// Returns `now` with other settings. What settings do not tell stays. Radii that do not change
 /// stay as they are, with all their weights; these come back with the settings of `first`, with
 /// which it began. A puppet's points (`hands` is then 0) keep the ratios of their radii.
-SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first,
-                            const LoopSettings& wanted, int hands, double units_per_metre);
+NENDO_API SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first,
+                                      const LoopSettings& wanted, int hands,
+                                      double units_per_metre);
 
 } // namespace nendo::flow

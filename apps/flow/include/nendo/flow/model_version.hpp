@@ -38,10 +38,10 @@ struct ModelOrigin {
   bool keeps_rest = false; ///< a puppet's, whose shape does not become the rest (kept_rest())
 };
 /// Makes that version of a mesh again, as it rests. Error: bad_input, without the mesh's name.
-Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& origin);
+NENDO_API Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& origin);
 
 /// A version does not move in memory. What is const is thread-safe.
-struct ModelVersion {
+struct NENDO_API ModelVersion {
   /// Allocates. With `first`, the shape is at first that one, in blocks of the layout.
   ModelVersion(std::uint32_t number, deform::Mesh mesh, deform::BlockLayout layout,
                const UndoRoom& undo, const deform::BlockShape* first);
@@ -64,11 +64,11 @@ struct ModelVersion {
 };
 
 /// Returns a shape of that version's size, without its content. Allocates.
-deform::BlockShape room_for_shape(const ModelVersion& version);
+NENDO_API deform::BlockShape room_for_shape(const ModelVersion& version);
 
 /// Another version in the making. Making it takes longer than a tick; only finish() needs the
 /// shape.
-class FinerModel {
+class NENDO_API FinerModel {
 public:
   /// Subdivides. Thread-safe, also while the loop runs. Allocates.
   explicit FinerModel(const ModelVersion& from);

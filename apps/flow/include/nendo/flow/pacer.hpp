@@ -35,13 +35,13 @@ struct PaceOptions {
 };
 
 /// Returns "skip", "catch-up" or "catch-up:N" with N from 1 to 1000, "re-anchor", or "sample".
-std::string describe_policy(const PaceOptions& options);
+NENDO_API std::string describe_policy(const PaceOptions& options);
 /// Sets policy and most_catch_up by such a text. Error: usage, naming the text and these; then
 /// nothing changes.
-Result<void> parse_policy(std::string_view text, PaceOptions& options);
+NENDO_API Result<void> parse_policy(std::string_view text, PaceOptions& options);
 
 /// Loop's thread. It does not allocate or lock, and its only system call is the wait.
-class Pacer {
+class NENDO_API Pacer {
 public:
   struct Due {
     std::uint64_t number = 0; ///< of the deadline; with `sample`, of the tick

@@ -33,7 +33,7 @@ struct PartsState {
 /// five columns per hand, model units. A hand is closed if its thumb has met the index or the
 /// middle finger, until these are farther apart again. A part turns with the palm, and goes with
 /// the middle between thumb and fingers. None but the constructor allocates.
-class PartHands {
+class NENDO_API PartHands {
 public:
   static constexpr double closed_m = 0.025; ///< from tip to tip
   static constexpr double open_m = 0.040;

@@ -43,15 +43,15 @@ struct Placement {
 /// pose in which it is to touch the model; an absent hand is nullopt. The five tips are registered
 /// rigidly to the surface (point to plane). The search starts from hands that hold the model
 /// between them, palms inwards, fingers forward, thumbs up. Allocates; not for the loop.
-Placement place_hands(const deform::Mesh& model,
-                      const std::array<std::optional<Fingertips>, 2>& tips_wrist,
-                      const PlacementOptions& options = {});
+NENDO_API Placement place_hands(const deform::Mesh& model,
+                                const std::array<std::optional<Fingertips>, 2>& tips_wrist,
+                                const PlacementOptions& options = {});
 
 /// Places the hands of a puppet's player before the model and beside it, as the player sees them:
 /// backs towards the viewer, fingers up and a little forward. Nothing is searched for.
-Placement place_player(const deform::Mesh& model, double model_size_m = 0.46);
+NENDO_API Placement place_player(const deform::Mesh& model, double model_size_m = 0.46);
 
 /// Returns a table as high as the lowest vertex of the model, which reaches far beyond it.
-Table table_under(const deform::Mesh& model, double units_per_metre) noexcept;
+NENDO_API Table table_under(const deform::Mesh& model, double units_per_metre) noexcept;
 
 } // namespace nendo::flow

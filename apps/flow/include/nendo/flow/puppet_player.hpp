@@ -17,7 +17,7 @@
 namespace nendo::flow {
 
 /// Loop's thread. Only the constructor allocates.
-class PuppetPlayer {
+class NENDO_API PuppetPlayer {
 public:
   using Hands = puppet::RigPlayer::Hands;
 

@@ -24,7 +24,8 @@ constexpr unsigned reader_priority(unsigned of_loop) noexcept {
 }
 
 /// Parses CPUs of this machine, such as "2", "0,2" or "0-3". Error: usage, naming `option`.
-Result<std::vector<unsigned>> parse_cpus(const std::string& text, const std::string& option);
+NENDO_API Result<std::vector<unsigned>> parse_cpus(const std::string& text,
+                                                   const std::string& option);
 
 /// A right that was asked for.
 struct Grant {
@@ -35,13 +36,13 @@ struct Grant {
   std::string remedy; ///< the command or deed that mends it; empty if granted
 };
 /// Returns a line for each refused right: what was refused, why, and the remedy.
-std::vector<std::string> refusals(const std::vector<Grant>& grants);
+NENDO_API std::vector<std::string> refusals(const std::vector<Grant>& grants);
 
 /// Holds the process's rights while it lives. Memory is locked, and malloc keeps it. If a priority
 /// is asked for, the processor is kept from sleep states that take long to leave
 /// (/dev/cpu_dma_latency). Locked memory stays locked until the process ends. The constructor
 /// blocks while pages come in.
-class RealtimeProcess {
+class NENDO_API RealtimeProcess {
 public:
   explicit RealtimeProcess(const RealtimeOptions& options);
   ~RealtimeProcess();
@@ -57,11 +58,11 @@ private:
 
 /// Sets the calling thread's affinity, scheduler and timer slack, and touches 256 KiB of its stack.
 /// With the default slack, the ordinary scheduler may delay a wake-up by 50 microseconds.
-std::vector<Grant> make_thread_realtime(const RealtimeOptions& options);
+NENDO_API std::vector<Grant> make_thread_realtime(const RealtimeOptions& options);
 
 /// While it lives, the calling thread and the threads that it starts run at this priority under
 /// SCHED_FIFO. With 0 nothing changes.
-class InheritedPriority {
+class NENDO_API InheritedPriority {
 public:
   explicit InheritedPriority(unsigned priority);
   ~InheritedPriority();

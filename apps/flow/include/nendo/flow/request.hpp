@@ -6,6 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo::flow {
 
 /// Recordings keep the numbers, so new values are added at the end.
@@ -30,7 +32,7 @@ constexpr bool goes_through_history(Request request) noexcept {
   return request == Request::undo || request == Request::redo || request == Request::reset;
 }
 
-std::string_view name_of(Request request) noexcept;
-std::optional<Request> request_named(std::string_view name) noexcept;
+NENDO_API std::string_view name_of(Request request) noexcept;
+NENDO_API std::optional<Request> request_named(std::string_view name) noexcept;
 
 } // namespace nendo::flow

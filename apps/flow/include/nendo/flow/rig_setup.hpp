@@ -15,38 +15,38 @@
 namespace nendo::flow {
 
 /// Tells whether hands play that puppet, which may be null. Otherwise fingertips touch the model.
-bool is_played(const puppet::Rig* rig) noexcept;
+NENDO_API bool is_played(const puppet::Rig* rig) noexcept;
 /// Returns how many control points that many hands move by that puppet; null: by none.
-Eigen::Index control_points_of(const puppet::Rig* rig, const SculptorOptions& sculptor,
-                               Eigen::Index hands) noexcept;
+NENDO_API Eigen::Index control_points_of(const puppet::Rig* rig, const SculptorOptions& sculptor,
+                                         Eigen::Index hands) noexcept;
 /// Returns how many points have radii of their own: the puppet's, or fingertips and their images,
 /// even if other points of the hands hold the model.
-Eigen::Index supported_points(const puppet::Rig* rig, Eigen::Index hands) noexcept;
+NENDO_API Eigen::Index supported_points(const puppet::Rig* rig, Eigen::Index hands) noexcept;
 /// Returns the x of the plane, in model units, of whose both sides the fingertips shape; nothing:
 /// of none.
-std::optional<double> mirror_of(const puppet::Rig* rig) noexcept;
+NENDO_API std::optional<double> mirror_of(const puppet::Rig* rig) noexcept;
 /// Tells whether hands with that puppet, which may be null, can press clay: it has no points.
-bool can_press(const puppet::Rig* rig) noexcept;
+NENDO_API bool can_press(const puppet::Rig* rig) noexcept;
 /// Tells whether a tick can solve for that puppet's points without allocating. Error, bad_input:
 /// there are more than deform::CsrbfSolver::lean_size. Where distances go along the surface, any
 /// number is good, because their field is solved for beforehand; type 2 of older recordings
 /// (SculptorOptions::type2_along_surface) has none.
-Result<void> check_points(const puppet::Rig* rig, const SculptorOptions& sculptor);
+NENDO_API Result<void> check_points(const puppet::Rig* rig, const SculptorOptions& sculptor);
 /// Returns what the step from one of them to the other is: of a puppet, of masks, or of symmetry.
-StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept;
+NENDO_API StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept;
 /// Makes the second half of the points the mirror images of the first.
-void mirror_half(double at, deform::Points& points) noexcept;
+NENDO_API void mirror_half(double at, deform::Points& points) noexcept;
 /// Puts the puppet's masks on that model, and whether it mirrors, into the options. Allocates.
-void set_masks(const puppet::Rig* rig, const deform::Mesh& model, const deform::BlockLayout& layout,
-               SculptorOptions& sculptor);
+NENDO_API void set_masks(const puppet::Rig* rig, const deform::Mesh& model,
+                         const deform::BlockLayout& layout, SculptorOptions& sculptor);
 /// Returns what `first` would be with the control points of that puppet, or of so many hands, but
 /// without a field along the surface. supports: of the points, or of the fingertips without images.
-SculptorSetup with_control_points(SculptorSetup first, deform::Supports supports,
-                                  const puppet::Rig* masks, Eigen::Index hands);
+NENDO_API SculptorSetup with_control_points(SculptorSetup first, deform::Supports supports,
+                                            const puppet::Rig* masks, Eigen::Index hands);
 /// Returns the field of a puppet along that model's surface, with the kernel and the radii of these
 /// options; null if it measures distances through the air, or no hand plays it. Error: as
 /// SurfaceField::make(). Allocates.
-Result<std::shared_ptr<const deform::SurfaceField>>
+NENDO_API Result<std::shared_ptr<const deform::SurfaceField>>
 surface_for(const puppet::Rig& rig, const deform::Mesh& model, const deform::BlockLayout& layout,
             const deform::DeformerOptions& options);
 

@@ -30,22 +30,22 @@ constexpr bool is_by_hands(Mode mode) noexcept {
   return mode == Mode::clay || mode == Mode::parts;
 }
 
-std::string_view name_of(Mode mode) noexcept;
-std::optional<Mode> mode_named(std::string_view name) noexcept;
+NENDO_API std::string_view name_of(Mode mode) noexcept;
+NENDO_API std::optional<Mode> mode_named(std::string_view name) noexcept;
 
 /// The points of a hand that hold the model in type 1: its five fingertips, or points all over its
 /// bones and its palm (hand/held_points.hpp). Type 2, and what keeps the volume, are for
 /// fingertips.
 enum class Hold : std::uint8_t { fingertips, hand };
 
-std::string_view name_of(Hold hold) noexcept; ///< "tips" or "hand"
-std::optional<Hold> hold_named(std::string_view name) noexcept;
+NENDO_API std::string_view name_of(Hold hold) noexcept; ///< "tips" or "hand"
+NENDO_API std::optional<Hold> hold_named(std::string_view name) noexcept;
 
 /// CsrbfOptions::merge_fraction of fingertips, which meet: the exact solution for two that nearly
 /// touch would tear the surface between them.
 inline constexpr double fingertip_merge_fraction = 0.05;
 
-struct SculptorOptions {
+struct NENDO_API SculptorOptions {
   Mode mode = Mode::type1;
   Hold hold = Hold::fingertips;
   /// Of a cut of type 2, in model units: sculpting::set_supports() chooses it by the radii, as the
@@ -81,11 +81,11 @@ struct SculptorOptions {
 };
 
 /// Reads the name of a brush, or five with commas between. Returns nothing if it is neither.
-std::optional<std::array<deform::Brush, 5>> parse_brushes(std::string_view text) noexcept;
+NENDO_API std::optional<std::array<deform::Brush, 5>> parse_brushes(std::string_view text) noexcept;
 /// Returns such a text.
-std::string in_words(const std::array<deform::Brush, 5>& brushes);
+NENDO_API std::string in_words(const std::array<deform::Brush, 5>& brushes);
 
-class Sculptor {
+class NENDO_API Sculptor {
 public:
   /// Works on a shape that other sculptors work on before or after it. `shape`, which has the
   /// history, must outlive it.

@@ -118,12 +118,12 @@ constexpr void for_each_plain_setting(const See& see) {
 }
 
 /// Returns a range as messages show it: "0.01 to 1000 Hz". Allocates.
-std::string in_words(const Range& range, std::string_view unit);
+NENDO_API std::string in_words(const Range& range, std::string_view unit);
 /// Checks that a loop takes all of these. Error: bad_input, naming the first that is out of its
 /// range, and the range: "keep_volume: use 0 to 1". Allocates.
-Result<void> check_ranges(const LoopSettings& settings);
+NENDO_API Result<void> check_ranges(const LoopSettings& settings);
 /// Returns what they are, as all messages tell it: "type1, wendland-c2, never folds, radius 13.2 cm
 /// (0.248)".
-std::string in_words(const LoopSettings& settings, double units_per_metre);
+NENDO_API std::string in_words(const LoopSettings& settings, double units_per_metre);
 
 } // namespace nendo::flow

@@ -53,7 +53,7 @@ struct ReadySculptor {
 };
 
 /// Loop's thread, or that of a player without a loop, but for prepare().
-class Shaping {
+class NENDO_API Shaping {
 public:
   /// Shapes that model, which must outlive this, as must all later models. Allocates all that a
   /// tick needs.

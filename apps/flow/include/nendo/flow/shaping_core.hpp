@@ -23,7 +23,7 @@ class DrawnBlade;
 
 /// Loop's thread, or that of a player without a loop. The constructor allocates; its functions
 /// neither allocate nor wait.
-class ShapingCore {
+class NENDO_API ShapingCore {
 public:
   using Hands = puppet::RigPlayer::Hands;
 

@@ -14,7 +14,7 @@ namespace nendo::flow {
 /// microseconds. It is at most 100 microseconds, at most a fifth of the period, and no more than
 /// would have spun for a 25th of that second. It begins with a 25th of the period. It costs an
 /// addition a tick, and 200 additions a second. It does not allocate.
-class SpinMargin {
+class NENDO_API SpinMargin {
 public:
   static constexpr std::chrono::microseconds most{100};
   static constexpr std::chrono::microseconds reserve{5};

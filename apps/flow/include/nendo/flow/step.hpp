@@ -7,6 +7,8 @@
 #include <span>
 #include <string_view>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo::flow {
 
 struct LoopSettings;
@@ -36,9 +38,9 @@ enum class StepKind : std::uint8_t {
   topology,  ///< what was thin has parted, opened or fused
 };
 
-std::string_view name_of(StepKind kind) noexcept;
+NENDO_API std::string_view name_of(StepKind kind) noexcept;
 /// Returns the kind of a step that leads from one of these to the other.
-StepKind kind_of_change(const LoopSettings& before, const LoopSettings& after) noexcept;
+NENDO_API StepKind kind_of_change(const LoopSettings& before, const LoopSettings& after) noexcept;
 constexpr bool is_setting(StepKind kind) noexcept {
   return (kind >= StepKind::mode && kind <= StepKind::settings) || kind == StepKind::brush ||
          kind == StepKind::volume || kind == StepKind::hold;

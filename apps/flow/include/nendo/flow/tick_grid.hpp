@@ -9,7 +9,7 @@
 
 namespace nendo::flow {
 
-class TickGrid {
+class NENDO_API TickGrid {
 public:
   static constexpr double least_rate_hz = 1.0;
   static constexpr double most_rate_hz = 10'000.0;
@@ -28,6 +28,6 @@ private:
 
 /// Sleeps until an absolute time, and goes on sleeping after a signal. This is the only system call
 /// of a tick.
-void sleep_until(HostTime deadline) noexcept;
+NENDO_API void sleep_until(HostTime deadline) noexcept;
 
 } // namespace nendo::flow

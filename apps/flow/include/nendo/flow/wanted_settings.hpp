@@ -12,7 +12,7 @@ namespace nendo::flow {
 
 /// Shows what was asked for until a loop has had time to take it, and then what is in force,
 /// whoever has asked for it. Asking thread; does not allocate.
-class WantedSettings {
+class NENDO_API WantedSettings {
 public:
   static constexpr std::array kernels{deform::Wendland::c0, deform::Wendland::c2,
                                       deform::Wendland::c4, deform::Wendland::c6};

@@ -12,7 +12,7 @@ namespace nendo::flow {
 /// The places of a wire's ends one after another, in model units. It has a fixed size and does not
 /// allocate. Where a wire is drawn far, every second place is forgotten; and what a hand goes back
 /// and forth by a few steps is, too.
-class WirePath {
+class NENDO_API WirePath {
 public:
   static constexpr std::size_t most_places = 128;
 

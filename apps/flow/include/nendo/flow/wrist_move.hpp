@@ -12,7 +12,7 @@
 
 namespace nendo::flow {
 
-struct WristMove {
+struct NENDO_API WristMove {
   Side side = Side::right;                     ///< as which the hand shapes
   std::array<double, 3> position_m{};          ///< on the stage
   std::array<double, 4> turn_xyzw{0, 0, 0, 1}; ///< a quaternion; read as if of length 1

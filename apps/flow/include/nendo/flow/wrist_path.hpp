@@ -6,9 +6,11 @@
 
 #include <Eigen/Geometry>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo::flow {
 
-class WristPath {
+class NENDO_API WristPath {
 public:
   /// Poses on the stage, evenly in time, at least two.
   WristPath(std::vector<Eigen::Isometry3d> poses, double step_s);
@@ -32,7 +34,7 @@ private:
 };
 
 /// Returns the pose that is `part` of the way from one pose to another: 0 is `from`, and 1 is `to`.
-Eigen::Isometry3d blended(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
-                          double part) noexcept;
+NENDO_API Eigen::Isometry3d blended(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
+                                    double part) noexcept;
 
 } // namespace nendo::flow

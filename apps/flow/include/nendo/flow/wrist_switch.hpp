@@ -19,12 +19,12 @@ enum class SwitchAction : std::uint8_t {
   keep,   ///< turning one on keeps what was just done: a recorder's task, nothing to the loop
 };
 
-std::string_view name_of(SwitchAction action) noexcept;
-std::optional<SwitchAction> switch_action_named(std::string_view name) noexcept;
+NENDO_API std::string_view name_of(SwitchAction action) noexcept;
+NENDO_API std::optional<SwitchAction> switch_action_named(std::string_view name) noexcept;
 
 /// Takes the switch's position sample by sample and tells when it was really turned. It is pure: no
 /// clock, no I/O.
-class WristSwitchEdge {
+class NENDO_API WristSwitchEdge {
 public:
   /// A position counts once it has lasted this long and for at least two samples, because contacts
   /// bounce for some milliseconds, and a damaged status byte lasts one sample.

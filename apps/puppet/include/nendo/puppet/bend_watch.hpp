@@ -15,7 +15,7 @@ struct Bend {
 };
 
 /// Watches the flexions of all fingers from a moment on. For one thread; does not allocate.
-class BendWatch {
+class NENDO_API BendWatch {
 public:
   /// Forgets what it has seen: the hands are as they shall be at rest.
   void begin() noexcept { rest_ = {}; }

@@ -55,6 +55,6 @@ struct FaceLandmarks {
 };
 
 /// Error: bad_input (no faces; or no profile with a nose and a chin; it says which). Allocates.
-Result<FaceLandmarks> find_face(const deform::Mesh& model);
+NENDO_API Result<FaceLandmarks> find_face(const deform::Mesh& model);
 
 } // namespace nendo::puppet

@@ -17,7 +17,7 @@ namespace nendo::puppet {
 /// Returns how much of that gesture a hand shows: for a fist the least angle, in radians, by which
 /// one of four fingers is bent; for a pinch how near the tips are, in metres, negative. No gesture
 /// has 0. Wait-free; no allocation.
-double gesture_strength(ClutchMeans means, const HandState& hand) noexcept;
+NENDO_API double gesture_strength(ClutchMeans means, const HandState& hand) noexcept;
 
 /// Watches both hands of a player. For one thread; only the constructor allocates. It depends on
 /// poses and times alone, so a replay of the same ticks does the same.
@@ -28,7 +28,7 @@ double gesture_strength(ClutchMeans means, const HandState& hand) noexcept;
 /// let go takes hold anew when the gesture has ended and the fingers have come to rest, so that
 /// opening the hand plays nothing either. If a gesture is shorter, the functions go back to what
 /// the hand shows, within ease_s.
-class GestureClutch {
+class NENDO_API GestureClutch {
 public:
   static constexpr double ease_s = 0.2;        ///< less than any held_s
   static constexpr double look_back_s = 0.6;   ///< closing a hand may take so long

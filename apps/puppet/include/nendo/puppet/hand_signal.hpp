@@ -24,7 +24,7 @@ struct HandState {
 /// - a joint angle (hand::Angle): thumb_roll, index_mcp_abduction, wrist_yaw and so on, radians;
 /// - thumb_tip_x to little_tip_z: the fingertip's place along an axis of the wrist, metres. x goes
 ///   to the side of the little finger, so that hands that mirror each other have the same signals.
-class HandSignal {
+class NENDO_API HandSignal {
 public:
   HandSignal() = default;
   /// Returns nothing if there is no such signal.

@@ -20,6 +20,7 @@ struct MadePuppet {
 /// turn over (RigCheck) are made to move less. `model_name` is the file's name, beside which the
 /// puppet's file will stand. Error: bad_input (find_face() finds no face, or the points are too
 /// near to each other). Takes about a second.
-Result<MadePuppet> make_face_puppet(const deform::Mesh& model, std::string_view model_name);
+NENDO_API Result<MadePuppet> make_face_puppet(const deform::Mesh& model,
+                                              std::string_view model_name);
 
 } // namespace nendo::puppet

@@ -86,7 +86,7 @@ struct PuppetPart {
   std::uint32_t last = 0xFFFFFFFF;     ///< up to this one
   std::vector<std::size_t> points;     ///< that they follow; empty: the surface
   bool is_affine = true;               ///< deform::FollowingPart::is_affine
-  friend bool operator==(const PuppetPart&, const PuppetPart&) noexcept;
+  NENDO_API friend bool operator==(const PuppetPart&, const PuppetPart&) noexcept;
 };
 
 /// What stays as it is, within a radius of a place.
@@ -104,8 +104,8 @@ enum class ClutchMeans : std::uint8_t {
   wrist_switch, ///< the glove's, turned on
 };
 
-std::string_view name_of(ClutchMeans means) noexcept; ///< in the file
-std::optional<ClutchMeans> clutch_means_named(std::string_view name) noexcept;
+NENDO_API std::string_view name_of(ClutchMeans means) noexcept; ///< in the file
+NENDO_API std::optional<ClutchMeans> clutch_means_named(std::string_view name) noexcept;
 
 struct ClutchOptions {
   std::array<ClutchMeans, 2> means{}; ///< of the left and the right hand
@@ -119,7 +119,7 @@ struct ClutchOptions {
 /// At this part of a mask's radius, places move half as far as without it.
 inline constexpr double half_of_mask = 0.75;
 
-struct Puppet {
+struct NENDO_API Puppet {
   std::string model; ///< file name, beside the puppet's file
   Distance distance = Distance::surface;
   bool mirrors = false; ///< `mirror = "x"`: points and functions that are twins stand behind others
@@ -137,45 +137,46 @@ struct Puppet {
   /// Returns the number of the function with that name.
   std::optional<std::size_t> function_named(std::string_view name) const noexcept;
   /// Compares all but the text.
-  friend bool operator==(const Puppet& one, const Puppet& other) noexcept;
+  NENDO_API friend bool operator==(const Puppet& one, const Puppet& other) noexcept;
 
   static constexpr std::size_t most_points = 1000; ///< and radii of all points together
   static constexpr std::size_t most_functions = 64;
 };
 
 /// Returns "browRight" for "browLeft", and the other way round; other names are their own twins.
-std::string twin_of(const std::string& name);
+NENDO_API std::string twin_of(const std::string& name);
 
 /// Parses a puppet file. What `mirror = "x"` asks for is in the result: points and functions whose
 /// names end with Left have twins that end with Right. Error: bad_input, with the line.
-Result<Puppet> parse_puppet(std::string_view text, std::string_view name);
+NENDO_API Result<Puppet> parse_puppet(std::string_view text, std::string_view name);
 /// Reads and parses a file. Errors: those of parse_puppet(), and bad_input if it cannot be read.
-Result<Puppet> read_puppet(const std::filesystem::path& path);
+NENDO_API Result<Puppet> read_puppet(const std::filesystem::path& path);
 /// Returns a file for it, which parse_puppet() makes the same puppet of again. Twins are left to
 /// `mirror`. Of the comments of `puppet.text`, those at its beginning are kept.
-std::string text_of(const Puppet& puppet);
+NENDO_API std::string text_of(const Puppet& puppet);
 
 /// Makes the places of a puppet, and those in its text, count from there: deform::Mesh::offset of
 /// its model, or, back to the file's coordinates, minus that. A mirror of x = 0 stays as it is: of
 /// a model far from zero it is the plane x = offset, its middle. Without an offset nothing changes.
-void count_from(const Eigen::Vector3d& offset, Puppet& puppet);
+NENDO_API void count_from(const Eigen::Vector3d& offset, Puppet& puppet);
 
 /// Error: bad_input (the model has no face, or not the vertex of a point).
-Result<void> check_fits(const Puppet& puppet, const deform::Mesh& model);
+NENDO_API Result<void> check_fits(const Puppet& puppet, const deform::Mesh& model);
 /// Returns where the points are on that model, in their order. It must fit (check_fits()).
-std::vector<deform::SurfacePlace> places_on(const Puppet& puppet, const deform::Mesh& model);
+NENDO_API std::vector<deform::SurfacePlace> places_on(const Puppet& puppet,
+                                                      const deform::Mesh& model);
 /// Returns how far each of these vertices follows what moves the model, 0 to 1: by the masks.
 /// Empty: there is no mask, and all follow.
-Eigen::VectorXd mask_weights(const Puppet& puppet, const deform::Points& vertices);
+NENDO_API Eigen::VectorXd mask_weights(const Puppet& puppet, const deform::Points& vertices);
 /// Returns them for a deformer; null: everything moves. Allocates.
-std::shared_ptr<const deform::VertexMask> vertex_mask(const Puppet& puppet,
-                                                      const deform::BlockLayout& layout,
-                                                      const deform::Points& vertices);
+NENDO_API std::shared_ptr<const deform::VertexMask> vertex_mask(const Puppet& puppet,
+                                                                const deform::BlockLayout& layout,
+                                                                const deform::Points& vertices);
 /// Returns the x of the plane x = constant in which the model is symmetric: that of the middle of
 /// its bounds, if nearly all vertices that are looked at have a mirror image; otherwise 0.
-double plane_of_symmetry(const deform::Points& vertices);
+NENDO_API double plane_of_symmetry(const deform::Points& vertices);
 /// Returns what the field along that model's surface is made of.
-deform::SurfaceSetup surface_setup(const Puppet& puppet, const deform::Mesh& model,
-                                   deform::Wendland kernel);
+NENDO_API deform::SurfaceSetup surface_setup(const Puppet& puppet, const deform::Mesh& model,
+                                             deform::Wendland kernel);
 
 } // namespace nendo::puppet

@@ -21,54 +21,56 @@ struct NewPoint {
 };
 
 /// Returns a puppet that has no point yet. with_function() makes it whole.
-Puppet empty_puppet(std::string_view model_name);
+NENDO_API Puppet empty_puppet(std::string_view model_name);
 
 /// Adds a point, and a function that moves it alone by `move` (model units) where `input` has gone
 /// by `travel`. Errors: the point is too near to another one, or there are too many of them.
-Result<Puppet> with_function(const Rig& rig, const NewPoint& point, const Eigen::Vector3d& move,
-                             const HandSignal& input, double travel);
+NENDO_API Result<Puppet> with_function(const Rig& rig, const NewPoint& point,
+                                       const Eigen::Vector3d& move, const HandSignal& input,
+                                       double travel);
 /// Adds a point that nothing moves. Errors: as with_function(), and if there is no function yet.
-Result<Puppet> with_pin(const Rig& rig, const NewPoint& point);
+NENDO_API Result<Puppet> with_pin(const Rig& rig, const NewPoint& point);
 /// Removes a point, and the functions that move nothing else. Error: it is the last that a function
 /// moves, or a part turns with it and three others.
-Result<Puppet> without_point(const Rig& rig, std::size_t point);
+NENDO_API Result<Puppet> without_point(const Rig& rig, std::size_t point);
 /// Gives a point that radius. All radii of a mix change as its largest one does.
-Result<Puppet> with_radius(const Rig& rig, std::size_t point, double radius);
+NENDO_API Result<Puppet> with_radius(const Rig& rig, std::size_t point, double radius);
 /// Pins a point, or lets functions move it. Error: a function moves it.
-Result<Puppet> with_pinned(const Rig& rig, std::size_t point, bool pinned);
+NENDO_API Result<Puppet> with_pinned(const Rig& rig, std::size_t point, bool pinned);
 /// Lets a function move the point by that vector, model units. Errors: it is a pin, or turns.
-Result<Puppet> with_move(const Rig& rig, std::size_t function, std::size_t point,
-                         const Eigen::Vector3d& vector);
+NENDO_API Result<Puppet> with_move(const Rig& rig, std::size_t function, std::size_t point,
+                                   const Eigen::Vector3d& vector);
 /// Lets a function turn the point so. Points that the function turns already go on doing so, by
 /// their parts; if it turned none, all that it moves turn. Errors: it is a pin, or the turn has no
 /// axis or more than 360 degrees.
-Result<Puppet> with_turn(const Rig& rig, std::size_t function, std::size_t point,
-                         const AxisTurn& turn);
+NENDO_API Result<Puppet> with_turn(const Rig& rig, std::size_t function, std::size_t point,
+                                   const AxisTurn& turn);
 /// Returns where the function would move each point then: 3 by #points, model units.
-deform::Points vectors_with_turn(const Rig& rig, std::size_t function, std::size_t point,
-                                 const AxisTurn& turn);
-Result<Puppet> with_input(const Rig& rig, std::size_t function, const HandSignal& input,
-                          double travel);
+NENDO_API deform::Points vectors_with_turn(const Rig& rig, std::size_t function, std::size_t point,
+                                           const AxisTurn& turn);
+NENDO_API Result<Puppet> with_input(const Rig& rig, std::size_t function, const HandSignal& input,
+                                    double travel);
 /// Gives a function another name. Errors: it is no name, or another function has it.
-Result<Puppet> with_name(const Rig& rig, std::size_t function, std::string_view name);
+NENDO_API Result<Puppet> with_name(const Rig& rig, std::size_t function, std::string_view name);
 /// Lets points and functions of one side have twins on the other side of x = 0, or makes points and
 /// functions of their own of these twins. Where names tell no side, they are changed.
-Result<Puppet> with_mirror(const Rig& rig, bool mirrors);
+NENDO_API Result<Puppet> with_mirror(const Rig& rig, bool mirrors);
 
 /// Adds masks along a stroke of a brush, and, where the puppet mirrors, their mirror images. Places
 /// where masks of that radius are near already are passed over, so that a file stays small. Where
 /// masks are inverted, what they free is taken away. Error: there are too many.
-Result<Puppet> with_masks(const Rig& rig, std::span<const Eigen::Vector3d> stroke, double radius);
+NENDO_API Result<Puppet> with_masks(const Rig& rig, std::span<const Eigen::Vector3d> stroke,
+                                    double radius);
 /// Removes the masks whose middle is within the radius of a place of the stroke; where they are
 /// inverted, adds what frees it. Error: there are too many.
-Result<Puppet> without_masks(const Rig& rig, std::span<const Eigen::Vector3d> stroke,
-                             double radius);
+NENDO_API Result<Puppet> without_masks(const Rig& rig, std::span<const Eigen::Vector3d> stroke,
+                                       double radius);
 /// Removes all masks: everything moves.
-Result<Puppet> without_any_mask(const Rig& rig);
+NENDO_API Result<Puppet> without_any_mask(const Rig& rig);
 /// Lets move what stayed, and the other way round.
-Result<Puppet> with_masks_inverted(const Rig& rig);
+NENDO_API Result<Puppet> with_masks_inverted(const Rig& rig);
 /// Lets fingertips shape both sides of the plane x = at, or not. Error: hands play the puppet.
-Result<Puppet> with_symmetry(const Rig& rig, bool on, double at);
+NENDO_API Result<Puppet> with_symmetry(const Rig& rig, bool on, double at);
 
 /// Two points are at least so much of the smaller radius apart.
 inline constexpr double least_gap_of_points = 0.1;

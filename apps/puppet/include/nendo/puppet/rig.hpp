@@ -15,7 +15,7 @@
 namespace nendo::puppet {
 
 /// What the functions do on one model. It does not change.
-class Rig {
+class NENDO_API Rig {
 public:
   /// The model must have a face. Allocates.
   Rig(Puppet puppet, const deform::Mesh& model);
@@ -43,14 +43,14 @@ private:
 };
 
 /// Returns the value of a function of which that much is asked: it stays within its limits.
-double value_of(const Function& function, double asked) noexcept;
+NENDO_API double value_of(const Function& function, double asked) noexcept;
 /// Returns the least that must be asked of a function, by its amount, so that it has that value,
 /// which must be within its limits.
-double asked_for(const Function& function, double value) noexcept;
+NENDO_API double asked_for(const Function& function, double value) noexcept;
 /// Returns for each function of a puppet that was edited the number that it had before; no_function
 /// if it is new.
 inline constexpr std::size_t no_function = static_cast<std::size_t>(-1);
-std::vector<std::size_t> functions_before(const Puppet& before, const Puppet& after);
+NENDO_API std::vector<std::size_t> functions_before(const Puppet& before, const Puppet& after);
 
 /// What a player of a rig needs to go on where another one is.
 struct FunctionState {
@@ -67,7 +67,7 @@ struct RigState {
 };
 
 /// Plays a rig. For one thread; the functions neither allocate nor wait, but for the constructor.
-class RigPlayer {
+class NENDO_API RigPlayer {
 public:
   using Hands = std::array<const HandState*, 2>; ///< left and right; null: not there
 

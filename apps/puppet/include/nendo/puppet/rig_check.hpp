@@ -33,7 +33,7 @@ struct TwinCheck {
   double apart = 0.0;
 };
 
-struct RigCheck {
+struct NENDO_API RigCheck {
   /// Of the moved triangles of one function alone, so many may turn over: rolling lips do.
   static constexpr double most_turned = 0.005;
   /// Twins are symmetric within this part of the diagonal, and what the model itself lacks.
@@ -60,11 +60,11 @@ struct RigCheck {
 
 /// Makes a shape for each limit of each function, and of each pair. `model` is the rig's.
 /// Allocates.
-RigCheck check_rig(RigShapes& shapes, const deform::Mesh& model);
+NENDO_API RigCheck check_rig(RigShapes& shapes, const deform::Mesh& model);
 
 /// Returns for each point (3 by N) the numbers of those that are where its mirror image about x = 0
 /// is, within the tolerance. Parts of a model may touch, so there may be several.
-std::vector<std::vector<std::uint32_t>> mirror_images(const deform::Points& points,
-                                                      double tolerance);
+NENDO_API std::vector<std::vector<std::uint32_t>> mirror_images(const deform::Points& points,
+                                                                double tolerance);
 
 } // namespace nendo::puppet

@@ -12,7 +12,7 @@
 namespace nendo::puppet {
 
 /// For one thread.
-class RigShapes {
+class NENDO_API RigShapes {
 public:
   /// Solves for the field. Error: bad_input (points are too near to each other for their radii; it
   /// names them). `model` must have a face. Allocates.

@@ -34,14 +34,14 @@ inline constexpr std::size_t chunk_checksum_bytes = 4; ///< after the payload
 inline constexpr std::size_t max_payload_bytes = std::size_t{1} << 24;
 
 /// Returns the first bytes of a file. Pure; may be called in a signal handler.
-std::array<std::byte, file_header_bytes> file_header() noexcept;
+NENDO_API std::array<std::byte, file_header_bytes> file_header() noexcept;
 /// Returns what stands before `payload`, which has at most max_payload_bytes. `number` counts the
 /// chunks of the file, from 0. Pure; may be called in a signal handler.
-std::array<std::byte, chunk_header_bytes> chunk_header(ChunkType type, std::uint32_t number,
-                                                       std::span<const std::byte> payload) noexcept;
+NENDO_API std::array<std::byte, chunk_header_bytes>
+chunk_header(ChunkType type, std::uint32_t number, std::span<const std::byte> payload) noexcept;
 /// Appends a whole chunk to `out`: header, payload and checksum.
-void append_chunk(std::vector<std::byte>& out, ChunkType type, std::uint32_t number,
-                  std::span<const std::byte> payload);
+NENDO_API void append_chunk(std::vector<std::byte>& out, ChunkType type, std::uint32_t number,
+                            std::span<const std::byte> payload);
 
 struct Chunk {
   ChunkType type = 0;
@@ -58,7 +58,7 @@ struct ChunkDamage {
 
 /// Goes through a file, or bytes in memory, from chunk to chunk. Hostile bytes cost time and memory
 /// that the file's size bounds. Blocks for as long as the disk does.
-class ChunkReader {
+class NENDO_API ChunkReader {
 public:
   /// Opens a recording. Error: bad_input (not a regular file, not a recording, made by a newer
   /// nendo).

@@ -18,9 +18,9 @@ inline constexpr std::string_view without_loop =
 
 /// Returns the options of the recorded loop, with its puppet and what this needs of `model`, and
 /// without rings. Error: bad_input, as from LoopReplay::make(), but for the hands' hold.
-Result<flow::LoopOptions> loop_options_of(const Setup& setup, const deform::Mesh& model);
+NENDO_API Result<flow::LoopOptions> loop_options_of(const Setup& setup, const deform::Mesh& model);
 
-class LoopReplay {
+class NENDO_API LoopReplay {
 public:
   /// Makes the recorded loop in its first state, over `model`, which should be the recorded one
   /// (LoopSetup::mesh_sum). Error: bad_input (no loop was recorded, the data about the loop is

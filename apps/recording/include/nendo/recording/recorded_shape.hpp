@@ -22,15 +22,16 @@ inline constexpr ChunkType shape_chunk = chunk_type("SHAP");
 /// The greatest number of vertices that a chunk has room for.
 inline constexpr std::size_t most_recorded_vertices = (max_payload_bytes - 12) / 12;
 
-RecordedShape shape_of(std::uint64_t tick, const deform::Points& vertices);
+NENDO_API RecordedShape shape_of(std::uint64_t tick, const deform::Points& vertices);
 /// Writes the payload of a chunk. The shape must have at most most_recorded_vertices.
-void put_shape(ByteWriter& writer, const RecordedShape& shape);
+NENDO_API void put_shape(ByteWriter& writer, const RecordedShape& shape);
 /// Returns nothing if the payload is not what put_shape() writes, or has a number that is not
 /// finite.
-std::optional<RecordedShape> read_shape(std::span<const std::byte> payload);
+NENDO_API std::optional<RecordedShape> read_shape(std::span<const std::byte> payload);
 
 /// Returns the greatest distance between a vertex of `shape` and the same vertex of `vertices`, in
 /// model units. Returns nothing if the numbers of vertices differ.
-std::optional<double> distance_between(const RecordedShape& shape, const deform::Points& vertices);
+NENDO_API std::optional<double> distance_between(const RecordedShape& shape,
+                                                 const deform::Points& vertices);
 
 } // namespace nendo::recording

@@ -48,7 +48,7 @@ struct Recorded {
 };
 
 /// Asking thread, but for the functions that are thread-safe.
-class Recorder {
+class NENDO_API Recorder {
 public:
   /// Creates the file with the setup in it, and starts the thread. `input_log` must outlive the
   /// recorder. Blocks as long as the disk does. Error: failed (the file exists already or cannot be

@@ -15,6 +15,6 @@ namespace nendo::recording {
 /// FILE whose name ends with .csv, .tsv or .txt is a table of counts; `rate=HZ` are the rows a
 /// second of one without times. Errors: usage (options), bad_input (no recording, no samples),
 /// no_device (not of that hand).
-driver::GloveDriver replay_driver() noexcept;
+NENDO_API driver::GloveDriver replay_driver() noexcept;
 
 } // namespace nendo::recording

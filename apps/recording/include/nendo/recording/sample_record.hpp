@@ -44,7 +44,7 @@ struct LogEntry {
 };
 
 /// Goes through the entries of a TAPE chunk's payload. Pure.
-class LogEntries {
+class NENDO_API LogEntries {
 public:
   explicit LogEntries(std::span<const std::byte> payload) noexcept : reader_(payload) {}
   /// Returns the next entry; nullopt at the end. ended_well() then says whether the payload ended
@@ -57,7 +57,7 @@ private:
 };
 
 /// Writes the kind and length with which every entry begins.
-void put_entry_head(ByteWriter& writer, EntryKind kind, std::size_t body_bytes);
+NENDO_API void put_entry_head(ByteWriter& writer, EntryKind kind, std::size_t body_bytes);
 
 struct RecordedSample {
   std::uint8_t glove = 0; ///< the number that its GLOV chunk gives it
@@ -66,17 +66,17 @@ struct RecordedSample {
 
 /// Says whether a time is within 2^61 ns (73 years) of the clock's zero. Readers refuse other
 /// times, so that differences of times never overflow.
-bool is_usable_time(std::chrono::nanoseconds since_epoch) noexcept;
-void put_time(ByteWriter& writer, HostTime time);
-HostTime read_time(ByteReader& reader) noexcept;
+NENDO_API bool is_usable_time(std::chrono::nanoseconds since_epoch) noexcept;
+NENDO_API void put_time(ByteWriter& writer, HostTime time);
+NENDO_API HostTime read_time(ByteReader& reader) noexcept;
 
 /// Writes a sample as a whole entry.
-void put_sample(ByteWriter& writer, const RecordedSample& recorded);
+NENDO_API void put_sample(ByteWriter& writer, const RecordedSample& recorded);
 /// Returns the sample of an entry; nullopt if the entry is no sample, or holds what no glove sends.
-std::optional<RecordedSample> sample_of(const LogEntry& record) noexcept;
+NENDO_API std::optional<RecordedSample> sample_of(const LogEntry& record) noexcept;
 /// Writes or reads a sample without the kind and length of an entry, for other chunks.
-void put_sample_body(ByteWriter& writer, const RecordedSample& recorded);
-std::optional<RecordedSample> read_sample_body(ByteReader& reader) noexcept;
+NENDO_API void put_sample_body(ByteWriter& writer, const RecordedSample& recorded);
+NENDO_API std::optional<RecordedSample> read_sample_body(ByteReader& reader) noexcept;
 
 struct RecordedGlove {
   std::uint8_t number = 0;
@@ -84,9 +84,9 @@ struct RecordedGlove {
 };
 
 /// Writes the payload of a GLOV chunk.
-void put_glove(ByteWriter& writer, const RecordedGlove& glove);
+NENDO_API void put_glove(ByteWriter& writer, const RecordedGlove& glove);
 /// Returns the glove that the payload of a GLOV chunk describes; nullopt if put_glove() cannot have
 /// written it. In its texts, characters other than printable ASCII become '?'.
-std::optional<RecordedGlove> glove_of(std::span<const std::byte> payload);
+NENDO_API std::optional<RecordedGlove> glove_of(std::span<const std::byte> payload);
 
 } // namespace nendo::recording

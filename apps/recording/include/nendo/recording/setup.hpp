@@ -22,15 +22,15 @@ struct ShapeSum {
   std::uint32_t crc = 0;
   friend bool operator==(const ShapeSum&, const ShapeSum&) = default;
 };
-ShapeSum sum_of(const deform::Points& vertices) noexcept;
+NENDO_API ShapeSum sum_of(const deform::Points& vertices) noexcept;
 
 struct RecordedPuppet {
   std::string text{};      ///< of its file
   deform::Points starts{}; ///< puppet::Rig::starts()
 };
 /// Makes the puppet again, for the model of the recording. Error: bad_input.
-Result<std::shared_ptr<const puppet::Rig>> rig_of(const RecordedPuppet& recorded,
-                                                  const deform::Mesh& model);
+NENDO_API Result<std::shared_ptr<const puppet::Rig>> rig_of(const RecordedPuppet& recorded,
+                                                            const deform::Mesh& model);
 
 struct LoopSetup {
   std::string mesh; ///< the file's name, as it was given
@@ -61,23 +61,24 @@ struct Setup {
 };
 
 /// Returns a setup that begins now.
-Setup begin_setup(std::string program);
+NENDO_API Setup begin_setup(std::string program);
 
 /// Makes of a loop's setup, as it began, the one of a loop that goes on from a later state.
 /// `layout` is the loop's.
-void continue_from(const flow::LoopState& state, const deform::BlockLayout& layout, Setup& setup);
+NENDO_API void continue_from(const flow::LoopState& state, const deform::BlockLayout& layout,
+                             Setup& setup);
 
 /// Returns the file's header and the chunks of a setup, numbered from 0, and sets `chunks` to the
 /// number of these chunks.
-std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks);
+NENDO_API std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks);
 
 /// Tells whether setup_bytes() of a setup can be read again. Error: failed, with what is out of its
 /// range, and what to do. A recorder refuses such a setup before anything is recorded.
-Result<void> check_readable(const Setup& setup, std::span<const std::byte> bytes);
+NENDO_API Result<void> check_readable(const Setup& setup, std::span<const std::byte> bytes);
 
 /// Reads a chunk into `setup`. Returns false if the chunk is of a setup, but holds something that
 /// nendo does not write. Chunks of other types are ignored and give true. The result is finite and
 /// usable without further checks, because enumerators, counts and sizes are checked here.
-bool read_setup_chunk(ChunkType type, std::span<const std::byte> payload, Setup& setup);
+NENDO_API bool read_setup_chunk(ChunkType type, std::span<const std::byte> payload, Setup& setup);
 
 } // namespace nendo::recording

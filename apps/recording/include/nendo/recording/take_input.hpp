@@ -26,6 +26,6 @@ struct TakeInput {
 
 /// Reads a recording of a loop. Blocks, and takes 160 bytes for each sample. Errors: bad_input (as
 /// from TakeReader::open(); or no loop was recorded, or it has no tick).
-Result<TakeInput> read_take_input(const std::filesystem::path& path);
+NENDO_API Result<TakeInput> read_take_input(const std::filesystem::path& path);
 
 } // namespace nendo::recording

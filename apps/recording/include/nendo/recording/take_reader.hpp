@@ -59,17 +59,18 @@ struct Ending {
 
 /// Writes an entry as it is in an input log chunk. The `hand` of a sample is the number of its
 /// glove.
-void put_entry(ByteWriter& writer, const Entry& entry);
-void put_ending(ByteWriter& writer, const Ending& ending);
+NENDO_API void put_entry(ByteWriter& writer, const Entry& entry);
+NENDO_API void put_ending(ByteWriter& writer, const Ending& ending);
 inline constexpr ChunkType ending_chunk = chunk_type("END ");
 /// Writes a puppet as a chunk, which must stand before the entries that name its number.
-void put_puppet_version(ByteWriter& writer, std::uint32_t number, const RecordedPuppet& puppet);
+NENDO_API void put_puppet_version(ByteWriter& writer, std::uint32_t number,
+                                  const RecordedPuppet& puppet);
 inline constexpr ChunkType puppet_version_chunk = chunk_type("PUPV");
 /// Writes what the gloves have sent so far, by their numbers; there are at most 255.
-void put_sent(ByteWriter& writer, std::span<const driver::RecordCounts> gloves);
+NENDO_API void put_sent(ByteWriter& writer, std::span<const driver::RecordCounts> gloves);
 inline constexpr ChunkType sent_chunk = chunk_type("SENT");
 
-class TakeReader {
+class NENDO_API TakeReader {
 public:
   /// Opens a recording and reads up to the first entry. Errors: bad_input (as for
   /// ChunkReader::open(), or there is nothing in it).

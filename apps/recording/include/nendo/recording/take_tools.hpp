@@ -15,7 +15,7 @@
 
 namespace nendo::recording {
 
-struct GloveSummary {
+struct NENDO_API GloveSummary {
   std::uint64_t samples = 0;
   /// Samples that are not in the file, though their records were delivered: numbers that are left
   /// out of the sequence.
@@ -30,7 +30,7 @@ struct GloveSummary {
   double rate_hz() const noexcept; ///< 0 if there are less than two samples
 };
 
-struct TakeSummary {
+struct NENDO_API TakeSummary {
   Setup setup;
   std::vector<GloveSummary> gloves; ///< by their numbers
   std::array<std::uint64_t, flow::requests.size()> requests{};
@@ -61,9 +61,9 @@ struct TakeSummary {
 };
 
 /// Reads a recording and summarises it. Errors: those of TakeReader::open().
-Result<TakeSummary> summarise(const std::filesystem::path& path);
+NENDO_API Result<TakeSummary> summarise(const std::filesystem::path& path);
 /// Does the same for a recording in memory. Errors: those of TakeReader::of().
-Result<TakeSummary> summarise(std::span<const std::byte> bytes, std::string_view name);
+NENDO_API Result<TakeSummary> summarise(std::span<const std::byte> bytes, std::string_view name);
 
 /// What was written to a new file.
 struct NewTake {
@@ -76,20 +76,23 @@ struct NewTake {
 
 /// Writes all whole chunks to a new file, with new numbers. A gap stands for each damaged place.
 /// Errors: bad_input (nothing is whole), failed (the new file exists already or cannot be written).
-Result<NewTake> repair_take(const std::filesystem::path& from, const std::filesystem::path& to);
+NENDO_API Result<NewTake> repair_take(const std::filesystem::path& from,
+                                      const std::filesystem::path& to);
 
 /// Writes what happened from `begin` to before `end` to a new file, in whole ticks of a loop. Both
 /// times count from the beginning of the recording. If the part does not begin with the recording,
 /// it begins with a gap, because the shape at that moment is not in it, and then with the settings
 /// of that moment. Errors: those of repair_take(), and bad_input if nothing happened then.
-Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesystem::path& to,
-                         HostClock::duration begin, HostClock::duration end);
+NENDO_API Result<NewTake> cut_take(const std::filesystem::path& from,
+                                   const std::filesystem::path& to, HostClock::duration begin,
+                                   HostClock::duration end);
 
 /// Writes a new file with all entries and with `rate_hz` shapes a second. To make them, it replays
 /// the loop over `model`, which should be the recorded one. Each shape belongs to a whole tick, and
 /// the first tick has one. Shapes that the recording already has are left out. Errors: those of
 /// repair_take() and LoopReplay::make(), and bad_input (too many vertices).
-Result<NewTake> add_shapes(const std::filesystem::path& from, const std::filesystem::path& to,
-                           const deform::Mesh& model, double rate_hz);
+NENDO_API Result<NewTake> add_shapes(const std::filesystem::path& from,
+                                     const std::filesystem::path& to, const deform::Mesh& model,
+                                     double rate_hz);
 
 } // namespace nendo::recording

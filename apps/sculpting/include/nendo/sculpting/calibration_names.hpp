@@ -18,18 +18,19 @@ using Note = std::function<void(std::string_view)>;
 
 /// Returns what is stored on this machine, in the folders that the environment gives. Notes which
 /// files cannot be read. Blocks.
-hand::CalibrationList stored_calibrations(const Note& note);
+NENDO_API hand::CalibrationList stored_calibrations(const Note& note);
 
 /// Returns the calibration that `name` means. A text with a slash or the ending .toml is a path. A
 /// wearer's name means those of the wearer's calibrations that are in force. Blocks. Errors:
 /// bad_input (there is none, or it cannot be read), usage (several are meant).
-Result<hand::StoredCalibration> named_calibration(const std::string& name, const Note& note);
+NENDO_API Result<hand::StoredCalibration> named_calibration(const std::string& name,
+                                                            const Note& note);
 
 /// Returns a text such as "Anna, right hand, glove A1".
-std::string title_of(const hand::WearerCalibration& wearer);
+NENDO_API std::string title_of(const hand::WearerCalibration& wearer);
 
 /// Returns "index_pip", or "index_pip and ring_mcp", and so on.
-std::string sensors_in_words(SensorMask sensors);
-bool is_one(SensorMask sensors) noexcept;
+NENDO_API std::string sensors_in_words(SensorMask sensors);
+NENDO_API bool is_one(SensorMask sensors) noexcept;
 
 } // namespace nendo::sculpting

@@ -17,7 +17,7 @@
 
 namespace nendo::sculpting {
 
-struct CalibrationOptions {
+struct NENDO_API CalibrationOptions {
   std::string user;         ///< empty: any
   std::string calibration;  ///< as named_calibration() takes it, or "none"; empty: what is stored
   bool adapt = false;       ///< learn the wearer's ranges, or the slips of such a calibration
@@ -49,13 +49,13 @@ constexpr std::string_view name_of(FoundCalibration::Kind kind) noexcept {
 }
 
 /// Returns the serial number that the glove reports, or an empty text.
-std::string serial_of(const driver::GloveInfo& glove);
+NENDO_API std::string serial_of(const driver::GloveInfo& glove);
 
 /// Returns the best of the stored calibrations for this user (empty: any), glove and hand. It
 /// points into `stored`.
-std::optional<hand::CalibrationChoice> best_calibration(const hand::CalibrationList& stored,
-                                                        const driver::GloveInfo& glove, Side side,
-                                                        const std::string& user);
+NENDO_API std::optional<hand::CalibrationChoice>
+best_calibration(const hand::CalibrationList& stored, const driver::GloveInfo& glove, Side side,
+                 const std::string& user);
 
 /// Finds the wearer of a glove that is sewn for `side`. For that side the wearer gets the hand that
 /// is asked for, stored, or recorded (if the glove replays); a note says which
@@ -65,12 +65,13 @@ std::optional<hand::CalibrationChoice> best_calibration(const hand::CalibrationL
 /// hand and glove, gets an average hand, and a note says so. `found`, if given, is set to what
 /// the wearer of `side` has. Blocks. Errors: bad_input (no such file, another hand's, not readable,
 /// a user without any calibration), usage.
-Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
-                                 const CalibrationOptions& options, const Note& note,
-                                 FoundCalibration* found = nullptr);
+NENDO_API Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
+                                           const CalibrationOptions& options, const Note& note,
+                                           FoundCalibration* found = nullptr);
 
 /// Tells whether angles of that side are an average hand's, though a person wears the glove: it is
 /// neither simulated nor recorded, has the default calibration, and learns none.
-bool is_uncalibrated(const driver::GloveInfo& glove, const hand::Wearer& wearer, Side side);
+NENDO_API bool is_uncalibrated(const driver::GloveInfo& glove, const hand::Wearer& wearer,
+                               Side side);
 
 } // namespace nendo::sculpting

@@ -14,7 +14,8 @@ namespace nendo::sculpting {
 
 /// Returns the ends that the sensors reached when this calibration was made for a glove with the
 /// counts of `glove`. Error: bad_input, if it does not tell them, or is of another kind of glove.
-Result<hand::WornEnds> ends_of(const hand::StoredCalibration& file, const driver::GloveInfo& glove);
+NENDO_API Result<hand::WornEnds> ends_of(const hand::StoredCalibration& file,
+                                         const driver::GloveInfo& glove);
 
 /// What became of slips.
 struct KeptSlips {
@@ -25,7 +26,8 @@ struct KeptSlips {
 /// Writes the user's calibration, from which slips were learned, with the sensors' offsets and ends
 /// moved by them; the one before stays beside it. Blocks. Errors: bad_input, if the calibration is
 /// gone, and those of hand::write_calibration().
-Result<KeptSlips> keep_slips(const driver::GloveInfo& glove, Side side, const std::string& user,
-                             const hand::SensorAngles& slips_counts);
+NENDO_API Result<KeptSlips> keep_slips(const driver::GloveInfo& glove, Side side,
+                                       const std::string& user,
+                                       const hand::SensorAngles& slips_counts);
 
 } // namespace nendo::sculpting

@@ -49,7 +49,7 @@ struct LiveOptions {
 
 /// Owns the gloves, the loop and its thread. Asking thread: whichever uses it, one at a time.
 /// Whoever needs other rings, sinks or logs makes a flow::DeformLoop.
-class LiveLoop {
+class NENDO_API LiveLoop {
 public:
   /// Opens the gloves, waits for a sample from each, places the hands at the model, and starts the
   /// loop. Blocks for some seconds. Errors: usage (an option), those of open_glove(),

@@ -20,20 +20,21 @@ inline constexpr flow::Range model_size_range_m{0.01, 10.0};
 
 /// Returns the longest side of the model on the stage in metres. Hands hold a statue at the
 /// fingertips and clay in the palms, and they can take a part.
-double usual_size_m(flow::Mode mode) noexcept;
+NENDO_API double usual_size_m(flow::Mode mode) noexcept;
 
 /// Returns one radius for all fingertips, in model units: a fraction of the model's longest side.
 /// A finger then shapes what is about it, and neighbours overlap, so that no ridge is left between
 /// two that press together.
-deform::Supports usual_supports(const deform::Mesh& model, flow::Mode mode);
+NENDO_API deform::Supports usual_supports(const deform::Mesh& model, flow::Mode mode);
 
 /// Sets the supports, and the piece length and the distance at which fingertips merge that live
 /// hands need with them.
-void set_supports(deform::Supports supports, flow::SculptorOptions& sculptor);
+NENDO_API void set_supports(deform::Supports supports, flow::SculptorOptions& sculptor);
 
 /// Sets how many bytes undo has at the beginning, and that it may have `most_bytes`. The
 /// asking thread calls ChangeBroker::refill_undo() now and then.
-void set_undo_room(const deform::Mesh& model, std::size_t most_bytes, flow::LoopOptions& loop);
+NENDO_API void set_undo_room(const deform::Mesh& model, std::size_t most_bytes,
+                             flow::LoopOptions& loop);
 
 struct PlacingOptions {
   flow::Mode mode = flow::Mode::type1;
@@ -43,15 +44,14 @@ struct PlacingOptions {
 
 /// Places the hands at the model, in the poses of their first samples. Stray vertices do not count.
 /// Hands that press clay begin beside it. Allocates.
-flow::Placement place(const deform::Mesh& model, std::span<const flow::HandInput> hands,
-                      const PlacingOptions& options);
+NENDO_API flow::Placement place(const deform::Mesh& model, std::span<const flow::HandInput> hands,
+                                const PlacingOptions& options);
 
 /// Makes the loop, whose shape is at first `first`, or the model without it. Errors: failed (the
 /// hands cannot take hold of the model), and those of flow::check_inputs() and check_points().
-Result<std::unique_ptr<flow::DeformLoop>> make_loop(const deform::Mesh& model,
-                                                    const flow::Placement& placement,
-                                                    const std::vector<flow::HandInput>& hands,
-                                                    const flow::LoopOptions& options,
-                                                    const deform::BlockShape* first = nullptr);
+NENDO_API Result<std::unique_ptr<flow::DeformLoop>>
+make_loop(const deform::Mesh& model, const flow::Placement& placement,
+          const std::vector<flow::HandInput>& hands, const flow::LoopOptions& options,
+          const deform::BlockShape* first = nullptr);
 
 } // namespace nendo::sculpting

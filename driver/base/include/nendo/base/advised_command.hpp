@@ -5,17 +5,19 @@
 #include <string>
 #include <string_view>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo {
 
 /// Returns the text as one word of a shell's command line: as it is if no shell does anything with
 /// it, else in single quotes. A GLOVE with ? or & needs them.
-std::string shell_word(std::string_view text);
+NENDO_API std::string shell_word(std::string_view text);
 
 /// Returns the command that runs nendo with these arguments as root: "sudo nendo udev install". If
 /// this program is a nendo in a folder in which sudo does not look for programs, the command has
 /// its whole path.
-std::string as_root(std::string_view arguments);
+NENDO_API std::string as_root(std::string_view arguments);
 /// The same for a program with that path.
-std::string as_root(std::string_view arguments, const std::filesystem::path& program);
+NENDO_API std::string as_root(std::string_view arguments, const std::filesystem::path& program);
 
 } // namespace nendo

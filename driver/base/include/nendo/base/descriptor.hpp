@@ -3,9 +3,11 @@
 
 #include <utility>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo {
 
-class Descriptor {
+class NENDO_API Descriptor {
 public:
   Descriptor() = default;
   /// Takes over what open() returned. A negative number means that no file is open.

@@ -9,7 +9,7 @@
 
 namespace nendo {
 
-class EventCount {
+class NENDO_API EventCount {
 public:
   /// Notifies the waiter. May be called from any thread; lock-free. The waiter sees everything that
   /// was written before this call as soon as its wait() returns.

@@ -14,7 +14,7 @@ namespace nendo {
 /// Does what replace_file() does, piece by piece. Until finish() everything is in a temporary file,
 /// which the destructor removes. The temporary file has the mode of the file that it replaces from
 /// the beginning.
-class FileReplacement {
+class NENDO_API FileReplacement {
 public:
   /// Starts to replace `path`. Error: failed (it is not a regular file, or cannot be written).
   static Result<FileReplacement> begin(const std::filesystem::path& path);

@@ -20,28 +20,28 @@ struct OpenFile {
 };
 
 /// Opens a regular file, to read it piece by piece. `kind` is as in read_file(). Error: bad_input.
-Result<OpenFile> open_file(const std::filesystem::path& path, std::string_view kind);
+NENDO_API Result<OpenFile> open_file(const std::filesystem::path& path, std::string_view kind);
 
 /// Returns the contents of a regular file; a device or a pipe is refused, since it might never end.
 /// `kind` says in errors what the file ought to be, e.g. "mesh". Error: bad_input, also if the file
 /// has more than `most_bytes`.
-Result<std::string> read_file(const std::filesystem::path& path, std::uint64_t most_bytes,
-                              std::string_view kind);
+NENDO_API Result<std::string> read_file(const std::filesystem::path& path, std::uint64_t most_bytes,
+                                        std::string_view kind);
 
 /// Replaces the file that `path` or its link leads to; it must be a regular file, if it exists.
 /// Writes a temporary file beside it, syncs that and renames it, so that the file always is the old
 /// one or the whole new one; the mode stays. The temporary file (`.nendo.*.tmp`) is removed on
 /// failure, and stays only if the process is killed. Error: failed.
-Result<void> replace_file(const std::filesystem::path& path, std::string_view contents);
+NENDO_API Result<void> replace_file(const std::filesystem::path& path, std::string_view contents);
 
 /// Writes all of `bytes`, in as many calls as it takes. Returns false, with errno set, if the
 /// system refuses a call. It may be called in a signal handler.
-bool write_all(int fd, std::span<const std::byte> bytes) noexcept;
+NENDO_API bool write_all(int fd, std::span<const std::byte> bytes) noexcept;
 /// Syncs the folder of `file`, because a new name is on the disk only when its folder is. Failures
 /// are ignored, since some file systems cannot sync a folder.
-void sync_folder_of(const std::filesystem::path& file);
+NENDO_API void sync_folder_of(const std::filesystem::path& file);
 
 /// Returns where a link leads, also if nothing is there yet; otherwise the path itself.
-std::filesystem::path target_of(const std::filesystem::path& path);
+NENDO_API std::filesystem::path target_of(const std::filesystem::path& path);
 
 } // namespace nendo

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo {
 
 struct TomlFault {
@@ -26,6 +28,6 @@ inline constexpr int most_toml_depth = 16;
 /// braces, nested at most `most_toml_depth` deep. It does not judge what only toml++ can tell:
 /// whether a number has too many digits, an escape is known, or a key stands twice. Takes a time
 /// proportional to the size of the text.
-std::optional<TomlFault> find_toml_fault(std::string_view text);
+NENDO_API std::optional<TomlFault> find_toml_fault(std::string_view text);
 
 } // namespace nendo

@@ -8,6 +8,8 @@
 #include <utility>
 #include <variant>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo {
 
 /// The kinds of errors that a caller can tell apart. The values are the program's exit codes.

@@ -25,7 +25,7 @@ namespace nendo {
 /// Reads one table, row by row. It needs memory for one row. Errors are bad_input, in one line:
 /// "NAME:LINE: what; remedy", and with "column N (name)" where one cell is meant. `text` must
 /// outlive the reader.
-class TableReader {
+class NENDO_API TableReader {
 public:
   TableReader(std::string_view text, std::string name);
 

@@ -16,12 +16,12 @@
 namespace nendo {
 
 /// Returns the text without the byte-order mark of UTF-8 that some programs put before it.
-std::string_view without_mark(std::string_view text) noexcept;
+NENDO_API std::string_view without_mark(std::string_view text) noexcept;
 
 /// Hands out the lines of a text one by one, without blanks at their ends. A line ends with \n,
 /// with
 /// \r\n, or, as on old Macintoshes, with \r. A byte-order mark is skipped.
-class LineReader {
+class NENDO_API LineReader {
 public:
   explicit LineReader(std::string_view text) noexcept : rest_(without_mark(text)) {}
   /// Returns the next line that is not empty, or nullopt at the end of the text.
@@ -35,40 +35,40 @@ private:
 };
 
 /// Returns the text without blanks at its ends. Blanks are space, \t, \r, \v and \f.
-std::string_view trimmed(std::string_view text) noexcept;
+NENDO_API std::string_view trimmed(std::string_view text) noexcept;
 
 /// Removes the part before the first `separator`, and the separator, from `rest` and returns that
 /// part. Without a separator, the whole text is the part and `rest` becomes empty.
-std::string_view cut(std::string_view& rest, char separator) noexcept;
+NENDO_API std::string_view cut(std::string_view& rest, char separator) noexcept;
 
 /// Returns the fields of a line that blanks separate, at most `most` of them.
-std::vector<std::string_view> fields_of(std::string_view line, std::size_t most = 16);
+NENDO_API std::vector<std::string_view> fields_of(std::string_view line, std::size_t most = 16);
 
 /// Returns the number that the whole field is, or nullopt. A leading plus sign is allowed. "nan"
 /// and "inf" are numbers, too; use to_finite_number() where they are not wanted.
-std::optional<double> to_number(std::string_view field) noexcept;
-std::optional<double> to_finite_number(std::string_view field) noexcept;
+NENDO_API std::optional<double> to_number(std::string_view field) noexcept;
+NENDO_API std::optional<double> to_finite_number(std::string_view field) noexcept;
 /// Returns the metres of "5mm", "1.8cm" or "0.2m". Nothing if the field is no finite length, or has
 /// no unit: a bare number has another meaning for each reader.
-std::optional<double> to_metres(std::string_view field) noexcept;
-std::optional<std::int64_t> to_integer(std::string_view field) noexcept;
+NENDO_API std::optional<double> to_metres(std::string_view field) noexcept;
+NENDO_API std::optional<std::int64_t> to_integer(std::string_view field) noexcept;
 
 /// Returns the shortest decimals that read back to the same double. They have a point or an
 /// exponent, as TOML wants it of a float. `value` must be finite.
-std::string decimal_text(double value);
+NENDO_API std::string decimal_text(double value);
 
 /// Returns the text with '?' in place of everything but printable ASCII, so that no escape sequence
 /// reaches a terminal.
-std::string printable(std::string_view text);
+NENDO_API std::string printable(std::string_view text);
 
 /// Returns the text for a message: printable, in single quotes, cut after 40 characters.
-std::string in_quotes(std::string_view text);
+NENDO_API std::string in_quotes(std::string_view text);
 
 /// Tells whether the text is well-formed UTF-8: no overlong forms, no surrogates, nothing beyond
 /// U+10FFFF.
-bool is_utf8(std::string_view text) noexcept;
+NENDO_API bool is_utf8(std::string_view text) noexcept;
 
 /// Returns an Error of kind bad_input whose message is "name:line: what".
-Error bad_line(std::string_view name, std::size_t line, const std::string& what);
+NENDO_API Error bad_line(std::string_view name, std::size_t line, const std::string& what);
 
 } // namespace nendo

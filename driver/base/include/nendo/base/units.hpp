@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo {
 
 /// A sensor reading as the glove sent it, before calibration. 8-bit gloves send 1..255.
