@@ -10,15 +10,14 @@ namespace nendo::edit {
 GlbExport::GlbExport(const timeline::Timeline& timeline, const deform::Mesh& model,
                      const std::string& path)
     : thread_([this, timeline, model, path] {
-        const exporting::OpenFrames open = [&]() -> Result<std::unique_ptr<takes::FrameSource>> {
-          auto frames = takes::TimelineFrames::make(timeline, model);
-          if (!frames) return frames.error();
-          return std::unique_ptr<takes::FrameSource>(*std::move(frames));
-        };
+        const auto frames = takes::TimelineFrames::make(timeline, model);
         const exporting::Choice choice{.rate_hz = exporting::animators_rate_hz, .stop = &stop_};
         exporting::GltfOptions options;
         options.generator = "Nendo " NENDO_VERSION;
-        result_ = exporting::export_gltf(open, choice, options, path);
+        if (frames)
+          result_ = exporting::export_gltf(**frames, choice, options, path);
+        else
+          result_ = frames.error();
         done_ = true;
       }) {}
 

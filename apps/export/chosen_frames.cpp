@@ -48,9 +48,13 @@ Result<ChosenFrames> ChosenFrames::make(takes::FrameSource& source, const Choice
   return chosen;
 }
 
+Result<void> ChosenFrames::check_stop() const {
+  if (choice_.stop == nullptr || !*choice_.stop) return {};
+  return Error{Errc::failed, "stopped before the end"};
+}
+
 Result<bool> ChosenFrames::next() {
-  if (choice_.stop != nullptr && *choice_.stop)
-    return Error{Errc::failed, "stopped before the end"};
+  if (const auto fine = check_stop(); !fine) return fine.error();
   if (even_) {
     if (made_ == *count_) return false;
     time_s_ = first_s_ + static_cast<double>(made_) / *choice_.rate_hz;

@@ -36,7 +36,9 @@ public:
   /// many frames).
   static Result<ChosenFrames> make(takes::FrameSource& source, const Choice& choice);
 
-  /// Makes the next frame. Returns false if there is none. Errors: failed (`stop` was set), usage
+  /// Errors: failed (`stop` was set).
+  Result<void> check_stop() const;
+  /// Makes the next frame. Returns false if there is none. Errors: those of check_stop(); usage
   /// (more than most_export_frames). Blocks.
   Result<bool> next();
   const flow::Frame& frame() const noexcept { return even_ ? held_ : source_->frame(); }

@@ -89,20 +89,29 @@ bool ControlMorphs::add(const flow::Frame& frame, const deform::Points& vertices
   if (field != nullptr) {
     if (field->centres.cols() == 0 || !field->polynomial.isZero(0.0)) return false;
     if (centres_.cols() == 0 && !set_basis(*field)) return false;
-    if (field->centres != centres_) return false;
+    if (field->centres.cols() != centres_.cols() || field->centres != centres_) return false;
   }
   Eigen::Matrix3Xf moved = rest_;
-  if (centres_.cols() == 0) {
-    ++still_;
-  } else {
-    Eigen::Matrix3Xf vectors = Eigen::Matrix3Xf::Zero(3, influences_.rows());
+  Eigen::Matrix3Xf vectors; // none before the basis is known
+  if (centres_.cols() > 0) {
+    vectors.setZero(3, influences_.rows());
     if (field != nullptr) vectors = vectors_of(*field);
     moved.noalias() += vectors * influences_;
-    vectors_.insert(vectors_.end(), vectors.data(), vectors.data() + vectors.size());
   }
   const double error = (moved.cast<double>() - vertices).colwise().norm().maxCoeff();
+  if (!(error <= most_error * layout_.diagonal())) return false; // also if it is not a number
   greatest_error_ = std::max(greatest_error_, error);
-  return error <= most_error * layout_.diagonal(); // not so if it is not a number
+  if (centres_.cols() == 0) ++still_;
+  vectors_.insert(vectors_.end(), vectors.data(), vectors.data() + vectors.size());
+  return true;
+}
+
+Eigen::Matrix3Xf ControlMorphs::displacement(std::size_t frame) const {
+  // The basis may be that of a frame that could not be added.
+  if (frame < still_) return Eigen::Matrix3Xf::Zero(3, rest_.cols());
+  const Index width = influences_.rows();
+  const auto begin = static_cast<Index>(frame - still_) * 3 * width;
+  return Eigen::Map<const Eigen::Matrix3Xf>(vectors_.data() + begin, 3, width) * influences_;
 }
 
 float ControlMorphs::greatest_vector() const noexcept {

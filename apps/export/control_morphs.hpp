@@ -25,12 +25,16 @@ public:
   explicit ControlMorphs(const deform::BlockLayout& layout, Eigen::VectorXd weights = {});
 
   /// Adds a frame with its vertices, in the mesh's order. Returns false if the take is not linear
-  /// (commits, several links, polynomials, Type-2). This object is then of no further use.
+  /// (commits, several links, polynomials, Type-2). The frames before remain, and no other may be
+  /// added then.
   bool add(const flow::Frame& frame, const deform::Points& vertices);
 
   /// Returns the greatest error of the frames so far, in model units. It is measured in 32-bit
   /// floats, as a reader of the targets computes them.
   double greatest_error() const noexcept { return greatest_error_; }
+  /// Returns how far each vertex is from the model at rest, in the frame with that number from 0:
+  /// 3 by #vertices.
+  Eigen::Matrix3Xf displacement(std::size_t frame) const;
   /// Returns one row for each control vector and one column for each vertex. The influence is zero
   /// where no support reaches.
   const Eigen::MatrixXf& influences() const noexcept { return influences_; }

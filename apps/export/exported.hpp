@@ -1,19 +1,13 @@
 #pragma once
-// The report of an export, and the type of the function that opens its frames.
+// The report of an export.
 
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
-
-#include <nendo/base/result.hpp>
-
-#include "takes/frame_source.hpp"
 
 namespace nendo::exporting {
 
@@ -54,8 +48,5 @@ struct Exported {
   /// deform::Mesh::offset, where the files' places count from there: in model units.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 };
-
-/// Opens the same frames again from the beginning. An export may have to read them twice.
-using OpenFrames = std::function<Result<std::unique_ptr<takes::FrameSource>>()>;
 
 } // namespace nendo::exporting

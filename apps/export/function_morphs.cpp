@@ -86,7 +86,7 @@ std::optional<FunctionMorphs> FunctionMorphs::make(const takes::PlayedPuppet& pu
                                   [](const Target& target) { return target.way.allFinite(); });
   if (!finite) return std::nullopt;
   FunctionMorphs morphs(std::move(targets), layout);
-  Eigen::Matrix3Xf rest = vertices.cast<float>() - morphs.moved_by(first);
+  Eigen::Matrix3Xf rest = vertices.cast<float>() - morphs.moved_by(morphs.weights_of(first));
   const double apart = (rest - morphs.rest_).cast<double>().colwise().norm().maxCoeff();
   if (!(apart <= morphs.most_)) morphs.rest_ = std::move(rest);
   return morphs;
@@ -96,22 +96,32 @@ FunctionMorphs::FunctionMorphs(std::vector<Target> targets, const deform::BlockL
     : targets_(std::move(targets)), rest_(layout.original().cast<float>()),
       most_(ControlMorphs::most_error * layout.diagonal()) {}
 
-Eigen::Matrix3Xf FunctionMorphs::moved_by(const flow::Frame& frame) const {
+std::vector<float> FunctionMorphs::weights_of(const flow::Frame& frame) const {
+  std::vector<float> weights;
+  for (const Target& target : targets_)
+    weights.push_back(target.weight_at(frame.functions[target.function]));
+  return weights;
+}
+
+Eigen::Matrix3Xf FunctionMorphs::moved_by(std::span<const float> weights) const {
   Eigen::Matrix3Xf moved = Eigen::Matrix3Xf::Zero(3, rest_.cols());
-  for (const Target& target : targets_) {
-    const float weight = target.weight_at(frame.functions[target.function]);
-    if (weight > 0.0F) moved += weight * target.way;
-  }
+  for (std::size_t at = 0; at < targets_.size(); ++at)
+    if (weights[at] > 0.0F) moved += weights[at] * targets_[at].way;
   return moved;
 }
 
+Eigen::Matrix3Xf FunctionMorphs::displacement(std::size_t frame) const {
+  return moved_by(std::span(weights_).subspan(frame * targets_.size(), targets_.size()));
+}
+
 bool FunctionMorphs::add(const flow::Frame& frame, const Points& vertices) {
-  for (const Target& target : targets_)
-    weights_.push_back(target.weight_at(frame.functions[target.function]));
-  const Eigen::Matrix3Xf moved = rest_ + moved_by(frame);
+  const std::vector<float> weights = weights_of(frame);
+  const Eigen::Matrix3Xf moved = rest_ + moved_by(weights);
   const double error = (moved.cast<double>() - vertices).colwise().norm().maxCoeff();
+  if (!(error <= most_)) return false; // also if it is not a number
   greatest_error_ = std::max(greatest_error_, error);
-  return error <= most_; // not so if it is not a number
+  weights_.insert(weights_.end(), weights.begin(), weights.end());
+  return true;
 }
 
 } // namespace nendo::exporting

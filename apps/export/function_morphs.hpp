@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,13 +44,16 @@ public:
                                             const deform::Points& vertices);
 
   /// Adds a frame with its vertices, in the mesh's order. Returns false if a vertex differs from
-  /// the sum by more than ControlMorphs::most_error of the model's diagonal. This object is then of
-  /// no further use.
+  /// the sum by more than ControlMorphs::most_error of the model's diagonal. The frames before
+  /// remain then.
   bool add(const flow::Frame& frame, const deform::Points& vertices);
 
   /// Returns the greatest error of the frames so far, in model units. It is measured in 32-bit
   /// floats, as a reader of the targets computes them.
   double greatest_error() const noexcept { return greatest_error_; }
+  /// Returns how far each vertex is from the rest shape, in the frame with that number from 0: 3 by
+  /// #vertices.
+  Eigen::Matrix3Xf displacement(std::size_t frame) const;
   /// Returns the rest shape, 3 by #vertices, in the mesh's order, model units.
   const Eigen::Matrix3Xf& rest() const noexcept { return rest_; }
   const std::vector<Target>& targets() const noexcept { return targets_; }
@@ -58,7 +62,8 @@ public:
 
 private:
   FunctionMorphs(std::vector<Target> targets, const deform::BlockLayout& layout);
-  Eigen::Matrix3Xf moved_by(const flow::Frame& frame) const;
+  std::vector<float> weights_of(const flow::Frame& frame) const;
+  Eigen::Matrix3Xf moved_by(std::span<const float> weights) const;
 
   std::vector<Target> targets_;
   Eigen::Matrix3Xf rest_;

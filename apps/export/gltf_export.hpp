@@ -12,7 +12,10 @@
 // - Any other take of Type-1 is exact. For each control vector it has targets along each axis and
 //   against it (control_morphs.hpp).
 // - All other takes (with commits, motion in several links, or Type-2) have key shapes
-//   (key_shapes.hpp). Each key shape is a target, and at any time two of them are mixed.
+//   (key_shapes.hpp). Each key shape is a target, and at any time two of them are mixed. As long
+//   as such a take is a sum of functions or of control vectors, its frames are that sum, which is
+//   off by ControlMorphs::most_error at most and mostly by 1e-7 of the diagonal. The tolerance and
+//   the report include that.
 // - Where the model becomes another one, as when it is subdivided, or its puppet is edited, each
 //   part of the take has a mesh of its own. Its node is shown in its time by an animation of its
 //   scale, which is 0 otherwise.
@@ -41,12 +44,12 @@ struct GltfOptions {
   std::uint64_t most_weights = std::uint64_t{1} << 28;
 };
 
-/// Exports the frames to `path`. It reads them once, and once more for each kind of targets of
-/// which their shapes turn out not to be sums. The file is kept in memory until it is written.
-/// Blocks. Errors: those of `open`, ChosenFrames::make(), ChosenFrames::next() and
-/// GlbFile::write(); bad_input (numbers that 32-bit floats cannot hold, or there is neither a model
-/// nor a hand), failed (too many weights).
-Result<Exported> export_gltf(const OpenFrames& open, const Choice& choice,
+/// Exports the frames of `source` to `path`. The source must be new, without a call of next(), and
+/// is played once. The targets and the file are kept in memory until it is written. Blocks. Errors:
+/// those of ChosenFrames::make(), ChosenFrames::next() and GlbFile::write(); bad_input (numbers
+/// that 32-bit floats cannot hold, or there is neither a model nor a hand), failed (too many
+/// weights).
+Result<Exported> export_gltf(takes::FrameSource& source, const Choice& choice,
                              const GltfOptions& options, const std::filesystem::path& path);
 
 } // namespace nendo::exporting

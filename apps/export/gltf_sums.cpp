@@ -2,150 +2,134 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 #include <nendo/deform/triangles.hpp>
 
 #include "export/control_morphs.hpp"
 #include "export/function_morphs.hpp"
-#include "export/gltf_model.hpp"
-#include "export/gltf_take.hpp"
 
 namespace nendo::exporting {
 namespace {
 
-/// A model whose shapes are weighted sums of its targets, and the weights of the frames in which it
-/// is shown.
-struct SummedModel {
-  GltfModel model;
-  std::uint32_t version = 0;
-  std::vector<float> times_s{};
-  std::vector<float> weights{};
-  double greatest_error = 0.0; ///< model units
-};
-
-/// Adds the models, which follow each other in time, to their document.
-Result<Exported> finish_sums(const SumTake& take, const std::vector<SummedModel>& models,
-                             MorphBasis basis, const Played& played, GltfTake& document) {
-  const double diagonal = take.source.layout(models.front().version).diagonal();
-  std::vector<const deform::Appearance*> looks;
-  for (const SummedModel& one : models)
-    looks.push_back(&take.source.model(one.version).look);
-  const GltfMaterials materials(richest_of(looks), document.file);
-  MorphReport report;
-  report.basis = basis;
-  report.models = models.size();
-  report.diagonal_m = diagonal / played.units_per_metre;
-  std::vector<Shown> shown;
-  GlbFile::Json roots = GlbFile::Json::array();
-  for (const SummedModel& one : models) {
-    if (!one.weights.empty()) {
-      const auto times = document.file.add_scalars(one.times_s, true);
-      document.animate(one.model.node(), "weights", "LINEAR", times,
-                       document.file.add_scalars(one.weights, false));
-      report.keys += one.times_s.size();
-    }
-    MorphReport own = report;
-    own.greatest_error = one.greatest_error / diagonal;
-    one.model.add_to(document.file, materials, played.units_per_metre, own);
-    report.targets += one.model.target_count();
-    report.greatest_error = std::max(report.greatest_error, own.greatest_error);
-    shown.push_back({one.model.node(), one.times_s.front()});
-    roots.push_back(one.model.node());
-  }
-  show_one_by_one(shown, played.units_per_metre, document);
-  auto done =
-      finish_take(document, std::move(roots), played, take.frames, take.choice.rate_hz, take.path);
-  if (done) done->morphs = report;
-  return done;
-}
-
-/// Makes a model of each puppet on each version of its model.
-class FunctionModels {
+/// The model of each puppet on each version of its model.
+class FunctionModels final : public ExactMorphs {
 public:
-  FunctionModels(const SumTake& take, GlbFile& file) : take_(take), file_(file) {}
+  explicit FunctionModels(const ChosenFrames& frames) : frames_(frames) {}
 
-  /// Returns false if a shape is no sum of the functions.
-  bool add(const flow::Frame& frame, float time_s, const deform::Points& vertices) {
-    if (models_.empty() || frame.puppet != puppet_ || frame.model != models_.back().version) {
-      end();
-      if (!begin(frame, vertices)) return false;
-    }
-    models_.back().times_s.push_back(time_s);
-    return morphs_->add(frame, vertices);
+  MorphBasis basis() const noexcept override { return MorphBasis::functions; }
+
+  bool add(const flow::Frame& frame, float time_s, const deform::Points& vertices) override {
+    const bool goes_on = !parts_.empty() && frame.puppet == parts_.back().puppet &&
+                         frame.model == parts_.back().version;
+    if (!goes_on && !begin(frame, vertices)) return false;
+    if (!parts_.back().morphs.add(frame, vertices)) return false;
+    parts_.back().times_s.push_back(time_s);
+    return true;
   }
-  std::vector<SummedModel>& finish() {
-    end();
-    return models_;
+
+  double greatest_error() const noexcept override {
+    double greatest = 0.0;
+    for (const Part& part : parts_)
+      greatest = std::max(greatest, part.morphs.greatest_error());
+    return greatest;
+  }
+
+  Result<void> give_frames(KeyShapeModels& keys) const override {
+    for (const Part& part : parts_) {
+      const deform::Points& original = frames_.source().layout(part.version).original();
+      const Eigen::Matrix3Xf rest = part.morphs.rest() - original.cast<float>();
+      for (std::size_t at = 0; at < part.times_s.size(); ++at) {
+        auto added = keys.add(part.version, part.times_s[at], rest + part.morphs.displacement(at));
+        if (!added) return added;
+      }
+    }
+    return {};
+  }
+
+  std::vector<MovingModel> make_models(GlbFile& file) override {
+    std::vector<MovingModel> models;
+    for (Part& ended : parts_) {
+      const Part part = std::move(ended); // its targets then are not kept beside those in the file
+      const deform::Mesh mesh =
+          deform::in_shape(frames_.source().model(part.version), part.morphs.rest().cast<double>());
+      models.push_back({GltfModel(mesh, file), part.version, part.times_s, part.morphs.weights(),
+                        part.morphs.greatest_error()});
+      models.back().model.add_function_targets(part.morphs, file);
+    }
+    return models;
   }
 
 private:
+  struct Part {
+    FunctionMorphs morphs;
+    std::uint32_t puppet; ///< Frame::puppet
+    std::uint32_t version;
+    std::vector<float> times_s{};
+  };
+
   bool begin(const flow::Frame& frame, const deform::Points& vertices) {
-    const auto puppet = take_.frames.puppet();
+    const auto puppet = frames_.puppet();
     if (!puppet) return false;
-    morphs_ = FunctionMorphs::make(*puppet, take_.source.layout(frame.model), frame, vertices);
-    if (!morphs_) return false;
-    puppet_ = frame.puppet;
-    const deform::Mesh mesh =
-        deform::in_shape(take_.source.model(frame.model), morphs_->rest().cast<double>());
-    models_.push_back({GltfModel(mesh, file_), frame.model});
-    models_.back().model.add_function_targets(*morphs_, file_);
+    const deform::BlockLayout& layout = frames_.source().layout(frame.model);
+    auto morphs = FunctionMorphs::make(*puppet, layout, frame, vertices);
+    if (!morphs) return false;
+    parts_.push_back({*std::move(morphs), frame.puppet, frame.model});
     return true;
   }
-  void end() {
-    if (!morphs_) return;
-    models_.back().weights = morphs_->weights();
-    models_.back().greatest_error = morphs_->greatest_error();
-    morphs_.reset();
+
+  const ChosenFrames& frames_;
+  std::vector<Part> parts_;
+};
+
+class ControlModel final : public ExactMorphs {
+public:
+  ControlModel(const takes::FrameSource& source, Eigen::VectorXd weights)
+      : source_(source), version_(source.frame().model),
+        morphs_(source.layout(version_), std::move(weights)) {}
+
+  MorphBasis basis() const noexcept override { return MorphBasis::control_vectors; }
+
+  bool add(const flow::Frame& frame, float time_s, const deform::Points& vertices) override {
+    if (!morphs_.add(frame, vertices)) return false;
+    times_s_.push_back(time_s);
+    return true;
   }
 
-  const SumTake& take_;
-  GlbFile& file_;
-  std::vector<SummedModel> models_;
-  std::uint32_t puppet_ = 0;
-  std::optional<FunctionMorphs> morphs_; ///< of the last model
+  double greatest_error() const noexcept override { return morphs_.greatest_error(); }
+
+  Result<void> give_frames(KeyShapeModels& keys) const override {
+    for (std::size_t at = 0; at < times_s_.size(); ++at)
+      if (auto added = keys.add(version_, times_s_[at], morphs_.displacement(at)); !added)
+        return added;
+    return {};
+  }
+
+  std::vector<MovingModel> make_models(GlbFile& file) override {
+    std::vector<MovingModel> models;
+    models.push_back({GltfModel(source_.model(version_), file), version_, std::move(times_s_)});
+    models.back().weights = models.back().model.add_control_targets(morphs_, file);
+    models.back().greatest_error = morphs_.greatest_error();
+    return models;
+  }
+
+private:
+  const takes::FrameSource& source_;
+  std::uint32_t version_;
+  ControlMorphs morphs_;
+  std::vector<float> times_s_;
 };
 
 } // namespace
 
-Result<std::optional<Exported>> by_functions(const SumTake& take) {
-  GltfTake document(take.options);
-  FunctionModels models(take, document.file);
-  const auto played =
-      play_frames(take.frames, take.options.hands,
-                  [&](const flow::Frame& frame, float time_s, const deform::Points& vertices) {
-                    return models.add(frame, time_s, vertices);
-                  });
-  if (!played) return played.error();
-  if (!played->to_the_end) return std::optional<Exported>();
-  auto done = finish_sums(take, models.finish(), MorphBasis::functions, *played, document);
-  if (!done) return done.error();
-  return std::optional<Exported>(*std::move(done));
+std::unique_ptr<ExactMorphs> morphs_by_functions(const ChosenFrames& frames) {
+  return std::make_unique<FunctionModels>(frames);
 }
 
-Result<std::optional<Exported>> by_control_vectors(const SumTake& take) {
-  const std::uint32_t version = take.source.frame().model;
-  const deform::BlockLayout& layout = take.source.layout(version);
+std::unique_ptr<ExactMorphs> morphs_by_control_vectors(const takes::FrameSource& source) {
   Eigen::VectorXd weights;
-  if (const puppet::Rig* const masks = take.source.masks())
-    weights = puppet::mask_weights(masks->puppet(), layout.original());
-  ControlMorphs morphs(layout, std::move(weights));
-  const auto played =
-      play_frames(take.frames, take.options.hands,
-                  [&](const flow::Frame& frame, float, const deform::Points& vertices) {
-                    return morphs.add(frame, vertices);
-                  });
-  if (!played) return played.error();
-  if (!played->to_the_end) return std::optional<Exported>();
-  GltfTake document(take.options);
-  std::vector<SummedModel> models;
-  models.push_back(
-      {GltfModel(take.source.model(version), document.file), version, played->times_s});
-  models.back().weights = models.back().model.add_control_targets(morphs, document.file);
-  models.back().greatest_error = morphs.greatest_error();
-  auto done = finish_sums(take, models, MorphBasis::control_vectors, *played, document);
-  if (!done) return done.error();
-  return std::optional<Exported>(*std::move(done));
+  if (const puppet::Rig* const masks = source.masks())
+    weights = puppet::mask_weights(masks->puppet(), source.layout(source.frame().model).original());
+  return std::make_unique<ControlModel>(source, std::move(weights));
 }
 
 } // namespace nendo::exporting

@@ -3,6 +3,7 @@
 // animation, and models that are shown one after another.
 
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -11,25 +12,33 @@
 #include "export/exported.hpp"
 #include "export/glb_file.hpp"
 #include "export/gltf_export.hpp"
+#include "export/gltf_model.hpp"
 #include "export/hand_rig.hpp"
 
 namespace nendo::exporting {
 
+/// What is exported, how, and where to.
+struct GltfJob {
+  ChosenFrames& frames;
+  const GltfOptions& options;
+  const std::filesystem::path& path;
+};
+
 /// What of a take is not its shapes.
 struct Played {
-  bool to_the_end = false;
   std::vector<float> times_s; ///< since the first frame; they rise
   std::array<std::optional<HandTrack>, 2> hands;
   double units_per_metre = 1.0;
   double last_s = 0.0;
 };
 
-/// Is given each frame, its time since the first and its vertices; false: the rest is not wanted.
-using See = std::function<bool(const flow::Frame& frame, float time_s, const deform::Points&)>;
+/// Receives each frame, its time since the first and its vertices. An error ends the export.
+using AddFrame =
+    std::function<Result<void>(const flow::Frame& frame, float time_s, const deform::Points&)>;
 
-/// Plays all frames that are wanted. Errors: those of ChosenFrames::next(); bad_input (numbers that
-/// 32-bit floats cannot hold).
-Result<Played> play_frames(ChosenFrames& frames, bool hands, const See& see);
+/// Plays all frames that are wanted. Errors: those of ChosenFrames::next() and of `add`; bad_input
+/// (numbers that 32-bit floats cannot hold).
+Result<Played> play_frames(const GltfJob& job, const AddFrame& add);
 
 /// One file, with the part of its document that animates.
 struct GltfTake {
@@ -50,19 +59,22 @@ struct GltfTake {
   GlbFile::Json animation;
 };
 
-/// Writes the file, with the hands. `roots` are the nodes that the document has already; the hands'
-/// are added.
-Result<Exported> finish_take(GltfTake& document, GlbFile::Json roots, const Played& played,
-                             const ChosenFrames& frames, const std::optional<double>& rate_hz,
-                             const std::filesystem::path& path);
-
-/// A model, and when it begins to be shown, since the first frame.
-struct Shown {
-  GlbFile::Index node;
-  float begin_s;
+/// A model with its morph targets, which is shown from the first of its times on.
+struct MovingModel {
+  GltfModel model;
+  std::uint32_t version = 0;    ///< Frame::model
+  std::vector<float> times_s{}; ///< of its weights, since the first frame of the take
+  std::vector<float> weights{}; ///< of all targets, moment by moment; empty: of its key shapes
+  double greatest_error = 0.0;  ///< of a vertex, model units
 };
 
-/// Shows each model in its time only. A node whose scale is 0 is hidden (glTF 2.0, 3.5.3).
-void show_one_by_one(const std::vector<Shown>& models, double units_per_metre, GltfTake& document);
+/// Adds the models, which follow each other in time, and the hands, and writes the file. `report`
+/// has what is not known from the models: the kind of their targets, and the tolerance.
+Result<Exported> finish_models(const GltfJob& job, const Played& played,
+                               const std::vector<MovingModel>& models, MorphReport report,
+                               GltfTake& document);
+/// Adds the hands, and writes the file. `roots` are the nodes of the models.
+Result<Exported> finish_take(const GltfJob& job, const Played& played, GlbFile::Json roots,
+                             GltfTake& document);
 
 } // namespace nendo::exporting

@@ -9,6 +9,8 @@
 // by frame.
 
 #include <filesystem>
+#include <functional>
+#include <memory>
 
 #include "export/chosen_frames.hpp"
 #include "export/exported.hpp"
@@ -16,6 +18,9 @@
 namespace nendo::exporting {
 
 enum class PointCache { pc2, mdd };
+
+/// Opens the same frames from the beginning, each time that it is called.
+using OpenFrames = std::function<Result<std::unique_ptr<takes::FrameSource>>()>;
 
 /// `choice` must be at an even rate. A point cache has one number of points. So where the model
 /// becomes another one, as when it is subdivided, another file begins: NAME-2.pc2 and so on

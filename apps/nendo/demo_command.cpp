@@ -143,11 +143,13 @@ Result<void> draw_strip(const Options& options, const std::string& recording,
 
 /// Exports a recording as an animation for Blender.
 Result<void> animate(const takes::Take& take, const std::string& out) {
+  const auto source = take.open();
+  if (!source) return source.error();
   exporting::GltfOptions gltf;
   gltf.generator = "Nendo " NENDO_VERSION;
   exporting::Choice choice;
   choice.rate_hz = exporting::animators_rate_hz;
-  const auto done = exporting::export_gltf(take.open, choice, gltf, out);
+  const auto done = exporting::export_gltf(**source, choice, gltf, out);
   if (!done) return done.error();
   return {};
 }

@@ -217,7 +217,7 @@ Result<exporting::Exported> export_take(const Take& take, const std::string& for
     if (!gltf) return gltf.error();
     gltf->hands = !options.no_hands;
     gltf->generator = "Nendo " NENDO_VERSION;
-    return exporting::export_gltf(take.open, choice, *gltf, options.out);
+    return exporting::export_gltf(**source, choice, *gltf, options.out);
   }
   deform::Points offset = (*source)->model(0).offset;
   if ((*source)->up() == deform::UpAxis::z && (format == "pc2" || format == "mdd"))

@@ -127,12 +127,10 @@ std::vector<Row> rows_of(const std::string& file) {
   return rows;
 }
 
-OpenFrames frames_of(const RecordedGloves& gloves) {
-  return [path = gloves.path]() -> Result<std::unique_ptr<takes::FrameSource>> {
-    auto frames = takes::GloveFrames::open(path);
-    if (!frames) return frames.error();
-    return std::unique_ptr<takes::FrameSource>(*std::move(frames));
-  };
+std::unique_ptr<takes::FrameSource> frames_of(const RecordedGloves& gloves) {
+  auto frames = takes::GloveFrames::open(gloves.path);
+  REQUIRE(frames);
+  return *std::move(frames);
 }
 
 /// The hand that the wearer had, in the wrist's own frame.
@@ -233,10 +231,9 @@ TEST_SUITE("glove_recording") {
 
   TEST_CASE("a hand's BVH has its joints where the wearer's hand had them") {
     const RecordedGloves gloves;
-    const auto source = frames_of(gloves)();
-    REQUIRE(source);
-    CHECK((*source)->rate_hz() == doctest::Approx(100.0));
-    auto frames = ChosenFrames::make(**source, {.from_s = 0.0045, .rate_hz = 100.0});
+    const auto source = frames_of(gloves);
+    CHECK(source->rate_hz() == doctest::Approx(100.0));
+    auto frames = ChosenFrames::make(*source, {.from_s = 0.0045, .rate_hz = 100.0});
     REQUIRE(frames);
     Skeletons skeletons;
     for (const auto& hand : gloves.setup.hands)
@@ -263,7 +260,7 @@ TEST_SUITE("glove_recording") {
 
   TEST_CASE("a GLB of gloves alone has both hands, each under a root of its own, and no model") {
     const RecordedGloves gloves;
-    const auto done = export_gltf(frames_of(gloves), {}, {}, gloves.out("hands.glb"));
+    const auto done = export_gltf(*frames_of(gloves), {}, {}, gloves.out("hands.glb"));
     REQUIRE(done);
     CHECK_FALSE(done->morphs);
     const test::Glb glb(test::file_bytes(gloves.out("hands.glb")));
@@ -286,7 +283,7 @@ TEST_SUITE("glove_recording") {
       CHECK((place_of("wrist").x() > 0.0) == (side == Side::right)); // they do not overlap
     }
     const auto nothing =
-        export_gltf(frames_of(gloves), {}, {.hands = false}, gloves.out("nothing.glb"));
+        export_gltf(*frames_of(gloves), {}, {.hands = false}, gloves.out("nothing.glb"));
     REQUIRE_FALSE(nothing);
     CHECK(nothing.error().code == Errc::bad_input);
   }

@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "render/hand_skin.hpp"
+#include "support/counted_frames.hpp"
 #include "support/glb_reader.hpp"
 #include "support/recorded_motion.hpp"
 
@@ -24,8 +25,7 @@ namespace {
 
 Result<Exported> export_it(const RecordedMotion& motion, const Choice& choice = {},
                            const GltfOptions& options = {}) {
-  return export_gltf([&] { return Result<std::unique_ptr<FrameSource>>(motion.frames()); }, choice,
-                     options, motion.path("take.glb"));
+  return export_gltf(*motion.frames(), choice, options, motion.path("take.glb"));
 }
 
 Glb read(const RecordedMotion& motion) {
@@ -163,6 +163,33 @@ TEST_SUITE("gltf_export") {
         if (tolerance > 5e-4) CHECK(done->morphs->keys < recorded.shapes.size() / 2);
       }
     }
+  }
+
+  TEST_CASE("a take that is no sum of control vectors from the middle on is played once") {
+    const RecordedMotion motion(Motion{.commit_at_tick = 20});
+    // What was shaped before the commit is then known only from the control vectors.
+    CHECK(test::farthest(motion.shapes[19], motion.shapes[0]) > 0.003 * motion.diagonal());
+    for (const double tolerance : {1e-3, 1e-4}) {
+      test::CountedFrames frames(motion.frames());
+      const auto done = export_gltf(frames, {}, {.tolerance = tolerance}, motion.path("take.glb"));
+      REQUIRE(done);
+      CHECK(frames.made == motion.shapes.size());
+      CHECK(done->frames == motion.shapes.size());
+      CHECK(done->morphs->basis == MorphBasis::key_shapes);
+      CHECK(farthest_off(motion, read(motion)) <= done->morphs->greatest_error + readers_rounding);
+      CHECK(done->morphs->greatest_error <= tolerance + 1e-6);
+    }
+    test::CountedFrames part(motion.frames());
+    const auto done = export_gltf(part, {.from_s = 0.095, .to_s = 0.405, .rate_hz = 50.0},
+                                  {.tolerance = 1e-3}, motion.path("take.glb"));
+    REQUIRE(done);
+    CHECK(done->frames == 16);
+    CHECK(done->morphs->basis == MorphBasis::key_shapes);
+    CHECK(part.made < motion.shapes.size()); // what comes after --to is not made
+    const Glb glb = read(motion);
+    for (std::size_t at = 0; at < 16; ++at)
+      CHECK(test::farthest(glb.vertices(0, static_cast<double>(at) / 50.0),
+                           motion.shapes[9 + 2 * at]) < 1.01e-3 * motion.diagonal());
   }
 
   TEST_CASE("ways in several links are no control vectors, and are told apart by their shapes") {

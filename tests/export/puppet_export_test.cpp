@@ -11,6 +11,7 @@
 
 #include "export/control_morphs.hpp"
 #include "export/gltf_export.hpp"
+#include "support/counted_frames.hpp"
 #include "support/glb_reader.hpp"
 #include "support/recorded_motion.hpp"
 #include "takes/timeline_frames.hpp"
@@ -113,13 +114,17 @@ struct RecordedPuppet {
     if (!played.end()) throw std::runtime_error("not recorded");
   }
 
+  test::CountedFrames frames() const {
+    auto opened = takes::RecordedFrames::open(played.path, played.test.model);
+    if (!opened) throw std::runtime_error(opened.error().message);
+    return test::CountedFrames(*std::move(opened));
+  }
+  Result<Exported> export_it(takes::FrameSource& source, const Choice& choice = {}) const {
+    return export_gltf(source, choice, {.tolerance = 1e-3}, path());
+  }
   Result<Exported> export_it(const Choice& choice = {}) const {
-    const auto open = [this]() -> Result<std::unique_ptr<takes::FrameSource>> {
-      auto frames = takes::RecordedFrames::open(played.path, played.test.model);
-      if (!frames) return frames.error();
-      return std::unique_ptr<takes::FrameSource>(*std::move(frames));
-    };
-    return export_gltf(open, choice, {.tolerance = 1e-3}, path());
+    test::CountedFrames source = frames();
+    return export_it(source, choice);
   }
   std::filesystem::path path() const { return played.folder.path() / "take.glb"; }
   Glb read() const { return Glb(test::file_bytes(path())); }
@@ -267,14 +272,30 @@ TEST_SUITE("puppet_export") {
          {PuppetMotion{.request = flow::Request::undo}, PuppetMotion{.mode = flow::Mode::type2},
           PuppetMotion{.distance = "air", .request = flow::Request::commit}}) {
       const RecordedPuppet take(motion);
-      const auto done = take.export_it();
+      test::CountedFrames frames = take.frames();
+      const auto done = take.export_it(frames);
       REQUIRE(done);
+      CHECK(frames.made == take.shapes.size()); // once
       REQUIRE(done->morphs);
       CHECK(done->morphs->has_puppet);
       CHECK(done->morphs->basis == MorphBasis::key_shapes);
       const Glb glb = take.read();
       CHECK(target_names(glb) != names);
       CHECK(take.farthest_off(glb) < 1.01e-3);
+    }
+  }
+
+  TEST_CASE("the file by functions is the same if control vectors are not tried beside them") {
+    for (const std::string distance : {"surface", "air"}) {
+      CAPTURE(distance);
+      const RecordedPuppet take({.distance = distance});
+      test::CountedFrames frames = take.frames();
+      REQUIRE(take.export_it(frames));
+      const std::string bytes = test::file_bytes(take.path());
+      test::CountedFrames others = take.frames();
+      others.says_one_model = false; // so that there can be no control vectors
+      REQUIRE(take.export_it(others));
+      CHECK(test::file_bytes(take.path()) == bytes);
     }
   }
 
@@ -290,10 +311,7 @@ TEST_SUITE("puppet_export") {
         REQUIRE(frames);
         return *std::move(frames);
       };
-      const auto open = [&]() -> Result<std::unique_ptr<takes::FrameSource>> {
-        return std::unique_ptr<takes::FrameSource>(frames_of());
-      };
-      const auto done = export_gltf(open, {}, {.tolerance = 1e-3}, take.path());
+      const auto done = take.export_it(*frames_of());
       REQUIRE(done);
       CHECK(done->morphs->basis == MorphBasis::functions);
       const Glb glb = take.read();
