@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <variant>
 
+#include "commands/edit_rows.hpp"
+
 namespace nendo::commands {
 namespace {
 
 using flow::Request;
 using flow::WantedSettings;
-
-consteval std::array<std::string_view, 3> keys(std::string_view first, std::string_view second = {},
-                                               std::string_view third = {}) {
-  return {first, second, third};
-}
 
 template <Request request>
 flow::Command request_of(bool) {
@@ -81,7 +78,7 @@ bool is_alike(const T&, const T&) {
   return true;
 }
 
-constexpr std::array rows{
+constexpr std::array run_rows{
     Row{.name = "grab",
         .keys = keys("g"),
         .help = "The hands take hold of the model.",
@@ -136,7 +133,7 @@ constexpr std::array rows{
           return now.frame.held ? nullptr : "The hands do not hold the model.";
         }},
     Row{.name = "save",
-        .keys = keys("s"),
+        .keys = keys("s", "Ctrl S"),
         .help = "Saves the model as it is now, in a file of its own.",
         .button = "Save",
         .group = Buttons::hands,
@@ -346,7 +343,7 @@ constexpr std::array rows{
         .help = "While the puppet is edited, the place or the point stays where it is, or no "
                 "longer.",
         .places = in_window},
-    Row{.name = "remove point",
+    Row{.name = "delete point",
         .keys = keys("Delete", "Backspace"),
         .help = "The chosen point of the puppet goes, or all masks while they are painted.",
         .places = in_window},
@@ -393,7 +390,7 @@ constexpr std::array rows{
     Row{.name = "frame all",
         .keys = keys("Home"),
         .help = "Has all of the model in the picture.",
-        .places = in_window | on_page},
+        .places = in_window | on_page | in_timeline},
     Row{.name = "fold panel",
         .keys = keys("p"),
         .help = "Folds the panel, or unfolds it.",
@@ -404,17 +401,40 @@ constexpr std::array rows{
         .places = everywhere | in_timeline},
 };
 
+constexpr auto rows = [] {
+  std::array<Row, edit_rows.size() + run_rows.size()> all;
+  std::copy(run_rows.begin(), run_rows.end(),
+            std::copy(edit_rows.begin(), edit_rows.end(), all.begin()));
+  return all;
+}();
+
+constexpr std::string_view verb_of(const Row& row) {
+  return row.name.substr(0, row.name.find(' '));
+}
+constexpr bool share_key(const Row& row, const Row& other) {
+  for (const std::string_view key : row.keys)
+    if (!key.empty() && other.has_key(key)) return true;
+  return false;
+}
+constexpr bool mean_the_same(const Row& row, const Row& other) {
+  return (row.places & other.places) == 0 && row.keys == other.keys &&
+         verb_of(row) == verb_of(other);
+}
 consteval bool are_distinct() {
-  for (const Row& row : rows)
-    for (const Row& other : rows) {
-      if (&row == &other) continue;
+  for (std::size_t at = 0; at < rows.size(); ++at)
+    for (std::size_t before = 0; before < at; ++before) {
+      const Row &row = rows[at], &other = rows[before];
       if (row.name == other.name) return false;
-      for (const std::string_view key : row.keys)
-        if (other.has_key(key)) return false;
+      if (row.edit && other.edit && row.edit->command == other.edit->command) return false;
+      if (share_key(row, other) && !mean_the_same(row, other)) return false;
     }
   return true;
 }
-static_assert(are_distinct(), "two commands have one name or one key");
+static_assert(are_distinct(), "two rows have one name or command, or a key means two things");
+static_assert(std::count_if(rows.begin(), rows.end(),
+                            [](const Row& row) { return row.edit.has_value(); }) ==
+                  static_cast<int>(EditCommand::export_glb) + 1,
+              "a command of the editor has no row");
 
 } // namespace
 
@@ -437,7 +457,7 @@ const Row* with_key(std::string_view key, std::uint8_t places) noexcept {
 
 std::string_view name_of(const flow::Command& command) noexcept {
   if (std::holds_alternative<flow::SetLayer>(command)) return name_of(flow::Punch{});
-  const auto* const found = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
+  const auto* const found = std::find_if(run_rows.begin(), run_rows.end(), [&](const Row& row) {
     if (row.make == nullptr) return false;
     const flow::Command made = row.make(false);
     return std::visit(
@@ -447,8 +467,13 @@ std::string_view name_of(const flow::Command& command) noexcept {
         },
         command);
   });
-  if (found != rows.end()) return found->name;
+  if (found != run_rows.end()) return found->name;
   return std::holds_alternative<flow::SetRole>(command) ? "role" : "a command";
+}
+
+const Row& row_of(EditCommand command) noexcept {
+  return *std::find_if(rows.begin(), rows.end(),
+                       [&](const Row& row) { return row.edit && row.edit->command == command; });
 }
 
 Answer press(const Row& row, const Situation& now, flow::WantedSettings& wanted) {

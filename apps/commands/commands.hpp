@@ -1,6 +1,7 @@
 #pragma once
-// The table of what a person may ask of a run, by a key or a button: in the terminal, in the window
-// and on the page. All three, their lists of keys, the protocol and the manual are made from it.
+// The table of what a person may ask of a run, or of a timeline's editor, by a key or a button: in
+// the terminal, in windows and on the page. All of them, their lists of keys, the protocol and the
+// manual are made from it.
 
 #include <array>
 #include <cstdint>
@@ -12,6 +13,8 @@
 #include <nendo/flow/command.hpp>
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/wanted_settings.hpp>
+
+#include "commands/edit_command.hpp"
 
 namespace nendo::commands {
 
@@ -32,14 +35,15 @@ struct Situation {
 inline constexpr std::uint8_t in_terminal = 1, in_window = 2, on_page = 4, in_timeline = 8;
 inline constexpr std::uint8_t everywhere = in_terminal | in_window | on_page;
 
-/// Where a button is. The window has the buttons of `more` among its settings.
-enum class Buttons : std::uint8_t { none, hands, model, more };
+/// Where a button is: `more` is among the settings, and those from `head` on are of a timeline.
+enum class Buttons : std::uint8_t { none, hands, model, more, head, key, whole, file };
 
-/// One command. It has `make`, or `choose`, or is obeyed by the window or the page itself.
+/// One command. It has `make`, `choose` or `edit`, or is obeyed by the window or the page itself.
 struct Row {
   std::string_view name; ///< the text that a client sends, too (PROTOCOL.md)
   /// The first is shown first. Capitals are typed with shift, and only those of one character, but
-  /// for `?`, can be typed in the terminal. The same everywhere.
+  /// for `?`, can be typed in the terminal. Rows share a key only if they are for different places,
+  /// and then they share all keys and the first word of their names.
   std::array<std::string_view, 3> keys;
   std::string_view help; ///< one sentence
   std::string_view button{};
@@ -50,6 +54,7 @@ struct Row {
   /// Makes the command. `on`: is_on(), and the command ends that.
   flow::Command (*make)(bool on) = nullptr;
   void (*choose)(flow::WantedSettings& wanted, const flow::Frame& frame) = nullptr;
+  std::optional<Edit> edit{};
   bool (*is_on)(const Situation& now) = nullptr;
   /// Returns why the command is not possible now, as a sentence; null: it is possible.
   const char* (*refusal)(const Situation& now) = nullptr;
@@ -62,6 +67,12 @@ struct Row {
   /// Returns null if the command is possible.
   const char* refusal_in(const Situation& now) const {
     return refusal != nullptr ? refusal(now) : nullptr;
+  }
+  bool is_on_in(const EditFacts& now) const {
+    return edit && edit->is_on != nullptr && edit->is_on(now);
+  }
+  const char* refusal_in(const EditFacts& now) const {
+    return edit && edit->refusal != nullptr ? edit->refusal(now) : nullptr;
   }
   constexpr bool has_key(std::string_view key) const noexcept {
     for (const std::string_view one : keys)
@@ -77,6 +88,8 @@ const Row* with_key(std::string_view key, std::uint8_t places) noexcept;
 /// Returns the name of the row that makes the command, whatever its numbers are, such as "wire";
 /// "role", or "a command", if no row makes it.
 std::string_view name_of(const flow::Command& command) noexcept;
+/// Returns the row that asks for that; each one has a row.
+const Row& row_of(EditCommand command) noexcept;
 
 /// What becomes of a key or a button.
 struct Answer {

@@ -7,6 +7,7 @@
 
 #include <nendo/flow/finger_supports.hpp>
 
+#include "commands/commands.hpp"
 #include "edit/edit_words.hpp"
 #include "timeline/timeline_file.hpp"
 
@@ -32,27 +33,30 @@ EditSession::EditSession(Timeline timeline, deform::Mesh model, std::string out)
   follow_history();
 }
 
-void EditSession::report(std::string message) {
+void EditSession::report(std::string message, bool refused) {
   view_.message = std::move(message);
-  view_.refused = false;
+  view_.refused = refused;
 }
 
 void EditSession::report(const Result<void>& done, const std::string& message) {
-  report(done ? message : done.error().message);
-  view_.refused = !done;
+  report(done ? message : done.error().message, !done);
 }
 
-Selection EditSession::key_of(const std::optional<StripKey>& key) const {
+Selection EditSession::key_of(const StripKey& key) const {
   const auto& hands = history_.timeline().hands;
-  if (!key || key->lane >= hands.size()) return std::nullopt;
-  return KeyRef{hands[key->lane].side, key->key};
+  if (key.lane >= hands.size()) return std::nullopt;
+  return KeyRef{hands[key.lane].side, key.key};
+}
+
+commands::EditFacts EditSession::facts() const noexcept {
+  return {head_.is_playing(), history_.can_undo(), history_.can_redo(), export_ != nullptr,
+          history_.selected().has_value()};
 }
 
 void EditSession::handle(const viewer::EditActions& actions) {
   if (actions.select) go_to_key(key_of(*actions.select));
   if (actions.seek_s) seek(*actions.seek_s);
   if (actions.speed) head_.set_speed(*actions.speed);
-  if (actions.loops) head_.set_loops(*actions.loops);
   if (actions.tried) std::visit([this](const auto& tried) { try_out(tried); }, *actions.tried);
   if (actions.keep) history_.keep();
   if (actions.drop) {
@@ -71,8 +75,15 @@ void EditSession::handle(const viewer::EditActions& actions) {
 }
 
 void EditSession::handle(EditCommand command) {
-  const Timeline& timeline = history_.timeline();
-  const auto lane = history_.selected() ? std::optional(history_.selected()->side) : std::nullopt;
+  // A trial that changed nothing is no step to undo.
+  if (command == EditCommand::undo || command == EditCommand::redo) history_.keep();
+  if (const char* const refusal = commands::row_of(command).refusal_in(facts()))
+    return report(refusal, true);
+  obey(command);
+}
+
+void EditSession::obey(EditCommand command) {
+  constexpr double faster = 1.25;
   switch (command) {
   case EditCommand::play:
     return head_.toggle(head_limit_s());
@@ -81,27 +92,33 @@ void EditSession::handle(EditCommand command) {
   case EditCommand::to_end:
     return seek(head_limit_s());
   case EditCommand::previous_key:
-    if (const auto key = key_before(timeline, head_.time_s(), lane)) go_to_key(key);
-    return;
+    return go_to_neighbour(false);
   case EditCommand::next_key:
-    if (const auto key = key_after(timeline, head_.time_s(), lane)) go_to_key(key);
-    return;
+    return go_to_neighbour(true);
   case EditCommand::previous_frame:
     return step(-1.0);
   case EditCommand::next_frame:
     return step(1.0);
+  case EditCommand::slower:
+    return head_.set_speed(head_.speed() / faster);
+  case EditCommand::faster:
+    return head_.set_speed(head_.speed() * faster);
+  case EditCommand::loop:
+    return head_.set_loops(!head_.loops());
   case EditCommand::add_key:
     return add_keys();
-  case EditCommand::delete_key:
-    return delete_key();
   case EditCommand::copy_key:
     return copy_key();
+  case EditCommand::delete_key:
+    return delete_key();
+  case EditCommand::select_none:
+    return history_.select({});
   case EditCommand::mirror:
     return mirror();
   case EditCommand::undo:
-    return go_back_or_forth(history_.undo(), "undone", "there is nothing to undo");
+    return step_history(false);
   case EditCommand::redo:
-    return go_back_or_forth(history_.redo(), "redone", "there is nothing to redo");
+    return step_history(true);
   case EditCommand::save:
     return save();
   case EditCommand::export_glb:
@@ -110,9 +127,10 @@ void EditSession::handle(EditCommand command) {
 }
 
 /// The head goes with the selected key, if it was at it.
-void EditSession::go_back_or_forth(bool went, const char* done, const char* nothing) {
-  report(went ? done : nothing);
-  if (went && view_.at_selected) go_to_key(history_.selected());
+void EditSession::step_history(bool redoes) {
+  redoes ? history_.redo() : history_.undo();
+  report(redoes ? "redone" : "undone");
+  if (view_.at_selected) go_to_key(history_.selected());
 }
 
 void EditSession::advance(double elapsed_s) {
@@ -134,6 +152,15 @@ void EditSession::go_to_key(const Selection& key) {
   if (history_.selected()) seek(find_key(history_.timeline(), *history_.selected())->time_s);
 }
 
+/// Goes to a key of the selected key's hand, or with none selected of either hand.
+void EditSession::go_to_neighbour(bool next) {
+  const auto& selected = history_.selected();
+  const auto side = selected ? std::optional(selected->side) : std::nullopt;
+  const auto key = (next ? key_after : key_before)(history_.timeline(), head_.time_s(), side);
+  if (!key) return report(next ? "there is no later key" : "there is no earlier key", true);
+  go_to_key(key);
+}
+
 void EditSession::step(double frames) {
   constexpr double a_hair = 1e-6; // of a frame: one that the head is on counts as here
   const double rate_hz = history_.timeline().rate_hz;
@@ -150,7 +177,6 @@ void EditSession::save() {
 }
 
 void EditSession::begin_export() {
-  if (export_) return;
   history_.keep();
   export_ = std::make_unique<GlbExport>(history_.timeline(), model_, export_file_);
   report("exporting to " + export_file_);
@@ -185,7 +211,6 @@ void EditSession::follow_history() {
   for (const Event& event : timeline.events)
     view_.marks.push_back({event.time_s, in_words(timeline, event)});
   view_.file = out_;
-  view_.export_file = export_file_;
   view_.duration_s = timeline.duration_s;
   view_.rate_hz = timeline.rate_hz;
   scene_frame_.radius_m =
@@ -196,7 +221,6 @@ void EditSession::follow_history() {
 const viewer::TimelineView& EditSession::view() {
   const Timeline& timeline = history_.timeline();
   view_.head_s = head_.time_s();
-  view_.playing = head_.is_playing();
   view_.loops = head_.loops();
   view_.speed = head_.speed();
   view_.selected.reset();
@@ -204,12 +228,10 @@ const viewer::TimelineView& EditSession::view() {
   if (const auto& key = history_.selected()) {
     const auto lane = static_cast<std::size_t>(timeline.track(key->side) - timeline.hands.data());
     view_.selected = StripKey{lane, key->key};
-    view_.at_selected = find_key(timeline, *key)->time_s == view_.head_s && !view_.playing;
+    view_.at_selected = find_key(timeline, *key)->time_s == view_.head_s && !head_.is_playing();
   }
   view_.modified = history_.is_modified();
-  view_.can_undo = history_.can_undo();
-  view_.can_redo = history_.can_redo();
-  view_.exporting = export_ != nullptr;
+  view_.facts = facts();
   const auto progress = cache_.progress();
   view_.computing = !progress.done;
   view_.computed_s = progress.until_s;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/edit_command.hpp"
 #include "edit/glb_export.hpp"
 #include "render/scene_frame.hpp"
 #include "timeline/edit_history.hpp"
@@ -45,10 +46,11 @@ public:
 
 private:
   using Edit = timeline::EditHistory::Edit;
-  void report(std::string message);
+  void report(std::string message, bool refused = false);
   /// Reports `message` if `done` is no error, or else the message of the error.
   void report(const Result<void>& done, const std::string& message);
   void handle(viewer::EditCommand command);
+  void obey(viewer::EditCommand command);
   void try_out(const viewer::KeyDrag& drag);
   void try_out(const viewer::TipDrag& drag);
   void try_out(const viewer::KeyBlend& blend);
@@ -60,11 +62,13 @@ private:
   void save();
   void begin_export();
   void go_to_key(const std::optional<timeline::KeyRef>& key);
+  void go_to_neighbour(bool next);
   void step(double frames);
-  void go_back_or_forth(bool went, const char* done, const char* nothing);
+  void step_history(bool redoes);
   void follow_history();
   void follow_export();
-  std::optional<timeline::KeyRef> key_of(const std::optional<viewer::StripKey>& key) const;
+  std::optional<timeline::KeyRef> key_of(const viewer::StripKey& key) const;
+  commands::EditFacts facts() const noexcept;
   double head_limit_s() const noexcept { return history_.timeline().duration_s; }
 
   deform::Mesh model_;

@@ -22,7 +22,7 @@ Result<Selection> after(const Result<void>& done, const Selection& selected) {
 }
 
 Error nothing_selected() {
-  return {Errc::usage, "no key is selected; click one on the strip"};
+  return {Errc::usage, commands::no_key};
 }
 
 } // namespace
@@ -86,21 +86,19 @@ void EditSession::add_keys() {
 }
 
 void EditSession::delete_key() {
-  const Selection key = history_.selected();
-  report(history_.apply([&](Timeline& timeline) -> Result<Selection> {
-    if (!key) return nothing_selected();
-    return after(timeline::delete_key(timeline, key->side, key->key), std::nullopt);
+  const KeyRef key = *history_.selected();
+  report(history_.apply([&](Timeline& timeline) {
+    return after(timeline::delete_key(timeline, key.side, key.key), std::nullopt);
   }),
          "deleted");
 }
 
 void EditSession::copy_key() {
-  const Selection key = history_.selected();
+  const KeyRef key = *history_.selected();
   const double to_s = head_.time_s();
-  report(history_.apply([&](Timeline& timeline) -> Result<Selection> {
-    if (!key) return nothing_selected();
-    const auto copied = timeline::copy_key(timeline, key->side, key->key, to_s);
-    return after(copied, key_at(timeline, key->side, to_s));
+  report(history_.apply([&](Timeline& timeline) {
+    const auto copied = timeline::copy_key(timeline, key.side, key.key, to_s);
+    return after(copied, key_at(timeline, key.side, to_s));
   }),
          "copied to " + fixed(to_s, 3) + " s");
 }

@@ -9,6 +9,7 @@
 #include "cli/cli.hpp"
 #include "cli/command.hpp"
 #include "cli/output_place.hpp"
+#include "commands/commands.hpp"
 #include "edit/edit_actions.hpp"
 #include "edit/edit_session.hpp"
 #include "edit/edit_words.hpp"
@@ -130,6 +131,8 @@ void add_timeline_view(cli::Command& edit) {
   const auto options = std::make_shared<Options>();
   cli::Command command =
       edit.add_command("view", "All of this in a window, with the hands' keys on a strip");
+  command.set_footer("Keys in the window:" +
+                     commands::key_list(commands::in_timeline, "\n  key ", "\n      "));
   command.add_option("FILE", options->file, "A timeline").required();
   command.add_option("--mesh", options->mesh, "Another model than the timeline's");
   command.add_option("--out", options->out,

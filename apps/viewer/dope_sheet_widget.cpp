@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "viewer/dope_sheet_drawing.hpp"
-#include "viewer/widgets.hpp"
+#include "viewer/row_button.hpp"
+#include "viewer/row_keys.hpp"
 
 namespace nendo::viewer {
 namespace {
@@ -13,29 +14,6 @@ namespace {
 constexpr float controls_height = 36.0F;
 constexpr float margin = 6.0F;
 constexpr double drag_begins_px = 3.0;
-
-struct Control {
-  const char* words;
-  const char* tells;
-  EditCommand command;
-};
-constexpr std::array before_play{
-    Control{"|<", "to the beginning (Home)", EditCommand::to_begin},
-    Control{"<<", "the key before (up)", EditCommand::previous_key},
-    Control{"<", "the frame before (left)", EditCommand::previous_frame},
-};
-constexpr std::array after_play{
-    Control{">", "the next frame (right)", EditCommand::next_frame},
-    Control{">>", "the next key (down)", EditCommand::next_key},
-    Control{">|", "to the end (End)", EditCommand::to_end},
-};
-
-void button(const Control& control, float width, EditActions& actions) {
-  if (ImGui::Button(control.words, ImVec2(width, 0.0F)))
-    actions.commands.push_back(control.command);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", control.tells);
-  ImGui::SameLine();
-}
 
 void tell_what_is_at(const TimelineView& view, const DopeSheet& strip, double x, double y) {
   if (const auto key = strip.key_at(view.lanes, x, y))
@@ -93,15 +71,12 @@ void DopeSheetWidget::draw(const TimelineView& view, const std::optional<Retimin
 }
 
 void DopeSheetWidget::controls(const TimelineView& view, EditActions& actions) const {
-  constexpr float narrow = 34.0F;
-  for (const Control& control : before_play)
-    button(control, narrow, actions);
-  button({view.playing ? "Pause" : "Play", "play, or pause (space)", EditCommand::play}, 64.0F,
-         actions);
-  for (const Control& control : after_play)
-    button(control, narrow, actions);
+  constexpr float button_width = 34.0F;
+  edit_buttons(commands::Buttons::head, view.facts, button_width, actions.commands);
+  ImGui::SameLine();
   bool loops = view.loops;
-  if (ImGui::Checkbox("loop", &loops)) actions.loops = loops;
+  if (ImGui::Checkbox("loop", &loops)) actions.commands.push_back(EditCommand::loop);
+  show_help("loop");
   ImGui::SameLine();
   auto speed = static_cast<float>(view.speed);
   ImGui::SetNextItemWidth(110.0F);
@@ -125,7 +100,7 @@ void DopeSheetWidget::follow_mouse(const TimelineView& view, double x, double y,
     strip_.pan(static_cast<double>(io.MouseDelta.x));
   if (ImGui::IsItemActivated() && ImGui::IsMouseClicked(ImGuiMouseButton_Left))
     press(view, x, y, actions);
-  if (taken_ && pressed(GLFW_KEY_ESCAPE)) {
+  if (taken_ && is_struck(commands::row_of(EditCommand::select_none))) {
     if (taken_->moved) actions.drop = true;
     taken_.reset();
   }

@@ -2,19 +2,11 @@
 // The list of keys that `?` shows in every window.
 
 #include <cstdint>
-#include <span>
 
 namespace nendo::viewer {
 
-struct KeyLine {
-  const char* key;
-  const char* does;
-};
-
-/// Draws the window's own keys, those that the table of commands has for `places`, and the uses of
-/// the mouse: those of the camera, then the window's own. `shown` becomes false when the list is
-/// closed.
-void draw_key_list(std::span<const KeyLine> own, std::uint8_t places, const char* mouse,
-                   bool& shown);
+/// Draws the keys that the table of commands has for `places`, and the uses of the mouse: those of
+/// the camera, then the window's own. `shown` becomes false when the list is closed.
+void draw_key_list(std::uint8_t places, const char* mouse, bool& shown);
 
 } // namespace nendo::viewer

@@ -26,12 +26,12 @@ void LiveWindow::Panel::obey(std::string_view name, SceneWindow& window, PuppetE
   if (!editor.is_on()) return;
   if (editor.brushes() && !editor.rig().puppet().is_played()) {
     if (name == "forget place") editor.toggle_masks();
-    if (name == "remove point") commands.emplace_back(flow::SetMask{flow::MaskEdit::clear});
+    if (name == "delete point") commands.emplace_back(flow::SetMask{flow::MaskEdit::clear});
     return;
   }
   if (name == "mirror puppet") editor.toggle_mirror();
   if (name == "pin point") editor.toggle_pin();
-  if (name == "remove point") editor.remove_point();
+  if (name == "delete point") editor.remove_point();
   if (name == "forget place") editor.forget_place();
 }
 
@@ -49,7 +49,7 @@ void LiveWindow::Panel::keys(const commands::Situation& now, SceneWindow& window
     }
   }
   if (keys_shown)
-    draw_key_list({}, commands::in_window,
+    draw_key_list(commands::in_window,
                   "right drag on a hand moves it, with shift turns it, with the wheel\n"
                   "pushes and pulls it; while a puppet is edited, a click places a point, a\n"
                   "drag of a point tells where it goes, with shift how it turns, the wheel over\n"

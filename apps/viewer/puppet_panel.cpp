@@ -69,7 +69,7 @@ void edit_buttons(PuppetEditor& editor, Commands& commands) {
   show_help("pin point");
   ImGui::SameLine();
   if (ImGui::Button("Remove")) editor.remove_point();
-  show_help("remove point");
+  show_help("delete point");
   ImGui::SameLine();
   if (ImGui::Button("Save puppet")) commands.emplace_back(flow::SavePuppet{});
   show_help("save puppet");

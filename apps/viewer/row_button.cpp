@@ -1,12 +1,14 @@
 #include "viewer/row_button.hpp"
 
 #include <string>
+#include <utility>
 
 #include <imgui.h>
 
 namespace nendo::viewer {
 
-bool row_button(const commands::Row& row, const commands::Situation& now, float width) {
+template <class Now>
+bool row_button(const commands::Row& row, const Now& now, float width) {
   const bool is_on = row.is_on_in(now) && !row.button_on.empty();
   const std::string text(is_on ? row.button_on : row.button);
   const bool possible = row.refusal_in(now) == nullptr;
@@ -16,12 +18,26 @@ bool row_button(const commands::Row& row, const commands::Situation& now, float 
   show_help(row, now);
   return chosen && possible;
 }
+template bool row_button(const commands::Row&, const commands::Situation&, float);
 
-void show_help(const commands::Row& row, const commands::Situation& now) {
+template <class Now>
+void show_help(const commands::Row& row, const Now& now) {
   const char* const refusal = row.refusal_in(now);
   std::string text(row.help);
   if (refusal != nullptr) text.append("\n").append(refusal);
   show_help(row.name, text);
+}
+template void show_help(const commands::Row&, const commands::Situation&);
+
+void edit_buttons(commands::Buttons group, const commands::EditFacts& now, float width,
+                  std::vector<commands::EditCommand>& asked) {
+  bool is_first = true;
+  for (const commands::Row& row : commands::table()) {
+    if (row.group != group) continue;
+    if (!std::exchange(is_first, false)) ImGui::SameLine();
+    if (row_button(row, now, row.button_on.empty() ? width : 2.0F * width))
+      asked.push_back(row.edit->command);
+  }
 }
 
 void show_help(std::string_view name, std::string_view text) {

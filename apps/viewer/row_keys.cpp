@@ -9,12 +9,18 @@
 namespace nendo::viewer {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, int>, 6> named_keys{{
+constexpr std::array<std::pair<std::string_view, int>, 12> named_keys{{
     {"Tab", GLFW_KEY_TAB},
     {"Esc", GLFW_KEY_ESCAPE},
     {"Delete", GLFW_KEY_DELETE},
     {"Backspace", GLFW_KEY_BACKSPACE},
     {"Home", GLFW_KEY_HOME},
+    {"End", GLFW_KEY_END},
+    {"Space", GLFW_KEY_SPACE},
+    {"Left", GLFW_KEY_LEFT},
+    {"Right", GLFW_KEY_RIGHT},
+    {"Up", GLFW_KEY_UP},
+    {"Down", GLFW_KEY_DOWN},
     {"?", GLFW_KEY_SLASH},
 }};
 

@@ -1,13 +1,14 @@
 #include "viewer/timeline_panel.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 
 #include "commands/commands.hpp"
 #include "viewer/key_list.hpp"
+#include "viewer/row_button.hpp"
+#include "viewer/row_keys.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
@@ -15,54 +16,11 @@ namespace {
 
 constexpr const char* question = "Unsaved changes";
 
-constexpr std::array timeline_key_table{
-    KeyLine{"space", "play, or pause"},
-    KeyLine{"left, right", "a frame back, on"},
-    KeyLine{"up, down", "to the key before, to the next"},
-    KeyLine{"Home, End", "to the beginning, to the end"},
-    KeyLine{"- =", "slower, faster"},
-    KeyLine{"l", "loop on and off"},
-    KeyLine{"a", "add a key at the play head"},
-    KeyLine{"x, Delete", "delete the selected key"},
-    KeyLine{"c", "copy the selected key to the play head"},
-    KeyLine{"m", "mirror: each hand does what the other did"},
-    KeyLine{"ctrl z", "undo; with shift, or ctrl y: redo"},
-    KeyLine{"ctrl s", "save"},
-    KeyLine{"e", "export as .glb"},
-    KeyLine{"Esc", "give up a drag; select nothing"},
-    KeyLine{"q", "quit"},
-};
 constexpr const char* mouse_words =
     "drag on the strip scrubs, wheel zooms it, middle drag shifts it;\n"
     "a key: click selects, drag moves, ctrl drag copies;\n"
     "a ringed fingertip: drag bends the finger, with the wheel\n"
     "away and back";
-
-struct Shortcut {
-  int key;
-  EditCommand command;
-};
-constexpr std::array shortcuts{
-    Shortcut{GLFW_KEY_SPACE, EditCommand::play},
-    Shortcut{GLFW_KEY_UP, EditCommand::previous_key},
-    Shortcut{GLFW_KEY_DOWN, EditCommand::next_key},
-    Shortcut{GLFW_KEY_HOME, EditCommand::to_begin},
-    Shortcut{GLFW_KEY_END, EditCommand::to_end},
-    Shortcut{GLFW_KEY_A, EditCommand::add_key},
-    Shortcut{GLFW_KEY_X, EditCommand::delete_key},
-    Shortcut{GLFW_KEY_DELETE, EditCommand::delete_key},
-    Shortcut{GLFW_KEY_C, EditCommand::copy_key},
-    Shortcut{GLFW_KEY_M, EditCommand::mirror},
-    Shortcut{GLFW_KEY_E, EditCommand::export_glb},
-};
-
-// True: pressed, and it can be.
-bool button(const char* words, bool possible) {
-  ImGui::BeginDisabled(!possible);
-  const bool chosen = ImGui::Button(words);
-  ImGui::EndDisabled();
-  return chosen && possible;
-}
 
 void seconds(const char* label, double& value_s, double head_s) {
   ImGui::PushID(label);
@@ -101,19 +59,10 @@ void TimelineWindow::Panel::draw(const TimelineView& view, EditActions& actions)
   ImGui::End();
 }
 
-void TimelineWindow::Panel::file(const TimelineView& view, EditActions& actions) const {
+void TimelineWindow::Panel::file(const TimelineView& view, EditActions& actions) {
   const std::string name = std::filesystem::path(view.file).filename().string();
   ImGui::Text("%s%s   (? for keys)", name.c_str(), view.modified ? " *" : "");
-  const auto ask = [&](const char* words, bool possible, EditCommand command) {
-    if (button(words, possible)) actions.commands.push_back(command);
-    ImGui::SameLine();
-  };
-  ask("Undo", view.can_undo, EditCommand::undo);
-  ask("Redo", view.can_redo, EditCommand::redo);
-  ask("Save", view.modified, EditCommand::save);
-  if (button(view.exporting ? "Exporting" : "Export .glb", !view.exporting))
-    actions.commands.push_back(EditCommand::export_glb);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("as it is now, to %s", view.export_file.c_str());
+  edit_buttons(commands::Buttons::file, view.facts, 0.0F, actions.commands);
 }
 
 void TimelineWindow::Panel::key(const TimelineView& view, EditActions& actions) {
@@ -125,14 +74,7 @@ void TimelineWindow::Panel::key(const TimelineView& view, EditActions& actions) 
   } else {
     ImGui::TextDisabled("click a key on the strip to select it");
   }
-  const auto ask = [&](const char* words, bool possible, EditCommand command) {
-    if (button(words, possible)) actions.commands.push_back(command);
-  };
-  ask("Add at head", true, EditCommand::add_key);
-  ImGui::SameLine();
-  ask("Copy to head", any, EditCommand::copy_key);
-  ImGui::SameLine();
-  ask("Delete", any, EditCommand::delete_key);
+  edit_buttons(commands::Buttons::key, view.facts, 0.0F, actions.commands);
   ImGui::BeginDisabled(!any);
   ImGui::SetNextItemWidth(170.0F);
   if (ImGui::SliderFloat("blend", &blend, 0.0F, 1.0F, "%.2f")) {
@@ -167,7 +109,7 @@ void TimelineWindow::Panel::functions(const TimelineView& view) {
 }
 
 void TimelineWindow::Panel::whole(const TimelineView& view, EditActions& actions) {
-  if (ImGui::Button("Mirror the hands")) actions.commands.push_back(EditCommand::mirror);
+  edit_buttons(commands::Buttons::whole, view.facts, 0.0F, actions.commands);
   if (retiming.to_s <= retiming.from_s) retiming.to_s = view.duration_s;
   seconds("from", retiming.from_s, view.head_s);
   seconds("to", retiming.to_s, view.head_s);
@@ -176,33 +118,27 @@ void TimelineWindow::Panel::whole(const TimelineView& view, EditActions& actions
   if (ImGui::Button("Retime")) actions.retiming = retiming;
 }
 
-void TimelineWindow::Panel::keys(const TimelineView& view, EditActions& actions) {
-  const ImGuiIO& io = ImGui::GetIO();
-  if (!takes_keys()) return;
-  auto& commands = actions.commands;
-  if (io.KeyCtrl) {
-    if (pressed(GLFW_KEY_Z, true))
-      commands.push_back(io.KeyShift ? EditCommand::redo : EditCommand::undo);
-    if (pressed(GLFW_KEY_Y, true)) commands.push_back(EditCommand::redo);
-    if (pressed(GLFW_KEY_S)) commands.push_back(EditCommand::save);
-    return;
+void TimelineWindow::Panel::keys(SceneWindow& window, EditActions& actions) {
+  if (takes_keys()) {
+    window.follow_part_keys();
+    window.follow_view_keys();
+    for (const commands::Row& row : commands::table()) {
+      if ((row.places & commands::in_timeline) == 0 || !is_struck(row)) continue;
+      if (row.name == "list keys") keys_shown = !keys_shown;
+      if (row.name == "frame all") window.frame_all();
+      if (!row.edit) continue;
+      const EditCommand asked = row.edit->command;
+      // The same stroke of Esc has cancelled a drag.
+      if (asked == EditCommand::select_none && actions.drop) continue;
+      actions.commands.push_back(asked);
+    }
   }
-  for (const Shortcut& shortcut : shortcuts)
-    if (pressed(shortcut.key)) commands.push_back(shortcut.command);
-  if (pressed(GLFW_KEY_LEFT, true)) commands.push_back(EditCommand::previous_frame);
-  if (pressed(GLFW_KEY_RIGHT, true)) commands.push_back(EditCommand::next_frame);
-  constexpr double faster = 1.25;
-  if (pressed(GLFW_KEY_MINUS, true)) actions.speed = view.speed / faster;
-  if (pressed(GLFW_KEY_EQUAL, true)) actions.speed = view.speed * faster;
-  if (pressed(GLFW_KEY_L)) actions.loops = !view.loops;
-  if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
-  if (pressed(GLFW_KEY_ESCAPE) && !actions.drop) actions.select.emplace();
-  if (keys_shown) draw_key_list(timeline_key_table, commands::in_timeline, mouse_words, keys_shown);
+  if (keys_shown) draw_key_list(commands::in_timeline, mouse_words, keys_shown);
 }
 
 void TimelineWindow::Panel::leave(const TimelineView& view, bool wanted, EditActions& actions) {
   const bool open = ImGui::IsPopupOpen(question);
-  wanted = wanted || (takes_keys() && pressed(GLFW_KEY_Q));
+  wanted = wanted || (takes_keys() && is_struck(*commands::named("end edit")));
   if (wanted && !view.modified) actions.quit = true;
   if (wanted && view.modified && !open) ImGui::OpenPopup(question);
   if (!begin_question(question)) return;

@@ -20,12 +20,13 @@ struct TimelineWindow::Panel {
   bool blends = false; ///< the mouse holds the slider
 
   void draw(const TimelineView& view, EditActions& actions);
-  void keys(const TimelineView& view, EditActions& actions);
+  /// What keys do. It also draws their list.
+  void keys(SceneWindow& window, EditActions& actions);
   /// Quits if `wanted` or the key for it is pressed. If there are unsaved changes, it asks first.
   void leave(const TimelineView& view, bool wanted, EditActions& actions);
 
 private:
-  void file(const TimelineView& view, EditActions& actions) const;
+  static void file(const TimelineView& view, EditActions& actions);
   void key(const TimelineView& view, EditActions& actions);
   static void functions(const TimelineView& view);
   void whole(const TimelineView& view, EditActions& actions);

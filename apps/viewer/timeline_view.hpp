@@ -9,6 +9,7 @@
 
 #include <nendo/hand/skeleton.hpp>
 
+#include "commands/edit_command.hpp"
 #include "viewer/dope_sheet.hpp"
 
 namespace nendo::viewer {
@@ -28,41 +29,21 @@ struct TimelineView {
   std::vector<FunctionValue> functions; ///< at the play head; without a puppet there are none
 
   double head_s = 0.0;
-  bool playing = false;
   bool loops = false;
   double speed = 1.0;
   std::optional<StripKey> selected;
   bool at_selected = false; ///< the play head is at the selected key, whose fingers can be bent
 
   bool modified = false;
-  bool can_undo = false;
-  bool can_redo = false;
+  commands::EditFacts facts;
   double computed_s = 0.0; ///< shapes exist up to this time
   bool computing = false;
   bool shape_is_old = false; ///< the visible shape was made before the last edits
-  bool exporting = false;
-  std::string export_file; ///< where "Export" writes
-  std::string message;     ///< about the last action; may be empty
-  bool refused = false;    ///< the action was refused, and `message` tells why
+  std::string message;       ///< about the last action; may be empty
+  bool refused = false;      ///< the action was refused, and `message` tells why
 };
 
-enum class EditCommand {
-  play,
-  to_begin,
-  to_end,
-  previous_key,
-  next_key,
-  previous_frame,
-  next_frame,
-  add_key,
-  delete_key,
-  copy_key,
-  mirror,
-  undo,
-  redo,
-  save,
-  export_glb,
-};
+using commands::EditCommand;
 
 /// A trial edit. Each one replaces the previous one, until EditActions::keep or EditActions::drop.
 struct KeyDrag {
@@ -85,16 +66,15 @@ struct Retiming {
 
 /// What a person has done since the last picture. It must be applied in this order.
 struct EditActions {
-  std::optional<std::optional<StripKey>> select; ///< that key, or no key
+  std::optional<StripKey> select;
   std::optional<double> seek_s;
   std::optional<double> speed;
-  std::optional<bool> loops;
   std::optional<std::variant<KeyDrag, TipDrag, KeyBlend>> tried;
   bool keep = false; ///< the tried edit becomes a step
   bool drop = false;
   std::optional<Retiming> retiming;
   std::vector<EditCommand> commands;
-  bool quit = false; ///< after all others; saves only if `commands` has EditCommand::save
+  bool quit = false; ///< after all others; saves only if `commands` has `save`
 };
 
 } // namespace nendo::viewer

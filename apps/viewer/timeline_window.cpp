@@ -2,9 +2,11 @@
 
 #include <utility>
 
+#include <imgui.h>
+
 #include "viewer/pointing.hpp"
+#include "viewer/row_keys.hpp"
 #include "viewer/timeline_panel.hpp"
-#include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
 namespace {
@@ -46,9 +48,7 @@ EditActions TimelineWindow::show(const TimelineView& view, const render::SceneFr
   panel_->strip.draw(view, panel_->retiming_shown ? std::optional(panel_->retiming) : std::nullopt,
                      actions);
   panel_->draw(view, actions);
-  window_->follow_part_keys();
-  window_->follow_view_keys();
-  panel_->keys(view, actions);
+  panel_->keys(*window_, actions);
   panel_->leave(view, window_->take_close_request(), actions);
   window_->end_picture();
   return actions;
@@ -67,7 +67,7 @@ bool TimelineWindow::move_tip(const TimelineView& view, const render::SceneFrame
             TipMover::tip_at(camera, hand->pose, {io.MousePos.x, io.MousePos.y}, size))
       tips.take(hand->pose, *finger);
   if (!tips.finger()) return false;
-  const bool given_up = pressed(GLFW_KEY_ESCAPE);
+  const bool given_up = is_struck(commands::row_of(EditCommand::select_none));
   if (given_up || hand == nullptr || !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     (given_up ? actions.drop : actions.keep) = true;
     tips.let_go();

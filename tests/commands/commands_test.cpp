@@ -1,5 +1,5 @@
-// The table of commands: its keys and names make the same commands in the terminal, in the window
-// and on the page, and the pages list what it has.
+// The table of commands: its keys and names make the same commands in the terminal, in windows and
+// on the page, and the pages list what it has.
 
 #include <algorithm>
 #include <cctype>
@@ -23,6 +23,7 @@
 namespace commands_test {
 
 using namespace nendo;
+using commands::EditFacts;
 using commands::Row;
 
 namespace {
@@ -62,14 +63,13 @@ const Row* sent(std::string_view name) {
 }
 
 #ifdef NENDO_WINDOW
-/// The row that obeys a key of a keyboard in the window: all that fit are one.
-const Row* struck(int key, bool control, bool shift) {
+/// The row that obeys a key of a keyboard in a window: all that fit are one.
+const Row* struck(int key, bool control, bool shift, std::uint8_t place = commands::in_window) {
   std::set<const Row*> found;
   for (const Row& row : commands::table())
     for (const std::string_view name : row.keys) {
       const viewer::KeyStroke stroke = viewer::stroke_of(name);
-      if ((row.places & commands::in_window) != 0 && stroke.key == key &&
-          stroke.fits(control, shift))
+      if ((row.places & place) != 0 && stroke.key == key && stroke.fits(control, shift))
         found.insert(&row);
     }
   return found.size() == 1 ? *found.begin() : nullptr;
@@ -135,6 +135,21 @@ TEST_SUITE("commands") {
     CHECK(sent("end run") == nullptr);
     CHECK(sent("show hands") == nullptr);
   }
+
+#ifdef NENDO_WINDOW
+  TEST_CASE("each key of a row is one that windows know, and asks for that row alone") {
+    for (const std::uint8_t place : {commands::in_window, commands::in_timeline})
+      for (const Row& row : commands::table())
+        for (const std::string_view key : row.keys) {
+          if (key.empty() || (row.places & place) == 0) continue;
+          CAPTURE(row.name);
+          CAPTURE(key);
+          const viewer::KeyStroke stroke = viewer::stroke_of(key);
+          CHECK(stroke.key != 0);
+          CHECK(struck(stroke.key, stroke.control, stroke.shift, place) == &row);
+        }
+  }
+#endif
 
   TEST_CASE("what begins something also ends it, and settings are asked for by the same rows") {
     const State off(false), all(true);
@@ -211,6 +226,24 @@ TEST_SUITE("commands") {
     CHECK(refused == 10);
   }
 
+  TEST_CASE("a timeline's command that is not possible says why, and each command has its row") {
+    EditFacts possible;
+    possible.can_undo = possible.can_redo = possible.key_selected = true;
+    EditFacts impossible;
+    impossible.exporting = true;
+    int refused = 0;
+    for (const Row& row : commands::table()) {
+      CAPTURE(row.name);
+      CHECK(row.refusal_in(possible) == nullptr);
+      if (row.edit) CHECK(&commands::row_of(row.edit->command) == &row);
+      const char* const refusal = row.refusal_in(impossible);
+      if (refusal == nullptr) continue;
+      ++refused;
+      CHECK(is_sentence(refusal));
+    }
+    CHECK(refused == 5); // undo, redo, export, and copy and delete of no key
+  }
+
   TEST_CASE("each row has a sentence, and each button a text") {
     for (const Row& row : commands::table()) {
       CAPTURE(row.name);
@@ -264,16 +297,21 @@ TEST_SUITE("commands") {
 
   TEST_CASE("the pages list what the table has, and nothing else") {
     std::string keys = "| key | what it does | where |\n|---|---|---|\n";
+    std::string edit_keys = "| key | what it does |\n|---|---|\n";
     std::string protocol = "| command | |\n|---|---|\n";
     for (const Row& row : commands::table()) {
       const std::string help(row.help);
-      keys += "| " + keys_as_code(row) + " | " + help + " | " + places_of(row) + " |\n";
+      const std::string line = "| " + keys_as_code(row) + " | " + help + " |";
+      if ((row.places & commands::everywhere) != 0) keys += line + ' ' + places_of(row) + " |\n";
+      if ((row.places & commands::in_timeline) != 0) edit_keys += line + '\n';
       if (row.is_for_run() && (row.places & commands::on_page) != 0)
         protocol += "| `" + std::string(row.name) + "` | " + help + " |\n";
     }
     CAPTURE(keys);
+    CAPTURE(edit_keys);
     CAPTURE(protocol);
     CHECK(content_of("apps/session/README.md").find("\n\n" + keys + "\n") != std::string::npos);
+    CHECK(content_of("apps/edit/README.md").find("\n\n" + edit_keys + "\n") != std::string::npos);
     CHECK(content_of("apps/web/PROTOCOL.md").find("\n\n" + protocol + "\n") != std::string::npos);
   }
 }

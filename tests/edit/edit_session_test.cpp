@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "commands/commands.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
 #include "support/text_files.hpp"
@@ -129,7 +130,7 @@ TEST_SUITE("edit_session") {
     Edited edited;
     edited.wish(EditCommand::play);
     edited.click({1, 3});
-    CHECK_FALSE(edited.session.view().playing);
+    CHECK_FALSE(edited.session.view().facts.playing);
     CHECK(edited.session.view().head_s == edited.first.hands[1].keys[3].time_s);
     CHECK(edited.session.view().at_selected);
     const double to_s = edited.first.hands[1].keys[5].time_s + 0.01;
@@ -146,7 +147,7 @@ TEST_SUITE("edit_session") {
     CHECK(test::same_bits(edited.now(), edited.first));
     CHECK_FALSE(edited.session.view().modified);
     edited.wish(EditCommand::undo);
-    CHECK(edited.session.view().message == "there is nothing to undo");
+    CHECK(edited.session.view().message == "There is nothing to undo.");
     edited.try_out(KeyDrag{{0, 0}, edited.first.hands[0].keys[1].time_s, false});
     CHECK(edited.session.view().refused);
     EditActions drop;
@@ -218,6 +219,24 @@ TEST_SUITE("edit_session") {
               1e-12);
   }
 
+  TEST_CASE("a command that is not possible is refused with the reason, and changes nothing") {
+    Edited edited;
+    for (const auto command :
+         {EditCommand::undo, EditCommand::redo, EditCommand::copy_key, EditCommand::delete_key}) {
+      edited.wish(command);
+      CHECK(edited.session.view().refused);
+      CHECK(edited.session.view().message ==
+            commands::row_of(command).refusal_in(commands::EditFacts{}));
+    }
+    edited.try_out(KeyDrag{{0, 3}, edited.key(0, 3).time_s});
+    edited.wish(EditCommand::undo); // of a trial that has changed nothing
+    CHECK(edited.session.view().message == "There is nothing to undo.");
+    edited.session.seek(0.0);
+    edited.wish(EditCommand::previous_key);
+    CHECK(edited.session.view().message == "there is no earlier key");
+    CHECK(test::same_bits(edited.now(), edited.first));
+  }
+
   TEST_CASE("the head goes by keys and by frames, and plays on in time") {
     Edited edited;
     edited.wish(EditCommand::next_key);
@@ -235,12 +254,15 @@ TEST_SUITE("edit_session") {
     CHECK(edited.session.view().head_s == 0.0);
     edited.wish(EditCommand::previous_frame);
     CHECK(edited.session.view().head_s == 0.0);
+    edited.wish(EditCommand::faster);
+    CHECK(edited.session.view().speed > 1.0);
+    edited.wish(EditCommand::slower);
     edited.wish(EditCommand::play);
     edited.session.advance(0.25);
     CHECK(edited.session.view().head_s == 0.25);
     edited.session.advance(100.0);
     CHECK(edited.session.view().head_s == edited.first.duration_s);
-    CHECK_FALSE(edited.session.view().playing);
+    CHECK_FALSE(edited.session.view().facts.playing);
   }
 
   TEST_CASE("what is saved is what was edited, and who cannot save does not leave by it") {
@@ -272,8 +294,10 @@ TEST_SUITE("edit_session") {
     Edited edited;
     edited.wish(EditCommand::mirror);
     edited.wish(EditCommand::export_glb);
-    CHECK(edited.session.view().exporting);
-    while (edited.session.view().exporting) {
+    CHECK(edited.session.view().facts.exporting);
+    edited.wish(EditCommand::export_glb); // one at a time
+    CHECK(edited.session.view().refused);
+    while (edited.session.view().facts.exporting) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
       edited.session.advance(0.0);
     }

@@ -8,6 +8,7 @@
 #include "support/flow_fixtures.hpp"
 #include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
+#include "viewer/row_keys.hpp"
 #include "viewer/timeline_window.hpp"
 
 namespace timeline_window_test {
@@ -154,12 +155,10 @@ TEST_SUITE("timeline_window") {
     seat.input.key = GLFW_KEY_ESCAPE;
     const auto given_up = seat.move(seat.input.pointer, true);
     CHECK(given_up.drop);
-    CHECK_FALSE(given_up.select);
+    CHECK(given_up.commands.empty());
     seat.input.key = 0;
     CHECK_FALSE(seat.release().keep);
-    const auto nothing = seat.type(GLFW_KEY_ESCAPE);
-    REQUIRE(nothing.select);
-    CHECK_FALSE(*nothing.select);
+    CHECK(seat.type(GLFW_KEY_ESCAPE).commands == std::vector{EditCommand::select_none});
   }
 
   TEST_CASE("elsewhere on the strip the play head follows the mouse, at a mark exactly") {
@@ -231,26 +230,46 @@ TEST_SUITE("timeline_window") {
     CHECK(seat.release().keep);
   }
 
-  TEST_CASE("keys on the keyboard ask for what the list says") {
+  TEST_CASE("each key of the table asks for its row's command") {
+    const Room room;
+    if (!room.seat) return;
+    for (const commands::Row& row : commands::table())
+      for (const std::string_view key : row.keys) {
+        if (!row.edit || key.empty()) continue;
+        CAPTURE(key);
+        const KeyStroke stroke = stroke_of(key);
+        const auto asked = room.seat->type(stroke.key, stroke.control, stroke.shift).commands;
+        CHECK(asked == std::vector{row.edit->command});
+      }
+  }
+
+  TEST_CASE("Home has all of the model in the picture again, as in the window of a run") {
     const Room room;
     if (!room.seat) return;
     Seat& seat = *room.seat;
-    using enum EditCommand;
-    const auto only = [](const EditActions& actions) {
-      REQUIRE(actions.commands.size() == 1);
-      return actions.commands.front();
-    };
-    CHECK(only(seat.type(GLFW_KEY_SPACE)) == play);
-    CHECK(only(seat.type(GLFW_KEY_LEFT)) == previous_frame);
-    CHECK(only(seat.type(GLFW_KEY_DOWN)) == next_key);
-    CHECK(only(seat.type(GLFW_KEY_A)) == add_key);
-    CHECK(only(seat.type(GLFW_KEY_DELETE)) == delete_key);
-    CHECK(only(seat.type(GLFW_KEY_Z, true)) == undo);
-    CHECK(only(seat.type(GLFW_KEY_Z, true, true)) == redo);
-    CHECK(only(seat.type(GLFW_KEY_Y, true)) == redo);
-    CHECK(only(seat.type(GLFW_KEY_S, true)) == save);
-    CHECK(seat.type(GLFW_KEY_L).loops == true);
-    CHECK(*seat.type(GLFW_KEY_EQUAL).speed > 1.0);
+    seat.type(GLFW_KEY_HOME);
+    const Camera framed = seat.window->scene_window().camera();
+    seat.input.wheel = 3.0;
+    seat.move({500.0, 200.0}, false);
+    seat.input.wheel = 0.0;
+    CHECK(seat.window->scene_window().camera().distance_m != framed.distance_m);
+    CHECK(seat.type(GLFW_KEY_HOME).commands.empty());
+    CHECK(seat.window->scene_window().camera().distance_m == doctest::Approx(framed.distance_m));
+  }
+
+  TEST_CASE("the list of keys stays while Ctrl is down") {
+    const Room room;
+    if (!room.seat) return;
+    Seat& seat = *room.seat;
+    const Image without = seat.window->screenshot();
+    seat.type(GLFW_KEY_SLASH);
+    seat.show();
+    const Image with = seat.window->screenshot();
+    CHECK(with.pixels() != without.pixels());
+    seat.input.control = true;
+    seat.window->simulate(seat.input);
+    seat.show();
+    CHECK(seat.window->screenshot().pixels() == with.pixels());
   }
 
   TEST_CASE("a key that was down only between two pictures counts, and twice if it was twice") {
@@ -289,10 +308,10 @@ TEST_SUITE("timeline_window") {
     Seat& seat = *room.seat;
     seat.view.modified = true;
     CHECK_FALSE(seat.type(GLFW_KEY_Q).quit);
-    CHECK(seat.type(GLFW_KEY_A).commands.empty()); // the question comes first
+    CHECK(seat.type(GLFW_KEY_U).commands.empty()); // the question comes first
     CHECK_FALSE(seat.type(GLFW_KEY_ESCAPE).quit);  // stay
     seat.show();
-    CHECK(seat.type(GLFW_KEY_A).commands.size() == 1);
+    CHECK(seat.type(GLFW_KEY_U).commands.size() == 1);
     seat.view.modified = false;
     CHECK(seat.type(GLFW_KEY_Q).quit);
   }

@@ -1,0 +1,50 @@
+#pragma once
+// The part of the table of commands that a timeline's editor obeys.
+
+#include <cstdint>
+
+namespace nendo::commands {
+
+enum class EditCommand : std::uint8_t {
+  to_begin,
+  previous_key,
+  previous_frame,
+  play,
+  next_frame,
+  next_key,
+  to_end,
+  slower,
+  faster,
+  loop,
+  add_key,
+  copy_key,
+  delete_key,
+  select_none,
+  mirror,
+  undo,
+  redo,
+  save,
+  export_glb, ///< the last one: the table has a row for each up to here
+};
+
+/// The state of an editor in which something is asked for.
+struct EditFacts {
+  bool playing = false;
+  bool can_undo = false;
+  bool can_redo = false;
+  bool exporting = false;
+  bool key_selected = false;
+};
+
+/// What the editor does for a row, and when.
+struct Edit {
+  EditCommand command;
+  /// Returns why the command is not possible now, as a sentence; null: it is possible.
+  const char* (*refusal)(const EditFacts& now) = nullptr;
+  bool (*is_on)(const EditFacts& now) = nullptr;
+};
+
+/// A reason, for what the mouse does without a row of the table.
+inline constexpr const char* no_key = "No key is selected; click one on the strip.";
+
+} // namespace nendo::commands
