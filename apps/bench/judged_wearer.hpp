@@ -1,7 +1,7 @@
 #pragma once
 // A wearer of whom the truth is known, to judge calibrations by, and the file of such wearers. Each
-// line of the file is a JSON object, so that any simulator can write one. README of the format:
-// hand/CALIBRATION.md.
+// line of the file is a JSON object, so that any simulator can write one. The format is described
+// in hand/CALIBRATION-EVIDENCE.md.
 
 #include <array>
 #include <filesystem>

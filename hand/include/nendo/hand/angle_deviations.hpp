@@ -17,9 +17,9 @@ using AngleDeviations = std::array<double, angle_count>;
 
 /// Returns what to expect of `angles`, which joint_angles() has made of a calibrated glove that has
 /// these sensors, some of them perhaps `left_out`. The figures are those of strangers for tuning
-/// (CALIBRATION.md): the median error of each group, as that of a normal distribution; a DIP
-/// joint's by how far its PIP joint bends, least at 40 to 65 degrees; of other estimates by those
-/// of the joint that they rest on, and assumed. Finite. Wait-free.
+/// (CALIBRATION-EVIDENCE.md): the median error of each group, as that of a normal distribution; a
+/// DIP joint's by how far its PIP joint bends, least at 40 to 65 degrees; of other estimates by
+/// those of the joint that they rest on, and assumed. Finite. Wait-free.
 NENDO_API AngleDeviations angle_deviations(const JointAngles& angles, SensorMask present,
                                            SensorMask left_out = {}) noexcept;
 
