@@ -8,24 +8,13 @@
 #include "web/weights_message.hpp"
 
 namespace nendo::session {
-namespace {
-
-/// Keeps what a browser does not ask for.
-void keep_numbers(const flow::LoopSettings& in_force, flow::LoopSettings& asked) noexcept {
-  const hand::FilterKind kind = asked.filter.kind;
-  asked.filter = in_force.filter;
-  asked.filter.kind = kind;
-  asked.piece_fraction = in_force.piece_fraction;
-}
-
-} // namespace
 
 Result<void> BrowserView::begin(const LoopStart& start) {
   placed_ = &start.placed;
   const deform::BlockLayout& layout = placed_->loop->changes().layout();
   if (auto fine = check(layout); !fine) return fine;
   streams_.begin(stream_for(layout));
-  server_->set_settings(placed_->loop->changes().settings(), false);
+  server_->set_settings(placed_->loop->changes().settings());
   pictures_ = web::pictures_of(start.model);
   server_->present(streams_.now(), message_for(layout, start.model), pictures_);
   follow_weights();
@@ -70,7 +59,8 @@ void BrowserView::update(const RunStatus& status, Asks& asks) {
   for (std::size_t slot = 0; slot < gloves.size(); ++slot)
     gloves[slot] = {status.gloves[slot].counts, status.gloves[slot].uncalibrated};
   server_->set_gloves(gloves);
-  server_->set_settings(status.frame.settings, status.facts.recorded, status.frame.wire.is_drawn());
+  server_->set_settings(status.frame.settings);
+  server_->set_commands(status.situation());
   server_->set_steps(status.frame.steps);
   server_->set_puppet(status.frame.puppet, status.puppet.get());
   server_->set_clay(status.frame);
@@ -81,15 +71,12 @@ void BrowserView::update(const RunStatus& status, Asks& asks) {
       const commands::Answer answer = commands::press(**row, status.situation(), wanted_);
       if (answer.command) asks.emplace_back(*answer.command);
       if (answer.refusal != nullptr) server_->report(answer.refusal);
-      continue;
+    } else if (const auto* const settings = std::get_if<web::NamedSettings>(&*asked)) {
+      settings->apply_to(wanted_.now);
+      if (const auto change = wanted_.ask()) asks.emplace_back(*change);
+    } else {
+      asks.emplace_back(std::get<flow::Command>(*asked));
     }
-    auto& command = std::get<flow::Command>(*asked);
-    if (auto* const change = std::get_if<flow::ChangeSettings>(&command)) {
-      keep_numbers(status.frame.settings, change->settings);
-      wanted_.now = change->settings; // from which the next key goes on
-      wanted_.ask();
-    }
-    asks.emplace_back(command);
   }
 }
 

@@ -37,7 +37,7 @@ private:
   VersionTarget<web::FrameStream> streams_;
   void follow_weights();
 
-  flow::WantedSettings wanted_;       ///< that all clients choose by keys
+  flow::WantedSettings wanted_;       ///< that all clients choose
   std::uint64_t weights_ = 0;         ///< deform::SurfaceField::number() of those given last
   web::Pictures pictures_;            ///< of all versions of the model
   std::vector<std::byte> next_model_; ///< message of the version that was prepared last

@@ -1,14 +1,15 @@
 #include "web/client_commands.hpp"
 
 #include <array>
-#include <charconv>
 #include <cmath>
+#include <optional>
 #include <span>
+#include <string>
+
+#include <nendo/base/text.hpp>
 
 namespace nendo::web {
 namespace {
-
-using deform::Wendland;
 
 /// Takes a text apart at single spaces.
 class Words {
@@ -29,10 +30,9 @@ public:
   /// Whether as many words follow, all of them finite numbers.
   bool take(std::span<double> numbers) noexcept {
     for (double& number : numbers) {
-      const auto word = next();
-      const auto* const end = word.data() + word.size();
-      const auto [stopped, error] = std::from_chars(word.data(), end, number);
-      if (error != std::errc{} || stopped != end || !std::isfinite(number)) return false;
+      const auto value = to_finite_number(next());
+      if (!value) return false;
+      number = *value;
     }
     return true;
   }
@@ -41,46 +41,6 @@ private:
   std::string_view rest_;
   bool ended_ = false;
 };
-
-std::optional<Wendland> kernel_of(std::string_view word) noexcept {
-  if (word == "c0") return Wendland::c0;
-  if (word == "c2") return Wendland::c2;
-  if (word == "c4") return Wendland::c4;
-  if (word == "c6") return Wendland::c6;
-  return std::nullopt;
-}
-
-std::optional<flow::Command> settings_in(Words words) noexcept {
-  const auto mode = flow::mode_named(words.next());
-  const auto kernel = kernel_of(words.next());
-  const auto folds = words.next();
-  const auto filter = hand::filter_named(words.next());
-  flow::LoopSettings settings;
-  if (!mode || !kernel || !filter || (folds != "injective" && folds != "free")) return std::nullopt;
-  if (!words.take(settings.radius_m)) return std::nullopt;
-  for (deform::Brush& brush : settings.brushes) {
-    const auto named = deform::brush_named(words.next());
-    if (!named) return std::nullopt;
-    brush = *named;
-  }
-  std::array<double, 1> strength{};
-  if (!words.take(strength)) return std::nullopt;
-  settings.brush_strength = strength[0];
-  if (!words.are_over()) { // older clients know neither
-    std::array<double, 1> keep_volume{};
-    if (!words.take(keep_volume)) return std::nullopt;
-    const auto hold = flow::hold_named(words.next());
-    if (!hold || !words.are_over()) return std::nullopt;
-    settings.keep_volume = keep_volume[0];
-    settings.hold = *hold;
-  }
-  if (!settings.are_usable()) return std::nullopt;
-  settings.mode = *mode;
-  settings.kernel = *kernel;
-  settings.injective = folds == "injective";
-  settings.filter.kind = *filter;
-  return flow::ChangeSettings{settings};
-}
 
 std::optional<flow::Command> wrist_in(Words words) noexcept {
   const auto hand = words.next();
@@ -147,7 +107,6 @@ std::optional<flow::Command> command_in(std::string_view text) noexcept {
   if (text == "end recording") return flow::SetRecording{false};
   Words words(text);
   const auto first = words.next();
-  if (first == "settings") return settings_in(words);
   if (first == "wrist") return wrist_in(words);
   if (first == "clutch") return clutch_in(words);
   if (first == "role") return role_in(words);
@@ -160,14 +119,28 @@ std::optional<flow::Command> command_in(std::string_view text) noexcept {
   return std::nullopt;
 }
 
+// Why a text is no command.
+std::string_view refusal_of(std::string_view text) noexcept {
+  if (text.starts_with("wrist "))
+    return "wrist: within 100 m of the stage's middle on each axis, turned by a quaternion of "
+           "length 1";
+  return "no command of PROTOCOL.md, or a number out of its range";
+}
+
 } // namespace
 
-std::optional<ClientCommand> parse_command(std::string_view text) noexcept {
+Result<ClientCommand> parse_command(std::string_view text) {
   const auto* const row = commands::named(text);
-  if (row != nullptr && row->is_for_run() && (row->places & commands::on_page) != 0) return row;
+  if (row != nullptr && row->is_for_run() && (row->places & commands::on_page) != 0)
+    return ClientCommand(row);
+  if (std::string_view rest = text; cut(rest, ' ') == "settings") {
+    const auto settings = parse_named_settings(rest);
+    if (!settings) return settings.error();
+    return ClientCommand(*settings);
+  }
   const auto command = command_in(text);
-  if (!command) return std::nullopt;
-  return *command;
+  if (!command) return Error{Errc::bad_input, std::string(refusal_of(text))};
+  return ClientCommand(*command);
 }
 
 } // namespace nendo::web

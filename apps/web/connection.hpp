@@ -18,9 +18,15 @@ namespace nendo::web {
 using SharedBytes = std::shared_ptr<const std::vector<std::byte>>;
 SharedBytes shared_bytes(std::string_view text);
 
-/// The messages that each client gets when it comes and whenever they change: the settings, the
-/// steps.
-enum Fact : std::size_t { settings_fact, history_fact, puppet_fact, clay_fact, fact_count };
+/// The messages that each client gets when it comes and whenever they change.
+enum Fact : std::size_t {
+  settings_fact,
+  history_fact,
+  puppet_fact,
+  clay_fact,
+  commands_fact,
+  fact_count
+};
 using Facts = std::array<SharedBytes, fact_count>;
 
 class Connection {

@@ -1,6 +1,8 @@
 #include "web/page_commands.hpp"
 
+#include <cstdint>
 #include <string_view>
+#include <type_traits>
 
 #include <nendo/base/text.hpp>
 #include <nendo/flow/setting.hpp>
@@ -17,6 +19,13 @@ std::string quoted(std::string_view text) {
 
 std::string limits(const flow::Range& range) {
   return ", min: " + decimal_text(range.min) + ", max: " + decimal_text(range.max);
+}
+
+std::string brush_list() {
+  std::string list = "[";
+  for (std::uint8_t number = 0; number < deform::brush_count; ++number)
+    list += quoted(name_of(static_cast<deform::Brush>(number))) + ',';
+  return list + "]";
 }
 
 } // namespace
@@ -44,9 +53,24 @@ std::string page_settings() {
       list += limits(setting.handy);
     else if constexpr (requires { setting.range; })
       list += limits(setting.range);
+    if constexpr (std::is_same_v<decltype(setting), const flow::BrushesSetting&>)
+      list += ", choices: " + brush_list();
     list += " },";
   });
   return list + "\n}";
+}
+
+std::string command_states(const commands::Situation& now) {
+  std::string lines;
+  for (const commands::Row& row : commands::table()) {
+    if (!row.is_for_run() || (row.places & commands::on_page) == 0) continue;
+    const bool on = row.is_on_in(now);
+    const char* const refusal = row.refusal_in(now);
+    if (!on && refusal == nullptr) continue;
+    lines += std::string(row.name) + (on ? "\ton\t" : "\toff\t") +
+             (refusal != nullptr ? refusal : "") + '\n';
+  }
+  return lines;
 }
 
 } // namespace nendo::web

@@ -6,7 +6,9 @@
 
 #include "web/answers.hpp"
 #include "web/listener.hpp"
+#include "web/page_commands.hpp"
 #include "web/server_work.hpp"
+#include "web/wire.hpp"
 
 namespace nendo::web {
 
@@ -57,12 +59,16 @@ void Server::report(std::string message) {
   work_->report(std::move(message));
 }
 
-void Server::set_settings(const flow::LoopSettings& settings, bool recorded, bool draws) {
-  work_->set_settings(settings, recorded, draws);
+void Server::set_settings(const flow::LoopSettings& settings) {
+  work_->set_fact(settings_fact, text_message(MessageType::settings, text_of(settings)));
+}
+
+void Server::set_commands(const commands::Situation& now) {
+  work_->set_fact(commands_fact, text_message(MessageType::commands, command_states(now)));
 }
 
 void Server::set_puppet(std::uint32_t number, const puppet::Rig* rig) {
-  work_->set_puppet(number, rig);
+  work_->set_fact(puppet_fact, message_of(number, rig));
 }
 
 void Server::set_clay(const flow::Frame& frame) {
@@ -70,7 +76,7 @@ void Server::set_clay(const flow::Frame& frame) {
 }
 
 void Server::set_steps(const flow::StepList& steps) {
-  work_->set_steps(steps);
+  work_->set_fact(history_fact, message_of(steps));
 }
 
 void Server::set_gloves(const GloveStates& gloves) noexcept {

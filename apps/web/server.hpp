@@ -93,15 +93,18 @@ public:
   std::optional<ClientCommand> next_command() noexcept;
   /// Sends a text for people to all clients. Any thread may call it; does not wait for the network.
   void report(std::string message);
-  /// Sets what the loop runs with, whether it is recorded to a file, and whether a wire or a knife
-  /// is drawn. Clients are told when they come and when it changes. Any thread may call it; does
-  /// not wait for the network.
-  void set_settings(const flow::LoopSettings& settings, bool recorded, bool draws = false);
+  /// Sets what the loop runs with. Clients are told when they come and when it changes. Any thread
+  /// may call it; does not wait for the network.
+  void set_settings(const flow::LoopSettings& settings);
+  /// Sets which commands of the table are on, and which are not possible, with the reason. Clients
+  /// are told when they come and when it changes. Any thread may call it; does not wait for the
+  /// network.
+  void set_commands(const commands::Situation& now);
   /// Sets the steps of the history. Clients are told when they come and when it changes. Any thread
   /// may call it; does not wait for the network.
   void set_steps(const flow::StepList& steps);
   /// Sets the puppet that is played, by the loop's number for it; null: none. Clients are told when
-  /// they come and when the number changes. Any thread may call it; does not wait for the network.
+  /// they come and when it changes. Any thread may call it; does not wait for the network.
   void set_puppet(std::uint32_t number, const puppet::Rig* rig);
   /// Sets what the page shows of clay. Clients are told when it changes, 30 times a second at most.
   /// Any thread may call it; does not wait for the network.

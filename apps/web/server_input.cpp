@@ -84,23 +84,14 @@ void Server::Work::read_socket(Connection& connection, HostTime now) {
   }
 }
 
-namespace {
-
-/// Why a message was refused.
-std::string_view refusal_of(std::string_view text) noexcept {
-  if (text.starts_with("wrist "))
-    return "wrist: within 100 m of the stage's middle on each axis, turned by a quaternion of "
-           "length "
-           "1; at most 128 messages a second";
-  return "no command of PROTOCOL.md, a number out of its range, or more than 128 messages a second";
-}
-
-} // namespace
-
 void Server::Work::handle(Connection& connection, const std::string& text, HostTime now) {
-  const auto command = connection.within_message_rate(now) ? parse_command(text) : std::nullopt;
+  if (!connection.within_message_rate(now)) {
+    connection.close(CloseCode::policy, now, "more than 128 messages a second");
+    return;
+  }
+  const auto command = parse_command(text);
   if (!command) {
-    connection.close(CloseCode::policy, now, refusal_of(text));
+    connection.close(CloseCode::policy, now, command.error().message);
     return;
   }
   if (!commands.try_push(*command)) // the run stands still

@@ -23,10 +23,6 @@ constexpr milliseconds frame_period(8);
 constexpr milliseconds deadline_period(250);
 constexpr std::size_t most_weights = 3;
 
-std::string report_message(const std::string& text) {
-  return std::string{static_cast<char>(MessageType::report), 0, 0, 0} + text;
-}
-
 void write_loop(std::uint16_t loop, std::size_t at, std::vector<std::byte>& message) {
   std::memcpy(message.data() + at, &loop, sizeof loop);
 }
@@ -79,37 +75,11 @@ void Server::Work::report(std::string message) {
   wake();
 }
 
-void Server::Work::set_settings(const flow::LoopSettings& settings, bool recorded, bool draws) {
+void Server::Work::set_fact(Fact fact, std::vector<std::byte> message) {
   {
     const std::scoped_lock lock(mutex_);
-    if (facts_[settings_fact] && settings == settings_ && recorded == recorded_ && draws == draws_)
-      return;
-    settings_ = settings;
-    recorded_ = recorded;
-    draws_ = draws;
-    std::vector<std::byte> message(sizeof(SettingsMessage));
-    WireWriter(message).put(message_of(settings, recorded, draws));
-    facts_[settings_fact] = std::make_shared<const std::vector<std::byte>>(std::move(message));
-  }
-  wake();
-}
-
-void Server::Work::set_steps(const flow::StepList& steps) {
-  {
-    const std::scoped_lock lock(mutex_);
-    if (facts_[history_fact] && steps.version == steps_version_) return;
-    steps_version_ = steps.version;
-    facts_[history_fact] = std::make_shared<const std::vector<std::byte>>(message_of(steps));
-  }
-  wake();
-}
-
-void Server::Work::set_puppet(std::uint32_t number, const puppet::Rig* rig) {
-  {
-    const std::scoped_lock lock(mutex_);
-    if (facts_[puppet_fact] && number == puppet_) return;
-    puppet_ = number;
-    facts_[puppet_fact] = std::make_shared<const std::vector<std::byte>>(message_of(number, rig));
+    if (facts_[fact] && message == *facts_[fact]) return;
+    facts_[fact] = std::make_shared<const std::vector<std::byte>>(std::move(message));
   }
   wake();
 }
@@ -121,12 +91,9 @@ void Server::Work::set_clay(const flow::Frame& frame) {
     const HostTime now = HostClock::now();
     const bool is_told = frame.clay.is_clay || frame.parts.count > 0;
     if ((!facts_[clay_fact] && !is_told) || now < next_clay_) return;
-    auto message = clay_message(frame);
-    if (facts_[clay_fact] && message == *facts_[clay_fact]) return;
     next_clay_ = now + period;
-    facts_[clay_fact] = std::make_shared<const std::vector<std::byte>>(std::move(message));
   }
-  wake();
+  set_fact(clay_fact, clay_message(frame));
 }
 
 std::size_t Server::Work::clients() const noexcept {
@@ -208,7 +175,8 @@ void Server::Work::send_report(HostTime now) {
     text.swap(report_);
   }
   if (text.empty()) return;
-  const SharedBytes message = shared_bytes(report_message(text));
+  const SharedBytes message =
+      std::make_shared<const std::vector<std::byte>>(text_message(MessageType::report, text));
   for (Connection& client : connections_)
     if (client.stage() == Connection::Stage::socket && client.accepts_updates())
       client.send(Opcode::binary, message, false, now);

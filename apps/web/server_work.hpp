@@ -27,9 +27,7 @@ public:
                Pictures pictures);
   void add_weights(std::uint64_t number, std::vector<std::byte> message);
   void report(std::string message);
-  void set_settings(const flow::LoopSettings& settings, bool recorded, bool draws);
-  void set_steps(const flow::StepList& steps);
-  void set_puppet(std::uint32_t number, const puppet::Rig* rig);
+  void set_fact(Fact fact, std::vector<std::byte> message);
   void set_clay(const flow::Frame& frame);
 
   const Endpoint endpoint;
@@ -91,17 +89,12 @@ private:
 
   const ServerLimits limits_;
   Descriptor listener_, waker_;
-  std::mutex mutex_;              ///< guards the next ten
+  std::mutex mutex_;              ///< guards the next seven
   std::optional<Presented> next_; ///< set by present() and not taken yet
   std::uint16_t loops_ = 0;
-  std::string report_; ///< the newest one; empty if it has been sent
-  flow::LoopSettings settings_;
-  std::uint64_t steps_version_ = 0;
-  std::uint32_t puppet_ = 0;
-  HostTime next_clay_{}; ///< not before that
-  Facts facts_;          ///< as messages; null before they are known
-  bool recorded_ = false;
-  bool draws_ = false;
+  std::string report_;           ///< the newest one; empty if it has been sent
+  HostTime next_clay_{};         ///< not before that
+  Facts facts_;                  ///< as messages; null before they are known
   std::vector<Weights> weights_; ///< the newest last
   std::uint64_t weights_in_use_ = 0;
   Presented presented_;

@@ -142,24 +142,14 @@ UpdateHead head_of(const flow::Frame& frame) noexcept {
         (hand.present ? 1U : 0U) | (hand.silent ? 4U : 0U) | (hand.swapped ? 16U : 0U);
     head.hands = static_cast<std::uint8_t>(head.hands | bits << slot);
   }
-  const unsigned history = (frame.undo_steps > 0 ? 64U : 0U) | (frame.redo_steps > 0 ? 128U : 0U);
-  head.hands = static_cast<std::uint8_t>(head.hands | history);
   return head;
 }
 
-SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded, bool draws) noexcept {
-  SettingsMessage message;
-  message.mode = static_cast<std::uint8_t>(1 + static_cast<int>(settings.mode));
-  message.kernel = static_cast<std::uint8_t>(settings.kernel);
-  const bool filtered = settings.filter.kind == hand::FilterKind::one_euro;
-  message.flags = static_cast<std::uint8_t>((settings.injective ? 1U : 0U) | (filtered ? 2U : 0U) |
-                                            (recorded ? 4U : 0U) | (draws ? 8U : 0U));
-  std::copy(settings.radius_m.begin(), settings.radius_m.end(), message.radius_m);
-  for (std::size_t finger = 0; finger < settings.brushes.size(); ++finger)
-    message.brushes[finger] = static_cast<std::uint8_t>(settings.brushes[finger]);
-  message.brush_strength = settings.brush_strength;
-  message.keep_volume = as_float(settings.keep_volume);
-  message.hold = static_cast<std::uint8_t>(settings.hold);
+std::vector<std::byte> text_message(MessageType type, std::string_view text) {
+  std::vector<std::byte> message(text_head_bytes + text.size());
+  message[0] = static_cast<std::byte>(type);
+  const auto bytes = std::as_bytes(std::span(text));
+  std::copy(bytes.begin(), bytes.end(), message.data() + text_head_bytes);
   return message;
 }
 

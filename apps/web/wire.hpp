@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <nendo/deform/material.hpp>
@@ -25,7 +26,8 @@ enum class MessageType : std::uint8_t {
   history = 5,
   weights = 6,
   puppet = 7,
-  clay = 8
+  clay = 8,
+  commands = 9
 };
 enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 enum class StepContent : std::uint8_t { fields = 0, vectors = 1 };
@@ -37,8 +39,7 @@ struct UpdateHead {
   /// Of a puppet: 4, 5: left, right has let go of it; 6: one hand plays both sides; 7: there is
   /// one.
   std::uint8_t state = 0;
-  /// Bits 0, 1: left, right is there; 2, 3: silent; 4, 5: other bones. And of the history: 6, 7:
-  /// there is something to undo, to redo.
+  /// Bits 0, 1: left, right is there; 2, 3: silent; 4, 5: other bones.
   std::uint8_t hands = 0;
   std::uint8_t status = 0;
   std::uint32_t steps = 0;
@@ -74,7 +75,7 @@ static_assert(sizeof(ShapeHead) == 16);
 /// The head of the model message, in PROTOCOL.md's order and without gaps.
 struct ModelHead {
   char magic[8]{'N', 'E', 'N', 'D', 'O', 'W', 'E', 'B'};
-  std::uint32_t version = 6;
+  std::uint32_t version = 7;
   std::uint32_t vertices = 0;
   std::uint32_t triangles = 0;
   std::uint32_t name_bytes = 0;
@@ -111,22 +112,6 @@ struct WeightsHead {
 };
 static_assert(sizeof(WeightsHead) == 16);
 
-/// The settings message, in PROTOCOL.md's order and without gaps.
-struct SettingsMessage {
-  std::uint8_t type = static_cast<std::uint8_t>(MessageType::settings);
-  std::uint8_t mode = 1;
-  std::uint8_t kernel = 0;
-  /// Bit 0: injective; 1: the one-euro filter; 2: it is recorded; 3: a wire or a knife is drawn.
-  std::uint8_t flags = 0;
-  float keep_volume = 0.0F;
-  double radius_m[5]{};
-  std::uint8_t brushes[5]{};
-  std::uint8_t hold = 0;
-  std::uint8_t spare[2]{};
-  double brush_strength = 0.0;
-};
-static_assert(sizeof(SettingsMessage) == 64);
-
 /// The head of the clay message, in PROTOCOL.md's order and without gaps. The contacts follow.
 struct ClayMessage {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::clay);
@@ -138,6 +123,7 @@ struct ClayMessage {
 };
 static_assert(sizeof(ClayMessage) == 24);
 
+inline constexpr std::size_t text_head_bytes = 4; ///< the type, and three that are 0
 /// Of the history's message.
 inline constexpr std::size_t history_head_bytes = 8;
 inline constexpr std::size_t history_step_bytes = 8;
@@ -192,7 +178,8 @@ private:
 float as_float(double value) noexcept;
 
 UpdateHead head_of(const flow::Frame& frame) noexcept;
-SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded, bool draws) noexcept;
+/// Returns a message that is a text: the report, the settings, or the commands. Allocates.
+std::vector<std::byte> text_message(MessageType type, std::string_view text);
 /// Returns the message with the steps of the history. Allocates.
 std::vector<std::byte> message_of(const flow::StepList& steps);
 /// Returns the message with the functions of a puppet, or that there is none. Allocates.

@@ -16,6 +16,7 @@
 #include "commands/commands.hpp"
 #include "web/client_commands.hpp"
 #include "web/page_commands.hpp"
+#include "web/wire.hpp"
 #ifdef NENDO_WINDOW
 #include "viewer/row_keys.hpp"
 #endif
@@ -86,6 +87,17 @@ std::string content_of(const std::string& file) {
   std::ifstream in(std::string(NENDO_SOURCE) + "/" + file);
   REQUIRE(in);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The values of an attribute in a text of HTML, in their order.
+std::vector<std::string> attributes_in(const std::string& html, const std::string& attribute) {
+  std::vector<std::string> values;
+  const std::string mark = " " + attribute + "=\"";
+  for (auto at = html.find(mark); at != std::string::npos; at = html.find(mark, at)) {
+    at += mark.size();
+    values.push_back(html.substr(at, html.find('"', at) - at));
+  }
+  return values;
 }
 
 std::string places_of(const Row& row) {
@@ -266,11 +278,8 @@ TEST_SUITE("commands") {
       if (!row.is_for_run())
         CHECK((panel.find("\n  '" + name + "': panel => ") != std::string::npos) == is_there);
     }
-    const std::string html = content_of("apps/web/page/index.html");
-    const std::string mark = "data-help=\"";
-    for (auto at = html.find(mark); at != std::string::npos; at = html.find(mark, at)) {
-      at += mark.size();
-      const std::string name = html.substr(at, html.find('"', at) - at);
+    for (const std::string& name :
+         attributes_in(content_of("apps/web/page/index.html"), "data-help")) {
       CAPTURE(name);
       CHECK(commands::named(name) != nullptr);
     }
@@ -286,13 +295,67 @@ TEST_SUITE("commands") {
       CHECK(label.find_first_of("\"\\<") == std::string::npos);
     });
     CHECK(list.find("keep_volume: { label: \"volume\", min: 0.0, max: 1.0 }") != std::string::npos);
+    CHECK(list.find("brushes: { label: \"brush\", choices: [\"pull\",\"none\",") !=
+          std::string::npos);
     const std::string html = content_of("apps/web/page/index.html");
-    for (const std::string mark : {"data-label=\"", "data-range=\""})
-      for (auto at = html.find(mark); at != std::string::npos; at = html.find(mark, at)) {
-        at += mark.size();
-        const std::string name = html.substr(at, html.find('"', at) - at);
-        CHECK(list.find("\n  " + name + ": {") != std::string::npos);
+    for (const std::string& name : attributes_in(html, "data-label"))
+      CHECK(list.find("\n  " + name + ": {") != std::string::npos);
+  }
+
+  TEST_CASE(
+      "each value that an input of the page has is one of its setting, and no id stands twice") {
+    const std::string html = content_of("apps/web/page/index.html");
+    const auto ids = attributes_in(html, "id");
+    CHECK(std::set<std::string>(ids.begin(), ids.end()).size() == ids.size());
+    const auto begin = html.find("<form id=\"shaping\">");
+    const std::string form = html.substr(begin, html.find("</form>", begin) - begin);
+    int values = 0;
+    for (auto at = form.find(" name=\""); at != std::string::npos; at = form.find(" name=\"", at)) {
+      const auto next = form.find(" name=\"", at + 1);
+      const std::string input = form.substr(at, next - at); // with the options of a list
+      const std::string name = attributes_in(input, "name").front();
+      CAPTURE(name);
+      CHECK(web::page_settings().find("\n  " + name + ": {") != std::string::npos);
+      for (const auto* attribute : {"value", "data-off"})
+        for (const std::string& value : attributes_in(input, attribute)) {
+          CHECK(web::parse_named_settings(name + '=' + value));
+          ++values;
+        }
+      at = next;
+    }
+    CHECK(values == 14); // four modes, four kernels, and three boxes on and off
+  }
+
+  TEST_CASE(
+      "clients get the commands that are on, and the reasons of those that are not possible") {
+    for (const bool all : {false, true}) {
+      const State state(all);
+      std::string lines;
+      for (const Row& row : commands::table()) {
+        if (!row.is_for_run() || (row.places & commands::on_page) == 0) continue;
+        const char* const refusal = row.refusal_in(state.now());
+        if (row.is_on_in(state.now()))
+          lines += std::string(row.name) + "\ton\t" + (refusal != nullptr ? refusal : "") + "\n";
+        else if (refusal != nullptr)
+          lines += std::string(row.name) + "\toff\t" + refusal + "\n";
       }
+      CHECK(web::command_states(state.now()) == lines);
+    }
+    const std::string none = web::command_states(State(false).now());
+    CHECK(none.find("undo\toff\tThere is nothing to undo.\n") != std::string::npos);
+    CHECK(web::command_states(State(true).now()).find("take\ton\t\n") != std::string::npos);
+  }
+
+  TEST_CASE("the protocol's page has the version and the settings that a client gets") {
+    const std::string protocol = content_of("apps/web/PROTOCOL.md");
+    const std::string version = std::to_string(web::ModelHead{}.version);
+    CHECK(protocol.find("| 8 | u32 | version, " + version + " |") != std::string::npos);
+    CHECK(content_of("apps/web/page/wire.js").find("getUint32(8, true) !== " + version + ')') !=
+          std::string::npos);
+    flow::for_each_setting([&](const auto& setting) {
+      CAPTURE(setting.name);
+      CHECK(protocol.find("\n| `" + std::string(setting.name) + "` | ") != std::string::npos);
+    });
   }
 
   TEST_CASE("the pages list what the table has, and nothing else") {

@@ -58,11 +58,28 @@ void check_frames(std::string_view bytes, std::size_t chunk) {
   require(told <= bytes.size());
 }
 
+// A loop takes them, and their text means the same.
+void check_settings(const NamedSettings& named) {
+  nendo::flow::LoopSettings settings;
+  settings.radius_m.fill(1.0);
+  named.apply_to(settings);
+  require(settings.are_usable());
+  for (const double radius_m : settings.radius_m)
+    require(radius_m >= min_radius_m && radius_m <= max_radius_m);
+  const auto again = parse_named_settings(text_of(settings));
+  require(static_cast<bool>(again));
+  nendo::flow::LoopSettings read;
+  again->apply_to(read);
+  require(read == settings);
+}
+
 // Whatever is understood is something that a loop may be asked for.
 void check_words(std::string_view text) {
   const auto asked = parse_command(text);
+  require(asked || asked.error().message.size() <= most_close_reason);
   if (!asked) return;
   require(text.front() != ' ' && text.back() != ' ');
+  if (const auto* const named = std::get_if<NamedSettings>(&*asked)) return check_settings(*named);
   const auto* const command = std::get_if<nendo::flow::Command>(&*asked);
   if (command == nullptr) return; // a row of the table
   if (const auto* move = std::get_if<nendo::flow::WristMove>(command)) {
@@ -71,9 +88,6 @@ void check_words(std::string_view text) {
     require(std::abs(pose.linear().determinant() - 1.0) < 1e-9);
   }
   if (const auto* mask = std::get_if<nendo::flow::SetMask>(command)) require(mask->is_usable());
-  const auto* change = std::get_if<nendo::flow::ChangeSettings>(command);
-  if (change == nullptr) return;
-  require(change->settings.are_usable());
 }
 
 } // namespace

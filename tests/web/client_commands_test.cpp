@@ -3,7 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include <nendo/flow/setting.hpp>
+
 #include "web/client_commands.hpp"
+#include "web/socket_frames.hpp"
 
 namespace client_commands_test {
 
@@ -66,46 +69,130 @@ TEST_SUITE("client_commands") {
     CHECK(parsed_as<flow::SaveRecording>("keep"));
   }
 
-  TEST_CASE("settings are mode, kernel, whether it may fold, filter and five radii in metres") {
-    const auto change = parsed_as<flow::ChangeSettings>(
-        "settings type2 c4 injective one-euro 0.1 0.125 0.08 1e-2 10 pull pull pull pull pull 0.5");
-    REQUIRE(change);
-    CHECK(change->settings.mode == flow::Mode::type2);
-    CHECK(change->settings.kernel == deform::Wendland::c4);
-    CHECK(change->settings.injective);
-    CHECK(change->settings.filter.kind == hand::FilterKind::one_euro);
-    CHECK(change->settings.radius_m == std::array{0.1, 0.125, 0.08, 0.01, 10.0});
-    CHECK(change->settings.are_usable());
-    for (const auto* kernel : {"c0", "c2", "c6"}) {
-      const auto other =
-          parsed_as<flow::ChangeSettings>("settings type1 " + std::string(kernel) +
-                                          " free off 1 1 1 1 1 push none scale twist smooth -1");
-      REQUIRE(other);
-      CHECK(other->settings.brushes == std::array{deform::Brush::push, deform::Brush::none,
-                                                  deform::Brush::scale, deform::Brush::twist,
-                                                  deform::Brush::smooth});
-      CHECK(other->settings.brush_strength == -1.0);
-      CHECK_FALSE(other->settings.injective);
-      CHECK(other->settings.filter.kind == hand::FilterKind::off);
-    }
+  TEST_CASE("settings are named, and only those that are named change") {
+    flow::LoopSettings settings;
+    settings.radius_m = {0.1, 0.2, 0.3, 0.4, 0.5};
+    settings.filter.min_cutoff_hz = 3.5;
+    flow::LoopSettings wanted = settings;
+    const auto take = [&](const std::string& text) {
+      CAPTURE(text);
+      const auto asked = parse_command("settings " + text);
+      REQUIRE(asked);
+      const auto* const named = std::get_if<NamedSettings>(&*asked);
+      REQUIRE(named != nullptr);
+      named->apply_to(settings);
+    };
+    take("mode=type2");
+    wanted.mode = flow::Mode::type2;
+    CHECK(settings == wanted);
+    take("radius_m=0.1,0.125,0.08,1e-2,10 filter=one-euro injective=true");
+    wanted.radius_m = {0.1, 0.125, 0.08, 0.01, 10.0};
+    wanted.filter.kind = hand::FilterKind::one_euro;
+    wanted.injective = true;
+    CHECK(settings == wanted);
+    take("brushes=push,none,scale,twist,smooth brush_strength=-1 kernel=wendland-c6");
+    wanted.brushes = {deform::Brush::push, deform::Brush::none, deform::Brush::scale,
+                      deform::Brush::twist, deform::Brush::smooth};
+    wanted.brush_strength = -1.0;
+    wanted.kernel = deform::Wendland::c6;
+    CHECK(settings == wanted);
+    take("injective=false keep_volume=0.25 hold=hand radius_m=0.2 brushes=pull");
+    wanted.injective = false;
+    wanted.keep_volume = 0.25;
+    wanted.hold = flow::Hold::hand;
+    wanted.radius_m.fill(0.2);
+    wanted.brushes.fill(deform::Brush::pull);
+    CHECK(settings == wanted);
   }
 
-  TEST_CASE("settings may tell how much of the volume stays, and what of a hand holds") {
-    const std::string settings =
-        "settings type1 c2 free off 1 1 1 1 1 pull pull pull pull pull 0.5";
-    const auto plain = parsed_as<flow::ChangeSettings>(settings);
-    REQUIRE(plain);
-    CHECK(plain->settings.keep_volume == 0.0);
-    CHECK(plain->settings.hold == flow::Hold::fingertips);
-    const auto clay = parsed_as<flow::ChangeSettings>(settings + " 0.25 hand");
-    REQUIRE(clay);
-    CHECK(clay->settings.keep_volume == 0.25);
-    CHECK(clay->settings.hold == flow::Hold::hand);
-    for (const auto* wrong : {" 0.25", " 1.5 tips", " -0.1 tips", " nan hand", " 1 fist", " hand 1",
-                              " 1 hand ", " 1 hand 1"}) {
-      CAPTURE(wrong);
-      CHECK_FALSE(parse_command(settings + wrong));
+  TEST_CASE("all settings as a text are read back, and are a message that a client may send") {
+    const flow::LoopSettings settings{.mode = flow::Mode::parts,
+                                      .kernel = deform::Wendland::c0,
+                                      .injective = true,
+                                      .radius_m = {0.1 / 3, 0.2 / 3, 0.4 / 3, 0.5 / 3, 0.7 / 3},
+                                      .piece_fraction = 0.1 / 7,
+                                      .filter = {.kind = hand::FilterKind::one_euro},
+                                      .brushes = {deform::Brush::flatten, deform::Brush::inflate,
+                                                  deform::Brush::inflate, deform::Brush::inflate,
+                                                  deform::Brush::inflate},
+                                      .brush_strength = -0.1 / 3,
+                                      .keep_volume = 0.1 / 3,
+                                      .hold = flow::Hold::hand};
+    const std::string text = "settings " + text_of(settings);
+    CHECK(text.size() < max_client_message / 2);
+    const auto asked = parse_command(text);
+    REQUIRE(asked);
+    flow::LoopSettings read;
+    std::get<NamedSettings>(*asked).apply_to(read);
+    CHECK(read == settings);
+  }
+
+  TEST_CASE(
+      "a setting that is refused is named, with what can be used, in a close frame's length") {
+    const auto refusal = [](const std::string& text) {
+      const auto asked = parse_command("settings " + text);
+      CHECK_FALSE(asked);
+      return asked ? std::string() : asked.error().message;
+    };
+    CHECK(refusal("colour=red") == "there is no setting 'colour'; message 4 names all settings");
+    CHECK(refusal("mode=type1 mode=type2") == "mode stands twice; name each setting once");
+    CHECK(refusal("keep_volume=1.5") == "keep_volume: use 0 to 1");
+    CHECK(refusal("beta_hz_per_rad_s=-1") == "beta_hz_per_rad_s: use 0 to 1000 Hz per rad/s");
+    CHECK(refusal("injective=on") == "injective: use true or false");
+    CHECK(refusal("brush_strength=strong") == "brush_strength: use a number");
+    for (const std::string text : {
+             "",
+             " ",
+             "mode",
+             "mode=",
+             "=type1",
+             "mode=type3",
+             "mode=type1 ",
+             " mode=type1",
+             "mode=type1  hold=hand",
+             "mode=type1\thold=hand",
+             "mode =type1",
+             "Mode=type1",
+             "type1 wendland-c2",
+             "kernel=c2",
+             "kernel=wendland-c8",
+             "hold=fist",
+             "filter=kalman",
+             "min_cutoff_hz=0.001",
+             "pinches=open",
+             "brushes=paint",
+             "brushes=pull,pull,pull,pull",
+             "brushes=pull,pull,pull,pull,pull,pull",
+             "brushes=pull,pull,pull,pull,pull,",
+             "radius_m=",
+             "radius_m=1,1,1,1",
+             "radius_m=1,1,1,1,1,1",
+             "radius_m=1,1,1,1,1,",
+             "radius_m=1,1,1,1,nan",
+             "radius_m=1,1,1,1,inf",
+             "radius_m=1,1,1,1,-1",
+             "radius_m=1,1,1,1,1.1e9",
+             "radius_m=9e-10",
+             "radius_m=1e999",
+             "radius_m=0x1",
+             "radius_m=1m",
+             "radius_m=1 1 1 1 1",
+             "piece_fraction=0",
+             "brush_strength=-1.1",
+             "keep_volume=nan",
+         }) {
+      CAPTURE(text);
+      const std::string why = refusal(text);
+      CHECK_FALSE(why.empty());
+      CHECK(why.size() <= most_close_reason);
     }
+    CHECK(refusal(std::string("keep_volume=1\0", 14)) == "keep_volume: use a number");
+    CHECK(refusal(std::string(1000, 'x')).size() <= most_close_reason);
+    flow::for_each_setting([&](const auto& setting) {
+      const std::string why = refusal(std::string(setting.name) + "=\x1B");
+      CHECK(why.starts_with(std::string(setting.name) + ": use "));
+      CHECK(why.size() <= most_close_reason);
+    });
   }
 
   TEST_CASE("a wrist's place and turn are taken as they are, but for the quaternion's length") {
@@ -123,7 +210,7 @@ TEST_SUITE("client_commands") {
 
   TEST_CASE("whatever else is said is nothing: other words, spaces, numbers that are none or too "
             "large, too many of them and too few") {
-    const std::array<std::string, 54> wrong{
+    const std::array<std::string, 21> wrong{
         "",
         " ",
         "Grab",
@@ -133,39 +220,6 @@ TEST_SUITE("client_commands") {
         "record ",
         "end  recording",
         "format the disk",
-        "settings",
-        "settings ",
-        "settings type3 c2 free off 1 1 1 1 1 pull pull pull pull pull 0.5",
-        "settings type1 c8 free off 1 1 1 1 1 pull pull pull pull pull 0.5",
-        "settings type1 wendland-c2 free off 1 1 1 1 1 pull pull pull pull pull 0.5",
-        "settings type1 c2 free off",
-        "settings type1 c2 free off 1 1 1 1 1",
-        "settings type1 c2 free off 1 1 1 1 1 pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 1 pull pull pull pull paint 0.5",
-        "settings type1 c2 free off 1 1 1 1 1 pull pull pull pull pull",
-        "settings type1 c2 free off 1 1 1 1 1 pull pull pull pull pull 1.5",
-        "settings type1 c2 1 1 1 1 1 pull pull pull pull pull 0.5",
-        "settings type1 c2 folds off 1 1 1 1 1 pull pull pull pull pull 0.5",
-        "settings type1 c2 free kalman 1 1 1 1 1 pull pull pull pull pull 0.5",
-        "settings type1 c2 off free 1 1 1 1 1 pull pull pull pull pull 0.5",
-        "settings type1 c2 injective 1 1 1 1 1 pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 1 1 pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 1  pull pull pull pull pull 0.5",
-        "settings type1 c2 free off  1 1 1 1 1 pull pull pull pull pull 0.5",
-        "settings  type1 c2 free off 1 1 1 1 1 pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 nan pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 inf pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 -1 pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 0 pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 9e-10 pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 1.1e9 pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 1e999 pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 0x1 pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 1,0 pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1 1 1 1 1m pull pull pull pull pull 0.5",
-        "settings type1 c2 free off 1\t1 1 1 1 pull pull pull pull pull 0.5",
-        std::string("settings type1 c2 free off 1 1 1 1 1\0", 37),
         "wrist",
         "wrist left",
         "wrist both 0 0 0 0 0 0 1",

@@ -99,8 +99,6 @@ TEST_SUITE("follow") {
       double worst = 0.0;
       double moved = 0.0;
       int compared = 0;
-      int undoable = 0;
-      int redoable = 0;
       for (int tick = 0; tick < 600; ++tick) {
         bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
         if (random() % 25 == 0)
@@ -108,11 +106,6 @@ TEST_SUITE("follow") {
         const auto shape = streamed.tick(bent);
         moved = std::max(moved, (shape - streamed.test.model.vertices).cwiseAbs().maxCoeff());
         followed.pass();
-        const flow::Frame& frame = streamed.test.loop->frames().front();
-        REQUIRE(followed.client.can_undo == (frame.undo_steps > 0));
-        REQUIRE(followed.client.can_redo == (frame.redo_steps > 0));
-        undoable += followed.client.can_undo ? 1 : 0;
-        redoable += followed.client.can_redo ? 1 : 0;
         if (!followed.is_up_to_date()) continue;
         worst = std::max(worst, followed.gap(shape));
         ++compared;
@@ -120,8 +113,6 @@ TEST_SUITE("follow") {
       CHECK(worst < 1e-5);
       CHECK(moved > 0.05); // of a ball of radius 1
       CHECK(compared > 500);
-      CHECK((undoable > 0 && undoable < 600)); // neither always nor never
-      CHECK((redoable > 0 && redoable < 600));
       CHECK(followed.client.rest_changes >= 3);
       CHECK(followed.client.jumps >= 3);
       CHECK(followed.client.shapes >= static_cast<int>(followed.client.jumps));

@@ -6,6 +6,10 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -20,7 +24,7 @@ public:
     Bytes in{model};
     const std::string magic(reinterpret_cast<const char*>(model.data()), 8);
     in.at = 8;
-    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 6;
+    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 7;
     const auto vertices = in.take<std::uint32_t>();
     const auto triangles = in.take<std::uint32_t>();
     const auto name_bytes = in.take<std::uint32_t>();
@@ -65,7 +69,8 @@ public:
     if (type == 5) take_steps(in);
     if (type == 6) take_weights(in);
     if (type == 7) take_puppet(in);
-    return type >= 1 && type <= 7 && in.at == message.size();
+    if (type == 9) take_commands(in);
+    return type >= 1 && type <= 9 && type != 8 && in.at == message.size();
   }
 
   /// The shape, in the mesh's order and units.
@@ -98,13 +103,11 @@ public:
   std::vector<float> texcoords;
   std::vector<std::uint16_t> colours;
   std::string name;
-  // Of the latest settings message.
-  std::array<double, 5> radius_m{};
-  std::array<std::uint8_t, 5> brushes{};
-  double strength = 0.0;
-  unsigned mode = 0, kernel = 0;
-  bool injective = false, filtered = false, recorded = false;
-  int settings = 0; ///< how many came
+  // Of the latest messages of settings and of commands, by their names.
+  std::map<std::string, std::string> settings;
+  int settings_messages = 0;
+  std::set<std::string> on;
+  std::map<std::string, std::string> refusals;
   // Of the latest message of steps.
   std::vector<std::pair<std::uint32_t, float>> steps; ///< kind, and seconds
   std::size_t undoable = 0;
@@ -121,7 +124,6 @@ public:
   std::array<std::array<Eigen::Quaterniond, 26>, 2> turns{};
   std::array<Eigen::Quaterniond, 2> forearms{};
   std::array<bool, 2> present{}, other_bones{}, uncalibrated{};
-  bool can_undo = false, can_redo = false;
   std::array<std::uint32_t, 2> bad{}, delivered{}, missed{}, refused{}; ///< records of the gloves
   std::size_t update_bytes = 0;
   int shapes = 0, updates = 0;
@@ -168,27 +170,30 @@ private:
     std::vector<Function> functions;
   };
 
-  void take_report(Bytes& in) {
-    in.at += 3;
-    report.assign(reinterpret_cast<const char*>(in.bytes.data()) + 4, in.bytes.size() - 4);
+  static std::string take_text(Bytes& in) {
     in.at = in.bytes.size();
+    return {reinterpret_cast<const char*>(in.bytes.data()) + 4, in.bytes.size() - 4};
   }
+  void take_report(Bytes& in) { report = take_text(in); }
 
   void take_settings(Bytes& in) {
-    ++settings;
-    mode = in.take<std::uint8_t>();
-    kernel = in.take<std::uint8_t>();
-    const auto flags = in.take<std::uint8_t>();
-    injective = (flags & 1U) != 0;
-    filtered = (flags & 2U) != 0;
-    recorded = (flags & 4U) != 0;
-    in.at += 4;
-    for (double& radius : radius_m)
-      radius = in.take<double>();
-    for (std::uint8_t& brush : brushes)
-      brush = in.take<std::uint8_t>();
-    in.at += 3;
-    strength = in.take<double>();
+    ++settings_messages;
+    settings.clear();
+    std::istringstream words(take_text(in));
+    for (std::string setting; std::getline(words, setting, '=');)
+      std::getline(words, settings[setting], ' ');
+  }
+
+  void take_commands(Bytes& in) {
+    on.clear();
+    refusals.clear();
+    std::istringstream lines(take_text(in));
+    for (std::string command, state, why; std::getline(lines, command, '\t');) {
+      std::getline(lines, state, '\t');
+      std::getline(lines, why);
+      if (state == "on") on.insert(command);
+      if (!why.empty()) refusals[command] = why;
+    }
   }
 
   void take_steps(Bytes& in) {
@@ -260,8 +265,6 @@ private:
     symmetric = (state & 64U) != 0;
     is_puppet = (state & 128U) != 0;
     const auto hands = in.take<std::uint8_t>();
-    can_undo = (hands & 64U) != 0;
-    can_redo = (hands & 128U) != 0;
     in.at += 1;
     const auto step_count = in.take<std::uint32_t>();
     newest = in.take<std::uint64_t>();

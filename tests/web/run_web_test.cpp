@@ -176,20 +176,25 @@ TEST_SUITE("run_web") {
     Browser browser{address_of(program), {}, {}};
     browser.connect();
     const FollowingClient& seen = *browser.follower;
-    browser.follow_until([&] { return seen.settings > 0; });
-    CHECK(seen.radius_m[0] == doctest::Approx(0.16)); // a fifth of the model's longest side
-    CHECK(seen.mode == 1);
-    browser.ask("settings type2 c4 injective one-euro 0.1 0.1 0.1 0.1 0.05 "
-                "pull none pull none pull -0.5",
-                [](const auto& now) { return now.mode == 2; });
-    CHECK(seen.kernel == 2);
-    CHECK(seen.brushes == std::array<std::uint8_t, 5>{0, 1, 0, 1, 0});
-    CHECK(seen.strength == -0.5);
-    CHECK(seen.injective);
-    CHECK(seen.filtered);
-    CHECK(seen.radius_m[0] == doctest::Approx(0.1));
-    CHECK(seen.radius_m[4] == doctest::Approx(0.05));
-    browser.ask("record", [](const auto& now) { return now.recorded; });
+    browser.follow_until([&] { return seen.settings_messages > 0; });
+    const auto value = [&](const char* name) { return seen.settings.at(name); };
+    // A fifth of the model's longest side.
+    CHECK(std::stod(value("radius_m")) == doctest::Approx(0.16));
+    CHECK(value("mode") == "type1");
+    const std::string piece = value("piece_fraction");
+    browser.ask(
+        "settings mode=type2 kernel=wendland-c4 injective=true filter=one-euro "
+        "radius_m=0.1,0.1,0.1,0.1,0.05 brushes=pull,none,pull,none,pull brush_strength=-0.5",
+        [](const auto& now) { return now.settings.at("mode") == "type2"; });
+    CHECK(value("kernel") == "wendland-c4");
+    CHECK(value("brushes") == "pull,none,pull,none,pull");
+    CHECK(value("brush_strength") == "-0.5");
+    CHECK(value("injective") == "true");
+    CHECK(value("filter") == "one-euro");
+    CHECK(value("radius_m") == "0.1,0.1,0.1,0.1,0.05");
+    CHECK(value("piece_fraction") == piece);
+    CHECK_FALSE(seen.on.contains("take"));
+    browser.ask("record", [](const auto& now) { return now.on.contains("take"); });
     CHECK(test::eventually([&] { return fs::exists(folder.path() / "clay.nendo"); }));
     const auto jumps = seen.jumps;
     browser.ask("reset", [&](const auto& now) { return now.jumps > jumps; });
@@ -197,11 +202,15 @@ TEST_SUITE("run_web") {
     CHECK(seen.undoable == seen.steps.size()); // the reset is the last of them
     browser.ask("undo", [&](const auto& now) { return now.jumps > jumps + 1; });
     browser.follow_until([&] { return seen.undoable + 1 == seen.steps.size(); });
-    browser.ask("end recording", [](const auto& now) { return !now.recorded; });
-    browser.ask("settings type1 c2 free off 0.2 0.2 0.2 0.2 0.2 pull pull pull pull pull 0.5",
-                [](const auto& now) { return now.mode == 1; });
-    CHECK_FALSE(seen.injective);
-    browser.ask("record", [](const auto& now) { return now.recorded; });
+    browser.follow_until([&] { return !seen.refusals.contains("redo"); });
+    CHECK(seen.refusals.contains("keep")); // without --keep-last
+    browser.ask("end recording", [](const auto& now) { return !now.on.contains("take"); });
+    browser.ask("settings mode=type1 injective=false",
+                [](const auto& now) { return now.settings.at("mode") == "type1"; });
+    CHECK(value("injective") == "false");
+    CHECK(value("kernel") == "wendland-c4"); // what is not named stays
+    CHECK(value("radius_m") == "0.1,0.1,0.1,0.1,0.05");
+    browser.ask("record", [](const auto& now) { return now.on.contains("take"); });
     CHECK(test::eventually([&] { return fs::exists(folder.path() / "clay-2.nendo"); }));
     CHECK(browser.client->send_text("wrist left -0.5 0.25 0.125 0 0 0 1"));
     const Eigen::Vector3d there(-0.5, 0.25, 0.125);

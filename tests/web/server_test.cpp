@@ -157,14 +157,30 @@ TEST_SUITE("server") {
     CHECK(viewer.client.is_closed());
   }
 
+  TEST_CASE("a client whose setting is refused is closed with the setting's name and the remedy") {
+    const auto server = open_server();
+    const StreamedLoop streamed(flow::Mode::type1);
+    server->present(streamed.stream, streamed.model);
+    WebClient client(*server);
+    REQUIRE(eventually([&] { return client.open_socket() == 101; }));
+    client.send_text("settings keep_volume=0.5 hold=fist");
+    const auto frame = client.next();
+    REQUIRE(frame);
+    REQUIRE(frame->opcode == 8);
+    const std::string reason(reinterpret_cast<const char*>(frame->payload.data()) + 2,
+                             frame->payload.size() - 2);
+    CHECK(reason == "hold: use tips or hand");
+    CHECK_FALSE(server->next_command());
+  }
+
   TEST_CASE("what clients ask for comes out of the server, in its order") {
     const auto server = open_server();
     const StreamedLoop streamed(flow::Mode::type1);
     server->present(streamed.stream, streamed.model);
     WebClient client(*server);
     REQUIRE(eventually([&] { return client.open_socket() == 101; }));
-    client.send_text("settings type2 c6 injective off 0.1 0.1 0.1 0.1 0.2 "
-                     "pull pull pull pull pull 0.5");
+    const std::string settings = "mode=type2 radius_m=0.1,0.1,0.1,0.1,0.2";
+    client.send_text("settings " + settings);
     client.send_text("record");
     client.send_text("wrist left 1 2 3 0 0 0 1");
     client.send_text("wrist right 0 0 0 0 0 0 1");
@@ -175,10 +191,8 @@ TEST_SUITE("server") {
         commands.push_back(*command);
       return commands.size() == 5;
     }));
-    const flow::LoopSettings settings{
-        flow::Mode::type2, deform::Wendland::c6, true, {0.1, 0.1, 0.1, 0.1, 0.2}};
     const std::vector<web::ClientCommand> asked{
-        flow::Command(flow::ChangeSettings{settings}), flow::Command(flow::SetRecording{true}),
+        *parse_named_settings(settings), flow::Command(flow::SetRecording{true}),
         flow::Command(flow::WristMove{Side::left, {1, 2, 3}}),
         flow::Command(flow::WristMove{Side::right}), commands::named("reset")};
     CHECK(commands == asked);
@@ -276,29 +290,53 @@ TEST_SUITE("server") {
     flow::LoopSettings settings{.mode = flow::Mode::type2,
                                 .kernel = deform::Wendland::c6,
                                 .radius_m = {0.1, 0.2, 0.3, 0.4, 0.5}};
-    served.server->set_settings(settings, true);
+    served.server->set_settings(settings);
     served.begin();
     Viewer first(served);
     CHECK(first.follow_until([&] { return first.updates > 0; }));
-    CHECK(first.settings == 1);
-    CHECK(first.mode == 2);
-    CHECK(first.kernel == 3);
-    CHECK(first.radius_m == settings.radius_m);
-    CHECK(first.recorded);
-    served.server->set_settings(settings, true); // which is nothing new
+    CHECK(first.settings_messages == 1);
+    CHECK(first.settings.at("mode") == "type2");
+    CHECK(first.settings.at("kernel") == "wendland-c6");
+    CHECK(first.settings.at("radius_m") == "0.1,0.2,0.3,0.4,0.5");
+    served.server->set_settings(settings); // which is nothing new
     const int updates = first.updates + 20;
     CHECK(first.follow_until([&] { return first.updates > updates; }));
-    CHECK(first.settings == 1);
+    CHECK(first.settings_messages == 1);
     settings.injective = true;
     settings.filter.kind = hand::FilterKind::one_euro;
-    served.server->set_settings(settings, false);
-    CHECK(first.follow_until([&] { return first.settings == 2; }));
-    CHECK(first.injective);
-    CHECK(first.filtered);
-    CHECK_FALSE(first.recorded);
+    served.server->set_settings(settings);
+    CHECK(first.follow_until([&] { return first.settings_messages == 2; }));
+    CHECK(first.settings.at("injective") == "true");
+    CHECK(first.settings.at("filter") == "one-euro");
     Viewer second(served);
-    CHECK(second.follow_until([&] { return second.settings == 1; }));
-    CHECK(second.injective);
+    CHECK(second.follow_until([&] { return second.settings_messages == 1; }));
+    CHECK(second.settings == first.settings);
+  }
+
+  TEST_CASE(
+      "each client gets which commands are on, and why others are not possible, when it comes "
+      "and at each change") {
+    Served served(flow::Mode::type1);
+    flow::Frame frame;
+    commands::RunFacts facts;
+    facts.recorded = true;
+    served.server->set_commands({frame, facts});
+    served.begin();
+    Viewer first(served);
+    CHECK(first.follow_until([&] { return first.updates > 0; }));
+    CHECK(first.on == std::set<std::string>{"clutch left", "clutch right", "take"});
+    CHECK(first.refusals.at("undo") == "There is nothing to undo.");
+    CHECK(first.refusals.at("keep") == commands::nothing_kept);
+    frame.undo_steps = 1;
+    facts = {.keeps_last = true};
+    served.server->set_commands({frame, facts});
+    CHECK(first.follow_until([&] { return !first.on.contains("take"); }));
+    CHECK_FALSE(first.refusals.contains("undo"));
+    CHECK_FALSE(first.refusals.contains("keep"));
+    Viewer second(served);
+    CHECK(second.follow_until([&] { return !second.refusals.empty(); }));
+    CHECK(second.on == first.on);
+    CHECK(second.refusals == first.refusals);
   }
 }
 

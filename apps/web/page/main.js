@@ -77,12 +77,13 @@ function open(model) {
   socket.onmessage = ({ data }) => {
     if (stale) return
     const type = new DataView(data).getUint8(0)
-    if (type === 3) panel.tell(new TextDecoder().decode(data.slice(4)))
+    if (type === 3) panel.tell(textIn(data))
     else if (type === 4) takeSettings(readSettings(data))
     else if (type === 5) panel.setHistory(readSteps(data))
     else if (type === 7) panel.setPuppet(readPuppet(data))
     else if (type === 6) takeWeights(readWeights(data), model)
     else if (type === 8) takeClay(readClay(data))
+    else if (type === 9) panel.setStates(readCommands(data))
     else if (type === 1) stale = !takeShape(readShape(data), model)
     else takeUpdate(readUpdate(data, model))
     if (stale) socket.close()
@@ -94,7 +95,7 @@ function open(model) {
 
 function takeSettings(settings) {
   panel.setSettings(settings)
-  if (scene) Object.assign(scene, { radii: settings.radii, isByHands: settings.mode >= 3 })
+  if (scene) Object.assign(scene, { radii: settings.radius_m, isByHands: ['clay', 'parts'].includes(settings.mode) })
 }
 
 function takeClay(clay) {
@@ -132,6 +133,7 @@ function picture() {
   const move = mover.next()
   if (move) ask(move)
   panel.shaping.send()
+  panel.shaping.follow()
   if (!dirty) return
   dirty = false
   if (scene) scene.draw(camera, latest, holds, panel.covered())
@@ -151,7 +153,7 @@ window.nendo = {
   ask, counts,
   vertices: () => Array.from(scene.shape.vertices()),
   state: () => latest && { number: Number(latest.number), held: latest.held, restChanges: latest.restChanges, jumps: latest.jumps,
-    ticks: latest.ticks, loop: panel.model.loop, recorded: panel.settings.recorded, settings: panel.settings, history: panel.history, puppet: panel.puppet,
+    ticks: latest.ticks, loop: panel.model.loop, recorded: panel.stateOf('take').isOn, settings: panel.settings, history: panel.history, puppet: panel.puppet,
     wrists: latest.hands.map(hand => hand && { place: hand.joints[1].place, turn: hand.forearm, pixel: scene && scene.pixelOf(hand.joints[1].place) }),
     open: socket.readyState === WebSocket.OPEN, shape: Boolean(scene) && scene.shape.number !== null },
 }

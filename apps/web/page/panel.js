@@ -22,17 +22,17 @@ const OWN = {
   'list keys': panel => panel.help(),
 }
 const MOST_UNDOABLE = 48 // that the server tells
-const helpOf = ({ help, keys }) => `${help} (${keys.join(', ')})`
+const helpOf = ({ help, keys }, refusal) => `${help}${refusal ? '\n' + refusal : ''} (${keys.join(', ')})`
 const element = id => document.getElementById(id)
 
 class Panel {
   constructor(ask, shown) {
-    Object.assign(this, { ask, camera: null, live: false, settings: null, history: null, puppet: null })
+    Object.assign(this, { ask, camera: null, live: false, settings: null, history: null, puppet: null, states: new Map() })
     this.late = new Chart(element('chart-late'), 'late', 'ms')
     this.rate = new Chart(element('chart-rate'), 'ticks a second', 'Hz')
     this.bytes = new Chart(element('chart-bytes'), 'a message', 'bytes')
     this.shaping = new Shaping(this.ask)
-    this.buttons = COMMANDS.filter(({ button }) => button).map(command => this.makeButton(command))
+    this.buttons = new Map(COMMANDS.filter(({ button }) => button).map(command => [command, this.makeButton(command)]))
     for (const part of ['skin', 'bones', 'vectors', 'radii', 'contacts', 'facets'])
       element('show-' + part).addEventListener('change', event => shown(part, event.target.checked))
     element('help-button').addEventListener('click', () => this.help())
@@ -51,14 +51,15 @@ class Panel {
   makeButton(command) {
     const button = element('buttons').appendChild(document.createElement('button'))
     button.dataset.request = command.name
-    button.textContent = command.button
-    button.title = helpOf(command)
     button.addEventListener('click', () => this.give(command))
     return button
   }
-  // The server says why a command is not possible.
+  // The server says in advance which commands are on, and why some are not possible.
+  stateOf(name) { return this.states.get(name) || { isOn: false, refusal: '' } }
   give(command) {
     if (!command.isForRun) return OWN[command.name](this)
+    const { refusal } = this.stateOf(command.name)
+    if (refusal) return this.tell(refusal)
     if (command.isSetting) this.shaping.giveWay()
     this.ask(command.name)
   }
@@ -79,16 +80,18 @@ class Panel {
     if (view) this.camera.look(...view.ctrl)
     else this.give(command)
   }
-  canStep(request) { return Boolean(this.update) && (request === 'undo' ? this.update.canUndo : this.update.canRedo) }
-  showOn(name, on) {
-    const button = this.buttons.find(({ dataset }) => dataset.request === name)
-    const command = COMMANDS.find(one => one.name === name)
-    button.textContent = on ? command.buttonOn : command.button
-    button.classList.toggle('on', on)
+  setStates(states) {
+    this.states = states
+    this.showStates()
   }
-  showSteps() {
-    for (const button of this.buttons)
-      if (['undo', 'redo'].includes(button.dataset.request)) button.disabled = !this.live || !this.canStep(button.dataset.request)
+  showStates() {
+    for (const [command, button] of this.buttons) {
+      const { isOn, refusal } = this.stateOf(command.name)
+      button.disabled = !this.live || refusal !== ''
+      button.title = helpOf(command, refusal)
+      button.textContent = isOn ? command.buttonOn : command.button
+      button.classList.toggle('on', isOn)
+    }
   }
   fold() {
     const folded = element('panel').classList.toggle('folded')
@@ -114,8 +117,7 @@ class Panel {
   }
   connected(yes) {
     this.live = yes
-    for (const button of this.buttons) button.disabled = !yes
-    this.showSteps()
+    this.showStates()
     this.shaping.connected(yes)
   }
   setModel(model) {
@@ -155,8 +157,6 @@ class Panel {
   }
   setSettings(settings) {
     this.settings = settings
-    this.showOn('take', settings.recorded)
-    this.showOn('wire', settings.draws)
     this.shaping.follow(settings)
   }
 
@@ -178,10 +178,8 @@ class Panel {
     const { update, model, settings } = this
     if (!update || !model || !settings) return
     element('hold').textContent = update.held ? 'The hands hold the model.' : 'The hands have let go.'
-    this.showOn('symmetry', update.symmetric)
-    this.showSteps()
     const lost = update.lost + update.skipped
-    element('timing').textContent = `${model.rate} Hz wanted, ${MODES[settings.mode]}\n${update.ticks} ticks, ${update.missed} missed` +
+    element('timing').textContent = `${model.rate} Hz wanted, ${settings.mode}\n${update.ticks} ticks, ${update.missed} missed` +
       `${lost > 0 ? `, ${lost} not shown` : ''}\n${update.restChanges} changes of the rest shape`
     this.drawClay()
     for (const chart of [this.late, this.rate, this.bytes]) chart.draw()
@@ -189,7 +187,7 @@ class Panel {
   }
   drawClay() {
     const { clay, settings, model } = this
-    element('clay').hidden = !clay || settings.mode !== 3
+    element('clay').hidden = !clay || settings.mode !== 'clay'
     if (element('clay').hidden) return
     const cm3 = volume => (volume * (100 / model.unitsPerMetre) ** 3).toFixed(1)
     element('clay-told').textContent = `touches at ${clay.contacts.length} places, ${clay.penetration.toFixed(3)} mm deep\n` +

@@ -1,22 +1,19 @@
-// Mode, kernel, radii and filter. What is chosen is asked for at once, once a picture at most. Labels and ranges are those of
-// SETTINGS, which the server fills in from their description (flow/setting.hpp).
-const MODES = { 1: 'type1', 2: 'type2', 3: 'clay', 4: 'parts' }
+// Settings. What is chosen is asked for at once, once a picture at most. Names, labels, ranges and brushes are those of SETTINGS,
+// which the server fills in from their description (flow/setting.hpp). An input has the name of its setting, and its value; a
+// checkbox has the value of the setting when it is checked, and in data-off the value when it is not.
 const FINGERS = ['thumb', 'index', 'middle', 'ring', 'little']
 const PATIENCE = 1000 // ms, for which what was asked for is shown before what is in force
 
-// Radii to a micrometre: they have been in other units meanwhile.
-const isSame = (a, b) => ['mode', 'kernel', 'injective', 'filtered', 'strength', 'volume', 'hold'].every(part => a[part] === b[part]) &&
-  a.brushes.every((brush, at) => brush === b.brushes[at]) && a.radii.every((radius, at) => Math.abs(radius - b.radii[at]) < 1e-6)
-
 class Shaping {
   constructor(ask) {
-    Object.assign(this, { ask, live: false, wanted: null, due: false, askedAt: -Infinity })
+    Object.assign(this, { ask, live: false, inForce: null, shown: null, wanted: null, due: new Set(), askedAt: -Infinity })
+    this.inputs = element('shaping').elements
     for (const part of document.querySelectorAll('[data-label]')) part.textContent = SETTINGS[part.dataset.label].label
-    for (const range of document.querySelectorAll('[data-range]')) {
-      const { min, max } = SETTINGS[range.dataset.range]
-      Object.assign(range, { min, max })
+    for (const name of ['brush_strength', 'keep_volume']) {
+      const { min, max } = SETTINGS[name]
+      Object.assign(this.inputs[name], { min, max })
     }
-    element('brush').append(...BRUSHES.map(name => new Option(name)))
+    this.inputs.brushes.append(...SETTINGS.brushes.choices.map(name => new Option(name)))
     this.sliders = FINGERS.map((finger, at) => this.makeSlider(finger, at))
     element('shaping').addEventListener('input', event => this.choose(event.target))
     element('shaping').addEventListener('submit', event => event.preventDefault())
@@ -30,79 +27,71 @@ class Shaping {
     return { label, name, range, output, at }
   }
 
-  // What is in force, whoever has asked for it.
-  follow(settings) {
-    const first = !this.wanted
-    if (!first && (this.due || performance.now() - this.askedAt < PATIENCE) && !isSame(this.wanted, settings)) return
-    this.wanted = { ...settings, radii: [...settings.radii], brushes: [...settings.brushes] }
-    if (first) element('one-radius').checked = settings.radii.every(radius => radius === settings.radii[0])
-    else if (settings.radii.some(radius => radius !== settings.radii[0])) element('one-radius').checked = false
-    document.querySelector(`[name=mode][value="${settings.mode}"]`).checked = true
-    element('kernel').value = settings.kernel
-    this.showBrush()
-    element('injective').checked = settings.injective
-    element('filtered').checked = settings.filtered
-    element('volume').value = settings.volume
-    element('hold').checked = settings.hold === 'hand'
-    this.sliders.forEach(({ range, at }) => { range.value = 100 * settings.radii[at] })
+  // Shows what is in force, whoever has asked for it, when what was asked for here has had time to come.
+  follow(inForce = this.inForce) {
+    this.inForce = inForce
+    const waits = this.due.size > 0 || performance.now() - this.askedAt < PATIENCE
+    if (waits || inForce === this.shown) return
+    const radii = [...inForce.radius_m], isOne = radii.every(radius => radius === radii[0])
+    if (!this.wanted || !isOne) element('one-radius').checked = isOne
+    this.shown = inForce
+    this.wanted = { ...inForce, radius_m: radii }
+    for (const [name, value] of Object.entries(inForce)) this.showValue(this.inputs[name], value)
+    this.sliders.forEach(({ range, at }) => { range.value = 100 * radii[at] })
     this.show()
+  }
+  // Some settings have no input. Brushes that differ are no choice of theirs, so that none is shown.
+  showValue(input, value) {
+    if (!input) return
+    if (input.type === 'checkbox') input.checked = value === input.value
+    else input.value = value
   }
   connected(yes) {
     this.live = yes
     element('settings').disabled = !yes
   }
 
-  change() {
-    this.due = true
+  change(name, value) {
+    this.wanted[name] = value
+    this.due.add(name)
+    this.shown = null // so that what is in force comes back if this is refused
     this.show()
   }
   send() {
-    if (!this.due || !this.live) return
-    const { mode, kernel, injective, filtered, radii, brushes, strength, volume, hold } = this.wanted
-    this.ask(`settings ${MODES[mode]} ${kernel} ${injective ? 'injective' : 'free'} ${filtered ? 'one-euro' : 'off'} ${radii.join(' ')} ${brushes.join(' ')} ${strength} ${volume} ${hold}`)
-    Object.assign(this, { due: false, askedAt: performance.now() })
+    if (this.due.size === 0 || !this.live) return
+    this.ask(`settings ${[...this.due].map(name => `${name}=${this.wanted[name]}`).join(' ')}`)
+    this.due.clear()
+    this.askedAt = performance.now()
   }
-  // Sends what is due, and shows what is in force from then on: the server is about to change it.
+  // Sends what is due, and shows what comes in force next: the server is about to change it.
   giveWay() {
     this.send()
-    this.askedAt = -Infinity
+    Object.assign(this, { askedAt: -Infinity, shown: this.inForce })
   }
   choose(input) {
-    const { wanted } = this
-    if (!wanted) return
+    if (!this.wanted) return
     const slider = this.sliders.find(({ range }) => range === input)
-    const one = element('one-radius').checked
-    if (input.name === 'mode') wanted.mode = Number(input.value)
-    if (input.id === 'kernel') wanted.kernel = input.value
-    if (input.id === 'brush' && input.value) {
-      wanted.brushes.fill(input.value)
-      this.useStrokes()
-    }
-    if (input.id === 'strength' || input.id === 'volume') wanted[input.id] = Number(input.value)
-    if (input.id === 'hold') wanted.hold = input.checked ? 'hand' : 'tips'
-    if (input.id === 'injective' || input.id === 'filtered') wanted[input.id] = input.checked
-    if (slider) wanted.radii[slider.at] = Number(input.value) / 100
-    if (one && (slider || input.id === 'one-radius')) wanted.radii.fill(wanted.radii[0])
-    this.change()
+    if (!slider && input.id !== 'one-radius') return this.chooseNamed(input)
+    const radii = this.wanted.radius_m
+    if (slider) radii[slider.at] = Number(input.value) / 100
+    if (element('one-radius').checked) radii.fill(radii[0])
+    this.change('radius_m', radii)
   }
-  // Brushes are of type 2.
-  useStrokes() {
-    this.wanted.mode = 2
-    document.querySelector('[name=mode][value="2"]').checked = true
-  }
-  // Fingers that have several show none.
-  showBrush() {
-    const { brushes, strength } = this.wanted
-    element('brush').value = brushes.every(brush => brush === brushes[0]) ? brushes[0] : ''
-    element('strength').value = strength
+  chooseNamed(input) {
+    const value = input.type === 'checkbox' && !input.checked ? input.dataset.off : input.value
+    this.change(input.name, value)
+    if (input.name !== 'brushes') return
+    this.change('mode', 'type2') // which has brushes
+    this.inputs.mode.value = 'type2'
   }
   show() {
     const { wanted } = this, one = element('one-radius').checked
     for (const { label, name, range, output, at } of this.sliders) {
+      const radius = wanted.radius_m[at]
       label.hidden = one && at > 0
       name.textContent = one ? SETTINGS.radius_m.label : FINGERS[at]
-      if (Math.abs(range.value / 100 - wanted.radii[at]) > 0.003) range.value = 100 * wanted.radii[at]
-      output.textContent = `${(100 * wanted.radii[at]).toFixed(1)} cm`
+      if (Math.abs(range.value / 100 - radius) > 0.003) range.value = 100 * radius
+      output.textContent = `${(100 * radius).toFixed(1)} cm`
     }
   }
 }

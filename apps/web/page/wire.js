@@ -1,9 +1,6 @@
 // What comes from the server: PROTOCOL.md, byte for byte.
 const JOINTS = 26
 const MODEL_HEAD = 88, BONE_BYTES = 28, COAT_BYTES = 24, UPDATE_HEAD = 112, NO_TEXTURE = 0xffffffff
-const BRUSHES = ['pull', 'none', 'push', 'inflate', 'smooth', 'flatten', 'twist', 'scale', 'pinch']
-const KERNELS = ['c0', 'c2', 'c4', 'c6']
-const HOLDS = ['tips', 'hand']
 // Of each joint, whose place hangs on it; the wrist's on none.
 const PARENTS = [1, -1, 1, 2, 3, 4, 1, 6, 7, 8, 9, 1, 11, 12, 13, 14, 1, 16, 17, 18, 19, 1, 21, 22, 23, 24]
 const TIPS = [5, 10, 15, 20, 25]
@@ -14,7 +11,7 @@ function readModel(buffer) {
   const view = new DataView(buffer)
   const text = (at, count) => new TextDecoder().decode(new Uint8Array(buffer, at, count))
   if (buffer.byteLength < MODEL_HEAD || text(0, 8) !== 'NENDOWEB') throw new Error('this server is no nendo')
-  if (view.getUint32(8, true) !== 6) throw new Error('this server speaks another version; reload the page')
+  if (view.getUint32(8, true) !== 7) throw new Error('this server speaks another version; reload the page')
   const vertices = view.getUint32(12, true), triangles = view.getUint32(16, true)
   const flags = view.getUint8(82), bones = [null, null]
   let places = MODEL_HEAD
@@ -64,14 +61,21 @@ function readBones(view, at) {
   })
 }
 
+// What follows the first four bytes of a report, of the settings and of the commands.
+const textIn = buffer => new TextDecoder().decode(buffer.slice(4))
+
+// The values of settings by their names, as `settings` sends them; radii are numbers.
 function readSettings(buffer) {
-  const view = new DataView(buffer), flags = view.getUint8(3)
-  return {
-    mode: view.getUint8(1), kernel: KERNELS[view.getUint8(2)], injective: (flags & 1) !== 0, filtered: (flags & 2) !== 0,
-    brushes: [48, 49, 50, 51, 52].map(at => BRUSHES[view.getUint8(at)]), strength: view.getFloat64(56, true),
-    volume: Math.round(1e6 * view.getFloat32(4, true)) / 1e6, hold: HOLDS[view.getUint8(53)],
-    recorded: (flags & 4) !== 0, draws: (flags & 8) !== 0, radii: [8, 16, 24, 32, 40].map(at => view.getFloat64(at, true)),
-  }
+  const settings = Object.fromEntries(textIn(buffer).split(' ').map(pair => pair.split('=')))
+  return { ...settings, radius_m: settings.radius_m.split(',').map(Number) }
+}
+
+// By the names of commands that are on or not possible. The others are off and possible.
+function readCommands(buffer) {
+  return new Map(textIn(buffer).split('\n').slice(0, -1).map(line => {
+    const [name, on, refusal] = line.split('\t')
+    return [name, { isOn: on === 'on', refusal }]
+  }))
 }
 
 const STEPS = ['stroke', 'reset', 'mode', 'kernel', 'radius', 'folding', 'filter', 'settings', 'subdivide', 'brush', 'puppet', 'volume', 'hold', 'mask', 'symmetry', 'refine', 'cut', 'join', 'copy', 'remove', 'topology']
@@ -202,7 +206,6 @@ function readUpdate(buffer, model) {
   const state = view.getUint8(1), bits = view.getUint8(2)
   const update = {
     letGo: [(state & 16) !== 0, (state & 32) !== 0], symmetric: (state & 64) !== 0, isPuppet: (state & 128) !== 0,
-    canUndo: (bits & 64) !== 0, canRedo: (bits & 128) !== 0,
     held: (state & 1) !== 0, inHand: (state & 8) !== 0, status: view.getUint8(3), number: view.getBigUint64(8, true),
     tick: u64(16), ticks: u64(24), missed: u64(32), restChanges: u32(40), jumps: u32(44),
     late: view.getFloat32(48, true), mostLate: view.getFloat32(52, true), sinceLast: view.getFloat32(56, true),
