@@ -95,13 +95,13 @@ Worn wear(reference::Wearer& wearer, const Calibration& calibration,
           const hand::CountRanges& ranges, std::mt19937_64& random) {
   constexpr double slip_deviation_counts = 5.0;
   constexpr int minutes = 10;
-  constexpr double most_unused = 0.1; // of a range, at either end
+  constexpr double max_unused = 0.1; // of a range, at either end
   Worn worn;
   std::normal_distribution<double> slip(0.0, slip_deviation_counts);
   for (double& counts : worn.slips_counts)
     counts = slip(random);
   hand::SlipAdaptation adaptation(calibration, {wearer.side(), ranges}, CountScale{});
-  std::uniform_real_distribution<double> unused(0.0, most_unused);
+  std::uniform_real_distribution<double> unused(0.0, max_unused);
   for (int minute = 0; minute < minutes; ++minute) {
     reference::Ranges used = wearer.ranges();
     for (auto& [low_rad, high_rad] : used) {

@@ -49,7 +49,7 @@ void print_json(const Row& row, const ClayTrial& trial) {
       {"radius_mm", row.trial.radius_mm},
       {"ticks", trial.ticks},
       {"constraints", trial.constraints},
-      {"most_constraints", trial.most_constraints},
+      {"max_constraints", trial.max_constraints},
       {"passes", trial.passes},
       {"distances", trial.distances},
       {"mean_us", trial.mean_us},
@@ -66,7 +66,7 @@ void print_json(const Row& row, const ClayTrial& trial) {
 
 void print_text(const Row& row, const ClayTrial& trial) {
   std::printf("%-26s %8zu %6.1f %4d %7.1f %8.0f %8.2f %8.2f %9.4f %8.4f %7.3f %8.4f %6.1f\n",
-              row.name, trial.vertices, trial.constraints, trial.most_constraints, trial.passes,
+              row.name, trial.vertices, trial.constraints, trial.max_constraints, trial.passes,
               trial.distances / 1e3, trial.mean_us / 1e3, trial.p99_us / 1e3,
               trial.penetration_p99_mm / trial.mean_edge_mm,
               trial.inside_p99_mm / trial.mean_edge_mm, 100.0 * trial.worst_volume,
@@ -88,7 +88,7 @@ std::vector<Row> rows_of(bool short_form) {
           {"radius 20 mm", {.radius_mm = 20.0, .scenes = scenes}},
           {"radius 15 mm", {.radius_mm = 15.0, .scenes = scenes}},
           {"radius 10 mm", {.radius_mm = 10.0, .scenes = scenes}},
-          {"radius 10 mm, more places", {.radius_mm = 10.0, .most_constraints = 1024}},
+          {"radius 10 mm, more places", {.radius_mm = 10.0, .max_constraints = 1024}},
           {"radius 40 mm", {.radius_mm = 40.0, .scenes = scenes}},
           {"2.6 thousand vertices", {.level = 4, .scenes = scenes}},
           {"10 thousand vertices", {.level = 5, .scenes = scenes}},
@@ -115,7 +115,7 @@ int make_thing(const Options& options) {
               "at the end %.4f; places held %zu; turned %.0f degrees; %.0f x %.0f x %.0f mm\n",
               options.thing.c_str(), static_cast<std::size_t>(made.shape.vertices.cols()),
               made.mean_us / 1e3, made.p99_us / 1e3, made.penetration_p99_mm,
-              100.0 * made.worst_volume, 100.0 * made.last_volume, made.most_held,
+              100.0 * made.worst_volume, 100.0 * made.last_volume, made.max_held,
               made.turned_rad * 180.0 / std::numbers::pi, size.x(), size.y(), size.z());
   if (options.save.empty()) return 0;
   const auto written = deform::write_mesh(options.save, made.shape);

@@ -265,7 +265,7 @@ KneadedClay knead(KneadedThing thing, const KneadingOptions& options) {
     const deform::ClayReport report = clay.press_to(parts);
     const std::chrono::duration<double, std::micro> took = ThreadClock::now() - begin;
     if (options.refines && tick % refine_ticks == 0) clay.refine(parts);
-    result.most_held = std::max(result.most_held, report.held);
+    result.max_held = std::max(result.max_held, report.held);
     result.turned_rad += report.turned_rad;
     const deform::Mesh& shown = clay.shown();
     hands.see(shown.vertices);

@@ -61,7 +61,7 @@ struct KneadedClay {
   double last_volume = 0.0;
   double penetration_p99_mm = 0.0;
   double mean_us = 0.0, p99_us = 0.0;
-  std::size_t most_held = 0;
+  std::size_t max_held = 0;
   double turned_rad = 0.0; ///< as a whole, there and back
 };
 

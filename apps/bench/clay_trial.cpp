@@ -74,12 +74,12 @@ ClayTrial run_scene(const ClayTrialOptions& options, Mesh mesh, ClayScene& scene
   std::vector<double> left_mm, inside_mm;
   const auto see = [&](const deform::ClayReport& report, const auto& parts) {
     trial.worst_behind_mm = std::max(trial.worst_behind_mm, report.behind_mm);
-    trial.most_held = std::max(trial.most_held, report.held);
+    trial.max_held = std::max(trial.max_held, report.held);
     if (report.passes == 0) return;
     ++trial.ticks;
     left_mm.push_back(report.penetration_mm);
-    trial.constraints += report.most_constraints;
-    trial.most_constraints = std::max(trial.most_constraints, report.most_constraints);
+    trial.constraints += report.max_constraints;
+    trial.max_constraints = std::max(trial.max_constraints, report.max_constraints);
     trial.passes += report.passes;
     trial.distances += static_cast<double>(report.distances);
     shape(mesh.vertices);
@@ -137,7 +137,7 @@ ClayTrial measure_clay(const ClayTrialOptions& options) {
                              .friction = options.friction,
                              .keeps_volume = options.keeps_volume,
                              .grips = options.grips,
-                             .most_constraints = options.most_constraints});
+                             .max_constraints = options.max_constraints});
   return run_scene(
       options, mesh, scene, [&](auto parts) { return clay.press_to(parts); },
       [&](Points& points) { shape.layout().unpack(clay.shape(), points); },

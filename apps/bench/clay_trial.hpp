@@ -13,7 +13,7 @@ struct ClayTrial {
   double mean_edge_mm = 0.0;
   int ticks = 0;            ///< in which something was pressed
   double constraints = 0.0; ///< the mean of the ticks' largest
-  int most_constraints = 0;
+  int max_constraints = 0;
   double passes = 0.0;    ///< a tick
   double distances = 0.0; ///< a tick
   double mean_us = 0.0;
@@ -24,7 +24,7 @@ struct ClayTrial {
   double worst_volume = 0.0;       ///< relative, of all ticks
   double last_volume = 0.0;
   double worst_behind_mm = 0.0;
-  std::size_t most_held = 0;
+  std::size_t max_held = 0;
   deform::Mesh shape; ///< at the end
 };
 
@@ -36,7 +36,7 @@ struct ClayTrialOptions {
   double friction = 0.5; ///< the plain program has none
   bool keeps_volume = true;
   bool grips = true;
-  int most_constraints = 256; ///< of a pass
+  int max_constraints = 256;  ///< of a pass
   bool judges_inside = false; ///< takes long
   bool rests = false; ///< sleeps between ticks, as a loop at 90 Hz does: the caches are cold then
   int scenes = 1;     ///< how often it is played, each time from the ball on, for the times

@@ -38,13 +38,13 @@ public:
   template <class Frame>
   void measure(std::size_t vertices, const Frame& frame) {
     constexpr std::chrono::milliseconds turn(1);
-    constexpr std::size_t least_frames = 8;
-    constexpr std::size_t most_frames = 100;
+    constexpr std::size_t min_frames = 8;
+    constexpr std::size_t max_frames = 100;
     const std::size_t frames =
         std::clamp<std::size_t>(100'000 / std::max<std::size_t>(vertices, 1), 2, 64);
     const auto begin = Clock::now();
     auto last = begin;
-    for (std::size_t n = 0; n < least_frames || (n < most_frames && last - begin < turn);) {
+    for (std::size_t n = 0; n < min_frames || (n < max_frames && last - begin < turn);) {
       for (std::size_t end = n + frames; n < end; ++n)
         frame(n);
       const auto now = Clock::now();

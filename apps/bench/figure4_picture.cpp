@@ -26,10 +26,10 @@ constexpr double plot_width = 850.0;
 constexpr double plot_height = 470.0;
 
 // Powers of ten at the ends of the axes.
-constexpr double least_evaluations = 2.3;
-constexpr double most_evaluations = 5.7;
-constexpr double least_ms = -3.5;
-constexpr double most_ms = 2.2;
+constexpr double min_evaluations = 2.3;
+constexpr double max_evaluations = 5.7;
+constexpr double min_ms = -3.5;
+constexpr double max_ms = 2.2;
 
 /// The time of a frame of that type, in ms, and its evaluations. 0 if not measured.
 struct Timing {
@@ -65,16 +65,16 @@ std::array<Series, 3> all_series() {
         }}}};
 }
 
-double share_of(double value, double least_power, double most_power) {
-  return std::clamp((std::log10(value) - least_power) / (most_power - least_power), 0.0, 1.0);
+double share_of(double value, double min_power, double max_power) {
+  return std::clamp((std::log10(value) - min_power) / (max_power - min_power), 0.0, 1.0);
 }
 
 double evaluations_x(double evaluations) {
-  return plot_left + plot_width * share_of(evaluations, least_evaluations, most_evaluations);
+  return plot_left + plot_width * share_of(evaluations, min_evaluations, max_evaluations);
 }
 
 double ms_y(double ms) {
-  return plot_top + plot_height * (1.0 - share_of(ms, least_ms, most_ms));
+  return plot_top + plot_height * (1.0 - share_of(ms, min_ms, max_ms));
 }
 
 constexpr cli::SvgText tick_at_end{12, "#444444", "end"};

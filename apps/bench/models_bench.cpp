@@ -74,7 +74,7 @@ public:
     options.rate_hz = rate_hz;
     options.sculptor.deformer.supports =
         deform::one_radius(0.2 * deform::diagonal_of(model.vertices));
-    options.undo_most_bytes = std::size_t{1} << 30;
+    options.undo_max_bytes = std::size_t{1} << 30;
     flow::Placement placement;
     placement.units_per_metre = deform::diagonal_of(model.vertices);
     loop_ = std::make_unique<flow::DeformLoop>(model, placement, std::vector{hand}, options);

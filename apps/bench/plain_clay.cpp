@@ -22,7 +22,7 @@ namespace {
 
 constexpr double skin_mm = 0.02;
 constexpr double margin_mm = 1.0;
-constexpr int most_plain_passes = 40;
+constexpr int max_plain_passes = 40;
 
 struct Touch {
   Vector3d at, normal;
@@ -144,7 +144,7 @@ double plain_depth(std::span<const ContactPart> parts, const Vector3d& place) {
 
 deform::ClayReport PlainClay::press_to(std::span<const ContactPart> parts) {
   deform::ClayReport report;
-  for (int pass = 0; pass < most_plain_passes; ++pass) {
+  for (int pass = 0; pass < max_plain_passes; ++pass) {
     const std::vector<Touch> found = touches(vertices_, parts, radius_ / 3.0, report.distances);
     report.penetration_mm = found.empty() ? 0.0 : std::max(0.0, found.front().depth);
     if (report.penetration_mm <= skin_mm) break;
@@ -152,7 +152,7 @@ deform::ClayReport PlainClay::press_to(std::span<const ContactPart> parts) {
     const double bound = bound_of(found, pressure, radius_);
     displace(vertices_, found, pressure, radius_, std::min(1.0, 0.9 / bound));
     ++report.passes;
-    report.most_constraints = std::max(report.most_constraints, static_cast<int>(found.size()));
+    report.max_constraints = std::max(report.max_constraints, static_cast<int>(found.size()));
   }
   for (Eigen::Index vertex = 0; vertex < vertices_.cols(); ++vertex)
     for (const ContactPart& part : parts) {

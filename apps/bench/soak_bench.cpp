@@ -105,14 +105,14 @@ Result<Tally> soak(const Options& options) {
 }
 
 std::string complaint_about(const Tally& tally) {
-  constexpr long most_growth_kb = 2048;
+  constexpr long max_growth_kb = 2048;
   const std::uint64_t accounted = tally.stats.records + tally.stats.missed;
   if (tally.broken > 0) return "records of wrong structure were delivered";
   if (accounted > tally.sent || accounted + undecided < tally.sent)
     return "records sent are not those delivered and missed";
   if (tally.delivered + tally.stats.ring_refused != tally.stats.records)
     return "samples taken and refused are not those delivered";
-  if (tally.memory_end_kb > tally.memory_begin_kb + most_growth_kb) return "memory grew";
+  if (tally.memory_end_kb > tally.memory_begin_kb + max_growth_kb) return "memory grew";
   return {};
 }
 

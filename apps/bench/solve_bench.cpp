@@ -35,7 +35,7 @@ struct Options {
 };
 
 /// Dense elimination, and one in no order, of more points than that would take minutes.
-constexpr std::uint64_t most_slow_points = 2000;
+constexpr std::uint64_t max_slow_points = 2000;
 
 template <class Work>
 double seconds_of(const Work& work) {
@@ -175,7 +175,7 @@ void measure_many(std::uint64_t points, const Options& options) {
   std::vector<Measured> measured;
   for (const Method& method : methods) {
     const bool slow = method.order == PointOrder::as_given;
-    if (slow && points > most_slow_points) continue;
+    if (slow && points > max_slow_points) continue;
     measured.push_back(measure(method, starts, radius, options.rounds));
     if (options.json) print_json(points, options.neighbours, measured.back());
   }

@@ -95,7 +95,7 @@ private:
       bow_[n] = errors_.curvature * uniform(-StrangerSpread::bow, StrangerSpread::bow) *
                 (high_[n] - low_[n]);
       lag_[n] = errors_.hysteresis *
-                from_degrees(uniform(StrangerSpread::least_lag_deg, StrangerSpread::most_lag_deg));
+                from_degrees(uniform(StrangerSpread::min_lag_deg, StrangerSpread::max_lag_deg));
       creep_[n] = errors_.creep * uniform(0.0, 0.03);
       gain_[n] = 1e-3 * stranger_joints[n].gain * std::exp(normal(0.0, StrangerSpread::log_gain));
       // Whoever sets a glove's gain sees to it that no count is at its end.

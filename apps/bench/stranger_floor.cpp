@@ -63,8 +63,8 @@ double floor_high_rad(const Eigen::VectorXd& at, std::size_t slot) {
          StrangerSpread::high * floor_range_rad(slot) * at[floor_unknown(slot, FloorTerm::high)];
 }
 double floor_lag_rad(const Eigen::VectorXd& at, std::size_t slot) {
-  constexpr double mean = 0.5 * (StrangerSpread::least_lag_deg + StrangerSpread::most_lag_deg);
-  constexpr double width = StrangerSpread::most_lag_deg - StrangerSpread::least_lag_deg;
+  constexpr double mean = 0.5 * (StrangerSpread::min_lag_deg + StrangerSpread::max_lag_deg);
+  constexpr double width = StrangerSpread::max_lag_deg - StrangerSpread::min_lag_deg;
   return from_degrees(mean + width / std::sqrt(12.0) * at[floor_unknown(slot, FloorTerm::lag)]);
 }
 /// The line of a sensor that is not bent, at counts to which it rose (1), fell (-1) or neither (0).
@@ -129,9 +129,9 @@ void StrangerFloor::add_take(const hand::PoseReading& reading, const SensorAngle
   }
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     if (!has_joint(slot, sensors_)) continue;
-    constexpr double least_change_counts = 3.0; // a trembling hand comes from nowhere
+    constexpr double min_change_counts = 3.0; // a trembling hand comes from nowhere
     const double change = take.counts[slot] - before[slot];
-    take.came[slot] = std::abs(change) < least_change_counts ? 0.0 : std::copysign(1.0, change);
+    take.came[slot] = std::abs(change) < min_change_counts ? 0.0 : std::copysign(1.0, change);
     take.expected.push_back(expected_of(reading.pose, slot, touching));
   }
 }
@@ -269,9 +269,9 @@ void StrangerFloor::solve() {
   const auto cost_of = [&](const Eigen::VectorXd& rows, const Eigen::VectorXd& at) {
     return 0.5 * rows.squaredNorm() - pull.dot(at);
   };
-  constexpr int most_turns = 30;
+  constexpr int max_turns = 30;
   double damping = 1e-2;
-  for (int turn = 0; turn < most_turns; ++turn) {
+  for (int turn = 0; turn < max_turns; ++turn) {
     const Eigen::VectorXd rows = residuals(at_);
     Eigen::MatrixXd slopes(rows.size(), at_.size());
     for (Index k = 0; k < at_.size(); ++k) {
@@ -301,11 +301,11 @@ SensorAngles StrangerFloor::angles_rad(const CountRow& row) {
   SensorAngles counts{};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     counts[slot] = row[slot];
-    constexpr double least_turn_counts = 2.0; // beyond what noise does
+    constexpr double min_turn_counts = 2.0; // beyond what noise does
     if (!begun_) turned_[slot] = counts[slot];
     const double change = counts[slot] - turned_[slot];
-    if (std::abs(change) > least_turn_counts) came_[slot] = std::copysign(1.0, change);
-    if (change * came_[slot] > 0.0 || std::abs(change) > least_turn_counts)
+    if (std::abs(change) > min_turn_counts) came_[slot] = std::copysign(1.0, change);
+    if (change * came_[slot] > 0.0 || std::abs(change) > min_turn_counts)
       turned_[slot] = counts[slot];
   }
   begun_ = true;

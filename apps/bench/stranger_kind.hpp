@@ -65,7 +65,7 @@ struct StrangerSpread {
   static constexpr double log_gain = 0.13;
   static constexpr double offset_counts = 14.0;
   static constexpr double bow = 0.035; ///< of a joint's range
-  static constexpr double least_lag_deg = 0.3, most_lag_deg = 1.5;
+  static constexpr double min_lag_deg = 0.3, max_lag_deg = 1.5;
 };
 
 /// A sensor reads a part of another joint's angle.

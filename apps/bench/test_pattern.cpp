@@ -28,8 +28,8 @@ PatternVerdict judge_pattern(const GloveSample& sample, unsigned steps_a_count) 
   for (unsigned k = 1; k < cycle; ++k)
     record = votes[k] > votes[record] ? k : record;
   if (present > 0 && votes[record] == present) return PatternVerdict::whole;
-  constexpr unsigned most_flips = 2; // more in one record would be stranger than a broken one
-  if (votes[record] + most_flips < present || votes[record] <= most_flips)
+  constexpr unsigned max_flips = 2; // more in one record would be stranger than a broken one
+  if (votes[record] + max_flips < present || votes[record] <= max_flips)
     return PatternVerdict::broken;
   for (unsigned slot = 0; slot < sensor_slots; ++slot) {
     if (!sample.present.has(static_cast<Sensor>(slot))) continue;

@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr std::uintmax_t most_bytes = 1U << 30U;
+constexpr std::uintmax_t max_bytes = 1U << 30U;
 
 std::optional<std::size_t> slot_named(const std::string& name) {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot)
@@ -147,7 +147,7 @@ Result<CaptureFile> read_capture(const std::filesystem::path& path) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   if (error) return bad(error.message());
-  if (size > most_bytes) return bad("larger than 1 GiB; that is no capture of a calibration");
+  if (size > max_bytes) return bad("larger than 1 GiB; that is no capture of a calibration");
   std::ifstream input(path);
   CaptureFile file;
   std::string text;

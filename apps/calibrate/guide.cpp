@@ -22,7 +22,7 @@ double bend_rad(std::size_t slot) {
 
 // How far a joint may be from where the pose has it before it is taken for another pose: wearers
 // differ, and so do the two poses by which their sensors are judged.
-constexpr double most_doubt_rad = from_degrees(40.0);
+constexpr double max_doubt_rad = from_degrees(40.0);
 constexpr double deviations_allowed = 3.0;
 
 } // namespace
@@ -120,7 +120,7 @@ void CalibrationGuide::take_again() {
   if (last < 0 || is_done()) return;
   const PoseId pose = poses_[static_cast<std::size_t>(last)];
   const auto takes = static_cast<std::size_t>(std::count(poses_.begin(), poses_.end(), pose));
-  if (asked() == pose || takes >= most_takes) return;
+  if (asked() == pose || takes >= max_takes) return;
   const auto at = static_cast<std::ptrdiff_t>(at_);
   poses_.insert(poses_.begin() + at, pose);
   kept_.insert(kept_.begin() + at, std::nullopt);
@@ -164,7 +164,7 @@ void CalibrationGuide::restore(std::span<const hand::PoseReading> readings,
       end = k + 1;
       if (!kept_[k] && !room) room = k;
     }
-    if (takes == 0 || (!room && takes >= most_takes)) continue;
+    if (takes == 0 || (!room && takes >= max_takes)) continue;
     if (!room) {
       poses_.insert(poses_.begin() + static_cast<std::ptrdiff_t>(end), reading.pose);
       kept_.insert(kept_.begin() + static_cast<std::ptrdiff_t>(end), std::nullopt);
@@ -208,9 +208,9 @@ std::optional<Sensor> CalibrationGuide::find_unbent(const HeldPose& held) const 
   const HeldPose* other = kept(now == PoseId::flat ? PoseId::fist : PoseId::flat);
   if (other == nullptr) return std::nullopt;
   const hand::Calibration usual = hand::default_calibration(scale_);
-  const double least_counts = hand::PoseCapture::least_change_counts * scale_.most / 255.0;
+  const double min_counts = hand::PoseCapture::min_change_counts * scale_.most / 255.0;
   std::optional<Sensor> worst;
-  double worst_counts = least_counts;
+  double worst_counts = min_counts;
   int judged = 0, unbent = 0;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
@@ -221,7 +221,7 @@ std::optional<Sensor> CalibrationGuide::find_unbent(const HeldPose& held) const 
     ++judged;
     const double rise = (now == PoseId::fist ? 1.0 : -1.0) * (gain > 0.0 ? 1.0 : -1.0) *
                         (held.mean_counts[slot] - other->mean_counts[slot]);
-    if (rise >= least_counts) continue;
+    if (rise >= min_counts) continue;
     ++unbent;
     if (!worst || rise < worst_counts) {
       worst = sensor;
@@ -245,12 +245,12 @@ std::optional<Sensor> CalibrationGuide::find_implausible(const HeldPose& held) c
     // Only joints that the two poses tell well apart can judge a third.
     const auto sensor = static_cast<Sensor>(slot);
     if (!held.present.has(sensor) || stiff_.has(sensor) || turn_rad == 0.0 || !expected.known() ||
-        std::abs(counts) < hand::PoseCapture::least_change_counts)
+        std::abs(counts) < hand::PoseCapture::min_change_counts)
       continue;
     const double angle_rad =
         at_flat.angle_rad + turn_rad / counts * (held.mean_counts[slot] - flat->mean_counts[slot]);
     if (std::abs(angle_rad - expected.angle_rad) >
-        most_doubt_rad + deviations_allowed * expected.deviation_rad)
+        max_doubt_rad + deviations_allowed * expected.deviation_rad)
       return sensor;
   }
   return std::nullopt;

@@ -60,9 +60,9 @@ public:
   void skip();       ///< goes on without this pose; flat and fist are asked for again at the end
   void begin_anew(); ///< forgets all poses and the free motion, and asks for the first pose
   /// Restores what an earlier session kept. Poses that are not asked for here are left out, and so
-  /// are takes of a pose beyond `most_takes`. The last pose restored counts as held last.
+  /// are takes of a pose beyond `max_takes`. The last pose restored counts as held last.
   void restore(std::span<const hand::PoseReading> readings, const hand::CountRanges& free_motion);
-  static constexpr std::size_t most_takes = 8;
+  static constexpr std::size_t max_takes = 8;
 
   /// Returns the held poses in the order in which they are asked for, without what is left out.
   std::vector<hand::PoseReading> readings() const;

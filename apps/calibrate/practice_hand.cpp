@@ -12,7 +12,7 @@ namespace {
 /// Where a free motion takes each joint, degrees. Those of the usual ranges of motion.
 struct Reach {
   Sensor sensor;
-  double least_deg, most_deg;
+  double min_deg, max_deg;
 };
 constexpr std::array<Reach, 22> reaches{{
     {Sensor::thumb_roll, 0, 75},
@@ -121,10 +121,10 @@ void PracticeHand::keep_from_ends() {
   const hand::Calibration typical = hand::default_calibration(counts);
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto& [gain, offset] = typical.sensors[slot];
-    const double least_rad = gain * (margin_counts - offset) - offsets_rad_[slot];
-    const double most_rad = gain * (counts.most - margin_counts - offset) - offsets_rad_[slot];
+    const double min_rad = gain * (margin_counts - offset) - offsets_rad_[slot];
+    const double max_rad = gain * (counts.most - margin_counts - offset) - offsets_rad_[slot];
     for (const hand::SensorAngles& pose : poses_) {
-      const double end_rad = pose[slot] > 0.0 ? most_rad : least_rad;
+      const double end_rad = pose[slot] > 0.0 ? max_rad : min_rad;
       if (gain > 0.0 && std::abs(gains_[slot] * pose[slot]) > std::abs(end_rad))
         gains_[slot] = end_rad / pose[slot];
     }
@@ -142,7 +142,7 @@ hand::SensorAngles PracticeHand::free_motion(double time_s) const {
     const double phase =
         flexes ? 0.02 * static_cast<double>(slot / 4) : 0.13 * static_cast<double>(n);
     const double bend = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (time_s / period_s - phase));
-    angles[slot] = from_degrees(reach.least_deg + bend * (reach.most_deg - reach.least_deg));
+    angles[slot] = from_degrees(reach.min_deg + bend * (reach.max_deg - reach.min_deg));
   }
   return angles;
 }

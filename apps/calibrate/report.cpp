@@ -24,7 +24,7 @@ constexpr double range_left = 190.0;
 constexpr double range_width = 360.0;
 constexpr double residual_left = 640.0;
 constexpr double pixels_a_degree = 12.0;
-constexpr double most_degrees = 12.0;
+constexpr double max_degrees = 12.0;
 
 std::string_view kept_text(const hand::SensorFit& sensor) {
   if (sensor.gain_determined && sensor.offset_determined) return "";
@@ -93,17 +93,17 @@ std::string number_text(double value, int decimals) {
 
 /// Draws the row of a sensor, with its top at `y`.
 void draw_row(cli::SvgDrawing& drawing, Sensor sensor, const hand::SensorFit& quality,
-              const hand::SensorCalibration& line, double counts_most, double y) {
+              const hand::SensorCalibration& line, double counts_max, double y) {
   constexpr double bar_height = 12.0;
   const cli::SvgText name{12.0};
   const cli::SvgText number{10.0, "#444444"};
   const auto angle_text = [&](double counts) {
     return number_text(to_degrees(line.gain_rad_per_count * (counts - line.offset_counts)), 0);
   };
-  const double low = range_left + quality.low_counts / counts_most * range_width;
-  const double high = range_left + quality.high_counts / counts_most * range_width;
+  const double low = range_left + quality.low_counts / counts_max * range_width;
+  const double high = range_left + quality.high_counts / counts_max * range_width;
   const double residual_deg = to_degrees(quality.residual_rad);
-  const double bar = pixels_a_degree * std::min(residual_deg, most_degrees);
+  const double bar = pixels_a_degree * std::min(residual_deg, max_degrees);
   const char* colour = kept_text(quality).empty() ? "#2a6f97" : "#b0b0b0";
   drawing.words(10.0, y + 11.0, std::string(name_of(sensor)), name);
   drawing.box(range_left, y, range_width, bar_height, "#eeeeee", 1.0);

@@ -14,9 +14,9 @@ namespace {
 using hand::CaptureState;
 
 constexpr int name_width = 23;
-constexpr int least_bar = 8;
+constexpr int min_bar = 8;
 constexpr int drawing_rows = 16;
-constexpr int least_drawing_rows = 10;
+constexpr int min_drawing_rows = 10;
 constexpr double silent_after_s = 1.0;
 
 std::string fitted(std::string text, int width) {
@@ -81,12 +81,12 @@ std::string state_text(const CalibrationPicture& picture) {
 }
 
 std::string undetermined_text(SensorMask undetermined) {
-  constexpr int most_names = 3;
+  constexpr int max_names = 3;
   const int count = std::popcount(undetermined.bits);
   if (count == 0) return {};
   std::string names;
   int named = 0;
-  for (std::size_t slot = 0; slot < sensor_slots && named < most_names; ++slot) {
+  for (std::size_t slot = 0; slot < sensor_slots && named < max_names; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
     if (!undetermined.has(sensor)) continue;
     names += (named++ == 0 ? "" : ", ") + std::string(name_of(sensor));
@@ -97,7 +97,7 @@ std::string undetermined_text(SensorMask undetermined) {
 
 std::vector<std::string> bars(const CalibrationPicture& picture, int width, int rows) {
   std::vector<std::string> lines;
-  if (picture.sample == nullptr || width < name_width + least_bar) return lines;
+  if (picture.sample == nullptr || width < name_width + min_bar) return lines;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
     if (!picture.sample->present.has(sensor) || static_cast<int>(lines.size()) >= rows) continue;
@@ -113,19 +113,19 @@ std::vector<std::string> bars(const CalibrationPicture& picture, int width, int 
 
 /// Returns two drawings and the bars beside each other, as far as they fit.
 std::vector<std::string> middle(const CalibrationPicture& picture, int columns, int rows) {
-  constexpr int least_columns = 22;
-  const bool draws = rows >= least_drawing_rows && columns >= 2 * least_columns;
+  constexpr int min_columns = 22;
+  const bool draws = rows >= min_drawing_rows && columns >= 2 * min_columns;
   const int drawn_rows = std::min(rows, drawing_rows);
-  const int drawn = draws ? std::min(2 * drawn_rows, (columns - (name_width + least_bar)) / 2) : 0;
+  const int drawn = draws ? std::min(2 * drawn_rows, (columns - (name_width + min_bar)) / 2) : 0;
   std::vector<std::string> lines(static_cast<std::size_t>(std::max(rows, 0)));
-  if (draws && drawn >= least_columns) {
+  if (draws && drawn >= min_columns) {
     const hand::HandPose& pose = *picture.demonstration;
     const auto palm = draw_hand(pose, picture.info->side, HandView::palm, drawn, drawn_rows);
     const auto side = draw_hand(pose, picture.info->side, HandView::side, drawn, drawn_rows);
     for (std::size_t row = 0; row < palm.size(); ++row)
       lines[row] = palm[row] + side[row];
   }
-  const int used = draws && drawn >= least_columns ? 2 * drawn : 0;
+  const int used = draws && drawn >= min_columns ? 2 * drawn : 0;
   const auto sensors = bars(picture, columns - used, rows);
   for (std::size_t row = 0; row < sensors.size(); ++row)
     lines[row] = fitted(lines[row], used) + sensors[row];

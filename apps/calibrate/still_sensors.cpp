@@ -9,11 +9,11 @@ namespace {
 
 using hand::PoseId;
 
-constexpr std::size_t least_poses = 3;
+constexpr std::size_t min_poses = 3;
 /// After so many poses a sensor has moved, whatever they ask of its joint.
 constexpr std::size_t enough_poses = 12;
-constexpr double least_span_rad = from_degrees(40.0); ///< for joints that poses bend far
-constexpr double least_small_span_rad = from_degrees(14.0);
+constexpr double min_span_rad = from_degrees(40.0); ///< for joints that poses bend far
+constexpr double min_small_span_rad = from_degrees(14.0);
 
 bool bends_far(Sensor sensor) noexcept {
   return !is_gap(sensor) && sensor != Sensor::palm_arch && sensor != Sensor::wrist_yaw;
@@ -22,7 +22,7 @@ bool bends_far(Sensor sensor) noexcept {
 /// Tells whether the poses ask for angles of that sensor which no still joint can have.
 bool asks_to_move(std::span<const PoseId> poses, std::size_t slot) {
   if (poses.size() >= enough_poses) return true;
-  if (poses.size() < least_poses) return false;
+  if (poses.size() < min_poses) return false;
   double least = 1e9, most = -1e9;
   for (const PoseId pose : poses) {
     const hand::AssumedAngle& asked = hand::pose_of(pose).assumed[slot];
@@ -30,8 +30,7 @@ bool asks_to_move(std::span<const PoseId> poses, std::size_t slot) {
     least = std::min(least, asked.angle_rad);
     most = std::max(most, asked.angle_rad);
   }
-  return most - least >=
-         (bends_far(static_cast<Sensor>(slot)) ? least_span_rad : least_small_span_rad);
+  return most - least >= (bends_far(static_cast<Sensor>(slot)) ? min_span_rad : min_small_span_rad);
 }
 
 } // namespace

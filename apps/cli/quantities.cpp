@@ -10,7 +10,7 @@
 namespace nendo::cli {
 namespace {
 
-constexpr double most_s = 1e7; // longer than any recording
+constexpr double max_s = 1e7; // longer than any recording
 
 struct Unit {
   std::string_view name;
@@ -54,7 +54,7 @@ std::optional<double> number_of(std::string_view text) noexcept {
 
 Result<void> check_duration(double seconds, End end) {
   const bool may_be_missing = end == End::may_be_missing;
-  if (seconds >= 0.0 && seconds <= most_s && (seconds > 0.0 || may_be_missing)) return {};
+  if (seconds >= 0.0 && seconds <= max_s && (seconds > 0.0 || may_be_missing)) return {};
   return Error{Errc::usage, "--duration: use " + std::string(duration_words) + ", " +
                                 (may_be_missing ? "up to 10000000 s, or 0 for no end"
                                                 : "above 0, up to 10000000 s: it must end")};
@@ -62,7 +62,7 @@ Result<void> check_duration(double seconds, End end) {
 
 Result<double> parse_duration(const std::string& text, const std::string& option) {
   const auto seconds = seconds_of(text);
-  if (seconds && *seconds > 0.0 && *seconds <= most_s) return *seconds;
+  if (seconds && *seconds > 0.0 && *seconds <= max_s) return *seconds;
   return Error{Errc::usage,
                option + " " + text + ": use " + std::string(duration_words) + ", above 0"};
 }
@@ -73,7 +73,7 @@ Result<TimeSpan> parse_time_span(const std::string& text, const std::string& opt
   const auto time = [&](std::string_view part, double open) -> std::optional<double> {
     if (part.empty() && may_be_open) return open;
     const auto seconds = seconds_of(part);
-    return seconds && *seconds >= 0.0 && *seconds <= most_s ? seconds : std::nullopt;
+    return seconds && *seconds >= 0.0 && *seconds <= max_s ? seconds : std::nullopt;
   };
   const auto colon = text.find(':');
   std::optional<double> from, to;

@@ -60,8 +60,8 @@ void read_limits(const fs::path& root, MachineFacts& facts) {
 }
 
 void read_governors(const fs::path& root, MachineFacts& facts) {
-  constexpr int most_cpus = 4096;
-  for (int cpu = 0; cpu < most_cpus; ++cpu) {
+  constexpr int max_cpus = 4096;
+  for (int cpu = 0; cpu < max_cpus; ++cpu) {
     const fs::path folder = root / "sys/devices/system/cpu" / ("cpu" + std::to_string(cpu));
     std::error_code failed;
     if (!fs::exists(folder, failed)) break;

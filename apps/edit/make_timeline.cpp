@@ -31,10 +31,10 @@ void print_json(const MakeOptions& options, const timeline::MadeTimeline& made) 
     const auto& reduction = made.hands[at];
     line[std::string(name_of(hand.side))] = {{"frames", reduction.frames},
                                              {"keys", hand.keys.size()},
-                                             {"most_angle_rad", reduction.worst.angle_rad},
-                                             {"most_tip_mm", 1e3 * reduction.worst.tip_m}};
+                                             {"max_angle_rad", reduction.worst.angle_rad},
+                                             {"max_tip_mm", 1e3 * reduction.worst.tip_m}};
     if (made.timeline.rig)
-      line[std::string(name_of(hand.side))]["most_point_mm"] = 1e3 * reduction.worst.point_m;
+      line[std::string(name_of(hand.side))]["max_point_mm"] = 1e3 * reduction.worst.point_m;
   }
   cli::print_line(line);
 }

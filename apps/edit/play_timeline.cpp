@@ -21,7 +21,7 @@ namespace nendo::edit {
 
 namespace {
 
-constexpr double most_speed = 1000.0;
+constexpr double max_speed = 1000.0;
 
 // The moment at which so much was played; in short sleeps, so that a signal ends it soon.
 void wait_for(double time_s, double speed, HostTime start) {
@@ -39,7 +39,7 @@ void wait_for(double time_s, double speed, HostTime start) {
 int play_timeline(const PlayOptions& options) {
   if (const auto fine = cli::check_place("--out", options.out, deform::mesh_endings); !fine)
     return cli::report(fine.error());
-  if (!(options.speed >= 0.0 && options.speed <= most_speed))
+  if (!(options.speed >= 0.0 && options.speed <= max_speed))
     return cli::report({Errc::usage, "--speed: use 0 to 1000 times real time"});
   auto frames = takes::TimelineFrames::open(options.file, options.mesh);
   if (!frames) return cli::report(frames.error());

@@ -7,21 +7,21 @@
 namespace nendo::exporting {
 namespace {
 
-constexpr double most_s = 1e7; // as long as a take may be
+constexpr double max_s = 1e7; // as long as a take may be
 
 Error too_many() {
   return {Errc::usage, "--rate, --from, --to: that would be more than " +
-                           std::to_string(most_export_frames) +
+                           std::to_string(max_export_frames) +
                            " frames; export a part, or fewer a second"};
 }
 
 } // namespace
 
 Result<void> check(const Choice& choice) {
-  const double to_s = choice.to_s.value_or(most_s);
-  if (!(choice.from_s >= 0.0 && choice.from_s < to_s && to_s <= most_s))
+  const double to_s = choice.to_s.value_or(max_s);
+  if (!(choice.from_s >= 0.0 && choice.from_s < to_s && to_s <= max_s))
     return Error{Errc::usage, "--from, --to: use seconds from the beginning, --from before --to"};
-  if (choice.rate_hz && !(*choice.rate_hz > 0.0 && *choice.rate_hz <= most_export_rate_hz))
+  if (choice.rate_hz && !(*choice.rate_hz > 0.0 && *choice.rate_hz <= max_export_rate_hz))
     return Error{Errc::usage, "--rate: use frames a second above 0 and up to 10000"};
   return {};
 }
@@ -29,11 +29,11 @@ Result<void> check(const Choice& choice) {
 Result<ChosenFrames> ChosenFrames::make(takes::FrameSource& source, const Choice& choice) {
   if (const auto fine = check(choice); !fine) return fine.error();
   ChosenFrames chosen(source, choice);
-  const double end_s = std::min(choice.to_s.value_or(most_s), source.duration_s());
+  const double end_s = std::min(choice.to_s.value_or(max_s), source.duration_s());
   while ((chosen.is_ahead_ = source.next()) && source.time_s() < choice.from_s) {
     if (choice.stop != nullptr && *choice.stop) break;
   }
-  if (!chosen.is_ahead_ || source.time_s() > choice.to_s.value_or(most_s)) {
+  if (!chosen.is_ahead_ || source.time_s() > choice.to_s.value_or(max_s)) {
     return Error{Errc::bad_input, "there is no frame from --from to --to; the take lasts " +
                                       std::to_string(source.duration_s()) + " s"};
   }
@@ -43,7 +43,7 @@ Result<ChosenFrames> ChosenFrames::make(takes::FrameSource& source, const Choice
   const double rate_hz = *choice.rate_hz;
   constexpr double rounding = 1e-6; // of a period
   const double periods = std::max(0.0, (end_s - chosen.first_s_) * rate_hz + rounding);
-  if (!(periods < static_cast<double>(most_export_frames))) return too_many();
+  if (!(periods < static_cast<double>(max_export_frames))) return too_many();
   chosen.count_ = static_cast<std::uint64_t>(periods) + 1;
   return chosen;
 }
@@ -62,8 +62,8 @@ Result<bool> ChosenFrames::next() {
   } else {
     if (!is_ahead_ && !source_->next()) return false;
     is_ahead_ = false;
-    if (source_->time_s() > choice_.to_s.value_or(most_s)) return false;
-    if (made_ == most_export_frames) return too_many();
+    if (source_->time_s() > choice_.to_s.value_or(max_s)) return false;
+    if (made_ == max_export_frames) return too_many();
     time_s_ = source_->time_s();
   }
   ++made_;
@@ -74,10 +74,10 @@ Result<bool> ChosenFrames::next() {
 /// missing the one before stays: none comes early by more than three quarters of a period, which no
 /// nearest one does between frames that are less than one and a half apart.
 bool ChosenFrames::is_nearer(double moment_s) const {
-  constexpr double most_early = 0.75;
+  constexpr double max_early = 0.75;
   const double early_s = source_->time_s() - moment_s;
   if (early_s <= 0.0) return true;
-  return early_s <= most_early / source_->rate_hz() && early_s < moment_s - held_s_;
+  return early_s <= max_early / source_->rate_hz() && early_s < moment_s - held_s_;
 }
 
 void ChosenFrames::hold_nearest(double moment_s) {

@@ -23,8 +23,8 @@ struct Choice {
 
 /// The rate where nothing else is asked for: a film's, and that of a new scene in Blender.
 inline constexpr double animators_rate_hz = 24.0;
-inline constexpr double most_export_rate_hz = 10'000.0;
-inline constexpr std::uint64_t most_export_frames = 1'000'000;
+inline constexpr double max_export_rate_hz = 10'000.0;
+inline constexpr std::uint64_t max_export_frames = 1'000'000;
 
 /// Checks a choice. Errors: usage (impossible times or rate).
 Result<void> check(const Choice& choice);
@@ -39,7 +39,7 @@ public:
   /// Errors: failed (`stop` was set).
   Result<void> check_stop() const;
   /// Makes the next frame. Returns false if there is none. Errors: those of check_stop(); usage
-  /// (more than most_export_frames). Blocks.
+  /// (more than max_export_frames). Blocks.
   Result<bool> next();
   const flow::Frame& frame() const noexcept { return even_ ? held_ : source_->frame(); }
   /// Returns the time of the frame in seconds since the take began. It never decreases.

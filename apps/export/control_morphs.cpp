@@ -14,7 +14,7 @@ using Eigen::Index;
 namespace {
 
 // Rounding of the solver's where a support does not reach; far below what a float shows.
-constexpr double least_influence = 1e-9;
+constexpr double min_influence = 1e-9;
 
 bool is_one_radius(const CsrbfField& field) {
   return (field.radii.array() == field.radii[0]).all();
@@ -67,7 +67,7 @@ bool ControlMorphs::set_basis(const CsrbfField& field) {
       const double weight = weights_.size() == 0 ? 1.0 : weights_[v];
       const double influence = weight * one.displacement_at(original.col(v)).x();
       influences_(j, v) =
-          std::abs(influence) < least_influence ? 0.0F : static_cast<float>(influence);
+          std::abs(influence) < min_influence ? 0.0F : static_cast<float>(influence);
     }
   }
   centres_ = field.centres;
@@ -99,7 +99,7 @@ bool ControlMorphs::add(const flow::Frame& frame, const deform::Points& vertices
     moved.noalias() += vectors * influences_;
   }
   const double error = (moved.cast<double>() - vertices).colwise().norm().maxCoeff();
-  if (!(error <= most_error * layout_.diagonal())) return false; // also if it is not a number
+  if (!(error <= max_error * layout_.diagonal())) return false; // also if it is not a number
   greatest_error_ = std::max(greatest_error_, error);
   if (centres_.cols() == 0) ++still_;
   vectors_.insert(vectors_.end(), vectors.data(), vectors.data() + vectors.size());

@@ -19,7 +19,7 @@ class ControlMorphs {
 public:
   /// A shape that differs by more than this fraction of the model's diagonal is not linear in the
   /// control vectors. Type-1 keeps its own shapes within the same bound.
-  static constexpr double most_error = 1e-5;
+  static constexpr double max_error = 1e-5;
 
   /// weights: how far each vertex follows, which stays linear (deform::VertexMask); empty: all do.
   explicit ControlMorphs(const deform::BlockLayout& layout, Eigen::VectorXd weights = {});

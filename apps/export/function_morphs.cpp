@@ -16,7 +16,7 @@ namespace {
 
 /// Rounding of the solvers' where nothing moves, in parts of the diagonal; far below what a float
 /// shows. Without it, targets would not be sparse.
-constexpr double least_way = 1e-9;
+constexpr double min_displacement = 1e-9;
 
 /// What each function does to each vertex, by distances along the surface.
 std::vector<Eigen::Matrix3Xf> ways_along(const deform::SurfaceField& field,
@@ -74,7 +74,7 @@ std::optional<FunctionMorphs> FunctionMorphs::make(const takes::PlayedPuppet& pu
       puppet.sculptor.surface ? ways_along(*puppet.sculptor.surface, rig)
                               : ways_through_air(puppet.sculptor.deformer, rig, layout.original());
   if (ways.empty()) return std::nullopt;
-  const auto least = static_cast<float>(least_way * layout.diagonal());
+  const auto least = static_cast<float>(min_displacement * layout.diagonal());
   std::vector<Target> targets;
   for (std::size_t at = 0; at < ways.size(); ++at) {
     Eigen::Matrix3Xf& way = ways[at];
@@ -88,13 +88,13 @@ std::optional<FunctionMorphs> FunctionMorphs::make(const takes::PlayedPuppet& pu
   FunctionMorphs morphs(std::move(targets), layout);
   Eigen::Matrix3Xf rest = vertices.cast<float>() - morphs.moved_by(morphs.weights_of(first));
   const double apart = (rest - morphs.rest_).cast<double>().colwise().norm().maxCoeff();
-  if (!(apart <= morphs.most_)) morphs.rest_ = std::move(rest);
+  if (!(apart <= morphs.max_)) morphs.rest_ = std::move(rest);
   return morphs;
 }
 
 FunctionMorphs::FunctionMorphs(std::vector<Target> targets, const deform::BlockLayout& layout)
     : targets_(std::move(targets)), rest_(layout.original().cast<float>()),
-      most_(ControlMorphs::most_error * layout.diagonal()) {}
+      max_(ControlMorphs::max_error * layout.diagonal()) {}
 
 std::vector<float> FunctionMorphs::weights_of(const flow::Frame& frame) const {
   std::vector<float> weights;
@@ -118,7 +118,7 @@ bool FunctionMorphs::add(const flow::Frame& frame, const Points& vertices) {
   const std::vector<float> weights = weights_of(frame);
   const Eigen::Matrix3Xf moved = rest_ + moved_by(weights);
   const double error = (moved.cast<double>() - vertices).colwise().norm().maxCoeff();
-  if (!(error <= most_)) return false; // also if it is not a number
+  if (!(error <= max_)) return false; // also if it is not a number
   greatest_error_ = std::max(greatest_error_, error);
   weights_.insert(weights_.end(), weights.begin(), weights.end());
   return true;

@@ -44,7 +44,7 @@ public:
                                             const deform::Points& vertices);
 
   /// Adds a frame with its vertices, in the mesh's order. Returns false if a vertex differs from
-  /// the sum by more than ControlMorphs::most_error of the model's diagonal. The frames before
+  /// the sum by more than ControlMorphs::max_error of the model's diagonal. The frames before
   /// remain then.
   bool add(const flow::Frame& frame, const deform::Points& vertices);
 
@@ -67,7 +67,7 @@ private:
 
   std::vector<Target> targets_;
   Eigen::Matrix3Xf rest_;
-  double most_; ///< of an error, model units
+  double max_; ///< of an error, model units
   std::vector<float> weights_;
   double greatest_error_ = 0.0;
 };

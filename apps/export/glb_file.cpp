@@ -55,7 +55,7 @@ bool are_narrow(std::span<const std::uint32_t> indices) {
 
 } // namespace
 
-GlbFile::GlbFile(std::string_view generator, std::uint64_t most_bytes) : most_bytes_(most_bytes) {
+GlbFile::GlbFile(std::string_view generator, std::uint64_t max_bytes) : max_bytes_(max_bytes) {
   json_["asset"] = {{"version", "2.0"}, {"generator", generator}};
 }
 
@@ -74,7 +74,7 @@ GlbFile::Index GlbFile::add_view(std::span<const std::byte> bytes, std::optional
   const std::size_t padded = (bytes.size() + 3) / 4 * 4;
   bytes_ += padded;
   // What cannot be written need not be kept.
-  if (bytes_ > most_bytes_) return views_.size() - 1;
+  if (bytes_ > max_bytes_) return views_.size() - 1;
   auto& part = parts_.emplace_back(padded);
   std::memcpy(part.data(), bytes.data(), bytes.size());
   return views_.size() - 1;
@@ -200,7 +200,7 @@ Result<std::uint64_t> GlbFile::write(const std::filesystem::path& path) const {
   text.resize((text.size() + 3) / 4 * 4, ' ');
   constexpr std::uint64_t heads = 12 + 8 + 8;
   const std::uint64_t total = heads + text.size() + bytes_;
-  if (total > most_bytes_) {
+  if (total > max_bytes_) {
     return Error{Errc::failed, path.string() + ": would be larger than 4 GiB, which a GLB file "
                                                "cannot be; export a part with --from and --to, or "
                                                "use a greater --tolerance or a lower --rate"};

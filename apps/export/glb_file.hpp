@@ -25,10 +25,10 @@ public:
 
   enum class Use { vertices, indices, animation }; ///< of the numbers in a view
 
-  /// `most_bytes` limits the size of the file and of its numbers. A GLB file counts them in 32
+  /// `max_bytes` limits the size of the file and of its numbers. A GLB file counts them in 32
   /// bits.
   explicit GlbFile(std::string_view generator,
-                   std::uint64_t most_bytes = std::numeric_limits<std::uint32_t>::max());
+                   std::uint64_t max_bytes = std::numeric_limits<std::uint32_t>::max());
 
   /// Returns a part of the JSON document. This class itself adds buffers, views and accessors.
   Json& operator[](std::string_view part) { return json_[std::string(part)]; }
@@ -58,7 +58,7 @@ public:
   Index add_bytes(std::string_view bytes);
 
   /// Writes the file atomically, replaces an existing one, and returns its size in bytes. Blocks.
-  /// Errors: failed (larger than `most_bytes`, or it cannot be written).
+  /// Errors: failed (larger than `max_bytes`, or it cannot be written).
   Result<std::uint64_t> write(const std::filesystem::path& path) const;
 
 private:
@@ -66,7 +66,7 @@ private:
   Index add_accessor(Index view, int component, std::size_t count, const char* type);
   Json sparse(std::span<const std::uint32_t> places, std::span<const float> values);
 
-  std::uint64_t most_bytes_;
+  std::uint64_t max_bytes_;
   Json json_;
   Json views_ = Json::array();
   Json accessors_ = Json::array();

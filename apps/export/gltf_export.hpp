@@ -14,7 +14,7 @@
 // - All other takes (with commits, motion in several links, or Type-2) have key shapes
 //   (key_shapes.hpp). Each key shape is a target, and at any time two of them are mixed. As long
 //   as such a take is a sum of functions or of control vectors, its frames are that sum, which is
-//   off by ControlMorphs::most_error at most and mostly by 1e-7 of the diagonal. The tolerance and
+//   off by ControlMorphs::max_error at most and mostly by 1e-7 of the diagonal. The tolerance and
 //   the report include that.
 // - Where the model becomes another one, as when it is subdivided, or its puppet is edited, each
 //   part of the take has a mesh of its own. Its node is shown in its time by an animation of its
@@ -41,7 +41,7 @@ struct GltfOptions {
   std::string generator = "Nendo";
   /// Limits the weights of key shapes. Each key has one weight for each target, and a reader of the
   /// file needs 4 bytes for each.
-  std::uint64_t most_weights = std::uint64_t{1} << 28;
+  std::uint64_t max_weights = std::uint64_t{1} << 28;
 };
 
 /// Exports the frames of `source` to `path`. The source must be new, without a call of next(), and

@@ -50,7 +50,7 @@ Result<void> KeyShapeModels::check_weights() const {
   std::uint64_t weights = 0;
   for (const MovingModel& one : models_)
     weights += one.model.key_weight_count();
-  if (weights <= job_.options.most_weights) return {};
+  if (weights <= job_.options.max_weights) return {};
   return Error{Errc::failed, job_.path.string() + ": needs more key shapes than programs can read; "
                                                   "use a greater --tolerance, a lower --rate, or "
                                                   "--from and --to"};

@@ -22,7 +22,7 @@ public:
 
   /// Adds the next frame: the version of its model, its time since the first frame, and how far its
   /// vertices are from the model at rest (3 by #vertices, in the mesh's order). Errors: failed (the
-  /// export was stopped, or there are more weights than GltfOptions::most_weights).
+  /// export was stopped, or there are more weights than GltfOptions::max_weights).
   Result<void> add(std::uint32_t version, float time_s, Eigen::Matrix3Xf displacement);
   /// Returns the models, of which there must be one. Nothing may be added afterwards. Errors:
   /// failed (too many weights).

@@ -13,8 +13,8 @@ using Json = GlbFile::Json;
 namespace {
 
 // Below what a float holds of a hand's place on the stage.
-constexpr float least_way_m = 1e-6F;
-constexpr float least_turn = 1e-6F;
+constexpr float min_displacement_m = 1e-6F;
+constexpr float min_turn = 1e-6F;
 
 constexpr Joint joint_at(std::size_t at) {
   return static_cast<Joint>(at);
@@ -59,12 +59,12 @@ GlbFile::Index add_joints(const HandTrack& track, GlbFile::Index times, GlbFile&
     for (std::size_t child = 0; child < hand::joint_count; ++child)
       if (parent_of(joint_at(child)) == joint_at(at)) node["children"].push_back(base + child);
     file.add("nodes", std::move(node));
-    if (moves(joint.places, 3, least_way_m)) {
+    if (moves(joint.places, 3, min_displacement_m)) {
       const auto places =
           file.add_vectors(columns_of(joint.places), GlbFile::Use::animation, false);
       add_channel(times, places, base + at, "translation", animation);
     }
-    if (moves(joint.rotations, 4, least_turn))
+    if (moves(joint.rotations, 4, min_turn))
       add_channel(times, file.add_quaternions(joint.rotations), base + at, "rotation", animation);
   }
   return base;

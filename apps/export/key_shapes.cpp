@@ -6,8 +6,8 @@
 
 namespace nendo::exporting {
 
-KeyShapes::KeyShapes(double tolerance, Keep keep, std::size_t most_bytes)
-    : tolerance_(tolerance), keep_(std::move(keep)), most_bytes_(most_bytes) {}
+KeyShapes::KeyShapes(double tolerance, Keep keep, std::size_t max_bytes)
+    : tolerance_(tolerance), keep_(std::move(keep)), max_bytes_(max_bytes) {}
 
 /// Of the window's inner frames, if its first and its last one are keys.
 double KeyShapes::error_between() const {
@@ -37,7 +37,7 @@ void KeyShapes::add(float time_s, Shape shape) {
     return;
   }
   straight_error_ = error;
-  if (window_.size() >= most_between + 2 || window_.size() * shape_bytes > most_bytes_)
+  if (window_.size() >= max_between + 2 || window_.size() * shape_bytes > max_bytes_)
     end_at(window_.size() - 1);
 }
 

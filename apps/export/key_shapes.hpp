@@ -16,9 +16,9 @@ public:
   using Keep = std::function<void(float time_s, const Shape& shape)>;
 
   /// `tolerance` is the greatest error of a vertex. Frames between two keys are kept in memory, at
-  /// most `most_bytes` and `most_between` frames.
-  KeyShapes(double tolerance, Keep keep, std::size_t most_bytes = std::size_t{256} << 20);
-  static constexpr std::size_t most_between = 62;
+  /// most `max_bytes` and `max_between` frames.
+  KeyShapes(double tolerance, Keep keep, std::size_t max_bytes = std::size_t{256} << 20);
+  static constexpr std::size_t max_between = 62;
 
   /// Adds the next frame. Its time must be greater than the previous one.
   void add(float time_s, Shape shape);
@@ -39,7 +39,7 @@ private:
 
   double tolerance_;
   Keep keep_;
-  std::size_t most_bytes_;
+  std::size_t max_bytes_;
   std::vector<Moment> window_;  ///< the latest key and all frames since
   double straight_error_ = 0.0; ///< from the key to the last but one, or to the last
   double greatest_error_ = 0.0;

@@ -24,9 +24,9 @@ Result<void> check(const CalibrationOptions& options) {
 }
 
 Result<void> HandLength::check() const {
-  constexpr double least_mm = 100.0;
-  constexpr double most_mm = 250.0;
-  if (!length_mm || (*length_mm >= least_mm && *length_mm <= most_mm)) return {};
+  constexpr double min_mm = 100.0;
+  constexpr double max_mm = 250.0;
+  if (!length_mm || (*length_mm >= min_mm && *length_mm <= max_mm)) return {};
   return Error{Errc::usage, "--hand-length: use 100 to 250 millimetres, from the wrist's crease to "
                             "the tip of the middle finger"};
 }

@@ -10,7 +10,7 @@ namespace {
 // So that a press that hardly changes pauses no stream.
 constexpr float levels = 8.0F;
 // The weakest of these is still felt.
-constexpr float least_vibration = 48.0F;
+constexpr float min_vibration = 48.0F;
 
 /// From 0 to 1, in steps. A touch is never none.
 float level_of(float strength) noexcept {
@@ -34,7 +34,7 @@ void GloveFeedback::feel(const flow::HandTouch& touch, HostTime now) noexcept {
     const float level = level_of(touch[at]);
     if (can.vibration)
       feedback.vibration[at] = static_cast<std::uint8_t>(
-          level > 0.0F ? least_vibration + level * (255.0F - least_vibration) : 0.0F);
+          level > 0.0F ? min_vibration + level * (255.0F - min_vibration) : 0.0F);
     if (can.resistance && at < feedback.resistance.size())
       feedback.resistance[at] = static_cast<std::uint16_t>(1000.0F * level);
   }

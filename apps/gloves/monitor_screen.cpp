@@ -15,7 +15,7 @@ namespace {
 constexpr int name_width = 22; // index_middle_abduction
 constexpr int count_width = 6;
 constexpr int angle_width = 9; // " -123 deg"
-constexpr int least_bar = 8;
+constexpr int min_bar = 8;
 constexpr int column_gap = 2;
 
 std::string fixed(double value, int decimals) {
@@ -150,9 +150,9 @@ std::string sensor_text(const MonitorPicture& picture, Sensor sensor, int width)
   text.resize(name_width, ' ');
   text += right_aligned(std::to_string(count.value), count_width);
   int room = width - name_width - count_width - 1;
-  const bool with_angle = picture.calibration != nullptr && room - angle_width >= least_bar;
+  const bool with_angle = picture.calibration != nullptr && room - angle_width >= min_bar;
   if (with_angle) room -= angle_width;
-  if (room >= least_bar) {
+  if (room >= min_bar) {
     text += " " + count_bar(room, count.value, (*picture.seen)[sensor], picture.info->counts.most);
   }
   if (with_angle) text += angle_text(picture, sensor);

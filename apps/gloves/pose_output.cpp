@@ -19,8 +19,8 @@ namespace nendo::gloves {
 namespace {
 
 // A rate that the machine cannot keep up with must not fill its memory.
-constexpr std::size_t most_pending_bytes = 1 << 16;
-constexpr std::uint64_t most_pending_frames = 64;
+constexpr std::size_t max_pending_bytes = 1 << 16;
+constexpr std::uint64_t max_pending_frames = 64;
 
 /// Of the estimated angles alone.
 nlohmann::ordered_json deviations_json(const hand::JointAngles& angles, SensorMask sensors,
@@ -69,7 +69,7 @@ public:
     const bool first = gloves_.is_first(side, sensors, left_out);
     lines_ += pose_json(time, side, pose, angles, sensors, left_out, first);
     lines_ += '\n';
-    return lines_.size() < most_pending_bytes ? Result<void>() : flush();
+    return lines_.size() < max_pending_bytes ? Result<void>() : flush();
   }
   Result<void> flush() override {
     std::cout << lines_ << std::flush; // what cannot be written ends the program by itself
@@ -92,7 +92,7 @@ public:
   Result<void> put(HostTime, Side, const hand::HandPose& pose, const hand::JointAngles&, SensorMask,
                    SensorMask) override {
     if (auto added = file_.add(pose); !added) return added;
-    return ++put_ % most_pending_frames != 0 ? Result<void>() : flush();
+    return ++put_ % max_pending_frames != 0 ? Result<void>() : flush();
   }
   Result<void> flush() override { return file_.flush(); }
   Result<void> finish() override {

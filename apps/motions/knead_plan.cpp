@@ -289,13 +289,13 @@ public:
 private:
   static double open_gap_m(double radius_m) noexcept {
     const double chord = std::sqrt(std::max(0.0, into_m * (2.0 * radius_m - into_m)));
-    return 2.0 * (std::min(chord, most_chord_m) + clear_m);
+    return 2.0 * (std::min(chord, max_chord_m) + clear_m);
   }
   double radius() const noexcept { return 0.5 * (model_.high.x() - model_.low.x()); }
 
-  static constexpr double clear_m = 0.010;      ///< of the fingertips, before they close
-  static constexpr double into_m = 0.016;       ///< the model, before they close
-  static constexpr double most_chord_m = 0.027; ///< no hand opens wider
+  static constexpr double clear_m = 0.010;     ///< of the fingertips, before they close
+  static constexpr double into_m = 0.016;      ///< the model, before they close
+  static constexpr double max_chord_m = 0.027; ///< no hand opens wider
   static constexpr double pull_m = 0.032;
 
   KneadedModel model_;

@@ -20,7 +20,7 @@ constexpr double up_rad = from_degrees(50.0); // of the fingers: both tips reach
 } // namespace
 
 double ease(double time_s, double begin_s, double end_s) noexcept {
-  return least_jerk((time_s - begin_s) / (end_s - begin_s));
+  return min_jerk((time_s - begin_s) / (end_s - begin_s));
 }
 
 Matrix3d axes_of(const Vector3d& fingers, const Vector3d& back) noexcept {

@@ -84,14 +84,14 @@ SurfacePatch::SurfacePatch(const deform::Mesh& model, const deform::Points& norm
 
 std::optional<SurfacePoint> SurfacePatch::nearest(const Vector3d& to_m) const {
   std::optional<SurfacePoint> best;
-  double least_m = std::numeric_limits<double>::infinity();
+  double min_m = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < triangles_.size(); ++k) {
-    if ((balls_[k].centre_m - to_m).norm() - balls_[k].radius_m >= least_m) continue;
+    if ((balls_[k].centre_m - to_m).norm() - balls_[k].radius_m >= min_m) continue;
     const auto weights = nearest_weights(triangles_[k], to_m);
     const Vector3d position_m = mix(triangles_[k].corners, weights);
     const double distance_m = (position_m - to_m).norm();
-    if (!(distance_m < least_m)) continue;
-    least_m = distance_m;
+    if (!(distance_m < min_m)) continue;
+    min_m = distance_m;
     best = {position_m, mix(triangles_[k].normals, weights).stableNormalized()};
   }
   return best;

@@ -22,7 +22,7 @@ using hand::JointAngles;
 // What the solver calls reached, and a little.
 constexpr double reached_m = 1.5e-5;
 // Strokes are far slower; where an angle has to be as fast, it goes from one solution to another.
-constexpr double most_speed_rad_s = 4.0;
+constexpr double max_speed_rad_s = 4.0;
 constexpr double key_step_s = 1.0 / 40.0;
 // So fine that a straight line between two contacts is on the surface, whatever its edges: at worst
 // it is off by half a step.
@@ -52,8 +52,8 @@ hand::AngleLimits comfortable_limits() noexcept {
   hand::AngleLimits limits;
   for (std::size_t k = 0; k < hand::angle_count; ++k) {
     const Angle angle = hand::angle_at(k);
-    limits.low[angle] = hand::limit_of(angle).soft_least_rad;
-    limits.high[angle] = hand::limit_of(angle).soft_most_rad;
+    limits.low[angle] = hand::limit_of(angle).soft_min_rad;
+    limits.high[angle] = hand::limit_of(angle).soft_max_rad;
   }
   const auto narrow = [&](Angle angle, double low_deg, double high_deg) {
     limits.low[angle] = from_degrees(low_deg);
@@ -101,8 +101,8 @@ public:
     if (std::none_of(plan_.fingers.begin(), plan_.fingers.end(),
                      [](const auto& finger) { return finger.touches; }))
       return Error{Errc::bad_input, "no fingertip reaches a face of the model"};
-    constexpr int most_rounds = 40;
-    for (int round = 0; round < most_rounds; ++round) {
+    constexpr int max_rounds = 40;
+    for (int round = 0; round < max_rounds; ++round) {
       find_postures();
       if (shorten()) continue;
       solve_keys(0.1); // what fails mostly fails here already
@@ -217,7 +217,7 @@ hand::InverseSolution Planner::solve(double time_s, const JointAngles& from) con
                        [](double at_s, const Posture& p) { return at_s < p.time_s; });
   const Posture& a = *(after - 1);
   const Posture& b = *after;
-  const double part = least_jerk((time_s - a.time_s) / (b.time_s - a.time_s));
+  const double part = min_jerk((time_s - a.time_s) / (b.time_s - a.time_s));
   hand::InverseOptions options = inverse_;
   for (const Angle angle : open_angles) {
     options.limits.low[angle] = options.limits.high[angle] =
@@ -243,7 +243,7 @@ bool Planner::judge(double time_s, const hand::InverseSolution& solution, const 
       const Angle angle = hand::angle_at(k);
       way_rad = std::max(way_rad, std::abs(solution.angles[angle] - before[angle]));
     }
-    if (solution.residual_m[at] <= reached_m && way_rad <= most_speed_rad_s * step_s) continue;
+    if (solution.residual_m[at] <= reached_m && way_rad <= max_speed_rad_s * step_s) continue;
     fine = false;
     const double depth = plan_.score.depth(finger, time_s);
     Missed& missed = missed_[at];
@@ -269,12 +269,11 @@ bool Planner::shorten() noexcept {
 }
 
 void Planner::find_postures() {
-  constexpr double least_apart_s = 0.25; // the open angles do not hurry
+  constexpr double min_apart_s = 0.25; // the open angles do not hurry
   const double period_s = plan_.score.period_s();
   postures_.assign(1, {0.0, grip_});
   for (const double time_s : plan_.score.extremes_s()) {
-    if (time_s - postures_.back().time_s < least_apart_s || period_s - time_s < least_apart_s)
-      continue;
+    if (time_s - postures_.back().time_s < min_apart_s || period_s - time_s < min_apart_s) continue;
     const auto solution = freely(time_s);
     judge(time_s, solution, solution.angles, 1.0);
     postures_.push_back({time_s, solution.angles});

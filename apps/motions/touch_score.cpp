@@ -16,7 +16,7 @@ double within_period(double time_s, double period_s) noexcept {
 
 } // namespace
 
-double least_jerk(double part) noexcept {
+double min_jerk(double part) noexcept {
   const double x = std::clamp(part, 0.0, 1.0);
   return x * x * x * (10.0 + x * (6.0 * x - 15.0));
 }
@@ -77,8 +77,8 @@ double TouchScore::depth(hand::Finger finger, double time_s) const noexcept {
   double depth = 0.0;
   for (const TouchStroke& stroke : strokes_[static_cast<std::size_t>(finger)]) {
     if (at_s <= stroke.begin_s || at_s >= stroke.end_s()) continue;
-    const double rise = least_jerk((at_s - stroke.begin_s) / stroke.rise_s);
-    const double fall = least_jerk((stroke.end_s() - at_s) / stroke.fall_s);
+    const double rise = min_jerk((at_s - stroke.begin_s) / stroke.rise_s);
+    const double fall = min_jerk((stroke.end_s() - at_s) / stroke.fall_s);
     depth += stroke.depth * std::min(rise, fall);
   }
   return depth;
@@ -89,8 +89,7 @@ double TouchScore::way(double time_s) const noexcept {
   double way = 0.0;
   for (const TouchGlide& glide : glides_) {
     if (at_s < glide.begin_s) break;
-    way =
-        glide.from + (glide.to - glide.from) * least_jerk((at_s - glide.begin_s) / glide.length_s);
+    way = glide.from + (glide.to - glide.from) * min_jerk((at_s - glide.begin_s) / glide.length_s);
   }
   return way;
 }

@@ -14,7 +14,7 @@ namespace nendo::motions {
 /// Goes from 0 to 1, at rest at both ends; it is 0 before and 1 after. Arm and hand movements from
 /// rest to rest have the least jerk that their ends allow (Flash and Hogan 1985), which makes them
 /// a polynomial of time.
-double least_jerk(double part) noexcept;
+double min_jerk(double part) noexcept;
 
 /// Goes from 0 to `depth`, stays, and comes back.
 struct TouchStroke {

@@ -188,8 +188,8 @@ void note_quality(Wearer& wearer, const hand::CalibrationFit& fit,
   quality = hand::SensorQuality{sensor.residual_rad, sensor.low_counts, sensor.high_counts,
                                 known ? 1.0 : 0.0};
   if (!free_motion.present.has(static_cast<Sensor>(slot))) return;
-  quality->least_counts = std::min(quality->least_counts, free_motion.low_counts[slot]);
-  quality->most_counts = std::max(quality->most_counts, free_motion.high_counts[slot]);
+  quality->min_counts = std::min(quality->min_counts, free_motion.low_counts[slot]);
+  quality->max_counts = std::max(quality->max_counts, free_motion.high_counts[slot]);
 }
 
 void note_left_out(const std::string& source, SensorMask left_out) {

@@ -47,8 +47,8 @@ ordered_json sensors_json(const WearerCalibration& wearer) {
     const auto& quality = wearer.quality[slot];
     if (!quality) continue;
     sensor["residual_rad"] = quality->residual_rad;
-    sensor["least_counts"] = quality->least_counts;
-    sensor["most_counts"] = quality->most_counts;
+    sensor["min_counts"] = quality->min_counts;
+    sensor["max_counts"] = quality->max_counts;
     sensor["confidence"] = quality->confidence;
   }
   return sensors;

@@ -87,12 +87,12 @@ Result<FieldStatus> deform_at_once(Points& vertices, const ControlVectors& vecto
 }
 
 /// Of ways of 12 radii; longer ones take longer steps.
-constexpr int most_volume_steps = 256;
+constexpr int max_volume_steps = 256;
 
 Result<FieldStatus> deform_keeping_volume(Points& vertices, const ControlVectors& vectors,
                                           const Supports& supports, const CsrbfOptions& csrbf,
                                           const Options& options) {
-  MidpointChain chain(vectors.starts.cols(), supports, csrbf, most_volume_steps);
+  MidpointChain chain(vectors.starts.cols(), supports, csrbf, max_volume_steps);
   FieldStatus status = chain.grab(vectors.starts);
   if (is_solved(status)) status = std::max(status, chain.go(vectors.displacements));
   std::vector<CsrbfField> step;
@@ -104,25 +104,25 @@ Result<FieldStatus> deform_keeping_volume(Points& vertices, const ControlVectors
   }
   status = std::max(status, chain.status());
   if (is_solved(status)) return status;
-  const bool many = vectors.starts.cols() > CsrbfSolver::most_volume_points;
+  const bool many = vectors.starts.cols() > CsrbfSolver::max_volume_points;
   return Error{Errc::bad_input,
                options.vectors + ": " +
                    (many ? "--keep-volume takes at most " +
-                               std::to_string(CsrbfSolver::most_volume_points) + " control vectors"
+                               std::to_string(CsrbfSolver::max_volume_points) + " control vectors"
                          : std::string(describe(status)))};
 }
 
 /// Ordinary strokes need ten; thousands mean displacements of thousands of radii.
-constexpr int most_links = 2000;
+constexpr int max_links = 2000;
 
 /// Returns one line: links, bound, least determinant at the vertices, and the pairs held apart.
-std::string report_of(const InjectiveChain& chain, double least_determinant) {
+std::string report_of(const InjectiveChain& chain, double min_determinant) {
   const ChainReport& report = chain.report();
   std::ostringstream text;
   text.precision(3);
   text << report.links << (report.links == 1 ? " link" : " links") << ", bound " << report.bound;
   if (report.links > 1) text << " (" << report.whole_bound << " in one step)";
-  text << ", least determinant " << least_determinant << ", " << report.held_pairs
+  text << ", least determinant " << min_determinant << ", " << report.held_pairs
        << (report.held_pairs == 1 ? " pair held apart" : " pairs held apart");
   const char* before = ": ";
   for (const HeldPair& wall : chain.walls()) {
@@ -139,7 +139,7 @@ Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vect
   const auto bad = [&](const std::string& what) {
     return Error{Errc::bad_input, options.vectors + ": " + what};
   };
-  InjectiveChain chain(vectors.starts.cols(), supports, csrbf, {.most_links = most_links});
+  InjectiveChain chain(vectors.starts.cols(), supports, csrbf, {.max_links = max_links});
   FieldStatus status = chain.grab(vectors.starts);
   if (is_solved(status)) {
     const FieldStatus asked = chain.from_start(vectors.starts + vectors.displacements);
@@ -154,9 +154,9 @@ Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vect
   status = std::max(status, chain.report().status);
   if (!is_solved(status)) return bad(std::string(describe(status)));
   if (!chain.report().reached)
-    return bad("--injective needs more than " + std::to_string(most_links) +
+    return bad("--injective needs more than " + std::to_string(max_links) +
                " links; make the displacements shorter");
-  const double least = std::min(probe.least(), chain.report().least_determinant);
+  const double least = std::min(probe.least(), chain.report().min_determinant);
   cli::note("injective: " + report_of(chain, least));
   return status;
 }

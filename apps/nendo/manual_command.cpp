@@ -28,8 +28,8 @@ struct Options {
 /// Replaces the command bench of the program by the description that nendo-bench has written.
 Result<void> add_bench(const std::string& file, cli::CommandModel& program) {
   if (file.empty()) return {};
-  constexpr std::uint64_t most_bytes = 1U << 20U;
-  const auto text = read_file(file, most_bytes, "description of nendo-bench");
+  constexpr std::uint64_t max_bytes = 1U << 20U;
+  const auto text = read_file(file, max_bytes, "description of nendo-bench");
   if (!text) return text.error();
   auto bench = manual::parse_model(*text);
   if (!bench) return Error{bench.error().code, file + ": " + bench.error().message};

@@ -29,7 +29,7 @@ using namespace nendo::render;
 
 using Options = PictureOptions;
 
-constexpr std::uint32_t most_panels = 64;
+constexpr std::uint32_t max_panels = 64;
 
 struct Wanted {
   View view;
@@ -62,8 +62,8 @@ Result<std::uint32_t> panels_of(const Options& options) {
     by = name;
     panels = count;
     const std::uint32_t min_panels = by == "--time" ? 1 : 2;
-    if (count < min_panels || count > most_panels)
-      return bad(name, "use " + std::to_string(min_panels) + " to " + std::to_string(most_panels) +
+    if (count < min_panels || count > max_panels)
+      return bad(name, "use " + std::to_string(min_panels) + " to " + std::to_string(max_panels) +
                            " pictures");
   }
   return panels;

@@ -49,7 +49,7 @@ double rate_of(const Options& options) {
 Result<void> check(const Options& options) {
   const double rate_hz = options.rate_hz;
   if (rate_hz != 0.0 &&
-      !(rate_hz >= flow::TickGrid::least_rate_hz && rate_hz <= flow::TickGrid::most_rate_hz)) {
+      !(rate_hz >= flow::TickGrid::min_rate_hz && rate_hz <= flow::TickGrid::max_rate_hz)) {
     return Error{Errc::usage, "--rate: use 1 to 10000 poses a second, or leave it out"};
   }
   if (auto fine = cli::check_duration(options.duration_s); !fine) return fine.error();

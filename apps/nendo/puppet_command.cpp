@@ -301,7 +301,7 @@ Result<void> check(const Options& options) {
   print_head(*open);
   if (open->shapes->condition() > 0.0)
     fmt::print("condition {:.3g}, of at most {:g}\n", open->shapes->condition(),
-               deform::SurfaceField::most_condition);
+               deform::SurfaceField::max_condition);
   const auto check = puppet::check_rig(*open->shapes, open->model);
   print_turned(*open, check);
   print_twins(*open, check);

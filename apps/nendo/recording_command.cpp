@@ -91,9 +91,9 @@ int repair(const Options& options) {
 }
 
 int cut(const Options& options) {
-  constexpr double most_s = 1e7;
-  const double to_s = options.to_s.value_or(most_s);
-  if (!(options.from_s >= 0.0 && options.from_s < to_s && to_s <= most_s))
+  constexpr double max_s = 1e7;
+  const double to_s = options.to_s.value_or(max_s);
+  if (!(options.from_s >= 0.0 && options.from_s < to_s && to_s <= max_s))
     return cli::report(
         {Errc::usage, "--from, --to: use seconds from the beginning, --from before --to"});
   if (const auto fine = cli::check_place("--out", options.out); !fine)
@@ -106,8 +106,8 @@ int cut(const Options& options) {
 }
 
 int shapes(const Options& options) {
-  constexpr double most_hz = 10'000.0;
-  if (!(options.rate_hz > 0.0 && options.rate_hz <= most_hz))
+  constexpr double max_hz = 10'000.0;
+  if (!(options.rate_hz > 0.0 && options.rate_hz <= max_hz))
     return cli::report({Errc::usage, "--rate: use more than 0 and at most 10000 shapes a second"});
   if (const auto fine = cli::check_place("--out", options.out); !fine)
     return cli::report(fine.error());

@@ -50,13 +50,13 @@ struct Replayed {
 };
 
 Result<void> check(const Options& options) {
-  constexpr double least_speed = 0.01;
-  constexpr double most_speed = 100.0;
-  constexpr double most_s = 1e7;
-  if (!(options.speed >= least_speed && options.speed <= most_speed))
+  constexpr double min_speed = 0.01;
+  constexpr double max_speed = 100.0;
+  constexpr double max_s = 1e7;
+  if (!(options.speed >= min_speed && options.speed <= max_speed))
     return Error{Errc::usage, "--speed: use a number from 0.01 to 100"};
-  const double to_s = options.to_s.value_or(most_s);
-  if (!(options.from_s >= 0.0 && options.from_s < to_s && to_s <= most_s))
+  const double to_s = options.to_s.value_or(max_s);
+  if (!(options.from_s >= 0.0 && options.from_s < to_s && to_s <= max_s))
     return Error{Errc::usage, "--from, --to: use seconds from the beginning, --from before --to"};
   if (options.loops && options.no_clock)
     return Error{Errc::usage, "--loop and --no-clock: give one of them"};

@@ -216,9 +216,9 @@ Result<void> set_switch(RunArguments& options) {
 Result<void> set_refine(RunArguments& options) {
   session::RunOptions& run = options.run;
   run.refine_to = options.refine_to.value_or(0);
-  if (options.refine_to && !(run.refine_to >= 4 && run.refine_to <= flow::Refine{}.most_vertices))
+  if (options.refine_to && !(run.refine_to >= 4 && run.refine_to <= flow::Refine{}.max_vertices))
     return Error{Errc::usage, fmt::format("--refine {}: use 4 to {} vertices", run.refine_to,
-                                          flow::Refine{}.most_vertices)};
+                                          flow::Refine{}.max_vertices)};
   if (run.changes_topology && !options.refine_to)
     return Error{Errc::usage, "--topology: triangles must follow what becomes thin; add --refine, "
                               "as --refine 100000"};
@@ -227,8 +227,8 @@ Result<void> set_refine(RunArguments& options) {
 
 Result<void> set_pace(RunArguments& options) {
   session::RunOptions& run = options.run;
-  if (!(run.loop.rate_hz >= flow::TickGrid::least_rate_hz &&
-        run.loop.rate_hz <= flow::TickGrid::most_rate_hz))
+  if (!(run.loop.rate_hz >= flow::TickGrid::min_rate_hz &&
+        run.loop.rate_hz <= flow::TickGrid::max_rate_hz))
     return Error{Errc::usage, "--rate: use 1 to 10000 ticks a second"};
   if (auto fine = options.loop.parse(run.loop, run.realtime); !fine) return fine;
   if (auto fine = cli::check_duration(run.duration_s); !fine) return fine;

@@ -33,7 +33,7 @@ namespace nendo::app::run_command {
 namespace {
 
 /// Up to this size, a tick of 64 links takes less time than a tick at 90 Hz has.
-constexpr Eigen::Index most_injective_unasked = 100'000;
+constexpr Eigen::Index max_injective_unasked = 100'000;
 
 /// The views that the options ask for.
 struct Views {
@@ -81,8 +81,8 @@ void note_oddities(const deform::Mesh& model, const RunArguments& options) {
 /// Whether repairing closes the model, in words that follow a semicolon. That is tried, so that
 /// the advice is true, unless it takes longer than people wait.
 std::string advice_to_close(const deform::Mesh& model) {
-  constexpr Eigen::Index most_tried = 100'000;
-  if (model.vertices.cols() > most_tried) return "`nendo repair IN --out OUT` may close it";
+  constexpr Eigen::Index max_tried = 100'000;
+  if (model.vertices.cols() > max_tried) return "`nendo repair IN --out OUT` may close it";
   const auto repaired = deform::repair(model);
   return repaired ? "`nendo repair IN --out OUT` closes it" : repaired.error().message;
 }
@@ -107,13 +107,13 @@ void note_inside(const deform::Mesh& model, const session::RunOptions& options) 
 /// Turns the guard against folds on, or says that a model of this size goes without.
 void choose_injective(const deform::Mesh& model, RunArguments& options) {
   if (options.not_injective || options.run.puppet || options.run.over) return;
-  if (options.asked.injective || model.vertices.cols() <= most_injective_unasked) {
+  if (options.asked.injective || model.vertices.cols() <= max_injective_unasked) {
     options.run.loop.sculptor.deformer.injective.emplace();
     return;
   }
   cli::note(fmt::format("{}: has more than {} vertices, so nothing keeps the surface from folding; "
                         "--injective does, and may make ticks late",
-                        options.run.mesh, most_injective_unasked));
+                        options.run.mesh, max_injective_unasked));
 }
 
 /// Of hands that --adapt has learned for a --user.
@@ -254,7 +254,7 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
   command.add_flag("--no-injective", options.not_injective,
                    "Whatever the fingertips ask for; without either, --injective with models of up "
                    "to " +
-                       std::to_string(most_injective_unasked) + " vertices");
+                       std::to_string(max_injective_unasked) + " vertices");
 }
 
 /// The options that the recording of --over decides.

@@ -27,8 +27,8 @@ using nlohmann::ordered_json;
 
 Result<ordered_json> read_earlier(const std::string& path) {
   if (path.empty()) return ordered_json(nullptr);
-  constexpr std::uint64_t most_bytes = 1U << 20U;
-  const auto text = read_file(path, most_bytes, "report of nendo stress");
+  constexpr std::uint64_t max_bytes = 1U << 20U;
+  const auto text = read_file(path, max_bytes, "report of nendo stress");
   if (!text) return text.error();
   auto report = ordered_json::parse(*text, nullptr, false);
   if (!report.is_object() || report.value("event", ordered_json()) != "stress") {

@@ -17,12 +17,12 @@ static_assert(std::endian::native == std::endian::little);
 constexpr std::size_t ring_bytes = std::size_t{8} << 20;
 constexpr auto period = std::chrono::milliseconds(1);
 constexpr std::size_t head_bytes = sizeof(nendo_publish_datagram);
-constexpr std::size_t most_payload = NENDO_PUBLISH_DATAGRAM_BYTES - head_bytes;
+constexpr std::size_t max_payload = NENDO_PUBLISH_DATAGRAM_BYTES - head_bytes;
 // An update is the record without its stage and hands.
 constexpr std::size_t update_begin = offsetof(nendo_publish_record, number);
 constexpr std::size_t update_end = offsetof(nendo_publish_record, hands);
 
-static_assert(sizeof(nendo_publish_hand) <= most_payload);
+static_assert(sizeof(nendo_publish_hand) <= max_payload);
 
 } // namespace
 
@@ -49,7 +49,7 @@ Result<void> DatagramPublisher::begin(const LoopOutline& outline) {
   end();
   if (!socket_.is_open())
     if (const auto opened = open(); !opened) return opened.error();
-  const std::size_t slot_words = (most_record_words(outline) + 7) / 8 * 8;
+  const std::size_t slot_words = (max_record_words(outline) + 7) / 8 * 8;
   const std::size_t slots = std::clamp<std::size_t>(ring_bytes / (8 * slot_words), 8, 1024);
   memory_ = std::make_unique<AtomicWord[]>(slots * slot_words);
   ring_ = RecordRing(memory_.get(), slots, slot_words);
@@ -150,10 +150,10 @@ void DatagramPublisher::send_update() noexcept {
   std::memcpy(&head, datagram_.data(), sizeof head);
   head.kind = 2;
   head.side = 0;
-  head.parts = static_cast<std::uint16_t>((update_.size() + most_payload - 1) / most_payload);
+  head.parts = static_cast<std::uint16_t>((update_.size() + max_payload - 1) / max_payload);
   for (head.part = 0; head.part < head.parts; ++head.part) {
-    head.offset = static_cast<std::uint32_t>(head.part * most_payload);
-    const std::size_t length = std::min(most_payload, update_.size() - head.offset);
+    head.offset = static_cast<std::uint32_t>(head.part * max_payload);
+    const std::size_t length = std::min(max_payload, update_.size() - head.offset);
     std::memcpy(datagram_.data(), &head, sizeof head);
     std::memcpy(datagram_.data() + head_bytes, update_.data() + head.offset, length);
     send(length);

@@ -65,12 +65,12 @@ std::uint32_t kernel_number(deform::Wendland kernel) noexcept {
 
 static_assert(std::size_t{NENDO_PUBLISH_JOINTS} == hand::joint_count);
 
-std::size_t most_record_words(const LoopOutline& outline) noexcept {
-  return head_words + outline.most_fields * (field_words + outline.functions * function_words);
+std::size_t max_record_words(const LoopOutline& outline) noexcept {
+  return head_words + outline.max_fields * (field_words + outline.functions * function_words);
 }
 
 FrameRecord::FrameRecord(const LoopOutline& outline, std::uint64_t generation)
-    : words_(most_record_words(outline)), generation_(generation) {}
+    : words_(max_record_words(outline)), generation_(generation) {}
 
 std::size_t FrameRecord::put_field(const deform::CsrbfField& field, std::size_t at) noexcept {
   const auto functions = static_cast<std::size_t>(field.centres.cols());

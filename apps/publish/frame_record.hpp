@@ -19,13 +19,13 @@ struct LoopOutline {
   flow::Mode mode = flow::Mode::type1;
   double rate_hz = 0.0;
   double units_per_metre = 1.0;
-  std::size_t most_fields = 0; ///< of a frame
-  std::size_t functions = 0;   ///< of a field
+  std::size_t max_fields = 0; ///< of a frame
+  std::size_t functions = 0;  ///< of a field
 };
 
 /// Returns the length, in words, of the longest record of such a loop. It includes the word of the
 /// SeqLock.
-std::size_t most_record_words(const LoopOutline& outline) noexcept;
+std::size_t max_record_words(const LoopOutline& outline) noexcept;
 
 class FrameRecord {
 public:

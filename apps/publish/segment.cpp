@@ -15,7 +15,7 @@
 namespace nendo::publish {
 namespace {
 
-constexpr std::uint64_t most_record_bytes = std::uint64_t{16} << 20;
+constexpr std::uint64_t max_record_bytes = std::uint64_t{16} << 20;
 
 std::uint64_t triangles_of(const deform::Mesh& mesh) noexcept {
   std::uint64_t triangles = 0;
@@ -65,10 +65,9 @@ SegmentPlan plan_segment(const LoopOutline& outline) noexcept {
   SegmentPlan plan;
   plan.vertices = outline.layout->vertex_count();
   plan.triangles = triangles_of(*outline.model);
-  plan.record_stride = whole_lines(8 * most_record_words(outline));
+  plan.record_stride = whole_lines(8 * max_record_words(outline));
   const auto a_second = static_cast<std::uint64_t>(std::clamp(outline.rate_hz, 4.0, 1024.0));
-  plan.record_slots =
-      std::clamp(most_record_bytes / plan.record_stride, std::uint64_t{4}, a_second);
+  plan.record_slots = std::clamp(max_record_bytes / plan.record_stride, std::uint64_t{4}, a_second);
   plan.shape_stride = whole_lines(8 * shape_slot_words(plan.vertices));
   plan.shape_slots = 4;
   plan.setup_offset = sizeof(nendo_publish_header);

@@ -47,8 +47,8 @@ constexpr std::array<Kind, sensor_slots> kinds{thumb_roll, thumb_mcp, thumb_ip, 
                                                arch,       pitch,     yaw,      nothing};
 
 // Between wearers a hand may be long and narrow or short and broad.
-constexpr double least_length_m = 0.165;
-constexpr double most_length_m = 0.212;
+constexpr double min_length_m = 0.165;
+constexpr double max_length_m = 0.212;
 
 constexpr double noise_counts = 0.35;
 
@@ -59,7 +59,7 @@ constexpr double palm_slip_deviation_m = 0.004;
 
 // How far the ends of a joint's range differ between people: as a part of it, but not less than.
 constexpr double range_deviation = 0.06;
-constexpr double least_range_deviation_deg = 3.0;
+constexpr double min_range_deviation_deg = 3.0;
 
 /// What the lines must read so that with their couplings they make these angles.
 SensorAngles lines_of(const SensorAngles& angles, const hand::Calibration& truth) {
@@ -133,14 +133,14 @@ SensorAngles FreeMotion::angles_rad(double time_s) const {
 
 Wearer::Wearer(std::uint64_t seed)
     : random_(seed * 7919 + 17), side_(seed % 2 == 1 ? Side::left : Side::right),
-      size_{uniform(least_length_m, most_length_m), 0.0}, skeleton_(side_) {
+      size_{uniform(min_length_m, max_length_m), 0.0}, skeleton_(side_) {
   size_.breadth_m = size_.length_m * uniform(0.41, 0.48);
   skeleton_ = hand::HandSkeleton(side_, size_);
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const Kind& kind = kinds[slot];
     habit_rad_[slot] = from_degrees(normal(0.0, 0.5 * kind.bent));
     const double deviation_deg =
-        std::max(range_deviation * (kind.high - kind.low), least_range_deviation_deg);
+        std::max(range_deviation * (kind.high - kind.low), min_range_deviation_deg);
     const auto end_rad = [&](double end_deg) {
       return from_degrees(end_deg + deviation_deg * std::clamp(normal(0.0, 1.0), -1.5, 1.1));
     };

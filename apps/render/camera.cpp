@@ -85,7 +85,7 @@ void Camera::pan(double dx, double dy, double height) noexcept {
 
 void Camera::zoom(double steps) noexcept {
   distance_m = std::clamp(distance_m * std::pow(0.9, std::clamp(steps, -20.0, 20.0)),
-                          least_distance_m, most_distance_m);
+                          min_distance_m, max_distance_m);
 }
 
 Camera framing(std::span<const Eigen::Vector3f> points, View view, double aspect, double margin) {
@@ -124,7 +124,7 @@ Camera framing(std::span<const Eigen::Vector3f> points, View view, double aspect
   middle.z() = (nearest + farthest) / 2;
   camera.target = rows.transpose() * middle;
   camera.distance_m =
-      std::clamp(distance - middle.z(), Camera::least_distance_m, Camera::most_distance_m);
+      std::clamp(distance - middle.z(), Camera::min_distance_m, Camera::max_distance_m);
   return camera;
 }
 

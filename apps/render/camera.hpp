@@ -30,8 +30,8 @@ struct Camera {
   /// edge. The picture is shifted as a whole, without distortion, if something covers its left.
   double centre = 0.0;
 
-  static constexpr double least_distance_m = 0.05;
-  static constexpr double most_distance_m = 50.0;
+  static constexpr double min_distance_m = 0.05;
+  static constexpr double max_distance_m = 50.0;
 
   /// Returns an orthonormal matrix whose rows point to the picture's right, up, and towards the
   /// camera.

@@ -10,8 +10,8 @@ constexpr Pixel paper{250, 250, 249};
 constexpr Pixel ink{52, 52, 56};
 constexpr int gap = 10;                   // pixels between panels and about them
 constexpr double letter_fraction = 0.030; // of a panel's height
-constexpr double least_letters = 9.0;
-constexpr double most_letters = 20.0;
+constexpr double min_letters = 9.0;
+constexpr double max_letters = 20.0;
 
 } // namespace
 
@@ -24,7 +24,7 @@ Image contact_sheet(const std::vector<Panel>& panels, int columns) {
   const Size panel = panels.front().image.size();
   const bool captions = std::any_of(panels.begin(), panels.end(),
                                     [](const Panel& one) { return !one.caption.empty(); });
-  const double letters = std::clamp(letter_fraction * panel.height, least_letters, most_letters);
+  const double letters = std::clamp(letter_fraction * panel.height, min_letters, max_letters);
   const int caption = captions ? static_cast<int>(2.4 * letters) : 0;
   Image sheet({gap + columns * (panel.width + gap), gap + rows * (panel.height + caption + gap)},
               paper);

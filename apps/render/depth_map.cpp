@@ -23,20 +23,20 @@ constexpr float far_m = 1e6F; // what is beyond casts no shadow
 class Range {
 public:
   Range() {
-    least_.fill(far_m);
+    min_.fill(far_m);
     greatest_.fill(-far_m);
   }
   void take(const BlockOfFloats& values) noexcept {
     for (std::size_t at = 0; at < block_places; ++at) {
-      least_[at] = values[at] < least_[at] ? values[at] : least_[at];
+      min_[at] = values[at] < min_[at] ? values[at] : min_[at];
       greatest_[at] = values[at] > greatest_[at] ? values[at] : greatest_[at];
     }
   }
-  float least() const noexcept { return *std::min_element(least_.begin(), least_.end()); }
+  float least() const noexcept { return *std::min_element(min_.begin(), min_.end()); }
   float greatest() const noexcept { return *std::max_element(greatest_.begin(), greatest_.end()); }
 
 private:
-  BlockOfFloats least_, greatest_;
+  BlockOfFloats min_, greatest_;
 };
 
 // For each place, a number of 16 bits along each axis: twice the number of the sample whose middle

@@ -11,7 +11,7 @@
 namespace nendo::render {
 namespace {
 
-constexpr std::uint64_t most_png_bytes = std::uint64_t{256} << 20;
+constexpr std::uint64_t max_png_bytes = std::uint64_t{256} << 20;
 
 png_image header_of(Size size) {
   png_image header{};
@@ -91,7 +91,7 @@ Result<Image> decode_png(std::string_view contents, const std::string& name) {
 }
 
 Result<Image> read_png(const std::filesystem::path& path) {
-  const auto contents = read_file(path, most_png_bytes, "picture");
+  const auto contents = read_file(path, max_png_bytes, "picture");
   if (!contents) return contents.error();
   return decode_png(*contents, path.string());
 }

@@ -61,7 +61,7 @@ Result<void> LoopArguments::check_threads() const {
 }
 
 Result<void> LoopArguments::parse(flow::LoopOptions& loop, flow::RealtimeOptions& realtime) const {
-  if (priority > flow::most_priority) {
+  if (priority > flow::max_priority) {
     return Error{Errc::usage, "--priority " + std::to_string(priority) +
                                   ": use 1 to 97 (readers of gloves run two above), or 0 for "
                                   "ordinary scheduling"};
@@ -78,8 +78,8 @@ Result<void> LoopArguments::parse(flow::LoopOptions& loop, flow::RealtimeOptions
   if (spin != "on" && spin != "off" && spin != "auto")
     return Error{Errc::usage, "--spin " + spin + ": use on, off or auto"};
   // A margin costs the same whatever the rate: at 2 kHz it is a tenth of the processor and more.
-  constexpr double most_auto_rate_hz = 2000.0;
-  loop.spin = spin == "on" || (spin == "auto" && loop.rate_hz < most_auto_rate_hz);
+  constexpr double max_auto_rate_hz = 2000.0;
+  loop.spin = spin == "on" || (spin == "auto" && loop.rate_hz < max_auto_rate_hz);
   if (spin == "on" && priority == 0)
     return Error{Errc::usage, "--spin on: only with --priority; the ordinary scheduler makes a "
                               "thread that spins later, not sooner"};

@@ -173,11 +173,11 @@ Result<void> play_over(const RunOptions& options, std::vector<flow::HandInput>& 
   over.begin = HostClock::now() + count_in;
   script.begin_at(over.begin);
   std::vector<flow::HandInput> all = over.take.setup.hands;
-  if (all.size() + inputs.size() > flow::most_inputs)
+  if (all.size() + inputs.size() > flow::max_inputs)
     return Error{Errc::usage,
                  fmt::format("--over {}: has {} hands and layers, and a run has {} at most; record "
                              "over an earlier take",
-                             over.file, all.size(), flow::most_inputs)};
+                             over.file, all.size(), flow::max_inputs)};
   for (flow::HandInput& hand : all)
     hand.first = script.moved(hand.first);
   for (flow::HandInput& live : inputs) {

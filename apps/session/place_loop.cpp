@@ -195,9 +195,9 @@ FrameCapacity frame_capacity(const PlacedLoop& placed) {
   const auto& deformer = placed.setup.options.sculptor.deformer;
   // A radius for each finger: a function that is its own, and one that all share.
   const Eigen::Index functions = std::max(deformer.supports.functions(points) + spare, 2 * points);
-  const int links = std::max(deformer.injective.value_or(deform::InjectiveOptions{}).most_links,
-                             deform::Type2Deformer::most_pieces);
-  const int fields = std::max(links, deform::most_midpoint_fields);
+  const int links = std::max(deformer.injective.value_or(deform::InjectiveOptions{}).max_links,
+                             deform::Type2Deformer::max_pieces);
+  const int fields = std::max(links, deform::max_midpoint_fields);
   // The whole hand may hold, which has more points and fewer fields.
   const Eigen::Index all_over =
       is_played ? 0 : 2 * static_cast<Eigen::Index>(hand::held_point_count) * hands;

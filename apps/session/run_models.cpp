@@ -16,8 +16,8 @@ namespace {
 /// So often at most is the shape looked at for edges that are too long or too short.
 constexpr std::chrono::milliseconds look_interval(500);
 /// Fewer are not worth another version of the model: the larger of these.
-constexpr std::size_t least_unfit = 24;
-constexpr double least_unfit_fraction = 0.004; ///< of the vertices
+constexpr std::size_t min_unfit = 24;
+constexpr double min_unfit_fraction = 0.004; ///< of the vertices
 /// In the middle of a stroke, which ends by it: as many times as many.
 constexpr double in_a_stroke = 5.0;
 
@@ -106,9 +106,9 @@ void RunModels::look() {
   if (std::exchange(last_look_, look) == look) return;
   made_ = {0, flow::ModelSource::refined, refine_to_};
   is_by_itself_ = true;
-  const double fraction = least_unfit_fraction * (frame.steps.in_hand ? in_a_stroke : 1.0);
+  const double fraction = min_unfit_fraction * (frame.steps.in_hand ? in_a_stroke : 1.0);
   const auto least = std::max(
-      least_unfit,
+      min_unfit,
       static_cast<std::size_t>(fraction * static_cast<double>(model.layout().vertex_count())));
   // Fine triangles find what is thin better, but hands that stretch clay all the time would let
   // nothing else happen: by turns, where both are needed.

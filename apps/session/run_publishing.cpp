@@ -21,7 +21,7 @@ publish::LoopOutline outline_of(const PlacedLoop& placed, const deform::Mesh& mo
   outline.mode = options.sculptor.mode;
   outline.rate_hz = options.rate_hz;
   outline.units_per_metre = placed.setup.placement.units_per_metre;
-  outline.most_fields = most.fields;
+  outline.max_fields = most.fields;
   outline.functions = most.functions;
   return outline;
 }

@@ -17,10 +17,10 @@
 namespace nendo::session {
 Result<void> RecordingOptions::check(const std::string& out, flow::SwitchAction action) {
   if (!keep_last.empty()) {
-    constexpr double most_s = 3600.0;
+    constexpr double max_s = 3600.0;
     const auto seconds = cli::parse_duration(keep_last, "--keep-last");
     if (!seconds) return seconds.error();
-    if (*seconds > most_s)
+    if (*seconds > max_s)
       return Error{Errc::usage,
                    "--keep-last " + keep_last + ": an hour at most; --record keeps all"};
     keep_last_s = *seconds;

@@ -130,7 +130,7 @@ void print_slips(const hand::SensorAngles& slips_counts, const hand::SensorRange
                  CountScale counts) {
   bool any = false;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    if (!(std::abs(slips_counts[slot]) >= hand::least_slip_counts(counts))) continue;
+    if (!(std::abs(slips_counts[slot]) >= hand::min_slip_counts(counts))) continue;
     if (!std::exchange(any, true))
       print_row("", "slips learned, in counts, from so many turns of the joint:");
     print_row("", fmt::format("{:22} {:+5.1f}  {}", sensor_names[slot], slips_counts[slot],
@@ -193,7 +193,7 @@ void print_injective(const RunOptions& options, const flow::LoopStats& stats) {
   if (options.verbose)
     print_row("injective", fmt::format("at most {} links a tick, bound in one step {:.3g}, least "
                                        "determinant {:.3g}; fingertips held apart in {} ticks",
-                                       stats.most_links, stats.most_bound, stats.least_determinant,
+                                       stats.max_links, stats.max_bound, stats.min_determinant,
                                        stats.held_apart_ticks));
   else if (stats.held_apart_ticks > 0)
     print_row("no folds", fmt::format("fingertips whose ways cross were held apart in {} ticks",
@@ -206,7 +206,7 @@ void print_clay(const flow::LoopStats& stats, double units_per_metre) {
   print_row("clay",
             fmt::format("touched in {} ticks; at most {:.3f} mm deep in a hand, before it was "
                         "set right",
-                        thousands(stats.touching_ticks), stats.most_penetration_mm));
+                        thousands(stats.touching_ticks), stats.max_penetration_mm));
   if (!(clay.first_volume > 0.0)) {
     print_row("volume",
               "not kept: the surface is not closed; `nendo repair IN --out OUT` may close it");

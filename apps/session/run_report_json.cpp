@@ -68,9 +68,9 @@ ordered_json filter_json(const hand::FilterOptions& filter, const flow::LoopStat
 
 ordered_json injective_json(const RunOptions& options, const flow::LoopStats& stats) {
   if (!options.loop.sculptor.deformer.injective) return nullptr;
-  return {{"most_links", stats.most_links},
-          {"most_bound", stats.most_bound},
-          {"least_determinant", stats.least_determinant},
+  return {{"max_links", stats.max_links},
+          {"max_bound", stats.max_bound},
+          {"min_determinant", stats.min_determinant},
           {"held_apart_ticks", stats.held_apart_ticks}};
 }
 
@@ -79,7 +79,7 @@ ordered_json clay_json(const flow::LoopStats& stats, double units_per_metre) {
   if (!clay.is_clay) return nullptr;
   const double cm3 = 1e6 / (units_per_metre * units_per_metre * units_per_metre);
   return {{"touching_ticks", stats.touching_ticks},
-          {"most_penetration_mm", stats.most_penetration_mm},
+          {"max_penetration_mm", stats.max_penetration_mm},
           {"first_volume_cm3", cm3 * clay.first_volume},
           {"volume_cm3", cm3 * clay.volume}};
 }

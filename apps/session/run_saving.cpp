@@ -13,7 +13,7 @@
 namespace nendo::session {
 namespace {
 
-constexpr std::chrono::milliseconds least_between_saves(250);
+constexpr std::chrono::milliseconds min_between_saves(250);
 
 } // namespace
 
@@ -49,7 +49,7 @@ std::string RunSaving::save(flow::DeformLoop& loop) {
   std::string report = std::exchange(shape_, false) ? save_shape(loop) : "";
   if (std::exchange(recording_, false)) report += (report.empty() ? "" : "; ") + save_recording();
   if (std::exchange(puppet_, false)) report += (report.empty() ? "" : "; ") + save_puppet(loop);
-  next_ = HostClock::now() + least_between_saves;
+  next_ = HostClock::now() + min_between_saves;
   return report;
 }
 

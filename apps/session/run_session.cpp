@@ -25,7 +25,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-std::size_t most_undo_bytes(const RunOptions& options) noexcept {
+std::size_t max_undo_bytes(const RunOptions& options) noexcept {
   return options.undo_memory_mb ? static_cast<std::size_t>(1e6 * *options.undo_memory_mb)
                                 : deform::half_of_memory();
 }
@@ -45,7 +45,7 @@ public:
     for (const auto& hand : hands_)
       feedback_.push_back({hand.side, gloves::GloveFeedback(*hand.glove)});
     options_.loop.commands = &commands_.ring();
-    sculpting::set_undo_room(model_, most_undo_bytes(options_), options_.loop);
+    sculpting::set_undo_room(model_, max_undo_bytes(options_), options_.loop);
     options_.loop.sinks.assign(participants_.sinks.begin(), participants_.sinks.end());
   }
 

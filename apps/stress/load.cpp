@@ -48,8 +48,8 @@ namespace {
   // A file without a name is gone with its last user.
   const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   static const std::array<std::byte, 65536> block{};
-  constexpr off_t most_bytes = off_t{16} << 20U;
-  for (off_t at = 0;; at = (at + static_cast<off_t>(block.size())) % most_bytes) {
+  constexpr off_t max_bytes = off_t{16} << 20U;
+  for (off_t at = 0;; at = (at + static_cast<off_t>(block.size())) % max_bytes) {
     if (::pwrite(file, block.data(), block.size(), at) < 0 || ::fdatasync(file) != 0)
       ::usleep(10'000); // with a full disk, it must not keep the processor busy instead
   }

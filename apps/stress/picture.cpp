@@ -57,16 +57,16 @@ struct Axes {
 };
 
 constexpr int bins_per_decade = 20;
-constexpr double least_us_decade = -2.0; // 10 ns
-constexpr double most_us_decade = 5.0;   // 100 ms
+constexpr double min_us_decade = -2.0; // 10 ns
+constexpr double max_us_decade = 5.0;  // 100 ms
 constexpr std::size_t bin_count =
-    static_cast<std::size_t>((most_us_decade - least_us_decade) * bins_per_decade);
+    static_cast<std::size_t>((max_us_decade - min_us_decade) * bins_per_decade);
 
 std::vector<double> binned(const flow::Histogram& histogram) {
   std::vector<double> bins(bin_count, 0.0);
   histogram.for_each([&](nanoseconds value, std::uint64_t count) {
     const double decade = std::log10(std::max(to_microseconds(value), 1e-9));
-    const double at = std::floor((decade - least_us_decade) * bins_per_decade);
+    const double at = std::floor((decade - min_us_decade) * bins_per_decade);
     bins[static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(bin_count - 1)))] +=
         static_cast<double>(count);
   });
@@ -74,7 +74,7 @@ std::vector<double> binned(const flow::Histogram& histogram) {
 }
 
 double left_of(std::size_t bin) {
-  return std::pow(10.0, least_us_decade + static_cast<double>(bin) / bins_per_decade);
+  return std::pow(10.0, min_us_decade + static_cast<double>(bin) / bins_per_decade);
 }
 
 std::string outline(const Axes& axes, const std::vector<double>& bins) {
@@ -135,15 +135,9 @@ void draw_histogram(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
   double most = 10.0;
   for (const auto* bins : {&all, &floor})
     most = std::max(most, *std::max_element(bins->begin(), bins->end()));
-  const Axes axes{80,
-                  130,
-                  1080,
-                  230,
-                  least_us_decade,
-                  most_us_decade,
-                  true,
-                  -0.4,
-                  std::ceil(std::log10(most))}; // a single tick shows
+  const Axes axes{80,   130,           1080,
+                  230,  min_us_decade, max_us_decade,
+                  true, -0.4,          std::ceil(std::log10(most))}; // a single tick shows
   drawing.words(80, 112, "How late ticks were", heading);
   draw_decades(drawing, axes, false);
   for (std::size_t k = 0; k < those_ran.size(); ++k) {
@@ -161,12 +155,12 @@ void draw_trace(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
   const LatenessTrace& trace = outcome.tally.trace();
   const double length_s =
       to_seconds(trace.slice_length()) * static_cast<double>(trace.slices().size());
-  double least_us = 10.0;
-  double most_us = 100.0;
+  double min_us = 10.0;
+  double max_us = 100.0;
   for (const auto& slice : trace.slices()) {
     if (slice.count == 0) continue;
-    least_us = std::min(least_us, to_microseconds(slice.sum) / static_cast<double>(slice.count));
-    most_us = std::max(most_us, to_microseconds(slice.max));
+    min_us = std::min(min_us, to_microseconds(slice.sum) / static_cast<double>(slice.count));
+    max_us = std::max(max_us, to_microseconds(slice.max));
   }
   const Axes axes{80,
                   450,
@@ -175,8 +169,8 @@ void draw_trace(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
                   0.0,
                   std::max(length_s, 1e-3),
                   false,
-                  std::max(least_us_decade, std::floor(std::log10(std::max(least_us, 1e-3)))),
-                  std::ceil(std::log10(most_us))};
+                  std::max(min_us_decade, std::floor(std::log10(std::max(min_us, 1e-3)))),
+                  std::ceil(std::log10(max_us))};
   drawing.words(80, 432, "When", heading);
   draw_decades(drawing, axes, true);
   const double slice_s = to_seconds(trace.slice_length());

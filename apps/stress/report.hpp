@@ -48,8 +48,8 @@ void print_stress(std::FILE* out, const StressOptions& options, const StressOutc
                   const nlohmann::ordered_json& earlier);
 
 /// Prints the lateness on standard output as cyclictest does: a line for each microsecond up to
-/// `most_us`, and the number of ticks beyond.
-void print_histogram(const flow::Histogram& lateness, unsigned most_us);
+/// `max_us`, and the number of ticks beyond.
+void print_histogram(const flow::Histogram& lateness, unsigned max_us);
 
 /// Returns the lateness of each scheduled tick as an HdrHistogram percentile file, in microseconds,
 /// with a line for each class of values.

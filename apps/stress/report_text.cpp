@@ -216,12 +216,12 @@ void print_stress(std::FILE* out, const StressOptions& options, const StressOutc
   std::fflush(out);
 }
 
-void print_histogram(const flow::Histogram& lateness, unsigned most_us) {
-  std::vector<std::uint64_t> counts(most_us);
+void print_histogram(const flow::Histogram& lateness, unsigned max_us) {
+  std::vector<std::uint64_t> counts(max_us);
   std::uint64_t beyond = 0;
   lateness.for_each([&](std::chrono::nanoseconds value, std::uint64_t count) {
     const auto us = static_cast<std::uint64_t>(value.count()) / 1000;
-    us < most_us ? counts[us] += count : beyond += count;
+    us < max_us ? counts[us] += count : beyond += count;
   });
   std::printf("\n# Histogram\n");
   for (std::size_t us = 0; us < counts.size(); ++us)

@@ -19,9 +19,9 @@ Error usage(std::string message) {
 }
 
 Result<void> parse_loop(const StressArguments& arguments, session::RunOptions& run) {
-  constexpr double least_us = 1e6 / flow::TickGrid::most_rate_hz;
-  constexpr double most_us = 1e6 / flow::TickGrid::least_rate_hz;
-  if (!(arguments.interval_us >= least_us && arguments.interval_us <= most_us))
+  constexpr double min_us = 1e6 / flow::TickGrid::max_rate_hz;
+  constexpr double max_us = 1e6 / flow::TickGrid::min_rate_hz;
+  if (!(arguments.interval_us >= min_us && arguments.interval_us <= max_us))
     return usage("--interval: use 100us to 1s");
   run.loop.rate_hz = 1e6 / arguments.interval_us;
   const auto mode = session::parse_setting(flow::setting::mode, arguments.mode);
@@ -87,8 +87,8 @@ Result<StressOptions> parse(const StressArguments& arguments) {
   if (!(arguments.floor_s >= 0.0 && arguments.floor_s <= 3600.0))
     return usage("--floor: use 0 (not measured) to 3600 seconds");
   options.floor_s = arguments.floor_s;
-  constexpr double most_changes = 6000.0; // at most one in each look of the main thread
-  if (!(arguments.changes_a_minute >= 0.0 && arguments.changes_a_minute <= most_changes))
+  constexpr double max_changes = 6000.0; // at most one in each look of the main thread
+  if (!(arguments.changes_a_minute >= 0.0 && arguments.changes_a_minute <= max_changes))
     return usage("--changes: use 0 to 6000 a minute");
   if (arguments.changes_a_minute > 0.0 && !(run.loop.stages.input && run.loop.stages.deform))
     return usage("--changes: needs the stages input and deform, which they change");

@@ -12,7 +12,7 @@ void LatenessTrace::add(HostTime time, nanoseconds lateness) {
   if (slices_.empty()) start_ = time;
   auto at =
       static_cast<std::size_t>(std::max(time - start_, HostClock::duration::zero()) / length_);
-  while (at >= most_slices) {
+  while (at >= max_slices) {
     for (std::size_t k = 0; k < slices_.size(); k += 2) {
       Slice both = slices_[k];
       if (k + 1 < slices_.size()) {
@@ -36,7 +36,7 @@ void LatenessTrace::add(HostTime time, nanoseconds lateness) {
 TickTally::TickTally(const flow::PaceOptions& pace)
     : period_(std::llround(1e9 / pace.rate_hz)),
       on_grid_(pace.policy != flow::OverrunPolicy::sample) {
-  worst_.reserve(most_worst + 1);
+  worst_.reserve(max_worst + 1);
 }
 
 void TickTally::record(Measure measure, HostClock::duration value) noexcept {
@@ -95,7 +95,7 @@ void TickTally::add_step(const flow::TickRecord& before, const flow::TickRecord&
   trace_.add(now.woke, now.woke - now.scheduled);
 
   Incident incident = incident_of(before, now, period_);
-  const bool among_worst = worst_.size() < most_worst || incident.lateness > worst_.back().lateness;
+  const bool among_worst = worst_.size() < max_worst || incident.lateness > worst_.back().lateness;
   if (incident.lateness <= incident_threshold && !among_worst) return;
   incident.cause = cause_of(incident, usual_times(),
                             delay == nullptr ? std::nullopt : delay->since(incident.due));
@@ -109,7 +109,7 @@ void TickTally::add_step(const flow::TickRecord& before, const flow::TickRecord&
       worst_.begin(), worst_.end(), incident,
       [](const Incident& a, const Incident& b) { return a.lateness > b.lateness; });
   worst_.insert(at, incident);
-  if (worst_.size() > most_worst) worst_.pop_back();
+  if (worst_.size() > max_worst) worst_.pop_back();
 }
 
 double TickTally::explained() const noexcept {

@@ -31,7 +31,7 @@ struct Distribution {
 /// The lateness over time in a limited number of slices, which get longer as time goes on.
 class LatenessTrace {
 public:
-  static constexpr std::size_t most_slices = 512;
+  static constexpr std::size_t max_slices = 512;
   struct Slice {
     std::uint64_t count = 0;
     std::chrono::nanoseconds sum{};
@@ -51,7 +51,7 @@ class TickTally {
 public:
   /// A tick that is later than this is an incident that has to be explained.
   static constexpr std::chrono::milliseconds incident_threshold{1};
-  static constexpr std::size_t most_worst = 10;
+  static constexpr std::size_t max_worst = 10;
 
   explicit TickTally(const flow::PaceOptions& pace);
 
@@ -70,7 +70,7 @@ public:
   const flow::Histogram& stage(Phase phase) const noexcept {
     return stages_[static_cast<std::size_t>(phase)];
   }
-  /// Returns the incidents with the greatest lateness, the greatest first, at most most_worst.
+  /// Returns the incidents with the greatest lateness, the greatest first, at most max_worst.
   const std::vector<Incident>& worst() const noexcept { return worst_; }
   /// The incidents of a cause that are beyond the threshold, and the sum of their lateness.
   struct Share {

@@ -25,10 +25,10 @@ void print_range(Angle angle, const JointRange& range) {
   const hand::JointLimit& limit = hand::limit_of(angle);
   std::printf("  %-20s", std::string(hand::name_of(angle)).c_str());
   for (const double angle_rad :
-       {range.least_rad, range.low_rad, range.median_rad, range.high_rad, range.most_rad})
+       {range.min_rad, range.low_rad, range.median_rad, range.high_rad, range.max_rad})
     std::printf(" %7.1f", to_degrees(angle_rad));
-  std::printf("   %4.0f to %3.0f %5.0f %% %7.2f%s\n", to_degrees(limit.soft_least_rad),
-              to_degrees(limit.soft_most_rad), 100.0 * range.beyond, to_degrees(range.noise_rad),
+  std::printf("   %4.0f to %3.0f %5.0f %% %7.2f%s\n", to_degrees(limit.soft_min_rad),
+              to_degrees(limit.soft_max_rad), 100.0 * range.beyond, to_degrees(range.noise_rad),
               hand::is_estimated(range.source) ? "  estimated" : "");
 }
 
@@ -70,13 +70,13 @@ ordered_json json_of(const JointStudy& study) {
     const hand::JointLimit& limit = hand::joint_limits[at];
     hand["joints"].push_back({{"joint", hand::angle_names[at]},
                               {"source", hand::name_of(range.source)},
-                              {"least_deg", to_degrees(range.least_rad)},
+                              {"min_deg", to_degrees(range.min_rad)},
                               {"p5_deg", to_degrees(range.low_rad)},
                               {"median_deg", to_degrees(range.median_rad)},
                               {"p95_deg", to_degrees(range.high_rad)},
-                              {"most_deg", to_degrees(range.most_rad)},
-                              {"published_least_deg", to_degrees(limit.soft_least_rad)},
-                              {"published_most_deg", to_degrees(limit.soft_most_rad)},
+                              {"max_deg", to_degrees(range.max_rad)},
+                              {"published_min_deg", to_degrees(limit.soft_min_rad)},
+                              {"published_max_deg", to_degrees(limit.soft_max_rad)},
                               {"beyond", range.beyond},
                               {"noise_deg", to_degrees(range.noise_rad)}});
   }

@@ -16,7 +16,7 @@ namespace {
 using hand::Angle;
 
 constexpr std::size_t noise_window = 24; // samples, a quarter of a second of most gloves
-constexpr double least_moved_rad = 0.02; // standard deviation; less is no motion to compare
+constexpr double min_moved_rad = 0.02;   // standard deviation; less is no motion to compare
 
 // Rijpkema and Girard, "Computer animation of knowledge-based human grasping", 1991: a finger's DIP
 // joint bends by two thirds of its PIP joint.
@@ -60,12 +60,12 @@ JointRange range_of(std::vector<double> column, Angle angle, hand::AngleSource s
   const hand::JointLimit& limit = hand::limit_of(angle);
   JointRange range{.source = source, .noise_rad = noise_of(column)};
   const auto outside = std::count_if(column.begin(), column.end(), [&](double at) {
-    return at < limit.soft_least_rad || at > limit.soft_most_rad;
+    return at < limit.soft_min_rad || at > limit.soft_max_rad;
   });
   range.beyond = static_cast<double>(outside) / static_cast<double>(column.size());
   std::sort(column.begin(), column.end());
-  range.least_rad = column.front();
-  range.most_rad = column.back();
+  range.min_rad = column.front();
+  range.max_rad = column.back();
   range.low_rad = percentile(column, 0.05);
   range.median_rad = percentile(column, 0.5);
   range.high_rad = percentile(column, 0.95);
@@ -114,7 +114,7 @@ struct Covariance {
 };
 
 void add_pairs(const Covariance& covariance, JointStudy& study) {
-  constexpr double least = least_moved_rad * least_moved_rad;
+  constexpr double least = min_moved_rad * min_moved_rad;
   for (JointPair& pair : neighbours()) {
     const Eigen::Index a = covariance.index_of(pair.one), b = covariance.index_of(pair.other);
     if (a < 0 || b < 0) continue;
@@ -129,7 +129,7 @@ void add_pairs(const Covariance& covariance, JointStudy& study) {
 
 void add_components(const Covariance& covariance, JointStudy& study) {
   const double all = covariance.matrix.trace();
-  if (!(all > least_moved_rad * least_moved_rad)) return;
+  if (!(all > min_moved_rad * min_moved_rad)) return;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance.matrix,
                                                               Eigen::EigenvaluesOnly);
   double sum = 0.0;

@@ -19,7 +19,7 @@ namespace nendo::takes {
 /// Of a joint angle, in radians.
 struct JointRange {
   hand::AngleSource source = hand::AngleSource::zero;
-  double least_rad = 0.0, most_rad = 0.0;
+  double min_rad = 0.0, max_rad = 0.0;
   double low_rad = 0.0, median_rad = 0.0, high_rad = 0.0; ///< 5th, 50th and 95th percentiles
   double beyond = 0.0; ///< part of the samples outside the published range (joint_limits.hpp)
   /// What differs from sample to sample while the joint rests: root mean square of white noise with

@@ -8,7 +8,7 @@
 namespace nendo::takes {
 namespace {
 
-constexpr std::size_t most_poses = 20'000; // of longer takes, every other frame, or fewer
+constexpr std::size_t max_poses = 20'000; // of longer takes, every other frame, or fewer
 
 struct Pose {
   double time_s;
@@ -40,7 +40,7 @@ std::vector<Pose> poses_of(FrameSource& frames) {
   for (std::size_t number = 0; frames.next(); ++number) {
     if (number % every != 0) continue;
     poses.push_back({frames.time_s(), numbers_of(frames.frame())});
-    if (poses.size() < most_poses) continue;
+    if (poses.size() < max_poses) continue;
     for (std::size_t at = 1; 2 * at < poses.size(); ++at)
       poses[at] = std::move(poses[2 * at]);
     poses.resize((poses.size() + 1) / 2);
@@ -53,7 +53,7 @@ std::vector<Pose> poses_of(FrameSource& frames) {
 /// hold.
 std::vector<bool> held(const std::vector<Pose>& poses) {
   constexpr double about_s = 0.1;
-  constexpr double most_part = 0.05; // of the fastest change, squared
+  constexpr double max_part = 0.05; // of the fastest change, squared
   std::vector<double> change(poses.size());
   std::size_t from = 0;
   std::size_t to = 0;
@@ -67,7 +67,7 @@ std::vector<bool> held(const std::vector<Pose>& poses) {
   const double most = poses.empty() ? 0.0 : *std::max_element(change.begin(), change.end());
   std::vector<bool> held;
   for (const double one : change)
-    held.push_back(one <= most_part * most);
+    held.push_back(one <= max_part * most);
   return held;
 }
 

@@ -182,7 +182,7 @@ Result<void> blend(Timeline& one, const Timeline& other, double factor) {
     any = true;
     if (factor == 0.0) continue;
     const std::vector<double> times = times_of(hand.keys, partner->keys, one.duration_s);
-    if (times.size() > most_keys) return refused("together they have too many keys");
+    if (times.size() > max_keys) return refused("together they have too many keys");
     const HandCurve from(hand.keys);
     const HandCurve to(partner->keys);
     hand.keys.clear();

@@ -73,10 +73,10 @@ std::optional<recording::PuppetChange> last_change_in(TakeReader reader) {
 /// The options with another puppet than that of the loop's beginning.
 void use_puppet(const puppet::Rig& first, const puppet::Rig& rig, flow::SculptorOptions& options) {
   deform::Supports& supports = options.deformer.supports;
-  const double pieces = options.piece_length / deform::least_radius(supports);
-  const double scale = deform::least_radius(supports) / deform::least_radius(first.supports());
+  const double pieces = options.piece_length / deform::min_radius(supports);
+  const double scale = deform::min_radius(supports) / deform::min_radius(first.supports());
   supports = flow::scaled(rig.supports(), scale); // people may have scaled the radii
-  options.piece_length = pieces * deform::least_radius(supports);
+  options.piece_length = pieces * deform::min_radius(supports);
   options.surface.reset(); // a player makes it
 }
 

@@ -26,7 +26,7 @@ struct MadeTimeline {
 /// the last one, from the beginning on. Functions that it has not are left out, and so are undos
 /// and redos of edits.
 Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const deform::Mesh& model,
-                                      const Tolerance& tolerance, std::size_t most = most_keys);
-static_assert(most_keys == most_events);
+                                      const Tolerance& tolerance, std::size_t most = max_keys);
+static_assert(max_keys == max_events);
 
 } // namespace nendo::timeline

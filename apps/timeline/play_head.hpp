@@ -8,8 +8,8 @@ namespace nendo::timeline {
 
 class PlayHead {
 public:
-  static constexpr double least_speed = 0.1;
-  static constexpr double most_speed = 4.0;
+  static constexpr double min_speed = 0.1;
+  static constexpr double max_speed = 4.0;
 
   double time_s() const noexcept { return time_s_; } ///< within 0 and the duration
   bool is_playing() const noexcept { return playing_; }
@@ -17,9 +17,9 @@ public:
   double speed() const noexcept { return speed_; }
 
   void set_loops(bool loops) noexcept { loops_ = loops; }
-  /// Sets the speed in times real time, limited to least_speed and most_speed.
+  /// Sets the speed in times real time, limited to min_speed and max_speed.
   void set_speed(double speed) noexcept {
-    if (std::isfinite(speed)) speed_ = std::clamp(speed, least_speed, most_speed);
+    if (std::isfinite(speed)) speed_ = std::clamp(speed, min_speed, max_speed);
   }
   /// Starts or pauses. At the end it starts from the beginning.
   void toggle(double duration_s) noexcept {

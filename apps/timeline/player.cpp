@@ -23,7 +23,7 @@ flow::CoreOptions core_options(const Timeline& timeline, const deform::Mesh& mod
   flow::CoreOptions options;
   options.setup = {timeline.sculptor,
                    flow::settings_of(timeline.sculptor, {}, timeline.units_per_metre)};
-  options.shaping.most_requests = timeline.events.size() + 1;
+  options.shaping.max_requests = timeline.events.size() + 1;
   options.shaping.held = timeline.held;
   options.shaping.pull_is_step = timeline.pull_is_step;
   options.shaping.changes_at_once = true;
@@ -38,7 +38,7 @@ flow::CoreOptions core_options(const Timeline& timeline, const deform::Mesh& mod
     options.rig = timeline.masks.front();
     options.more_rigs.assign(timeline.masks.begin() + 1, timeline.masks.end());
   }
-  options.undo_most_bytes = deform::half_of_memory();
+  options.undo_max_bytes = deform::half_of_memory();
   return options;
 }
 
@@ -47,10 +47,10 @@ bool are_too_many(const std::vector<Event>& events, const deform::Mesh& model) {
   std::size_t corners = model.face_corners.size();
   for (const Event& event : events) {
     const bool divides = std::holds_alternative<flow::Subdivide>(event.command);
-    if (divides && corners > flow::FinerModel::most_corners) return true;
+    if (divides && corners > flow::FinerModel::max_corners) return true;
     const auto* const edit = std::get_if<flow::EditPart>(&event.command);
     if (divides || (edit != nullptr && !edit->removes)) corners *= divides ? 4 : 2;
-    if (corners > 4 * flow::FinerModel::most_corners) return true;
+    if (corners > 4 * flow::FinerModel::max_corners) return true;
   }
   return false;
 }

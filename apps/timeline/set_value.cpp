@@ -59,7 +59,7 @@ double bend(hand::JointAngles& angles, const std::vector<hand::Angle>& joints, d
   const auto room_of = [&](hand::Angle joint) {
     const hand::JointLimit& limit = hand::limit_of(joint);
     const double room =
-        by_rad > 0.0 ? limit.most_rad - angles[joint] : angles[joint] - limit.least_rad;
+        by_rad > 0.0 ? limit.max_rad - angles[joint] : angles[joint] - limit.min_rad;
     return std::max(0.0, room);
   };
   double room = 0.0;

@@ -17,15 +17,15 @@ std::size_t bytes_of(const deform::BlockShape& shape) {
 }
 
 // Of a shape that is kept and the next.
-std::uint64_t stride_for(std::uint64_t frames, std::size_t shape_bytes, std::size_t most_bytes) {
-  const std::uint64_t most_gaps = std::max<std::uint64_t>(2, most_bytes / shape_bytes) - 1;
-  return std::max<std::uint64_t>(1, (frames - 1 + most_gaps - 1) / most_gaps);
+std::uint64_t stride_for(std::uint64_t frames, std::size_t shape_bytes, std::size_t max_bytes) {
+  const std::uint64_t max_gaps = std::max<std::uint64_t>(2, max_bytes / shape_bytes) - 1;
+  return std::max<std::uint64_t>(1, (frames - 1 + max_gaps - 1) / max_gaps);
 }
 
 } // namespace
 
-ShapeCache::ShapeCache(deform::Mesh model, std::size_t most_bytes)
-    : model_(std::move(model)), most_bytes_(most_bytes), worker_([this] { work(); }) {}
+ShapeCache::ShapeCache(deform::Mesh model, std::size_t max_bytes)
+    : model_(std::move(model)), max_bytes_(max_bytes), worker_([this] { work(); }) {}
 
 ShapeCache::~ShapeCache() {
   {
@@ -86,7 +86,7 @@ void ShapeCache::make_shapes(Timeline timeline, std::uint64_t number) {
 void ShapeCache::settle(const Player& player, std::uint64_t number) {
   const Timeline& timeline = player.timeline();
   const std::uint64_t frames = player.frame_count();
-  const std::uint64_t stride = stride_for(frames, bytes_of(player.frame().shape), most_bytes_);
+  const std::uint64_t stride = stride_for(frames, bytes_of(player.frame().shape), max_bytes_);
   const auto count = static_cast<std::size_t>((frames - 1 + stride - 1) / stride + 1);
   std::uint64_t unchanged = 0;
   if (made_of_ && stride == stride_ && timeline.rate_hz == rate_hz_)

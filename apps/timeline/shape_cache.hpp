@@ -31,8 +31,8 @@ struct CachedShape {
 class ShapeCache {
 public:
   static constexpr std::size_t usual_bytes = std::size_t{256} << 20;
-  /// The shapes of `model` take at most `most_bytes`, but two are always kept.
-  explicit ShapeCache(deform::Mesh model, std::size_t most_bytes = usual_bytes);
+  /// The shapes of `model` take at most `max_bytes`, but two are always kept.
+  explicit ShapeCache(deform::Mesh model, std::size_t max_bytes = usual_bytes);
   ~ShapeCache();
   ShapeCache(const ShapeCache&) = delete;
   ShapeCache& operator=(const ShapeCache&) = delete;
@@ -73,7 +73,7 @@ private:
   std::size_t slot_near(double time_s) const noexcept;
 
   const deform::Mesh model_;
-  const std::size_t most_bytes_;
+  const std::size_t max_bytes_;
   std::optional<Timeline> made_of_; ///< the timeline of the fresh shapes; used by the worker only
 
   mutable std::mutex mutex_; ///< guards all members below

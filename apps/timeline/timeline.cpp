@@ -15,8 +15,8 @@
 namespace nendo::timeline {
 namespace {
 
-constexpr double most_angle_rad = 2.0 * std::numbers::pi;
-constexpr double least_positive = 1e-100;
+constexpr double max_angle_rad = 2.0 * std::numbers::pi;
+constexpr double min_positive = 1e-100;
 constexpr double largest = 1e100; // as the solver takes
 
 bool within(double value, double least, double most) noexcept {
@@ -31,20 +31,20 @@ bool is_place(const Eigen::Vector3d& place_m) noexcept {
 
 std::string complaint_about(const HandTrack& track) {
   const std::string whose = std::string(name_of(track.side)) + " hand";
-  constexpr double least_hand_m = 0.01;
-  if (!within(track.size.length_m, least_hand_m, 1.0) ||
-      !within(track.size.breadth_m, least_hand_m, 1.0))
+  constexpr double min_hand_m = 0.01;
+  if (!within(track.size.length_m, min_hand_m, 1.0) ||
+      !within(track.size.breadth_m, min_hand_m, 1.0))
     return whose + ": length and breadth must lie within 0.01 and 1 m";
   for (std::size_t k = 0; k < hand::shape_terms; ++k) {
     const auto term = static_cast<hand::ShapeTerm>(k);
-    const double most = hand::most_of(term);
+    const double most = hand::max_of(term);
     if (!within(track.size.shape[term], -most, most))
       return whose + ": shape: " + std::string(hand::name_of(term)) + " must lie within " +
              std::to_string(-most) + " and " + std::to_string(most);
   }
   if (track.keys.empty()) return whose + ": has no key; a hand needs one at least";
-  if (track.keys.size() > most_keys)
-    return whose + ": has more than " + std::to_string(most_keys) + " keys";
+  if (track.keys.size() > max_keys)
+    return whose + ": has more than " + std::to_string(max_keys) + " keys";
   for (std::size_t at = 0; at < track.keys.size(); ++at) {
     std::string wrong = complaint_about(track.keys[at]);
     if (wrong.empty() && at > 0 && !(track.keys[at].time_s > track.keys[at - 1].time_s))
@@ -56,8 +56,7 @@ std::string complaint_about(const HandTrack& track) {
 
 std::string complaint_about(const flow::SculptorOptions& sculptor, Eigen::Index points) {
   const auto& options = sculptor.deformer;
-  if (!within(sculptor.piece_length, least_positive, largest))
-    return "piece_length must be positive";
+  if (!within(sculptor.piece_length, min_positive, largest)) return "piece_length must be positive";
   flow::LoopSettings settings = flow::plain_settings_of(sculptor);
   settings.radius_m.fill(1.0);
   if (const auto fine = flow::check_ranges(settings); !fine) return fine.error().message;
@@ -68,13 +67,13 @@ std::string complaint_about(const flow::SculptorOptions& sculptor, Eigen::Index 
       return "supports: there is no fingertip, or point of a puppet, " + std::to_string(own.point);
   if (!within(options.csrbf.merge_fraction, 0.0, 1.0))
     return "merge_fraction must lie within 0 and 1";
-  constexpr std::size_t most_weight_bytes = std::size_t{1} << 28;
-  if (options.evaluation.weight_bytes > most_weight_bytes)
-    return "weight_bytes must be at most " + std::to_string(most_weight_bytes);
+  constexpr std::size_t max_weight_bytes = std::size_t{1} << 28;
+  if (options.evaluation.weight_bytes > max_weight_bytes)
+    return "weight_bytes must be at most " + std::to_string(max_weight_bytes);
   if (!options.injective) return {};
-  constexpr int most_links = 1024;
-  if (!within(options.injective->most_bound, 0.01, 0.999) || options.injective->most_links < 1 ||
-      options.injective->most_links > most_links || !within(options.injective->least_gap, 0.0, 1.0))
+  constexpr int max_links = 1024;
+  if (!within(options.injective->max_bound, 0.01, 0.999) || options.injective->max_links < 1 ||
+      options.injective->max_links > max_links || !within(options.injective->min_gap, 0.0, 1.0))
     return "injective: most_bound must lie within 0.01 and 0.999, most_links within 1 and 1024, "
            "least_gap within 0 and 1";
   return {};
@@ -115,8 +114,8 @@ std::string complaint_about_parts(const flow::Command& command, const Timeline& 
 std::string complaint_about(const std::vector<std::vector<deform::WirePlace>>& wires) {
   for (std::size_t at = 0; at < wires.size(); ++at) {
     const std::string which = "wire " + std::to_string(at) + ": ";
-    if (wires[at].size() < 2 || wires[at].size() > flow::WirePath::most_places)
-      return which + "must have 2 to " + std::to_string(flow::WirePath::most_places) + " places";
+    if (wires[at].size() < 2 || wires[at].size() > flow::WirePath::max_places)
+      return which + "must have 2 to " + std::to_string(flow::WirePath::max_places) + " places";
     for (const deform::WirePlace& place : wires[at])
       if (!(place.from.cwiseAbs().maxCoeff() <= largest) ||
           !(place.to.cwiseAbs().maxCoeff() <= largest))
@@ -144,8 +143,7 @@ std::string complaint_about(const Event& event, const Timeline& timeline) {
 }
 
 std::string complaint_about(const std::vector<Event>& events, const Timeline& timeline) {
-  if (events.size() > most_events)
-    return "has more than " + std::to_string(most_events) + " events";
+  if (events.size() > max_events) return "has more than " + std::to_string(max_events) + " events";
   for (std::size_t at = 0; at < events.size(); ++at) {
     std::string wrong = complaint_about(events[at], timeline);
     if (wrong.empty() && at > 0 && events[at].time_s < events[at - 1].time_s)
@@ -235,7 +233,7 @@ bool changes_model(const flow::Command& command) noexcept {
 /// Of what changes the model.
 static std::string words_of_model(const flow::Command& command) {
   if (const auto* refine = std::get_if<flow::Refine>(&command))
-    return "refine up to " + std::to_string(refine->most_vertices) + " vertices";
+    return "refine up to " + std::to_string(refine->max_vertices) + " vertices";
   if (std::holds_alternative<flow::ChangeModel>(command)) return "cut";
   if (std::holds_alternative<flow::JoinParts>(command)) return "join";
   if (std::holds_alternative<flow::ChangeTopology>(command)) return "topology";
@@ -292,7 +290,7 @@ Eigen::Index Timeline::point_count() const noexcept {
 std::string complaint_about(const Key& key) {
   if (!within(key.time_s, 0.0, longest_s)) return "its time must lie within 0 and 1000000 s";
   for (std::size_t at = 0; at < hand::angle_count; ++at)
-    if (!within(key.angles[hand::angle_at(at)], -most_angle_rad, most_angle_rad))
+    if (!within(key.angles[hand::angle_at(at)], -max_angle_rad, max_angle_rad))
       return std::string(hand::angle_names[at]) + " must lie within a full turn either way";
   if (!is_place(key.wrist_m)) return "the wrist must be within 1000 m of the stage's middle";
   if (!within(key.wrist_turn.norm(), 0.99, 1.01))
@@ -301,9 +299,9 @@ std::string complaint_about(const Key& key) {
 }
 
 std::string complaint_about(const Timeline& timeline) {
-  if (!within(timeline.units_per_metre, least_positive, largest))
+  if (!within(timeline.units_per_metre, min_positive, largest))
     return "units_per_metre must be positive";
-  if (!within(timeline.rate_hz, flow::TickGrid::least_rate_hz, flow::TickGrid::most_rate_hz))
+  if (!within(timeline.rate_hz, flow::TickGrid::min_rate_hz, flow::TickGrid::max_rate_hz))
     return "rate_hz must lie within 1 and 10000";
   if (!within(timeline.duration_s, 0.0, longest_s))
     return "duration_s must lie within 0 and 1000000";

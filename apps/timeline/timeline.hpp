@@ -102,8 +102,8 @@ std::optional<std::uint8_t> clutched_named(std::string_view name) noexcept;
 /// (0.3)", "the left index finger lets go".
 std::string in_words(const Timeline& timeline, const Event& event);
 
-inline constexpr std::size_t most_keys = 1'000'000; ///< of a hand
-inline constexpr std::size_t most_events = 1'000'000;
+inline constexpr std::size_t max_keys = 1'000'000; ///< of a hand
+inline constexpr std::size_t max_events = 1'000'000;
 inline constexpr double longest_s = 1e6;
 inline constexpr double farthest_m = 1e3;
 

@@ -14,7 +14,7 @@
 namespace nendo::timeline {
 
 inline constexpr std::string_view file_ending = ".timeline.toml";
-inline constexpr std::uint64_t most_file_bytes = std::uint64_t{1} << 26;
+inline constexpr std::uint64_t max_file_bytes = std::uint64_t{1} << 26;
 
 /// Returns the timeline as text. The same timeline always gives the same text, and reading the text
 /// gives the same bits. Error: failed (complaint_about() has a complaint, a file name is not UTF-8,

@@ -103,9 +103,9 @@ std::string sculptor_text(const flow::SculptorOptions& sculptor, bool is_puppet)
     text += line("clay_scales_few_vertices", "true");
   if (options.injective)
     text +=
-        line("injective", "{ most_bound = " + decimal_text(options.injective->most_bound) +
-                              ", most_links = " + std::to_string(options.injective->most_links) +
-                              ", least_gap = " + decimal_text(options.injective->least_gap) + " }");
+        line("injective", "{ most_bound = " + decimal_text(options.injective->max_bound) +
+                              ", most_links = " + std::to_string(options.injective->max_links) +
+                              ", least_gap = " + decimal_text(options.injective->min_gap) + " }");
   return text;
 }
 
@@ -208,7 +208,7 @@ std::string event_text(const Timeline& timeline, const Event& event) {
   if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&command))
     return "symmetric = " + word(symmetry->on);
   if (const auto* refine = std::get_if<flow::Refine>(&command))
-    return "refine = " + std::to_string(refine->most_vertices);
+    return "refine = " + std::to_string(refine->max_vertices);
   if (const auto* change = std::get_if<flow::ChangeModel>(&command))
     return "cut = " + std::to_string(change->number);
   if (const auto* join = std::get_if<flow::JoinParts>(&command))
@@ -261,7 +261,7 @@ Result<std::string> timeline_text(const Timeline& timeline) {
             line("breadth_m", decimal_text(hand.size.breadth_m)) + shape_text(hand.size.shape);
     for (const Key& key : hand.keys) {
       text += key_text(key);
-      if (text.size() > most_file_bytes)
+      if (text.size() > max_file_bytes)
         return failed("so many keys are too much for a file; make it with a greater --tolerance");
     }
   }
@@ -269,7 +269,7 @@ Result<std::string> timeline_text(const Timeline& timeline) {
 }
 
 Result<Timeline> read_timeline(const std::filesystem::path& path) {
-  const auto text = read_file(path, most_file_bytes, "timeline");
+  const auto text = read_file(path, max_file_bytes, "timeline");
   if (!text) return text.error();
   return parse_timeline(*text, path.string());
 }

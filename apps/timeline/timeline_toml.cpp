@@ -27,11 +27,11 @@ deform::Support read_support(TomlReader& reader, const toml::node& node) {
 void read_supports(TomlReader& reader, const toml::table& table, std::string_view of_own,
                    deform::Supports& supports) {
   supports = {};
-  constexpr std::size_t most_supports = puppet::Puppet::most_points;
+  constexpr std::size_t max_supports = puppet::Puppet::max_points;
   const toml::array* const shared = reader.array(table, "shared");
   const toml::array* const own = reader.array(table, "own");
   if (shared == nullptr || own == nullptr) return;
-  if (shared->size() > most_supports || own->size() > most_supports)
+  if (shared->size() > max_supports || own->size() > max_supports)
     return reader.complain(table, "there are more than 1000 supports of a kind");
   for (const toml::node& node : *shared)
     supports.shared.push_back(read_support(reader, node));
@@ -39,7 +39,7 @@ void read_supports(TomlReader& reader, const toml::table& table, std::string_vie
     const toml::table* const one = reader.as_table(node, "an own support");
     if (one == nullptr) return;
     reader.allow_only(*one, {of_own, "radius", "weight"});
-    const auto point = static_cast<Eigen::Index>(reader.count(*one, of_own, most_supports));
+    const auto point = static_cast<Eigen::Index>(reader.count(*one, of_own, max_supports));
     supports.own.push_back({point, {reader.number(*one, "radius"), reader.number(*one, "weight")}});
   }
 }
@@ -51,9 +51,9 @@ void read_injective(TomlReader& reader, const toml::table& table,
   if (injective == nullptr) return;
   reader.allow_only(*injective, {"most_bound", "most_links", "least_gap"});
   options.injective.emplace();
-  options.injective->most_bound = reader.number(*injective, "most_bound");
-  options.injective->most_links = static_cast<int>(reader.count(*injective, "most_links", 1024));
-  options.injective->least_gap = reader.number(*injective, "least_gap");
+  options.injective->max_bound = reader.number(*injective, "most_bound");
+  options.injective->max_links = static_cast<int>(reader.count(*injective, "most_links", 1024));
+  options.injective->min_gap = reader.number(*injective, "least_gap");
 }
 
 /// Reads a setting that a table has, or must have because all files do.
@@ -268,9 +268,9 @@ void read_wires(TomlReader& reader, const toml::table& root, Timeline& timeline)
   if (wires == nullptr) return;
   for (const toml::node& node : *wires) {
     const toml::array* const places = node.as_array();
-    if (places == nullptr || places->size() > flow::WirePath::most_places)
+    if (places == nullptr || places->size() > flow::WirePath::max_places)
       return reader.complain(node, "a wire must be a list of at most " +
-                                       std::to_string(flow::WirePath::most_places) + " places");
+                                       std::to_string(flow::WirePath::max_places) + " places");
     auto& wire = timeline.wires.emplace_back();
     for (const toml::node& place : *places) {
       const auto ends = reader.numbers<6>(place, "a wire's place");
@@ -295,8 +295,7 @@ flow::Command read_command(TomlReader& reader, const toml::table& event, const p
   if (event.contains("clutch")) return read_clutch(reader, event);
   if (event.contains("role")) return read_role(reader, event, rig);
   if (event.contains("masks"))
-    return flow::ChangePuppet{
-        static_cast<std::uint32_t>(reader.count(event, "masks", most_events))};
+    return flow::ChangePuppet{static_cast<std::uint32_t>(reader.count(event, "masks", max_events))};
   if (event.contains("symmetric")) return flow::SetSymmetry{reader.truth(event, "symmetric")};
   const auto number = [&](const char* name) {
     constexpr std::uint32_t most = deform::no_index - 1;

@@ -41,8 +41,8 @@ void DopeSheet::zoom(double x, double steps) noexcept {
   const double part = std::clamp((x - left) / span_px(), 0.0, 1.0);
   const double at_s = first_s_ + part * (last_s_ - first_s_);
   const double length_s = (last_s_ - first_s_) * std::pow(0.8, std::clamp(steps, -20.0, 20.0));
-  const double least_s = std::min(closest, std::max(duration_s_, closest));
-  const double kept_s = std::clamp(length_s, least_s, std::max(duration_s_, closest));
+  const double min_s = std::min(closest, std::max(duration_s_, closest));
+  const double kept_s = std::clamp(length_s, min_s, std::max(duration_s_, closest));
   show(at_s - part * kept_s, at_s + (1.0 - part) * kept_s);
 }
 
@@ -91,11 +91,11 @@ std::optional<std::size_t> DopeSheet::mark_at(std::span<const StripMark> marks, 
 }
 
 double DopeSheet::ruler_step_s() const noexcept {
-  constexpr double least_px = 64.0;
-  const double least_s = least_px / span_px() * (last_s_ - first_s_);
-  const double power = std::pow(10.0, std::floor(std::log10(least_s)));
+  constexpr double min_px = 64.0;
+  const double min_s = min_px / span_px() * (last_s_ - first_s_);
+  const double power = std::pow(10.0, std::floor(std::log10(min_s)));
   for (const double times : {1.0, 2.0, 5.0})
-    if (times * power >= least_s) return times * power;
+    if (times * power >= min_s) return times * power;
   return 10.0 * power;
 }
 

@@ -109,12 +109,12 @@ private:
     const auto at_time = [&](double time_s) {
       return std::lower_bound(keys_s.begin(), keys_s.end(), time_s);
     };
-    constexpr double least_gap = 1.0; // pixels; nearer ones are one to the eye
+    constexpr double min_gap = 1.0; // pixels; nearer ones are one to the eye
     const double pixel_s = strip_.time_at(DopeSheet::left + 1.0) - strip_.first_s();
     for (auto key = at_time(strip_.first_s() - 8.0 * pixel_s);
          key != keys_s.end() && *key <= strip_.last_s() + 8.0 * pixel_s;) {
       diamond(lane, static_cast<std::size_t>(key - keys_s.begin()), key_colour, key_edge);
-      key = std::max(key + 1, at_time(*key + least_gap * pixel_s));
+      key = std::max(key + 1, at_time(*key + min_gap * pixel_s));
     }
     for (const auto& [marked, colour, edge] :
          {std::tuple{look_.pointed_at, pointed_colour, key_edge},

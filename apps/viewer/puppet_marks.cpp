@@ -19,8 +19,8 @@ namespace {
 
 constexpr double above_m = 0.0015; // the surface, so that patches are seen
 constexpr double mark_px = 6.0;
-constexpr std::size_t most_named = 16; // points; of more, only those that a person points at
-constexpr double reach_px = 11.0;      // of the mouse, to a mark
+constexpr std::size_t max_named = 16; // points; of more, only those that a person points at
+constexpr double reach_px = 11.0;     // of the mouse, to a mark
 
 render::Material patch(const Vector3f& colour, float opacity) {
   render::Material material{colour, 0.0F, opacity, opacity};
@@ -200,7 +200,7 @@ void draw_points(const PuppetEditor& editor, const render::Camera& stage_camera,
       list.AddCircleFilled(middle, mark, colour);
     list.AddCircle(middle, mark + 1.5F, at == chosen || at == hovered ? white : dark, 0, 2.0F);
     const bool is_meant = at == chosen || at == hovered;
-    if (!is_meant && points.size() > most_named) continue;
+    if (!is_meant && points.size() > max_named) continue;
     list.AddText({middle.x + 11.0F, middle.y - 15.0F}, dark, points[at].name.c_str());
     list.AddText({middle.x + 10.0F, middle.y - 16.0F}, is_meant ? white : faint,
                  points[at].name.c_str());

@@ -24,9 +24,9 @@ Vector2d pointer_now() {
 
 /// By which the mouse has turned what is at that pixel, counter-clockwise.
 double turned_deg(const Vector2d& pivot, const Vector2d& from, const Vector2d& to) {
-  constexpr double least_px = 4.0; // nearer to the pivot, no direction is meant
+  constexpr double min_px = 4.0; // nearer to the pivot, no direction is meant
   const Vector2d a = from - pivot, b = to - pivot;
-  if (a.norm() < least_px || b.norm() < least_px) return 0.0;
+  if (a.norm() < min_px || b.norm() < min_px) return 0.0;
   return to_degrees(std::atan2(a.y() * b.x() - a.x() * b.y(), a.dot(b))); // y points down
 }
 

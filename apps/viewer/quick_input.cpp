@@ -8,13 +8,13 @@
 namespace nendo::viewer {
 namespace {
 
-constexpr std::size_t most_waiting = 64; // of somebody who leans on the keyboard
+constexpr std::size_t max_waiting = 64; // of somebody who leans on the keyboard
 
 } // namespace
 
 void QuickInput::press(int key, bool control, bool shift) {
   if (key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER) return; // come with the others
-  if (waiting_.size() < most_waiting) waiting_.push_back({key, control, shift});
+  if (waiting_.size() < max_waiting) waiting_.push_back({key, control, shift});
 }
 
 void QuickInput::click() noexcept {

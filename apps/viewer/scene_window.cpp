@@ -59,7 +59,7 @@ bool draws_itself() {
   return false;
 }
 
-constexpr std::chrono::milliseconds least_period(8); // where no screen sets the pace
+constexpr std::chrono::milliseconds min_period(8); // where no screen sets the pace
 
 QuickInput& quick_of(GLFWwindow* window) {
   return *static_cast<QuickInput*>(glfwGetWindowUserPointer(window));
@@ -256,7 +256,7 @@ void SceneWindow::end_picture() {
   quick_->take_back();
   draw_all(!draws_itself_);
   glfwSwapBuffers(window_);
-  std::this_thread::sleep_until(begun_ + least_period);
+  std::this_thread::sleep_until(begun_ + min_period);
 }
 
 bool SceneWindow::Shown::is_of(const SceneWindow& window, render::Size wanted) const {

@@ -15,8 +15,8 @@ using Eigen::Vector3f;
 
 namespace {
 
-constexpr float least_slack_m = 0.004F; // as in pictures (shading.cpp)
-constexpr float edge_samples = 8.0F;    // stay empty, so that the map's edge casts no shadow
+constexpr float min_slack_m = 0.004F; // as in pictures (shading.cpp)
+constexpr float edge_samples = 8.0F;  // stay empty, so that the map's edge casts no shadow
 
 } // namespace
 
@@ -64,7 +64,7 @@ bool ShadowMap::begin(const AlignedBox3f& casting, const Vector3f& toward) {
     box.extend(rows * casting.corner(static_cast<AlignedBox3f::CornerType>(corner)));
   const float across = std::max(1e-3F, box.sizes().head<2>().maxCoeff());
   const float sample_m = across / (static_cast<float>(side) - 2.0F * edge_samples);
-  slack_m_ = std::max(least_slack_m, 2.0F * sample_m);
+  slack_m_ = std::max(min_slack_m, 2.0F * sample_m);
   const float half = static_cast<float>(side) * sample_m / 2.0F;
   const float half_deep = box.sizes().z() / 2.0F + 2.0F * slack_m_;
   const Vector3f middle = box.center();

@@ -24,7 +24,7 @@ void SmoothTarget::make(render::Size size, bool smooth) {
   smooth_ = smooth;
   GLint most = 0;
   glGetIntegerv(GL_MAX_SAMPLES, &most);
-  for (int samples = smooth ? std::min<int>(most, most_samples) : 0; samples >= 0; --samples) {
+  for (int samples = smooth ? std::min<int>(most, max_samples) : 0; samples >= 0; --samples) {
     glGenFramebuffers(1, &frame_buffer_);
     glGenRenderbuffers(1, &colours_);
     glGenRenderbuffers(1, &depths_);

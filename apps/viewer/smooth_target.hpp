@@ -28,7 +28,7 @@ private:
   void make(render::Size size, bool smooth);
   void drop() noexcept;
 
-  static constexpr int most_samples = 4;
+  static constexpr int max_samples = 4;
   unsigned frame_buffer_ = 0;
   unsigned colours_ = 0, depths_ = 0;
   render::Size size_;

@@ -8,7 +8,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double most_tip_m = 2.0; // from the stage's middle, as far as arms reach
+constexpr double max_tip_m = 2.0; // from the stage's middle, as far as arms reach
 
 } // namespace
 
@@ -34,7 +34,7 @@ void TipMover::take(const hand::HandPose& pose, hand::Finger finger) noexcept {
 }
 
 void TipMover::go_by(const Vector3d& way_m) noexcept {
-  target_m_ = (target_m_ + way_m).cwiseMax(-most_tip_m).cwiseMin(most_tip_m);
+  target_m_ = (target_m_ + way_m).cwiseMax(-max_tip_m).cwiseMin(max_tip_m);
 }
 
 void TipMover::shift(const render::Camera& camera, double dx, double dy, double height) noexcept {

@@ -95,7 +95,7 @@ std::optional<flow::Command> role_in(Words words) noexcept {
   std::array<double, 1> function{};
   if (!words.take(function)) return std::nullopt;
   const auto input = puppet::HandSignal::named(words.next());
-  const bool exists = function[0] >= 0.0 && function[0] < puppet::Puppet::most_functions &&
+  const bool exists = function[0] >= 0.0 && function[0] < puppet::Puppet::max_functions &&
                       function[0] == std::floor(function[0]);
   if (!input || !exists || !words.are_over()) return std::nullopt;
   return flow::SetRole{static_cast<std::uint16_t>(function[0]), *input};

@@ -22,7 +22,7 @@ using ClientCommand = std::variant<flow::Command, const commands::Row*, NamedSet
 
 /// Returns the command that the text means. The quaternion of a wrist is normalised. Allocates only
 /// for an error. Error: bad_input (it is no command, or a number in it is out of range), in at most
-/// most_close_reason bytes.
+/// max_close_reason bytes.
 Result<ClientCommand> parse_command(std::string_view text);
 
 } // namespace nendo::web

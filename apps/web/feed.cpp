@@ -63,7 +63,7 @@ std::optional<std::vector<std::byte>> Feed::update(std::span<const Record> recor
   const Record& newest = records.back();
   UpdateHead head;
   std::memcpy(&head, newest.head.data(), sizeof head);
-  head.most_late_us = max_late(records);
+  head.max_late_us = max_late(records);
   head.lost = static_cast<std::uint32_t>(counters.lost);
   head.skipped = static_cast<std::uint32_t>(skipped_);
   for (std::size_t slot = 0; slot < counters.gloves.size(); ++slot) {

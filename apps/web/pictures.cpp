@@ -25,8 +25,8 @@ Pictures pictures_of(const deform::Mesh& mesh) {
 }
 
 std::optional<std::size_t> picture_number(std::string_view text) noexcept {
-  constexpr std::size_t most_digits = 6;
-  if (text.empty() || text.size() > most_digits) return std::nullopt;
+  constexpr std::size_t max_digits = 6;
+  if (text.empty() || text.size() > max_digits) return std::nullopt;
   std::size_t number = 0;
   for (const char digit : text) {
     if (digit < '0' || digit > '9') return std::nullopt;

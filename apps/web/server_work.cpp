@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds frame_period(8);
 /// How often deadlines are looked at.
 constexpr milliseconds deadline_period(250);
-constexpr std::size_t most_weights = 3;
+constexpr std::size_t max_weights = 3;
 
 void write_loop(std::uint16_t loop, std::size_t at, std::vector<std::byte>& message) {
   std::memcpy(message.data() + at, &loop, sizeof loop);
@@ -61,7 +61,7 @@ void Server::Work::present(std::shared_ptr<FrameStream> stream, std::vector<std:
 void Server::Work::add_weights(std::uint64_t number, std::vector<std::byte> message) {
   const std::scoped_lock lock(mutex_);
   weights_.push_back({number, std::make_shared<const std::vector<std::byte>>(std::move(message))});
-  if (weights_.size() <= most_weights) return;
+  if (weights_.size() <= max_weights) return;
   weights_.erase(std::find_if(weights_.begin(), weights_.end(), [this](const Weights& some) {
     return some.number != weights_in_use_;
   }));

@@ -103,7 +103,7 @@ std::string control_frame(Opcode opcode, std::string_view payload) {
 std::string close_frame(CloseCode code, std::string_view reason) {
   const auto number = static_cast<unsigned>(code);
   std::string payload{static_cast<char>(number >> 8U), static_cast<char>(number & 0xFFU)};
-  payload += reason.substr(0, most_close_reason);
+  payload += reason.substr(0, max_close_reason);
   return control_frame(Opcode::close, payload);
 }
 

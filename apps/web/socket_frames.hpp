@@ -72,8 +72,8 @@ private:
 std::string server_head(Opcode opcode, std::uint64_t length);
 /// Returns a whole control frame. `payload` may have at most 125 bytes.
 std::string control_frame(Opcode opcode, std::string_view payload);
-/// `reason` is for people; only its first most_close_reason bytes are sent.
-inline constexpr std::size_t most_close_reason = 123;
+/// `reason` is for people; only its first max_close_reason bytes are sent.
+inline constexpr std::size_t max_close_reason = 123;
 std::string close_frame(CloseCode code, std::string_view reason = {});
 
 } // namespace nendo::web

@@ -132,7 +132,7 @@ UpdateHead head_of(const flow::Frame& frame) noexcept {
   head.missed = frame.missed;
   head.rest_changes = static_cast<std::uint32_t>(frame.rest_changes);
   head.jumps = static_cast<std::uint32_t>(frame.shape_jumps - frame.surface_moves);
-  head.late_us = head.most_late_us = microseconds(frame.woke - frame.scheduled);
+  head.late_us = head.max_late_us = microseconds(frame.woke - frame.scheduled);
   head.since_last_us = microseconds(frame.since_last);
   head.links = static_cast<std::uint32_t>(std::max(0, frame.chain.links));
   for (unsigned slot = 0; slot < 2; ++slot) {

@@ -50,7 +50,7 @@ struct UpdateHead {
   std::uint32_t rest_changes = 0;
   std::uint32_t jumps = 0;
   float late_us = 0.0F;
-  float most_late_us = 0.0F;
+  float max_late_us = 0.0F;
   float since_last_us = 0.0F;
   std::uint32_t lost = 0;
   std::uint32_t skipped = 0;

@@ -10,8 +10,8 @@ namespace nendo::hand {
 AngleLimits default_angle_limits() noexcept {
   AngleLimits limits;
   for (std::size_t n = 0; n < angle_count; ++n) {
-    limits.low[angle_at(n)] = joint_limits[n].least_rad;
-    limits.high[angle_at(n)] = joint_limits[n].most_rad;
+    limits.low[angle_at(n)] = joint_limits[n].min_rad;
+    limits.high[angle_at(n)] = joint_limits[n].max_rad;
   }
   return limits;
 }

@@ -11,7 +11,7 @@ namespace {
 
 Result<void> check_bone(std::string_view finger, std::string_view bone, double length_m) {
   // Written so that a NaN is refused.
-  if (length_m >= BoneLengths::least_m && length_m <= BoneLengths::most_m) return {};
+  if (length_m >= BoneLengths::min_m && length_m <= BoneLengths::max_m) return {};
   char length[32];
   std::snprintf(length, sizeof length, "%g", length_m);
   return Error{Errc::bad_input, std::string(finger) + " " + std::string(bone) + " bone: " + length +

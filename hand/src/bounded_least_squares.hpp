@@ -28,9 +28,9 @@ struct NormalEquations {
 };
 
 struct Effort {
-  int most_iterations = 20;
-  double enough_m = 0.0;        ///< stop as soon as no target is farther
-  double least_step_rad = 1e-9; ///< stop when a step is shorter
+  int max_iterations = 20;
+  double enough_m = 0.0;      ///< stop as soon as no target is farther
+  double min_step_rad = 1e-9; ///< stop when a step is shorter
 };
 
 /// Returns the step that lowers the quadratic model most without leaving the box. At first it holds
@@ -82,7 +82,7 @@ int minimise(const Model& model, const Box<N>& box, const Effort& effort,
   double damping = 1e-3;
   double growth = 2.0;
   int iteration = 0;
-  while (iteration < effort.most_iterations && here.farthest_m > effort.enough_m) {
+  while (iteration < effort.max_iterations && here.farthest_m > effort.enough_m) {
     ++iteration;
     Eigen::Matrix<double, N, N> damped = here.matrix;
     damped.diagonal().array() += damping * here.matrix.diagonal().maxCoeff() + 1e-12;
@@ -104,7 +104,7 @@ int minimise(const Model& model, const Box<N>& box, const Effort& effort,
       damping *= growth;
       growth *= 2.0;
     }
-    if (!(step_rad > effort.least_step_rad)) break;
+    if (!(step_rad > effort.min_step_rad)) break;
   }
   return iteration;
 }

@@ -12,8 +12,8 @@ bool lies_within(double value, double least, double most) noexcept {
   return value >= least && value <= most;
 }
 
-constexpr double most_offset_counts = 65535.0 * 100.0;
-constexpr std::size_t most_text_bytes = 200;
+constexpr double max_offset_counts = 65535.0 * 100.0;
+constexpr std::size_t max_text_bytes = 200;
 
 std::string complaint_about_texts(const WearerCalibration& wearer) {
   struct Named {
@@ -62,7 +62,7 @@ bool may_be_calibrated(Sensor sensor) noexcept {
 
 std::string complaint_about_text(std::string_view text, bool may_be_empty) {
   if (text.empty()) return may_be_empty ? "" : "must not be empty; give a name";
-  if (text.size() > most_text_bytes) return "is longer than 200 bytes; shorten it";
+  if (text.size() > max_text_bytes) return "is longer than 200 bytes; shorten it";
   if (!is_utf8(text)) return "is not UTF-8; save it as UTF-8";
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -84,7 +84,7 @@ std::string complaint_about_gain(Sensor sensor, double gain, CountScale counts) 
 }
 
 std::string complaint_about_offset(double offset_counts) {
-  if (lies_within(offset_counts, -most_offset_counts, most_offset_counts)) return {};
+  if (lies_within(offset_counts, -max_offset_counts, max_offset_counts)) return {};
   return "the offset is absurd; give counts";
 }
 
@@ -96,8 +96,8 @@ std::string complaint_about(Sensor sensor, const SensorCalibration& line, CountS
 
 std::string complaint_about(const SensorQuality& quality) {
   if (!lies_within(quality.residual_rad, 0.0, 10.0)) return "residual_rad must lie within 0 and 10";
-  if (!lies_within(quality.least_counts, 0.0, 65535.0) ||
-      !lies_within(quality.most_counts, quality.least_counts, 65535.0))
+  if (!lies_within(quality.min_counts, 0.0, 65535.0) ||
+      !lies_within(quality.max_counts, quality.min_counts, 65535.0))
     return "least_counts and most_counts must be counts, the least first";
   if (!lies_within(quality.confidence, 0.0, 1.0)) return "confidence must lie within 0 and 1";
   return {};
@@ -107,7 +107,7 @@ std::string complaint_about(const HandSize& size) {
   if (!lies_within(size.length_m, 0.05, 0.35)) return "length_m must lie within 0.05 and 0.35";
   if (!lies_within(size.breadth_m, 0.02, 0.2)) return "breadth_m must lie within 0.02 and 0.2";
   for (std::size_t k = 0; k < shape_terms; ++k) {
-    const double most = most_of(static_cast<ShapeTerm>(k));
+    const double most = max_of(static_cast<ShapeTerm>(k));
     if (!lies_within(size.shape.terms[k], -most, most))
       return std::string(shape_term_names[k]) + " must be a number from " + std::to_string(-most) +
              " to " + std::to_string(most);

@@ -11,7 +11,7 @@
 namespace nendo::hand {
 
 /// No calibration file of any format may be larger.
-inline constexpr std::uint64_t most_calibration_bytes = std::uint64_t{1} << 20;
+inline constexpr std::uint64_t max_calibration_bytes = std::uint64_t{1} << 20;
 
 /// Tells whether counts usually rise with the joint's angle: the sensor measures bending, or lies
 /// between two fingers. For the sensors of the wrist, of the arch and the other ones of the thumb,

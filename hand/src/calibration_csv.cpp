@@ -14,7 +14,7 @@
 namespace nendo::hand {
 namespace {
 
-constexpr std::size_t most_head_bytes = 1000;
+constexpr std::size_t max_head_bytes = 1000;
 constexpr std::string_view header = "sensor,gain_rad_per_count,offset_counts";
 
 constexpr std::string_view gain_rad = "gain_rad_per_count";
@@ -102,7 +102,7 @@ CalibrationFormat format_of(std::string_view text) noexcept {
   LineReader lines(text);
   const bool is_named = text.find("cyberglove_calibration") != std::string_view::npos;
   while (const auto line = lines.next()) {
-    const std::string plain = TableReader::plain(line->substr(0, most_head_bytes));
+    const std::string plain = TableReader::plain(line->substr(0, max_head_bytes));
     const bool has_gain =
         plain.find(gain_rad) != std::string::npos || plain.find(gain_deg) != std::string::npos;
     if (has_gain && plain.find('=') == std::string::npos) return CalibrationFormat::csv;
@@ -142,7 +142,7 @@ Result<ExportedCalibration> calibration_csv_text(const Calibration& calibration)
 }
 
 Result<std::string> read_calibration_text(const std::filesystem::path& path) {
-  return read_file(path, most_calibration_bytes, "calibration");
+  return read_file(path, max_calibration_bytes, "calibration");
 }
 
 Result<void> write_calibration_text(const std::filesystem::path& path, std::string_view text) {

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using std::chrono::sys_seconds;
 
 constexpr std::string_view extension = ".toml";
-constexpr unsigned most_version_number = 9999;
+constexpr unsigned max_version_number = 9999;
 
 // -0.0 is written, so that what is read back has the same bits.
 bool is_plain_zero(double value) noexcept {
@@ -48,8 +48,8 @@ std::string sensor_line(Sensor sensor, const SensorCalibration& line,
                      ", offset_counts = " + decimal_text(line.offset_counts);
   if (quality) {
     text += ", residual_rad = " + decimal_text(quality->residual_rad) +
-            ", least_counts = " + decimal_text(quality->least_counts) +
-            ", most_counts = " + decimal_text(quality->most_counts) +
+            ", least_counts = " + decimal_text(quality->min_counts) +
+            ", most_counts = " + decimal_text(quality->max_counts) +
             ", confidence = " + decimal_text(quality->confidence);
   }
   return text + " }\n";
@@ -109,7 +109,7 @@ std::optional<Version> version_of(std::string_view file_name, std::string_view s
   file_name.remove_prefix(form.size());
   if (file_name.empty()) return version;
   const auto number = to_finite_number(file_name.substr(1));
-  if (file_name.front() != '-' || !number || *number < 2.0 || *number > most_version_number)
+  if (file_name.front() != '-' || !number || *number < 2.0 || *number > max_version_number)
     return std::nullopt;
   version.number = static_cast<unsigned>(*number);
   return version;
@@ -158,7 +158,7 @@ Result<fs::path> keep_as_earlier(const fs::path& path) {
     version = versions.back().first;
     ++version.number;
   }
-  for (; version.number < most_version_number; ++version.number) {
+  for (; version.number < max_version_number; ++version.number) {
     fs::path kept = target.parent_path() / version_name(target.stem().string(), version);
     const int error_number = add_name(target, kept);
     if (error_number == 0) return kept;
@@ -175,7 +175,7 @@ Result<fs::path> keep_as_earlier(const fs::path& path) {
 void drop_oldest_versions(const fs::path& path) {
   const Versions versions = versions_of(target_of(path));
   std::error_code ignored;
-  for (std::size_t k = 0; k + most_earlier_versions < versions.size(); ++k)
+  for (std::size_t k = 0; k + max_earlier_versions < versions.size(); ++k)
     fs::remove(versions[k].second, ignored);
 }
 
@@ -207,7 +207,7 @@ Result<std::string> calibration_text(const WearerCalibration& wearer) {
                      left_out_line(wearer.left_out) + mixed_in_lines(wearer.calibration);
   text += "\n[glove]\nmodel = " + toml_string(wearer.glove_model) +
           "\nserial = " + toml_string(wearer.glove_serial) +
-          "\ncounts_most = " + std::to_string(wearer.counts.most) +
+          "\ncounts_max = " + std::to_string(wearer.counts.most) +
           "\nwhole_range = " + (wearer.counts.whole_range ? "true" : "false") + "\n";
   text += "\n[hand_size]\nlength_m = " + decimal_text(wearer.size.length_m) +
           "\nbreadth_m = " + decimal_text(wearer.size.breadth_m) + "\n" +
@@ -221,7 +221,7 @@ Result<std::string> calibration_text(const WearerCalibration& wearer) {
 }
 
 Result<WearerCalibration> read_calibration(const fs::path& path) {
-  const auto text = read_file(path, most_calibration_bytes, "calibration");
+  const auto text = read_file(path, max_calibration_bytes, "calibration");
   if (!text) return text.error();
   return parse_calibration(*text, path.string());
 }
@@ -267,7 +267,7 @@ bool is_earlier_version(const fs::path& path) {
 }
 
 void move_ends(SensorQuality& quality, double by_counts, CountScale glove) noexcept {
-  for (double* const end : {&quality.least_counts, &quality.most_counts})
+  for (double* const end : {&quality.min_counts, &quality.max_counts})
     *end = std::clamp(*end + by_counts, 0.0, static_cast<double>(glove.most));
 }
 
@@ -275,10 +275,10 @@ CountRanges reached_ends(const WearerCalibration& wearer) noexcept {
   CountRanges ends;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto& quality = wearer.quality[slot];
-    if (!quality || !(quality->most_counts > quality->least_counts)) continue;
+    if (!quality || !(quality->max_counts > quality->min_counts)) continue;
     ends.present.add(static_cast<Sensor>(slot));
-    ends.low_counts[slot] = quality->least_counts;
-    ends.high_counts[slot] = quality->most_counts;
+    ends.low_counts[slot] = quality->min_counts;
+    ends.high_counts[slot] = quality->max_counts;
   }
   return ends;
 }

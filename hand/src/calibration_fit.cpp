@@ -22,13 +22,13 @@ namespace {
 // Deviations stay below 15 degrees; a sensor that is off by twice that on average has evidence that
 // contradicts the rest. So does a line that is five times as flat as the default.
 constexpr double contradiction_rad = from_degrees(30);
-constexpr double least_gain_ratio = 0.2;
+constexpr double min_gain_ratio = 0.2;
 // Touches that leave pads so far apart were other touches.
 constexpr double contradiction_m = 0.02;
-constexpr int most_set_aside = 16;
+constexpr int max_set_aside = 16;
 // A sensor that turns by less than this part of the default's counts for the angles that were asked
 // does not work.
-constexpr double least_counts_ratio = 0.15;
+constexpr double min_counts_ratio = 0.15;
 
 Error about(std::string what) {
   return {Errc::bad_input, std::move(what)};
@@ -176,10 +176,10 @@ Result<void> check_fingers(std::span<const PoseReading> readings, SensorMask sen
     const double turned = counts[1] / number[1] - counts[0] / number[0];
     const double asked =
         (angles[1] / number[1] - angles[0] / number[0]) / start.sensors[slot].gain_rad_per_count;
-    if (turned < -least_counts_ratio * asked)
+    if (turned < -min_counts_ratio * asked)
       return about(name_of_slot(slot) +
                    ": its counts fall where the joint bends; hold the poses again as named");
-    if (!(turned > least_counts_ratio * asked))
+    if (!(turned > min_counts_ratio * asked))
       return about(name_of_slot(slot) +
                    ": the poses contradict each other; hold them again, or see if it works");
   }
@@ -212,7 +212,7 @@ std::optional<std::pair<std::size_t, std::size_t>> worst_assumption(const FitPro
       const bool contradicts =
           std::sqrt(squares[slot] / std::max(counted[slot], 1.0)) > contradiction_rad ||
           fitted.sensors[slot].gain_rad_per_count <
-              least_gain_ratio * start.sensors[slot].gain_rad_per_count;
+              min_gain_ratio * start.sensors[slot].gain_rad_per_count;
       const double off = std::abs(angles[n][slot] - assumed.angle_rad) / assumed.deviation_rad;
       if (is_set_aside || !contradicts || off <= farthest) continue;
       farthest = off;
@@ -228,7 +228,7 @@ Solution solve_without_contradictions(FitProblem& problem, std::size_t readings,
                                       std::vector<SetAside>& set_aside) {
   for (;;) {
     Solution solution = solve(problem, free, Unknowns::Zero());
-    if (static_cast<int>(set_aside.size()) >= most_set_aside) return solution;
+    if (static_cast<int>(set_aside.size()) >= max_set_aside) return solution;
     bool changed = false;
     if (const auto worst = worst_assumption(problem, readings, solution, start)) {
       const auto [reading, number] = *worst;
@@ -262,7 +262,7 @@ void mend_lines(CalibrationFit& fit, SensorMask sensors, const Calibration& star
     if (!sensors.has(sensor)) continue;
     const auto [gain, offset] = fit.calibration.sensors[slot];
     const double usual = start.sensors[slot].gain_rad_per_count;
-    if (std::isfinite(gain) && std::isfinite(offset) && gain >= least_gain_ratio * usual) continue;
+    if (std::isfinite(gain) && std::isfinite(offset) && gain >= min_gain_ratio * usual) continue;
     fit.calibration.sensors[slot] = start.sensors[slot];
     fit.sensors[slot].gain_determined = fit.sensors[slot].offset_determined = false;
     fit.undetermined.add(sensor);

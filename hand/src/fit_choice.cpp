@@ -13,7 +13,7 @@ constexpr std::size_t folds = 4;
 // Two fits that foretell about equally well are told apart by chance; then the full one has more
 // behind it.
 constexpr double clearly_better = 0.85;
-constexpr std::size_t least_held_out = 3;
+constexpr std::size_t min_held_out = 3;
 
 /// The joints of a hand that are alike, by slot. Gaps and the thumb's roll and abduction are all
 /// one, for couplings tie them together.
@@ -118,7 +118,7 @@ void choose_by_held_out_poses(CalibrationFit& fit, std::span<const PoseReading> 
     const Alike group = alike_of(slot);
     if (group == Alike::none || !sensors.has(static_cast<Sensor>(slot))) continue;
     const Cost& cost = costs[static_cast<std::size_t>(group)];
-    if (cost.angles < least_held_out || cost.quick >= clearly_better * cost.full) continue;
+    if (cost.angles < min_held_out || cost.quick >= clearly_better * cost.full) continue;
     fit.by_two_poses.add(static_cast<Sensor>(slot));
     fit.calibration.sensors[slot] = quick->calibration.sensors[slot];
     for (std::size_t k = 0; k < couplings.size(); ++k)

@@ -53,14 +53,14 @@ inline constexpr double form_deviation_m = 0.0045;
 
 // How far sensors slip between wearings before anything is known of a wearing: the vendor's figure
 // of repeatability is 3 degrees. These are the least and the most that a touch-up believes.
-inline constexpr double least_slip_rad = 0.009;
-inline constexpr double most_slip_rad = 0.11;
+inline constexpr double min_slip_rad = 0.009;
+inline constexpr double max_slip_rad = 0.11;
 
 // How surely a wearer who goes to both ends of a joint's range comes to the middle between them
 // again: either end differs by some two degrees from one time to the next.
 inline constexpr double middle_of_ends_deviation_rad = 0.02;
 // Who moves a joint less than this part of its range has not gone to its ends.
-inline constexpr double least_part_of_range = 0.5;
+inline constexpr double min_part_of_range = 0.5;
 
 // Beyond this many deviations a residual counts by its size and no longer by its square. So a pose
 // that was held badly, or another pose than was asked for, does not spoil what the other poses

@@ -42,7 +42,7 @@ FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorM
       sensors_(sensors), stiff_(options.stiff), side_(side), start_size_(options.size),
       size_known_(options.size_known),
       start_(options.start.value_or(default_calibration(options.scale))),
-      most_counts_(options.scale.most), touch_is_set_aside_(readings.size()) {
+      max_counts_(options.scale.most), touch_is_set_aside_(readings.size()) {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     if (!sensors_.has(static_cast<Sensor>(slot))) continue;
     double mean = 0.0;
@@ -87,7 +87,7 @@ void FitProblem::compare_ends(CountRanges now, const CountRanges& then) {
     const double moves = now.high_counts[slot] - now.low_counts[slot],
                  moved = then.high_counts[slot] - then.low_counts[slot];
     // Written so that a NaN is no motion.
-    if (!(moved > 0.0 && moves >= least_part_of_range * moved && moves <= most_counts_)) continue;
+    if (!(moved > 0.0 && moves >= min_part_of_range * moved && moves <= max_counts_)) continue;
     for (const auto& reading : readings_)
       now.widen(sensor, reading.held.mean_counts[slot]);
     const double low = now.low_counts[slot] - then.low_counts[slot],
@@ -125,12 +125,12 @@ void FitProblem::find_slips() {
     if (of_sensor.weight == 0.0) continue;
     const double off = of_sensor.off / of_sensor.weight;
     const double weight = of_sensor.weight * of_sensor.weight; // of a square
-    sum += weight * std::clamp(off * off - 1.0 / of_sensor.weight, -most_slip_rad * most_slip_rad,
-                               most_slip_rad * most_slip_rad);
+    sum += weight * std::clamp(off * off - 1.0 / of_sensor.weight, -max_slip_rad * max_slip_rad,
+                               max_slip_rad * max_slip_rad);
     weights += weight;
   }
   const double slip_rad = std::clamp(std::sqrt(std::max(sum, 0.0) / std::max(weights, 1.0)),
-                                     least_slip_rad, most_slip_rad);
+                                     min_slip_rad, max_slip_rad);
   for (Line& line : lines_)
     line.level_unit = slip_rad;
 }

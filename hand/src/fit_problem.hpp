@@ -147,7 +147,7 @@ private:
   HandSize start_size_;
   bool size_known_;
   Calibration start_;
-  double most_counts_;
+  double max_counts_;
   std::array<Line, sensor_slots> lines_{};
   std::vector<std::vector<Assumption>> assumptions_;
   std::vector<Rows> rows_;

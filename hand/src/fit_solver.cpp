@@ -13,7 +13,7 @@ namespace {
 
 // An unknown of which the poses leave more than this part of the default's variance is theirs no
 // more: it is fixed at the default.
-constexpr double most_left_open = 0.8;
+constexpr double max_left_open = 0.8;
 
 /// What poses as far apart as these say of the free unknowns, J^T J. How far each is off says
 /// nothing of a gain: all deviations are in counts here.
@@ -96,7 +96,7 @@ Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information) {
 bool drop_undetermined(FreeUnknowns& free, const Eigen::MatrixXd& information, Unknowns& at) {
   const Eigen::VectorXd open = covariance_of(information).diagonal().head(lines_in(free));
   Eigen::Index worst = 0;
-  if (open.size() == 0 || open.maxCoeff(&worst) <= most_left_open) return false;
+  if (open.size() == 0 || open.maxCoeff(&worst) <= max_left_open) return false;
   FreeUnknowns kept;
   for (std::size_t n = 0; n < free.size(); ++n) {
     const auto row = static_cast<Eigen::Index>(n);

@@ -69,7 +69,7 @@ HandSize FitProblem::size(const Unknowns& at) const {
     const auto term = static_cast<ShapeTerm>(k);
     size.shape.terms[k] =
         std::clamp(size.shape.terms[k] + shape_deviation(term) * unknown(shape_unknowns + k),
-                   -most_of(term), most_of(term));
+                   -max_of(term), max_of(term));
   }
   return size;
 }
@@ -104,7 +104,7 @@ void FitProblem::find_range_ends(const CountRanges& free_motion) {
     // Written so that a NaN is refused.
     if (low_deviation_deg > 0.0 && low >= 0.0 && low <= least + short_of_poses)
       range_ends_.push_back({slot, low, {from_degrees(low_deg), from_degrees(low_deviation_deg)}});
-    if (high_deviation_deg > 0.0 && high <= most_counts_ && high >= most - short_of_poses)
+    if (high_deviation_deg > 0.0 && high <= max_counts_ && high >= most - short_of_poses)
       range_ends_.push_back(
           {slot, high, {from_degrees(high_deg), from_degrees(high_deviation_deg)}});
   }

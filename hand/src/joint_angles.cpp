@@ -13,14 +13,14 @@ namespace {
 // degrees of roll and 10 to 65 of abduction, these bring the tips together.
 constexpr double thumb_ip_of_mcp = 0.5;
 constexpr double resting_opposition = from_degrees(20);
-constexpr double most_roll = from_degrees(30);
-constexpr double most_abduction = from_degrees(35);
+constexpr double max_roll = from_degrees(30);
+constexpr double max_abduction = from_degrees(35);
 constexpr double fully_bent_thumb_mcp = from_degrees(55);
 
-/// Of thumb roll or abduction, which reaches `most_rad`.
-constexpr double estimated_opposition(double thumb_mcp_rad, double most_rad) noexcept {
+/// Of thumb roll or abduction, which reaches `max_rad`.
+constexpr double estimated_opposition(double thumb_mcp_rad, double max_rad) noexcept {
   const double part = std::min(bent(thumb_mcp_rad) / fully_bent_thumb_mcp, 1.0);
-  return resting_opposition + part * (most_rad - resting_opposition);
+  return resting_opposition + part * (max_rad - resting_opposition);
 }
 
 /// A sample seen through a calibration.
@@ -85,11 +85,11 @@ void set_thumb(JointAngles& angles, const Measured& measured) noexcept {
           : 0.0;
   set(Angle::thumb_mcp_flexion, Sensor::thumb_mcp, mcp_guess);
   const double mcp = angles.thumb_mcp_flexion_rad;
-  const auto opposition = [&](double most_rad) {
-    return bends ? estimated_opposition(mcp, most_rad) : 0.0;
+  const auto opposition = [&](double max_rad) {
+    return bends ? estimated_opposition(mcp, max_rad) : 0.0;
   };
-  set(Angle::thumb_roll, Sensor::thumb_roll, opposition(most_roll));
-  set(Angle::thumb_abduction, Sensor::thumb_abduction, opposition(most_abduction));
+  set(Angle::thumb_roll, Sensor::thumb_roll, opposition(max_roll));
+  set(Angle::thumb_abduction, Sensor::thumb_abduction, opposition(max_abduction));
   set(Angle::thumb_ip_flexion, Sensor::thumb_ip, thumb_ip_of_mcp * bent(mcp));
 }
 

@@ -37,10 +37,10 @@ std::optional<FilterKind> filter_named(std::string_view name) noexcept {
 }
 
 JointFilter::JointFilter(const FilterOptions& options) noexcept : options_(options) {
-  constexpr double least_hz = 1e-3;
+  constexpr double min_hz = 1e-3;
   constexpr double most = 1e5;
-  options_.min_cutoff_hz = within(least_hz, options.min_cutoff_hz, most);
-  options_.derivative_cutoff_hz = within(least_hz, options.derivative_cutoff_hz, most);
+  options_.min_cutoff_hz = within(min_hz, options.min_cutoff_hz, most);
+  options_.derivative_cutoff_hz = within(min_hz, options.derivative_cutoff_hz, most);
   options_.beta_hz_per_rad_s = within(0.0, options.beta_hz_per_rad_s, most);
 }
 

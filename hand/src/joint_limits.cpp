@@ -16,16 +16,16 @@ double into_stop(double excess, double width) noexcept {
 } // namespace
 
 double JointLimit::soften(double angle_rad) const noexcept {
-  if (angle_rad > soft_most_rad) {
-    const double into = into_stop(angle_rad - soft_most_rad, most_rad - soft_most_rad);
-    return std::min(soft_most_rad + into, most_rad);
+  if (angle_rad > soft_max_rad) {
+    const double into = into_stop(angle_rad - soft_max_rad, max_rad - soft_max_rad);
+    return std::min(soft_max_rad + into, max_rad);
   }
-  if (angle_rad >= soft_least_rad) return angle_rad;
-  if (angle_rad < soft_least_rad) {
-    const double into = into_stop(soft_least_rad - angle_rad, soft_least_rad - least_rad);
-    return std::max(soft_least_rad - into, least_rad);
+  if (angle_rad >= soft_min_rad) return angle_rad;
+  if (angle_rad < soft_min_rad) {
+    const double into = into_stop(soft_min_rad - angle_rad, soft_min_rad - min_rad);
+    return std::max(soft_min_rad - into, min_rad);
   }
-  return least_rad; // NaN, of a broken calibration
+  return min_rad; // NaN, of a broken calibration
 }
 
 } // namespace nendo::hand

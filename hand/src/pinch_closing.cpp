@@ -16,10 +16,10 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr std::size_t most_pinches = 4;
-constexpr int most_rows = 3 * most_pinches;
-using GapVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_rows, 1>;
-using GapMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_rows, most_rows>;
+constexpr std::size_t max_pinches = 4;
+constexpr int max_rows = 3 * max_pinches;
+using GapVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_rows, 1>;
+using GapMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_rows, max_rows>;
 using PadChains = std::array<FingerChain, finger_count>;
 using DigitAngles = std::array<FourAngles, finger_count>; // or what they turn by, or variances
 
@@ -29,7 +29,7 @@ constexpr double thumb_certainty = 0.6;
 
 // Of a gap that is closed half: about what the joints make of a pinch.
 constexpr double half_gap_m = 0.008;
-constexpr double least_weight = 1e-6;
+constexpr double min_weight = 1e-6;
 
 double smooth_step(double from, double to, double at) noexcept {
   const double part = std::clamp((at - from) / (to - from), 0.0, 1.0);
@@ -64,7 +64,7 @@ public:
     place_pads();
     for (std::size_t finger = 1; finger < finger_count; ++finger) {
       const double weight = weight_of(pads_[0], pads_[finger]);
-      if (weight < least_weight) continue;
+      if (weight < min_weight) continue;
       fingers_[count_] = finger;
       slack_m2_[count_++] = half_gap_m * half_gap_m * (1.0 - weight) / weight;
     }
@@ -88,7 +88,7 @@ public:
       for (std::size_t m = 0; m < count_; ++m)
         covariance.block<3, 3>(row, static_cast<Index>(3 * m)) = spread(thumb, variances[0]);
       covariance.block<3, 3>(row, row) += spread(pad, variances[fingers_[n]]);
-      covariance.diagonal().segment<3>(row).array() += slack_m2_[n] + least_slack_m2;
+      covariance.diagonal().segment<3>(row).array() += slack_m2_[n] + min_slack_m2;
     }
     const GapVector pulls = covariance.llt().solve(gaps);
     turns_[0].setZero();
@@ -104,7 +104,7 @@ public:
   const DigitAngles& turns_rad() const noexcept { return turns_; }
 
 private:
-  static constexpr double least_slack_m2 = 1e-10;
+  static constexpr double min_slack_m2 = 1e-10;
 
   static Eigen::Matrix3d spread(const Fingertip& pad, const FourAngles& variances) noexcept {
     return pad.by_angle * variances.asDiagonal() * pad.by_angle.transpose();
@@ -118,8 +118,8 @@ private:
   DigitAngles from_, turns_;
   double arch_rad_;
   std::array<Fingertip, finger_count> pads_;
-  std::array<std::size_t, most_pinches> fingers_{}; ///< that pinch
-  std::array<double, most_pinches> slack_m2_{};     ///< that their gaps are left, a variance
+  std::array<std::size_t, max_pinches> fingers_{}; ///< that pinch
+  std::array<double, max_pinches> slack_m2_{};     ///< that their gaps are left, a variance
   std::size_t count_ = 0;
 };
 
@@ -150,8 +150,8 @@ JointAngles close_pinches(const JointAngles& angles, const HandSkeleton& skeleto
     const double turned_rad = angle_rad + pinches.turns_rad()[at / 4][static_cast<Index>(at % 4)];
     if (!std::isfinite(turned_rad)) return angles;
     const JointLimit& limit = joint_limits[at];
-    angle_rad = std::clamp(turned_rad, std::min(angle_rad, limit.least_rad),
-                           std::max(angle_rad, limit.most_rad));
+    angle_rad = std::clamp(turned_rad, std::min(angle_rad, limit.min_rad),
+                           std::max(angle_rad, limit.max_rad));
   }
   return closed;
 }

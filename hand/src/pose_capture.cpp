@@ -87,7 +87,7 @@ bool PoseCapture::differs_from_last() const noexcept {
   bool differs = false;
   for_each(present_, [&](std::size_t slot) {
     const double change = std::abs(watched_[slot].mean_counts - last_.mean_counts[slot]);
-    differs = differs || change >= least_change_counts * unit_;
+    differs = differs || change >= min_change_counts * unit_;
   });
   return differs;
 }
@@ -104,7 +104,7 @@ void PoseCapture::fill_held() noexcept {
 CaptureState PoseCapture::state_in_movement(SensorMask moved) noexcept {
   SensorMask jumping;
   for_each(moved, [&](std::size_t slot) {
-    if (watched_[slot].noise_variance > std::pow(most_noise_counts * unit_, 2))
+    if (watched_[slot].noise_variance > std::pow(max_noise_counts * unit_, 2))
       jumping.add(static_cast<Sensor>(slot));
   });
   troubled_ = jumping.bits != 0 ? jumping : moved;
@@ -118,7 +118,7 @@ CaptureState PoseCapture::state_at_rest(double still_s) noexcept {
     troubled_ = ends;
     return CaptureState::saturated;
   }
-  const double done = std::min(still_s / hold_s, static_cast<double>(samples_) / least_samples);
+  const double done = std::min(still_s / hold_s, static_cast<double>(samples_) / min_samples);
   // Not before the mean is one: the hand may have come to rest here on its way.
   if (done >= 0.25 && !differs_from_last()) return CaptureState::unchanged;
   if (done < 1.0) {

@@ -27,7 +27,7 @@ double drawn(double bound, double end, double outwards, double amplitude, double
   const double beyond = outwards * (end - bound);
   if (beyond > 0.0) {
     const double most =
-        usual_span * decline(ends, RangeAdaptation::most_first_step, RangeAdaptation::most_step);
+        usual_span * decline(ends, RangeAdaptation::max_first_step, RangeAdaptation::max_step);
     return bound + outwards * std::min(out_share * beyond, most);
   }
   // A swing in the middle of the range tells little of its ends.
@@ -89,15 +89,15 @@ RangeAdaptation::RangeAdaptation(CountScale counts, const LearnedRanges& learned
 bool RangeAdaptation::Learner::can_have_learned(const LearnedRanges::Sensor& sensor,
                                                 CountScale counts) const noexcept {
   constexpr double rounding = 1e-9;
-  constexpr double least_gain_rad = 1e-9; // a line on its way to any usual range lies far within
-  constexpr double most_gain_rad = 1e3;
-  constexpr double most_offset = 1e6;
+  constexpr double min_gain_rad = 1e-9; // a line on its way to any usual range lies far within
+  constexpr double max_gain_rad = 1e3;
+  constexpr double max_offset = 1e6;
   return usual_span > 0.0 && sensor.low_counts >= -rounding &&
          sensor.high_counts <= counts.most + rounding &&
-         sensor.high_counts - sensor.low_counts >= (1.0 - rounding) * least_span * usual_span &&
-         sensor.line.gain_rad_per_count >= least_gain_rad &&
-         sensor.line.gain_rad_per_count <= most_gain_rad &&
-         std::abs(sensor.line.offset_counts) <= most_offset;
+         sensor.high_counts - sensor.low_counts >= (1.0 - rounding) * min_span * usual_span &&
+         sensor.line.gain_rad_per_count >= min_gain_rad &&
+         sensor.line.gain_rad_per_count <= max_gain_rad &&
+         std::abs(sensor.line.offset_counts) <= max_offset;
 }
 
 std::optional<LearnedRanges> RangeAdaptation::learned() const noexcept {
@@ -117,7 +117,7 @@ void RangeAdaptation::Learner::learn(const SwingFinder::End& end) noexcept {
   const double to = drawn(bound, end.counts, end.is_top ? 1.0 : -1.0, end.amplitude, high - low,
                           usual_span, end.is_top ? tops++ : bottoms++);
   const double span = end.is_top ? to - low : high - to;
-  if (span >= least_span * usual_span) bound = to;
+  if (span >= min_span * usual_span) bound = to;
 }
 
 // Between two lines an angle changes most at an end of the counts; there it is bounded, and so for
@@ -132,7 +132,7 @@ void RangeAdaptation::drift(std::size_t slot, double interval_s) noexcept {
       learner.usual.angle_rad(RawCount{0}) - goal_gain_rad * learner.low - at_zero;
   const double to_most = to_zero + (goal_gain_rad - gain_rad) * most;
   const double farthest = std::max(std::abs(to_zero), std::abs(to_most));
-  const double drift_rad = most_drift_rad_s * interval_s;
+  const double drift_rad = max_drift_rad_s * interval_s;
   constexpr double rounding_rad = 1e-12;
   if (!(farthest > rounding_rad) || drift_rad == 0.0) return;
   const double part = std::min(drift_rad / farthest, 1.0);
@@ -150,7 +150,7 @@ void RangeAdaptation::push(const GloveSample& sample) noexcept {
     const std::uint16_t count = std::min(sample.raw[slot].value, counts_.most);
     if (!sample.present.has(static_cast<Sensor>(slot))) {
       learner.swings.begin_anew();
-    } else if (const auto end = learner.swings.push(count, least_swing * learner.usual_span)) {
+    } else if (const auto end = learner.swings.push(count, min_swing * learner.usual_span)) {
       learner.learn(*end);
     }
     drift(slot, interval_s);

@@ -119,7 +119,7 @@ private:
 } // namespace
 
 Result<ImportedCalibration> parse_ros_xml(std::string_view text, std::string_view name) {
-  if (text.size() > most_calibration_bytes)
+  if (text.size() > max_calibration_bytes)
     return Error{Errc::bad_input, std::string(name) + ": is larger than 1 MiB"};
   auto joints = XmlJoints(without_mark(text), name).read();
   if (!joints) return joints.error();

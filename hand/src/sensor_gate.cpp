@@ -13,7 +13,7 @@ int distance(RawCount a, RawCount b) noexcept {
 
 bool is_movement(double jump_rad, double elapsed_s) noexcept {
   // A gain that is not a number tells nothing of the joint: let it pass.
-  return !(jump_rad > SensorGate::noise_rad + SensorGate::most_speed_rad_s * elapsed_s);
+  return !(jump_rad > SensorGate::noise_rad + SensorGate::max_speed_rad_s * elapsed_s);
 }
 
 } // namespace
@@ -22,7 +22,7 @@ GloveSample SensorGate::pass(const GloveSample& sample, const Calibration& calib
   const bool same_hand = sample.side == side_;
   side_ = sample.side;
   const HostTime time = sample.time();
-  const double least_s = sample.has_device_time ? 0.0 : least_arrival_interval_s;
+  const double min_s = sample.has_device_time ? 0.0 : min_arrival_interval_s;
   GloveSample passed = sample;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     Accepted& last = accepted_[slot];
@@ -33,7 +33,7 @@ GloveSample SensorGate::pass(const GloveSample& sample, const Calibration& calib
     const RawCount count = sample.raw[slot];
     const bool comparable = last.known && same_hand;
     // Clocks are the glove's word: time that runs backwards is no time.
-    const double elapsed_s = std::max(seconds_between(last.time, time), least_s);
+    const double elapsed_s = std::max(seconds_between(last.time, time), min_s);
     const double jump_rad =
         std::abs(calibration.sensors[slot].gain_rad_per_count) * distance(count, last.count);
     if (comparable && !last.holding && !is_movement(jump_rad, elapsed_s)) {

@@ -12,10 +12,10 @@ namespace {
 // slips are followed less far; half as fast, wearers whose gloves do not slip are worse off.
 constexpr double slip_out_share = 0.5;
 constexpr double slip_in_share = 0.004;
-constexpr double slip_most_step = 0.02;
+constexpr double slip_max_step = 0.02;
 
 // A sensor that moved less when the calibration was made is not one whose ends are known.
-constexpr double least_span = 0.1; ///< of the glove's counts
+constexpr double min_span = 0.1; ///< of the glove's counts
 
 } // namespace
 
@@ -28,7 +28,7 @@ SlipAdaptation::SlipAdaptation(const Calibration& made, const WornEnds& ends,
     // How far gaps between fingers go depends on how the fingers are bent, so they tell nothing.
     // Written so that a NaN is not followed; ends may come from a file.
     if (ends.counts.present.has(sensor) && !is_gap(sensor) && low >= 0.0 && high <= counts.most &&
-        high - low >= least_span * counts.most && made.sensors[slot].gain_rad_per_count != 0.0)
+        high - low >= min_span * counts.most && made.sensors[slot].gain_rad_per_count != 0.0)
       followed_.add(sensor);
     learners_[slot].low = low;
     learners_[slot].high = high;
@@ -46,7 +46,7 @@ SlipAdaptation::SlipAdaptation(const Calibration& made, const WornEnds& ends, Co
     const bool can_be = followed_.has(static_cast<Sensor>(slot)) && sensor.low_counts >= 0.0 &&
                         sensor.high_counts <= counts.most &&
                         sensor.low_counts <= sensor.high_counts &&
-                        std::abs(slipped) <= most_slip * span;
+                        std::abs(slipped) <= max_slip * span;
     if (!can_be) continue;
     learners_[slot].low = sensor.low_counts;
     learners_[slot].high = sensor.high_counts;
@@ -61,7 +61,7 @@ double SlipAdaptation::slip_counts(std::size_t slot) const noexcept {
   const double low = ends_.counts.low_counts[slot], high = ends_.counts.high_counts[slot];
   const double of_low = learners_[slot].low - low, of_high = learners_[slot].high - high;
   if (of_low * of_high <= 0.0) return 0.0; // it moves less, or more, or as it did
-  const double most = most_slip * (high - low);
+  const double most = max_slip * (high - low);
   return std::copysign(std::min({std::abs(of_low), std::abs(of_high), most}), of_high);
 }
 
@@ -77,17 +77,17 @@ void SlipAdaptation::push(const GloveSample& sample) noexcept {
     }
     const double span = ends_.counts.high_counts[slot] - ends_.counts.low_counts[slot];
     const std::uint16_t count = std::min(sample.raw[slot].value, counts_.most);
-    if (const auto end = learner.swings.push(count, RangeAdaptation::least_swing * span)) {
+    if (const auto end = learner.swings.push(count, RangeAdaptation::min_swing * span)) {
       double& bound = end->is_top ? learner.high : learner.low;
       const double part = std::min(end->amplitude / span, 1.0);
       const double off = end->counts - bound, share = (end->is_top == (off > 0.0))
                                                           ? slip_out_share
                                                           : slip_in_share * part * part;
-      bound += std::clamp(share * off, -slip_most_step * span, slip_most_step * span);
+      bound += std::clamp(share * off, -slip_max_step * span, slip_max_step * span);
       ++(end->is_top ? learner.tops : learner.bottoms);
     }
     auto& [gain_rad, offset] = calibration_.sensors[slot];
-    const double most = most_drift_rad_s * interval_s / std::abs(gain_rad);
+    const double most = max_drift_rad_s * interval_s / std::abs(gain_rad);
     const double left = made_.sensors[slot].offset_counts + slip_counts(slot) - offset;
     offset += std::clamp(left, -most, most);
   }

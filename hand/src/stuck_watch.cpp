@@ -110,7 +110,7 @@ bool StuckWatch::is_shown(std::size_t slot, const GloveSample& sample) const noe
   const auto sensor = static_cast<Sensor>(slot);
   const Watched& still = watched_[slot];
   if (!present_.has(sensor) || stuck_.has(sensor) ||
-      seconds_between(still.changed_at, sample.time()) < least_still_s)
+      seconds_between(still.changed_at, sample.time()) < min_still_s)
     return false;
   if (rests_at_end(still.low, still.high, scale_)) return false;
   constexpr std::size_t often = 6;
@@ -143,13 +143,13 @@ bool StuckWatch::is_shown(std::size_t slot, const GloveSample& sample) const noe
 void StuckWatch::push(const GloveSample& sample) noexcept {
   if (number_ == 0 || sample.side != side_ || sample.present != present_) begin_anew(sample);
   ++number_;
-  const double least_swing = least_swing_counts * scale_.most / 255.0;
+  const double min_swing = min_swing_counts * scale_.most / 255.0;
   bool any = false;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     if (!present_.has(static_cast<Sensor>(slot))) continue;
     watch(slot, sample);
     Watched& sensor = watched_[slot];
-    if (!sensor.swings.push(sample.raw[slot].value, least_swing)) continue;
+    if (!sensor.swings.push(sample.raw[slot].value, min_swing)) continue;
     sensor.ended[sensor.next] = number_;
     sensor.next = (sensor.next + 1) % kept_swings;
     any = true;

@@ -13,8 +13,7 @@ std::optional<double> SwingFinder::median(std::uint16_t count) noexcept {
   return sorted[window / 2];
 }
 
-std::optional<SwingFinder::End> SwingFinder::push(std::uint16_t count,
-                                                  double least_swing) noexcept {
+std::optional<SwingFinder::End> SwingFinder::push(std::uint16_t count, double min_swing) noexcept {
   const std::optional<double> now = median(count);
   if (!now) return std::nullopt;
   if (seen_ == window) { // the first since it began anew
@@ -24,12 +23,12 @@ std::optional<SwingFinder::End> SwingFinder::push(std::uint16_t count,
   if (!falls_) top_ = std::max(top_, *now);
   if (!rises_) bottom_ = std::min(bottom_, *now);
   std::optional<End> end;
-  if (!falls_ && *now <= top_ - least_swing) {
+  if (!falls_ && *now <= top_ - min_swing) {
     if (rises_) end = {top_, top_ - bottom_, true};
     falls_ = true;
     rises_ = false;
     bottom_ = *now;
-  } else if (!rises_ && *now >= bottom_ + least_swing) {
+  } else if (!rises_ && *now >= bottom_ + min_swing) {
     if (falls_) end = {bottom_, top_ - bottom_, false};
     rises_ = true;
     falls_ = false;

@@ -18,8 +18,8 @@ constexpr auto gain_slot = static_cast<std::size_t>(Sensor::index_abduction);
 constexpr auto bias_slot = static_cast<std::size_t>(Sensor::index_middle_abduction);
 // What published calibrations have for pairs lies between 0.005 and 0.02 rad a count; a middle bias
 // is 0 or some tenths.
-constexpr double least_pair_gain = 0.002;
-constexpr double most_pair_gain = 0.05;
+constexpr double min_pair_gain = 0.002;
+constexpr double max_pair_gain = 0.05;
 
 class CalParser {
 public:
@@ -110,7 +110,7 @@ Result<double> CalParser::resolve_middle_bias(std::vector<std::string>& notes) {
   SensorCalibration& unused = rows_.sensors[gain_slot];
   SensorCalibration& pair = rows_.sensors[bias_slot];
   const double as_gain = std::abs(pair.gain_rad_per_count);
-  const bool looks_like_gain = as_gain >= least_pair_gain && as_gain <= most_pair_gain;
+  const bool looks_like_gain = as_gain >= min_pair_gain && as_gain <= max_pair_gain;
   const bool moved = unused.gain_rad_per_count != 0.0 && (is_vti_ || !looks_like_gain);
   double middle_bias = 0.0;
   if (moved) {

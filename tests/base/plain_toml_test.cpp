@@ -93,14 +93,14 @@ TEST_SUITE("base/plain_toml") {
     const auto nested = [](int depth) {
       return "a = " + repeated("[", depth) + repeated("]", depth);
     };
-    CHECK_FALSE(find_toml_fault(nested(most_toml_depth)));
-    CHECK(refuses(nested(most_toml_depth + 1), 1, "more than 16 deep"));
+    CHECK_FALSE(find_toml_fault(nested(max_toml_depth)));
+    CHECK(refuses(nested(max_toml_depth + 1), 1, "more than 16 deep"));
     CHECK(refuses("a = " + repeated("[", 1000000), 1, "more than 16 deep"));
     CHECK(refuses("a = " + repeated("{b=", 1000000), 1, "more than 16 deep"));
     CHECK(refuses(repeated("[", 1000000), 1, "expected a key"));
     const auto key = [](int parts) { return "a" + repeated(".a", parts - 1) + " = 1"; };
-    CHECK_FALSE(find_toml_fault(key(most_toml_depth)));
-    CHECK(refuses(key(most_toml_depth + 1), 1, "more than 16 parts"));
+    CHECK_FALSE(find_toml_fault(key(max_toml_depth)));
+    CHECK(refuses(key(max_toml_depth + 1), 1, "more than 16 parts"));
     CHECK(refuses("[a" + repeated(".a", 1000000) + "]", 1, "more than 16 parts"));
   }
 }

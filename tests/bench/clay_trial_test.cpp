@@ -24,7 +24,7 @@ TEST_SUITE("clay_trial") {
     CHECK(trial.worst_behind_mm == 0.0);
     CHECK(trial.worst_volume < 1.5e-3);
     CHECK(std::abs(trial.last_volume) < 1e-4);
-    CHECK(trial.most_held == 0); // flat hands hold nothing
+    CHECK(trial.max_held == 0); // flat hands hold nothing
     CHECK(trial.shape.vertices.allFinite());
     CHECK(nendo::test::count_self_intersections(trial.shape) == 0);
   }
@@ -65,7 +65,7 @@ TEST_SUITE("clay_trial") {
           if (vertex.head<2>().norm() < 0.2 * before) highest = std::max(highest, vertex.z());
         CHECK(highest < clay.shape.vertices.row(2).maxCoeff() - 0.4 * before);
       } else {
-        CHECK(clay.most_held > 4);
+        CHECK(clay.max_held > 4);
         CHECK(size.x() > before + 15.0);
       }
     }

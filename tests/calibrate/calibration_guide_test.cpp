@@ -172,7 +172,7 @@ TEST_SUITE("calibration_guide") {
     after.guide.restore(session.guide.readings(), {});
     CHECK(after.guide.readings().size() == 2);
     CHECK(after.guide.asked() == PoseId::fist);
-    for (std::size_t n = 0; n < 2 * CalibrationGuide::most_takes; ++n) {
+    for (std::size_t n = 0; n < 2 * CalibrationGuide::max_takes; ++n) {
       after.guide.take_again();
       after.hold(after.wearer.perform(PoseId::fist), 0.3);
       after.do_pose(PoseId::flat);
@@ -181,7 +181,7 @@ TEST_SUITE("calibration_guide") {
     const auto readings = after.guide.readings();
     CHECK(std::count_if(readings.begin(), readings.end(), [](const auto& reading) {
             return reading.pose == PoseId::flat;
-          }) == CalibrationGuide::most_takes);
+          }) == CalibrationGuide::max_takes);
   }
 
   TEST_CASE("a pose that is taken anew replaces its take, even if nothing differs") {
@@ -270,7 +270,7 @@ TEST_SUITE("calibration_guide") {
     REQUIRE(session.do_pose(PoseId::flat) == CalibrationGuide::Event::captured);
     const std::vector<hand::PoseReading> many(1000, session.guide.readings().front());
     session.guide.restore(many, {});
-    CHECK(session.guide.readings().size() == CalibrationGuide::most_takes);
+    CHECK(session.guide.readings().size() == CalibrationGuide::max_takes);
     CHECK(session.guide.asked() == PoseId::fist);
   }
 

@@ -242,7 +242,7 @@ TEST_SUITE("clay") {
     plate.vertices.row(2) = plate.vertices.row(2).unaryExpr(
         [](double z) { return (z > 0.0 ? 1.0 : -1.0) * std::min(1.0, std::abs(z)); });
     SculptedShape shape(plate.vertices, {});
-    ClayDeformer clay(shape, {}, 1, 1, {.radius_mm = 20.0, .most_passes = 200});
+    ClayDeformer clay(shape, {}, 1, 1, {.radius_mm = 20.0, .max_passes = 200});
     Parts parts = moved(finger(), Vector3d(0, 0, 3));
     clay.begin(parts);
     for (int tick = 0; tick < 3; ++tick) { // 1 m/s at 90 Hz
@@ -264,7 +264,7 @@ TEST_SUITE("clay") {
   }
 
   TEST_CASE("a short budget shortens the hand's step and nothing else") {
-    Ball ball({.most_passes = 1});
+    Ball ball({.max_passes = 1});
     Parts parts = moved(finger(), Vector3d(0, 0, 30.5));
     ball.clay.begin(parts);
     const ClayReport jump = ball.go(parts, {0, 0, -14}, 1);
@@ -484,7 +484,7 @@ TEST_SUITE("clay") {
   }
 
   TEST_CASE("two bodies that meet leave a compromise, and report what is left") {
-    Ball ball({.most_passes = 400}, 2);
+    Ball ball({.max_passes = 400}, 2);
     Parts parts{cone({0, 0, 39}, {0, 20, 39}, 8, 8), cone({0, 0, -39}, {0, 20, -39}, 8, 8)};
     ball.clay.begin(parts);
     for (int call = 0; call < 40; ++call) {

@@ -100,7 +100,7 @@ TEST_SUITE("deformers") {
       CHECK(deformer.report().links > 2);
       CHECK(deformer.report().bound <= 0.9 + 1e-12);
       CHECK(deformer.report().whole_bound > 0.9);
-      CHECK(deformer.report().least_determinant > 0.0);
+      CHECK(deformer.report().min_determinant > 0.0);
     }
   }
 
@@ -163,7 +163,7 @@ TEST_SUITE("deformers") {
         coordinate += anywhere(random);
       CHECK(is_solved(deformer.end_at(tips).status));
       stroke.links += deformer.report().links;
-      stroke.reported = std::min(stroke.reported, deformer.report().least_determinant);
+      stroke.reported = std::min(stroke.reported, deformer.report().min_determinant);
       for (const CsrbfField& field : deformer.fields().fields())
         everywhere.advance(field);
     }

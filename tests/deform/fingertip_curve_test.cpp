@@ -141,7 +141,7 @@ TEST_SUITE("fingertip_curve") {
     for (const double x : {3.0, -1e30, 1e30, 1e-300}) {
       curve.extend(lone(x));
       const auto cuts = cuts_of(curve);
-      CHECK(cuts.size() == FingertipCurve::most_pieces);
+      CHECK(cuts.size() == FingertipCurve::max_pieces);
       CHECK(cuts.back() == lone(x));
     }
     curve.end_at(lone(1e-310)); // nearer than a distance can tell
@@ -162,7 +162,7 @@ TEST_SUITE("fingertip_curve") {
         k % 20 == 19 ? curve.end_at(tips) : curve.extend(tips);
         const double step = (curve.end() - last).colwise().norm().maxCoeff();
         const auto cuts = cuts_of(curve);
-        CHECK(cuts.size() <= FingertipCurve::most_pieces);
+        CHECK(cuts.size() <= FingertipCurve::max_pieces);
         for (const Points& cut : cuts)
           CHECK((cut - last).colwise().norm().maxCoeff() <= 1.5 * step + piece);
         if (k % 20 == 19) CHECK((cuts.empty() || cuts.back() == tips));

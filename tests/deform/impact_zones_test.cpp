@@ -204,15 +204,15 @@ TEST_SUITE("impact_zones") {
 
   TEST_CASE("the volume that is told is the shape's, where faces were kept apart, too") {
     StrokedBall ball(nendo::test::stroking_finger());
-    double most_off = 0.0;
+    double max_off = 0.0;
     int kept_apart = 0;
     ball.stroke(14, [&](const StrokeParts& parts) {
       if (ball.clay.press_to(parts).kept_apart == 0) return;
       ++kept_apart;
-      most_off = std::max(most_off, std::abs(ball.clay.volume() / volume_of(ball.shown()) - 1.0));
+      max_off = std::max(max_off, std::abs(ball.clay.volume() / volume_of(ball.shown()) - 1.0));
     });
     CHECK(kept_apart > 0);
-    CHECK(most_off < 2e-6);
+    CHECK(max_off < 2e-6);
   }
 
   TEST_CASE("strokes that tear a ball of clay leave no faces that cross, and allocate nothing") {

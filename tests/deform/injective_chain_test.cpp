@@ -57,7 +57,7 @@ TEST_SUITE("injective chain") {
     return jacobian.determinant();
   }
 
-  static double least_determinant(const CsrbfField& field, const Points& places) {
+  static double min_determinant(const CsrbfField& field, const Points& places) {
     double least = infinity;
     for (Eigen::Index i = 0; i < places.cols(); ++i)
       least = std::min(least, determinant(field, places.col(i)));
@@ -79,20 +79,20 @@ TEST_SUITE("injective chain") {
       for (int stroke = 0; stroke < 8; ++stroke) {
         const Points starts = random_points(random, 10, 1.5 * radius);
         const Points ends = starts + random_points(random, 10, radius);
-        if (least_determinant(one_shot(starts, ends, {kernel}),
-                              random_points(random, 400, 2.0 * radius)) < 0)
+        if (min_determinant(one_shot(starts, ends, {kernel}),
+                            random_points(random, 400, 2.0 * radius)) < 0)
           ++folded_at_once;
-        InjectiveChain chain = grabbed(starts, {.most_links = 1000}, {kernel});
+        InjectiveChain chain = grabbed(starts, {.max_links = 1000}, {kernel});
         Points places = random_points(random, 400, 2.0 * radius);
         REQUIRE(is_solved(chain.from_start(ends)));
         while (chain.next()) {
-          CHECK(least_determinant(chain.field(), places) > 1e-3 * (1.0 - 1e-3)); // (1 - 0.9)^3
+          CHECK(min_determinant(chain.field(), places) > 1e-3 * (1.0 - 1e-3)); // (1 - 0.9)^3
           displace(chain.field(), places, places);
         }
         CHECK(chain.report().reached);
         CHECK(chain.report().bound <= 0.9 * (1.0 + 1e-12));
         CHECK(chain.report().whole_bound > 0.9);
-        CHECK(chain.report().least_determinant > 0.0);
+        CHECK(chain.report().min_determinant > 0.0);
       }
     CHECK(folded_at_once >= 24); // of 32
   }
@@ -131,7 +131,7 @@ TEST_SUITE("injective chain") {
     InjectiveChain chain = grabbed(starts);
     CHECK(applied_from_start(chain, starts, shape) == shape);
     CHECK(chain.report().links == 0);
-    CHECK(chain.report().least_determinant == 1.0);
+    CHECK(chain.report().min_determinant == 1.0);
   }
 
   TEST_CASE("a mirrored stroke gives the mirrored shape") {
@@ -159,11 +159,11 @@ TEST_SUITE("injective chain") {
       for (Eigen::Index i = 0; i < 5; ++i)
         ends.col(i) += starts.col(i < 2 ? 1 - i : 2 + (i - 1) % 3);
       ends.leftCols<2>() << starts.col(1), starts.col(0);
-      InjectiveChain chain = grabbed(starts, {.most_links = 1000});
+      InjectiveChain chain = grabbed(starts, {.max_links = 1000});
       Points places = random_points(random, 100, radius);
       chain.from_start(ends);
       while (chain.next()) {
-        CHECK(least_determinant(chain.field(), places) > 0.9e-3);
+        CHECK(min_determinant(chain.field(), places) > 0.9e-3);
         displace(chain.field(), places, places);
       }
       CHECK(chain.report().reached);
@@ -224,7 +224,7 @@ TEST_SUITE("injective chain") {
       tips(1, 0) = 0.3 * std::sin(tick * 0.02 * 3.14159265358979);
       CHECK(is_solved(chain.from_here(tips)));
       while (chain.next()) {
-        CHECK(least_determinant(chain.field(), current) > 0.9e-3);
+        CHECK(min_determinant(chain.field(), current) > 0.9e-3);
         displace(chain.field(), current, current);
       }
       CHECK(chain.report().reached);
@@ -252,14 +252,14 @@ TEST_SUITE("injective chain") {
       Points starts = random_points(random, 6, radius);
       starts.col(1) = starts.col(0) + Vector3d(apart, 0, 0);
       const Points ends = starts + random_points(random, 6, radius);
-      InjectiveChain chain = grabbed(starts, {.most_links = 1000}, {.merge_fraction = 0.05});
+      InjectiveChain chain = grabbed(starts, {.max_links = 1000}, {.merge_fraction = 0.05});
       Points places = random_points(random, 200, radius);
       places.leftCols<6>() = starts;
       bool merged = false;
       chain.from_start(ends);
       while (chain.next()) {
         merged = merged || chain.report().status == FieldStatus::merged;
-        CHECK(least_determinant(chain.field(), places) > 0.9e-3);
+        CHECK(min_determinant(chain.field(), places) > 0.9e-3);
         displace(chain.field(), places, places);
       }
       CHECK(merged);
@@ -275,11 +275,11 @@ TEST_SUITE("injective chain") {
     const Points starts = random_points(random, 10, 2.0 * radius);
     const Points ends = starts + random_points(random, 10, radius);
     const Points shape = random_points(random, 100, radius);
-    InjectiveChain chain = grabbed(starts, {.most_links = 1000});
+    InjectiveChain chain = grabbed(starts, {.max_links = 1000});
     const Points whole = applied_from_start(chain, ends, shape);
     const int links = chain.report().links;
     REQUIRE(links > 4);
-    InjectiveChain slow = grabbed(starts, {.most_links = 2});
+    InjectiveChain slow = grabbed(starts, {.max_links = 2});
     Points current = shape;
     int calls = 0;
     do {
@@ -320,7 +320,7 @@ TEST_SUITE("injective chain") {
       chain.from_start(far * ends);
       CHECK(applied(chain, shape).allFinite());
       CHECK_FALSE(chain.report().reached);
-      CHECK(std::isfinite(chain.report().least_determinant));
+      CHECK(std::isfinite(chain.report().min_determinant));
     }
   }
 
@@ -357,7 +357,7 @@ TEST_SUITE("injective chain") {
     std::vector<OwnSupport> own;
     for (Eigen::Index i = 0; i < 10; ++i)
       own.push_back({i, {radius * (0.5 + 0.25 * static_cast<double>(i % 5)), 1.0}});
-    InjectiveChain chain(10, with_common(own), {}, {.most_links = 1000});
+    InjectiveChain chain(10, with_common(own), {}, {.max_links = 1000});
     const Points dense = random_points(random, 300, 2.0 * radius);
     for (int stroke = 0; stroke < 10; ++stroke) {
       const Points ends = starts + random_points(random, 10, radius);

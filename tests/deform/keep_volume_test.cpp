@@ -416,7 +416,7 @@ TEST_SUITE("keep volume") {
   TEST_CASE("more points than the equations take are refused") {
     std::mt19937 random(5);
     CsrbfSolver solver({.keep_volume = 1.0});
-    const Points many = random_points(random, CsrbfSolver::most_volume_points + 1, 100.0);
+    const Points many = random_points(random, CsrbfSolver::max_volume_points + 1, 100.0);
     CHECK(solver.build(many, one_radius(1.0)) == FieldStatus::too_dense);
   }
 }

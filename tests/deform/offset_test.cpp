@@ -98,7 +98,7 @@ TEST_SUITE("offset") {
     const auto refiner = Refiner::make(mesh);
     REQUIRE(refiner);
     const BlockLayout layout(mesh.vertices);
-    CHECK(refiner->refine(layout.pack(), layout, {.most_vertices = 10000}).mesh.offset ==
+    CHECK(refiner->refine(layout.pack(), layout, {.max_vertices = 10000}).mesh.offset ==
           mesh.offset);
     const auto again = refined(mesh, {});
     REQUIRE(again);

@@ -23,7 +23,7 @@ namespace {
 constexpr double merge_fraction = 0.05;
 /// What the header promises of fields of equal and of several radii.
 constexpr double most = 0.25 / merge_fraction;
-constexpr double most_of_several = 1.25 / merge_fraction;
+constexpr double max_of_several = 1.25 / merge_fraction;
 
 /// `crowd` start points that shrink to one and come out on the other side, among others that stay.
 struct Sweep {
@@ -101,7 +101,7 @@ TEST_SUITE("pinch") {
         const CsrbfOptions options{.kernel = kernel, .merge_fraction = merge_fraction};
         const auto solver = [&] { return solver_with(options, {.storage = storage}); };
         check_sweep(sweep, solver(), VectorXd::Ones(5).eval(), 150, most);
-        check_sweep(sweep, solver(), unequal_radii(5), 150, most_of_several);
+        check_sweep(sweep, solver(), unequal_radii(5), 150, max_of_several);
         check_sweep(sweep, solver(), Supports{{{1.0, 1.0}, {3.0, 0.2}}, {}}, 150, most);
       }
     }
@@ -114,7 +114,7 @@ TEST_SUITE("pinch") {
         const CsrbfOptions options{.polynomial = polynomial, .merge_fraction = merge_fraction};
         const auto solver = [&] { return solver_with(options, {.storage = storage}); };
         check_sweep(sweep, solver(), VectorXd::Ones(10).eval(), 200, 2.0 * most);
-        check_sweep(sweep, solver(), unequal_radii(10), 200, most_of_several);
+        check_sweep(sweep, solver(), unequal_radii(10), 200, max_of_several);
       }
   }
 
@@ -125,7 +125,7 @@ TEST_SUITE("pinch") {
       const CsrbfOptions options{.merge_fraction = merge_fraction};
       const auto solver = [&] { return solver_with(options, {.storage = storage}); };
       check_sweep(hundred, solver(), VectorXd::Ones(110).eval(), 40, most);
-      check_sweep(thirty, solver(), unequal_radii(40), 120, most_of_several);
+      check_sweep(thirty, solver(), unequal_radii(40), 120, max_of_several);
     }
   }
 

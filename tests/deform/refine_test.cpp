@@ -86,7 +86,7 @@ TEST_SUITE("refine") {
     CHECK(done.left == 13); // of the cube's 12 edges and 6 diagonals
     LiveSurface bounded(shared_of(nendo::test::cube_of_cells(1)).surfaces[0]);
     zone = everywhere(bounded, 2);
-    refine(bounded, zone, {.longest = 0.5, .shortest = 0.1, .budget = 50, .most_points = 10});
+    refine(bounded, zone, {.longest = 0.5, .shortest = 0.1, .budget = 50, .max_points = 10});
     CHECK(bounded.point_count() == 10);
   }
 

@@ -106,7 +106,7 @@ TEST_SUITE("refinement") {
     CHECK(made.mesh.vertices.cols() > before.mesh.vertices.cols() + 100);
     const Points places = places_of(made);
     CHECK_FALSE(meets_itself(made.mesh, places));
-    const auto angles = nendo::test::least_angles(at_places(made.mesh, places));
+    const auto angles = nendo::test::min_angles(at_places(made.mesh, places));
     CHECK(angles[angles.size() / 20] > 20.0);
     const Shaped after(made.mesh, places);
     CHECK(after.unfit() < unfit / 10);
@@ -303,11 +303,11 @@ TEST_SUITE("refinement") {
       counted += operation.kind == EdgeOperation::Kind::flip ? 0 : 1;
     CHECK(counted == 20);
     const std::size_t most = static_cast<std::size_t>(before.mesh.vertices.cols()) + 50;
-    const Refinement bounded = before.refine({.most_vertices = most});
+    const Refinement bounded = before.refine({.max_vertices = most});
     CHECK(static_cast<std::size_t>(bounded.mesh.vertices.cols()) <= most);
     // What is too long does not count where nothing can be done about it.
     const auto present = static_cast<std::size_t>(before.mesh.vertices.cols());
-    CHECK(before.unfit({.most_vertices = present}) < before.unfit() / 10);
+    CHECK(before.unfit({.max_vertices = present}) < before.unfit() / 10);
     Shaped now = before;
     for (int round = 0; round < 100 && now.unfit() > 20; ++round) {
       const Refinement made = now.refine({.budget = 50});

@@ -74,7 +74,7 @@ Energy energy_of(const CsrbfOptions& options, const Points& starts, const Suppor
 
 /// The coefficients of least energy with these values at the start points, by Lagrange's conditions
 /// and an elimination with full pivoting.
-MatrixXd least_energy_coefficients(const Energy& energy, const Points& displacements) {
+MatrixXd min_energy_coefficients(const Energy& energy, const Points& displacements) {
   const Eigen::Index functions = energy.hessian.rows();
   const Eigen::Index n = displacements.cols();
   MatrixXd system = MatrixXd::Zero(functions + n, functions + n);
@@ -100,7 +100,7 @@ TEST_SUITE("several radii") {
     CsrbfField field;
     int unsolved = 0;
     double worst = 0.0;
-    double most_energy = 0.0;
+    double max_energy = 0.0;
     for (int pose = 0; pose < 20'000; ++pose) {
       const Points starts = two_hands(random);
       const Points g = random_points(random, 10, 3.0);
@@ -121,13 +121,12 @@ TEST_SUITE("several radii") {
       const Energy energy = energy_of({}, starts, supports);
       MatrixXd common = MatrixXd::Zero(20, 3);
       common.topRows(10) = energy.at_starts.leftCols(10).partialPivLu().solve(g.transpose());
-      most_energy =
-          std::max(most_energy, energy_at(energy.hessian, field.coefficients.transpose()) /
-                                    energy_at(energy.hessian, common));
+      max_energy = std::max(max_energy, energy_at(energy.hessian, field.coefficients.transpose()) /
+                                            energy_at(energy.hessian, common));
     }
     CHECK(unsolved == 0);
     CHECK(worst < 1e-6);
-    CHECK(most_energy < 1.0 + 1e-9);
+    CHECK(max_energy < 1.0 + 1e-9);
   }
 
   TEST_CASE("the field is the one of least energy that a dense solve of its conditions gives") {
@@ -145,7 +144,7 @@ TEST_SUITE("several radii") {
         const CsrbfField field = fitted(options, starts, supports, g);
         CHECK(field.centres.cols() == supports.functions(n));
         const Points expected =
-            least_energy_coefficients(energy_of(options, starts, supports), g).transpose();
+            min_energy_coefficients(energy_of(options, starts, supports), g).transpose();
         CHECK(largest(field.coefficients - expected) < 1e-7 * largest(expected));
       }
   }

@@ -130,7 +130,7 @@ TEST_SUITE("sparse solver") {
 
   TEST_CASE("too many points in each other's supports are refused, and the old field stays") {
     std::mt19937 random(5);
-    const Eigen::Index n = CsrbfSolver::most_dense_points + 1;
+    const Eigen::Index n = CsrbfSolver::max_dense_points + 1;
     const Points starts = nendo::reference::bumpy_sheet(random, n);
     CsrbfSolver solver({});
     CsrbfField field;

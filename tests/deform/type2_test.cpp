@@ -132,7 +132,7 @@ TEST_SUITE("type2") {
   TEST_CASE("a jump is cut into a bounded number of pieces and arrives") {
     Type2Deformer deformer(clay, 10, 6.0, 1e-6, {});
     deformer.begin(start_points());
-    CHECK(deformer.stroke_to(shifted({3, 0, 0})).pieces == FingertipCurve::most_pieces);
+    CHECK(deformer.stroke_to(shifted({3, 0, 0})).pieces == FingertipCurve::max_pieces);
     CHECK((shape_of(deformer).col(100) - shifted({3, 0, 0}).col(0)).norm() < float_gap);
     CHECK(deformer.end_at(shifted({3, 0, 0})).pieces == 0);
     CHECK(is_solved(deformer.stroke_to(shifted({1e30, 0, 0})).status));

@@ -38,7 +38,7 @@ Bytes record_bytes(std::size_t values, int first, std::string_view tail = "") {
 using Outcome = nendo::test::Outcome<Record>;
 
 Outcome parse(const RecordShape& shape, std::span<const std::byte> input) {
-  return nendo::test::parse<Record>(Parser(shape), input, most_record_bytes);
+  return nendo::test::parse<Record>(Parser(shape), input, max_record_bytes);
 }
 
 } // namespace
@@ -240,7 +240,7 @@ TEST_SUITE("cyberglove_parser") {
                              "es"),
                 record_bytes(22, 4, "\x81\x01\x02\x03\x04\x87")});
     const auto value_of = [](const Record& record) { return record.values[0]; };
-    CHECK(nendo::test::values_however_cut<Record>(Parser(full_22), {stream, most_record_bytes},
+    CHECK(nendo::test::values_however_cut<Record>(Parser(full_22), {stream, max_record_bytes},
                                                   value_of) == std::vector<int>{2, 4});
   }
 

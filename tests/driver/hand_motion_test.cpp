@@ -68,10 +68,10 @@ TEST_SUITE("hand_motion") {
 
   TEST_CASE("joint ranges are those of a hand") {
     const auto most = [](Sensor sensor) {
-      return nendo::driver::joint_range(sensor).most_rad / degree;
+      return nendo::driver::joint_range(sensor).max_rad / degree;
     };
     const auto least = [](Sensor sensor) {
-      return nendo::driver::joint_range(sensor).least_rad / degree;
+      return nendo::driver::joint_range(sensor).min_rad / degree;
     };
     CHECK(most(Sensor::ring_mcp) == doctest::Approx(90));
     CHECK(most(Sensor::ring_pip) == doctest::Approx(105));
@@ -94,7 +94,7 @@ TEST_SUITE("hand_motion") {
         const JointAngles now = hand.at(n * step_s);
         for (std::size_t k = 0; k < sensor_slots; ++k) {
           const auto range = nendo::driver::joint_range(static_cast<Sensor>(k));
-          in_range = in_range && now[k] >= range.least_rad && now[k] <= range.most_rad;
+          in_range = in_range && now[k] >= range.min_rad && now[k] <= range.max_rad;
           steady = steady && std::abs(now[k] - before[k]) < fastest_rad_s * step_s;
         }
         for (const auto& [mcp, pip, dip] : fingers) {

@@ -38,7 +38,7 @@ Outcome parse(std::string_view text, std::uint16_t range = esp32_range) {
   const std::string input = "\n" + std::string(text);
   parser.push(std::as_bytes(std::span(input)),
               [&](const Line& line) { outcome.lines.push_back(line); });
-  test::check_accounted(parser, input.size(), most_line_bytes);
+  test::check_accounted(parser, input.size(), max_line_bytes);
   outcome.counters = parser.counters();
   outcome.pending = parser.pending();
   return outcome;
@@ -107,7 +107,7 @@ TEST_SUITE("lucidgloves_parser") {
     });
     CHECK(lines == 1);
     CHECK(parser.counters().bad_records == 0);
-    test::check_accounted(parser, input.size(), most_line_bytes);
+    test::check_accounted(parser, input.size(), max_line_bytes);
   }
 
   TEST_CASE("garbage before a line costs that line and no other") {
@@ -333,8 +333,8 @@ TEST_SUITE("lucidgloves_parser") {
     const auto stream = test::bytes_of("\nnoise\n" + full + std::string(300, 'Q') + "\r\n" + plain +
                                        "A1A1\n" + full + "(ZH)0\n" + plain);
     const auto value_of = [](const Line& line) { return line.curl[0].value_or(0); };
-    CHECK(test::values_however_cut<Line>(Parser(esp32_range), {stream, most_line_bytes},
-                                         value_of) == std::vector<int>{100, 1, 100, 0, 1});
+    CHECK(test::values_however_cut<Line>(Parser(esp32_range), {stream, max_line_bytes}, value_of) ==
+          std::vector<int>{100, 1, 100, 0, 1});
   }
 
   TEST_CASE("every byte of a LucidGlove's stream is accounted for, however it is mutilated") {
@@ -379,7 +379,7 @@ TEST_SUITE("lucidgloves_parser") {
     push("C3D4\n" + plain);
     CHECK(lines == 1);
     CHECK(parser.counters().bad_records == 0);
-    test::check_accounted(parser, 5 + 7 + 5 + plain.size(), most_line_bytes);
+    test::check_accounted(parser, 5 + 7 + 5 + plain.size(), max_line_bytes);
   }
 
   TEST_CASE("a file of lines yields what was worked out for it by hand") {
@@ -389,7 +389,7 @@ TEST_SUITE("lucidgloves_parser") {
         fill_slots(line, esp32_range, sample);
         return written(sample);
       };
-      test::reads_as_expected<Line>(Parser(esp32_range), {name, most_line_bytes}, line_of);
+      test::reads_as_expected<Line>(Parser(esp32_range), {name, max_line_bytes}, line_of);
     }
   }
 }

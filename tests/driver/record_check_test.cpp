@@ -55,17 +55,17 @@ struct Stream {
 class Wandering {
 public:
   Wandering(double part, unsigned seed)
-      : most_(static_cast<std::uint32_t>(part * period)), random_(seed),
+      : max_(static_cast<std::uint32_t>(part * period)), random_(seed),
         start_(0U - below(random_, 100 * period)) {}
 
   /// The stamp of record k; it wraps before long.
   std::uint32_t operator()(std::uint32_t k) {
-    return punctual(k) + below(random_, 2 * most_ + 1) - most_;
+    return punctual(k) + below(random_, 2 * max_ + 1) - max_;
   }
   std::uint32_t punctual(std::uint32_t k) const { return start_ + k * period; }
 
 private:
-  std::uint32_t most_;
+  std::uint32_t max_;
   std::mt19937 random_;
   std::uint32_t start_;
 };

@@ -31,7 +31,7 @@ const UsbWanted an_ultra{{0x5D70, 0x0000}, {}, {}};
 const UsbInterface ultra_interface{0, 64};
 
 UsbBytes read_report(UsbTransport& transport, std::chrono::milliseconds timeout = 2s) {
-  std::array<std::byte, most_usb_report_bytes> buffer{};
+  std::array<std::byte, max_usb_report_bytes> buffer{};
   const auto [status, count] = transport.read_some(buffer, timeout);
   UsbBytes bytes;
   if (status != IoStatus::done) return bytes;
@@ -42,7 +42,7 @@ UsbBytes read_report(UsbTransport& transport, std::chrono::milliseconds timeout 
 
 /// Whether reading says that the device is gone, after the reports that had arrived.
 bool is_gone_after_reports(UsbTransport& transport) {
-  std::array<std::byte, most_usb_report_bytes> buffer{};
+  std::array<std::byte, max_usb_report_bytes> buffer{};
   for (int k = 0; k < 1000; ++k) {
     if (transport.read_some(buffer, 2s).status == IoStatus::gone) return true;
   }
@@ -93,7 +93,7 @@ TEST_SUITE("usb_transport") {
     auto transport = required(open_usb(a_p5, p5_interface));
     for (const UsbBytes& expected : numbered_reports(400))
       REQUIRE(read_report(*transport) == expected);
-    CHECK(MockedUsb::log_of(device).most_under_way >= 8);
+    CHECK(MockedUsb::log_of(device).max_under_way >= 8);
   }
 
   TEST_CASE("what was thrown away does not arrive, what follows does, and nothing stops") {
@@ -120,7 +120,7 @@ TEST_SUITE("usb_transport") {
     glove.silent = true;
     auto& device = bus.plug(glove, 3, 7);
     auto transport = required(open_usb(a_p5, p5_interface));
-    std::array<std::byte, most_usb_report_bytes> buffer{};
+    std::array<std::byte, max_usb_report_bytes> buffer{};
     const auto start = Clock::now();
     CHECK(transport->read_some(buffer, 50ms).status == IoStatus::timeout);
     CHECK(Clock::now() - start >= 50ms);
@@ -151,7 +151,7 @@ TEST_SUITE("usb_transport") {
     REQUIRE(read_report(*transport).size() == 24);
     bus.unplug(device);
     CHECK(is_gone_after_reports(*transport));
-    std::array<std::byte, most_usb_report_bytes> buffer{};
+    std::array<std::byte, max_usb_report_bytes> buffer{};
     CHECK(transport->read_some(buffer, 2s).status == IoStatus::gone);
     CHECK(transport->write_all(buffer, 2s) == IoStatus::gone);
     std::array feature{std::byte{5}, std::byte{0}};

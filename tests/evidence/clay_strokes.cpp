@@ -158,7 +158,7 @@ bool strokes_on_one_ball(int strokes, int level) {
         if (first == 0 && trial.outcome().pairs > 0) first = at;
       }
       const deform::Mesh mesh = trial.shown();
-      const std::vector<double> angles = test::least_angles(mesh);
+      const std::vector<double> angles = test::min_angles(mesh);
       const std::vector<double> edges = edges_of(mesh);
       std::printf("| %s | %s | %d | %s | %zu | %td | %.1f | %.2f, %.2f | %.3f |\n", body.first,
                   refines ? "yes" : "no", strokes, first > 0 ? std::to_string(first).c_str() : "-",

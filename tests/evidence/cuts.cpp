@@ -32,7 +32,7 @@ struct Tally {
   std::size_t cuts = 0, beside = 0, refused = 0, again = 0, open = 0, meeting = 0, pairs = 0,
               moved = 0, euler = 0;
   double volume = 0.0, total_ms = 0.0, worst_ms = 0.0;
-  std::uint32_t most_parts = 0;
+  std::uint32_t max_parts = 0;
 
   bool is_clean() const {
     return refused == 0 && open == 0 && meeting == 0 && pairs == 0 && moved == 0 && euler == 0 &&
@@ -61,7 +61,7 @@ void judge(const Mesh& mesh, const deform::CutModel& cut, Tally& tally) {
   tally.euler += faults.euler != 0 ? 1U : 0U;
   tally.volume = std::max(tally.volume, faults.volume);
   tally.again += cut.attempts > 1 ? 1U : 0U;
-  tally.most_parts = std::max(tally.most_parts, cut.parts);
+  tally.max_parts = std::max(tally.max_parts, cut.parts);
   for (const Mesh& part : deform::separate(cut))
     tally.pairs += judged_pairs(part);
 }
@@ -101,7 +101,7 @@ bool cut_by_all_kinds(const std::string& name, const Mesh& mesh, std::uint32_t c
                 "%.1f, %.0f |\n",
                 name.c_str(), mesh.face_count(), kinds[kind], tally.cuts, tally.beside,
                 tally.refused, tally.again, tally.open, tally.meeting, tally.pairs, tally.volume,
-                tally.euler + tally.moved, tally.most_parts, own > 0 ? tally.total_ms / own : 0.0,
+                tally.euler + tally.moved, tally.max_parts, own > 0 ? tally.total_ms / own : 0.0,
                 tally.worst_ms);
     std::fflush(stdout);
   }

@@ -131,7 +131,7 @@ private:
     Tally off;
     Tally on;
     std::vector<Stroke> left;
-    double least_determinant = 1.0;
+    double min_determinant = 1.0;
     int links = 0;
     int held = 0;
     int unreached = 0;
@@ -139,7 +139,7 @@ private:
       count(mesh, at_once(stroke, mesh.vertices), before, off);
       const evidence::Followed followed = in_chains(stroke, mesh.vertices);
       if (count(mesh, followed.shape, before, on)) left.push_back(stroke);
-      least_determinant = std::min(least_determinant, followed.least_determinant);
+      min_determinant = std::min(min_determinant, followed.min_determinant);
       links += followed.links;
       held += followed.held ? 1 : 0;
       unreached += followed.reached ? 0 : 1;
@@ -151,7 +151,7 @@ private:
         name_.c_str(), mesh.face_count(), before.size(), edges.mean / radius_,
         edges.longest / radius_, type, strokes.size(), off.strokes, off.pairs, on.strokes, on.pairs,
         static_cast<double>(links) / static_cast<double>(strokes.size()), held, unreached,
-        least_determinant);
+        min_determinant);
     std::fflush(stdout);
     return left;
   }

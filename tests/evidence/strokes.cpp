@@ -9,7 +9,7 @@ using deform::Points;
 namespace {
 
 constexpr Eigen::Index fingertips = 10;
-constexpr double least_distance = 0.25; // of the radius, between fingertips when they take hold
+constexpr double min_distance = 0.25; // of the radius, between fingertips when they take hold
 
 Eigen::Vector3d direction(std::mt19937& random) {
   std::normal_distribution<double> normal;
@@ -22,7 +22,7 @@ Points random_vertices(std::mt19937& random, const Points& vertices, double radi
   for (Eigen::Index i = 0; i < fingertips;) {
     tips.col(i) = vertices.col(pick(random));
     const auto distances = (tips.leftCols(i).colwise() - tips.col(i)).colwise().norm();
-    if (i == 0 || distances.minCoeff() >= least_distance * radius) ++i;
+    if (i == 0 || distances.minCoeff() >= min_distance * radius) ++i;
   }
   return tips;
 }
@@ -87,7 +87,7 @@ Followed in_chains(const Stroke& stroke, const Points& shape) {
     followed.reached = chain.report().reached;
     followed.held = followed.held || chain.report().held_pairs > 0;
   }
-  followed.least_determinant = probe.least();
+  followed.min_determinant = probe.least();
   return followed;
 }
 

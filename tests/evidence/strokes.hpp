@@ -29,9 +29,9 @@ deform::Points at_once(const Stroke& stroke, deform::Points shape);
 struct Followed {
   deform::Points shape;
   int links = 0;
-  double least_determinant = 1.0; ///< at the vertices, of the whole stroke
-  bool reached = true;            ///< all ways to their ends
-  bool held = false;              ///< some pair was held at some time
+  double min_determinant = 1.0; ///< at the vertices, of the whole stroke
+  bool reached = true;          ///< all ways to their ends
+  bool held = false;            ///< some pair was held at some time
 };
 Followed in_chains(const Stroke& stroke, const deform::Points& shape);
 

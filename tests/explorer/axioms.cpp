@@ -12,38 +12,38 @@ namespace {
 
 using Kind = Instruction::Kind;
 using Order = std::memory_order;
-constexpr std::size_t most_events = 24;
+constexpr std::size_t max_events = 24;
 
 /// A relation between events: bit b of row a says that a comes before b.
 struct Relation {
-  std::array<std::uint32_t, most_events> rows{};
+  std::array<std::uint32_t, max_events> rows{};
 
   void add(std::size_t a, std::size_t b) { rows[a] |= std::uint32_t{1} << b; }
   bool has(std::size_t a, std::size_t b) const { return ((rows[a] >> b) & 1U) != 0; }
   Relation operator|(const Relation& other) const {
     Relation both = *this;
-    for (std::size_t n = 0; n < most_events; ++n)
+    for (std::size_t n = 0; n < max_events; ++n)
       both.rows[n] |= other.rows[n];
     return both;
   }
   Relation then(const Relation& other) const {
     Relation joined;
-    for (std::size_t a = 0; a < most_events; ++a) {
-      for (std::size_t b = 0; b < most_events; ++b)
+    for (std::size_t a = 0; a < max_events; ++a) {
+      for (std::size_t b = 0; b < max_events; ++b)
         joined.rows[a] |= has(a, b) ? other.rows[b] : 0;
     }
     return joined;
   }
   Relation closure() const {
     Relation closed = *this;
-    for (std::size_t via = 0; via < most_events; ++via) {
-      for (std::size_t a = 0; a < most_events; ++a)
+    for (std::size_t via = 0; via < max_events; ++via) {
+      for (std::size_t a = 0; a < max_events; ++a)
         closed.rows[a] |= closed.has(a, via) ? closed.rows[via] : 0;
     }
     return closed;
   }
   bool irreflexive() const {
-    for (std::size_t n = 0; n < most_events; ++n)
+    for (std::size_t n = 0; n < max_events; ++n)
       if (has(n, n)) return false;
     return true;
   }
@@ -62,7 +62,7 @@ public:
     for (const auto& thread : litmus) {
       const std::size_t first = events_.size();
       events_.insert(events_.end(), thread.begin(), thread.end());
-      assert(events_.size() <= most_events);
+      assert(events_.size() <= max_events);
       for (std::size_t b = first; b < events_.size(); ++b) {
         for (std::size_t a = 0; a < locations_; ++a)
           program_order_.add(a, b);

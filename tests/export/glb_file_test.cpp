@@ -15,8 +15,8 @@ using namespace nendo::exporting;
 namespace {
 
 /// With so many numbers, and with a limit.
-GlbFile file_of(std::size_t numbers, std::uint64_t most_bytes) {
-  GlbFile file("test", most_bytes);
+GlbFile file_of(std::size_t numbers, std::uint64_t max_bytes) {
+  GlbFile file("test", max_bytes);
   file.add_scalars(std::vector<float>(numbers, 1.0F), false);
   return file;
 }

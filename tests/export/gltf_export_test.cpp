@@ -217,7 +217,7 @@ TEST_SUITE("gltf_export") {
   }
 
   TEST_CASE("a viewer that mixes the targets' normals lights the shape as its own normals do") {
-    for (const auto& [mode, most_degrees] :
+    for (const auto& [mode, max_degrees] :
          {std::pair(flow::Mode::type1, 6.0), std::pair(flow::Mode::type2, 4.0)}) {
       const RecordedMotion motion(Motion{.mode = mode, .bend_counts = 60.0});
       REQUIRE(export_it(motion));
@@ -235,7 +235,7 @@ TEST_SUITE("gltf_export") {
             std::max(worst_at_rest, farthest_turn_deg(glb.vertices(node, 0.0, "NORMAL"), wanted));
       }
       MESSAGE(name_of(mode) << ": off by " << worst << " degrees, at rest by " << worst_at_rest);
-      CHECK(worst < most_degrees);
+      CHECK(worst < max_degrees);
       CHECK(worst_at_rest > 3.5 * worst); // otherwise the motion would prove nothing
     }
   }
@@ -352,13 +352,13 @@ TEST_SUITE("gltf_export") {
     REQUIRE(weights > 4);
     test::write_bytes(motion.path("take.glb"), "old");
     for (const std::uint64_t most : {weights - 1, std::uint64_t{1}}) {
-      const auto refused = export_it(motion, {}, {.most_weights = most});
+      const auto refused = export_it(motion, {}, {.max_weights = most});
       REQUIRE_FALSE(refused);
       CHECK(refused.error().code == Errc::failed);
       CHECK(refused.error().message.find("--tolerance") != std::string::npos);
       CHECK(test::file_bytes(motion.path("take.glb")) == "old");
     }
-    CHECK(export_it(motion, {}, {.most_weights = weights}));
+    CHECK(export_it(motion, {}, {.max_weights = weights}));
   }
 
   TEST_CASE("a stop leaves the file that was there") {

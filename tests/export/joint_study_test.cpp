@@ -48,8 +48,8 @@ TEST_SUITE("joint_study") {
     CHECK(study.samples == 6283);
     const takes::JointRange& pip = study.ranges[hand::index_of(Angle::ring_pip_flexion)];
     CHECK(pip.source == hand::AngleSource::measured);
-    CHECK(pip.least_rad == doctest::Approx(0.1).epsilon(1e-3));
-    CHECK(pip.most_rad == doctest::Approx(1.1).epsilon(1e-3));
+    CHECK(pip.min_rad == doctest::Approx(0.1).epsilon(1e-3));
+    CHECK(pip.max_rad == doctest::Approx(1.1).epsilon(1e-3));
     CHECK(pip.median_rad == doctest::Approx(0.6).epsilon(1e-2));
     // A sine is below -cos(5 % of half a turn) for 5 % of the time.
     CHECK(pip.low_rad == doctest::Approx(0.6 - 0.5 * std::cos(0.05 * M_PI)).epsilon(1e-2));

@@ -17,7 +17,7 @@ struct Kept {
 };
 
 Kept keep(const std::vector<KeyShapes::Shape>& frames, const std::vector<float>& times_s,
-          double tolerance, std::size_t most_bytes = std::size_t{1} << 20) {
+          double tolerance, std::size_t max_bytes = std::size_t{1} << 20) {
   Kept kept;
   KeyShapes keys(
       tolerance,
@@ -25,7 +25,7 @@ Kept keep(const std::vector<KeyShapes::Shape>& frames, const std::vector<float>&
         kept.times_s.push_back(time_s);
         kept.shapes.push_back(shape);
       },
-      most_bytes);
+      max_bytes);
   for (std::size_t at = 0; at < frames.size(); ++at)
     keys.add(times_s[at], frames[at]);
   keys.finish();
@@ -102,8 +102,7 @@ TEST_SUITE("key_shapes") {
     for (int at = 0; at < 400; ++at)
       frames.push_back(KeyShapes::Shape::Constant(3, 4, 0.01F * static_cast<float>(at)));
     const Kept all = keep(frames, times_s, 1e-4);
-    CHECK(all.times_s.size() <=
-          1 + (400 + KeyShapes::most_between) / (KeyShapes::most_between + 1));
+    CHECK(all.times_s.size() <= 1 + (400 + KeyShapes::max_between) / (KeyShapes::max_between + 1));
     const Kept few = keep(frames, times_s, 1e-4, 5 * 48);
     CHECK(few.times_s.size() > all.times_s.size());
     CHECK(off(few, frames, times_s) < 1e-4);

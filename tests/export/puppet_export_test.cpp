@@ -192,7 +192,7 @@ TEST_SUITE("puppet_export") {
       CHECK(most > 0.05 * take.diagonal());
       const double off = take.farthest_off(glb);
       MESSAGE(distance << ": off by " << off << " of the diagonal");
-      CHECK(off < ControlMorphs::most_error);
+      CHECK(off < ControlMorphs::max_error);
       CHECK(off < done->morphs->greatest_error + 1e-7);
     }
   }
@@ -225,7 +225,7 @@ TEST_SUITE("puppet_export") {
     const auto done = take.export_it();
     REQUIRE(done);
     CHECK(done->morphs->basis == MorphBasis::functions);
-    CHECK(take.farthest_off(take.read()) < ControlMorphs::most_error);
+    CHECK(take.farthest_off(take.read()) < ControlMorphs::max_error);
   }
 
   TEST_CASE("a puppet that is edited on the way is a model of its own from there on, exact") {
@@ -257,7 +257,7 @@ TEST_SUITE("puppet_export") {
                    0.0) == (node == shown));
         }
         CHECK(*std::min_element(frames.begin(), frames.end()) > 15);
-        CHECK(worst < ControlMorphs::most_error * take.diagonal());
+        CHECK(worst < ControlMorphs::max_error * take.diagonal());
         // At other rates the frames are held while the take goes on.
         const auto slow = take.export_it({.rate_hz = 24.0});
         REQUIRE(slow);
@@ -323,7 +323,7 @@ TEST_SUITE("puppet_export") {
         worst = std::max(worst, test::farthest(glb.vertices(0, frames->time_s()), shape));
         most = std::max(most, test::farthest(shape, take.rest()));
       }
-      CHECK(worst < ControlMorphs::most_error * take.diagonal());
+      CHECK(worst < ControlMorphs::max_error * take.diagonal());
       CHECK(most > 0.05 * take.diagonal());
     }
   }
@@ -336,7 +336,7 @@ TEST_SUITE("puppet_export") {
     const Glb glb = take.read();
     CHECK(target_names(glb) == names);
     const double off = test::farthest(glb.vertices(0, 0.0), take.shapes[29]);
-    CHECK(off < ControlMorphs::most_error * take.diagonal());
+    CHECK(off < ControlMorphs::max_error * take.diagonal());
     CHECK(test::farthest(take.shapes[29], take.rest()) > 0.05 * take.diagonal());
   }
 }

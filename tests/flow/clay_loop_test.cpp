@@ -138,11 +138,11 @@ TEST_SUITE("clay_loop") {
       const Eigen::Isometry3d wrist = beside(ball, 2.5, skeleton, {}, at_its_side, clear_m);
       hand::HandBody body(skeleton);
       body.follow(skeleton.pose({}, wrist));
-      double least_m = 1.0;
+      double min_m = 1.0;
       for (const auto vertex : ball.vertices.colwise())
-        least_m = std::min(least_m, body.nearest(vertex / 2.5).distance_m);
-      CHECK(least_m >= clear_m - 1e-9);
-      CHECK(least_m < clear_m + 0.05);
+        min_m = std::min(min_m, body.nearest(vertex / 2.5).distance_m);
+      CHECK(min_m >= clear_m - 1e-9);
+      CHECK(min_m < clear_m + 0.05);
     }
   }
 

@@ -292,7 +292,7 @@ TEST_SUITE("layer") {
         "input 2 of a loop: the left hand has an input before; make this a layer, or leave it out");
     CHECK_FALSE(fits({layer, left}));
     std::vector<HandInput> many{left};
-    many.resize(most_inputs, layer);
+    many.resize(max_inputs, layer);
     CHECK(fits(many));
     CHECK(count_hands(many) == 1);
     many.push_back(layer);
@@ -306,7 +306,7 @@ TEST_SUITE("layer") {
     const auto script = base.script_so_far();
     script->repeat({400ms, 1200ms});
     std::vector<HandInput> inputs{test::scripted(like.inputs[0]), test::scripted(like.inputs[1])};
-    for (std::size_t at = 2; at < most_inputs; ++at) {
+    for (std::size_t at = 2; at < max_inputs; ++at) {
       const auto& hand = like.inputs[at % 2];
       inputs.push_back(test::layer_of(at < 4 ? hand : test::scripted(hand), only("ring")));
       script->add(300ms * at, SetLayer{static_cast<std::uint8_t>(at), at % 3 == 0});

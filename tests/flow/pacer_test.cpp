@@ -18,11 +18,11 @@ namespace {
 constexpr HostTime start(1s);
 constexpr auto period = 1ms;
 
-PaceOptions at_1khz(OverrunPolicy policy, unsigned most_catch_up = 4) {
+PaceOptions at_1khz(OverrunPolicy policy, unsigned max_catch_up = 4) {
   PaceOptions options;
   options.rate_hz = 1000.0;
   options.policy = policy;
-  options.most_catch_up = most_catch_up;
+  options.max_catch_up = max_catch_up;
   return options;
 }
 
@@ -186,7 +186,7 @@ TEST_SUITE("pacer") {
     }
     PaceOptions options;
     CHECK(parse_policy("catch-up", options));
-    CHECK(options.most_catch_up == PaceOptions{}.most_catch_up);
+    CHECK(options.max_catch_up == PaceOptions{}.max_catch_up);
     for (const char* text : {"", "hurry", "skip:2", "catch-up:", "catch-up:0", "catch-up:1001",
                              "catch-up:-1", "catch-up:2x", "catch-up:99999999999999", "SKIP"}) {
       PaceOptions untouched;
@@ -194,7 +194,7 @@ TEST_SUITE("pacer") {
       REQUIRE_FALSE(parsed);
       CHECK(parsed.error().message.starts_with(std::string(text) + ": use skip, "));
       CHECK(untouched.policy == OverrunPolicy::skip);
-      CHECK(untouched.most_catch_up == PaceOptions{}.most_catch_up);
+      CHECK(untouched.max_catch_up == PaceOptions{}.max_catch_up);
     }
   }
 }

@@ -126,7 +126,7 @@ TEST_SUITE("realtime") {
     CHECK(process.grants().empty());
     CHECK_FALSE(InheritedPriority(0).grant());
     CHECK(reader_priority(0) == 0);
-    CHECK(reader_priority(most_priority) == 99);
+    CHECK(reader_priority(max_priority) == 99);
   }
 
   TEST_CASE("threads inherit the readers' priority while it is lent, and not afterwards") {

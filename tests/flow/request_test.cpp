@@ -343,7 +343,7 @@ TEST_SUITE("request") {
         CAPTURE(refills);
         Person person(mode);
         person.test.options.sculptor.deformer.undo_bytes = 100'000;
-        person.test.options.undo_most_bytes = refills ? std::size_t{1} << 30 : 0;
+        person.test.options.undo_max_bytes = refills ? std::size_t{1} << 30 : 0;
         person.test.loop = std::make_unique<DeformLoop>(person.test.model, person.test.placement,
                                                         person.test.inputs, person.test.options);
         std::vector<Points> shapes;
@@ -383,7 +383,7 @@ TEST_SUITE("request") {
   TEST_CASE("memory comes from another thread while the loop commits and undoes") {
     Person person(Mode::type1);
     person.test.options.sculptor.deformer.undo_bytes = 0;
-    person.test.options.undo_most_bytes = std::size_t{1} << 30;
+    person.test.options.undo_max_bytes = std::size_t{1} << 30;
     person.test.loop = std::make_unique<DeformLoop>(person.test.model, person.test.placement,
                                                     person.test.inputs, person.test.options);
     std::atomic<bool> over{false};

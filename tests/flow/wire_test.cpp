@@ -158,7 +158,7 @@ TEST_SUITE("wire") {
       CHECK(path.completed() == before + 1);
       const auto places = path.places();
       REQUIRE(places.size() >= 2);
-      CHECK(places.size() <= WirePath::most_places);
+      CHECK(places.size() <= WirePath::max_places);
       CHECK(places.size() >= std::min<std::size_t>(static_cast<std::size_t>(count), 60));
       CHECK(places.front().from.z() == 0.0);
       CHECK(places.back().from.z() == doctest::Approx(0.066 * (count - 1) + 0.006));

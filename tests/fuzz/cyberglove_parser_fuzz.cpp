@@ -43,8 +43,8 @@ nendo::driver::StreamCounters run(const Stream& stream, const RecordShape& shape
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const unsigned choice = *data;
-  const RecordShape shape{1 + choice % most_values, (choice & 0x40U) != 0, (choice & 0x80U) != 0};
-  const Stream stream{rest_of({data, size}), 1 + choice % 7, most_record_bytes};
+  const RecordShape shape{1 + choice % max_values, (choice & 0x40U) != 0, (choice & 0x80U) != 0};
+  const Stream stream{rest_of({data, size}), 1 + choice % 7, max_record_bytes};
 
   const auto all = run(stream, shape, [](Record&) { return Verdict{}; });
   require(all.implausible == 0 && all.missed == 0);

@@ -10,7 +10,7 @@ namespace {
 
 void check_report(const Report& report) {
   for (const unsigned value : report.values)
-    require(value <= most_count);
+    require(value <= max_count);
 }
 
 } // namespace

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto sink = [&](const Record& record) {
     ++records;
     require(std::all_of(record.flexion.begin(), record.flexion.end(),
-                        [](std::uint8_t count) { return count <= most_count; }));
+                        [](std::uint8_t count) { return count <= max_count; }));
   };
   push_stream(parser, {stream, 1 + *data % 7U, record_bytes}, [&](auto chunk) {
     parser.push(chunk, sink);

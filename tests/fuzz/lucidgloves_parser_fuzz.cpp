@@ -29,7 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool takes_first = (choice & 0x40U) != 0;
   Parser parser(range, takes_first ? FirstPiece::take_if_whole : FirstPiece::skip);
   std::uint64_t records = 0;
-  push_stream(parser, {rest_of({data, size}), 1 + choice % 7, most_line_bytes}, [&](auto chunk) {
+  push_stream(parser, {rest_of({data, size}), 1 + choice % 7, max_line_bytes}, [&](auto chunk) {
     parser.push(chunk, [&](const Line& line) {
       check_line(line, range);
       if (line.measures()) ++records;

@@ -44,8 +44,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(message.starts_with("fuzz:") && message.find('\n') == std::string::npos);
     return 0;
   }
-  require(puppet->points.size() <= Puppet::most_points);
-  require(puppet->functions.size() <= Puppet::most_functions);
+  require(puppet->points.size() <= Puppet::max_points);
+  require(puppet->functions.size() <= Puppet::max_functions);
   require(puppet->text == text);
   play(*std::move(puppet));
   return 0;

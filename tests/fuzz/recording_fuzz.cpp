@@ -37,7 +37,7 @@ std::vector<std::byte> framed(std::span<const std::byte> input) {
 }
 
 void replay(const Setup& setup, const std::vector<Entry>& entries) {
-  constexpr int most_ticks = 20;
+  constexpr int max_ticks = 20;
   static const deform::Mesh model = test::sphere(6, 8, 1.0);
   // Memory that a setup may ask for is not what is looked for here.
   const auto replayed = LoopReplay::make(setup, model);
@@ -47,7 +47,7 @@ void replay(const Setup& setup, const std::vector<Entry>& entries) {
   for (const Entry& entry : entries) {
     const auto* const change = std::get_if<flow::ChangeModel>(&entry);
     if (change != nullptr && change->is_new() && ++finer > 3) continue;
-    if ((*replayed)->feed(entry) && ++ticks == most_ticks) break;
+    if ((*replayed)->feed(entry) && ++ticks == max_ticks) break;
   }
   require((*replayed)->loop().final_shape().allFinite());
 }
@@ -83,7 +83,7 @@ void read(std::span<const std::byte> file) {
     auto& deformer = setup.loop->options.sculptor.deformer;
     deformer.undo_bytes = std::min<std::size_t>(deformer.undo_bytes, 1 << 16);
     if (deformer.injective)
-      deformer.injective->most_links = std::min(deformer.injective->most_links, 8);
+      deformer.injective->max_links = std::min(deformer.injective->max_links, 8);
     replay(setup, entries);
   }
   // What was read is written and read again to the same bytes.

@@ -18,18 +18,18 @@ void require(bool law) {
 }
 
 void play(nendo::timeline::Timeline timeline) {
-  constexpr int most_frames = 12;
+  constexpr int max_frames = 12;
   static const nendo::deform::Mesh model = nendo::test::sphere(6, 8, 1.0);
   auto& deformer = timeline.sculptor.deformer; // time is not what is looked for here
   if (deformer.injective)
-    deformer.injective->most_links = std::min(deformer.injective->most_links, 8);
+    deformer.injective->max_links = std::min(deformer.injective->max_links, 8);
   int finer = 0; // nor memory
   std::erase_if(timeline.events, [&](const auto& event) {
     return std::holds_alternative<nendo::flow::Subdivide>(event.command) && ++finer > 3;
   });
   const auto player = nendo::timeline::Player::make(std::move(timeline), model);
   if (!player) return;
-  for (int frame = 0; frame < most_frames && (*player)->next(); ++frame) {
+  for (int frame = 0; frame < max_frames && (*player)->next(); ++frame) {
   }
   require((*player)->final_shape().allFinite());
 }

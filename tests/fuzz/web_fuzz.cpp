@@ -76,7 +76,7 @@ void check_settings(const NamedSettings& named) {
 // Whatever is understood is something that a loop may be asked for.
 void check_words(std::string_view text) {
   const auto asked = parse_command(text);
-  require(asked || asked.error().message.size() <= most_close_reason);
+  require(asked || asked.error().message.size() <= max_close_reason);
   if (!asked) return;
   require(text.front() != ' ' && text.back() != ' ');
   if (const auto* const named = std::get_if<NamedSettings>(&*asked)) return check_settings(*named);

@@ -28,7 +28,7 @@ BoneLengths usual() {
 TEST_SUITE("bone_lengths") {
   TEST_CASE("a hand made of measured bones has these bones") {
     std::mt19937 random(1);
-    std::uniform_real_distribution<double> length(BoneLengths::least_m, BoneLengths::most_m);
+    std::uniform_real_distribution<double> length(BoneLengths::min_m, BoneLengths::max_m);
     constexpr Joint metacarpals[] = {Joint::index_metacarpal, Joint::middle_metacarpal,
                                      Joint::ring_metacarpal, Joint::little_metacarpal};
     for (int round = 0; round < 100; ++round) {
@@ -88,8 +88,8 @@ TEST_SUITE("bone_lengths") {
       CHECK(thumb.error().message.find("thumb metacarpal") != std::string::npos);
     }
     BoneLengths ends = usual();
-    ends.thumb_m[1] = BoneLengths::least_m;
-    ends.fingers_m[0][0] = BoneLengths::most_m;
+    ends.thumb_m[1] = BoneLengths::min_m;
+    ends.fingers_m[0][0] = BoneLengths::max_m;
     CHECK(ends.check());
   }
 }

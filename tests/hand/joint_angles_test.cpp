@@ -160,9 +160,9 @@ TEST_SUITE("joint_angles") {
     // Between the soft stops what is measured is shown; beyond, something between stop and end.
     const auto shows = [](double shown, double angle_rad, std::array<double, 4> ends_deg) {
       constexpr double rad = 3.14159265358979323846 / 180.0;
-      const auto [least, soft_least, soft_most, most] = ends_deg;
-      if (angle_rad > soft_most * rad) return shown > soft_most * rad && shown < most * rad;
-      if (angle_rad < soft_least * rad) return shown < soft_least * rad && shown > least * rad;
+      const auto [least, soft_min, soft_max, most] = ends_deg;
+      if (angle_rad > soft_max * rad) return shown > soft_max * rad && shown < most * rad;
+      if (angle_rad < soft_min * rad) return shown < soft_min * rad && shown > least * rad;
       return shown == doctest::Approx(angle_rad);
     };
     const Calibration calibration = default_calibration();

@@ -32,7 +32,7 @@ void for_each_limit(const Law& law) {
 template <class Law>
 void sweep(const JointLimit& limit, const Law& law) {
   const double beyond = 60 * rad;
-  for (double angle = limit.least_rad - beyond; angle <= limit.most_rad + beyond; angle += 1e-3)
+  for (double angle = limit.min_rad - beyond; angle <= limit.max_rad + beyond; angle += 1e-3)
     law(angle);
 }
 
@@ -41,23 +41,23 @@ void sweep(const JointLimit& limit, const Law& law) {
 TEST_SUITE("joint_limits") {
   TEST_CASE("each joint's ends stand in order about zero, and its soft stops have a width") {
     for_each_limit([](const JointLimit& limit) {
-      CHECK(limit.least_rad < limit.soft_least_rad);
-      CHECK(limit.soft_least_rad < 0.0);
-      CHECK(limit.soft_most_rad > 0.0);
-      CHECK(limit.soft_most_rad < limit.most_rad);
+      CHECK(limit.min_rad < limit.soft_min_rad);
+      CHECK(limit.soft_min_rad < 0.0);
+      CHECK(limit.soft_max_rad > 0.0);
+      CHECK(limit.soft_max_rad < limit.max_rad);
     });
   }
 
   TEST_CASE("an angle before the soft stops is untouched, to the last bit") {
     std::mt19937 random(3);
     for_each_limit([&](const JointLimit& limit) {
-      std::uniform_real_distribution<double> inside(limit.soft_least_rad, limit.soft_most_rad);
+      std::uniform_real_distribution<double> inside(limit.soft_min_rad, limit.soft_max_rad);
       for (int n = 0; n < 1000; ++n) {
         const double angle = inside(random);
         REQUIRE(limit.soften(angle) == angle);
       }
-      CHECK(limit.soften(limit.soft_least_rad) == limit.soft_least_rad);
-      CHECK(limit.soften(limit.soft_most_rad) == limit.soft_most_rad);
+      CHECK(limit.soften(limit.soft_min_rad) == limit.soft_min_rad);
+      CHECK(limit.soften(limit.soft_max_rad) == limit.soft_max_rad);
     });
   }
 
@@ -91,8 +91,8 @@ TEST_SUITE("joint_limits") {
     for_each_limit([](const JointLimit& limit) {
       sweep(limit, [&](double angle) {
         const double soft = limit.soften(angle);
-        REQUIRE(soft >= limit.least_rad);
-        REQUIRE(soft <= limit.most_rad);
+        REQUIRE(soft >= limit.min_rad);
+        REQUIRE(soft <= limit.max_rad);
         REQUIRE(std::abs(soft) <= std::abs(angle));
         REQUIRE(soft * angle >= 0.0);
       });
@@ -108,15 +108,15 @@ TEST_SUITE("joint_limits") {
         before = soft;
       });
       // A degree too much at the end is still a fifth of one that is seen.
-      const double step = limit.soften(limit.most_rad + rad) - limit.soften(limit.most_rad);
+      const double step = limit.soften(limit.max_rad + rad) - limit.soften(limit.max_rad);
       CHECK(step > 0.15 * rad);
     });
   }
 
   TEST_CASE("neighbouring doubles are never put in the wrong order") {
     for_each_limit([](const JointLimit& limit) {
-      for (const double about : {limit.soft_least_rad, limit.soft_most_rad, limit.least_rad,
-                                 limit.most_rad, 10 * limit.most_rad, -1e15, 1e15}) {
+      for (const double about : {limit.soft_min_rad, limit.soft_max_rad, limit.min_rad,
+                                 limit.max_rad, 10 * limit.max_rad, -1e15, 1e15}) {
         double angle = about;
         for (int n = 0; n < 200; ++n)
           angle = std::nextafter(angle, -1e300);
@@ -135,17 +135,17 @@ TEST_SUITE("joint_limits") {
     for_each_limit([](const JointLimit& limit) {
       constexpr double h = 1e-5;
       const double narrowest =
-          std::min(limit.soft_least_rad - limit.least_rad, limit.most_rad - limit.soft_most_rad);
+          std::min(limit.soft_min_rad - limit.min_rad, limit.max_rad - limit.soft_max_rad);
       const auto slope = [&](double angle) {
         return (limit.soften(angle + h) - limit.soften(angle - h)) / (2 * h);
       };
       for (const double about :
-           {limit.soft_least_rad, limit.soft_most_rad, limit.least_rad, limit.most_rad}) {
+           {limit.soft_min_rad, limit.soft_max_rad, limit.min_rad, limit.max_rad}) {
         for (double angle = about - 0.02; angle < about + 0.02; angle += h)
           REQUIRE(std::abs(slope(angle + h) - slope(angle - h)) < 4.5 * h / narrowest + 1e-8);
       }
-      CHECK(slope(limit.soft_most_rad + 2 * h) == doctest::Approx(1.0).epsilon(0.01));
-      CHECK(slope(limit.soft_least_rad - 2 * h) == doctest::Approx(1.0).epsilon(0.01));
+      CHECK(slope(limit.soft_max_rad + 2 * h) == doctest::Approx(1.0).epsilon(0.01));
+      CHECK(slope(limit.soft_min_rad - 2 * h) == doctest::Approx(1.0).epsilon(0.01));
     });
   }
 
@@ -153,17 +153,17 @@ TEST_SUITE("joint_limits") {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::mt19937_64 random(9);
     for_each_limit([&](const JointLimit& limit) {
-      CHECK(limit.soften(std::numeric_limits<double>::quiet_NaN()) == limit.least_rad);
-      CHECK(limit.soften(infinity) == doctest::Approx(limit.most_rad));
-      CHECK(limit.soften(-infinity) == doctest::Approx(limit.least_rad));
+      CHECK(limit.soften(std::numeric_limits<double>::quiet_NaN()) == limit.min_rad);
+      CHECK(limit.soften(infinity) == doctest::Approx(limit.max_rad));
+      CHECK(limit.soften(-infinity) == doctest::Approx(limit.min_rad));
       for (int n = 0; n < 20000; ++n) {
         const std::uint64_t bits = random(); // any double, NaNs and infinities among them
         double angle = 0.0;
         static_assert(sizeof angle == sizeof bits);
         std::memcpy(&angle, &bits, sizeof angle);
         const double soft = limit.soften(angle);
-        REQUIRE(soft >= limit.least_rad);
-        REQUIRE(soft <= limit.most_rad);
+        REQUIRE(soft >= limit.min_rad);
+        REQUIRE(soft <= limit.max_rad);
       }
     });
   }

@@ -57,8 +57,8 @@ Contact meet(const HandSkeleton& skeleton, std::size_t finger, JointAngles angle
 bool within_soft_limits(const JointAngles& angles, double margin_rad) {
   for (std::size_t n = 0; n < angle_count; ++n) {
     const double angle_rad = angles[angle_at(n)];
-    if (angle_rad < joint_limits[n].soft_least_rad - margin_rad) return false;
-    if (angle_rad > joint_limits[n].soft_most_rad + margin_rad) return false;
+    if (angle_rad < joint_limits[n].soft_min_rad - margin_rad) return false;
+    if (angle_rad > joint_limits[n].soft_max_rad + margin_rad) return false;
   }
   return true;
 }

@@ -28,14 +28,14 @@ double gap_m(const HandSkeleton& skeleton, const JointAngles& angles, std::size_
   return (pose[fingertips[0]] * skeleton.pad() - pose[fingertips[finger]] * skeleton.pad()).norm();
 }
 
-double least_gap_m(const HandSkeleton& skeleton, const JointAngles& angles) {
+double min_gap_m(const HandSkeleton& skeleton, const JointAngles& angles) {
   double least = 1.0;
   for (std::size_t finger = 1; finger < finger_count; ++finger)
     least = std::min(least, gap_m(skeleton, angles, finger));
   return least;
 }
 
-double most_difference(const JointAngles& a, const JointAngles& b) {
+double max_difference(const JointAngles& a, const JointAngles& b) {
   double most = 0.0;
   for (std::size_t at = 0; at < angle_count; ++at)
     most = std::max(most, std::abs(a[angle_at(at)] - b[angle_at(at)]));
@@ -71,7 +71,7 @@ bool is_free(const HandSkeleton& skeleton, const JointAngles& open, const JointA
     if (other != finger && gap_m(skeleton, open, other) < open_pinch_m) return false;
   for (std::size_t at = 0; at < 4 * finger_count; ++at) {
     const double angle = closed[angle_at(at)];
-    if (angle <= joint_limits[at].least_rad || angle >= joint_limits[at].most_rad) return false;
+    if (angle <= joint_limits[at].min_rad || angle >= joint_limits[at].max_rad) return false;
   }
   return true;
 }
@@ -96,13 +96,13 @@ TEST_SUITE("pinch_closing") {
         ++free;
         REQUIRE(gap_m(skeleton, closed, finger) < 3e-4);
       }
-      REQUIRE(most_difference(open, closed) < from_degrees(25.0));
+      REQUIRE(max_difference(open, closed) < from_degrees(25.0));
       for (std::size_t at = 0; at < angle_count; ++at) {
         const double before = open[angle_at(at)], after = closed[angle_at(at)];
         const bool may_move = at < 4 || (at < 20 && gap_m(skeleton, open, at / 4) < open_pinch_m);
         if (!may_move) REQUIRE(before == after);
-        REQUIRE(after >= std::min(before, joint_limits[at].least_rad));
-        REQUIRE(after <= std::max(before, joint_limits[at].most_rad));
+        REQUIRE(after >= std::min(before, joint_limits[at].min_rad));
+        REQUIRE(after <= std::max(before, joint_limits[at].max_rad));
       }
     }
     CHECK(free > 250);
@@ -114,9 +114,9 @@ TEST_SUITE("pinch_closing") {
     int apart = 0;
     for (int round = 0; round < 2000; ++round) {
       const JointAngles angles = test::random_angles_within_limits(random);
-      if (least_gap_m(skeleton, angles) < open_pinch_m) continue;
+      if (min_gap_m(skeleton, angles) < open_pinch_m) continue;
       ++apart;
-      REQUIRE(most_difference(close_pinches(angles, skeleton, sensors_22), angles) == 0.0);
+      REQUIRE(max_difference(close_pinches(angles, skeleton, sensors_22), angles) == 0.0);
     }
     CHECK(apart > 1000);
   }
@@ -138,16 +138,16 @@ TEST_SUITE("pinch_closing") {
         CAPTURE(round);
         CAPTURE(step);
         // The roll turns by 0.00025 rad a step.
-        REQUIRE(most_difference(shown, before) < 0.006);
+        REQUIRE(max_difference(shown, before) < 0.006);
         if (is_free(skeleton, given, shown, finger)) {
           ++compared;
           REQUIRE(gap_m(skeleton, shown, finger) <= gap_m(skeleton, given, finger) + 1e-9);
         }
         before = shown;
       }
-      if (least_gap_m(skeleton, open) < open_pinch_m) continue; // another finger's pad
+      if (min_gap_m(skeleton, open) < open_pinch_m) continue; // another finger's pad
       ++opened;
-      CHECK(most_difference(before, open) == 0.0);
+      CHECK(max_difference(before, open) == 0.0);
     }
     CHECK(opened > 20);
     CHECK(compared > 20'000);
@@ -183,7 +183,7 @@ TEST_SUITE("pinch_closing") {
     const test::Restraint restraint;
     const JointAngles closed = close_pinches(pinch, skeleton, sensors_22);
     CHECK(restraint.counts().allocations == 0);
-    CHECK(most_difference(closed, pinch) > 0.0);
+    CHECK(max_difference(closed, pinch) > 0.0);
   }
 }
 

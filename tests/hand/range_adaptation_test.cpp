@@ -232,7 +232,7 @@ TEST_SUITE("range_adaptation") {
         const Calibration& after = visitor.adaptation.calibration();
         const double change = change_rad(before, after, 255.0);
         const double elapsed_s = std::clamp(to_seconds(period), 0.0, 0.1);
-        REQUIRE(change <= RangeAdaptation::most_drift_rad_s * elapsed_s * 1.0001);
+        REQUIRE(change <= RangeAdaptation::max_drift_rad_s * elapsed_s * 1.0001);
         moved += change;
         before = after;
       }

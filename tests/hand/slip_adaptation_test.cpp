@@ -102,7 +102,7 @@ TEST_SUITE("slip_adaptation") {
       fastest = std::max(fastest, std::abs(wearer.moved() - before));
       before = wearer.moved();
     });
-    const double most = SlipAdaptation::most_drift_rad_s / 90.0;
+    const double most = SlipAdaptation::max_drift_rad_s / 90.0;
     CHECK(fastest * wearer.made.sensors[pip].gain_rad_per_count <= most * 1.001);
     CHECK(fastest > 0.0);
 
@@ -192,7 +192,7 @@ TEST_SUITE("slip_adaptation") {
         REQUIRE(std::isfinite(wearer.adaptation.calibration().sensors[slot].offset_counts));
         const double span =
             wearer.ends.counts.high_counts[slot] - wearer.ends.counts.low_counts[slot];
-        const double most = SlipAdaptation::most_slip * span;
+        const double most = SlipAdaptation::max_slip * span;
         if (wearer.slip(slot) != 0.0) REQUIRE(std::abs(wearer.slip(slot)) <= most);
       }
     }

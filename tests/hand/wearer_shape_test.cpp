@@ -28,7 +28,7 @@ WearerShape random_shape(std::mt19937& random, double part) {
   std::uniform_real_distribution<double> u(-part, part);
   WearerShape shape;
   for (std::size_t k = 0; k < shape_terms; ++k)
-    shape.terms[k] = u(random) * most_of(static_cast<ShapeTerm>(k));
+    shape.terms[k] = u(random) * max_of(static_cast<ShapeTerm>(k));
   return shape;
 }
 

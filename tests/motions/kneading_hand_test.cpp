@@ -35,10 +35,10 @@ double clearance_m(const KneadingHand& hand, Side side, const deform::Mesh& mode
   const hand::HandSkeleton skeleton(side);
   hand::HandBody body(skeleton);
   body.follow(skeleton.pose(hand.angles(time_s), hand.wrist()->at(time_s)));
-  double least_m = std::numeric_limits<double>::max();
+  double min_m = std::numeric_limits<double>::max();
   for (const auto vertex : model.vertices.colwise())
-    least_m = std::min(least_m, body.nearest(0.5 * size_m * vertex).distance_m);
-  return least_m;
+    min_m = std::min(min_m, body.nearest(0.5 * size_m * vertex).distance_m);
+  return min_m;
 }
 
 } // namespace
@@ -53,17 +53,17 @@ TEST_SUITE("kneading_hand") {
         const KneadingHand hand = hand_on(ball, side, task);
         CHECK(clearance_m(hand, side, ball, 0.0) > 0.005);
         CHECK(clearance_m(hand, side, ball, hand.length_s() + 1.0) > 0.005);
-        double least_m = 0.0;
+        double min_m = 0.0;
         for (double time_s = 0.0; time_s < hand.length_s(); time_s += 0.05)
-          least_m = std::min(least_m, clearance_m(hand, side, ball, time_s));
-        CHECK((least_m < -0.005 || (task == KneadTask::knead && side == Side::left)));
+          min_m = std::min(min_m, clearance_m(hand, side, ball, time_s));
+        CHECK((min_m < -0.005 || (task == KneadTask::knead && side == Side::left)));
       }
     }
   }
 
   TEST_CASE("motions are continuous, no faster than a hand, and within the joints' ranges") {
     constexpr double step_s = 0.002;
-    constexpr double most_speed_m_s = 1.5;
+    constexpr double max_speed_m_s = 1.5;
     const deform::Mesh ball = test::sphere(8, 12, 1.0);
     for (const KneadTask task : knead_tasks) {
       for (const Side side : {Side::left, Side::right}) {
@@ -81,11 +81,11 @@ TEST_SUITE("kneading_hand") {
           for (std::size_t k = 0; k < hand::angle_count; ++k) {
             const hand::Angle angle = hand::angle_at(k);
             fastest_rad_s = std::max(fastest_rad_s, std::abs(next[angle] - now[angle]) / step_s);
-            CHECK(now[angle] >= hand::limit_of(angle).least_rad - 1e-9);
-            CHECK(now[angle] <= hand::limit_of(angle).most_rad + 1e-9);
+            CHECK(now[angle] >= hand::limit_of(angle).min_rad - 1e-9);
+            CHECK(now[angle] <= hand::limit_of(angle).max_rad + 1e-9);
           }
         }
-        CHECK(fastest_m_s < most_speed_m_s);
+        CHECK(fastest_m_s < max_speed_m_s);
         CHECK(fastest_m_s > 0.02);
         CHECK(fastest_rad_s < 8.0);
       }

@@ -112,8 +112,8 @@ void check_motion(const TouchingHand& hand, Side side) {
     for (std::size_t k = 0; k < hand::angle_count; ++k) {
       const hand::Angle angle = hand::angle_at(k);
       const auto& limit = hand::limit_of(angle);
-      beyond_rad = std::max(
-          {beyond_rad, now[angle] - limit.soft_most_rad, limit.soft_least_rad - now[angle]});
+      beyond_rad =
+          std::max({beyond_rad, now[angle] - limit.soft_max_rad, limit.soft_min_rad - now[angle]});
       fastest_rad_s = std::max(fastest_rad_s, std::abs(now[angle] - before[angle]) / step_s);
     }
     const flow::Fingertips tips = tips_at(hand, side, t);

@@ -85,7 +85,7 @@ TEST_SUITE("edit_command") {
     CHECK(farthest(played(file), path("face.obj")) < 1e-5); // which has six digits
     const json made = json::parse(
         EditedRun::fine({"make", take, "--out", file, "--tolerance", "10mm", "--json"}));
-    CHECK(made["left"]["most_point_mm"].get<double>() <= 5.0);
+    CHECK(made["left"]["max_point_mm"].get<double>() <= 5.0);
     const auto functions = [&](const std::string& of) {
       return json::parse(EditedRun::fine({"show", of, "--functions", "--json"}))["functions"];
     };
@@ -128,7 +128,7 @@ TEST_SUITE("edit_command") {
       CAPTURE(mode);
       const EditedRun run(mode, "0mm");
       CHECK(run.made["exact"] == true);
-      CHECK(run.made["left"]["most_tip_mm"] == 0.0);
+      CHECK(run.made["left"]["max_tip_mm"] == 0.0);
       const std::string played = run.path("played.obj");
       const json told = json::parse(run.fine({"play", run.timeline, "--out", played, "--json"}));
       CHECK(told["frames"].get<int>() >= run.made["left"]["frames"].get<int>());
@@ -145,7 +145,7 @@ TEST_SUITE("edit_command") {
     const json before = run.shown(run.timeline);
     const auto& keys = before["hands"]["right"];
     REQUIRE(keys.size() >= 3);
-    CHECK(run.made["right"]["most_tip_mm"].get<double>() <= 2.0);
+    CHECK(run.made["right"]["max_tip_mm"].get<double>() <= 2.0);
     CHECK(keys[0]["angles_rad"].size() == 23);
     CHECK(lines_of(run.fine({"show", run.timeline, "--finger", "index"})).size() >=
           3 + keys.size());

@@ -69,9 +69,9 @@ TEST_SUITE("kept_ranges") {
       // The line leads from one end of the joint's usual range to the other.
       const auto& line = kept->calibration.sensors[slot];
       const auto usual = hand::default_calibration({1, true}).sensors[slot];
-      CHECK(line.gain_rad_per_count * (quality->most_counts - line.offset_counts) ==
+      CHECK(line.gain_rad_per_count * (quality->max_counts - line.offset_counts) ==
             doctest::Approx(usual.angle_rad(RawCount{1})));
-      CHECK(line.gain_rad_per_count * (quality->least_counts - line.offset_counts) ==
+      CHECK(line.gain_rad_per_count * (quality->min_counts - line.offset_counts) ==
             doctest::Approx(usual.angle_rad(RawCount{0})));
     }
     CHECK(lines > 0);

@@ -124,9 +124,9 @@ TEST_SUITE("run") {
         const json& links = summary["injective"];
         CHECK(links.is_null() == (injective == "--no-injective"));
         if (links.is_null()) continue;
-        CHECK(links["most_links"].get<int>() >= 1);
-        CHECK(links["most_bound"].get<double>() > 0.0);
-        CHECK(links["least_determinant"].get<double>() > 0.0);
+        CHECK(links["max_links"].get<int>() >= 1);
+        CHECK(links["max_bound"].get<double>() > 0.0);
+        CHECK(links["min_determinant"].get<double>() > 0.0);
         CHECK(links["held_apart_ticks"].get<int>() >= 0);
       }
     const auto both = nendo::test::nendo({"run", "--injective", "--no-injective"});

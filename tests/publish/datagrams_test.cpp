@@ -104,7 +104,7 @@ TEST_SUITE("datagrams") {
       if (!receiver.is_bound()) continue; // no IPv6 here
       LoopUnderTest test(
           flow::Mode::type1,
-          {.rings_of_ball = 8, .injective = deform::InjectiveOptions{.most_bound = 0.2}});
+          {.rings_of_ball = 8, .injective = deform::InjectiveOptions{.max_bound = 0.2}});
       SegmentPublisher publisher(test::segment_name("both"), {});
       DatagramPublisher sender("udp:port", receiver.target());
       test::attach(test, {&publisher, &sender});

@@ -166,7 +166,7 @@ TEST_SUITE("segment") {
     test::attach(test, {&publisher});
     auto outline = test::outline_of(test);
     outline.functions = 3;
-    outline.most_fields = 1;
+    outline.max_fields = 1;
     REQUIRE(publisher.begin(outline));
     const MappedSegment segment(segment_name("room"));
     Player player(test);

@@ -154,7 +154,7 @@ TEST_SUITE("updates") {
       SegmentPublisher publisher(segment_name("change"), {});
       test::attach(test, {&publisher});
       publish::LoopOutline outline = test::outline_of(test);
-      outline.most_fields = 64;
+      outline.max_fields = 64;
       outline.functions = 20;
       REQUIRE(publisher.begin(outline));
       const MappedSegment segment(segment_name("change"));

@@ -235,7 +235,7 @@ TEST_SUITE("puppet edit") {
     CHECK(ball.puppet() == before); // a refused edit leaves the puppet as it is
     CHECK(ball.puppet().text == before.text);
     Puppet full = before;
-    for (std::size_t at = 1; at < Puppet::most_functions; ++at) {
+    for (std::size_t at = 1; at < Puppet::max_functions; ++at) {
       full.functions.push_back(full.functions.front());
       full.functions.back().name = "more" + std::to_string(at);
     }

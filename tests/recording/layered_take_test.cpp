@@ -247,7 +247,7 @@ TEST_SUITE("layered_take") {
     CHECK_FALSE(read({layer, like.inputs[0]}, 0, 0));
     CHECK_FALSE(read({like.inputs[0], like.inputs[0]}, 0, 0));
     std::vector<flow::HandInput> many{like.inputs[0]};
-    many.resize(flow::most_inputs, layer);
+    many.resize(flow::max_inputs, layer);
     CHECK(read(many, 0, 0));
     many.push_back(layer);
     CHECK_FALSE(read(many, 0, 0));

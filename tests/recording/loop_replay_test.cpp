@@ -204,7 +204,7 @@ TEST_SUITE("loop_replay") {
             "bit") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       RecordedLoop live(mode);
-      live.test.options.undo_most_bytes = std::size_t{1} << 30;
+      live.test.options.undo_max_bytes = std::size_t{1} << 30;
       live.test.options.sculptor.deformer.undo_bytes = 100'000;
       live.test.loop = std::make_unique<flow::DeformLoop>(live.test.model, live.test.placement,
                                                           live.test.inputs, live.test.options);

@@ -82,7 +82,7 @@ def loop(b):
     o.update(zip(("kernel", "polynomial", "merge", "order", "storage", "weight_bytes", "undo_bytes", "injective",
                   "most_bound", "most_links", "least_gap"), b.take("BBdBBQQBdId")))
     o["simd"] = b.text()
-    o["undo_most_bytes"] = b.take("Q")
+    o["undo_max_bytes"] = b.take("Q")
     o["held"] = b.take("B")
     if b.take("B"):
         o["settings"] = settings(b)
@@ -139,7 +139,7 @@ def sent(b):
 def tape(b):
     forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 5: lambda e: {"side": e.take("B"), "wrist": e.take("7d")}, 4: lambda e: {"gap": e.take("Q")},
              6: lambda e: {**settings(e), **brushes(e), **hold(e)}, 9: lambda e: {"mark": 1}, 10: lambda e: {"clutch": e.take("3B")}, 11: lambda e: {"role": e.take("HBB")},
-             12: lambda e: {"symmetry": e.take("B")}, 13: lambda e: {"puppet": e.take("I")}, 15: lambda e: dict(zip(("input", "on"), e.take("BB"))), 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source", "most_vertices", "seam", "part"), e.take("IBIdI"))), 16: lambda e: {"wire": e.take("B")}, 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
+             12: lambda e: {"symmetry": e.take("B")}, 13: lambda e: {"puppet": e.take("I")}, 15: lambda e: dict(zip(("input", "on"), e.take("BB"))), 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source", "max_vertices", "seam", "part"), e.take("IBIdI"))), 16: lambda e: {"wire": e.take("B")}, 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
     entries = []
     while b.left():
         kind, size = b.take("BB")

@@ -102,7 +102,7 @@ Setup unusual_setup() {
   input.first.device_time = std::chrono::nanoseconds(123456789);
   input.first.has_device_time = true;
   test.options.policy = flow::OverrunPolicy::catch_up;
-  test.options.most_catch_up = 7;
+  test.options.max_catch_up = 7;
   test.options.silent_after = std::chrono::milliseconds(321);
   auto& deformer = test.options.sculptor.deformer;
   deformer.supports = {{{0.5, 1.0}, {2.0, 0.25}}, {{3, {0.75, 2.0}}}};

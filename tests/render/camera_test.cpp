@@ -86,8 +86,8 @@ TEST_SUITE("camera") {
       camera.zoom(way(random));
       REQUIRE(camera.eye().allFinite());
       REQUIRE(std::abs(camera.view.elevation_deg) <= 90.0);
-      REQUIRE(camera.distance_m >= Camera::least_distance_m);
-      REQUIRE(camera.distance_m <= Camera::most_distance_m);
+      REQUIRE(camera.distance_m >= Camera::min_distance_m);
+      REQUIRE(camera.distance_m <= Camera::max_distance_m);
     }
   }
 }

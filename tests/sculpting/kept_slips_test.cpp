@@ -115,8 +115,8 @@ TEST_SUITE("kept_slips") {
     CHECK(now->calibration.sensors[mcp] == expected.sensors[mcp]);
     CHECK(now->method == "full");
     CHECK(now->quality[mcp] == home.made.quality[mcp]);
-    CHECK(now->quality[pip]->least_counts == 67.25);
-    CHECK(now->quality[pip]->most_counts == 255.0); // no glove counts further
+    CHECK(now->quality[pip]->min_counts == 67.25);
+    CHECK(now->quality[pip]->max_counts == 255.0); // no glove counts further
     CHECK(now->quality[pip]->residual_rad == home.made.quality[pip]->residual_rad);
     std::size_t files = 0; // the one before, too
     for ([[maybe_unused]] const auto& file :

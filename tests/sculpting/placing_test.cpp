@@ -13,7 +13,7 @@ TEST_SUITE("placing") {
     for (const double size : {0.02, 3.0}) {
       const auto ball = test::sphere(12, 24, 0.5 * size);
       const auto radius = [&](flow::Mode mode) {
-        return deform::least_radius(sculpting::usual_supports(ball, mode)) / size;
+        return deform::min_radius(sculpting::usual_supports(ball, mode)) / size;
       };
       CHECK(radius(flow::Mode::type1) == doctest::Approx(0.2));
       CHECK(radius(flow::Mode::type2) == doctest::Approx(0.2));
@@ -35,7 +35,7 @@ TEST_SUITE("placing") {
     for (const std::size_t most : {std::size_t{0}, std::size_t{1000}, std::size_t{1} << 30}) {
       flow::LoopOptions loop;
       sculpting::set_undo_room(ball, most, loop);
-      CHECK(loop.sculptor.deformer.undo_bytes + loop.undo_most_bytes == most);
+      CHECK(loop.sculptor.deformer.undo_bytes + loop.undo_max_bytes == most);
       CHECK(loop.sculptor.deformer.undo_bytes <= std::size_t{64} << 20);
     }
   }

@@ -65,7 +65,7 @@ public:
     wrist = status.frame.hands[0].T_stage_wrist.translation();
     CHECK(status.model.number == status.frame.model);
     status.model.layout().unpack(status.frame.shape, shape);
-    if (ticks_ < asked_at_ + least_ticks) return;
+    if (ticks_ < asked_at_ + min_ticks) return;
     asked_at_ = ticks_;
     if (asked == changes.size()) content_ = true;
     if (content_) return;
@@ -77,7 +77,7 @@ public:
   bool is_content() const { return content_; }
 
   Changes changes;
-  std::uint64_t least_ticks = 30; ///< between two changes, and before the end
+  std::uint64_t min_ticks = 30; ///< between two changes, and before the end
   std::size_t asked = 0;
   int begun = 0;
   std::atomic<int> leaps{0};

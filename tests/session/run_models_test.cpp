@@ -28,7 +28,7 @@ TEST_SUITE("run_models") {
                         {flow::Request::redo, flow::Request::redo},
                         {record(false), flow::Request::grab},
                         {record(true), flow::Subdivide{}}});
-    asker.least_ticks = 60;
+    asker.min_ticks = 60;
     const auto outcome = run.follow({&asker});
     CHECK(asker.leaps == 0);
     CHECK(asker.prepared == std::vector<std::uint32_t>{1, 0, 1, 2});
@@ -55,7 +55,7 @@ TEST_SUITE("run_models") {
                         {flow::Request::redo},
                         {record(false), flow::Request::grab},
                         {record(true), flow::Refine{}}});
-    asker.least_ticks = 60;
+    asker.min_ticks = 60;
     const auto outcome = run.follow({&asker});
     CHECK(asker.leaps == 0);
     REQUIRE(asker.prepared.size() >= 3);
@@ -78,7 +78,7 @@ TEST_SUITE("run_models") {
     run.options.recording.file = (run.folder.path() / "take.nendo").string();
     REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
     Asker asker(Changes{{}, {}, {flow::SaveShape{}}, {record(false)}, {record(true)}, {}});
-    asker.least_ticks = 100;
+    asker.min_ticks = 100;
     const auto outcome = run.follow({&asker});
     CHECK(asker.prepared == std::vector<std::uint32_t>{1});
     CHECK(std::count(asker.reports.begin(), asker.reports.end(), "the model has 2 parts now") == 1);
@@ -105,7 +105,7 @@ TEST_SUITE("run_models") {
                         {flow::EditPart{false, 1}},
                         {flow::EditPart{true, 0}},
                         {}});
-    asker.least_ticks = 100;
+    asker.min_ticks = 100;
     const auto outcome = run.follow({&asker});
     CHECK(asker.prepared == std::vector<std::uint32_t>{1, 2, 3});
     CHECK(asker.reports == std::vector<std::string>{"the model has 2 parts now",
@@ -145,7 +145,7 @@ TEST_SUITE("run_models") {
     REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
     // Nobody asks for it.
     Asker asker(Changes{{flow::Request::commit}, {flow::Request::commit}, {flow::Request::commit}});
-    asker.least_ticks = 120;
+    asker.min_ticks = 120;
     const auto outcome = run.follow({&asker});
     const auto written = deform::read_mesh(run.options.out);
     REQUIRE(written);
@@ -170,7 +170,7 @@ TEST_SUITE("run_models") {
       const std::vector<flow::Command> nothing;
       const std::vector<flow::Command> asks{flow::ChangeTopology{}};
       Asker asker(by_itself ? Changes{nothing, nothing} : Changes{asks, asks});
-      asker.least_ticks = 120;
+      asker.min_ticks = 120;
       const auto outcome = run.follow({&asker});
       CHECK(asker.prepared == std::vector<std::uint32_t>{1});
       REQUIRE(asker.reports.size() == (by_itself ? 1 : 2));
@@ -192,7 +192,7 @@ TEST_SUITE("run_models") {
                         {flow::Request::redo},
                         {flow::Request::undo},
                         {flow::Request::redo}});
-    asker.least_ticks = 80;
+    asker.min_ticks = 80;
     const auto outcome = run.follow({&asker});
     CHECK(outcome.stats.undos == 2);
     CHECK(outcome.stats.redos == 2);
@@ -202,7 +202,7 @@ TEST_SUITE("run_models") {
     Run run;
     Asker asker(Changes{{flow::Subdivide{}}});
     asker.refuses = true;
-    asker.least_ticks = 60;
+    asker.min_ticks = 60;
     run.follow({&asker});
     REQUIRE(asker.reports.size() == 1);
     CHECK(asker.reports[0] == "no other model here; the model stays as it is");

@@ -275,7 +275,7 @@ TEST_SUITE("run_session") {
   TEST_CASE("a mark is in the recording, and without one the reason is told") {
     Run run;
     Asker asker(Changes{{flow::Mark{}}, {record(true)}, {flow::Mark{}}, {flow::Mark{}}});
-    asker.least_ticks = 60;
+    asker.min_ticks = 60;
     const auto outcome = run.follow({&asker});
     const auto told = [&](const char* words) {
       return std::count(asker.reports.begin(), asker.reports.end(), words);
@@ -302,7 +302,7 @@ TEST_SUITE("run_session") {
                         {record(false)},
                         {reset},
                         {record(true)}});
-    asker.least_ticks = 60;
+    asker.min_ticks = 60;
     const auto outcome = run.follow({&asker});
     CHECK(asker.begun == 1);
     CHECK(asker.leaps == 0);
@@ -393,7 +393,7 @@ TEST_SUITE("run_session") {
     }
     changes.insert(changes.end(), 30, {}); // so that the last is seen
     Asker asker(changes);
-    asker.least_ticks = 1;
+    asker.min_ticks = 1;
     const auto outcome = run.follow({&asker});
     CHECK(outcome.stats.changes > 50); // the newest counts, when the loop has the one before
     CHECK(asker.leaps == 0);

@@ -27,7 +27,7 @@ namespace {
 
 /// From the tick that finds the touch to the glove: the program looks at frames every 20 ms at the
 /// most, and a driver sends within 0.2 s (Glove::set_feedback()). The rest is a busy machine's.
-constexpr double most_latency_s = 0.3;
+constexpr double max_latency_s = 0.3;
 
 /// All that the glove has heard, of its log.
 std::string heard(const std::string& log) {
@@ -132,12 +132,12 @@ double latency_s(const emulator::EmulatorOptions& glove, const std::string& kind
 void check_latency(const emulator::EmulatorOptions& glove, const std::string& kind,
                    bool (*is_felt)(const std::string&)) {
   double latency = -1.0;
-  for (int tries = 0; tries < 3 && !(latency >= 0.0 && latency < most_latency_s); ++tries) {
+  for (int tries = 0; tries < 3 && !(latency >= 0.0 && latency < max_latency_s); ++tries) {
     latency = latency_s(glove, kind, is_felt);
     MESSAGE("latency " << 1e3 * latency << " ms");
   }
   CHECK(latency >= 0.0);
-  CHECK(latency < most_latency_s);
+  CHECK(latency < max_latency_s);
 }
 
 } // namespace

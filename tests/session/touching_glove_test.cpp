@@ -18,7 +18,7 @@ using namespace nendo;
 namespace {
 
 // What noise and the converter's steps may do to a fingertip; 19 of 20 stay below 2.8 mm.
-constexpr double most_off_m = 0.008;
+constexpr double max_off_m = 0.008;
 
 } // namespace
 
@@ -66,10 +66,10 @@ TEST_SUITE("touching_glove") {
         const Eigen::Vector3d tip = tips.col(static_cast<Eigen::Index>(k));
         const motions::TouchTarget target =
             meant->target(static_cast<hand::Finger>(k), to_seconds(hand.first.device_time));
-        CHECK((tip - target.place_m()).norm() < most_off_m);
+        CHECK((tip - target.place_m()).norm() < max_off_m);
         const double off_m = test::nearest_triangle(ball, frame.units_per_metre * tip).distance /
                              frame.units_per_metre;
-        CHECK(std::abs(off_m - std::abs(target.depth_m)) < most_off_m + 0.001);
+        CHECK(std::abs(off_m - std::abs(target.depth_m)) < max_off_m + 0.001);
       }
     }
   }

@@ -126,7 +126,7 @@ TEST_SUITE("stress tally") {
       before = made.woke;
       tally.add(made, nullptr);
     }
-    REQUIRE(tally.worst().size() == TickTally::most_worst);
+    REQUIRE(tally.worst().size() == TickTally::max_worst);
     for (std::size_t k = 0; k < tally.worst().size(); ++k)
       CHECK(tally.worst()[k].lateness == std::chrono::microseconds(500 - k));
     CHECK(tally.longest_outage() == longest);
@@ -187,8 +187,8 @@ TEST_SUITE("stress tally") {
     std::uint64_t count = 0;
     for (int n = 0; n < 100'000; ++n, ++count)
       course.add(first_tick + n * 7ms, n == 77'777 ? 50ms : 1us);
-    CHECK(course.slices().size() <= LatenessTrace::most_slices);
-    CHECK(course.slices().size() > LatenessTrace::most_slices / 4);
+    CHECK(course.slices().size() <= LatenessTrace::max_slices);
+    CHECK(course.slices().size() > LatenessTrace::max_slices / 4);
     std::uint64_t counted = 0;
     std::chrono::nanoseconds sum{};
     std::size_t latest = 0;

@@ -11,8 +11,8 @@ namespace nendo::test {
 class LateMaker {
 public:
   /// Models of that many vertices or more are not subdivided, but refined at any time.
-  explicit LateMaker(unsigned seed, std::size_t most_vertices = 3000)
-      : random_(seed), most_vertices_(most_vertices) {}
+  explicit LateMaker(unsigned seed, std::size_t max_vertices = 3000)
+      : random_(seed), max_vertices_(max_vertices) {}
 
   /// To be called between two ticks.
   void turn(flow::DeformLoop& loop) {
@@ -34,7 +34,7 @@ private:
     if (random_() % 2 == 0) {
       if (auto refined = flow::FinerModel::make(model, *flow::model_asked_by(flow::Refine{})))
         finer_ = std::make_unique<flow::FinerModel>(*std::move(refined));
-    } else if (model.layout().vertex_count() < most_vertices_) {
+    } else if (model.layout().vertex_count() < max_vertices_) {
       finer_ = std::make_unique<flow::FinerModel>(model);
     }
   }
@@ -49,7 +49,7 @@ private:
   }
 
   std::mt19937 random_;
-  std::size_t most_vertices_;
+  std::size_t max_vertices_;
   std::unique_ptr<flow::FinerModel> finer_;
   bool asked_ = false;
   unsigned long late_ = 0; ///< turns until it goes on

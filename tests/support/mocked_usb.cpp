@@ -128,7 +128,7 @@ void MockedUsb::Device::submit(UMockdevIoctlClient* client, UMockdevIoctlData* a
   if (urbs.back().is_control()) {
     answer_control(urbs.back());
   } else {
-    log.most_under_way = std::max(log.most_under_way, ++log.under_way);
+    log.max_under_way = std::max(log.max_under_way, ++log.under_way);
   }
 }
 

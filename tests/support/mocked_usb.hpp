@@ -22,7 +22,7 @@ struct UsbLog {
   bool kernel_has_mouse = true; ///< interface 0 of a device that has two was never touched
   bool kernel_has_glove = true;
   bool claimed = false;
-  int most_under_way = 0; ///< interrupt transfers at one time
+  int max_under_way = 0; ///< interrupt transfers at one time
   int under_way = 0;
   std::vector<UsbBytes> controls; ///< the 8 bytes of every control request
 };

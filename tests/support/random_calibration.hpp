@@ -44,7 +44,7 @@ inline hand::WearerCalibration random_calibration(std::mt19937_64& random) {
                  std::uniform_real_distribution(0.02, 0.2)(random)};
   for (std::size_t k = 0; random() % 2 == 0 && k < hand::shape_terms; ++k)
     wearer.size.shape.terms[k] =
-        random_number(random, hand::most_of(static_cast<hand::ShapeTerm>(k)));
+        random_number(random, hand::max_of(static_cast<hand::ShapeTerm>(k)));
   wearer.calibration.middle_bias = random_number(random, 10.0);
   for (double& mixed_in : wearer.calibration.mixed_in)
     mixed_in = random() % 4 == 0 ? -0.0 : random_number(random, 10.0);

@@ -13,7 +13,7 @@
 namespace nendo::test {
 
 /// Returns the least angle of each triangle, in degrees, the smallest first.
-inline std::vector<double> least_angles(const deform::Mesh& mesh) {
+inline std::vector<double> min_angles(const deform::Mesh& mesh) {
   std::vector<double> angles;
   deform::for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
     double least = 180.0;

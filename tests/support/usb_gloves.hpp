@@ -89,7 +89,7 @@ protected:
                       SentCounts& counts) {
     const auto slot = static_cast<std::size_t>(sensor);
     const auto range = driver::joint_range(sensor);
-    const double part = (angles[slot] - range.least_rad) / (range.most_rad - range.least_rad);
+    const double part = (angles[slot] - range.min_rad) / (range.max_rad - range.min_rad);
     counts[slot] = static_cast<int>(std::lround(std::clamp(part, 0.0, 1.0) * most));
     return counts[slot];
   }

@@ -24,7 +24,7 @@ Timeline some_timeline(unsigned seed = 1) {
       for (std::size_t at = 0; at < hand::angle_count; ++at) {
         const auto angle = hand::angle_at(at);
         const auto& limit = hand::limit_of(angle);
-        key.angles[angle] = std::clamp(key.angles[angle], limit.least_rad, limit.most_rad);
+        key.angles[angle] = std::clamp(key.angles[angle], limit.min_rad, limit.max_rad);
       }
   REQUIRE(complaint_about(made).empty());
   return made;
@@ -278,7 +278,7 @@ TEST_SUITE("edit") {
       Key other = before;
       for (std::size_t at = 0; at < hand::angle_count - 3; ++at) { // not palm and wrist
         const auto& limit = hand::limit_of(hand::angle_at(at));
-        std::uniform_real_distribution<double> within(limit.least_rad, limit.most_rad);
+        std::uniform_real_distribution<double> within(limit.min_rad, limit.max_rad);
         other.angles[hand::angle_at(at)] = within(random);
       }
       const Eigen::Vector3d target_m = tips_of(hand, other).col(static_cast<Eigen::Index>(number));

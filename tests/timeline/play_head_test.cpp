@@ -54,8 +54,8 @@ TEST_SUITE("play_head") {
     CHECK(head.time_s() == 1.0);
     for (const double wild : {1e9, -1.0}) {
       head.set_speed(wild);
-      CHECK(head.speed() >= PlayHead::least_speed);
-      CHECK(head.speed() <= PlayHead::most_speed);
+      CHECK(head.speed() >= PlayHead::min_speed);
+      CHECK(head.speed() <= PlayHead::max_speed);
     }
   }
 }

@@ -243,7 +243,7 @@ TEST_SUITE("player") {
       next(130);
       auto unbounded =
           flow::FinerModel::make(live.loop->changes().newest_model(),
-                                 {0, flow::ModelSource::refined, flow::Refine{}.most_vertices});
+                                 {0, flow::ModelSource::refined, flow::Refine{}.max_vertices});
       REQUIRE(unbounded);
       CHECK((*unbounded->finish(9, {}))->layout().vertex_count() > most);
       REQUIRE(live.loop->changes().change_model(*finer));

@@ -131,15 +131,15 @@ TEST_SUITE("puppet_timeline") {
     CHECK(*timeline_text(*older) == text);
     const auto now = playing(made, take.live.test.model);
     const auto then = playing(*older, take.live.test.model);
-    double most_apart = 0.0;
+    double max_apart = 0.0;
     while (now->next() && then->next()) {
       Points one, other;
       now->layout().unpack(now->frame().shape, one);
       then->layout().unpack(then->frame().shape, other);
-      most_apart = std::max(most_apart, (one - other).cwiseAbs().maxCoeff());
+      max_apart = std::max(max_apart, (one - other).cwiseAbs().maxCoeff());
       CHECK(now->frame().fields.fields().empty());
     }
-    CHECK(most_apart > 0.01);
+    CHECK(max_apart > 0.01);
   }
 
   TEST_CASE("a take whose puppet was edited on the way is a timeline with the last puppet") {
@@ -252,7 +252,7 @@ TEST_SUITE("puppet_timeline") {
   TEST_CASE(
       "with few keys no point of the puppet is farther off than the tolerance, in any frame") {
     std::size_t keys = 0, frames = 0;
-    double most_m = 0.0;
+    double max_m = 0.0;
     for (unsigned seed = 0; static_cast<int>(seed) < test::rounds(6); ++seed) {
       CAPTURE(seed);
       std::string text = test::symmetric_puppet;
@@ -286,20 +286,20 @@ TEST_SUITE("puppet_timeline") {
         rig.place(std::vector<double>(frame.functions.begin(),
                                       frame.functions.begin() + frame.function_count),
                   points);
-        most_m = std::max(most_m, (points - wanted).colwise().norm().maxCoeff() /
-                                      made.timeline.units_per_metre);
+        max_m = std::max(max_m, (points - wanted).colwise().norm().maxCoeff() /
+                                    made.timeline.units_per_metre);
       }
-      CHECK(most_m <= tolerance_m + 1e-6);
+      CHECK(max_m <= tolerance_m + 1e-6);
       for (const Reduction& hand : made.hands) {
         CHECK(hand.worst.point_m <= tolerance_m / 2.0);
         frames += hand.frames;
       }
       keys += made.timeline.key_count();
     }
-    MESSAGE(keys << " keys of " << frames << " frames; a point is off by at most " << 1e3 * most_m
+    MESSAGE(keys << " keys of " << frames << " frames; a point is off by at most " << 1e3 * max_m
                  << " mm");
     CHECK(keys < frames / 2);
-    CHECK(most_m > 1e-4); // it is not all keys
+    CHECK(max_m > 1e-4); // it is not all keys
   }
 
   TEST_CASE("the functions alone have the values of the player, at frames and wherever keys are") {

@@ -101,12 +101,12 @@ TEST_SUITE("shape_cache") {
     const Timeline timeline = test::waved_timeline(model(), flow::Mode::type1);
     for (const std::size_t shapes : {0U, 2U, 5U, 31U, 60U, 89U, 90U}) {
       CAPTURE(shapes);
-      const std::size_t most_bytes = shapes * (bytes_of_one() + 256);
-      ShapeCache cache(model(), most_bytes);
+      const std::size_t max_bytes = shapes * (bytes_of_one() + 256);
+      ShapeCache cache(model(), max_bytes);
       cache.follow(timeline);
       cache.wait();
       const auto progress = cache.progress();
-      CHECK(progress.shapes * bytes_of_one() <= std::max(most_bytes, 2 * bytes_of_one()));
+      CHECK(progress.shapes * bytes_of_one() <= std::max(max_bytes, 2 * bytes_of_one()));
       CHECK(progress.shapes >= 2);
       check_all(cache, timeline);
     }

@@ -184,14 +184,14 @@ TEST_SUITE("client_commands") {
       CAPTURE(text);
       const std::string why = refusal(text);
       CHECK_FALSE(why.empty());
-      CHECK(why.size() <= most_close_reason);
+      CHECK(why.size() <= max_close_reason);
     }
     CHECK(refusal(std::string("keep_volume=1\0", 14)) == "keep_volume: use a number");
-    CHECK(refusal(std::string(1000, 'x')).size() <= most_close_reason);
+    CHECK(refusal(std::string(1000, 'x')).size() <= max_close_reason);
     flow::for_each_setting([&](const auto& setting) {
       const std::string why = refusal(std::string(setting.name) + "=\x1B");
       CHECK(why.starts_with(std::string(setting.name) + ": use "));
-      CHECK(why.size() <= most_close_reason);
+      CHECK(why.size() <= max_close_reason);
     });
   }
 

@@ -223,8 +223,8 @@ TEST_SUITE("follow") {
     StreamedLoop streamed(flow::Mode::type1);
     Followed followed(streamed);
     std::mt19937 random(3);
-    double most_m = 0.0;
-    double most_rad = 0.0;
+    double max_m = 0.0;
+    double max_rad = 0.0;
     for (int tick = 0; tick < 200; ++tick) {
       for (const Side side : {Side::left, Side::right}) {
         auto sample = test::bent_sample(side, 0, HostClock::now());
@@ -242,19 +242,19 @@ TEST_SUITE("follow") {
         REQUIRE(followed.client.present[slot]);
         const auto& hand = frame.hands[slot];
         const Eigen::Quaterniond forearm(hand.T_stage_wrist.linear());
-        most_rad = std::max(most_rad, followed.client.forearms[slot].angularDistance(forearm));
+        max_rad = std::max(max_rad, followed.client.forearms[slot].angularDistance(forearm));
         for (std::size_t joint = 0; joint < 26; ++joint) {
           const auto& pose = hand.pose.joints[joint];
           const auto& sent = followed.client.joints[slot][joint];
-          most_m = std::max(most_m, (sent - pose.translation()).norm());
+          max_m = std::max(max_m, (sent - pose.translation()).norm());
           const Eigen::Quaterniond turn(pose.linear());
-          most_rad = std::max(most_rad, followed.client.turns[slot][joint].angularDistance(turn));
+          max_rad = std::max(max_rad, followed.client.turns[slot][joint].angularDistance(turn));
         }
       }
     }
-    CHECK(most_m < 3e-5);
-    CHECK(most_rad < 1.75e-4);
-    CHECK(most_rad > 1e-6); // it was measured
+    CHECK(max_m < 3e-5);
+    CHECK(max_rad < 1.75e-4);
+    CHECK(max_rad > 1e-6); // it was measured
   }
 
   TEST_CASE("a glove of another hand size, in place of the first, is sent with its own bones") {

@@ -32,9 +32,9 @@ struct StreamedLoop {
       for (auto& hand : test.inputs)
         hand.wearer.of(opposite(hand.side)).size = {*options.swapped_length_m, 0.07};
     const deform::BlockLayout layout(test.model.vertices);
-    constexpr std::size_t most_fields = 64;
+    constexpr std::size_t max_fields = 64;
     stream = std::make_shared<web::FrameStream>(
-        layout, web::FrameStream::Capacity{most_fields,
+        layout, web::FrameStream::Capacity{max_fields,
                                            static_cast<std::size_t>(std::max<Eigen::Index>(
                                                20, 2 * supports.functions(points))),
                                            static_cast<std::size_t>(2 * points)});

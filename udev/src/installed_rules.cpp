@@ -21,14 +21,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t most_bytes = 1U << 20U;
+constexpr std::uint64_t max_bytes = 1U << 20U;
 
 RuleState state_of(const fs::path& path, std::string_view wanted) {
   std::error_code failed;
   const auto status = fs::symlink_status(path, failed);
   if (!fs::exists(status)) return RuleState::missing;
   if (!fs::is_regular_file(status)) return RuleState::foreign;
-  const auto text = read_file(path, most_bytes, "udev rules");
+  const auto text = read_file(path, max_bytes, "udev rules");
   if (!text || !text->starts_with(rule_mark)) return RuleState::foreign;
   return *text == wanted ? RuleState::current : RuleState::outdated;
 }
@@ -92,7 +92,7 @@ Result<std::string> read_bindings(const fs::path& root) {
   const fs::path path = etc_rules(root) / binding_file_name;
   std::error_code failed;
   if (!fs::exists(fs::symlink_status(path, failed))) return std::string{};
-  return read_file(path, most_bytes, "udev rules");
+  return read_file(path, max_bytes, "udev rules");
 }
 
 Result<void> apply(const RuleChange& change) {

@@ -32,7 +32,7 @@ SculptorSetup first_setup(const CoreOptions& options, const ModelVersion& versio
 ChangeBroker::Parts::Parts(const deform::Mesh& model, const CoreOptions& options,
                            const deform::BlockShape* first)
     : bodies(options.bodies), inputs(options.inputs), units_per_metre(options.units_per_metre),
-      versions(model, {options.setup.options.deformer.undo_bytes, options.undo_most_bytes}, first),
+      versions(model, {options.setup.options.deformer.undo_bytes, options.undo_max_bytes}, first),
       asked(first_setup(options, versions.first())),
       puppets(asked, options.rig, static_cast<Eigen::Index>(options.hands.size())),
       asked_model(&versions.first()) {

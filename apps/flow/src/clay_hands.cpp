@@ -17,7 +17,7 @@ deform::ClayOptions clay_options(const HandBodies& bodies, double radius_m,
                                  bool scales_few_vertices) {
   deform::ClayOptions options;
   options.units_per_mm = bodies.units_per_metre() / mm_a_metre;
-  options.radius_mm = mm_a_metre * std::max(radius_m, ClayHands::least_radius_m);
+  options.radius_mm = mm_a_metre * std::max(radius_m, ClayHands::min_radius_m);
   options.still_bodies = HandBodies::tables;
   options.evaluation = deformer.evaluation;
   options.mask = deformer.mask;
@@ -43,10 +43,10 @@ std::size_t bodies_of(const HandBodies& bodies, bool are_mirrored) noexcept {
 } // namespace
 
 float strength_of(const deform::ClayContact& contact) noexcept {
-  constexpr float most_load_mm = 0.5F;
-  constexpr float most_pressed_mm = 1.0F;
-  return 0.5F * std::clamp(contact.load_mm / most_load_mm, 0.0F, 1.0F) +
-         0.5F * std::clamp(contact.pressed_mm / most_pressed_mm, 0.0F, 1.0F);
+  constexpr float max_load_mm = 0.5F;
+  constexpr float max_pressed_mm = 1.0F;
+  return 0.5F * std::clamp(contact.load_mm / max_load_mm, 0.0F, 1.0F) +
+         0.5F * std::clamp(contact.pressed_mm / max_pressed_mm, 0.0F, 1.0F);
 }
 
 HandTouch touch_of(std::span<const deform::ClayContact> contacts, std::size_t body) noexcept {

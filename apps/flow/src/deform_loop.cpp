@@ -34,7 +34,7 @@ CoreOptions core_options(const std::vector<HandInput>& inputs, const Placement& 
                                       ? *options.settings
                                       : settings_of(options.sculptor, inputs.front().filter,
                                                     placement.units_per_metre)};
-  if (options.commands != nullptr) core.shaping.most_requests = options.commands->capacity();
+  if (options.commands != nullptr) core.shaping.max_requests = options.commands->capacity();
   core.shaping.held = options.begins_held();
   core.shaping.pull_is_step = options.pull_is_step;
   for (const HandInput* hand : hands_of(inputs))
@@ -44,7 +44,7 @@ CoreOptions core_options(const std::vector<HandInput>& inputs, const Placement& 
   core.units_per_metre = placement.units_per_metre;
   core.rig = options.rig;
   core.rig_state = options.rig_state;
-  core.undo_most_bytes = options.undo_most_bytes;
+  core.undo_max_bytes = options.undo_max_bytes;
   return core;
 }
 
@@ -64,8 +64,8 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const CoreOptions& core,
 
 DeformLoop::~DeformLoop() = default;
 
-void DeformLoop::run(const std::atomic<bool>& stop, std::uint64_t most_ticks) noexcept {
-  ticker_->run(stop, most_ticks);
+void DeformLoop::run(const std::atomic<bool>& stop, std::uint64_t max_ticks) noexcept {
+  ticker_->run(stop, max_ticks);
 }
 
 void DeformLoop::tick(std::uint64_t number, HostTime scheduled) noexcept {

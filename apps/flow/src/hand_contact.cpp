@@ -26,8 +26,8 @@ void contact_parts(hand::HandBody& body, const hand::HandPose& pose, double unit
 Eigen::Isometry3d beside(const deform::Mesh& model, double units_per_metre,
                          const hand::HandSkeleton& skeleton, const hand::JointAngles& angles,
                          const Eigen::Isometry3d& T_stage_wrist, double clear_m) {
-  constexpr Eigen::Index most_looked_at = 4000;
-  constexpr int most_moves = 60;
+  constexpr Eigen::Index max_looked_at = 4000;
+  constexpr int max_moves = 60;
   const Eigen::Index vertices = model.vertices.cols();
   if (vertices == 0) return T_stage_wrist;
   const Eigen::Vector3d low = model.vertices.rowwise().minCoeff();
@@ -40,15 +40,14 @@ Eigen::Isometry3d beside(const deform::Mesh& model, double units_per_metre,
   if (!(away.norm() > 0.0)) away = Eigen::Vector3d::UnitX();
   away.normalize();
   hand::HandBody body(skeleton);
-  for (int move = 0; move < most_moves; ++move) {
+  for (int move = 0; move < max_moves; ++move) {
     body.follow(skeleton.pose(angles, wrist));
-    double least_m = clear_m;
+    double min_m = clear_m;
     for (Eigen::Index at = 0; at < vertices;
-         at += std::max<Eigen::Index>(1, vertices / most_looked_at))
-      least_m =
-          std::min(least_m, body.nearest(model.vertices.col(at) / units_per_metre).distance_m);
-    if (least_m >= clear_m) break;
-    wrist.translation() += (clear_m - least_m + 1e-4) * away;
+         at += std::max<Eigen::Index>(1, vertices / max_looked_at))
+      min_m = std::min(min_m, body.nearest(model.vertices.col(at) / units_per_metre).distance_m);
+    if (min_m >= clear_m) break;
+    wrist.translation() += (clear_m - min_m + 1e-4) * away;
   }
   return wrist;
 }

@@ -8,9 +8,9 @@
 namespace nendo::flow {
 
 Result<void> check_inputs(std::span<const HandInput> inputs) {
-  if (inputs.empty() || inputs.size() > most_inputs)
+  if (inputs.empty() || inputs.size() > max_inputs)
     return Error{Errc::bad_input, std::to_string(inputs.size()) + " inputs of a loop: use 1 to " +
-                                      std::to_string(most_inputs)};
+                                      std::to_string(max_inputs)};
   for (auto input = inputs.begin(); input != inputs.end(); ++input)
     if (!input->layer && std::any_of(inputs.begin(), input, [&](const HandInput& before) {
           return before.side == input->side;

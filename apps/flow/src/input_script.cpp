@@ -42,7 +42,7 @@ GloveSample InputScript::moved(GloveSample sample) const noexcept {
 }
 
 TakenSample InputScript::now_played(TakenSample taken, HostClock::duration at) noexcept {
-  Stream& stream = streams_[taken.hand % most_inputs];
+  Stream& stream = streams_[taken.hand % max_inputs];
   GloveSample& sample = taken.sample;
   const std::uint64_t recorded = sample.sequence;
   move_times(sample, shift_ + offset_);

@@ -34,8 +34,8 @@ SculptorSetup KeptPuppets::first_with(std::uint32_t number) const {
     return with_control_points(first_, *tip_supports_, rig.get(), hands_);
   deform::Supports supports = rig->supports();
   if (is_played(first_rig_.get())) // whose radii people may have scaled since
-    supports = scaled(std::move(supports), deform::least_radius(first_.options.deformer.supports) /
-                                               deform::least_radius(first_rig_->supports()));
+    supports = scaled(std::move(supports), deform::min_radius(first_.options.deformer.supports) /
+                                               deform::min_radius(first_rig_->supports()));
   return with_control_points(first_, std::move(supports), rig.get(), hands_);
 }
 

@@ -13,7 +13,7 @@ namespace {
 using deform::Points;
 using Eigen::Index;
 
-constexpr int most_sweeps = 500;
+constexpr int max_sweeps = 500;
 constexpr double enough = 1e-7; ///< of the longest way: a sweep that changes less is the last
 
 /// For each vertex that was made, the shape's vertex that it was, or -1. Vertices keep their
@@ -60,7 +60,7 @@ std::vector<std::pair<Index, Index>> edges_of_new(const deform::Mesh& made,
 /// By Gauss and Seidel's method.
 void spread(const std::vector<std::pair<Index, Index>>& edges, Points& ways) {
   const double longest = ways.size() > 0 ? ways.cwiseAbs().maxCoeff() : 0.0;
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+  for (int sweep = 0; sweep < max_sweeps; ++sweep) {
     double change = 0.0;
     for (std::size_t at = 0; at < edges.size();) {
       const Index vertex = edges[at].first;

@@ -38,7 +38,7 @@ LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOpti
   const deform::Supports& supports = sculptor.deformer.supports;
   LoopSettings settings = plain_settings_of(sculptor);
   settings.radius_m = radii_on_stage(supports, units_per_metre);
-  settings.piece_fraction = sculptor.piece_length / deform::least_radius(supports);
+  settings.piece_fraction = sculptor.piece_length / deform::min_radius(supports);
   settings.filter = filter;
   return settings;
 }
@@ -80,7 +80,7 @@ SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first
     if (of_hands) deformer.supports = *std::move(of_hands);
   }
   if (other_radii || wanted.piece_fraction != now.settings.piece_fraction)
-    sculptor.piece_length = wanted.piece_fraction * deform::least_radius(deformer.supports);
+    sculptor.piece_length = wanted.piece_fraction * deform::min_radius(deformer.supports);
   return {std::move(sculptor), wanted};
 }
 

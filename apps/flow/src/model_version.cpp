@@ -18,9 +18,9 @@ namespace {
 std::unique_ptr<deform::UndoMemory> undo_memory_for(const deform::BlockLayout& layout,
                                                     const UndoRoom& undo) {
   constexpr std::size_t shapes_ahead = 4;
-  if (undo.most_bytes == 0) return nullptr;
+  if (undo.max_bytes == 0) return nullptr;
   auto memory = std::make_unique<deform::UndoMemory>(shapes_ahead * (layout.block_count() + 1),
-                                                     undo.most_bytes);
+                                                     undo.max_bytes);
   memory->refill();
   return memory;
 }
@@ -33,7 +33,7 @@ deform::DeformerOptions with_undo(std::size_t bytes, deform::UndoMemory* memory)
 }
 
 Result<void> check_subdividable(const deform::Mesh& mesh) {
-  if (mesh.face_corners.size() <= FinerModel::most_corners) return {};
+  if (mesh.face_corners.size() <= FinerModel::max_corners) return {};
   return Error{Errc::bad_input, "is too large to be subdivided"};
 }
 
@@ -110,7 +110,7 @@ Result<FinerModel> FinerModel::make(const ModelVersion& from, const ChangeModel&
   if (change.source == ModelSource::refined) {
     auto refiner = deform::Refiner::make(from.mesh);
     if (!refiner) return refiner.error();
-    return FinerModel(from, Refining{*std::move(refiner), {.most_vertices = change.most_vertices}});
+    return FinerModel(from, Refining{*std::move(refiner), {.max_vertices = change.max_vertices}});
   }
   if (flow::is_of_shape(change.source)) {
     ModelOrigin origin;
@@ -174,7 +174,7 @@ Result<std::unique_ptr<ModelVersion>> FinerModel::finish(std::uint32_t number, c
 ChangeModel FinerModel::change_to(const ModelVersion& version) const noexcept {
   const auto* const refining = std::get_if<Refining>(&making_);
   return {version.number, version.origin->source,
-          refining != nullptr ? static_cast<std::uint32_t>(refining->limits.most_vertices) : 0,
+          refining != nullptr ? static_cast<std::uint32_t>(refining->limits.max_vertices) : 0,
           version.origin->seam_width, version.origin->part};
 }
 

@@ -33,11 +33,11 @@ void ModelVersions::release_others(const ModelVersion& newest) {
 }
 
 UndoRoom ModelVersions::remaining_room() const noexcept {
-  if (undo_.most_bytes == 0) return {undo_.bytes, 0};
+  if (undo_.max_bytes == 0) return {undo_.bytes, 0};
   std::size_t used = 0;
   for (const auto& version : all_)
     if (version->undo_memory) used += version->undo_memory->bytes();
-  return {0, undo_.most_bytes - std::min(undo_.most_bytes, used)};
+  return {0, undo_.max_bytes - std::min(undo_.max_bytes, used)};
 }
 
 } // namespace nendo::flow

@@ -13,20 +13,19 @@ namespace nendo::flow {
 namespace {
 
 constexpr std::array<std::string_view, 4> policy_names{"skip", "catch-up", "re-anchor", "sample"};
-constexpr unsigned most_burst = 1000;
+constexpr unsigned max_burst = 1000;
 
 } // namespace
 
 std::string describe_policy(const PaceOptions& options) {
   std::string name(policy_names[static_cast<std::size_t>(options.policy)]);
-  if (options.policy == OverrunPolicy::catch_up)
-    name += ":" + std::to_string(options.most_catch_up);
+  if (options.policy == OverrunPolicy::catch_up) name += ":" + std::to_string(options.max_catch_up);
   return name;
 }
 
 Result<void> parse_policy(std::string_view text, PaceOptions& options) {
   const Error unknown{Errc::usage, std::string(text) + ": use skip, catch-up:N with N from 1 to " +
-                                       std::to_string(most_burst) + ", re-anchor or sample"};
+                                       std::to_string(max_burst) + ", re-anchor or sample"};
   const std::size_t colon = text.find(':');
   const auto name = std::find(policy_names.begin(), policy_names.end(), text.substr(0, colon));
   if (name == policy_names.end()) return unknown;
@@ -37,9 +36,9 @@ Result<void> parse_policy(std::string_view text, PaceOptions& options) {
     const char* const end = digits.data() + digits.size();
     const auto [stopped, error] = std::from_chars(digits.data(), end, most);
     if (policy != OverrunPolicy::catch_up || error != std::errc{} || stopped != end || most < 1 ||
-        most > most_burst)
+        most > max_burst)
       return unknown;
-    options.most_catch_up = most;
+    options.max_catch_up = most;
   }
   options.policy = policy;
   return {};
@@ -48,7 +47,7 @@ Result<void> parse_policy(std::string_view text, PaceOptions& options) {
 Pacer::Pacer(const PaceOptions& options, HostTime start, EventCount* event_count) noexcept
     : options_(options), grid_(start, options.rate_hz), event_count_(event_count) {
   assert(options.policy != OverrunPolicy::sample || event_count != nullptr);
-  assert(options.most_catch_up >= 1);
+  assert(options.max_catch_up >= 1);
   if (options.spin && options.policy != OverrunPolicy::sample)
     margin_.emplace(grid_.deadline(1) - grid_.deadline(0));
 }
@@ -97,8 +96,7 @@ bool Pacer::end_tick(HostTime now) noexcept {
   }
   // first_after counts from the grid's beginning; catching up leaves the newest that have passed.
   const std::uint64_t to_come = first_of_grid_ + grid_.first_after(now);
-  const std::uint64_t kept =
-      options_.policy == OverrunPolicy::catch_up ? options_.most_catch_up : 0;
+  const std::uint64_t kept = options_.policy == OverrunPolicy::catch_up ? options_.max_catch_up : 0;
   const std::uint64_t next = to_come - std::min(kept, to_come - next_);
   missed_ = static_cast<std::uint32_t>(
       std::min<std::uint64_t>(next - next_, std::numeric_limits<std::uint32_t>::max()));

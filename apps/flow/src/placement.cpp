@@ -22,9 +22,9 @@ struct Surface {
   Points normals;
 
   Surface(const deform::Mesh& model, double units_per_metre) {
-    constexpr Index most_points = 50'000;
+    constexpr Index max_points = 50'000;
     const Points all_normals = deform::vertex_normals(model);
-    const Index stride = std::max<Index>(1, model.vertices.cols() / most_points);
+    const Index stride = std::max<Index>(1, model.vertices.cols() / max_points);
     const Index count = (model.vertices.cols() + stride - 1) / stride;
     points.resize(3, count);
     normals.resize(3, count);
@@ -219,8 +219,8 @@ Placement place_player(const deform::Mesh& model, double model_size_m) {
 }
 
 Table table_under(const deform::Mesh& model, double units_per_metre) noexcept {
-  constexpr double least_side_m = 0.5;
-  Table table{Eigen::Vector3d::Zero(), least_side_m * units_per_metre};
+  constexpr double min_side_m = 0.5;
+  Table table{Eigen::Vector3d::Zero(), min_side_m * units_per_metre};
   if (model.vertices.cols() == 0) return table;
   const Eigen::Vector3d low = model.vertices.rowwise().minCoeff();
   const Eigen::Vector3d high = model.vertices.rowwise().maxCoeff();

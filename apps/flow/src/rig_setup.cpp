@@ -68,7 +68,7 @@ SculptorSetup with_control_points(SculptorSetup first, deform::Supports supports
                                   const puppet::Rig* masks, Eigen::Index hands) {
   first.options.mirror = mirror_of(masks);
   if (first.options.mirror) supports = of_both_sides(std::move(supports), 5 * hands);
-  first.options.piece_length = first.settings.piece_fraction * deform::least_radius(supports);
+  first.options.piece_length = first.settings.piece_fraction * deform::min_radius(supports);
   first.options.deformer.supports = std::move(supports);
   first.options.surface.reset();
   return first;

@@ -16,9 +16,9 @@ constexpr HostClock::duration same_step_time = std::chrono::seconds(1);
 constexpr HostClock::duration contact_timeout = std::chrono::milliseconds(300);
 
 void count_chain(const deform::ChainReport& chain, LoopStats& stats) noexcept {
-  stats.most_links = std::max(stats.most_links, chain.links);
-  stats.most_bound = std::max(stats.most_bound, chain.whole_bound);
-  stats.least_determinant = std::min(stats.least_determinant, chain.least_determinant);
+  stats.max_links = std::max(stats.max_links, chain.links);
+  stats.max_bound = std::max(stats.max_bound, chain.whole_bound);
+  stats.min_determinant = std::min(stats.min_determinant, chain.min_determinant);
   if (chain.held_pairs > 0) ++stats.held_apart_ticks;
 }
 
@@ -50,7 +50,7 @@ Shaping::Shaping(ModelVersion& model, const SculptorSetup& setup, Eigen::Index c
       still_tips_(Points::Zero(3, control_points)), pull_is_step_(options.pull_is_step),
       changes_at_once_(options.changes_at_once), held_(options.held), hold_wanted_(held_),
       settings_(setup.settings) {
-  steps_due_.reserve(options.most_requests);
+  steps_due_.reserve(options.max_requests);
 }
 
 void Shaping::ask(Request request) noexcept {
@@ -139,7 +139,7 @@ void Shaping::track_clay(const ClayState& clay, LoopStats& stats) noexcept {
   if (!clay.is_clay) return;
   if (clay.touching > 0 || sculptor_->moves_anything()) touched_at_ = time_;
   if (clay.touching > 0) ++stats.touching_ticks;
-  stats.most_penetration_mm = std::max(stats.most_penetration_mm, clay.penetration_mm);
+  stats.max_penetration_mm = std::max(stats.max_penetration_mm, clay.penetration_mm);
   stats.clay = clay;
 }
 

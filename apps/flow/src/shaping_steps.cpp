@@ -198,22 +198,22 @@ void Shaping::forget_redo() noexcept {
 
 /// Fills the list's first part from its end, the last step first, and moves the steps to the front.
 void Shaping::list_undoable(StepList& list) const noexcept {
-  std::array<deform::StepNote, StepList::most_undoable> notes;
-  std::size_t at = StepList::most_undoable;
+  std::array<deform::StepNote, StepList::max_undoable> notes;
+  std::size_t at = StepList::max_undoable;
   for (const ModelVersion* version = model_; version != nullptr;
        version = previous_version(*version)) {
     const std::size_t count = version->shape.copy_undoable(notes);
     for (std::size_t note = version == model_ ? 0 : 1; note < count && at > 0; ++note)
       list.steps[--at] = NotedStep::of(notes[note]).step;
   }
-  list.undoable = static_cast<std::uint32_t>(StepList::most_undoable - at);
+  list.undoable = static_cast<std::uint32_t>(StepList::max_undoable - at);
   std::copy_n(&list.steps[at], list.undoable, list.steps.begin());
   list.count = list.undoable;
 }
 
 void Shaping::list_undone(StepList& list) const noexcept {
-  std::array<deform::StepNote, StepList::most_undone> notes;
-  const std::size_t max_count = list.undoable + StepList::most_undone;
+  std::array<deform::StepNote, StepList::max_undone> notes;
+  const std::size_t max_count = list.undoable + StepList::max_undone;
   for (const ModelVersion* version = model_; version != nullptr; version = version->behind) {
     const std::size_t count = version->shape.copy_undone(notes);
     for (std::size_t note = version == model_ ? 0 : 1; note < count && list.count < max_count;

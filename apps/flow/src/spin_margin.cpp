@@ -8,7 +8,7 @@ using std::chrono::microseconds;
 
 SpinMargin::SpinMargin(HostClock::duration period) noexcept
     : period_(period), cap_(std::min<HostClock::duration>(most, period / 5)),
-      margin_(std::min(cap_, period / most_of_period)),
+      margin_(std::min(cap_, period / max_of_period)),
       ticks_in_a_second_(static_cast<std::uint32_t>(
           std::max<HostClock::rep>(1, std::chrono::seconds(1) / period))) {}
 
@@ -32,7 +32,7 @@ microseconds SpinMargin::needed() const noexcept {
 // microsecond more.
 microseconds SpinMargin::affordable() const noexcept {
   const auto budget_us = static_cast<std::uint64_t>(
-      std::chrono::duration_cast<microseconds>(seen_ * (period_ / most_of_period)).count());
+      std::chrono::duration_cast<microseconds>(seen_ * (period_ / max_of_period)).count());
   std::uint64_t spun_us = 0;
   std::uint64_t in_time = 0;
   microseconds::rep margin_us = 0;

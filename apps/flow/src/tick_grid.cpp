@@ -11,7 +11,7 @@ using std::chrono::nanoseconds;
 
 TickGrid::TickGrid(HostTime start, double rate_hz) noexcept
     : start_(start), rate_mhz_(static_cast<std::uint64_t>(std::llround(rate_hz * 1000.0))) {
-  assert(rate_hz >= least_rate_hz && rate_hz <= most_rate_hz);
+  assert(rate_hz >= min_rate_hz && rate_hz <= max_rate_hz);
 }
 
 HostTime TickGrid::deadline(std::uint64_t tick) const noexcept {

@@ -19,19 +19,19 @@ DeformLoop::Ticker::Ticker(ChangeBroker& changes, const LoopOptions& options,
   grab_status_ = core_.begin(poses, frame);
 }
 
-void DeformLoop::Ticker::run(const std::atomic<bool>& stop, std::uint64_t most_ticks) noexcept {
+void DeformLoop::Ticker::run(const std::atomic<bool>& stop, std::uint64_t max_ticks) noexcept {
   // Without real-time priority the kernel may delay a wake-up by 50 microseconds unless it is told
   // not to.
   ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
   PaceOptions pace = options_;
   pace.spin = pace.spin && ::sched_getscheduler(0) == SCHED_FIFO;
   Pacer pacer(pace, HostClock::now(), options_.event_count);
-  while (pacer.next() < most_ticks) {
+  while (pacer.next() < max_ticks) {
     const Pacer::Due due = pacer.wait();
     if (stop.load(std::memory_order_relaxed)) return;
     tick(due);
     if (pacer.end_tick(HostClock::now())) ++stats_.overruns;
-    stats_.missed += std::min(pacer.next(), most_ticks) - due.number - 1;
+    stats_.missed += std::min(pacer.next(), max_ticks) - due.number - 1;
   }
 }
 

@@ -17,7 +17,7 @@ public:
   Ticker(ChangeBroker& changes, const LoopOptions& options, const CoreOptions& core,
          std::vector<HandInput> hands, const Placement& placement);
 
-  void run(const std::atomic<bool>& stop, std::uint64_t most_ticks) noexcept;
+  void run(const std::atomic<bool>& stop, std::uint64_t max_ticks) noexcept;
   void tick(const Pacer::Due& due) noexcept;
 
   FrameExchange& frames() noexcept { return frames_; }

@@ -7,10 +7,10 @@ namespace nendo::flow {
 namespace {
 
 /// The least step, in lengths of the wire: a degree and a half that a hand trembles.
-constexpr double least_turn = 0.025;
-constexpr double back = 1.5;        // steps: nearer than that, a wire has come back
-constexpr double most_detour = 6.0; // steps
-constexpr int smoothings = 16;      // as a Gaussian of 2.8 places
+constexpr double min_turn = 0.025;
+constexpr double back = 1.5;       // steps: nearer than that, a wire has come back
+constexpr double max_detour = 6.0; // steps
+constexpr int smoothings = 16;     // as a Gaussian of 2.8 places
 
 double way_between(const deform::WirePlace& a, const deform::WirePlace& b) noexcept {
   return std::max((a.from - b.from).norm(), (a.to - b.to).norm());
@@ -28,11 +28,11 @@ void WirePath::draw_to(const deform::WirePlace& place) noexcept {
   if (!is_drawn_ || !place.from.allFinite() || !place.to.allFinite()) return;
   ++version_;
   last_ = place;
-  step_ = std::max(step_, least_turn * (place.to - place.from).norm());
+  step_ = std::max(step_, min_turn * (place.to - place.from).norm());
   if (is_near_last(place)) return;
   forget_detour(place);
   if (is_near_last(place)) return;
-  if (count_ == most_places) thin_out();
+  if (count_ == max_places) thin_out();
   places_[count_++] = place;
 }
 
@@ -44,7 +44,7 @@ bool WirePath::is_near_last(const deform::WirePlace& place) const noexcept {
 /// Where the wire comes back to a place by a short way, that way is forgotten.
 void WirePath::forget_detour(const deform::WirePlace& place) noexcept {
   double detour = count_ > 0 ? way_between(place, places_[count_ - 1]) : 0.0;
-  for (std::uint32_t at = count_; at > 1 && detour <= most_detour * step_; --at) {
+  for (std::uint32_t at = count_; at > 1 && detour <= max_detour * step_; --at) {
     if (way_between(place, places_[at - 2]) < back * step_) count_ = at - 1;
     detour += way_between(places_[at - 1], places_[at - 2]);
   }
@@ -69,7 +69,7 @@ void WirePath::smooth() noexcept {
 void WirePath::thin_out() noexcept {
   step_ *= 2.0;
   count_ = 0;
-  for (std::size_t at = 0; at < most_places; at += 2)
+  for (std::size_t at = 0; at < max_places; at += 2)
     places_[count_++] = places_[at];
 }
 
@@ -78,7 +78,7 @@ void WirePath::end() noexcept {
   ++version_;
   is_drawn_ = false;
   if (count_ == 0) return;
-  if (count_ == most_places) thin_out();
+  if (count_ == max_places) thin_out();
   if (way_between(last_, places_[count_ - 1]) > 0.5 * step_) {
     forget_detour(last_);
     places_[count_++] = last_;

@@ -7,8 +7,8 @@ namespace nendo::flow {
 namespace {
 
 // Far from where the square of a length is no longer a number.
-constexpr double least_length = 1e-3;
-constexpr double most_length = 1e3;
+constexpr double min_length = 1e-3;
+constexpr double max_length = 1e3;
 
 } // namespace
 
@@ -23,7 +23,7 @@ bool WristMove::is_usable() const noexcept {
     return std::abs(coordinate) <= farthest_m;
   });
   const double length = Eigen::Vector4d::Map(turn_xyzw.data()).norm();
-  return near && length >= least_length && length <= most_length;
+  return near && length >= min_length && length <= max_length;
 }
 
 Eigen::Isometry3d WristMove::pose() const noexcept {

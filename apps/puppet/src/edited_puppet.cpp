@@ -72,12 +72,12 @@ Result<std::size_t> EditedPuppet::add_point(const NewPoint& point, bool is_pin) 
   if (!(point.radius > 0.0) || !std::isfinite(point.radius) || !point.at.allFinite())
     return refused("a point needs a place and a radius above 0");
   const std::size_t added = is_sided(point) ? 2 : 1;
-  if (puppet_.points.size() + added > Puppet::most_points)
+  if (puppet_.points.size() + added > Puppet::max_points)
     return refused("there are " + std::to_string(puppet_.points.size()) +
-                   " points already, of at most " + std::to_string(Puppet::most_points) +
+                   " points already, of at most " + std::to_string(Puppet::max_points) +
                    "; remove some");
   for (std::size_t at = 0; at < puppet_.points.size(); ++at) {
-    const double least = least_gap_of_points * std::min(point.radius, puppet_.points[at].radius);
+    const double least = min_gap_of_points * std::min(point.radius, puppet_.points[at].radius);
     if ((start(at) - point.at).norm() < least)
       return refused("the place is too near to the point '" + puppet_.points[at].name +
                      "'; choose one farther away, or a smaller radius");

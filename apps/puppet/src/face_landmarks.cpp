@@ -196,8 +196,8 @@ private:
 
   /// Of the hollows of the profile, the one around which the skin makes the longest detour.
   void find_mouth() {
-    constexpr double least_detour = 1.8;
-    double longest = least_detour;
+    constexpr double min_detour = 1.8;
+    double longest = min_detour;
     for (std::size_t at = 1; at + 1 < turns_.size(); ++at) {
       const Turn &upper = turns_[at - 1], &hollow = turns_[at], &lower = turns_[at + 1];
       if (hollow.is_forward || upper.y > found_.nose.y() - 0.05 * unit()) continue;
@@ -326,7 +326,7 @@ private:
     const double sum = z(x, y + away) + z(x, y - away);
     return std::isfinite(sum) ? z(x, y) - 0.5 * sum : 0.0;
   }
-  double most_bulging(double x, double from, double to, double sign) const {
+  double max_bulging(double x, double from, double to, double sign) const {
     double best = 0.5 * (from + to), most = 0.0;
     for (double y = from; y <= to; y += map_.cell()) {
       const double here = sign * bulge(x, y);
@@ -341,10 +341,10 @@ private:
     const double nose = found_.nose.y();
     const double eye = found_.eye
                            ? 0.5 * (found_.eye->upper[1].y() + found_.eye->lower[1].y())
-                           : most_bulging(eye_x(), nose + 0.2 * unit(), nose + 0.9 * unit(), -1.0);
+                           : max_bulging(eye_x(), nose + 0.2 * unit(), nose + 0.9 * unit(), -1.0);
     const double inner_x = found_.eye ? 0.65 * found_.eye->inner_x : 0.17 * unit();
     const double outer_x = facing(1.2 * eye_x(), eye + 0.35 * unit());
-    const double outer = most_bulging(outer_x, eye + 0.31 * unit(), eye + 0.44 * unit(), 1.0);
+    const double outer = max_bulging(outer_x, eye + 0.31 * unit(), eye + 0.44 * unit(), 1.0);
     found_.brow_outer = place(outer_x, outer);
     found_.brow_inner = place(inner_x, outer - 0.05 * unit());
   }

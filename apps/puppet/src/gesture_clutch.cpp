@@ -155,7 +155,7 @@ bool GestureClutch::rests(const Watch& watch, ClutchMeans means, double strength
     most = std::max(most, moment.strength);
   });
   return most - least < (means == ClutchMeans::fist ? still_rad : still_m) ||
-         watch.lasted_s() >= most_rest_s;
+         watch.lasted_s() >= max_rest_s;
 }
 
 } // namespace nendo::puppet

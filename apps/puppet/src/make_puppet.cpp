@@ -225,8 +225,8 @@ std::vector<std::string> findings(const Mesh& model, const FaceLandmarks& face) 
 
 /// Makes functions move less until no one folds alone. Error: that of RigShapes.
 Result<void> restrain(PuppetDraft& draft, const Mesh& model) {
-  constexpr int most_rounds = 12;
-  for (int round = 0; round < most_rounds; ++round) {
+  constexpr int max_rounds = 12;
+  for (int round = 0; round < max_rounds; ++round) {
     const auto puppet = parse_puppet(draft.text(), "the puppet");
     if (!puppet) return puppet.error();
     auto shapes = RigShapes::make(std::make_shared<const Rig>(*puppet, model), model);

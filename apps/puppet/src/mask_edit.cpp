@@ -26,8 +26,8 @@ Result<void> add_masks(std::span<const Vector3d> stroke, double radius, Puppet& 
     add(at);
     if (puppet.mirrors) add(flipped(at, puppet.mirror_at));
   }
-  if (masks.size() > most_painted_masks)
-    return refused("there are more than " + std::to_string(most_painted_masks) +
+  if (masks.size() > max_painted_masks)
+    return refused("there are more than " + std::to_string(max_painted_masks) +
                    " masks then; use a larger brush, or erase some");
   return {};
 }

@@ -14,13 +14,13 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double tolerance = 1e-4; // of the diagonal, between a vertex and the image of another
-constexpr Index most_looked_at = 1000;
-constexpr double most_alone = 0.05; // of them
+constexpr Index max_looked_at = 1000;
+constexpr double max_alone = 0.05; // of them
 
 /// Returns which part of the vertices that are looked at has no image in the plane x = at.
 double part_alone(const Points& vertices, const std::vector<Index>& by_x, double at) {
   const double near = tolerance * deform::diagonal_of(vertices);
-  const Index step = std::max<Index>(1, vertices.cols() / most_looked_at);
+  const Index step = std::max<Index>(1, vertices.cols() / max_looked_at);
   Index looked_at = 0, alone = 0;
   for (Index v = 0; v < vertices.cols(); v += step, ++looked_at) {
     Vector3d image = vertices.col(v);
@@ -46,7 +46,7 @@ double plane_of_symmetry(const Points& vertices) {
     by_x[at] = static_cast<Index>(at);
   std::sort(by_x.begin(), by_x.end(),
             [&](Index one, Index other) { return vertices(0, one) < vertices(0, other); });
-  return part_alone(vertices, by_x, middle) <= most_alone ? middle : 0.0;
+  return part_alone(vertices, by_x, middle) <= max_alone ? middle : 0.0;
 }
 
 } // namespace nendo::puppet

@@ -164,8 +164,8 @@ std::optional<ClutchMeans> clutch_means_named(std::string_view name) noexcept {
 }
 
 Result<Puppet> read_puppet(const std::filesystem::path& path) {
-  constexpr std::size_t most_bytes = std::size_t{1} << 20;
-  const auto text = read_file(path, most_bytes, "puppet");
+  constexpr std::size_t max_bytes = std::size_t{1} << 20;
+  const auto text = read_file(path, max_bytes, "puppet");
   if (!text) return text.error();
   return parse_puppet(*text, path.string());
 }

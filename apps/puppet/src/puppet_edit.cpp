@@ -22,9 +22,9 @@ Result<Puppet> with_function(const Rig& rig, const NewPoint& point, const Vector
   EditedPuppet draft(rig);
   Puppet& puppet = draft.puppet();
   const bool is_sided = draft.is_sided(point);
-  if (puppet.functions.size() + (is_sided ? 2 : 1) > Puppet::most_functions)
+  if (puppet.functions.size() + (is_sided ? 2 : 1) > Puppet::max_functions)
     return refused("there are " + std::to_string(puppet.functions.size()) +
-                   " functions already, of at most " + std::to_string(Puppet::most_functions) +
+                   " functions already, of at most " + std::to_string(Puppet::max_functions) +
                    "; remove some");
   if (!move.allFinite() || !std::isfinite(travel) || travel == 0.0)
     return refused("a function needs a way and a travel that is not 0");
@@ -146,9 +146,9 @@ void set_turn(Function& function, std::size_t point, const AxisTurn& turn) {
 
 Result<Puppet> with_turn(const Rig& rig, std::size_t function, std::size_t point,
                          const AxisTurn& turn) {
-  constexpr double least_axis = 1e-9;
+  constexpr double min_axis = 1e-9;
   if (!(std::abs(turn.degrees) <= 360.0) || !turn.axis.allFinite() || !turn.through.allFinite() ||
-      !(turn.axis.norm() > least_axis))
+      !(turn.axis.norm() > min_axis))
     return refused("a turn needs an axis, and at most 360 degrees");
   EditedPuppet draft(rig);
   Puppet& puppet = draft.puppet();

@@ -28,9 +28,9 @@ std::string toml_number(double value) {
 
 /// The shortest number of degrees that is read as these radians.
 std::string toml_degrees(double rad) {
-  constexpr int most_digits = std::numeric_limits<double>::max_digits10;
+  constexpr int max_digits = std::numeric_limits<double>::max_digits10;
   const double degrees = to_degrees(rad);
-  for (int digits = 1; digits <= most_digits; ++digits) {
+  for (int digits = 1; digits <= max_digits; ++digits) {
     std::array<char, 40> text{};
     const auto end = std::to_chars(text.data(), text.data() + text.size(), degrees,
                                    std::chars_format::general, digits)

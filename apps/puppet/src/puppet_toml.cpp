@@ -18,9 +18,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double largest = 1e9;            // of lengths, model units
-constexpr double largest_value = 1e3;      // of functions, and of a point's part in a turn
-constexpr std::size_t most_entries = 1000; // of [[parts]], and of [[masks]]
+constexpr double largest = 1e9;           // of lengths, model units
+constexpr double largest_value = 1e3;     // of functions, and of a point's part in a turn
+constexpr std::size_t max_entries = 1000; // of [[parts]], and of [[masks]]
 constexpr std::string_view left = "Left";
 
 Vector3d vector_of(const std::array<double, 3>& numbers) {
@@ -75,7 +75,7 @@ private:
   void read_list(const toml::table& root, std::string_view key, const Read& read) {
     const toml::array* const list = reader_.array(root, key);
     if (list == nullptr) return;
-    if (list->size() > most_entries)
+    if (list->size() > max_entries)
       return reader_.complain(*list, "there are more than 1000 " + std::string(key));
     for (const toml::node& node : *list) {
       const toml::table* const one = reader_.as_table(node, key);
@@ -144,7 +144,7 @@ private:
   void read_points(const toml::table& root) {
     const toml::table* const points = reader_.table(root, "points");
     if (points == nullptr) return;
-    if (points->size() > Puppet::most_points)
+    if (points->size() > Puppet::max_points)
       return reader_.complain(*points, "there are more than 1000 points");
     for (const auto& [key, node] : *points) {
       const toml::table* const table = reader_.as_table(node, key.str());
@@ -184,7 +184,7 @@ private:
   std::vector<double> positive_numbers(const toml::table& table, std::string_view key) {
     const toml::array* const list = reader_.array(table, key);
     if (list == nullptr) return {};
-    if (list->empty() || list->size() > PuppetPoint::most_radii)
+    if (list->empty() || list->size() > PuppetPoint::max_radii)
       reader_.complain(*list, std::string(key) + " must be a list of 1 to 4 numbers");
     std::vector<double> values;
     for (const toml::node& node : *list) {
@@ -220,7 +220,7 @@ private:
   void read_functions(const toml::table& root) {
     const toml::table* const functions = reader_.table(root, "functions");
     if (functions == nullptr) return;
-    if (functions->size() > Puppet::most_functions)
+    if (functions->size() > Puppet::max_functions)
       return reader_.complain(*functions, "there are more than 64 functions");
     for (const auto& [key, node] : *functions) {
       const toml::table* const table = reader_.as_table(node, key.str());
@@ -348,14 +348,14 @@ private:
     if (reader_.error()) return;
     if (puppet_.points.empty()) reader_.complain(root, "[points] is empty; add a point");
     if (puppet_.functions.empty()) reader_.complain(root, "there are no functions; add one");
-    if (puppet_.points.size() > Puppet::most_points)
+    if (puppet_.points.size() > Puppet::max_points)
       reader_.complain(root, "there are more than 1000 points");
     std::size_t radii = 0;
     for (const PuppetPoint& point : puppet_.points)
       radii += point.supports().size();
-    if (radii > Puppet::most_points)
+    if (radii > Puppet::max_points)
       reader_.complain(root, "the points have more than 1000 radii together");
-    if (puppet_.functions.size() > Puppet::most_functions)
+    if (puppet_.functions.size() > Puppet::max_functions)
       reader_.complain(root, "there are more than 64 functions");
     for (const Function& function : puppet_.functions)
       for (const Move& move : function.moves)

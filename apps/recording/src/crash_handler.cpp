@@ -48,8 +48,8 @@ void write_last_minute(LastMinute& ring) noexcept {
 // A slow card takes ten seconds for a full ring; a disk that does not answer is no reason to never
 // die.
 void wait_for_writer() noexcept {
-  constexpr int most_milliseconds = 30'000;
-  for (int waited = 0; writer.load() != 0 && waited < most_milliseconds; ++waited)
+  constexpr int max_milliseconds = 30'000;
+  for (int waited = 0; writer.load() != 0 && waited < max_milliseconds; ++waited)
     ::poll(nullptr, 0, 1);
 }
 

@@ -103,9 +103,9 @@ void LastMinute::push(std::span<const std::byte> payload, std::uint64_t entries,
 }
 
 void LastMinute::freeze() noexcept {
-  constexpr int most_milliseconds = 100;
+  constexpr int max_milliseconds = 100;
   frozen_.store(true);
-  for (int waited = 0; pushing_.load() && waited < most_milliseconds; ++waited)
+  for (int waited = 0; pushing_.load() && waited < max_milliseconds; ++waited)
     ::poll(nullptr, 0, 1);
 }
 

@@ -81,7 +81,7 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
     input.ring = replay->rings_.back().get();
   }
   options.commands = &replay->commands_;
-  options.undo_most_bytes = std::min(options.undo_most_bytes, deform::half_of_memory());
+  options.undo_max_bytes = std::min(options.undo_max_bytes, deform::half_of_memory());
   const deform::BlockShape first(setup.loop->rest);
   const bool has_first = first.block_count() > 0;
   replay->loop_ = std::make_unique<flow::DeformLoop>(

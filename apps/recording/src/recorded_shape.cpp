@@ -18,7 +18,7 @@ RecordedShape shape_of(std::uint64_t tick, const deform::Points& vertices) {
 }
 
 void put_shape(ByteWriter& writer, const RecordedShape& shape) {
-  assert(shape.xyz.size() <= 3 * most_recorded_vertices);
+  assert(shape.xyz.size() <= 3 * max_recorded_vertices);
   writer.u64_le(shape.tick);
   writer.u32_le(static_cast<std::uint32_t>(shape.xyz.size() / 3));
   for (const float coordinate : shape.xyz)

@@ -32,13 +32,13 @@ constexpr std::chrono::milliseconds drain_time{20};
 std::size_t memory_for(const Setup& setup, HostClock::duration span) {
   constexpr double sample_bytes = 88.0;
   constexpr double tick_bytes = 26.0;
-  constexpr double least_rate_hz = 250.0;
+  constexpr double min_rate_hz = 250.0;
   double bytes_s = 1000.0;
   for (const auto& glove : setup.gloves)
-    bytes_s += sample_bytes * std::max(2.0 * glove.rate_hz, least_rate_hz);
+    bytes_s += sample_bytes * std::max(2.0 * glove.rate_hz, min_rate_hz);
   if (setup.loop) bytes_s += tick_bytes * setup.loop->options.rate_hz;
-  constexpr double most_bytes = 1e9;
-  return static_cast<std::size_t>(std::min(most_bytes, bytes_s * (to_seconds(span) + 2.0)));
+  constexpr double max_bytes = 1e9;
+  return static_cast<std::size_t>(std::min(max_bytes, bytes_s * (to_seconds(span) + 2.0)));
 }
 
 class InputLogRecorder final : public Recorder {
@@ -244,7 +244,7 @@ private:
   std::set<std::uint32_t> written_puppets_;
   std::mutex puppets_mutex_;
   std::map<std::uint32_t, std::shared_ptr<const RecordedPuppet>> puppets_; ///< by their numbers
-  std::array<flow::WristSwitchEdge, flow::most_inputs> switches_{};
+  std::array<flow::WristSwitchEdge, flow::max_inputs> switches_{};
   Recorded recorded_;
   std::optional<Error> failure_; ///< the first one
   unsigned kept_number_ = 0;

@@ -28,12 +28,12 @@ Error error_of(const driver::GloveSpec& spec, Errc code, const std::string& what
 }
 
 Result<Settings> settings_of(const driver::GloveSpec& spec) {
-  constexpr double least_speed = 0.01;
-  constexpr double most_speed = 100.0;
+  constexpr double min_speed = 0.01;
+  constexpr double max_speed = 100.0;
   Settings settings;
   if (const auto option = spec.options.find("speed"); option != spec.options.end()) {
     const auto speed = to_number(option->second);
-    if (!speed || !(*speed >= least_speed && *speed <= most_speed))
+    if (!speed || !(*speed >= min_speed && *speed <= max_speed))
       return error_of(spec, Errc::usage, "speed must be a number from 0.01 to 100");
     settings.speed = *speed;
   }
@@ -188,15 +188,15 @@ private:
   }
 
   HostClock::duration scaled(HostClock::duration time) const noexcept {
-    constexpr double most_s = 1e8; // three years: a hostile file's gap is no reason to overflow
-    const double seconds = std::clamp(to_seconds(time) / settings_.speed, -most_s, most_s);
+    constexpr double max_s = 1e8; // three years: a hostile file's gap is no reason to overflow
+    const double seconds = std::clamp(to_seconds(time) / settings_.speed, -max_s, max_s);
     return from_seconds(seconds);
   }
 
   HostClock::duration period() const noexcept {
-    constexpr double least_rate_hz = 1.0;
-    constexpr double most_rate_hz = 1e4;
-    return from_seconds(1.0 / std::clamp(info_.rate_hz, least_rate_hz, most_rate_hz));
+    constexpr double min_rate_hz = 1.0;
+    constexpr double max_rate_hz = 1e4;
+    return from_seconds(1.0 / std::clamp(info_.rate_hz, min_rate_hz, max_rate_hz));
   }
 
   Settings settings_;

@@ -11,9 +11,9 @@ namespace nendo::recording {
 namespace {
 
 constexpr std::size_t sample_bytes = 86;
-constexpr std::chrono::nanoseconds most_time{std::int64_t{1} << 62U};
-constexpr std::size_t most_facts = 256;
-constexpr double most_rate_hz = 1e6;
+constexpr std::chrono::nanoseconds max_time{std::int64_t{1} << 62U};
+constexpr std::size_t max_facts = 256;
+constexpr double max_rate_hz = 1e6;
 
 constexpr unsigned device_time_flag = 1U << 0U;
 constexpr unsigned too_fast_flag = 1U << 1U;
@@ -58,7 +58,7 @@ void put_entry_head(ByteWriter& writer, EntryKind kind, std::size_t body_bytes) 
 }
 
 bool is_usable_time(std::chrono::nanoseconds since_epoch) noexcept {
-  return since_epoch > -most_time / 2 && since_epoch < most_time / 2;
+  return since_epoch > -max_time / 2 && since_epoch < max_time / 2;
 }
 
 void put_time(ByteWriter& writer, HostTime time) {
@@ -125,7 +125,7 @@ void put_glove(ByteWriter& writer, const RecordedGlove& glove) {
   writer.u8(static_cast<std::uint8_t>(
       bit(info.abilities.wrist_switch, 0) | bit(info.abilities.light, 1) |
       bit(info.abilities.vibration, 2) | bit(info.abilities.resistance, 3)));
-  const std::size_t facts = std::min(info.facts.size(), most_facts);
+  const std::size_t facts = std::min(info.facts.size(), max_facts);
   writer.u16_le(static_cast<std::uint16_t>(facts));
   for (std::size_t at = 0; at < facts; ++at) {
     writer.text(info.facts[at].name);
@@ -150,8 +150,8 @@ std::optional<RecordedGlove> glove_of(std::span<const std::byte> payload) {
   info.abilities = {(abilities & 1U) != 0, (abilities & 2U) != 0, (abilities & 4U) != 0,
                     (abilities & 8U) != 0};
   const std::size_t facts = reader.u16_le();
-  if (side > 1 || facts > most_facts || info.sensors.bits >> sensor_slots != 0 ||
-      !(info.rate_hz >= 0.0 && info.rate_hz <= most_rate_hz))
+  if (side > 1 || facts > max_facts || info.sensors.bits >> sensor_slots != 0 ||
+      !(info.rate_hz >= 0.0 && info.rate_hz <= max_rate_hz))
     return std::nullopt;
   for (std::size_t at = 0; at < facts && !reader.overrun(); ++at) {
     std::string name = printable(reader.text());

@@ -15,10 +15,10 @@
 namespace nendo::recording {
 namespace {
 
-constexpr double most_count = 65535.0;
-constexpr double most_time_s = 4.5e9;           // 142 years: differences fit into nanoseconds
-constexpr std::size_t most_samples = 5'000'000; // 15 hours of a CyberGlove; some 160 bytes each
-constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
+constexpr double max_count = 65535.0;
+constexpr double max_time_s = 4.5e9;           // 142 years: differences fit into nanoseconds
+constexpr std::size_t max_samples = 5'000'000; // 15 hours of a CyberGlove; some 160 bytes each
+constexpr std::uint64_t max_bytes = std::uint64_t{1} << 30;
 constexpr std::string_view count_ending = "_count";
 constexpr std::string_view head_example = "time_s,thumb_roll,thumb_mcp";
 
@@ -74,7 +74,7 @@ public:
       if (!any) return any.error();
       if (!*any) break;
       if (auto fine = read_row(); !fine) return fine.error();
-      if (rows_.size() > most_samples) return table_.bad("there are more than 5 million rows");
+      if (rows_.size() > max_samples) return table_.bad("there are more than 5 million rows");
     }
     return finish();
   }
@@ -152,7 +152,7 @@ private:
     for (const auto& [column, sensor] : columns_.sensors) {
       if (table_.is_missing(column)) continue;
       const auto count = table_.number(column);
-      if (!count || !(*count >= 0.0 && *count <= most_count))
+      if (!count || !(*count >= 0.0 && *count <= max_count))
         return table_.bad_cell(column, "is no count; use 0 to 65535, or leave the cell empty");
       sample.set(sensor, RawCount{static_cast<std::uint16_t>(std::lround(*count))});
     }
@@ -179,7 +179,7 @@ private:
     if (columns_.time) {
       const TimeUnit& unit = columns_.unit;
       const auto time_ns =
-          table_.scaled(*columns_.time, unit.digits, most_time_s * std::pow(10.0, 9 - unit.digits));
+          table_.scaled(*columns_.time, unit.digits, max_time_s * std::pow(10.0, 9 - unit.digits));
       if (!time_ns)
         return table_.bad_cell(*columns_.time, "is no time; use " + std::string(unit.word) +
                                                    ", counted from any moment");
@@ -264,7 +264,7 @@ Result<SampleTable> parse_sample_table(std::string_view text, const std::string&
 
 Result<SampleTable> read_sample_table(const std::filesystem::path& path,
                                       const TableWishes& wishes) {
-  const auto text = read_file(path, most_bytes, "table");
+  const auto text = read_file(path, max_bytes, "table");
   if (!text) return text.error();
   return parse_sample_table(*text, path.string(), wishes);
 }

@@ -94,7 +94,7 @@ std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks) {
   }
   std::span<const deform::VertexBlock> rest(setup.loop->rest);
   while (!rest.empty()) {
-    const std::size_t count = std::min(rest.size(), most_blocks_of_chunk);
+    const std::size_t count = std::min(rest.size(), max_blocks_of_chunk);
     append(rest_chunk, [&](ByteWriter writer) { put_rest(writer, rest.first(count)); });
     rest = rest.subspan(count);
   }

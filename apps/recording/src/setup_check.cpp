@@ -12,11 +12,11 @@ namespace {
 
 constexpr double farthest_wrist_m = 1e6; // as setup_loop.cpp reads
 constexpr double largest_readable = 1e100;
-constexpr double least_readable = 1e-100;
-constexpr std::size_t most_puppet_text = std::size_t{1} << 20;
+constexpr double min_readable = 1e-100;
+constexpr std::size_t max_puppet_text = std::size_t{1} << 20;
 
 bool is_in_range(double value) noexcept {
-  return value >= least_readable && value <= largest_readable;
+  return value >= min_readable && value <= largest_readable;
 }
 
 /// What of a loop is out of its range, and what to do.
@@ -40,7 +40,7 @@ std::string reason_of(ChunkType type, const Setup& setup) {
     return "a hand's size, calibration or filter has a number that no hand has; calibrate again, "
            "or use --calibration none";
   if (type == loop_chunk && setup.loop) return reason_of_loop(*setup.loop);
-  if (type == puppet_chunk && setup.loop && setup.loop->puppet.text.size() > most_puppet_text)
+  if (type == puppet_chunk && setup.loop && setup.loop->puppet.text.size() > max_puppet_text)
     return "its puppet is longer than 1 MiB; take functions or masks out of it";
   if (type == puppet_chunk)
     return "its puppet has a number that is out of its range; mend its file";

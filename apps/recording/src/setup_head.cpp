@@ -8,8 +8,8 @@ namespace nendo::recording {
 namespace {
 
 constexpr double largest = 1e6; // of all numbers that describe a hand
-constexpr double least_hand_m = 0.01;
-constexpr double most_hand_m = 1.0;
+constexpr double min_hand_m = 0.01;
+constexpr double max_hand_m = 1.0;
 
 double bounded_number(CheckedReader& checked) {
   return checked.number(-largest, largest);
@@ -125,8 +125,8 @@ void put_size(ByteWriter& writer, const hand::HandSize& size) {
 }
 
 void read_size(CheckedReader& checked, hand::HandSize& size) {
-  size.length_m = checked.number(least_hand_m, most_hand_m);
-  size.breadth_m = checked.number(least_hand_m, most_hand_m);
+  size.length_m = checked.number(min_hand_m, max_hand_m);
+  size.breadth_m = checked.number(min_hand_m, max_hand_m);
 }
 
 /// The terms of the first formats, those that 1.9 brought, and those of 1.12: of both hands each.
@@ -145,7 +145,7 @@ void put_shapes(ByteWriter& writer, const hand::WearerShape& own, const hand::We
 void read_shape(CheckedReader& checked, std::size_t begin, std::size_t end,
                 hand::WearerShape& shape) {
   for (std::size_t k = begin; k < end; ++k) {
-    const double most = hand::most_of(static_cast<hand::ShapeTerm>(k));
+    const double most = hand::max_of(static_cast<hand::ShapeTerm>(k));
     shape.terms[k] = checked.number(-most, most);
   }
 }
@@ -167,9 +167,9 @@ void read_layer(ByteReader& reader, CheckedReader& checked, flow::Layer& layer) 
   layer.part = checked.number(0.0, 1.0);
   if (reader.u8() == 0) return;
   hand::JointAngles& below = layer.below.emplace();
-  constexpr double most_rad = 7.0; // a turn
+  constexpr double max_rad = 7.0; // a turn
   for (std::size_t at = 0; at < hand::angle_count; ++at)
-    below[hand::angle_at(at)] = checked.number(-most_rad, most_rad);
+    below[hand::angle_at(at)] = checked.number(-max_rad, max_rad);
 }
 
 } // namespace

@@ -11,12 +11,12 @@
 namespace nendo::recording {
 namespace {
 
-constexpr std::size_t most_supports = puppet::Puppet::most_points; // of each kind
-constexpr std::uint64_t most_memory = std::uint64_t{1} << 28;
-constexpr std::uint32_t most_links = 1024;
-constexpr std::uint32_t most_catch_up = 1000;               // as parse_policy()
-constexpr double most_points = puppet::Puppet::most_points; // two hands' fingertips, or a puppet's
-constexpr double largest_number = 1e100;                    // as the solver takes
+constexpr std::size_t max_supports = puppet::Puppet::max_points; // of each kind
+constexpr std::uint64_t max_memory = std::uint64_t{1} << 28;
+constexpr std::uint32_t max_links = 1024;
+constexpr std::uint32_t max_catch_up = 1000;              // as parse_policy()
+constexpr double max_points = puppet::Puppet::max_points; // two hands' fingertips, or a puppet's
+constexpr double largest_number = 1e100;                  // as the solver takes
 
 void read_number(CheckedReader& checked, const flow::NumberSetting& number,
                  flow::LoopSettings& settings) {
@@ -33,10 +33,10 @@ void put_placement(ByteWriter& writer, const flow::Placement& placement) {
 }
 
 flow::Placement read_placement(CheckedReader& checked) {
-  constexpr double least_scale = 1e-100;
+  constexpr double min_scale = 1e-100;
   constexpr double farthest_m = 1e6;
   flow::Placement placement;
-  placement.units_per_metre = checked.number(least_scale, largest_number);
+  placement.units_per_metre = checked.number(min_scale, largest_number);
   for (auto& pose : placement.T_stage_wrist) {
     for (Eigen::Index row = 0; row < 3; ++row)
       for (Eigen::Index column = 0; column < 4; ++column)
@@ -57,7 +57,7 @@ std::optional<flow::Table> read_table(ByteReader& reader, CheckedReader& checked
   if (reader.u8() == 0) return std::nullopt;
   flow::Table table;
   for (double& coordinate : table.top)
-    coordinate = checked.number(-deform::most_units, deform::most_units);
+    coordinate = checked.number(-deform::max_units, deform::max_units);
   table.half_side = checked.number(0.0, largest_number);
   return table;
 }
@@ -90,20 +90,20 @@ void put_deformer(ByteWriter& writer, const deform::DeformerOptions& options) {
   writer.u64_le(options.undo_bytes);
   writer.u8(static_cast<std::uint8_t>(options.injective.has_value()));
   const auto injective = options.injective.value_or(deform::InjectiveOptions{});
-  writer.f64_le(injective.most_bound);
-  writer.u32_le(static_cast<std::uint32_t>(injective.most_links));
-  writer.f64_le(injective.least_gap);
+  writer.f64_le(injective.max_bound);
+  writer.u32_le(static_cast<std::uint32_t>(injective.max_links));
+  writer.f64_le(injective.min_gap);
 }
 
 void read_supports(ByteReader& reader, CheckedReader& checked, deform::Supports& supports) {
   supports = {};
-  const std::size_t shared = checked.count(most_supports);
+  const std::size_t shared = checked.count(max_supports);
   for (std::size_t at = 0; at < shared; ++at)
     supports.shared.push_back(read_support(checked));
-  const std::size_t own = checked.count(most_supports);
+  const std::size_t own = checked.count(max_supports);
   for (std::size_t at = 0; at < own; ++at) {
     const Eigen::Index point = reader.u32_le();
-    checked.require(static_cast<double>(point) < most_points);
+    checked.require(static_cast<double>(point) < max_points);
     supports.own.push_back({point, read_support(checked)});
   }
   checked.require(!supports.shared.empty() && supports.are_usable());
@@ -115,21 +115,21 @@ void read_deformer(ByteReader& reader, CheckedReader& checked, deform::DeformerO
   options.csrbf.polynomial = checked.one_of(deform::Polynomial::linear);
   options.csrbf.merge_fraction = checked.number(0.0, 1.0);
   reader.u16_le(); // two bytes that were the solver's order and storage; any are good
-  options.evaluation.weight_bytes = checked.size(most_memory);
-  options.undo_bytes = checked.size(most_memory);
+  options.evaluation.weight_bytes = checked.size(max_memory);
+  options.undo_bytes = checked.size(max_memory);
   const bool injects = reader.u8() != 0;
   deform::InjectiveOptions injective;
-  injective.most_bound = checked.number(0.01, 0.999);
+  injective.max_bound = checked.number(0.01, 0.999);
   const std::uint32_t links = reader.u32_le();
-  checked.require(links >= 1 && links <= most_links);
-  injective.most_links = static_cast<int>(links);
-  injective.least_gap = checked.number(0.0, 1.0);
+  checked.require(links >= 1 && links <= max_links);
+  injective.max_links = static_cast<int>(links);
+  injective.min_gap = checked.number(0.0, 1.0);
   if (injects) options.injective = injective;
 }
 
 /// Of a block. False for NaN.
 bool is_usable(float coordinate) noexcept {
-  return std::abs(static_cast<double>(coordinate)) <= deform::most_units;
+  return std::abs(static_cast<double>(coordinate)) <= deform::max_units;
 }
 
 } // namespace
@@ -142,14 +142,14 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
   put_placement(writer, loop.placement);
   writer.f64_le(options.rate_hz);
   writer.u8(static_cast<std::uint8_t>(options.policy));
-  writer.u32_le(options.most_catch_up);
+  writer.u32_le(options.max_catch_up);
   writer.i64_le(std::chrono::nanoseconds(options.silent_after).count());
   writer.u8(static_cast<std::uint8_t>(options.switch_action));
   writer.u8(static_cast<std::uint8_t>(options.sculptor.mode));
   writer.f64_le(options.sculptor.piece_length);
   put_deformer(writer, options.sculptor.deformer);
   writer.text(loop.simd);
-  writer.u64_le(options.undo_most_bytes);
+  writer.u64_le(options.undo_max_bytes);
   writer.u8(static_cast<std::uint8_t>(options.begins_held()));
   writer.u8(static_cast<std::uint8_t>(options.settings.has_value()));
   if (options.settings) put_settings(writer, *options.settings);
@@ -269,16 +269,16 @@ void put_puppet_starts(ByteWriter& writer, const RecordedPuppet& puppet) {
 
 /// Returns false if there is no such text.
 bool read_puppet_text(ByteReader& reader, RecordedPuppet& puppet) {
-  constexpr std::uint32_t most_text = std::uint32_t{1} << 20;
+  constexpr std::uint32_t max_text = std::uint32_t{1} << 20;
   const std::uint32_t size = reader.u32_le();
-  if (size == 0 || size > most_text || size > reader.remaining()) return false;
+  if (size == 0 || size > max_text || size > reader.remaining()) return false;
   const auto text = reader.take(size);
   puppet.text.assign(reinterpret_cast<const char*>(text.data()), text.size());
   return true;
 }
 
 void read_puppet_starts(CheckedReader& checked, RecordedPuppet& puppet) {
-  puppet.starts.resize(3, static_cast<Eigen::Index>(checked.count(puppet::Puppet::most_points)));
+  puppet.starts.resize(3, static_cast<Eigen::Index>(checked.count(puppet::Puppet::max_points)));
   for (double& coordinate : puppet.starts.reshaped())
     coordinate = checked.number(-largest_number, largest_number);
 }
@@ -320,11 +320,11 @@ std::optional<NumberedPuppet> read_puppet_version(std::span<const std::byte> pay
 namespace {
 
 puppet::RigState read_rig_state(ByteReader& reader, CheckedReader& checked) {
-  constexpr double most_value = 1e9;
+  constexpr double max_value = 1e9;
   puppet::RigState state;
-  state.functions.resize(checked.count(puppet::Puppet::most_functions));
+  state.functions.resize(checked.count(puppet::Puppet::max_functions));
   for (puppet::FunctionState& function : state.functions) {
-    function.asked = checked.number(-most_value, most_value);
+    function.asked = checked.number(-max_value, max_value);
     const auto input = read_signal(reader);
     checked.require(input.has_value());
     function.input = input.value_or(puppet::HandSignal{});
@@ -352,7 +352,7 @@ bool read_puppet(ByteReader& reader, std::optional<LoopSetup>& loop) {
 }
 
 bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
-  constexpr double least_piece = 1e-100;
+  constexpr double min_piece = 1e-100;
   CheckedReader checked(reader);
   LoopSetup read;
   flow::LoopOptions& options = read.options;
@@ -360,20 +360,20 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
   read.mesh_sum.vertices = reader.u64_le();
   read.mesh_sum.crc = reader.u32_le();
   read.placement = read_placement(checked);
-  options.rate_hz = checked.number(flow::TickGrid::least_rate_hz, flow::TickGrid::most_rate_hz);
+  options.rate_hz = checked.number(flow::TickGrid::min_rate_hz, flow::TickGrid::max_rate_hz);
   options.policy = checked.one_of(flow::OverrunPolicy::sample);
-  options.most_catch_up = reader.u32_le();
-  checked.require(options.most_catch_up >= 1 && options.most_catch_up <= most_catch_up);
+  options.max_catch_up = reader.u32_le();
+  checked.require(options.max_catch_up >= 1 && options.max_catch_up <= max_catch_up);
   const std::chrono::nanoseconds silent_after(reader.i64_le());
   checked.require(silent_after.count() >= 0 && is_usable_time(silent_after));
   options.silent_after = silent_after;
   options.switch_action = checked.one_of(flow::SwitchAction::keep);
   options.sculptor.mode = checked.one_of(flow::Mode::parts);
-  options.sculptor.piece_length = checked.number(least_piece, largest_number);
+  options.sculptor.piece_length = checked.number(min_piece, largest_number);
   read_deformer(reader, checked, options.sculptor.deformer);
   read.simd = reader.text();
-  if (reader.remaining() > 0) options.undo_most_bytes = reader.u64_le(); // 1.0 had none at first
-  if (reader.remaining() > 0) {                                          // since 1.3
+  if (reader.remaining() > 0) options.undo_max_bytes = reader.u64_le(); // 1.0 had none at first
+  if (reader.remaining() > 0) {                                         // since 1.3
     options.held = reader.u8() != 0;
     if (reader.u8() != 0) {
       options.settings = read_settings(reader);
@@ -381,7 +381,7 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
     }
   }
   const std::uint32_t subdivisions = reader.remaining() > 0 ? reader.u32_le() : 0; // since 1.4
-  checked.require(subdivisions <= most_plain_origins);
+  checked.require(subdivisions <= max_plain_origins);
   if (checked.fine())
     read.origins.assign(subdivisions, std::make_shared<const flow::ModelOrigin>(flow::ModelOrigin{
                                           .source = flow::ModelSource::subdivided}));

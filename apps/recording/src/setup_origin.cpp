@@ -21,7 +21,7 @@ constexpr double largest_coordinate = 1e100;
 } // namespace
 
 std::size_t plain_origins(const LoopSetup& loop) noexcept {
-  const auto most = std::min(loop.origins.size(), most_plain_origins);
+  const auto most = std::min(loop.origins.size(), max_plain_origins);
   const auto first = loop.origins.begin();
   const auto end = first + static_cast<std::ptrdiff_t>(most);
   return static_cast<std::size_t>(
@@ -47,7 +47,7 @@ void read_change(ByteReader& reader, CheckedReader& checked, ModelOrigin& origin
   origin.seam_width = checked.number(0.0, largest_coordinate);
   origin.part = reader.u32_le();
   const std::uint32_t places = reader.u32_le();
-  checked.require(places <= flow::WirePath::most_places);
+  checked.require(places <= flow::WirePath::max_places);
   for (std::uint32_t at = 0; checked.fine() && at < places; ++at) {
     deform::WirePlace& place = origin.wire.emplace_back();
     for (Eigen::Vector3d* const end : {&place.from, &place.to})
@@ -81,8 +81,8 @@ void read_vertices(ByteReader& reader, CheckedReader& checked, ModelOrigin& orig
 
 namespace {
 
-std::size_t most_of_chunk(const ModelOrigin& origin) noexcept {
-  return is_of_shape(origin.source) ? most_vertices_of_chunk : most_operations_of_chunk;
+std::size_t max_of_chunk(const ModelOrigin& origin) noexcept {
+  return is_of_shape(origin.source) ? max_vertices_of_chunk : max_operations_of_chunk;
 }
 
 } // namespace
@@ -90,15 +90,15 @@ std::size_t most_of_chunk(const ModelOrigin& origin) noexcept {
 std::size_t origin_chunks(const ModelOrigin& origin) noexcept {
   const std::size_t all = is_of_shape(origin.source) ? static_cast<std::size_t>(origin.shape.cols())
                                                      : origin.refining.size();
-  const std::size_t most = most_of_chunk(origin);
+  const std::size_t most = max_of_chunk(origin);
   return std::max<std::size_t>(1, (all + most - 1) / most);
 }
 
 void put_origin(ByteWriter& writer, const ModelOrigin& origin, std::size_t chunk) {
   writer.u8(static_cast<std::uint8_t>(origin.source));
   writer.u8(chunk > 0 ? 1 : origin.keeps_rest ? 2 : 0);
-  const std::size_t first = chunk * most_of_chunk(origin);
-  const std::size_t end = first + most_of_chunk(origin);
+  const std::size_t first = chunk * max_of_chunk(origin);
+  const std::size_t end = first + max_of_chunk(origin);
   if (is_of_shape(origin.source)) {
     if (chunk == 0) put_change(writer, origin);
     const auto count = static_cast<std::size_t>(origin.shape.cols());

@@ -90,20 +90,20 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop);
 void put_signal(ByteWriter& writer, const puppet::HandSignal& signal);
 std::optional<puppet::HandSignal> read_signal(ByteReader& reader);
 void put_puppet(ByteWriter& writer, const LoopSetup& loop);
-/// Writes some of the blocks of the shape at first. A chunk has at most most_blocks_of_chunk.
+/// Writes some of the blocks of the shape at first. A chunk has at most max_blocks_of_chunk.
 void put_rest(ByteWriter& writer, std::span<const deform::VertexBlock> blocks);
-inline constexpr std::size_t most_blocks_of_chunk = std::size_t{1} << 14;
+inline constexpr std::size_t max_blocks_of_chunk = std::size_t{1} << 14;
 
 /// Of the origins, the first ones that only subdivide. LOOP has their number, and ORIG the others.
 std::size_t plain_origins(const LoopSetup& loop) noexcept;
-inline constexpr std::size_t most_plain_origins = 16;
-/// Writes that of so many chunks of an origin. Each has at most most_operations_of_chunk of its
-/// operations, or most_vertices_of_chunk of the vertices of the shape that it was made of.
+inline constexpr std::size_t max_plain_origins = 16;
+/// Writes that of so many chunks of an origin. Each has at most max_operations_of_chunk of its
+/// operations, or max_vertices_of_chunk of the vertices of the shape that it was made of.
 void put_origin(ByteWriter& writer, const flow::ModelOrigin& origin, std::size_t chunk);
 std::size_t origin_chunks(const flow::ModelOrigin& origin) noexcept;
-inline constexpr std::size_t most_operations_of_chunk = std::size_t{1} << 20;
+inline constexpr std::size_t max_operations_of_chunk = std::size_t{1} << 20;
 /// Of 24 bytes each: more would not go into a chunk.
-inline constexpr std::size_t most_vertices_of_chunk = std::size_t{1} << 19;
+inline constexpr std::size_t max_vertices_of_chunk = std::size_t{1} << 19;
 
 /// Writes settings, as they stand in a loop's chunk and in entries.
 void put_settings(ByteWriter& writer, const flow::LoopSettings& settings);

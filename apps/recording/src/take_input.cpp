@@ -70,7 +70,7 @@ private:
   HostTime first_{};
   HostClock::duration latest_{};
   std::uint64_t ticks_ = 0;
-  std::array<std::uint64_t, flow::most_inputs> samples_{};
+  std::array<std::uint64_t, flow::max_inputs> samples_{};
   bool exact_ = true;
   std::optional<flow::LoopSettings> settings_; ///< of the last entry
   std::optional<std::uint32_t> puppet_;        ///< likewise
@@ -90,7 +90,7 @@ Result<TakeInput> read_take_input(const std::filesystem::path& path) {
     return Error{Errc::bad_input, path.string() + ": " + std::string(without_loop)};
   if (input.sent.size() != input.setup.gloves.size()) { // nobody has counted more than arrived
     input.sent.clear();
-    for (std::size_t at = 0; at < std::min(input.setup.gloves.size(), flow::most_inputs); ++at)
+    for (std::size_t at = 0; at < std::min(input.setup.gloves.size(), flow::max_inputs); ++at)
       input.sent.push_back({script.samples_of(at)});
   }
   input.is_exact = script.is_exact() && reader->chunks().damage_count() == 0;

@@ -53,7 +53,7 @@ struct EntryWriter {
     put_entry_head(writer, EntryKind::model, model_bytes);
     writer.u32_le(change.number);
     writer.u8(static_cast<std::uint8_t>(change.source));
-    writer.u32_le(change.most_vertices);
+    writer.u32_le(change.max_vertices);
     writer.f64_le(change.seam_width);
     writer.u32_le(change.part);
   }
@@ -132,8 +132,8 @@ std::optional<Entry> model_of(ByteReader& reader) {
   if (reader.overrun() || source > static_cast<std::uint8_t>(flow::ModelSource::topology))
     return std::nullopt;
   change.source = static_cast<flow::ModelSource>(source);
-  if (reader.remaining() > 0) change.most_vertices = reader.u32_le(); // since 1.8
-  if (reader.remaining() > 0) {                                       // since 1.11
+  if (reader.remaining() > 0) change.max_vertices = reader.u32_le(); // since 1.8
+  if (reader.remaining() > 0) {                                      // since 1.11
     change.seam_width = reader.f64_le();
     change.part = reader.u32_le();
   }

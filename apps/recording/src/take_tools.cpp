@@ -122,14 +122,14 @@ public:
       if (sample != nullptr && !has_loop) group.time = sample->sample.arrival;
       group.entries.push_back(*std::move(entry));
       // A file may have no tick for long. It must not fill the memory.
-      if (group.time || group.entries.size() >= most_entries) return group;
+      if (group.time || group.entries.size() >= max_entries) return group;
     }
     if (group.entries.empty()) return std::nullopt;
     return group;
   }
 
 private:
-  static constexpr std::size_t most_entries = std::size_t{1} << 16;
+  static constexpr std::size_t max_entries = std::size_t{1} << 16;
   TakeReader& reader_;
 };
 
@@ -225,9 +225,9 @@ Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesyste
 
 Result<NewTake> add_shapes(const std::filesystem::path& from, const std::filesystem::path& to,
                            const deform::Mesh& model, double rate_hz) {
-  if (static_cast<std::size_t>(model.vertices.cols()) > most_recorded_vertices)
+  if (static_cast<std::size_t>(model.vertices.cols()) > max_recorded_vertices)
     return bad_input(from, "a shape in a recording has at most " +
-                               std::to_string(most_recorded_vertices) + " vertices");
+                               std::to_string(max_recorded_vertices) + " vertices");
   auto reader = TakeReader::open(from);
   if (!reader) return reader.error();
   auto replay = LoopReplay::make(reader->setup(), model);

@@ -23,8 +23,8 @@ double confidence_of(std::uint64_t turns) noexcept {
 }
 
 std::uint64_t turns_of(double confidence) noexcept {
-  constexpr double most_turns = 1e6;
-  const double left = std::max(1.0 - confidence, half_sure_turns / most_turns);
+  constexpr double max_turns = 1e6;
+  const double left = std::max(1.0 - confidence, half_sure_turns / max_turns);
   return static_cast<std::uint64_t>(std::llround(half_sure_turns * confidence / left));
 }
 
@@ -62,7 +62,7 @@ Result<std::optional<hand::LearnedRanges>> kept_ranges(const driver::GloveInfo& 
   hand::SensorRanges ranges{};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot)
     if (const auto& quality = (*wearer)->quality[slot])
-      ranges[slot] = {quality->least_counts, quality->most_counts, turns_of(quality->confidence)};
+      ranges[slot] = {quality->min_counts, quality->max_counts, turns_of(quality->confidence)};
   return std::optional(hand::learned_from(ranges, side));
 }
 

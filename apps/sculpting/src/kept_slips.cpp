@@ -35,7 +35,7 @@ Result<KeptSlips> keep_slips(const driver::GloveInfo& glove, Side side, const st
   if (!own) return own.error();
   KeptSlips kept{choice->file->path, false};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    if (!(std::abs(slips_counts[slot]) >= hand::least_slip_counts(glove.counts))) continue;
+    if (!(std::abs(slips_counts[slot]) >= hand::min_slip_counts(glove.counts))) continue;
     kept.is_changed = true;
     wearer.calibration.sensors[slot].offset_counts += slips_counts[slot];
     if (auto& quality = wearer.quality[slot])

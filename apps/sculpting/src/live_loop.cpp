@@ -54,7 +54,7 @@ struct LiveLoop::Parts {
 namespace {
 
 Result<void> check(const LiveOptions& options) {
-  constexpr flow::Range rate_hz{flow::TickGrid::least_rate_hz, flow::TickGrid::most_rate_hz};
+  constexpr flow::Range rate_hz{flow::TickGrid::min_rate_hz, flow::TickGrid::max_rate_hz};
   const flow::FingersSetting& radius = flow::setting::radius;
   const auto check_one = [](std::string_view name, std::optional<double> value, flow::Range range,
                             std::string_view unit) -> Result<void> {

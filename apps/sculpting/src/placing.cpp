@@ -57,20 +57,20 @@ deform::Supports usual_supports(const deform::Mesh& model, flow::Mode mode) {
 void set_supports(deform::Supports supports, flow::SculptorOptions& sculptor) {
   // Far below the step at which a single finger would fold the surface, 0.47 of the radius.
   constexpr double piece_fraction = 0.05;
-  sculptor.piece_length = piece_fraction * deform::least_radius(supports);
+  sculptor.piece_length = piece_fraction * deform::min_radius(supports);
   sculptor.deformer.supports = std::move(supports);
   sculptor.deformer.csrbf.merge_fraction = flow::fingertip_merge_fraction;
 }
 
-void set_undo_room(const deform::Mesh& model, std::size_t most_bytes, flow::LoopOptions& loop) {
+void set_undo_room(const deform::Mesh& model, std::size_t max_bytes, flow::LoopOptions& loop) {
   // Room for some dozens of whole shapes, of which strokes mostly change parts.
-  constexpr std::size_t most_at_once = std::size_t{64} << 20;
+  constexpr std::size_t max_at_once = std::size_t{64} << 20;
   constexpr std::size_t shapes_of_a_vertex = std::size_t{64} * 3 * sizeof(float);
   const std::size_t at_once =
-      std::min({most_at_once, most_bytes,
+      std::min({max_at_once, max_bytes,
                 shapes_of_a_vertex * static_cast<std::size_t>(model.vertices.cols() + 1000)});
   loop.sculptor.deformer.undo_bytes = at_once;
-  loop.undo_most_bytes = most_bytes - at_once;
+  loop.undo_max_bytes = max_bytes - at_once;
 }
 
 flow::Placement place(const deform::Mesh& whole, std::span<const flow::HandInput> hands,

@@ -163,7 +163,7 @@ class Panel {
   add(update) {
     const before = this.update
     this.update = update
-    this.late.add(update.mostLate / 1000)
+    this.late.add(update.maxLate / 1000)
     this.bytes.add(update.bytes)
     const now = performance.now()
     if (before && now - this.rated > 200) {

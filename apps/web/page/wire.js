@@ -208,7 +208,7 @@ function readUpdate(buffer, model) {
     letGo: [(state & 16) !== 0, (state & 32) !== 0], symmetric: (state & 64) !== 0, isPuppet: (state & 128) !== 0,
     held: (state & 1) !== 0, inHand: (state & 8) !== 0, status: view.getUint8(3), number: view.getBigUint64(8, true),
     tick: u64(16), ticks: u64(24), missed: u64(32), restChanges: u32(40), jumps: u32(44),
-    late: view.getFloat32(48, true), mostLate: view.getFloat32(52, true), sinceLast: view.getFloat32(56, true),
+    late: view.getFloat32(48, true), maxLate: view.getFloat32(52, true), sinceLast: view.getFloat32(56, true),
     lost: u32(60), skipped: u32(64), links: u32(68), bytes: buffer.byteLength, hands: [null, null], steps: [],
   }
   let at = UPDATE_HEAD

@@ -35,7 +35,7 @@ BrushDabs::BrushDabs(std::shared_ptr<const VertexRings> rings, Wendland kernel, 
 
 bool BrushDabs::find(const Dab& dab, const BoundedShape& shape) noexcept {
   // A vertex moves at most a few radii, whatever the brush.
-  if (!(shape.extent + 8.0 * dab.radius + std::abs(dab.way) <= most_units)) return false;
+  if (!(shape.extent + 8.0 * dab.radius + std::abs(dab.way) <= max_units)) return false;
   if (!gather(dab, shape)) return false;
   if (dab.brush == Brush::smooth) {
     smooth(dab, shape.shape);

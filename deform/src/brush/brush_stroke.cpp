@@ -66,7 +66,7 @@ bool BrushStroke::go(const OfPoint& one, const Way& way, const Way* image,
   const double length = (way.to - way.from).norm();
   const double longest = longest_dab * one.radius;
   if (!(length > 0.0) || !std::isfinite(length)) return false;
-  const int dabs = static_cast<int>(std::min(std::ceil(length / longest), double{most_dabs}));
+  const int dabs = static_cast<int>(std::min(std::ceil(length / longest), double{max_dabs}));
   bool changed = false;
   for (int k = 0; k < dabs; ++k) {
     const double part = (k + 0.5) / dabs;

@@ -15,7 +15,7 @@ namespace nendo::deform {
 /// Belongs to one thread. After the constructor nothing allocates.
 class BrushStroke {
 public:
-  static constexpr int most_dabs = 16; ///< of one start point on a piece
+  static constexpr int max_dabs = 16; ///< of one start point on a piece
   /// Longer ways than this part of a radius are made in several dabs. None of push, twist, scale
   /// and flatten then folds space: the slope of a dab is below 1.
   static constexpr double longest_dab = 0.125;

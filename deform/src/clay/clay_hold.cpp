@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double held_radius = 1.2; // of what is held, in radii
-constexpr int most_links = 12;      // of a sub-step, for what is held
+constexpr int max_links = 12;       // of a sub-step, for what is held
 constexpr double still_mm = 1e-4;   // a model that moves less as a whole does not
 
 /// The mean of the blocks' middles.
@@ -137,7 +137,7 @@ void ClayDeformer::Work::carry(BoundedShape& shape, ClayReport& report) noexcept
 
 /// What is held follows the parts that hold it, in fields that do not fold.
 void ClayDeformer::Work::pull(BoundedShape& shape, ClayReport& report) noexcept {
-  for (int link = 0; link < most_links; ++link) {
+  for (int link = 0; link < max_links; ++link) {
     const bool is_whole = pull_once(shape);
     ++report.passes;
     if (is_whole) return;
@@ -153,7 +153,7 @@ bool ClayDeformer::Work::pull_once(BoundedShape& shape) noexcept {
       pull_.add(static_cast<std::size_t>(count++), point.at, point.goal - point.at);
 
   const double bound = pull_.solve(static_cast<std::size_t>(count), radius);
-  const double part = bound > most_bound ? most_bound / bound : 1.0;
+  const double part = bound > max_bound ? max_bound / bound : 1.0;
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     field_.centres.col(i) = layout_.origin() + layout_.unit() * pull_.place(at);

@@ -14,16 +14,16 @@ namespace {
 // What is pressed out appears from a body's surface on more and more, and all of it this far away.
 // Nearer, it would close over a hand, and fold when that leaves.
 constexpr double free_mm = 30.0;
-constexpr double most_swell = 1.0 / 3.0; // of that, in a call: then slopes are at most a half
-constexpr double swell_reach = 3.0;      // of that, from the contacts
-constexpr double volume_is_kept = 1e-5;  // relative
-constexpr double most_left = 0.9;        // of what was missing before; else it is left
+constexpr double max_swell = 1.0 / 3.0; // of that, in a call: then slopes are at most a half
+constexpr double swell_reach = 3.0;     // of that, from the contacts
+constexpr double volume_is_kept = 1e-5; // relative
+constexpr double max_left = 0.9;        // of what was missing before; else it is left
 
 // Hands touch nearly all vertices of a box that has eight of them, and what is free swells by as
 // much as the box is long, of which the second order knows nothing.
-constexpr std::size_t most_coarse_vertices = 200;
+constexpr std::size_t max_coarse_vertices = 200;
 constexpr double missing_in_coarse = 1e-4; // relative; less comes out as in other models
-constexpr double most_scaling = 2.0;
+constexpr double max_scaling = 2.0;
 
 /// The middle of the shape's box, or of its floor.
 Eigen::Vector3d middle_of_box(const BoundedShape& shape, bool of_floor) noexcept {
@@ -68,7 +68,7 @@ bool ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
   const double kept = volume_is_kept * std::abs(whole_volume_);
   if (is_pressed || std::abs(change) > kept) {
     const double near = std::max(radius_, free_mm * mm_);
-    const GiveBack how{near, most_swell * near, swells_all_ ? nullptr : &around_,
+    const GiveBack how{near, max_swell * near, swells_all_ ? nullptr : &around_,
                        swell_reach * near};
     masked_.begin(shape.shape);
     const double given = volume_.give_back(shape, search_, -change, how);
@@ -90,7 +90,7 @@ bool ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
 }
 
 bool ClayDeformer::Work::is_coarse() const noexcept {
-  return options_.scales_few_vertices && layout_.vertex_count() <= most_coarse_vertices &&
+  return options_.scales_few_vertices && layout_.vertex_count() <= max_coarse_vertices &&
          masked_.mask() == nullptr;
 }
 
@@ -100,7 +100,7 @@ double ClayDeformer::Work::scale_to_volume(BoundedShape& shape, ClayReport& repo
   const double change = volume_.volume(shape) - whole_volume_;
   const double times = whole_volume_ / (whole_volume_ + change);
   if (std::abs(change) <= missing_in_coarse * std::abs(whole_volume_) ||
-      !(times >= 1.0 / most_scaling && times <= most_scaling))
+      !(times >= 1.0 / max_scaling && times <= max_scaling))
     return change;
   const double factor = std::cbrt(times);
   const Eigen::Vector3d middle = middle_of_box(shape, options_.lies_on_table);
@@ -133,7 +133,7 @@ bool ClayDeformer::Work::finish(BoundedShape& shape, ClayReport& report) noexcep
   if (report.kept_apart > 0) {
     const double change =
         is_coarse() ? scale_to_volume(shape, report) : volume_.volume(shape) - whole_volume_;
-    note_volume(change, is_pressed, most_left * before, report);
+    note_volume(change, is_pressed, max_left * before, report);
   }
   return moved.has_value();
 }

@@ -16,22 +16,22 @@ using Eigen::Vector3d;
 namespace {
 
 // In millimetres, for hands.
-constexpr double margin_mm = 0.5;    // around a body, where surfaces are kept from being pulled in
-constexpr double skin_mm = 0.02;     // a surface this deep is outside
-constexpr double between_mm = 0.3;   // and this deep it may wait for the next sub-step
-constexpr double give_mm = 0.3;      // by which skin gives way sideways before it drags
-constexpr double loaded_mm = 0.01;   // less does not stick
-constexpr double most_step_mm = 2.5; // of a body in a sub-step
-constexpr double most_straight_mm = 0.2; // a last push, which may fold
+constexpr double margin_mm = 0.5;   // around a body, where surfaces are kept from being pulled in
+constexpr double skin_mm = 0.02;    // a surface this deep is outside
+constexpr double between_mm = 0.3;  // and this deep it may wait for the next sub-step
+constexpr double give_mm = 0.3;     // by which skin gives way sideways before it drags
+constexpr double loaded_mm = 0.01;  // less does not stick
+constexpr double max_step_mm = 2.5; // of a body in a sub-step
+constexpr double max_straight_mm = 0.2; // a last push, which may fold
 
 // The least radius of functions, in radii of the thickest part. Clay that is softer is pressed into
 // layers thinner than any triangle before it gets round a part, and these cross.
-constexpr double least_softness = 1.2;
+constexpr double min_softness = 1.2;
 constexpr double cells_a_radius = 3.0;
 constexpr double apart_in_cells = 0.6;
-constexpr int most_sub_step_passes = 40;
-constexpr double most_sub_steps = 1e6; // of a call; so a way of kilometres has larger ones
-constexpr float least_free = 0.5F;     // weight of a mask
+constexpr int max_sub_step_passes = 40;
+constexpr double max_sub_steps = 1e6; // of a call; so a way of kilometres has larger ones
+constexpr float min_free = 0.5F;      // weight of a mask
 
 /// A part of the way from one pose of a body's part to another.
 ContactPart between(const ContactPart& a, const ContactPart& b, double share) noexcept {
@@ -56,8 +56,8 @@ Vector3d normal_at(const Vector3d& place, const NearestLanes& nearest, std::size
   return length > 0.0 ? Vector3d(way / length) : Vector3d::UnitZ();
 }
 
-int most_centres(std::size_t bodies, const ClayOptions& options) noexcept {
-  return std::max(options.most_constraints, static_cast<int>(bodies * Grip::most_held));
+int max_centres(std::size_t bodies, const ClayOptions& options) noexcept {
+  return std::max(options.max_constraints, static_cast<int>(bodies * Grip::max_held));
 }
 
 CsrbfField room_for(int most, double radius, const BlockLayout& layout) {
@@ -76,30 +76,29 @@ ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32
       radius_(options.radius_mm * mm_), parts_a_body_(parts_a_body), from_(bodies * parts_a_body),
       target_(from_), is_(from_), skins_(from_), skins_before_(from_),
       ways_(from_.size(), Eigen::Isometry3d::Identity()), boxes_(bodies, BoxGate::shut()),
-      search_(bodies, parts_a_body), chosen_(static_cast<std::size_t>(options.most_constraints)),
+      search_(bodies, parts_a_body), chosen_(static_cast<std::size_t>(options.max_constraints)),
       loads_(bodies, ContactLoad(layout_.block_count(), load_mm * mm_)),
-      problem_(static_cast<std::size_t>(options.most_constraints)),
-      frictions_(static_cast<std::size_t>(options.most_constraints)),
-      pull_(bodies * Grip::most_held),
-      field_(room_for(most_centres(bodies, options), options.radius_mm * options.units_per_mm,
+      problem_(static_cast<std::size_t>(options.max_constraints)),
+      frictions_(static_cast<std::size_t>(options.max_constraints)), pull_(bodies * Grip::max_held),
+      field_(room_for(max_centres(bodies, options), options.radius_mm * options.units_per_mm,
                       layout_)),
-      evaluator_(layout_, most_centres(bodies, options), options.evaluation), masked_(options.mask),
+      evaluator_(layout_, max_centres(bodies, options), options.evaluation), masked_(options.mask),
       volume_(layout_, options.keeps_volume ? triangles : std::span<const std::uint32_t>{}),
       deep_(bodies), pressed_(from_.size()), around_(BoxGate::shut()) {
-  contacts_.reserve(static_cast<std::size_t>(options.most_constraints));
+  contacts_.reserve(static_cast<std::size_t>(options.max_constraints));
   if (volume_.is_closed()) zones_.emplace(layout_, triangles);
   assert(options.still_bodies <= bodies);
-  assert(options.units_per_mm > 0.0 && options.radius_mm > 0.0 && options.most_constraints > 0);
+  assert(options.units_per_mm > 0.0 && options.radius_mm > 0.0 && options.max_constraints > 0);
   for (std::size_t body = 0; body < bodies; ++body)
     grips_.emplace_back(body * parts_a_body, parts_a_body, mm_);
   for (std::vector<std::uint32_t>& blocks : deep_)
     blocks.reserve(layout_.block_count());
-  carriers_.reserve(static_cast<std::size_t>(options.most_constraints) + bodies * Grip::most_held);
+  carriers_.reserve(static_cast<std::size_t>(options.max_constraints) + bodies * Grip::max_held);
 }
 
 bool ClayDeformer::Work::accepts(std::span<const ContactPart> parts) const noexcept {
   assert(parts.size() == from_.size());
-  const double most = most_units * layout_.unit();
+  const double most = max_units * layout_.unit();
   return std::all_of(parts.begin(), parts.end(), [&](const ContactPart& part) {
     bool usable = all_usable(part.frame.matrix(), most);
     for (std::size_t at = 0; at < part.corner_count; ++at)
@@ -131,7 +130,7 @@ void ClayDeformer::Work::take_hold(const BoundedShape& shape,
   for (const ContactPart& part : from_)
     for (std::size_t corner = 0; corner < part.corner_count; ++corner)
       thickest = std::max(thickest, part.radii[corner]);
-  radius_ = std::max(options_.radius_mm * mm_, least_softness * thickest);
+  radius_ = std::max(options_.radius_mm * mm_, min_softness * thickest);
   skins_ = from_;
   for (ContactLoad& load : loads_)
     load.clear();
@@ -212,17 +211,17 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
     search_.set_parts(target_);
     skins_ = target_;
   } else {
-    double least_radius = most_step_mm * mm_ * 2.0;
+    double min_radius = max_step_mm * mm_ * 2.0;
     for (const ContactPart& part : target_)
       for (std::size_t corner = 0; corner < part.corner_count; ++corner)
-        least_radius = std::min(least_radius, part.radii[corner]);
+        min_radius = std::min(min_radius, part.radii[corner]);
     const int steps =
-        static_cast<int>(std::clamp(std::ceil(way / (0.5 * least_radius)), 1.0, most_sub_steps));
+        static_cast<int>(std::clamp(std::ceil(way / (0.5 * min_radius)), 1.0, max_sub_steps));
     is_ = from_;
     std::fill(pressed_.begin(), pressed_.end(), 0.0F);
     int used = 0;
     double left = 0.0;
-    for (int step = 1; step <= steps && (step == 1 || used < options_.most_passes); ++step) {
+    for (int step = 1; step <= steps && (step == 1 || used < options_.max_passes); ++step) {
       gone = static_cast<double>(step) / steps;
       place_at(gone);
       const int before = report.passes;
@@ -276,7 +275,7 @@ double ClayDeformer::Work::press_out(BoundedShape& shape, double enough,
                                      ClayReport& report) noexcept {
   for (int pass = 1;; ++pass) {
     const double deepest = find(shape, false).deepest;
-    if (deepest <= enough || pass == most_sub_step_passes ||
+    if (deepest <= enough || pass == max_sub_step_passes ||
         push(shape, false, report) == Applied::nothing)
       return deepest;
   }
@@ -290,7 +289,7 @@ const NearestLanes& ClayDeformer::Work::free_lanes(std::size_t block,
   if (weights == nullptr) return all;
   free_lanes_ = all;
   for (std::size_t lane = 0; lane < block_size; ++lane)
-    if (weights[lane] < least_free) free_lanes_.distance[lane] = std::numeric_limits<float>::max();
+    if (weights[lane] < min_free) free_lanes_.distance[lane] = std::numeric_limits<float>::max();
   return free_lanes_;
 }
 
@@ -348,7 +347,7 @@ ClayDeformer::Work::Applied ClayDeformer::Work::push(BoundedShape& shape, bool s
   const Applied applied = apply(shape, points);
   if (applied == Applied::nothing) return applied;
   ++report.passes;
-  report.most_constraints = std::max(report.most_constraints, static_cast<int>(points.size()));
+  report.max_constraints = std::max(report.max_constraints, static_cast<int>(points.size()));
   report.touching = 0;
   for (std::size_t at = 0; at < points.size(); ++at) {
     if (problem_.pressure(at) <= 0.0) continue;
@@ -377,10 +376,10 @@ void ClayDeformer::Work::slide(std::span<const ContactPoint> points) noexcept {
 /// The whole field, or the part of it that does not fold; the next pass does the rest.
 ClayDeformer::Work::Applied
 ClayDeformer::Work::apply(BoundedShape& shape, std::span<const ContactPoint> points) noexcept {
-  const double bound = problem_.lipschitz_bound(most_bound);
+  const double bound = problem_.lipschitz_bound(max_bound);
   if (!(bound > 0.0)) return Applied::nothing;
-  const bool is_whole = bound <= most_bound;
-  const double part = (is_whole ? 1.0 : most_bound / bound) * layout_.unit();
+  const bool is_whole = bound <= max_bound;
+  const double part = (is_whole ? 1.0 : max_bound / bound) * layout_.unit();
   const auto count = static_cast<Eigen::Index>(points.size());
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -418,7 +417,7 @@ void ClayDeformer::Work::list_contacts() noexcept {
 /// What the last search has found to be left goes straight out. This may fold, but it is less than
 /// a tenth of an edge.
 void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
-  const double most = most_straight_mm * mm_;
+  const double most = max_straight_mm * mm_;
   const std::uint64_t stamp = BlockShape::new_stamp();
   for (std::size_t body = 0; body < search_.bodies(); ++body)
     search_.each_of(shape, body, deep_[body], 0.0, [&](std::size_t block, const NearestLanes& all) {

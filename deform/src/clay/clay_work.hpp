@@ -46,8 +46,8 @@ public:
   void press(BoundedShape& shape, std::span<const ContactPart> parts, ClayReport& report) noexcept;
 
 private:
-  static constexpr double load_mm = 0.5;    ///< clay springs back by that
-  static constexpr double most_bound = 0.9; ///< of a field that does not fold
+  static constexpr double load_mm = 0.5;   ///< clay springs back by that
+  static constexpr double max_bound = 0.9; ///< of a field that does not fold
 
   /// What was applied of a pass' field: only a part of it if all would fold.
   enum class Applied : std::uint8_t { nothing, part, whole };

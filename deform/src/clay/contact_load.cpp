@@ -5,11 +5,11 @@
 namespace nendo::deform {
 
 ContactLoad::ContactLoad(std::size_t blocks, double most)
-    : most_(static_cast<float>(most)), rounds_(blocks, 0), pressed_(blocks * block_size, 0.0F),
+    : max_(static_cast<float>(most)), rounds_(blocks, 0), pressed_(blocks * block_size, 0.0F),
       slips_(blocks * block_size, 0) {}
 
 void ContactLoad::press(std::size_t block, const NearestLanes& nearest) noexcept {
-  if (!add_loads(nearest, most_, pressed_.data() + block * block_size)) return;
+  if (!add_loads(nearest, max_, pressed_.data() + block * block_size)) return;
   rounds_[block] = round_;
   is_any_ = true;
 }

@@ -32,7 +32,7 @@ public:
 private:
   void clear(std::size_t block) noexcept;
 
-  float most_;
+  float max_;
   std::uint64_t round_ = 1;
   bool is_any_ = false, was_any_ = false;
   std::vector<std::uint64_t> rounds_; ///< of each block: the last round with a load; 0: none

@@ -19,9 +19,9 @@ namespace {
 /// unseen; at 2.2, no longer.
 constexpr float widest_cosine = -0.4161468F, widest_sine = 0.9092974F; // of the angle 2.0
 constexpr std::size_t pairs_a_block = 64;
-constexpr std::size_t most_met = 4096;
-constexpr std::size_t most_tests = 50'000;    // of two triangles
-constexpr std::size_t most_boxes = 8'000'000; // compared with others
+constexpr std::size_t max_met = 4096;
+constexpr std::size_t max_tests = 50'000;    // of two triangles
+constexpr std::size_t max_boxes = 8'000'000; // compared with others
 
 using ThreePlaces = std::array<Eigen::Vector3f, 3>;
 
@@ -57,8 +57,8 @@ bool looks_away(const Eigen::Vector3f& normal, const Eigen::Vector3f& way) noexc
 /// Tells whether the angle between the axes, and those around both, are together wider. Cosines and
 /// sines of sums tell it without the angles, which would take longer.
 bool may_face(const RingFacts& one, const RingFacts& other) noexcept {
-  const float cosine = one.least_cosine * other.least_cosine - one.sine * other.sine;
-  const float sine = one.sine * other.least_cosine + one.least_cosine * other.sine;
+  const float cosine = one.min_cosine * other.min_cosine - one.sine * other.sine;
+  const float sine = one.sine * other.min_cosine + one.min_cosine * other.sine;
   if (sine < 0.0F || cosine < widest_cosine) return true; // those around both suffice
   const float between =
       one.axis[0] * other.axis[0] + one.axis[1] * other.axis[1] + one.axis[2] * other.axis[2];
@@ -121,7 +121,7 @@ FaceMeetings::FaceMeetings(const BlockLayout& layout, std::span<const std::uint3
   some_.reserve(most);
   others_.reserve(most);
   near_.reserve(blocks);
-  met_.reserve(most_met);
+  met_.reserve(max_met);
 }
 
 /// Each call then finds them nearly sorted.
@@ -142,8 +142,7 @@ std::uint32_t FaceMeetings::block_of(const Corners& corners) noexcept {
 }
 
 bool FaceMeetings::is_given_up() const noexcept {
-  return is_crowded_ || tests_ > most_tests || boxes_compared_ > most_boxes ||
-         met_.size() == most_met;
+  return is_crowded_ || tests_ > max_tests || boxes_compared_ > max_boxes || met_.size() == max_met;
 }
 
 void FaceMeetings::find(const BoundedShape& shape, const BlockShape& before,

@@ -8,8 +8,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double least_load_mm = 0.1;
-constexpr double most_width_mm = 80.0;
+constexpr double min_load_mm = 0.1;
+constexpr double max_width_mm = 80.0;
 constexpr double facing = 0.5; // a cosine
 constexpr double beside_mm = 4.0;
 constexpr double opened = 1.15;
@@ -20,8 +20,8 @@ constexpr int calls_to_change = 6; // so that tremor does not flicker
 
 Grip::Grip(std::size_t first_part, std::size_t parts, double mm)
     : first_part_(first_part), mm_(mm), sides_(parts) {
-  loaded_.reserve(4 * most_held);
-  held_.reserve(most_held);
+  loaded_.reserve(4 * max_held);
+  held_.reserve(max_held);
 }
 
 void Grip::begin_look() noexcept {
@@ -33,7 +33,7 @@ void Grip::begin_look() noexcept {
 }
 
 void Grip::look(const ContactPoint& point, double load) noexcept {
-  if (holds() || load < least_load_mm * mm_ || loaded_.size() == loaded_.capacity()) return;
+  if (holds() || load < min_load_mm * mm_ || loaded_.size() == loaded_.capacity()) return;
   loaded_.push_back({point, load});
   Side& side = sides_[point.part - first_part_];
   side.load += load;
@@ -67,7 +67,7 @@ bool Grip::find_facing(std::span<const ContactPart> parts) noexcept {
       if (!(one.load > 0.0 && other.load > 0.0)) continue;
       const Vector3d across = other.place / other.load - one.place / one.load;
       const double width = across.norm();
-      if (!(width > 0.0 && width < most_width_mm * mm_)) continue;
+      if (!(width > 0.0 && width < max_width_mm * mm_)) continue;
       const Vector3d way = across / width;
       if (normal_along(i, way).dot(normal_along(j, -way)) > -facing) continue;
       one.across += way;
@@ -121,7 +121,7 @@ void Grip::take(std::span<const ContactPart> parts) noexcept {
   for (const Side& side : sides_)
     if (first_way.isZero(0.0) && side.has_closed(mm_)) first_way = side.across;
   for (const bool is_first : {true, false}) {
-    std::size_t left = is_first ? most_held / 2 : most_held - held_.size();
+    std::size_t left = is_first ? max_held / 2 : max_held - held_.size();
     for (const Loaded& loaded : loaded_) {
       const Side& side = sides_[loaded.point.part - first_part_];
       if (left < 3 || !side.has_closed(mm_)) continue;

@@ -48,10 +48,10 @@ public:
   std::span<HeldPoint> held() noexcept { return held_; }
 
   /// No more places than this are held.
-  static constexpr std::size_t most_held = 48;
+  static constexpr std::size_t max_held = 48;
 
 private:
-  static constexpr double least_closed_mm = 0.5;
+  static constexpr double min_closed_mm = 0.5;
 
   /// What a part presses.
   struct Side {
@@ -65,7 +65,7 @@ private:
     bool is_held = false;
 
     /// A hand that only lies in the clay, between whose parts some is, does not hold it.
-    bool has_closed(double mm) const noexcept { return closed > least_closed_mm * mm; }
+    bool has_closed(double mm) const noexcept { return closed > min_closed_mm * mm; }
   };
   struct Loaded {
     ContactPoint point;

@@ -9,9 +9,9 @@ namespace nendo::deform {
 namespace {
 
 /// Of joining and moving. In the last ones zones stay where they were.
-constexpr int most_zone_rounds = 16;
+constexpr int max_zone_rounds = 16;
 constexpr int still_zone_rounds = 6;
-constexpr std::size_t most_members = 2048;
+constexpr std::size_t max_members = 2048;
 
 } // namespace
 
@@ -25,13 +25,13 @@ std::optional<std::size_t> ImpactZones::keep_apart(BoundedShape& shape, const Vo
   members_.clear();
   meetings_.find(shape, before_.shape, volume);
   for (int round = 0; !meetings_.pairs().empty() || meetings_.is_given_up(); ++round) {
-    if (round == most_zone_rounds || members_.members().size() > most_members ||
+    if (round == max_zone_rounds || members_.members().size() > max_members ||
         meetings_.is_given_up()) {
       shape.follow(before_);
       return std::nullopt;
     }
     join_met(shape.shape);
-    move(shape.shape, mask, round >= most_zone_rounds - still_zone_rounds);
+    move(shape.shape, mask, round >= max_zone_rounds - still_zone_rounds);
     meetings_.find_at(members_.members(), shape.shape, before_.shape);
   }
   finish(shape);

@@ -29,14 +29,14 @@ std::size_t padded(std::size_t count) noexcept {
 
 } // namespace
 
-PressProblem::PressProblem(std::size_t most) : most_(padded(most)) {
+PressProblem::PressProblem(std::size_t most) : max_(padded(most)) {
   for (auto* matrix : {&psi_, &a_})
-    *matrix = hwy::AllocateAligned<double>(most_ * most_);
+    *matrix = hwy::AllocateAligned<double>(max_ * max_);
   for (auto* numbers : {&p_, &l_, &w_})
-    *numbers = hwy::AllocateAligned<double>(most_);
+    *numbers = hwy::AllocateAligned<double>(max_);
   for (auto* three : {&places_, &normals_, &t_, &left_})
     for (auto& numbers : *three)
-      numbers = hwy::AllocateAligned<double>(most_);
+      numbers = hwy::AllocateAligned<double>(max_);
 }
 
 PressArrays PressProblem::arrays() const noexcept {
@@ -70,7 +70,7 @@ double PressProblem::solve_pressure(double extra) noexcept {
     w_[i] = i < count_ ? -p_[i] - extra : 0.0;
     deepest = std::max(deepest, -w_[i]);
   }
-  sweep_pressure(arrays(), l_.get(), w_.get(), enough * deepest, most_sweeps);
+  sweep_pressure(arrays(), l_.get(), w_.get(), enough * deepest, max_sweeps);
   double left = 0.0;
   for (std::size_t i = 0; i < count_; ++i)
     left = std::max(left, -w_[i]);
@@ -118,7 +118,7 @@ void PressProblem::solve_friction(std::span<const Friction> frictions,
   double farthest = 0.0;
   for (std::size_t i = 0; i < count_; ++i)
     farthest = std::max(farthest, frictions[i].way.norm());
-  for (int sweep = 0; sweep < most_sweeps; ++sweep)
+  for (int sweep = 0; sweep < max_sweeps; ++sweep)
     if (!sweep_friction(frictions, coefficient, enough_way * farthest)) break;
 }
 

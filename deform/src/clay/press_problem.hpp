@@ -51,7 +51,7 @@ public:
   double lipschitz_bound(double enough) noexcept;
 
   /// Gauss-Seidel ends after so many sweeps, or when nothing moves any more.
-  static constexpr int most_sweeps = 60;
+  static constexpr int max_sweeps = 60;
 
 private:
   using Three = std::array<VectorArray<double>, 3>; ///< an array an axis
@@ -66,7 +66,7 @@ private:
                       double least) noexcept;
 
   double radius_ = 1.0;
-  std::size_t most_;
+  std::size_t max_;
   std::size_t count_ = 0, stride_ = 0; ///< places; with the padding
   VectorArray<double> psi_;            ///< psi_ij
   VectorArray<double> a_;              ///< A_ij

@@ -15,7 +15,7 @@ namespace {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr int most_rounds = 12;
+constexpr int max_rounds = 12;
 constexpr double inertia = 1e-6;       // of what nothing determines
 constexpr double enough_change = 1e-3; // of what yields
 
@@ -51,7 +51,7 @@ double weight_of(double limit, double residue) noexcept {
 Eigen::Isometry3d fit_rigid_motion(std::span<const Carrier> carriers, const Vector3d& middle,
                                    double friction, double yields) noexcept {
   Vector6d motion = Vector6d::Zero();
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     Equations equations;
     for (const Carrier& one : carriers) {
       const Vector3d arm = one.at - middle;

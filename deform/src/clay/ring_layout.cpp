@@ -79,7 +79,7 @@ void RingLayout::add_block(const Fans& fans, std::size_t block) {
     begin_part();
     add_row(block, neighbours);
   }
-  most_parts_ = std::max(most_parts_, parts_.size() - first_parts_.back());
+  max_parts_ = std::max(max_parts_, parts_.size() - first_parts_.back());
   first_parts_.push_back(static_cast<std::uint32_t>(parts_.size()));
 }
 

@@ -22,7 +22,7 @@ public:
   /// Allocates. `triangles` are vertices of the mesh, closed and oriented, or none.
   RingLayout(const BlockLayout& layout, std::span<const std::uint32_t> triangles);
 
-  std::size_t most_parts() const noexcept { return most_parts_; } ///< of a block
+  std::size_t max_parts() const noexcept { return max_parts_; } ///< of a block
   /// How many neighbours each vertex of a block has.
   const float* counts(std::size_t block) const noexcept {
     return counts_.data() + block * block_size;
@@ -67,7 +67,7 @@ private:
   void list_blocks_around(const Fans& fans, std::size_t blocks);
 
   std::size_t vertices_;
-  std::size_t most_parts_ = 0;
+  std::size_t max_parts_ = 0;
   std::vector<std::uint32_t> first_parts_; ///< of each block, and of none
   std::vector<Part> parts_;                ///< and one after the last
   std::vector<RingRow> rows_;

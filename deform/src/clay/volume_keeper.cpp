@@ -13,7 +13,7 @@ constexpr std::size_t calls_a_direction = 4;
 // Of the directions, in the first call; one for a model so large that they would take several
 // ticks.
 constexpr int first_rounds = 4;
-constexpr std::size_t most_blocks_for_all_rounds = 1024;
+constexpr std::size_t max_blocks_for_all_rounds = 1024;
 /// Of a step to the middle of the ring, for each edge that a vertex is moved by.
 constexpr double fairness = 2.0;
 
@@ -56,7 +56,7 @@ VolumeKeeper::VolumeKeeper(const BlockLayout& layout, std::span<const std::uint3
   is_free_.assign(blocks, 0);
   measured_.assign(blocks, RingBlock{});
   weights_.assign(blocks * block_size, 0.0F);
-  points_.resize(ring_layout_->most_parts());
+  points_.resize(ring_layout_->max_parts());
   directions_.resize(points_.size());
   parts_.resize(points_.size());
 }
@@ -90,7 +90,7 @@ bool VolumeKeeper::has_changed(const BoundedShape& shape, std::size_t block) con
 /// In which directions a shape swells need not be known to the last call: a block's are found anew
 /// in one of some calls. The first call, which knows none, goes round some times.
 double VolumeKeeper::volume(const BoundedShape& shape) noexcept {
-  const int rounds = facts_.size() <= most_blocks_for_all_rounds ? first_rounds : 1;
+  const int rounds = facts_.size() <= max_blocks_for_all_rounds ? first_rounds : 1;
   for (int round = 0; calls_ == 0 && round < rounds; ++round)
     for (std::size_t block = 0; block < facts_.size(); ++block)
       measure(shape, block, true);
@@ -169,7 +169,7 @@ double VolumeKeeper::swell(BoundedShape& shape, double far, double fairs) noexce
       grown += swelling.grown;
       RingFacts& facts = facts_[block];
       facts.may_turn = facts.may_turn || swelling.spread / edges_across + 2.0F * swelling.aside >
-                                             0.5F * facts.least_height;
+                                             0.5F * facts.min_height;
     }
   return grown;
 }

@@ -16,7 +16,7 @@ namespace {
 /// The exact predicates need that no product of coordinates overflows or loses digits.
 constexpr double largest_size = 1e60;
 constexpr double smallest_size = 1e-60;
-constexpr std::uint32_t most_attempts = 8;
+constexpr std::uint32_t max_attempts = 8;
 
 SpacePoint space_point(const Eigen::Vector3d& vector) noexcept {
   return {vector[0], vector[1], vector[2]};
@@ -144,7 +144,7 @@ Result<CutModel> Cutter::run() {
   // A bend needs edges that can follow it; and no cut needs more than some 100,000 faces.
   if (blade_.bends()) edge_ = std::min(edge_, diagonal_ / 40.0);
   edge_ = std::max(edge_, diagonal_ / 400.0);
-  for (std::uint32_t number = 0; number < most_attempts; ++number) {
+  for (std::uint32_t number = 0; number < max_attempts; ++number) {
     give_ = give_of(sides_, diagonal_, number);
     result_ = {};
     result_.attempts = number + 1;

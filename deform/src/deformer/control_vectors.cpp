@@ -17,7 +17,7 @@ namespace nendo::deform {
 namespace {
 
 /// Far beyond what can be solved for in a minute.
-constexpr std::size_t most_rows = 1'000'000;
+constexpr std::size_t max_rows = 1'000'000;
 
 constexpr std::string_view head_example = "x,y,z,dx,dy,dz or x,y,z,dx,dy,dz,radius";
 constexpr std::array<std::string_view, 7> column_names{"x", "y", "z", "dx", "dy", "dz", "radius"};
@@ -74,8 +74,8 @@ Result<void> VectorTable::find_columns() {
 }
 
 Result<void> VectorTable::read_row() {
-  if (numbers_.size() / 6 == most_rows)
-    return table_.bad("more than " + std::to_string(most_rows) + " control vectors");
+  if (numbers_.size() / 6 == max_rows)
+    return table_.bad("more than " + std::to_string(max_rows) + " control vectors");
   for (std::size_t at = 0; at < radius_at; ++at) {
     const auto number = table_.number(*columns_[at]);
     if (!number || !is_usable(*number))
@@ -114,7 +114,7 @@ Result<ControlVectors> parse_control_vectors(std::string_view text, std::string_
 }
 
 Result<ControlVectors> read_control_vectors(const std::filesystem::path& path) {
-  const auto text = read_file(path, most_file_bytes, "control vector");
+  const auto text = read_file(path, max_file_bytes, "control vector");
   if (!text) return text.error();
   return parse_control_vectors(*text, path.string());
 }

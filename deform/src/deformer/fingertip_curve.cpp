@@ -10,11 +10,11 @@ namespace {
 
 /// Of a piece: a sample that is nearer to the curve's end is waited with; of one that is not,
 /// fingertips that are nearer than the second rest.
-constexpr double least_way = 0.5;
-constexpr double least_move = 0.25;
+constexpr double min_displacement = 0.5;
+constexpr double min_move = 0.25;
 /// A tangent longer than this times its chord would lead a cubic beyond its ends (Fritsch and
 /// Carlson 1980).
-constexpr double most_slope = 3.0;
+constexpr double max_slope = 3.0;
 /// Of a piece; what rounding may leave of a way that was to be cut into whole pieces.
 constexpr double rounding = 1e-9;
 
@@ -31,7 +31,7 @@ void limit(const Eigen::Vector3d& chord, Eigen::Ref<Eigen::Vector3d> tangent) no
   }
   const double along = tangent.dot(chord);
   if (along < 0.0) tangent -= along / squared * chord;
-  const double longest = most_slope * most_slope * squared;
+  const double longest = max_slope * max_slope * squared;
   const double length = tangent.squaredNorm();
   if (length > longest) tangent *= std::sqrt(longest / length);
 }
@@ -57,9 +57,9 @@ void FingertipCurve::begin(const Points& tips) {
 }
 
 void FingertipCurve::extend(const Points& tips) {
-  if (farthest(to_, tips) < least_way * piece_length_) return;
+  if (farthest(to_, tips) < min_displacement * piece_length_) return;
   for (Eigen::Index i = 0; i < tips.cols(); ++i) {
-    const bool moves = (tips.col(i) - to_.col(i)).norm() >= least_move * piece_length_;
+    const bool moves = (tips.col(i) - to_.col(i)).norm() >= min_move * piece_length_;
     scratch_.col(i) = (moves ? tips : to_).col(i);
   }
   lead_to(scratch_);
@@ -80,7 +80,7 @@ void FingertipCurve::lead_to(const Points& tips) {
   set_tangents(length);
   measure();
   const double whole = carried_ + lengths_.back();
-  cut_length_ = std::max(piece_length_, whole / most_pieces);
+  cut_length_ = std::max(piece_length_, whole / max_pieces);
   ends_ = false;
 }
 

@@ -23,7 +23,7 @@ public:
   void begin(const Points& tips);
   /// Goes on to `tips` if a fingertip is at least half a piece away from the curve's end.
   /// Fingertips that are nearer than a quarter of a piece stay, so that trembling does not lengthen
-  /// the curve. If this gives more than `most_pieces` pieces, that many longer ones are made
+  /// the curve. If this gives more than `max_pieces` pieces, that many longer ones are made
   /// instead.
   void extend(const Points& tips);
   /// Goes on to `tips`, however near they are. The last cut is there.
@@ -35,7 +35,7 @@ public:
   const Points& end() const noexcept { return to_; }
   double piece_length() const noexcept { return piece_length_; }
 
-  static constexpr int most_pieces = 16;
+  static constexpr int max_pieces = 16;
 
 private:
   static constexpr std::size_t steps = 8; ///< in which a piece's length is measured

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "deformer/least_gap.hpp"
+#include "deformer/min_gap.hpp"
 #include "geometry/usable.hpp"
 #include "solver/solver_room.hpp"
 
@@ -15,10 +15,10 @@ InjectiveChain::InjectiveChain(Eigen::Index points, Supports supports, CsrbfOpti
                                InjectiveOptions options)
     : supports_(std::move(supports)), csrbf_(csrbf), options_(options),
       solvers_{CsrbfSolver(csrbf), CsrbfSolver(csrbf)}, starts_(Points::Zero(3, points)),
-      radii_(least_radii(supports_, points)), places_(starts_), wanted_(starts_), allowed_(starts_),
-      step_(starts_), tips_(starts_), gaps_(std::make_unique<LeastGap>(options.least_gap)),
+      radii_(min_radii(supports_, points)), places_(starts_), wanted_(starts_), allowed_(starts_),
+      step_(starts_), tips_(starts_), gaps_(std::make_unique<LeastGap>(options.min_gap)),
       field_(room_for_field(supports_, points, csrbf.kernel)), piece_(field_) {
-  assert(options.most_bound > 0.0 && options.most_bound < 1.0);
+  assert(options.max_bound > 0.0 && options.max_bound < 1.0);
   for (CsrbfSolver& solver : solvers_)
     make_room(solver, supports_, points);
   gaps_->reserve(points);
@@ -57,30 +57,30 @@ FieldStatus InjectiveChain::from_start(const Points& ends) noexcept {
   places_ = starts_;
   at_start_ = true;
   gaps_->begin(starts_, radii_);
-  const FieldStatus status = go(options_.most_links);
+  const FieldStatus status = go(options_.max_links);
   if (!usable && is_solved(status)) report_.status = FieldStatus::not_finite;
   return report_.status;
 }
 
-FieldStatus InjectiveChain::from_here(const Points& ends, int most_links) noexcept {
+FieldStatus InjectiveChain::from_here(const Points& ends, int max_links) noexcept {
   assert(ends.cols() == starts_.cols());
   const bool usable = all_usable(ends);
   if (usable) {
     wanted_ = ends;
     gaps_->release(wanted_);
-    return go(most_links);
+    return go(max_links);
   }
   report_ = {.status = FieldStatus::not_finite};
   ended_ = true;
   return report_.status;
 }
 
-FieldStatus InjectiveChain::go(int most_links) noexcept {
+FieldStatus InjectiveChain::go(int max_links) noexcept {
   report_ = {};
   field_.coefficients.setZero();
   field_.polynomial.setZero();
   ended_ = false;
-  most_links_ = most_links;
+  max_links_ = max_links;
   if (!grabbed_) {
     end(FieldStatus::singular);
     return report_.status;
@@ -93,7 +93,7 @@ FieldStatus InjectiveChain::go(int most_links) noexcept {
 bool InjectiveChain::next() noexcept {
   if (ended_) return false;
   if (places_ == allowed_) return end(FieldStatus::ok);
-  report_.reached = report_.links < most_links_;
+  report_.reached = report_.links < max_links_;
   if (!report_.reached) return end(FieldStatus::ok);
   const FieldStatus status = make_link();
   if (!is_solved(status)) {
@@ -132,7 +132,7 @@ FieldStatus InjectiveChain::make_link() noexcept {
     if (first && report_.links == 0) report_.whole_bound = whole;
     // The field is linear in the displacements, and bounds of sums are at most sums of bounds.
     const double free = gaps_->free_part(tips_, allowed_);
-    const double room = std::max(options_.most_bound - link_bound_, 0.0);
+    const double room = std::max(options_.max_bound - link_bound_, 0.0);
     const double part = std::min(free, whole > room ? room / whole : 1.0);
     link_bound_ += part * whole;
     extend(part, first);
@@ -164,7 +164,7 @@ void InjectiveChain::extend(double part, bool first) noexcept {
 bool InjectiveChain::end(FieldStatus status) noexcept {
   ended_ = true;
   report_.status = std::max(report_.status, status);
-  if (grabbed_) report_.least_determinant = probe_.least();
+  if (grabbed_) report_.min_determinant = probe_.least();
   for (const HeldPair& wall : gaps_->walls())
     report_.held_pairs += wall.push > 0.0 ? 1 : 0;
   return false;

@@ -192,7 +192,7 @@ void DeterminantProbe::begin(Eigen::Index count) noexcept {
   used_ = (count + vector - 1) / vector * vector;
   assert(used_ <= places_.rows());
   places_.col(3).head(used_).setOnes();
-  least_ = 1.0;
+  min_ = 1.0;
 }
 
 /// By repeating the last point.
@@ -203,9 +203,8 @@ void DeterminantProbe::fill_last_vector(Eigen::Index count) noexcept {
 
 void DeterminantProbe::advance(const CsrbfField& field) noexcept {
   if (used_ == 0) return;
-  least_ =
-      advance_probes(field, {places_.col(0).data(), places_.col(1).data(), places_.col(2).data(),
-                             places_.col(3).data(), static_cast<std::size_t>(used_)});
+  min_ = advance_probes(field, {places_.col(0).data(), places_.col(1).data(), places_.col(2).data(),
+                                places_.col(3).data(), static_cast<std::size_t>(used_)});
 }
 
 } // namespace nendo::deform

@@ -19,13 +19,13 @@ constexpr double step_length = 1.0 / 20.0;
 } // namespace
 
 MidpointChain::MidpointChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf,
-                             int most_steps)
-    : supports_(std::move(supports)), most_length_(step_length * least_radius(supports_)),
+                             int max_steps)
+    : supports_(std::move(supports)), max_length_(step_length * min_radius(supports_)),
       solvers_{CsrbfSolver(csrbf), CsrbfSolver(csrbf)}, starts_(Points::Zero(3, points)),
       displacements_(starts_), places_(starts_), step_(starts_),
       fields_{room_for_field(supports_, points, csrbf.kernel),
               room_for_field(supports_, points, csrbf.kernel)},
-      most_steps_(most_steps) {
+      max_steps_(max_steps) {
   for (CsrbfSolver& solver : solvers_)
     make_room(solver, supports_, points);
 }
@@ -55,7 +55,7 @@ FieldStatus MidpointChain::go(const Points& displacements) noexcept {
   displacements_ = displacements;
   const double longest = std::sqrt(displacements.colwise().squaredNorm().maxCoeff());
   if (longest > 0.0) done_ = 0.0;
-  part_ = std::max(most_length_ / longest, 1.0 / static_cast<double>(most_steps_));
+  part_ = std::max(max_length_ / longest, 1.0 / static_cast<double>(max_steps_));
   return status_;
 }
 

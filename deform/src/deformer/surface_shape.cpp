@@ -11,7 +11,7 @@ FieldStatus solve_within(const SurfaceField& field, const Points& vectors, doubl
   // The functions are at most 1, and affine maps of rigid parts reach a few times farther.
   const double most = 1e3 * static_cast<double>(coefficients.all.cols()) *
                       static_cast<double>(coefficients.all.cwiseAbs().maxCoeff());
-  if (extent + most <= most_units) return FieldStatus::ok;
+  if (extent + most <= max_units) return FieldStatus::ok;
   coefficients.all.setZero();
   return FieldStatus::not_finite;
 }

@@ -13,11 +13,11 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr int max_midpoint_steps = most_midpoint_fields / 2; // of a way: one and a half radii
+constexpr int max_midpoint_steps = max_midpoint_fields / 2; // of a way: one and a half radii
 
 std::size_t max_fields_of_type1(const DeformerOptions& options) {
   if (keeps_volume(options)) return 2 * static_cast<std::size_t>(max_midpoint_steps);
-  return options.injective ? static_cast<std::size_t>(options.injective->most_links) : 1;
+  return options.injective ? static_cast<std::size_t>(options.injective->max_links) : 1;
 }
 
 } // namespace

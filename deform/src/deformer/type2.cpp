@@ -17,17 +17,17 @@ namespace nendo::deform {
 
 namespace {
 
-static_assert(Type2Deformer::most_pieces == FingertipCurve::most_pieces);
+static_assert(Type2Deformer::max_pieces == FingertipCurve::max_pieces);
 
-constexpr int most_steps_of_piece = 2;
-static_assert(2 * most_steps_of_piece * Type2Deformer::most_pieces <= most_midpoint_fields);
+constexpr int max_steps_of_piece = 2;
+static_assert(2 * max_steps_of_piece * Type2Deformer::max_pieces <= max_midpoint_fields);
 
 /// Of one call.
-std::size_t most_fields(const DeformerOptions& options) {
+std::size_t max_fields(const DeformerOptions& options) {
   if (keeps_volume(options))
-    return static_cast<std::size_t>(2 * most_steps_of_piece * FingertipCurve::most_pieces);
-  return static_cast<std::size_t>(options.injective ? options.injective->most_links
-                                                    : FingertipCurve::most_pieces);
+    return static_cast<std::size_t>(2 * max_steps_of_piece * FingertipCurve::max_pieces);
+  return static_cast<std::size_t>(options.injective ? options.injective->max_links
+                                                    : FingertipCurve::max_pieces);
 }
 
 /// Of points that pull along the surface: no field through the air has a part in it.
@@ -60,7 +60,7 @@ Type2Deformer::Type2Deformer(SculptedShape& shape, Eigen::Index control_points, 
       supports_(rounded(supports_of(pulling_points_, options.supports), shape.layout())),
       solver_(options.csrbf),
       field_(room_for_field(supports_, pulling_.cols(), options.csrbf.kernel)),
-      fields_(most_fields(options), field_),
+      fields_(max_fields(options), field_),
       evaluator_(std::make_unique<BlockEvaluator>(shape.layout(), field_.centres.cols(),
                                                   options.evaluation)),
       masked_(std::make_unique<MaskedStep>(options.mask)) {
@@ -68,14 +68,14 @@ Type2Deformer::Type2Deformer(SculptedShape& shape, Eigen::Index control_points, 
     brushes_ = std::make_unique<BrushStroke>(shape.layout(), control_points, options);
   if (pulling_points_.empty()) return;
   if (keeps_volume(options)) {
-    steps_.emplace(pulling_.cols(), supports_, options.csrbf, most_steps_of_piece);
+    steps_.emplace(pulling_.cols(), supports_, options.csrbf, max_steps_of_piece);
     evaluator_->make_room_for_halves(shape.layout());
     return;
   }
   make_room(solver_, supports_, pulling_.cols());
   if (!options.injective) return;
   chain_.emplace(pulling_.cols(), supports_, options.csrbf, *options.injective);
-  max_links_ = options.injective->most_links;
+  max_links_ = options.injective->max_links;
 }
 
 Type2Deformer::Type2Deformer(SculptedShape& shape, std::shared_ptr<const SurfaceField> field)
@@ -217,7 +217,7 @@ FieldStatus Type2Deformer::apply_links() {
   report_.links += piece.links;
   report_.whole_bound = std::max(report_.whole_bound, piece.whole_bound);
   report_.bound = std::max(report_.bound, piece.bound);
-  report_.least_determinant = std::min(report_.least_determinant, piece.least_determinant);
+  report_.min_determinant = std::min(report_.min_determinant, piece.min_determinant);
   report_.held_pairs = piece.held_pairs;
   report_.reached = piece.reached;
   report_.status = std::max(report_.status, std::max(status, piece.status));

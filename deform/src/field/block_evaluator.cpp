@@ -11,7 +11,7 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr std::size_t least_shared = 3; // pieces
+constexpr std::size_t min_shared = 3; // pieces
 
 double extent_of(const std::vector<BlockBounds>& bounds) noexcept {
   float extent = 0.0F;
@@ -71,7 +71,7 @@ void BlockEvaluator::make_room_for_halves(const BlockLayout& layout) {
 }
 
 bool BlockEvaluator::fits(const BoundedShape& shape) const noexcept {
-  return shape.extent + parts_->field.bound(shape.extent) <= most_units;
+  return shape.extent + parts_->field.bound(shape.extent) <= max_units;
 }
 
 namespace {
@@ -94,7 +94,7 @@ BlockPass pass_over(const BoundedShape& from, VertexBlock* to,
 /// In pieces; calls after(block, reached) for each block.
 template <class After>
 void run(const BlockPass& whole, BlockEvaluator::Parts& parts, const After& after) noexcept {
-  parts.in_pieces(whole.end, least_shared,
+  parts.in_pieces(whole.end, min_shared,
                   [&](std::size_t begin, std::size_t end, std::size_t thread) {
                     BlockPass piece = whole;
                     piece.begin = begin;

@@ -14,14 +14,14 @@ namespace {
 /// are at most 1.6e-7 in a coordinate.
 constexpr double float_error = 3e-7;
 /// At most so many are taken to overlap; beyond, errors are lost in each other.
-constexpr Eigen::Index most_overlapping = 64;
+constexpr Eigen::Index max_overlapping = 64;
 /// Of the model's diagonal. The promise is 1e-5; coordinates in float take 1e-7.
-constexpr double most_float_error = 3e-6;
+constexpr double max_float_error = 3e-6;
 
 /// Fifth powers of radii between these, and products with them, stay far from float's ends.
-constexpr double least_float_radius = 1e-4;
-constexpr double most_float_radius = 1e4;
-constexpr double most_float = 1e30;
+constexpr double min_float_radius = 1e-4;
+constexpr double max_float_radius = 1e4;
+constexpr double max_float = 1e30;
 
 /// Whose library function takes longer than all else that a centre needs.
 double power(double base, int exponent) noexcept {
@@ -32,14 +32,14 @@ double power(double base, int exponent) noexcept {
 }
 
 float as_float(double value) noexcept {
-  return static_cast<float>(std::clamp(value, -most_units, most_units));
+  return static_cast<float>(std::clamp(value, -max_units, max_units));
 }
 
 } // namespace
 
 BlockField::BlockField(const BlockLayout& layout, Eigen::Index entries)
     : origin_(layout.origin()), inverse_unit_(1.0 / layout.unit()),
-      tolerance_(most_float_error * layout.diagonal() / layout.unit()) {
+      tolerance_(max_float_error * layout.diagonal() / layout.unit()) {
   reserve(entries);
 }
 
@@ -66,7 +66,7 @@ bool BlockField::assign(const CsrbfField& field, Zeros zeros) {
     polynomial_[static_cast<std::size_t>(axis)] = {constant[axis], slope(axis, 0), slope(axis, 1),
                                                    slope(axis, 2)};
   const bool usable =
-      assign_entries(field, zeros) && field.polynomial.allFinite() && bound(1.0) <= most_units;
+      assign_entries(field, zeros) && field.polynomial.allFinite() && bound(1.0) <= max_units;
   if (!usable) {
     size_ = 0;
     sum_of_coefficients_ = 0.0;
@@ -78,7 +78,7 @@ bool BlockField::assign(const CsrbfField& field, Zeros zeros) {
     x_[at] = y_[at] = z_[at] = 0.0F;
     squared_radius_[at] = -1.0F;
   }
-  const double overlapping = static_cast<double>(std::min(size_, most_overlapping));
+  const double overlapping = static_cast<double>(std::min(size_, max_overlapping));
   const double error = float_error * largest_coefficient_ * std::sqrt(overlapping);
   const bool has_polynomial = usable && !field.polynomial.isZero(0.0);
   view_ = {.kernel = field.kernel,
@@ -94,7 +94,7 @@ bool BlockField::assign(const CsrbfField& field, Zeros zeros) {
 void BlockField::assign_entry(std::size_t at, const Eigen::Vector3d& centre, double radius,
                               const Eigen::Vector3d& coefficient, const CsrbfField& field) {
   const bool keeps_volume = field.keep_volume > 0.0;
-  const double r = std::clamp(radius, 1.0 / most_units, most_units);
+  const double r = std::clamp(radius, 1.0 / max_units, max_units);
   const double inverse = 1.0 / r;
   const double factor =
       keeps_volume ? 1.0 : kernel_factor(field.kernel) * power(inverse, weight_power(field.kernel));
@@ -111,8 +111,8 @@ void BlockField::assign_entry(std::size_t at, const Eigen::Vector3d& centre, dou
                   as_float(entry.inner),
                   {as_float(scaled[0]), as_float(scaled[1]), as_float(scaled[2])}};
   // Powers of others, and what they are multiplied by, are not numbers that float holds.
-  in_range_ = in_range_ && r >= least_float_radius && r <= most_float_radius &&
-              scaled.cwiseAbs().maxCoeff() <= most_float;
+  in_range_ = in_range_ && r >= min_float_radius && r <= max_float_radius &&
+              scaled.cwiseAbs().maxCoeff() <= max_float;
   x_[at] = entries_[at].x;
   y_[at] = entries_[at].y;
   z_[at] = entries_[at].z;

@@ -13,9 +13,9 @@ namespace {
 /// Weights that are smaller in a whole block are left out there: fingertips that are far from it
 /// weigh something, because A^-1 is dense, but less with each one in between. A vertex loses at
 /// most 1e-7 of the sum of the displacements.
-constexpr float least_weight = 1e-7F;
+constexpr float min_weight = 1e-7F;
 /// Pieces: with weights they take half as long as without.
-constexpr std::size_t least_shared_pieces = 8;
+constexpr std::size_t min_shared_pieces = 8;
 
 } // namespace
 
@@ -26,7 +26,7 @@ CardinalWeights::CardinalWeights(const BlockLayout& layout, Eigen::Index starts,
       entries_(static_cast<std::size_t>(unit_field_.centres.cols())), displacements_(starts_),
       steps_(starts_) {
   const std::size_t blocks = layout.block_count();
-  if (starts_ == 0 || starts_ > most_weighted_starts) return;
+  if (starts_ == 0 || starts_ > max_weighted_starts) return;
   const std::size_t room =
       std::min(blocks * starts_, weight_bytes / (bytes_in_steps + sizeof(WeightEntry)));
   if (room == 0) return;
@@ -79,7 +79,7 @@ bool CardinalWeights::build(CsrbfSolver& solver, const BoundedShape& rest,
   cache_.used_entries = 0;
   cache_.used_bytes = 0;
   BlockEvaluator::Parts& parts = evaluator.parts();
-  if (cache_.most_entries == 0 || !solve_units(solver) ||
+  if (cache_.max_entries == 0 || !solve_units(solver) ||
       !parts.field.assign(unit_field_, BlockField::Zeros::kept))
     return false;
   FieldView view = parts.field.view();
@@ -97,7 +97,7 @@ bool CardinalWeights::build(CsrbfSolver& solver, const BoundedShape& rest,
   const WeightSource source{map_.data(),
                             global ? polynomial_.data() : nullptr,
                             starts_,
-                            least_weight,
+                            min_weight,
                             room_for_kernels_.get(),
                             room_for_weights_.get()};
   built_ = build_weights(view, pass, source, cache_);
@@ -110,8 +110,8 @@ double CardinalWeights::bound(const Points& displacements) const noexcept {
 }
 
 bool CardinalWeights::fits(const Points& displacements, const BoundedShape& rest) const noexcept {
-  return displacements.cwiseAbs().maxCoeff() / unit_ <= most_units &&
-         rest.extent + bound(displacements) <= most_units;
+  return displacements.cwiseAbs().maxCoeff() / unit_ <= max_units &&
+         rest.extent + bound(displacements) <= max_units;
 }
 
 void CardinalWeights::apply(const Points& displacements, const BlockShape& rest, BlockShape& to,
@@ -141,7 +141,7 @@ void CardinalWeights::apply(const Points& displacements, const BlockShape& rest,
   const bool back = std::exchange(goes_back_, !goes_back_ && !one_way);
   const std::size_t blocks = cache_.block_count;
   evaluator.parts().in_pieces(
-      blocks, least_shared_pieces, [&](std::size_t begin, std::size_t end, std::size_t) {
+      blocks, min_shared_pieces, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t at = begin; at < end; at += blocks_a_piece) {
           const std::size_t until = std::min(at + blocks_a_piece, end);
           back ? apply_piece(blocks - until, blocks - at) : apply_piece(at, until);

@@ -58,18 +58,18 @@ struct BlockEvaluator::Parts {
 
   /// Calls range(begin, end, thread) for pieces of `count` blocks. One thread takes them from the
   /// front and the other from the back until they meet, so that each finds most of its pieces in
-  /// its own core's caches the next time. Fewer than least_shared pieces are not shared, since they
+  /// its own core's caches the next time. Fewer than min_shared pieces are not shared, since they
   /// are done before the other thread has begun. The result of a piece must depend on the piece
   /// alone. Writes past the caches are flushed once a thread, because a flush takes as long as many
   /// blocks.
   template <class Range>
-  void in_pieces(std::size_t count, std::size_t least_shared, const Range& range) noexcept;
+  void in_pieces(std::size_t count, std::size_t min_shared, const Range& range) noexcept;
 };
 
 template <class Range>
-void BlockEvaluator::Parts::in_pieces(std::size_t count, std::size_t least_shared,
+void BlockEvaluator::Parts::in_pieces(std::size_t count, std::size_t min_shared,
                                       const Range& range) noexcept {
-  if (!worker || count < least_shared * blocks_a_piece) {
+  if (!worker || count < min_shared * blocks_a_piece) {
     range(std::size_t{0}, count, std::size_t{0});
     hwy::FlushStream();
     return;

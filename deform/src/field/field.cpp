@@ -8,7 +8,7 @@ namespace nendo::deform {
 namespace {
 
 /// From here on, sorting costs less than asking every function about every point.
-constexpr Eigen::Index least_by_cells = 256;
+constexpr Eigen::Index min_by_cells = 256;
 
 bool is_zero(const CsrbfField& field) {
   return field.coefficients.isZero(0.0) && field.polynomial.isZero(0.0);
@@ -29,7 +29,7 @@ void displace(const CsrbfField& field, const Points& points, Points& out) {
     out = points; // adding +0 would turn a coordinate of -0 into +0
     return;
   }
-  if (field.centres.cols() >= least_by_cells && points.cols() > 1) {
+  if (field.centres.cols() >= min_by_cells && points.cols() > 1) {
     displace_by_cells(field, points, out);
     return;
   }

@@ -101,7 +101,7 @@ std::uint32_t nearest_reached(const Mesh& mesh, const std::vector<std::uint32_t>
 /// middle.
 VectorXd affine_coordinates(const Mesh& mesh, const SurfaceSetup& setup,
                             const std::vector<Index>& points, std::uint32_t vertex) {
-  constexpr double least_spread = 1e-6; // of the widest one; the points are flat along less
+  constexpr double min_spread = 1e-6; // of the widest one; the points are flat along less
   const auto count = static_cast<Index>(points.size());
   Points about(3, count);
   for (Index k = 0; k < count; ++k)
@@ -117,7 +117,7 @@ VectorXd affine_coordinates(const Mesh& mesh, const SurfaceSetup& setup,
   Eigen::Vector3d way = Eigen::Vector3d::Zero();
   for (Index k = 0; k < 3; ++k) {
     const double square = spreads.eigenvalues()[k];
-    if (!(square > least_spread * least_spread * spreads.eigenvalues()[2])) continue;
+    if (!(square > min_spread * min_spread * spreads.eigenvalues()[2])) continue;
     const Eigen::Vector3d axis = spreads.eigenvectors().col(k);
     way += axis.dot(mesh.vertices.col(vertex) - middle) / square * axis;
   }
@@ -233,7 +233,7 @@ SurfaceField::make(const Mesh& mesh, const BlockLayout& layout, const SurfaceSet
   const Eigen::PartialPivLU<MatrixXd> factor(functions);
   field->inverse_ = factor.inverse();
   field->condition_ = norm_1(functions) * norm_1(field->inverse_);
-  if (!(field->condition_ <= most_condition)) { // also where it is not a number
+  if (!(field->condition_ <= max_condition)) { // also where it is not a number
     const auto [one, other] = nearest_pair(functions);
     return Error{Errc::bad_input,
                  "points " + name_of(setup, one) + " and " + name_of(setup, other) +

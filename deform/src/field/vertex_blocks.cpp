@@ -106,7 +106,7 @@ Eigen::Vector3d BlockLayout::rounded(const Eigen::Vector3d& place) const noexcep
   Eigen::Vector3d result = place;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const double coordinate = (place[axis] - origin_[axis]) / unit_;
-    if (std::abs(coordinate) <= most_units)
+    if (std::abs(coordinate) <= max_units)
       result[axis] = origin_[axis] + unit_ * static_cast<double>(static_cast<float>(coordinate));
   }
   return result;
@@ -114,7 +114,7 @@ Eigen::Vector3d BlockLayout::rounded(const Eigen::Vector3d& place) const noexcep
 
 double BlockLayout::rounded_radius(double radius) const noexcept {
   const double inverse = unit_ / radius;
-  const bool fits = inverse <= most_units && inverse >= 1.0 / most_units; // false for NaN
+  const bool fits = inverse <= max_units && inverse >= 1.0 / max_units; // false for NaN
   return fits ? unit_ / static_cast<double>(static_cast<float>(inverse)) : radius;
 }
 

@@ -23,10 +23,10 @@ constexpr std::uint32_t json_chunk = 0x4E4F534A;
 constexpr std::uint32_t binary_chunk = 0x004E4942;
 constexpr std::size_t header_bytes = 12;
 constexpr std::size_t chunk_header_bytes = 8;
-constexpr int most_depth = 64; // of JSON; extras may be deep, glTF itself is not
-constexpr std::size_t most_json_bytes = std::size_t{128} << 20;
-constexpr std::uint64_t most_numbers = std::uint64_t{1} << 28; // of one accessor
-constexpr std::uint64_t most_buffer_bytes = std::uint64_t{4} << 30;
+constexpr int max_depth = 64; // of JSON; extras may be deep, glTF itself is not
+constexpr std::size_t max_json_bytes = std::size_t{128} << 20;
+constexpr std::uint64_t max_numbers = std::uint64_t{1} << 28; // of one accessor
+constexpr std::uint64_t max_buffer_bytes = std::uint64_t{4} << 30;
 
 [[noreturn]] void refuse(std::string what) {
   throw GltfRefusal{std::move(what)};
@@ -220,14 +220,14 @@ void GltfDocument::read_binary(std::string_view file) {
 }
 
 void GltfDocument::read_json(std::string_view text) {
-  if (text.size() > most_json_bytes) refuse("has more than 128 MiB of JSON");
+  if (text.size() > max_json_bytes) refuse("has more than 128 MiB of JSON");
   bool too_deep = false;
   const auto watch = [&](int depth, Json::parse_event_t, Json&) {
-    too_deep = too_deep || depth > most_depth;
+    too_deep = too_deep || depth > max_depth;
     return !too_deep;
   };
   root_ = Json::parse(text.begin(), text.end(), watch, false);
-  if (too_deep) refuse("has JSON of more than " + std::to_string(most_depth) + " levels");
+  if (too_deep) refuse("has JSON of more than " + std::to_string(max_depth) + " levels");
   if (root_.is_discarded() || !root_.is_object())
     refuse("has damaged JSON, so it is no glTF model; export it once more");
 }
@@ -253,7 +253,7 @@ FolderFile GltfDocument::file_named(const std::string& uri, std::uint64_t max_by
 void GltfDocument::read_buffers() {
   const std::size_t count = size_of("buffers");
   own_.resize(count); // so that its texts stay in their places
-  std::uint64_t left = most_buffer_bytes;
+  std::uint64_t left = max_buffer_bytes;
   for (std::size_t at = 0; at < count; ++at) {
     const Json& buffer = item("buffers", at);
     const std::uint64_t length = gltf_count(buffer, "byteLength", 0);
@@ -296,7 +296,7 @@ GltfNumbers GltfDocument::numbers(std::uint64_t index) const {
   GltfNumbers numbers;
   numbers.width = width_of(gltf_text(accessor, "type"));
   const std::uint64_t count = gltf_count(accessor, "count", 0);
-  if (count == 0 || count > most_numbers / numbers.width)
+  if (count == 0 || count > max_numbers / numbers.width)
     refuse("an accessor has " + std::to_string(count) +
            " elements; from 1 to 2^28 numbers can be "
            "read");
@@ -367,7 +367,7 @@ void GltfDocument::fill_sparse(const Json& accessor, GltfNumbers& numbers) const
 
 FolderFile GltfDocument::image(const Json& image) const {
   const std::string uri = gltf_text(image, "uri");
-  if (!uri.empty() && !is_data_uri(uri)) return file_named(uri, ModelFolder::most_texture_bytes);
+  if (!uri.empty() && !is_data_uri(uri)) return file_named(uri, ModelFolder::max_texture_bytes);
   FolderFile file;
   if (is_data_uri(uri)) {
     file.contents = data_of_uri(uri);

@@ -30,9 +30,9 @@ namespace {
 using Json = GltfDocument::Json;
 
 // Nodes may show a mesh again and again, so a small file can be a model without end.
-constexpr std::size_t most_model_vertices = 20'000'000;
-constexpr std::size_t most_model_corners = 120'000'000;
-constexpr std::size_t most_read_vertices = 200'000'000;
+constexpr std::size_t max_model_vertices = 20'000'000;
+constexpr std::size_t max_model_corners = 120'000'000;
+constexpr std::size_t max_read_vertices = 200'000'000;
 constexpr std::uint64_t no_accessor = std::numeric_limits<std::uint64_t>::max();
 // glTF's modes of primitives.
 constexpr std::uint64_t triangles_mode = 4, strip_mode = 5, fan_mode = 6;
@@ -88,11 +88,11 @@ private:
   }
 
   Part part_of(const Json& primitive, const Json& attributes, std::uint32_t material) {
-    const auto numbers = [&](const std::string& name, std::size_t least_width,
+    const auto numbers = [&](const std::string& name, std::size_t min_width,
                              std::size_t count) -> std::optional<GltfNumbers> {
       if (gltf_member(attributes, name.c_str()) == nullptr) return std::nullopt;
       auto found = document_.numbers(gltf_count(attributes, name.c_str(), 0));
-      if (found.width < least_width || (count > 0 && found.count != count))
+      if (found.width < min_width || (count > 0 && found.count != count))
         throw GltfRefusal{"a primitive's " + name + " is of another size than its vertices"};
       return found;
     };
@@ -104,7 +104,7 @@ private:
     if (!places || places->width != 3) throw GltfRefusal{"a primitive has no POSITION of VEC3"};
     const std::size_t count = places->count;
     numbers_read_ += count;
-    if (numbers_read_ > most_read_vertices)
+    if (numbers_read_ > max_read_vertices)
       throw GltfRefusal{"reads more than 200 million vertices, some of them again and again"};
     Part part{*std::move(places), numbers("NORMAL", 3, count), numbers("COLOR_0", 3, count), {}};
     if (part.colours) settle_colours(gltf_count(attributes, "COLOR_0", 0), *part.colours);
@@ -176,7 +176,7 @@ private:
       mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
       mesh_.look.face_materials.push_back(material);
     }
-    if (mesh_.face_corners.size() > most_model_corners)
+    if (mesh_.face_corners.size() > max_model_corners)
       throw GltfRefusal{"has more than 120 million corners"};
   }
 
@@ -206,7 +206,7 @@ private:
       vertices_.insert(vertices_.end(), moved[at].begin(), moved[at].end());
       if (part.colours) add_colour(part.colours->row(at), part.colours->width);
     }
-    if (vertices_.size() / 3 > most_model_vertices)
+    if (vertices_.size() / 3 > max_model_vertices)
       throw GltfRefusal{"has more than 20 million vertices"};
     return vertices;
   }

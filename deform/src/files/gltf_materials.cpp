@@ -77,7 +77,7 @@ private:
   Appearance& look_;
   NoteSum& notes_;
   std::map<std::uint64_t, std::uint32_t> numbers_;
-  std::uint64_t left_ = ModelFolder::most_texture_bytes; // many images could be one view
+  std::uint64_t left_ = ModelFolder::max_texture_bytes; // many images could be one view
 };
 
 Eigen::Affine2d transform_of(const Json& info) {

@@ -144,7 +144,7 @@ void note_strays(const Mesh& mesh, ReadNotes& notes) {
 
 Result<ReadModel> parse_text(Source source, const ReadOptions& options) {
   if (source.text.empty()) return bad_file(source.name, "is empty; give the file of a model");
-  if (source.text.size() > most_file_bytes) return bad_file(source.name, "is larger than 4 GiB");
+  if (source.text.size() > max_file_bytes) return bad_file(source.name, "is larger than 4 GiB");
   if (const auto foreign = foreign_format(source.text)) return bad_file(source.name, *foreign);
   source.text = without_mark(source.text);
   // Some programs end a text with zeros.
@@ -223,7 +223,7 @@ Result<Mesh> parse_mesh(std::span<const std::byte> bytes, std::string_view name)
 
 Result<ReadModel> read_model(const std::filesystem::path& path, const ReadOptions& options) {
   try {
-    const auto text = read_file(path, most_file_bytes, "mesh");
+    const auto text = read_file(path, max_file_bytes, "mesh");
     if (!text) return text.error();
     const ModelFolder folder(target_of(path));
     const std::string name = path.string();

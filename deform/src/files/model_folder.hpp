@@ -34,8 +34,8 @@ inline constexpr std::string_view too_large_lack =
 class ModelFolder {
 public:
   /// The largest material file, and the largest texture, that is read.
-  static constexpr std::uint64_t most_material_bytes = std::uint64_t{16} << 20;
-  static constexpr std::uint64_t most_texture_bytes = std::uint64_t{256} << 20;
+  static constexpr std::uint64_t max_material_bytes = std::uint64_t{16} << 20;
+  static constexpr std::uint64_t max_texture_bytes = std::uint64_t{256} << 20;
 
   /// The folder of the model in the file `model`.
   explicit ModelFolder(const std::filesystem::path& model);

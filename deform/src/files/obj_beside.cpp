@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 std::optional<std::string> contents_of(const fs::path& path) {
   std::error_code unknown;
   if (!fs::exists(path, unknown)) return std::nullopt;
-  auto contents = read_file(path, ModelFolder::most_texture_bytes, "part of a model");
+  auto contents = read_file(path, ModelFolder::max_texture_bytes, "part of a model");
   if (!contents) return std::string();
   return *std::move(contents);
 }
@@ -72,7 +72,7 @@ namespace {
 void read_library(const ModelFolder& folder, std::string_view library, std::size_t& left,
                   MtlReader& reader, NoteSum& notes) {
   const auto read = [&](std::string_view named) {
-    FolderFile file = folder.find(named, ModelFolder::most_material_bytes);
+    FolderFile file = folder.find(named, ModelFolder::max_material_bytes);
     if (file.contents) reader.read(*file.contents, file.name);
     --left;
     return file;

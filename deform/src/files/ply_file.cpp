@@ -341,10 +341,10 @@ Result<void> PlyParser::read_element(const PlyElement& element) {
   if (!uses) return uses.error();
   if (element.properties.empty()) return {};
   note_left_out(element, *uses);
-  std::uint64_t least_bytes = 0;
+  std::uint64_t min_bytes = 0;
   for (const auto& property : element.properties)
-    least_bytes += size_of(property.count_type.value_or(property.type));
-  if (!body_.has_room_for(element.count, least_bytes))
+    min_bytes += size_of(property.count_type.value_or(property.type));
+  if (!body_.has_room_for(element.count, min_bytes))
     return body_.bad("the header promises " + std::to_string(element.count) + " of " +
                      in_quotes(element.name) + ", the file is too short for them");
   if (element.name == "vertex") {

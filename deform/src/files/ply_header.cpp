@@ -89,10 +89,10 @@ Result<void> HeaderParser::statement(std::string_view keyword) {
 
 /// Names may have blanks. Only the first ones are read: a hostile header could name one a line.
 void HeaderParser::comment() {
-  constexpr std::size_t most_textures = 64;
+  constexpr std::size_t max_textures = 64;
   if (scanner_.field() != "TextureFile") return;
   const std::string_view named = trimmed(scanner_.rest_of_line());
-  if (!named.empty() && header_.textures.size() < most_textures)
+  if (!named.empty() && header_.textures.size() < max_textures)
     header_.textures.emplace_back(named);
 }
 

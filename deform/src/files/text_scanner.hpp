@@ -9,7 +9,7 @@
 namespace nendo::deform {
 
 /// The largest size in bytes of a file of a mesh or of control vectors.
-inline constexpr std::uint64_t most_file_bytes = std::uint64_t{4} << 30;
+inline constexpr std::uint64_t max_file_bytes = std::uint64_t{4} << 30;
 
 /// Walks over a text field by field. Fields are separated by blanks, and are views into the text. A
 /// line ends with \n, with \r\n, or, as on old Macintoshes, with \r.

@@ -13,7 +13,7 @@
 
 namespace nendo::deform {
 
-/// Reads textures' contents, of all together at most ModelFolder::most_texture_bytes.
+/// Reads textures' contents, of all together at most ModelFolder::max_texture_bytes.
 class TextureFiles {
 public:
   /// Both must outlive this.
@@ -26,7 +26,7 @@ public:
 private:
   const ModelFolder& folder_;
   NoteSum& notes_;
-  std::uint64_t left_ = ModelFolder::most_texture_bytes;
+  std::uint64_t left_ = ModelFolder::max_texture_bytes;
 };
 
 /// Notes textures that are there, and not shown because no corner says where.

@@ -10,7 +10,7 @@ namespace nendo::deform {
 namespace {
 
 /// Of fewer corners, all are looked at.
-constexpr std::uint32_t least_for_tree = 48;
+constexpr std::uint32_t min_for_tree = 48;
 /// How many corners are looked at where a polygon crosses itself.
 constexpr int max_looks = 64;
 /// How far a spike is followed to where it begins.
@@ -67,7 +67,7 @@ void EarClipper::start() {
     links->assign(count, no_index);
   touches_.assign(count, 0);
   tree_.clear();
-  if (count >= least_for_tree) plant_tree();
+  if (count >= min_for_tree) plant_tree();
   due_.resize(count);
   is_due_.assign(count, 0);
   due_at_ = due_count_ = 0;
@@ -220,7 +220,7 @@ bool EarClipper::blocks(std::uint32_t other, const Corners& ear) {
 }
 
 std::uint32_t EarClipper::find_blocker(const Corners& ear) {
-  if (places_.size() < least_for_tree) {
+  if (places_.size() < min_for_tree) {
     for (std::uint32_t other = next_[ear[2]]; other != ear[0]; other = next_[other])
       if (bend_[other] != convex && blocks(other, ear)) return other;
     return no_index;

@@ -11,8 +11,8 @@
 namespace nendo::deform {
 namespace {
 
-constexpr std::size_t least_slab = 64; // blocks
-constexpr std::size_t most_slabs_waiting = 64;
+constexpr std::size_t min_slab = 64; // blocks
+constexpr std::size_t max_slabs_waiting = 64;
 constexpr std::size_t slabs_ahead = 4;
 
 } // namespace
@@ -25,10 +25,10 @@ std::unique_ptr<SavedBlock[]> make_saved_blocks(std::size_t count, SavedChain& c
   return blocks;
 }
 
-UndoMemory::UndoMemory(std::size_t blocks_ahead, std::size_t most_bytes)
+UndoMemory::UndoMemory(std::size_t blocks_ahead, std::size_t max_bytes)
     : blocks_ahead_(blocks_ahead),
-      slab_blocks_(std::max(least_slab, (blocks_ahead + slabs_ahead - 1) / slabs_ahead)),
-      most_bytes_(most_bytes), given_(most_slabs_waiting) {}
+      slab_blocks_(std::max(min_slab, (blocks_ahead + slabs_ahead - 1) / slabs_ahead)),
+      max_bytes_(max_bytes), given_(max_slabs_waiting) {}
 
 UndoMemory::~UndoMemory() = default;
 
@@ -36,7 +36,7 @@ UndoMemory::~UndoMemory() = default;
 bool UndoMemory::refill() {
   while (free_.load(std::memory_order_relaxed) + given_.size() * slab_blocks_ < blocks_ahead_) {
     const std::size_t slab_bytes = slab_blocks_ * sizeof(SavedBlock);
-    if (slab_bytes > most_bytes_ - std::min(bytes_, most_bytes_)) return false;
+    if (slab_bytes > max_bytes_ - std::min(bytes_, max_bytes_)) return false;
     try {
       SavedChain chain;
       slabs_.push_back(make_saved_blocks(slab_blocks_, chain));

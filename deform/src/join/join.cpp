@@ -18,9 +18,9 @@ namespace {
 
 /// Products of three coordinates must neither overflow nor lose digits (exact_predicates.hpp).
 constexpr double largest_coordinate = 1e60;
-constexpr double least_size = 1e-40;
+constexpr double min_size = 1e-40;
 /// A seam that cuts itself is tried again at half the width, so often.
-constexpr int most_narrowings = 3;
+constexpr int max_narrowings = 3;
 
 Result<void> check_part(const JoinPart& part) {
   const auto bad = [&](const std::string& what) {
@@ -33,7 +33,7 @@ Result<void> check_part(const JoinPart& part) {
   if (const ManifoldCheck check = check_closed_manifold(mesh); !check)
     return bad(describe(check, mesh) +
                "; only closed models can be joined, so mend it with `nendo repair IN --out OUT`");
-  if (!(diagonal_of(mesh.vertices) > least_size)) return bad("has no size; scale it up");
+  if (!(diagonal_of(mesh.vertices) > min_size)) return bad("has no size; scale it up");
   return {};
 }
 
@@ -64,7 +64,7 @@ Error explained(Error error, const TriangleSurface& surface, const Eigen::Vector
 /// Returns the union with a seam of the width asked for, or a narrower one that does not cut
 /// itself.
 TriangleSurface with_seam(UnionOfTwo sharp, double width, JoinStep& step) {
-  for (int narrowing = 0; width > 0.0 && narrowing < most_narrowings; ++narrowing, width *= 0.5) {
+  for (int narrowing = 0; width > 0.0 && narrowing < max_narrowings; ++narrowing, width *= 0.5) {
     Seam seam = smear_seam(sharp.surface, sharp.seam, width);
     if (!is_closed_solid(seam.surface) ||
         !self_intersections_of(seam.surface.points, seam.surface.faces, seam.changed, 1).empty())

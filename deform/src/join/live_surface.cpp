@@ -8,13 +8,13 @@ namespace nendo::deform {
 namespace {
 
 /// Two faces whose normals differ by more than 32 degrees are a feature, and are not flipped.
-constexpr double least_flat_cosine = 0.85;
+constexpr double min_flat_cosine = 0.85;
 /// The normal of a needle says little: its neighbours' decide.
 constexpr double needle = 1e-3;
 /// Below it a triangle is not made worse.
 constexpr double fair_enough = 0.25;
 /// A flip that gains less may be taken back by the next one.
-constexpr double least_gain = 1.02;
+constexpr double min_gain = 1.02;
 
 /// The least height of a triangle.
 double height_of(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept {
@@ -127,7 +127,7 @@ bool LiveSurface::keeps_shape(std::uint32_t edge, const CollapseLimits& limits) 
     if (!keeps || height_of(target, p, q) < limits.thin) return;
     const double before = triangle_fairness(point(b), p, q);
     const SpacePoint old_area = height_of(point(b), p, q) < limits.thin ? around : area_of(at / 3);
-    keeps = cosine(area_vector(target, p, q), old_area) >= limits.least_cosine &&
+    keeps = cosine(area_vector(target, p, q), old_area) >= limits.min_cosine &&
             triangle_fairness(target, p, q) >= std::min(before, fair_enough);
   });
   return keeps;
@@ -170,13 +170,13 @@ bool LiveSurface::makes_fairer(std::uint32_t edge) const {
   const double other = triangle_fairness(point(b), point(a), point(d));
   const double then = std::min(triangle_fairness(point(d), point(c), point(a)),
                                triangle_fairness(point(c), point(d), point(b)));
-  if (then <= least_gain * std::min(one, other)) return false;
+  if (then <= min_gain * std::min(one, other)) return false;
   const SpacePoint both = area_of(edge / 3) + area_of(back / 3);
   if (std::min(one, other) > needle &&
-      cosine(area_of(edge / 3), area_of(back / 3)) < least_flat_cosine)
+      cosine(area_of(edge / 3), area_of(back / 3)) < min_flat_cosine)
     return false;
-  return cosine(area_vector(point(d), point(c), point(a)), both) >= least_flat_cosine &&
-         cosine(area_vector(point(c), point(d), point(b)), both) >= least_flat_cosine;
+  return cosine(area_vector(point(d), point(c), point(a)), both) >= min_flat_cosine &&
+         cosine(area_vector(point(c), point(d), point(b)), both) >= min_flat_cosine;
 }
 
 bool LiveSurface::flip(std::uint32_t edge) {

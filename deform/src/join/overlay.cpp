@@ -11,14 +11,14 @@ namespace nendo::deform {
 namespace {
 
 /// Ways in which the second surface gives way: odd directions, one for each attempt.
-constexpr std::array<SpacePoint, most_overlay_attempts> give_ways{{{0.6137, -0.4219, 0.6673},
-                                                                   {-0.3571, 0.7919, 0.4951},
-                                                                   {0.2347, 0.5813, -0.7793},
-                                                                   {-0.8363, -0.2917, 0.4643},
-                                                                   {0.4733, -0.8123, -0.3407},
-                                                                   {-0.5591, 0.1873, -0.8077},
-                                                                   {0.8911, 0.3671, 0.2663},
-                                                                   {-0.1319, -0.6841, -0.7177}}};
+constexpr std::array<SpacePoint, max_overlay_attempts> give_ways{{{0.6137, -0.4219, 0.6673},
+                                                                  {-0.3571, 0.7919, 0.4951},
+                                                                  {0.2347, 0.5813, -0.7793},
+                                                                  {-0.8363, -0.2917, 0.4643},
+                                                                  {0.4733, -0.8123, -0.3407},
+                                                                  {-0.5591, 0.1873, -0.8077},
+                                                                  {0.8911, 0.3671, 0.2663},
+                                                                  {-0.1319, -0.6841, -0.7177}}};
 constexpr double give_part = 1e-7;
 
 double size_of(std::span<const SpacePoint> points) {
@@ -124,7 +124,7 @@ Result<Overlay> overlay(const TriangleSurface& first, const TriangleSurface& sec
   // Small enough for the smaller part, and large enough for the larger one's rounding.
   const double size = std::max(std::min(sizes[0], sizes[1]), 1e-6 * std::max(sizes[0], sizes[1]));
   OverlayMaker maker(first, second, result);
-  for (int attempt = first_attempt; attempt < most_overlay_attempts; ++attempt) {
+  for (int attempt = first_attempt; attempt < max_overlay_attempts; ++attempt) {
     result.attempts = attempt + 1;
     const auto way = static_cast<std::size_t>(attempt);
     if (maker.attempt(std::ldexp(give_part * size, attempt) * give_ways[way])) return result;

@@ -44,7 +44,7 @@ struct Chosen {
 /// (no way to give way led to general position). Allocates, blocks.
 Result<Overlay> overlay(const TriangleSurface& first, const TriangleSurface& second,
                         int first_attempt = 0);
-inline constexpr int most_overlay_attempts = 8;
+inline constexpr int max_overlay_attempts = 8;
 
 /// Allocates.
 Chosen choose(const TriangleSurface& first, const TriangleSurface& second, const Overlay& overlay,

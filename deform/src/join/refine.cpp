@@ -79,7 +79,7 @@ private:
   }
   void split_long() {
     for (const RefineEdge& wanted : long_) {
-      if (!has_budget() || surface_.point_count() >= limits_.most_points) {
+      if (!has_budget() || surface_.point_count() >= limits_.max_points) {
         ++counts_.left;
         continue;
       }
@@ -105,7 +105,7 @@ private:
       const std::uint32_t edge = surface_.edge_between(stays, goes);
       if (edge == no_index) return false;
       const double longest = limits_.longest * coarseness_between(zone_, stays, goes);
-      if (surface_.collapse(edge, {longest, limits_.thin, limits_.least_cosine})) {
+      if (surface_.collapse(edge, {longest, limits_.thin, limits_.min_cosine})) {
         changed_.push_back(stays);
         return true;
       }
@@ -166,7 +166,7 @@ std::size_t unfit_edges(const LiveSurface& surface, const RefineZone& zone,
                         const RefineLimits& limits) {
   std::size_t count = 0;
   visit_zone(surface, zone, [&](double length, std::uint32_t from, std::uint32_t to) {
-    const bool is_long = length > limits.longest && surface.point_count() < limits.most_points;
+    const bool is_long = length > limits.longest && surface.point_count() < limits.max_points;
     const bool is_short = length < limits.shortest && !is_fixed(zone, from, to);
     count += is_long || is_short ? 1u : 0u;
   });

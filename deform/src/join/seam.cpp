@@ -20,11 +20,11 @@ constexpr double thin_face = 1e-3;  ///< of the longest: steps where a part only
 constexpr double zone_widths = 4.0; ///< so far away is the surface refined
 constexpr double coarser = 2.0;     ///< beyond the width: so much longer edges a width further
 constexpr double farthest_motion = 1.0; ///< of the width
-constexpr int most_rounds = 12;
-constexpr std::size_t most_operations = 100000;
+constexpr int max_rounds = 12;
+constexpr std::size_t max_operations = 100000;
 /// A long and narrow seam gets longer edges instead of more triangles. Its band of twice the width,
 /// and what becomes coarser beyond it, has 14 triangles for each square of the longest edge.
-constexpr double most_triangles = 1e5;
+constexpr double max_triangles = 1e5;
 constexpr double triangles_in_square = 14.0;
 constexpr double infinitely_far = 1e300;
 
@@ -85,7 +85,7 @@ std::vector<std::uint32_t> split_seam(LiveSurface& surface, std::span<const Seam
     on_seam.push_back(edge.first);
     on_seam.push_back(edge.second);
   }
-  for (std::size_t at = 0; at < left.size() && left.size() < most_operations; ++at) {
+  for (std::size_t at = 0; at < left.size() && left.size() < max_operations; ++at) {
     const auto [from, to] = left[at];
     if (distance_between(surface.point(from), surface.point(to)) <= longest) continue;
     const std::uint32_t middle = surface.split(surface.edge_between(from, to));
@@ -104,7 +104,7 @@ double longest_edge(const LiveSurface& surface, std::span<const SeamEdge> edges,
   double seam = 0.0;
   for (const auto& [from, to] : edges)
     seam += distance_between(surface.point(from), surface.point(to));
-  const double bounded = std::sqrt(triangles_in_square * seam * width / most_triangles);
+  const double bounded = std::sqrt(triangles_in_square * seam * width / max_triangles);
   return std::min(long_edge * mean, std::max(width / edges_in_width, bounded));
 }
 
@@ -119,7 +119,7 @@ std::vector<std::uint32_t> even_out(LiveSurface& surface, std::span<const SeamEd
                                 mean_edge(surface, distances_from(surface, on_seam, width)), width);
   limits.shortest = short_edge * limits.longest;
   limits.thin = thin_face * limits.longest;
-  limits.budget = most_operations;
+  limits.budget = max_operations;
   on_seam = split_seam(surface, edges, limits.longest);
   zone.hold.assign(surface.point_count(), 2);
   zone.coarseness.assign(surface.point_count(), 0.0f);
@@ -132,7 +132,7 @@ std::vector<std::uint32_t> even_out(LiveSurface& surface, std::span<const SeamEd
   }
   for (const std::uint32_t point : on_seam)
     zone.hold[point] = 1;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     const RefineCounts done = refine(surface, zone, limits);
     limits.budget -= done.splits + done.collapses;
     if (done.splits + done.collapses + done.flips == 0) break;

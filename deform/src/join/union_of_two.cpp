@@ -12,8 +12,8 @@
 namespace nendo::deform {
 namespace {
 
-constexpr int most_restorings = 6;
-constexpr std::size_t most_pairs = 1000;
+constexpr int max_restorings = 6;
+constexpr std::size_t max_pairs = 1000;
 
 /// Gives the second surface's points in a union their bits back, as far as that cuts nothing.
 class BitRestorer {
@@ -35,8 +35,8 @@ public:
 
   /// Returns false if some faces cut each other even without any bits given back.
   bool restore() {
-    for (int round = 0; round <= most_restorings; ++round) {
-      if (round == most_restorings) std::fill(kept_.begin(), kept_.end(), 0);
+    for (int round = 0; round <= max_restorings; ++round) {
+      if (round == max_restorings) std::fill(kept_.begin(), kept_.end(), 0);
       place();
       const std::vector<TrianglePair> pairs = cutting_pairs();
       if (pairs.empty()) return true;
@@ -65,9 +65,9 @@ private:
       if (is_second && kept > 0 && kept < 3) is_changed[face] = 1;
       (is_changed[face] ? changed : is_second ? of_second : of_first).push_back(face);
     }
-    auto pairs = self_intersections_of(surface.points, surface.faces, changed, most_pairs);
+    auto pairs = self_intersections_of(surface.points, surface.faces, changed, max_pairs);
     const auto more =
-        intersections_between(surface.points, surface.faces, of_second, of_first, most_pairs);
+        intersections_between(surface.points, surface.faces, of_second, of_first, max_pairs);
     pairs.insert(pairs.end(), more.begin(), more.end());
     return pairs;
   }
@@ -118,7 +118,7 @@ bool is_closed_solid(const TriangleSurface& surface) {
 }
 
 Result<UnionOfTwo> union_of(const TriangleSurface& first, const TriangleSurface& second) {
-  for (int attempt = 0; attempt < most_overlay_attempts; ++attempt) {
+  for (int attempt = 0; attempt < max_overlay_attempts; ++attempt) {
     const auto laid = overlay(first, second, attempt);
     if (!laid) return laid.error();
     attempt = laid->attempts - 1;

@@ -6,7 +6,7 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr float least_opacity = 0.5F;
+constexpr float min_opacity = 0.5F;
 
 std::vector<std::vector<std::uint32_t>> faces_by_material(const Mesh& mesh, bool all) {
   const Appearance& look = mesh.look;
@@ -23,7 +23,7 @@ std::vector<std::vector<std::uint32_t>> faces_by_material(const Mesh& mesh, bool
 } // namespace
 
 bool is_drawn(const Material& material) noexcept {
-  return material.drawn && (!material.colour || (*material.colour)[3] >= least_opacity);
+  return material.drawn && (!material.colour || (*material.colour)[3] >= min_opacity);
 }
 
 std::vector<std::vector<std::uint32_t>> drawn_faces(const Mesh& mesh) {

@@ -49,7 +49,7 @@ void share(Supports& supports, std::optional<Support> common) {
 
 } // namespace
 
-double least_radius(const Supports& supports) noexcept {
+double min_radius(const Supports& supports) noexcept {
   return chosen_radius(supports, [](double a, double b) { return std::min(a, b); });
 }
 

@@ -165,9 +165,9 @@ SurfaceGraph::SurfaceGraph(const Mesh& mesh) : vertices_(mesh.vertices) {
            std::tie(other.low, other.high, other.opposite);
   });
   // Two quads meet with two triangles each. Those of one face give a way longer than its diagonal.
-  constexpr std::size_t most_at_edge = 4;
+  constexpr std::size_t max_at_edge = 4;
   for (std::size_t at = 0; at < edges.size(); ++at)
-    for (std::size_t to = at + 1; to < std::min(at + most_at_edge, edges.size()); ++to) {
+    for (std::size_t to = at + 1; to < std::min(at + max_at_edge, edges.size()); ++to) {
       const Hinge &one = edges[at], &other = edges[to];
       if (one.low != other.low || one.high != other.high) break;
       add(one.opposite, other.opposite,
@@ -212,10 +212,10 @@ Eigen::VectorXd SurfaceGraph::distances(const SurfacePlace& from, double limit) 
 }
 
 std::vector<std::uint32_t> SurfaceGraph::about(const SurfacePlace& place) const {
-  constexpr double least_weight = 1e-9;
+  constexpr double min_weight = 1e-9;
   std::vector<std::uint32_t> vertices;
   for (std::size_t k = 0; k < place.corners.size(); ++k)
-    if (place.weights[k] > least_weight &&
+    if (place.weights[k] > min_weight &&
         std::find(vertices.begin(), vertices.end(), place.corners[k]) == vertices.end())
       vertices.push_back(place.corners[k]);
   const std::size_t corners = vertices.size();

@@ -186,7 +186,7 @@ HWY_INLINE V slope(D d, V t, V o) {
 
 #if HWY_TARGET == HWY_SCALAR
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void store_least_lanes(D, const V (&low)[3], const V (&high)[3], float* to) {
+HWY_INLINE void store_min_lanes(D, const V (&low)[3], const V (&high)[3], float* to) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     to[axis] = hn::GetLane(low[axis]);
     to[axis + 4] = hn::GetLane(high[axis]);
@@ -196,22 +196,22 @@ HWY_INLINE void store_least_lanes(D, const V (&low)[3], const V (&high)[3], floa
 #else
 /// Returns, in each four lanes, the least of those of three vectors, and a zero.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V least_in_fours(D d, const V (&three)[3]) {
+HWY_INLINE V min_in_fours(D d, const V (&three)[3]) {
   const hn::Repartition<double, D> pairs;
-  const auto least_pairs = [d](V a, V b) { // a b a b in each four lanes
+  const auto min_pairs = [d](V a, V b) { // a b a b in each four lanes
     return hn::Min(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b));
   };
-  const auto xy = hn::BitCast(pairs, least_pairs(three[0], three[1]));
-  const auto z0 = hn::BitCast(pairs, least_pairs(three[2], hn::Zero(d)));
+  const auto xy = hn::BitCast(pairs, min_pairs(three[0], three[1]));
+  const auto z0 = hn::BitCast(pairs, min_pairs(three[2], hn::Zero(d)));
   return hn::Min(hn::BitCast(d, hn::InterleaveLower(pairs, xy, z0)),
                  hn::BitCast(d, hn::InterleaveUpper(pairs, xy, z0)));
 }
 
 /// Stores the least lanes of the vectors `low`, and a zero, to four aligned places; then of `high`.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void store_least_lanes(D d, const V (&low)[3], const V (&high)[3], float* to) {
-  const V lows = least_in_fours(d, low);
-  const V highs = least_in_fours(d, high);
+HWY_INLINE void store_min_lanes(D d, const V (&low)[3], const V (&high)[3], float* to) {
+  const V lows = min_in_fours(d, low);
+  const V highs = min_in_fours(d, high);
   const hn::CappedTag<float, 4> four;
   if constexpr (hn::MaxLanes(D()) == 4) {
     hn::Store(lows, four, to);
@@ -249,7 +249,7 @@ HWY_INLINE BlockBounds vector_bounds(D d, const VertexBlock& block) {
   for (V& highest : high)
     highest = hn::Neg(highest);
   BlockBounds bounds;
-  store_least_lanes(d, low, high, bounds.sides.data());
+  store_min_lanes(d, low, high, bounds.sides.data());
   return bounds;
 }
 

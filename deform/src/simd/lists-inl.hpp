@@ -22,7 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// With more centres than this, groups of neighbouring blocks are tested first: 256 blocks against
 /// all centres, then 16 blocks against those that reach the 256.
-constexpr std::size_t most_ungrouped = 32;
+constexpr std::size_t max_ungrouped = 32;
 constexpr std::size_t groups_together = 16;
 
 /// Up to 16 blocks of a pass, with the centres that reach each. Their lists are made together, so
@@ -47,7 +47,7 @@ static HWY_NOINLINE void list_next(ListedBlocks& blocks) {
   const BlockPass& pass = blocks.pass;
   blocks.begin = blocks.end;
   blocks.end = least(blocks.begin + group_size, pass.end);
-  if (blocks.all.count <= most_ungrouped) {
+  if (blocks.all.count <= max_ungrouped) {
     blocks.nearest = blocks.all;
   } else {
     if (blocks.near_end <= blocks.begin) {

@@ -59,8 +59,8 @@ HWY_INLINE void add_scaled(const double* row, double factor, std::size_t size, d
     hn::Store(hn::MulAdd(by, hn::Load(d, row + at), hn::Load(d, to + at)), d, to + at);
 }
 
-void sweep(const PressArrays& arrays, double* l, double* w, double least, int most_sweeps) {
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+void sweep(const PressArrays& arrays, double* l, double* w, double least, int max_sweeps) {
+  for (int sweep = 0; sweep < max_sweeps; ++sweep) {
     double largest = 0.0;
     for (std::size_t i = 0; i < arrays.count; ++i) {
       const double* const row = arrays.a + i * arrays.stride;
@@ -158,8 +158,8 @@ void fill_press_matrices(const PressArrays& arrays, double radius, double ridge)
 }
 
 void sweep_pressure(const PressArrays& arrays, double* l, double* w, double least,
-                    int most_sweeps) noexcept {
-  HWY_DYNAMIC_DISPATCH(sweep)(arrays, l, w, least, most_sweeps);
+                    int max_sweeps) noexcept {
+  HWY_DYNAMIC_DISPATCH(sweep)(arrays, l, w, least, max_sweeps);
 }
 
 void add_row(const PressArrays& arrays, const double* row, const std::array<double, 3>& change,

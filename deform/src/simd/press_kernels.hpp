@@ -25,7 +25,7 @@ void fill_press_matrices(const PressArrays& arrays, double radius, double ridge)
 /// Sweeps l >= 0 and w = a l - p by projected Gauss-Seidel until no l_i changes by more than
 /// `least`, but at most so many times.
 void sweep_pressure(const PressArrays& arrays, double* l, double* w, double least,
-                    int most_sweeps) noexcept;
+                    int max_sweeps) noexcept;
 /// Adds change * row to each of three arrays of a row's length.
 void add_row(const PressArrays& arrays, const double* row, const std::array<double, 3>& change,
              const std::array<double*, 3>& to) noexcept;

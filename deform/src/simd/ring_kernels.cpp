@@ -20,9 +20,9 @@ using RingTag = hn::CappedTag<float, block_size>;
 using RingV = hn::Vec<RingTag>;
 using Ring3 = Vectors3<RingV>;
 
-constexpr float least_square = 1e-30F; // instead of a division by 0
-constexpr float least_even = 0.3F;     // cosine of the angle between face and direction
-constexpr float own_share = 0.2F;      // of a vertex' own normal in its direction
+constexpr float min_square = 1e-30F; // instead of a division by 0
+constexpr float min_even = 0.3F;     // cosine of the angle between face and direction
+constexpr float own_share = 0.2F;    // of a vertex' own normal in its direction
 
 HWY_INLINE Ring3 cross_product(const Ring3& a, const Ring3& b) {
   return {hn::NegMulAdd(a.z, b.y, hn::Mul(a.y, b.z)), hn::NegMulAdd(a.x, b.z, hn::Mul(a.z, b.x)),
@@ -96,7 +96,7 @@ HWY_INLINE RingSums sum_ring(RingTag d, const BlockRings& rings, std::size_t lan
     sums.crosses = sum_of(sums.crosses, cross);
     const RingV along = dot_product(cross, direction);
     const RingV squared = dot_product(cross, cross);
-    const RingV least = hn::Mul(hn::Set(d, least_even * least_even), squared);
+    const RingV least = hn::Mul(hn::Set(d, min_even * min_even), squared);
     sums.smallest = hn::Min(sums.smallest, hn::IfThenElse(is_one, squared, sums.smallest));
     sums.least =
         hn::Min(sums.least, hn::IfThenElseZero(is_one, hn::MulSub(along, hn::Abs(along), least)));
@@ -115,7 +115,7 @@ HWY_INLINE RingSums sum_ring(RingTag d, const BlockRings& rings, std::size_t lan
 HWY_INLINE Ring3 smooth_direction(RingTag d, const BlockRings& rings, std::size_t lane,
                                   const Ring3& normal) {
   const RingV zero = hn::Zero(d);
-  const RingV least = hn::Set(d, least_square);
+  const RingV least = hn::Set(d, min_square);
   const RingV count = hn::LoadU(d, rings.counts + lane);
   Ring3 sum{zero, zero, zero};
   each_row(rings, [&](const RingPart& part, const RingRow& row, float number) HWY_ATTR {
@@ -151,7 +151,7 @@ HWY_INLINE RingV measure_lanes(RingTag d, const VertexBlock& block, const BlockR
   facts.least = hn::Min(facts.least, sums.least);
   facts.smallest = hn::Min(facts.smallest, sums.smallest);
   const RingV count = hn::LoadU(d, rings.counts + lane);
-  const RingV per_square = hn::Div(count, hn::Max(sums.squares, hn::Set(d, least_square)));
+  const RingV per_square = hn::Div(count, hn::Max(sums.squares, hn::Set(d, min_square)));
   const Ring3 middle = scaled(sums.ways, hn::Div(one, hn::Max(count, one)));
   const RingV height = dot_product(middle, direction);
   const RingV rate = dot_product(direction, normal);
@@ -191,15 +191,15 @@ void find_axis(RingTag d, const VertexBlock& directions, RingFacts& facts) {
   facts.axis = {hn::GetLane(hn::SumOfLanes(d, sum.x)), hn::GetLane(hn::SumOfLanes(d, sum.y)),
                 hn::GetLane(hn::SumOfLanes(d, sum.z))};
   auto& [x, y, z] = facts.axis;
-  const float length = std::sqrt(std::max(x * x + y * y + z * z, least_square));
+  const float length = std::sqrt(std::max(x * x + y * y + z * z, min_square));
   for (float& coordinate : facts.axis)
     coordinate /= length;
   const Ring3 axis{hn::Set(d, x), hn::Set(d, y), hn::Set(d, z)};
   RingV least = hn::Set(d, 1.0F);
   for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d))
     least = hn::Min(least, dot_product(axis, load_vectors(d, directions, lane)));
-  facts.least_cosine = hn::GetLane(hn::MinOfLanes(d, least));
-  facts.sine = std::sqrt(std::max(1.0F - facts.least_cosine * facts.least_cosine, 0.0F));
+  facts.min_cosine = hn::GetLane(hn::MinOfLanes(d, least));
+  facts.sine = std::sqrt(std::max(1.0F - facts.min_cosine * facts.min_cosine, 0.0F));
 }
 
 void measure_all_lanes(const VertexBlock& block, const BlockRings& rings, bool is_turned,
@@ -213,8 +213,8 @@ void measure_all_lanes(const VertexBlock& block, const BlockRings& rings, bool i
     hn::Store(measure_lanes(d, block, rings, lane, measured, lanes), d, products.data() + lane);
   facts.volume = double_sum(products) / 3.0;
   facts.longest_edge = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, lanes.longest)));
-  facts.least_height = std::sqrt(hn::GetLane(hn::MinOfLanes(d, lanes.smallest))) /
-                       std::max(facts.longest_edge, least_square);
+  facts.min_height = std::sqrt(hn::GetLane(hn::MinOfLanes(d, lanes.smallest))) /
+                     std::max(facts.longest_edge, min_square);
   facts.is_even = !(hn::GetLane(hn::MinOfLanes(d, lanes.least)) < 0.0F);
   facts.may_turn = false;
 }
@@ -278,16 +278,16 @@ HWY_INLINE float widest_range(RingTag d, const Ring3& low, const Ring3& high) {
 Swelling swell_lanes(const RingBlock& measured, const float* weights, float far, float fairness,
                      VertexBlock& block) {
   const RingTag d;
-  const RingV most_fairing = hn::Set(d, 0.3F);
+  const RingV max_fairing = hn::Set(d, 0.3F);
   const RingV huge = hn::Set(d, 1e30F);
   Ring3 low{huge, huge, huge}, high = scaled(low, hn::Set(d, -1.0F));
-  RingV most_squared = hn::Zero(d);
+  RingV max_squared = hn::Zero(d);
   alignas(64) std::array<float, block_size> grown{};
   for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
     const RingV weight = hn::LoadU(d, weights + lane);
     const RingV per_edge = hn::Load(d, measured.per_edge.data() + lane);
     const RingV fair =
-        hn::Mul(weight, hn::Min(most_fairing, hn::Mul(hn::Set(d, fairness), per_edge)));
+        hn::Mul(weight, hn::Min(max_fairing, hn::Mul(hn::Set(d, fairness), per_edge)));
     const Ring3 direction = load_vectors(d, measured.direction, lane);
     const Ring3 fairing = load_vectors(d, measured.fairing, lane);
     const Ring3 out = scaled(direction, hn::Mul(weight, hn::Set(d, far)));
@@ -296,14 +296,13 @@ Swelling swell_lanes(const RingBlock& measured, const float* weights, float far,
     store_vectors(d, sum_of(load_vectors(d, block, lane), by), block, lane);
     low = {hn::Min(low.x, out.x), hn::Min(low.y, out.y), hn::Min(low.z, out.z)};
     high = {hn::Max(high.x, out.x), hn::Max(high.y, out.y), hn::Max(high.z, out.z)};
-    most_squared =
-        hn::Max(most_squared, hn::Mul(hn::Mul(fair, fair), dot_product(fairing, fairing)));
+    max_squared = hn::Max(max_squared, hn::Mul(hn::Mul(fair, fair), dot_product(fairing, fairing)));
     const RingV rate = hn::Load(d, measured.rate.data() + lane);
     hn::Store(hn::Mul(hn::Mul(fair, dot_product(fairing, direction)), rate), d,
               grown.data() + lane);
   }
   return {double_sum(grown), widest_range(d, low, high),
-          std::sqrt(hn::GetLane(hn::MaxOfLanes(d, most_squared)))};
+          std::sqrt(hn::GetLane(hn::MaxOfLanes(d, max_squared)))};
 }
 
 } // namespace nendo::deform::HWY_NAMESPACE

@@ -42,12 +42,12 @@ struct alignas(64) RingBlock {
 struct RingFacts {
   double volume = 0.0;         ///< the block's part
   std::array<float, 3> axis{}; ///< the middle of the directions, of length 1
-  float least_cosine = 1.0F;   ///< of an angle between the axis and a direction
+  float min_cosine = 1.0F;     ///< of an angle between the axis and a direction
   float sine = 0.0F;           ///< of that angle
   float longest_edge = 0.0F;
-  float least_height = 0.0F; ///< of a face; at most
-  bool is_even = true;       ///< each face looks into the directions of its corners, to 72 degrees
-  bool may_turn = false;     ///< some face may have been turned over by swelling since
+  float min_height = 0.0F; ///< of a face; at most
+  bool is_even = true;     ///< each face looks into the directions of its corners, to 72 degrees
+  bool may_turn = false;   ///< some face may have been turned over by swelling since
 };
 
 /// Puts a block's vectors first in a table.

@@ -90,7 +90,7 @@ HWY_INLINE float middle_of(const float* weights) {
   const float highest = hn::GetLane(hn::MaxOfLanes(d, most));
   const bool has_zero = hn::GetLane(hn::MinOfLanes(d, nearest)) == 0.0F;
   const float middle = has_zero ? 0.0F : 0.5F * (lowest + highest);
-  const bool near = highest - middle <= most_from_middle && middle - lowest <= most_from_middle;
+  const bool near = highest - middle <= max_from_middle && middle - lowest <= max_from_middle;
   return near ? middle : std::numeric_limits<float>::quiet_NaN();
 }
 
@@ -129,17 +129,17 @@ struct WeightBuild {
   /// False if there is no room, or a weight is not finite.
   HWY_INLINE bool weigh(const std::uint32_t* list, std::size_t size, const VertexBlock& vertices,
                         WeightedBlock& made) {
-    std::array<WeightEntry, most_weighted_starts> entries;
+    std::array<WeightEntry, max_weighted_starts> entries;
     std::size_t count = 0;
     for (std::size_t j = 0; j < source.starts; ++j) {
       float* const weights = source.room_for_weights + count * block_size;
       const double largest = weights_of(source, j, list, size, vertices, weights);
-      if (!(largest <= most_units)) return false; // NaN, too
+      if (!(largest <= max_units)) return false; // NaN, too
       if (largest <= static_cast<double>(source.least)) continue;
       cache.largest = largest > cache.largest ? largest : cache.largest;
       entries[count++] = {static_cast<std::uint32_t>(j), middle_of(weights)};
     }
-    if (cache.used_entries + count > cache.most_entries) return false;
+    if (cache.used_entries + count > cache.max_entries) return false;
     for (const bool in_steps : {true, false})
       for (std::size_t at = 0; at < count; ++at)
         if (std::isnan(entries[at].middle) != in_steps &&
@@ -151,7 +151,7 @@ struct WeightBuild {
   HWY_INLINE bool keep(WeightEntry entry, const float* weights, bool in_steps,
                        WeightedBlock& made) {
     const std::size_t bytes = in_steps ? bytes_in_steps : bytes_in_float;
-    if (cache.used_bytes + bytes > cache.most_bytes) return false;
+    if (cache.used_bytes + bytes > cache.max_bytes) return false;
     std::byte* const to = cache.weights + cache.used_bytes;
     if (in_steps) {
       store_steps(weights, entry.middle, to);

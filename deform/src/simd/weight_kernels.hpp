@@ -18,9 +18,9 @@ namespace nendo::deform {
 inline constexpr float weight_step = 0x1p-19F;
 /// With more start points than this, each vertex would have so many weights that evaluating the
 /// field is cheaper.
-inline constexpr std::size_t most_weighted_starts = 64;
+inline constexpr std::size_t max_weighted_starts = 64;
 /// The largest distance from the middle that 16 bits can hold.
-inline constexpr float most_from_middle = 32767 * weight_step;
+inline constexpr float max_from_middle = 32767 * weight_step;
 
 /// The weights of start point `start` at the 64 vertices of a block.
 struct WeightEntry {
@@ -41,9 +41,9 @@ inline constexpr std::size_t bytes_in_float = block_size * sizeof(float);
 
 struct WeightCache {
   WeightedBlock* blocks; ///< room for all of the shape's
-  WeightEntry* entries;  ///< `most_entries`
-  std::byte* weights;    ///< `most_bytes`, aligned for vectors
-  std::size_t most_entries, most_bytes;
+  WeightEntry* entries;  ///< `max_entries`
+  std::byte* weights;    ///< `max_bytes`, aligned for vectors
+  std::size_t max_entries, max_bytes;
   std::size_t block_count;
   std::size_t used_entries, used_bytes;
   double largest; ///< absolute weight

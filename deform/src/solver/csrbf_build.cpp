@@ -78,7 +78,7 @@ KernelSystem::Assembled CsrbfSolver::State::assemble(const OwnFunctions& own, Sy
     system = systems[at].get();
     return system->assemble(options_, ordered_starts_, ordered_supports_, own);
   };
-  if (keeps_volume() && n > most_volume_points) return KernelSystem::Assembled::too_dense;
+  if (keeps_volume() && n > max_volume_points) return KernelSystem::Assembled::too_dense;
   if (keeps_volume())
     return n <= lean_size ? assemble_in(0, make_lean_system) : assemble_in(1, make_dense_system);
   if (choices.storage == Storage::sparse ||
@@ -88,7 +88,7 @@ KernelSystem::Assembled CsrbfSolver::State::assemble(const OwnFunctions& own, Sy
     effort.sparse = assembled != KernelSystem::Assembled::too_dense;
     if (effort.sparse || choices.storage == Storage::sparse) return assembled;
   }
-  if (n > most_dense_points) return KernelSystem::Assembled::too_dense;
+  if (n > max_dense_points) return KernelSystem::Assembled::too_dense;
   return n <= lean_size ? assemble_in(0, make_lean_system) : assemble_in(1, make_dense_system);
 }
 
@@ -97,9 +97,9 @@ FieldStatus CsrbfSolver::State::factorise(KernelSystem& system, double size) {
   // A ridge keeps clusters factorisable that are not near enough to be merged. It is always there,
   // so that the field does not jump when they form; one step of refinement takes its effect back
   // where M is not near-singular.
-  constexpr double least_ridge = 1e-13;
+  constexpr double min_ridge = 1e-13;
   constexpr double largest_ridge = 1e-8;
-  for (double ridge = least_ridge; ridge < largest_ridge; ridge *= 10.0)
+  for (double ridge = min_ridge; ridge < largest_ridge; ridge *= 10.0)
     if (system.factorise(ridge * size)) return FieldStatus::ok;
   return FieldStatus::singular;
 }

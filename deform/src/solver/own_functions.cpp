@@ -41,7 +41,7 @@ bool OwnFunctions::evaluate(Wendland kernel, const Points& starts, const Support
     }
     begins_.push_back(values_.size());
     weights_.push_back(own.support.weight);
-    if (values_.size() > CsrbfSolver::most_own_values) return false;
+    if (values_.size() > CsrbfSolver::max_own_values) return false;
   }
   return true;
 }

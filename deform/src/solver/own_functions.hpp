@@ -20,7 +20,7 @@ public:
   };
 
   /// Evaluates the functions, with a grid if there are many points. Allocates unless as many values
-  /// fitted before. Returns false if there are more than CsrbfSolver::most_own_values.
+  /// fitted before. Returns false if there are more than CsrbfSolver::max_own_values.
   bool evaluate(Wendland kernel, const Points& starts, const Supports& supports);
 
   std::size_t size() const noexcept { return weights_.size(); }

@@ -36,12 +36,12 @@ void PolynomialPart::assemble(const Points& starts, Polynomial polynomial) {
 void PolynomialPart::orthonormalise(const Eigen::Matrix4d& normalise) {
   // Eigenvalues are squares: this keeps directions in which the points spread more than 1e-6 of
   // their size.
-  constexpr double least_eigenvalue = 1e-12;
+  constexpr double min_eigenvalue = 1e-12;
   Eigen::Matrix4d gram = Eigen::Matrix4d::Zero();
   for (Eigen::Index i = 0; i < basis_.rows(); ++i)
     gram.noalias() += basis_.row(i).transpose() * basis_.row(i);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(gram);
-  const double least = least_eigenvalue * static_cast<double>(basis_.rows());
+  const double least = min_eigenvalue * static_cast<double>(basis_.rows());
   Eigen::Matrix4d change = eigen.eigenvectors();
   for (Eigen::Index k = 0; k < 4; ++k) {
     const double value = eigen.eigenvalues()[k];

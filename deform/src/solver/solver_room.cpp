@@ -31,7 +31,7 @@ Supports rounded(Supports supports, const BlockLayout& layout) {
   return supports;
 }
 
-Eigen::VectorXd least_radii(const Supports& supports, Eigen::Index points) {
+Eigen::VectorXd min_radii(const Supports& supports, Eigen::Index points) {
   double shared = supports.shared.front().radius;
   for (const Support& support : supports.shared)
     shared = std::min(shared, support.radius);

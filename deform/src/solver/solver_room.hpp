@@ -20,7 +20,7 @@ void make_room(CsrbfSolver& solver, const Supports& supports, Eigen::Index point
 Supports rounded(Supports supports, const BlockLayout& layout);
 
 /// Returns, for each point, the least radius of the functions that have it as their centre.
-Eigen::VectorXd least_radii(const Supports& supports, Eigen::Index points);
+Eigen::VectorXd min_radii(const Supports& supports, Eigen::Index points);
 
 /// Tells whether strokes keep the volume, in midpoint steps.
 inline bool keeps_volume(const DeformerOptions& options) noexcept {

@@ -110,15 +110,15 @@ private:
 
 std::optional<SparseAssembly> assemble_sparse(const CsrbfOptions& options, const Points& starts,
                                               const Supports& supports, const OwnFunctions& own,
-                                              std::size_t most_entries) {
+                                              std::size_t max_entries) {
   // Even where own functions meet in the same entries, this many products take seconds.
-  constexpr double most_products = 1e9;
-  if (own.pairs() > most_products) return std::nullopt;
+  constexpr double max_products = 1e9;
+  if (own.pairs() > max_products) return std::nullopt;
   Columns columns(options, starts, supports, own);
   SparseAssembly assembly;
   for (Eigen::Index j = 0; j < starts.cols(); ++j) {
     columns.append(j, assembly);
-    if (assembly.lower.rows.size() > most_entries) return std::nullopt;
+    if (assembly.lower.rows.size() > max_entries) return std::nullopt;
   }
   columns.finish_diagonal(assembly.lower);
   return assembly;

@@ -24,9 +24,9 @@ struct SparseAssembly {
   bool merged = false;
 };
 
-/// Returns nothing if there would be more than `most_entries`.
+/// Returns nothing if there would be more than `max_entries`.
 std::optional<SparseAssembly> assemble_sparse(const CsrbfOptions& options, const Points& starts,
                                               const Supports& supports, const OwnFunctions& own,
-                                              std::size_t most_entries);
+                                              std::size_t max_entries);
 
 } // namespace nendo::deform

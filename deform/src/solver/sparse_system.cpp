@@ -13,12 +13,12 @@ namespace nendo::deform {
 namespace {
 
 /// Beyond an eighth of all pairs, dense is as fast: it does five times as many operations a second.
-constexpr std::size_t least_sparsity = 8;
+constexpr std::size_t min_sparsity = 8;
 /// Of M's triangle: a fair part of what the factor may have.
-constexpr std::size_t most_matrix_entries = CsrbfSolver::most_factor_entries / 2;
+constexpr std::size_t max_matrix_entries = CsrbfSolver::max_factor_entries / 2;
 
 /// Below, what minimum degree takes from the factor's time is less than it takes itself.
-constexpr Eigen::Index least_minimum_degree_points = 800;
+constexpr Eigen::Index min_minimum_degree_points = 800;
 
 using Matrix = Eigen::SparseMatrix<double>;
 
@@ -41,8 +41,8 @@ public:
   Assembled assemble(const CsrbfOptions& options, const Points& starts, const Supports& supports,
                      const OwnFunctions& own) override {
     const auto n = static_cast<std::size_t>(starts.cols());
-    std::size_t most = most_matrix_entries;
-    if (!must_) most = std::min(most, n * (n + 1) / 2 / least_sparsity);
+    std::size_t most = max_matrix_entries;
+    if (!must_) most = std::min(most, n * (n + 1) / 2 / min_sparsity);
     auto assembly = assemble_sparse(options, starts, supports, own, most);
     if (!assembly) return Assembled::too_dense;
     lower_ = std::move(assembly->lower);
@@ -54,7 +54,7 @@ public:
                                          lower_.begins.data(), lower_.rows.data(),
                                          lower_.values.data());
     const auto symmetric = lower.selfadjointView<Eigen::Lower>();
-    const bool is_large = lower_.size() >= least_minimum_degree_points;
+    const bool is_large = lower_.size() >= min_minimum_degree_points;
     if (order == PointOrder::minimum_degree || (order == PointOrder::by_size && is_large)) {
       Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> from_place;
       Eigen::AMDOrdering<int>()(symmetric, from_place);
@@ -65,7 +65,7 @@ public:
     upper_.resize(lower_.size(), lower_.size());
     upper_.selfadjointView<Eigen::Upper>() = symmetric.twistedBy(to_place_);
     cholesky_.analyzePattern(upper_);
-    return cholesky_.entries() <= CsrbfSolver::most_factor_entries;
+    return cholesky_.entries() <= CsrbfSolver::max_factor_entries;
   }
 
   bool factorise(double ridge) override {

@@ -18,11 +18,11 @@ namespace nendo::deform {
 namespace {
 
 /// Where faces met, nothing is done in the next attempt.
-constexpr int most_tries = 5;
+constexpr int max_tries = 5;
 /// Walls that are thin in many places get one hole after the other, and not all at once: so far
 /// apart, in edges.
 constexpr double between_holes = 8.0;
-constexpr std::size_t most_of_patch = 4096; // points
+constexpr std::size_t max_of_patch = 4096; // points
 
 /// A hole that there was, or a bridge, becomes wider where there was one patch.
 void count(ThinPlace::Kind kind, int patches, TopologyCounts& counts) noexcept {
@@ -115,12 +115,12 @@ private:
                                         const std::set<std::uint32_t>& facing) const {
     std::vector<std::uint32_t> patch{first};
     std::set<std::uint32_t> seen{first};
-    for (std::size_t at = 0; at < patch.size() && patch.size() < most_of_patch; ++at)
+    for (std::size_t at = 0; at < patch.size() && patch.size() < max_of_patch; ++at)
       for (const std::uint32_t neighbour : surface_.ring(patch[at]))
         if (facing.contains(neighbour) && !touched_.contains(neighbour) &&
             seen.insert(neighbour).second)
           patch.push_back(neighbour);
-    for (std::size_t at = 0; at < patch.size() && patch.size() < most_of_patch; ++at)
+    for (std::size_t at = 0; at < patch.size() && patch.size() < max_of_patch; ++at)
       for (const std::uint32_t neighbour : surface_.ring(patch[at]))
         if (!seen.contains(neighbour) && !touched_.contains(neighbour) &&
             is_within(neighbour, seen)) {
@@ -154,7 +154,7 @@ Result<ChangedTopology> change_topology(const Mesh& mesh) {
   const ThinSurface before(std::move(surface));
   const std::vector<ThinPlace> places = thin_places(before);
   std::set<Triple> left_alone;
-  for (int number = 0; number < most_tries; ++number) {
+  for (int number = 0; number < max_tries; ++number) {
     TopologyAttempt attempt(before, places, left_alone);
     if (attempt.counts.all() == 0) break;
     const std::set<Triple> meeting = attempt.meeting();

@@ -18,16 +18,16 @@ namespace {
 // Of Mesh::detail.
 constexpr double longest_of_detail = 1.5;
 constexpr double shortest_of_detail = 0.5;
-constexpr double least_height = 1e-3;
+constexpr double min_height = 1e-3;
 /// No collapse turns a face by more than 25 degrees: sharp edges stay sharp.
-constexpr double least_cosine = 0.9;
+constexpr double min_cosine = 0.9;
 /// Where no edge has changed its length by more, nobody has been, and the triangles are left alone,
 /// however uneven they are.
-constexpr double least_change = 0.3;
-constexpr int most_refining_rounds = 8;
+constexpr double min_change = 0.3;
+constexpr int max_refining_rounds = 8;
 /// Where an operation made a self-intersection, nothing is done the next time. The last attempts
 /// only split, which changes no shape but for rounding. After them, nothing is done at all.
-constexpr int most_attempts = 7;
+constexpr int max_attempts = 7;
 constexpr int splitting_attempts = 2;
 
 /// The mean length of the edges around each point, of a surface that was not refined before.
@@ -105,7 +105,7 @@ struct Refiner::Parts {
       live.visit_edges(point, [&](std::uint32_t edge) {
         const double before = surface.edge_length(edge);
         is_changed =
-            is_changed || std::abs(unit * live.edge_length(edge) - before) > least_change * before;
+            is_changed || std::abs(unit * live.edge_length(edge) - before) > min_change * before;
       });
       if (!is_changed) continue;
       zone.coarseness[point] = static_cast<float>(static_cast<double>(detail.edge) / target);
@@ -117,10 +117,10 @@ struct Refiner::Parts {
     RefineLimits limits;
     limits.longest = longest_of_detail * target / unit;
     limits.shortest = shortest_of_detail * target / unit;
-    limits.thin = least_height * limits.longest;
-    limits.least_cosine = least_cosine;
+    limits.thin = min_height * limits.longest;
+    limits.min_cosine = min_cosine;
     limits.budget = asked.budget;
-    limits.most_points = asked.most_vertices;
+    limits.max_points = asked.max_vertices;
     return limits;
   }
 };
@@ -172,7 +172,7 @@ Attempt attempt(LiveSurface live, RefineZone zone, RefineLimits limits, bool onl
   Attempt made;
   live.note_in(&made.operations);
   limits.only_splits = only_splits;
-  for (int round = 0; round < most_refining_rounds; ++round) {
+  for (int round = 0; round < max_refining_rounds; ++round) {
     const RefineCounts done = refine(live, zone, limits);
     limits.budget -= done.splits + done.collapses;
     if (done.splits + done.collapses + done.flips == 0) break;
@@ -251,9 +251,9 @@ Refinement Refiner::refine(const BlockShape& shape, const BlockLayout& layout,
   RefineZone zone = parts_->zone_of(live, layout.unit());
   RefineLimits limits = parts_->limits(layout.unit(), asked);
   Attempt made;
-  for (int count = 0; count <= most_attempts; ++count) {
-    if (count == most_attempts) limits.budget = 0; // nothing is done
-    made = attempt(live, zone, limits, count + splitting_attempts >= most_attempts);
+  for (int count = 0; count <= max_attempts; ++count) {
+    if (count == max_attempts) limits.budget = 0; // nothing is done
+    made = attempt(live, zone, limits, count + splitting_attempts >= max_attempts);
     if (!leave_alone(made, live, zone)) break;
   }
   Refinement result;

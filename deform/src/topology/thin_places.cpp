@@ -9,7 +9,7 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr double most_of_loop = 3.0; // edges that three should be
+constexpr double max_of_loop = 3.0; // edges that three should be
 /// How near two sheets must be, and how far from opposite their points may be, in edges.
 struct Facing {
   double through_wall, through_air, aside;
@@ -38,7 +38,7 @@ void add_necks(const ThinSurface& surface, std::uint32_t a, std::vector<ThinPlac
                             distance_between(surface.point(c), surface.point(a));
       const double wanted = (surface.wanted(a) + surface.wanted(b) + surface.wanted(c)) / 3.0;
       const double size = length / wanted;
-      if (size < most_of_loop) places.push_back({ThinPlace::Kind::neck, {a, b, c}, size});
+      if (size < max_of_loop) places.push_back({ThinPlace::Kind::neck, {a, b, c}, size});
     }
   }
 }

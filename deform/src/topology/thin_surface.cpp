@@ -10,8 +10,8 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr double gap_of_edge = 0.25;    // between the ends of a neck that has parted
-constexpr std::size_t least_faces = 32; // of what is no crumb
+constexpr double gap_of_edge = 0.25;  // between the ends of a neck that has parted
+constexpr std::size_t min_faces = 32; // of what is no crumb
 
 } // namespace
 
@@ -79,7 +79,7 @@ bool ThinSurface::is_crumb(const Triple& loop, const SideOfLoop& side,
       const std::uint32_t neighbour = other_face(edge);
       if (beyond.contains(neighbour)) return false; // a handle
       if (!seen.insert(neighbour).second) continue;
-      if (seen.size() >= least_faces) return false;
+      if (seen.size() >= min_faces) return false;
       left_to_see.push_back(neighbour);
     }
   }
@@ -141,8 +141,8 @@ ThinSurface::Rims ThinSurface::rims_of(const std::set<std::uint32_t>& faces) con
 
 /// Only the two longest rims stay, which meet no point twice, if few rounds lead there.
 std::set<std::uint32_t> ThinSurface::without_islands(std::set<std::uint32_t> faces) const {
-  constexpr int most_rounds = 16;
-  for (int round = 0; round < most_rounds; ++round) {
+  constexpr int max_rounds = 16;
+  for (int round = 0; round < max_rounds; ++round) {
     const Rims rims = rims_of(faces);
     faces.merge(faces_around(rims.doubled));
     if (rims.doubled.empty() && rims.loops.size() <= 2) break;
@@ -155,7 +155,7 @@ std::set<std::uint32_t> ThinSurface::without_islands(std::set<std::uint32_t> fac
 /// Adds what is within a rim, unless it is much.
 bool ThinSurface::fill(const std::vector<std::uint32_t>& rim,
                        std::set<std::uint32_t>& faces) const {
-  constexpr std::size_t most_faces = 512;
+  constexpr std::size_t max_faces = 512;
   std::vector<std::uint32_t> found;
   const auto find = [&](std::uint32_t face) {
     if (faces.insert(face).second) found.push_back(face);
@@ -163,7 +163,7 @@ bool ThinSurface::fill(const std::vector<std::uint32_t>& rim,
   for (std::size_t at = 0; at < rim.size(); ++at)
     find(edge_between(rim[(at + 1) % rim.size()], rim[at]) / 3);
   for (std::size_t at = 0; at < found.size(); ++at) {
-    if (found.size() > most_faces) return false;
+    if (found.size() > max_faces) return false;
     const std::uint32_t first = 3 * found[at];
     for (std::uint32_t edge = first; edge < first + 3; ++edge)
       find(other_face(edge));

@@ -40,11 +40,11 @@ fs::path temporary_beside(const fs::path& target) {
 
 // Not mkstemp: its 0600 would override the umask.
 Descriptor new_temporary(const fs::path& target, fs::path& name) {
-  constexpr int most_leftovers = 100;
+  constexpr int max_leftovers = 100;
   for (int turn = 0;; ++turn) {
     name = temporary_beside(target);
     Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (file.is_open() || errno != EEXIST || turn == most_leftovers) return file;
+    if (file.is_open() || errno != EEXIST || turn == max_leftovers) return file;
   }
 }
 
@@ -87,19 +87,19 @@ Result<OpenFile> open_file(const fs::path& path, std::string_view kind) {
   return OpenFile{std::move(file), static_cast<std::uint64_t>(info.st_size)};
 }
 
-Result<std::string> read_file(const fs::path& path, std::uint64_t most_bytes,
+Result<std::string> read_file(const fs::path& path, std::uint64_t max_bytes,
                               std::string_view kind) {
   const auto bad = [&](const std::string& what) {
     return Error{Errc::bad_input, path.string() + ": " + what};
   };
   const auto too_large = [&] {
-    return bad("is larger than " + size_text(most_bytes) + ", so it is no " + std::string(kind));
+    return bad("is larger than " + size_text(max_bytes) + ", so it is no " + std::string(kind));
   };
   const auto opened = open_file(path, kind);
   if (!opened) return opened.error();
   const Descriptor& file = opened->file;
   const std::uint64_t size = opened->size;
-  if (size > most_bytes) return too_large();
+  if (size > max_bytes) return too_large();
   std::string contents(size + 1, '\0'); // one more than is there: its end is seen in one turn
   std::size_t filled = 0;
   for (;;) {
@@ -108,10 +108,10 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t most_bytes,
     if (got < 0) return bad("cannot be read: " + why(errno));
     if (got == 0) break;
     filled += static_cast<std::size_t>(got);
-    if (filled > most_bytes) return too_large();
+    if (filled > max_bytes) return too_large();
     // Files that grow, and those of /proc, are longer than they said.
     if (filled == contents.size())
-      contents.resize(std::min(2 * contents.size(), static_cast<std::size_t>(most_bytes) + 1));
+      contents.resize(std::min(2 * contents.size(), static_cast<std::size_t>(max_bytes) + 1));
   }
   contents.resize(filled);
   return contents;
@@ -180,9 +180,9 @@ fs::path target_of(const fs::path& path) {
   std::error_code missing;
   fs::path target = fs::canonical(path, missing);
   if (!missing) return target;
-  constexpr int most_links = 40; // as many as the kernel follows
+  constexpr int max_links = 40; // as many as the kernel follows
   target = path;
-  for (int links = 0; links < most_links; ++links) { // what the last link names is not there yet
+  for (int links = 0; links < max_links; ++links) { // what the last link names is not there yet
     std::error_code no_link;
     const fs::path next = fs::read_symlink(target, no_link);
     if (no_link) return target;

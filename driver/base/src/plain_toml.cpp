@@ -131,13 +131,13 @@ private:
     return value(depth);
   }
   bool key() {
-    for (int parts = 1; parts <= most_toml_depth; ++parts) {
+    for (int parts = 1; parts <= max_toml_depth; ++parts) {
       if (!key_part()) return false;
       skip_blanks();
       if (!skip('.')) return true;
       skip_blanks();
     }
-    return complain("a key has more than " + std::to_string(most_toml_depth) +
+    return complain("a key has more than " + std::to_string(max_toml_depth) +
                     " parts; this program knows none of so many");
   }
   bool key_part() {
@@ -180,8 +180,8 @@ private:
     if (rest_.starts_with("'''")) return long_text();
     if (next() == '"' || next() == '\'') return quoted();
     if (next() != '[' && next() != '{') return word();
-    if (depth == most_toml_depth)
-      return complain("lists and tables stand more than " + std::to_string(most_toml_depth) +
+    if (depth == max_toml_depth)
+      return complain("lists and tables stand more than " + std::to_string(max_toml_depth) +
                       " deep within each other; this program knows none so deep");
     return skip('[') ? list(depth + 1) : skip('{') && table(depth + 1);
   }

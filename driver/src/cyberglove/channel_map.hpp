@@ -12,8 +12,8 @@
 namespace nendo::driver::cyberglove {
 
 struct ChannelMap {
-  std::array<std::uint8_t, most_values> slot{}; ///< of value k
-  std::size_t count = 0;                        ///< values in a record
+  std::array<std::uint8_t, max_values> slot{}; ///< of value k
+  std::size_t count = 0;                       ///< values in a record
 
   constexpr SensorMask sensors() const noexcept {
     SensorMask mask;

@@ -262,9 +262,9 @@ Answer Commands::reread_glove() noexcept {
   return set({&letter, 1}, std::span<const std::uint8_t>());
 }
 
-Reply<RecordBytes> Commands::record(std::size_t least_bytes) noexcept {
+Reply<RecordBytes> Commands::record(std::size_t min_bytes) noexcept {
   Reply<RecordBytes> reply;
-  reply.answer = dialogue_.ask_record(least_bytes, reply.value.bytes, reply.value.size, timeout_);
+  reply.answer = dialogue_.ask_record(min_bytes, reply.value.bytes, reply.value.size, timeout_);
   return reply;
 }
 

@@ -48,7 +48,7 @@ struct Vibrator {
 };
 
 struct RecordBytes {
-  std::array<std::byte, most_plain_bytes> bytes{};
+  std::array<std::byte, max_plain_bytes> bytes{};
   std::size_t size = 0; ///< with header and NUL
 };
 
@@ -104,7 +104,7 @@ public:
   Answer stop() noexcept;         ///< ends a stream, or a command that waits for its argument
   Answer restart() noexcept;      ///< up to 2.5 s; settings are then as after power-up
   Answer reread_glove() noexcept; ///< reads the memory of a glove that was swapped
-  Reply<RecordBytes> record(std::size_t least_bytes) noexcept;
+  Reply<RecordBytes> record(std::size_t min_bytes) noexcept;
 
   // CyberGlove III only.
   Answer set_sink(Sink sink, bool on) noexcept;

@@ -13,8 +13,8 @@ constexpr auto quiet_end = 30ms;       ///< after what may be the end of a reply
 constexpr auto rest_of_answer = 100ms; ///< after a beginning that came late; 90 bytes at 9600 baud
 constexpr auto write_timeout = 200ms;
 constexpr auto longest_wait = 100ms; ///< between two looks at the stop token
-constexpr std::size_t most_junk_bytes = 4096;
-constexpr std::size_t most_text_bytes = 2048;
+constexpr std::size_t max_junk_bytes = 4096;
+constexpr std::size_t max_text_bytes = 2048;
 
 /// The error that came last, if any; its NUL may not have come yet.
 std::optional<Answer> error_at_end(const Tail& tail) noexcept {
@@ -101,7 +101,7 @@ Answer Dialogue::next(std::byte& byte, HostTime until) noexcept {
 template <class Judge>
 Answer Dialogue::read_until(HostTime& until, Judge&& judge) noexcept {
   const HostTime quiet_until = std::max(until, std::min(deadline_, sent_at_ + quiet_wait_));
-  for (std::size_t skipped = 0; skipped < most_junk_bytes; ++skipped) {
+  for (std::size_t skipped = 0; skipped < max_junk_bytes; ++skipped) {
     std::byte byte{};
     const Answer answer = next(byte, skipped == 0 ? quiet_until : until);
     if (answer == Answer::silent && skipped > 0) return Answer::nonsense;
@@ -203,7 +203,7 @@ Answer Dialogue::ask_text(char letter, std::string& text, std::chrono::milliseco
   for (std::byte byte{}; answer == Answer::good;) {
     answer = next(byte, until);
     if (answer != Answer::good) break;
-    if (byte == terminator || text.size() == most_text_bytes) return Answer::good;
+    if (byte == terminator || text.size() == max_text_bytes) return Answer::good;
     text.push_back(std::to_integer<char>(byte));
   }
   return answer;

@@ -25,7 +25,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto state_answer = 300ms; ///< of a unit that has just answered all else
-constexpr std::uint16_t most_hires_count = 4095;
+constexpr std::uint16_t max_hires_count = 4095;
 constexpr int tries_at_start = 4;   ///< to ask a unit how it is, before the stream begins
 constexpr int answers_at_start = 4; ///< two tries, each as long as one and a half of the slowest
 constexpr auto pause_answer = 150ms;
@@ -57,7 +57,7 @@ public:
     info.side = identity_.side;
     info.sensors = identity_.channels.sensors();
     info.rate_hz = identity_.rate_hz;
-    if (identity_.hires) info.counts.most = most_hires_count;
+    if (identity_.hires) info.counts.most = max_hires_count;
     info.abilities = identity_.abilities;
     info.facts = identity_.facts;
     return info;

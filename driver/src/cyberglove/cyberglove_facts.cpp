@@ -16,13 +16,13 @@ using namespace std::chrono_literals;
 constexpr auto optional_answer = 250ms;
 /// Of a unit that is late with each answer, not all can be asked.
 constexpr auto longest_interview = 2s;
-constexpr std::size_t most_fact_characters = 200;
+constexpr std::size_t max_fact_characters = 200;
 
 /// Printable characters only; the end of a line becomes a slash, blanks become one.
 std::string one_line(std::string_view text) {
   std::string line;
   for (const char c : text) {
-    if (line.size() >= most_fact_characters) break;
+    if (line.size() >= max_fact_characters) break;
     const bool printable = c > 0x20 && c < 0x7F;
     if (printable) line.push_back(c);
     if (c == ' ' && !line.empty() && line.back() != ' ') line.push_back(' ');
@@ -162,13 +162,13 @@ void Interview::ask_rest() {
 } // namespace
 
 std::string model_line(std::string_view text) {
-  constexpr std::size_t most_characters = 60;
+  constexpr std::size_t max_characters = 60;
   std::string line;
   for (const char c : text) {
     const bool printable = c >= 0x20 && c < 0x7F;
     if (c == '\n' && !line.empty()) break;
     if (printable && (c != ' ' || !line.empty())) line.push_back(c);
-    if (line.size() == most_characters) break;
+    if (line.size() == max_characters) break;
   }
   line.erase(line.find_last_not_of(' ') + 1);
   return line.empty() ? "CyberGlove" : line;

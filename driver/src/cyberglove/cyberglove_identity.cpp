@@ -20,7 +20,7 @@ constexpr auto needed_answer = 400ms;
 constexpr auto needed_answer_quiet = 1000ms;
 /// The caller's deadline is for units that answer at once. One that has shown that it is there may
 /// take so many of its slowest answers more; there are some twenty questions.
-constexpr int most_answers = 30;
+constexpr int max_answers = 30;
 constexpr int tries = 2; ///< for anything that noise on the line explains
 
 bool is_final(Answer answer) noexcept {
@@ -79,7 +79,7 @@ public:
         options_(request.options) {}
 
   Result<Identity> run() {
-    dialogue_.prolong(HostClock::now() + most_answers * dialogue_.slowest_answer());
+    dialogue_.prolong(HostClock::now() + max_answers * dialogue_.slowest_answer());
     dialogue_.wait_on_quiet_line(needed_answer_quiet);
     for (const auto step :
          {&SetUp::ask_channels, &SetUp::ask_hand, &SetUp::set_switches, &SetUp::set_records}) {

@@ -15,8 +15,8 @@
 namespace nendo::driver::cyberglove {
 namespace {
 
-constexpr double least_rate_hz = 0.1;
-constexpr double most_rate_hz = 1000.0;
+constexpr double min_rate_hz = 0.1;
+constexpr double max_rate_hz = 1000.0;
 
 Error wrong(const GloveSpec& spec, const std::string& key, const std::string& known) {
   return {Errc::usage, spec.text + ": " + key + "=" + spec.options.at(key) + " is not " + known};
@@ -49,7 +49,7 @@ std::optional<int> read_baud(std::string_view text) {
 
 std::optional<double> read_rate(std::string_view text) {
   const auto rate_hz = number_in<double>(text);
-  if (!rate_hz || !(*rate_hz >= least_rate_hz && *rate_hz <= most_rate_hz)) return std::nullopt;
+  if (!rate_hz || !(*rate_hz >= min_rate_hz && *rate_hz <= max_rate_hz)) return std::nullopt;
   return rate_hz;
 }
 
@@ -137,10 +137,10 @@ Result<RecordPlan> plan_records(const Options& options, std::size_t values, int 
 }
 
 Result<std::optional<std::uint8_t>> plan_hires(const Options& options, int baud) {
-  constexpr double most_steps = 4; // 120 records a second, what the maker states
+  constexpr double max_steps = 4; // 120 records a second, what the maker states
   if (!options.rate_hz) return std::optional<std::uint8_t>{};
   const double steps = *options.rate_hz / third_frame_step_hz;
-  if (steps != std::floor(steps) || steps < 1 || steps > most_steps) {
+  if (steps != std::floor(steps) || steps < 1 || steps > max_steps) {
     return Error{Errc::usage, fmt::format("rate={:g}: with hires=on it is one of 30, 60, 90, 120",
                                           *options.rate_hz)};
   }

@@ -52,7 +52,7 @@ bool is_header(std::byte byte) noexcept {
 
 std::optional<Record> decode_plain(std::span<const std::byte> frame,
                                    const RecordShape& shape) noexcept {
-  if (frame.size() < shape.bytes() || frame.size() > shape.bytes() + most_error_bytes ||
+  if (frame.size() < shape.bytes() || frame.size() > shape.bytes() + max_error_bytes ||
       !is_header(frame[0])) {
     return std::nullopt;
   }
@@ -102,7 +102,7 @@ void Parser::count_unplugged() noexcept {
 
 std::optional<Record> Parser::extend_plain() noexcept {
   if (frame_[held_ - 1] == terminator) return end_plain();
-  if (held_ < shape_.bytes() + most_error_bytes) return std::nullopt;
+  if (held_ < shape_.bytes() + max_error_bytes) return std::nullopt;
   if (nul_in_stamp_) {
     drop_bad_frame(); // that NUL was a terminator; what followed it begins the next frame
   } else {

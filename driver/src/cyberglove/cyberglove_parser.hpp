@@ -25,7 +25,7 @@ namespace nendo::driver::cyberglove {
 
 enum class RecordForm : std::uint8_t { plain, hi_res };
 
-/// The parts that a record is expected to have. `values` is 1 to most_values, and 22 in the hi_res
+/// The parts that a record is expected to have. `values` is 1 to max_values, and 22 in the hi_res
 /// form, which has neither time stamp nor status.
 struct RecordShape {
   std::size_t values = 22;
@@ -45,7 +45,7 @@ struct RecordShape {
 enum class Stamp : std::uint8_t { none, begins, continues };
 
 struct Record {
-  std::array<std::uint16_t, most_values>
+  std::array<std::uint16_t, max_values>
       values{};            ///< the first RecordShape::values are set, none of them 0
   std::uint32_t ticks = 0; ///< 1/115200 s, wraps after 10.36 h; if the shape has a time stamp
   std::uint8_t status = 0; ///< see cyberglove_protocol.hpp; 0 if the shape has none
@@ -113,7 +113,7 @@ public:
   void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
 
   const StreamCounters& counters() const noexcept { return counters_; }
-  /// Returns the bytes of the unfinished record, always less than most_record_bytes.
+  /// Returns the bytes of the unfinished record, always less than max_record_bytes.
   std::size_t pending() const noexcept { return held_; }
 
 private:
@@ -130,7 +130,7 @@ private:
   void discard(std::size_t count) noexcept;
 
   RecordShape shape_;
-  std::array<std::byte, most_record_bytes> frame_{};
+  std::array<std::byte, max_record_bytes> frame_{};
   std::size_t held_ = 0;
   bool overlong_ = false;       ///< plain: the frame outgrew every record; skip to its NUL
   bool nul_in_stamp_ = false;   ///< plain: the frame holds a NUL where a time stamp may have one

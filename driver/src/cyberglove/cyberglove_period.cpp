@@ -41,12 +41,12 @@ std::optional<WordOrder> order_of(PeriodBytes bytes, Period period) noexcept {
 }
 
 std::optional<Period> guess_period(PeriodBytes bytes) noexcept {
-  constexpr double most_hz = 1000.0;
+  constexpr double max_hz = 1000.0;
   std::optional<Period> best;
   for (const WordOrder order : {WordOrder::high_first, WordOrder::low_first}) {
     const Period period = decode_period(bytes, order);
     const double rate_hz = rate_of(period);
-    if (rate_hz > most_hz) continue;
+    if (rate_hz > max_hz) continue;
     // Where a low byte is 0, both orders have the same rate: 1280 times 1 is 5 times 256.
     const bool better = !best || rate_hz > rate_of(*best) ||
                         (rate_hz == rate_of(*best) && period.times < best->times);

@@ -100,11 +100,11 @@ inline constexpr char error_sampling_rate = 's';
 inline constexpr char polled_header = 'G'; ///< [V, D]
 inline constexpr char stream_header = 'S'; ///< [V, D]
 inline constexpr char synced_header = 'Y'; ///< at the pace of an external signal [V]
-inline constexpr std::size_t most_values = sensor_slots;
+inline constexpr std::size_t max_values = sensor_slots;
 inline constexpr std::size_t time_stamp_bytes = 5; ///< flags, then the ticks LSB first [V, p.28]
-inline constexpr std::size_t most_error_bytes = 4; ///< one pair of each kind [V]
-inline constexpr std::size_t most_plain_bytes =
-    1 + most_values + time_stamp_bytes + 1 + most_error_bytes + 1;
+inline constexpr std::size_t max_error_bytes = 4;  ///< one pair of each kind [V]
+inline constexpr std::size_t max_plain_bytes =
+    1 + max_values + time_stamp_bytes + 1 + max_error_bytes + 1;
 
 // The status byte [p.41].
 inline constexpr std::uint8_t status_plugged_in = 0x01;
@@ -117,11 +117,11 @@ inline constexpr std::uint8_t status_always = 0x80; ///< always set
 // significant byte first, never 0, then CR LF NUL. Its values hold NULs. [Two drivers.]
 inline constexpr std::size_t hi_res_time_bytes = 14;
 inline constexpr std::size_t hi_res_values = 22;
-inline constexpr std::uint16_t hi_res_most = 0x0FFF;
+inline constexpr std::uint16_t hi_res_max = 0x0FFF;
 inline constexpr std::size_t hi_res_bytes = hi_res_time_bytes + 2 * hi_res_values + 3;
 
 /// The longest record of either form.
-inline constexpr std::size_t most_record_bytes = hi_res_bytes;
+inline constexpr std::size_t max_record_bytes = hi_res_bytes;
 
 inline constexpr double clock_hz = 115'200.0; ///< of the period [p.47] and the time stamp [p.28]
 

@@ -47,7 +47,7 @@ bool continues_hi_res(std::span<const std::byte> bytes) noexcept {
   if (last < hi_res_time_bytes) return continues_time(bytes, last);
   if (last >= values_end) return std::to_integer<char>(bytes[last]) == tail[last - values_end];
   const bool high = (last - hi_res_time_bytes) % 2 == 0;
-  return !high || std::to_integer<unsigned>(bytes[last]) <= hi_res_most >> 8U;
+  return !high || std::to_integer<unsigned>(bytes[last]) <= hi_res_max >> 8U;
 }
 
 bool begins_hi_res(std::span<const std::byte> bytes) noexcept {

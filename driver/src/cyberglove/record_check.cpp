@@ -10,10 +10,10 @@ namespace {
 /// Each of the two gaps of a new clock may err by two sixteenths, as those of the known one.
 constexpr std::uint32_t equal_part = 4;
 /// Two records that are sampled late cannot be closer.
-constexpr std::uint32_t least_late_part = 16;
+constexpr std::uint32_t min_late_part = 16;
 /// Longer jumps are believed only when later records bear them out: a stamp with a wrong upper bit
 /// looks the same.
-constexpr std::uint32_t most_periods = 16;
+constexpr std::uint32_t max_periods = 16;
 /// A longer one is a new clock. The reader starts a silent stream again long before.
 constexpr std::uint32_t seconds_60 = 60 * 115'200;
 /// No glove is used with fewer records than one in four minutes; leaves room for 16 periods.
@@ -21,8 +21,8 @@ constexpr std::uint32_t longest_period = std::uint32_t{1} << 25U;
 
 constexpr int agreeing_records = 3;
 constexpr int doubt_by_refusal =
-    4;                         ///< an acceptance takes 1 back: more than one in five are refused
-constexpr int most_doubt = 32; ///< eight refusals in a row
+    4;                        ///< an acceptance takes 1 back: more than one in five are refused
+constexpr int max_doubt = 32; ///< eight refusals in a row
 
 std::uint32_t distance(std::uint32_t a, std::uint32_t b) noexcept {
   return a > b ? a - b : b - a;
@@ -82,7 +82,7 @@ Verdict RecordCheck::check_stamp(Record& record) noexcept {
     return {true, std::exchange(refused_, 0)};
   }
   doubt_ += doubt_by_refusal;
-  return doubt_ < most_doubt ? refuse() : lose_trust(record);
+  return doubt_ < max_doubt ? refuse() : lose_trust(record);
 }
 
 Verdict RecordCheck::refuse() noexcept {
@@ -158,7 +158,7 @@ Verdict RecordCheck::lose_trust(Record& record) noexcept {
 std::uint32_t RecordCheck::periods(const Step& step) const noexcept {
   if (step.gap == 0) return 0;
   if (period_ == 0) return step.gap <= longest_gap() ? 1 : 0;
-  if (step.gap > most_periods * std::max(period_, late_pace_)) return 0;
+  if (step.gap > max_periods * std::max(period_, late_pace_)) return 0;
   if (steady_) return steady_periods(step);
   if (step.gap >= period_ / 2) return loosely_rounded(step.gap, period_);
   // Records may have been lost in what seemed to be a period so far.
@@ -176,7 +176,7 @@ std::uint32_t RecordCheck::steady_periods(const Step& step) const noexcept {
   if (!step.was_late && !step.is_late) {
     return jitter_.allows(step.gap, period_) ? whole_periods(step.gap, period_) : 0;
   }
-  if (step.gap < period_ / least_late_part) return 0;
+  if (step.gap < period_ / min_late_part) return 0;
   if (step.was_late && step.is_late) {
     // The glove's own pace, which is the slower one if it cannot keep its period at all.
     return late_pace_ == 0 ? 1 : loosely_rounded(step.gap, std::max(period_, late_pace_));
@@ -190,7 +190,7 @@ std::uint32_t RecordCheck::steady_periods(const Step& step) const noexcept {
 /// Before the record is judged. Wrong stamps count as well.
 void RecordCheck::learn_jitter(const Step& step) noexcept {
   const bool tells = steady_ && trusted_ && !step.was_late && !step.is_late && step.gap != 0 &&
-                     step.gap <= most_periods * period_;
+                     step.gap <= max_periods * period_;
   if (!tells) return;
   jitter_.learn(step.gap, period_);
   if (jitter_.hides(period_)) steady_ = false;
@@ -228,7 +228,7 @@ std::uint64_t RecordCheck::learn(std::uint32_t gap) noexcept {
 }
 
 std::uint32_t RecordCheck::longest_gap() const noexcept {
-  return std::max(seconds_60, most_periods * period_);
+  return std::max(seconds_60, max_periods * period_);
 }
 
 } // namespace nendo::driver::cyberglove

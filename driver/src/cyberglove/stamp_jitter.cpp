@@ -7,10 +7,10 @@ namespace {
 /// taking it at once: interrupts, and the conversion of a few channels. How much that is, no source
 /// tells. A sixteenth of a period (0.6 ms at 100 Hz) is always allowed. Between two stamps that is
 /// an eighth, into which a wrong stamp falls by chance in one of four cases.
-constexpr std::uint32_t least_part = 8;
+constexpr std::uint32_t min_part = 8;
 /// Where records were lost, a device that is known to be punctual is allowed less: a wrong bit that
 /// fits makes the stamp some periods longer there, and all of them would be counted as missed.
-constexpr std::uint32_t least_part_after_loss = 16;
+constexpr std::uint32_t min_part_after_loss = 16;
 /// Until the mean is known, a quarter of a period is allowed.
 constexpr std::uint32_t unknown_part = 4;
 /// A device whose stamps wander more is allowed five times its mean deviation: if stamps err evenly
@@ -20,10 +20,10 @@ constexpr std::uint32_t times_mean = 5;
 constexpr std::uint32_t mean_steps = 16;
 /// No single deviation counts for more, so that stamps are only taken to wander if more than half
 /// of them do.
-constexpr std::uint32_t most_counted_part = 4;
+constexpr std::uint32_t max_counted_part = 4;
 /// Beyond three eighths one cannot tell late from early. A mean of an eighth is a period that is
 /// not kept closely.
-constexpr std::uint32_t most_eighths = 3;
+constexpr std::uint32_t max_eighths = 3;
 constexpr std::uint32_t hidden_part = 8;
 constexpr std::uint32_t fraction = 256; ///< of a tick, in which deviations are summed
 
@@ -41,7 +41,7 @@ std::uint64_t StampJitter::mean() const noexcept {
 
 void StampJitter::learn(std::uint32_t gap, std::uint32_t period) noexcept {
   const std::uint64_t now =
-      std::uint64_t{fraction} * std::min(deviation(gap, period), period / most_counted_part);
+      std::uint64_t{fraction} * std::min(deviation(gap, period), period / max_counted_part);
   if (known_ == mean_steps) {
     sum_ = sum_ - sum_ / mean_steps + now;
     return;
@@ -52,10 +52,10 @@ void StampJitter::learn(std::uint32_t gap, std::uint32_t period) noexcept {
 }
 
 bool StampJitter::allows(std::uint32_t gap, std::uint32_t period) const noexcept {
-  const std::uint32_t part = whole_periods(gap, period) != 1 ? least_part_after_loss
+  const std::uint32_t part = whole_periods(gap, period) != 1 ? min_part_after_loss
                              : known_ < mean_steps           ? unknown_part
-                                                             : least_part;
-  const std::uint64_t most = std::uint64_t{period} * most_eighths / 8;
+                                                             : min_part;
+  const std::uint64_t most = std::uint64_t{period} * max_eighths / 8;
   const std::uint64_t allowed =
       std::max<std::uint64_t>(period / part, std::min(most, times_mean * mean()));
   return deviation(gap, period) <= allowed;

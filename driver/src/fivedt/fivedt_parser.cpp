@@ -42,7 +42,7 @@ void Parser::drop_first() noexcept {
             frame_.begin());
   --held_;
   ++counters_.discarded_bytes;
-  if (in_step_ && ++extra_ > most_extra_bytes) {
+  if (in_step_ && ++extra_ > max_extra_bytes) {
     in_step_ = false;
     count_bad();
   }

@@ -29,11 +29,11 @@ inline constexpr std::byte reset_answer{0x55};   ///< [V]
 // A sample. Any byte of it may be 0x80. Some units send an extra 0x55 before or after it [V].
 // Wireless ones send an extra byte that tells the hand; it is ignored, because [V] and [J] disagree
 // on its bits.
-inline constexpr std::byte header{0x80};           ///< [V, J]
-inline constexpr std::size_t data_bytes = 7;       ///< five fingers, pitch, roll [V, J]
-inline constexpr std::size_t sample_bytes = 9;     ///< with header and checksum [V, J]
-inline constexpr std::size_t fingers = 5;          ///< 0 straight, 255 bent [V, J]
-inline constexpr std::size_t most_extra_bytes = 1; ///< between two samples [V]
+inline constexpr std::byte header{0x80};          ///< [V, J]
+inline constexpr std::size_t data_bytes = 7;      ///< five fingers, pitch, roll [V, J]
+inline constexpr std::size_t sample_bytes = 9;    ///< with header and checksum [V, J]
+inline constexpr std::size_t fingers = 5;         ///< 0 straight, 255 bent [V, J]
+inline constexpr std::size_t max_extra_bytes = 1; ///< between two samples [V]
 // The checksum is the exclusive or of the data [J]; VRPN does not look at it.
 
 // The answer to 'G' [V].

@@ -48,7 +48,7 @@ public:
       spdlog::warn("device: {}: {}", source, note);
     info.side = hand.side;
     info.sensors = sensors();
-    info.counts = {most_count, true};
+    info.counts = {max_count, true};
     info.facts = facts_of(static_cast<UsbTransport&>(transport).identity());
     info.facts.push_back({"link", std::string(name_of_link(model_.link))});
     info.facts.push_back({"hand_source", std::string(hand.source)});

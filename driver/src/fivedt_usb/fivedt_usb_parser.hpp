@@ -14,7 +14,7 @@
 namespace nendo::driver::fivedt_usb {
 
 struct Report {
-  /// Values from 0 to most_count, in the order of value_sensors. Values outside that range are set
+  /// Values from 0 to max_count, in the order of value_sensors. Values outside that range are set
   /// to the nearer end, and marked.
   std::array<std::uint16_t, value_sensors.size()> values{};
   std::array<bool, value_sensors.size()> clamped{};

@@ -45,7 +45,7 @@ constexpr std::optional<Model> model_of(std::uint16_t product_id) noexcept {
 // The input report has 16 signed values of two bytes, high byte first. The rest is not known. It
 // has no number.
 inline constexpr std::size_t report_bytes = 64;
-inline constexpr std::uint16_t most_count = 4095;
+inline constexpr std::uint16_t max_count = 4095;
 
 /// The sensor of value k in a glove of 14 sensors; the last two values belong to no sensor. A glove
 /// of 5 has one sensor along each finger, which counts as the knuckle's: values 0, 3, 6, 9 and 12.

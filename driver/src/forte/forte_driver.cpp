@@ -92,7 +92,7 @@ private:
     info.model = "Forte Data Glove, 10 sensors";
     info.side = hand_.side;
     info.sensors = sensors;
-    info.counts = {most_count, true};
+    info.counts = {max_count, true};
     info.facts = {{"link", bluetooth_ ? "bluetooth" : "usb"},
                   {"hand_source", std::string(hand_.source)},
                   {"battery_raw", std::to_string(record.battery)}};

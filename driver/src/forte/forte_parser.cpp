@@ -15,8 +15,8 @@ std::optional<Record> decode_record(std::span<const std::byte> frame) noexcept {
   Record record;
   for (std::uint8_t& count : record.flexion) {
     const std::uint8_t sent = reader.u8();
-    count = std::min(sent, most_count);
-    record.clamped += sent > most_count ? 1U : 0U;
+    count = std::min(sent, max_count);
+    record.clamped += sent > max_count ? 1U : 0U;
   }
   record.battery = reader.u8();
   good = reader.u8() == std::to_integer<std::uint8_t>(frame_end) && good;

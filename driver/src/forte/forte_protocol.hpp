@@ -36,7 +36,7 @@ inline constexpr std::byte motion_id{0x02}; ///< 12 bytes of an inertial sensor;
 inline constexpr std::uint8_t record_id = 0x01;
 inline constexpr std::uint8_t record_length = 11; ///< ten sensors and the battery
 inline constexpr std::size_t sensor_count = 10;
-inline constexpr std::uint8_t most_count = 127; ///< 0 is extended, 127 closed
+inline constexpr std::uint8_t max_count = 127; ///< 0 is extended, 127 closed
 inline constexpr std::size_t record_bytes = 15;
 // The battery's byte has no known unit.
 

@@ -163,7 +163,7 @@ public:
                     const ReplyDeadline& /*patience*/) noexcept override {
     if (legacy_) return;
     for (std::size_t k = 0; k < fingers; ++k)
-      brakes_[k] = std::min(feedback.resistance[k], most_resistance);
+      brakes_[k] = std::min(feedback.resistance[k], max_resistance);
     has_braked_ = has_braked_ || brakes_ != std::array<unsigned, fingers>{};
   }
 

@@ -130,7 +130,7 @@ private:
 
   bool set(Line::Value& value, const Number& number, unsigned far_kind) noexcept {
     if (value || !number) return false;
-    if (*number > most_beyond_range || *number < -most_beyond_range) far_values_ |= far_kind;
+    if (*number > max_beyond_range || *number < -max_beyond_range) far_values_ |= far_kind;
     line_.above_range += *number > range_ ? 1U : 0U;
     line_.below_range += *number < 0 ? 1U : 0U;
     value = static_cast<std::uint16_t>(std::clamp<std::int64_t>(*number, 0, range_));

@@ -36,7 +36,7 @@ struct Line {
 
 /// Decodes one line without its end. Values above `range` become `range`, negative ones 0. Returns
 /// nothing if the line violates the encoding, tells a value twice (as two lines that were joined
-/// do), tells nothing of a hand, or holds a value farther from 0 than most_beyond_range beside
+/// do), tells nothing of a hand, or holds a value farther from 0 than max_beyond_range beside
 /// which others are missing (as two numbers that were joined are).
 std::optional<Line> decode_line(std::string_view text, std::uint16_t range) noexcept;
 
@@ -71,7 +71,7 @@ public:
   void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
 
   const StreamCounters& counters() const noexcept { return counters_; }
-  /// Returns the bytes of the unfinished line, always less than most_line_bytes.
+  /// Returns the bytes of the unfinished line, always less than max_line_bytes.
   std::size_t pending() const noexcept { return held_; }
 
 private:
@@ -85,7 +85,7 @@ private:
   const std::uint16_t range_;
   const FirstPiece first_;
   State state_ = State::begin_unseen;
-  std::array<char, most_line_bytes> line_{};
+  std::array<char, max_line_bytes> line_{};
   std::size_t held_ = 0;
   unsigned bad_ = 0; ///< found by the last byte, not yet told
   StreamCounters counters_;

@@ -34,10 +34,10 @@ inline constexpr std::uint16_t avr_range = 1023;   ///< 10 bits [F]
 /// finger that goes further than it did before: numbers above the range, and negative ones [F]. [O]
 /// leaves that finger as it was, or refuses the line. Here the finger is at the end of its range,
 /// where it really is. So far beyond it a number may also be two that ran into one [?].
-inline constexpr std::int64_t most_beyond_range = 65'535;
-inline constexpr std::size_t most_line_bytes = 256; ///< with LF; firmwares have 75 [F] to 256 [S]
-inline constexpr std::uint32_t hand_left = 0;       ///< (ZH) [S]
-inline constexpr std::uint32_t hand_right = 1;      ///< (ZH) [S]
+inline constexpr std::int64_t max_beyond_range = 65'535;
+inline constexpr std::size_t max_line_bytes = 256; ///< with LF; firmwares have 75 [F] to 256 [S]
+inline constexpr std::uint32_t hand_left = 0;      ///< (ZH) [S]
+inline constexpr std::uint32_t hand_right = 1;     ///< (ZH) [S]
 
 // To the glove. Firmwares that do not know a command look in it for the letters A to E and a
 // number: the first command has none, the second frees the thumb, unless they ignore lines of less
@@ -61,7 +61,7 @@ inline constexpr std::string_view ask_information = "\nZ\n"; ///< answered by (Z
 inline constexpr std::byte line_end{'\n'};
 inline constexpr std::string_view empty_line = "\n";
 inline constexpr std::string_view start_streaming = "(ZA)\n"; ///< where it was stopped by (ZZ) [S]
-// Brakes: A%dB%dC%dD%dE%d\n, 0 free to `most_resistance` locked [F, O].
-inline constexpr std::uint16_t most_resistance = 1000;
+// Brakes: A%dB%dC%dD%dE%d\n, 0 free to `max_resistance` locked [F, O].
+inline constexpr std::uint16_t max_resistance = 1000;
 
 } // namespace nendo::driver::lucidgloves

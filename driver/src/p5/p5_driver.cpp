@@ -31,7 +31,7 @@ public:
     info.model = "Essential Reality P5, 5 sensors";
     info.side = side_;
     info.sensors = mask_of(bend_sensors);
-    info.counts = {most_bend, true};
+    info.counts = {max_bend, true};
     info.abilities.wrist_switch = true;
     info.facts = facts_of(usb(transport).identity());
     return info;

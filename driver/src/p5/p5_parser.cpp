@@ -33,7 +33,7 @@ std::optional<Report> decode_report(std::span<const std::byte> report) noexcept 
   decoded.button_a = (buttons & button_a) != 0;
   decoded.button_b = (buttons & button_b) != 0;
   decoded.button_c = (buttons & button_c) != 0;
-  for (std::size_t k = 0; k < most_lights; ++k) {
+  for (std::size_t k = 0; k < max_lights; ++k) {
     const unsigned number = bits(bytes, lights_at + k * light_bits, light_bits);
     if ((number & no_light) != 0) continue;
     const std::size_t at = views_at + 3 * k * view_bits;

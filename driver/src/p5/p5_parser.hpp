@@ -29,7 +29,7 @@ struct Report {
   bool button_a = false;
   bool button_b = false;
   bool button_c = false;
-  std::array<SeenLight, most_lights> lights{}; ///< the first `light_count` are set
+  std::array<SeenLight, max_lights> lights{}; ///< the first `light_count` are set
   std::size_t light_count = 0;
 };
 

@@ -25,7 +25,7 @@ inline constexpr std::uint8_t report_id = 1;
 
 inline constexpr std::size_t bends_at = 8; ///< bits from the report's begin
 inline constexpr std::size_t bend_bits = 6;
-inline constexpr std::uint16_t most_bend = 63; ///< a clenched finger; 0 is a straight one
+inline constexpr std::uint16_t max_bend = 63; ///< a clenched finger; 0 is a straight one
 /// The sensors in the report's order. Each lies along a whole finger, and its curl counts as that
 /// of the knuckle, by which the hand's model bends the other joints.
 inline constexpr std::array bend_sensors{Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp,
@@ -42,7 +42,7 @@ inline constexpr std::uint8_t button_c = 0x4;
 inline constexpr std::size_t lights_at = 44;
 inline constexpr std::size_t light_bits = 4;
 inline constexpr std::uint8_t no_light = 0x8; ///< bit of a light's number: this one is not seen
-inline constexpr std::size_t most_lights = 4;
+inline constexpr std::size_t max_lights = 4;
 inline constexpr std::size_t views_at = 60;
 inline constexpr std::size_t view_bits = 10; ///< three a light: v2, v1, h, two's complement
 

@@ -315,7 +315,7 @@ JointRange joint_range(Sensor sensor) noexcept {
 double part_of_range(const JointAngles& angles, Sensor sensor) noexcept {
   const JointRange range = joint_range(sensor);
   const double angle_rad = angles[static_cast<std::size_t>(sensor)];
-  return std::clamp((angle_rad - range.least_rad) / (range.most_rad - range.least_rad), 0.0, 1.0);
+  return std::clamp((angle_rad - range.min_rad) / (range.max_rad - range.min_rad), 0.0, 1.0);
 }
 
 HandMotion::HandMotion(Motion motion, Side side, std::uint32_t seed) noexcept

@@ -31,8 +31,8 @@ NENDO_API Result<Motion> find_motion(std::string_view name);
 using JointAngles = std::array<double, sensor_slots>;
 
 struct JointRange {
-  double least_rad;
-  double most_rad;
+  double min_rad;
+  double max_rad;
 };
 
 /// Returns the range of the sensor's joint, which no motion leaves.

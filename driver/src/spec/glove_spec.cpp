@@ -29,8 +29,8 @@ Result<void> parse_options(std::string_view options, GloveSpec& spec) {
 } // namespace
 
 Result<GloveSpec> parse_glove_spec(std::string_view text) {
-  constexpr std::size_t most_characters = 4096; // the longest path that the system takes
-  if (text.size() > most_characters) return Error{Errc::usage, "the glove's name is too long"};
+  constexpr std::size_t max_characters = 4096; // the longest path that the system takes
+  if (text.size() > max_characters) return Error{Errc::usage, "the glove's name is too long"};
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
   if (std::any_of(text.begin(), text.end(), is_control)) {
     return Error{Errc::usage, "the glove's name contains control characters"};

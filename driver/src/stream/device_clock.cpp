@@ -15,7 +15,7 @@ constexpr std::int64_t window = 64 * second;
 constexpr std::int64_t new_clock = 10 * second; ///< longer than any stall that buffers survive
 /// Below it, what is left of the delay in the minima would pass for drift.
 constexpr std::int64_t shortest_baseline = 4 * second;
-constexpr double most_slope = 500e-6; ///< no quartz or resonator is as wrong
+constexpr double max_slope = 500e-6; ///< no quartz or resonator is as wrong
 constexpr std::int64_t absurd = std::int64_t{1} << 61U;
 
 } // namespace
@@ -63,16 +63,16 @@ double DeviceClock::line_at(Nanoseconds device) const noexcept {
 void DeviceClock::add(const Point& point) noexcept {
   const bool begins = count_ == 0 || point.device - block_begin_ >= block_length;
   if (begins) {
-    while (count_ > 0 && (count_ == most_blocks || point.device - block(0).device > window)) {
-      oldest_ = (oldest_ + 1) % most_blocks;
+    while (count_ > 0 && (count_ == max_blocks || point.device - block(0).device > window)) {
+      oldest_ = (oldest_ + 1) % max_blocks;
       --count_;
     }
-    blocks_[(oldest_ + count_++) % most_blocks] = point;
+    blocks_[(oldest_ + count_++) % max_blocks] = point;
     block_begin_ = point.device;
     fit();
     return;
   }
-  Point& least = blocks_[(oldest_ + count_ - 1) % most_blocks];
+  Point& least = blocks_[(oldest_ + count_ - 1) % max_blocks];
   const double late = static_cast<double>(point.offset - base_.offset) - line_at(point.device);
   // Soonest as the line goes, not by the bare offset, which the drift changes within a block.
   const double before = static_cast<double>(least.offset - base_.offset) - line_at(least.device);
@@ -89,7 +89,7 @@ void DeviceClock::fit() noexcept {
     const double slope = hull_slope();
     // Beyond it the clock jumped, or the older records were all late: the slope learnt before
     // holds.
-    if (std::abs(slope) <= most_slope) slope_ = slope;
+    if (std::abs(slope) <= max_slope) slope_ = slope;
   }
   intercept_ = 0.0;
   for (std::size_t k = 0; k < count_; ++k) {
@@ -105,7 +105,7 @@ double DeviceClock::hull_slope() const noexcept {
   struct Corner {
     double device, offset;
   };
-  std::array<Corner, most_blocks> hull{};
+  std::array<Corner, max_blocks> hull{};
   std::size_t corners = 0;
   double mean = 0.0;
   const auto slope = [](const Corner& a, const Corner& b) {

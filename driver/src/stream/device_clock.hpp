@@ -57,15 +57,15 @@ private:
     Nanoseconds device = 0;
     Nanoseconds offset = 0; ///< arrival - device
   };
-  static constexpr std::size_t most_blocks = 64;
+  static constexpr std::size_t max_blocks = 64;
 
   void add(const Point& point) noexcept;
   void fit() noexcept;
   double hull_slope() const noexcept;
-  const Point& block(std::size_t k) const noexcept { return blocks_[(oldest_ + k) % most_blocks]; }
+  const Point& block(std::size_t k) const noexcept { return blocks_[(oldest_ + k) % max_blocks]; }
   double line_at(Nanoseconds device) const noexcept;
 
-  std::array<Point, most_blocks> blocks_{}; ///< a ring; the last one is not yet complete
+  std::array<Point, max_blocks> blocks_{}; ///< a ring; the last one is not yet complete
   std::size_t oldest_ = 0;
   std::size_t count_ = 0;
   Nanoseconds block_begin_ = 0; ///< of the last one, in device time

@@ -36,11 +36,11 @@ IoStatus listen(Transport& transport, const ReplyDeadline& patience,
 /// Throws away what has arrived, also what the system holds back; a pseudo-terminal keeps some 17
 /// kB that no host has read. Does not wait. Returns how many bytes it read.
 inline std::uint64_t drop_waiting(Transport& transport) noexcept {
-  constexpr std::uint64_t most_bytes = 65'536; // a device that babbles may outrun any host
+  constexpr std::uint64_t max_bytes = 65'536; // a device that babbles may outrun any host
   std::array<std::byte, 1024> buffer;
   transport.discard_input();
   std::uint64_t dropped = 0;
-  while (dropped < most_bytes) {
+  while (dropped < max_bytes) {
     const auto [status, count] = transport.read_some(buffer, std::chrono::milliseconds(0));
     if (status != IoStatus::done) break;
     dropped += count;

@@ -52,9 +52,9 @@ bool is_serial_port(const std::string& path) {
 std::string resolve_port(const std::string& path) {
   // Not realpath(): it would follow a port's own node too, where that is a link (as in test beds
   // that mock one).
-  constexpr int most_links = 16;
+  constexpr int max_links = 16;
   fs::path at = fs::path(path).lexically_normal();
-  for (int links = 0; links < most_links && !is_serial_port(at.string()); ++links) {
+  for (int links = 0; links < max_links && !is_serial_port(at.string()); ++links) {
     std::error_code not_a_link;
     const fs::path target = fs::read_symlink(at, not_a_link);
     if (not_a_link) break;

@@ -36,9 +36,9 @@ std::string user_name(uid_t id) {
 
 /// True if the user was added to the group, whether or not this session knows it yet.
 bool is_listed_in(gid_t id) {
-  constexpr int most_groups = 1024;
-  std::vector<gid_t> groups(most_groups);
-  int count = most_groups;
+  constexpr int max_groups = 1024;
+  std::vector<gid_t> groups(max_groups);
+  int count = max_groups;
   EntryText text;
   passwd entry{};
   passwd* found = nullptr;

@@ -20,7 +20,7 @@ using udev::UsbId;
 /// Returns the device's node, e.g. /dev/bus/usb/001/007.
 std::string node_of(const UsbIdentity& identity);
 
-inline constexpr std::size_t most_usb_ports = 7; ///< on the way to a device (USB 2.0, 4.1.1)
+inline constexpr std::size_t max_usb_ports = 7; ///< on the way to a device (USB 2.0, 4.1.1)
 
 /// Returns what the kernel says of a device. `ports` lead from the bus's root to the device. Texts
 /// stay empty where the kernel says nothing, as in a container without /sys.

@@ -24,7 +24,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t transfers_under_way = 16;
 /// A pulled cable shows as bus errors until the hub has noticed it, and single errors happen to
 /// good gloves: so many of them without a report between them are the end.
-constexpr int most_errors_in_a_row = 64;
+constexpr int max_errors_in_a_row = 64;
 constexpr auto close_budget = 300ms;
 constexpr auto idle_budget = 100ms;
 
@@ -178,7 +178,7 @@ void LibusbTransport::finish(Slot& slot) noexcept {
   case LIBUSB_TRANSFER_CANCELLED:
     break;
   default: // one damaged on the bus, or refused by the device
-    if (++errors_in_a_row_ >= most_errors_in_a_row) gone_ = true;
+    if (++errors_in_a_row_ >= max_errors_in_a_row) gone_ = true;
     submit(slot);
   }
 }
@@ -217,8 +217,8 @@ ReadResult LibusbTransport::read_some(std::span<std::byte> buffer,
 IoStatus LibusbTransport::write_all(std::span<const std::byte> bytes,
                                     std::chrono::milliseconds timeout) noexcept {
   if (gone_) return IoStatus::gone;
-  if (!out_ || bytes.size() > most_usb_report_bytes) return IoStatus::timeout;
-  std::array<unsigned char, most_usb_report_bytes> data{}; // libusb takes no constant bytes
+  if (!out_ || bytes.size() > max_usb_report_bytes) return IoStatus::timeout;
+  std::array<unsigned char, max_usb_report_bytes> data{}; // libusb takes no constant bytes
   std::memcpy(data.data(), bytes.data(), bytes.size());
   int sent = 0;
   const int result =
@@ -265,9 +265,9 @@ ControlStatus LibusbTransport::get_feature(std::span<std::byte> report, std::siz
 
 ControlStatus LibusbTransport::set_feature(std::span<const std::byte> report,
                                            std::chrono::milliseconds timeout) noexcept {
-  assert(!report.empty() && report.size() <= most_usb_report_bytes);
+  assert(!report.empty() && report.size() <= max_usb_report_bytes);
   const auto value = static_cast<std::uint16_t>(feature | std::to_integer<unsigned>(report[0]));
-  std::array<unsigned char, most_usb_report_bytes> copy{};
+  std::array<unsigned char, max_usb_report_bytes> copy{};
   const std::span data = std::span(copy).first(std::min(report.size(), copy.size()));
   std::memcpy(data.data(), report.data(), data.size());
   return status_of(control(to_interface, set_report, value, data, timeout));
@@ -285,7 +285,7 @@ void LibusbTransport::cancel_all() noexcept {
 }
 
 UsbIdentity identify(libusb_device* device, UsbId id) {
-  std::array<std::uint8_t, most_usb_ports> ports{};
+  std::array<std::uint8_t, max_usb_ports> ports{};
   const int count = libusb_get_port_numbers(device, ports.data(), static_cast<int>(ports.size()));
   return identify_usb(id, libusb_get_bus_number(device), libusb_get_device_address(device),
                       std::span(ports).first(static_cast<std::size_t>(std::max(count, 0))));
@@ -319,7 +319,7 @@ std::optional<Endpoints> endpoints_of(const libusb_interface_descriptor& setting
     const std::size_t packet_bytes = endpoint.wMaxPacketSize & 0x7FFU; // above are other things
     if ((endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) == 0) {
       if (!out) out = endpoint.bEndpointAddress;
-    } else if (!found && packet_bytes > 0 && packet_bytes <= most_usb_report_bytes) {
+    } else if (!found && packet_bytes > 0 && packet_bytes <= max_usb_report_bytes) {
       found = Endpoints{endpoint.bEndpointAddress, std::nullopt, packet_bytes};
     }
   }

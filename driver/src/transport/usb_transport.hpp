@@ -55,7 +55,7 @@ public:
 };
 
 /// The longest packet of an interrupt endpoint (USB 2.0, 5.7.3).
-inline constexpr std::size_t most_usb_report_bytes = 1024;
+inline constexpr std::size_t max_usb_report_bytes = 1024;
 
 /// Opens the first device that is `wanted` and not in use, and takes the interface from the
 /// kernel's driver until the transport is closed. May block for 0.3 s. Errors: no_device (absent,

@@ -24,7 +24,7 @@ template <class Good>
 Result<void> await_report(Transport& transport, const std::string& source,
                           const ReplyDeadline& patience, std::uint64_t& bytes, Good&& good) {
   using namespace std::chrono_literals;
-  std::array<std::byte, most_usb_report_bytes> buffer{};
+  std::array<std::byte, max_usb_report_bytes> buffer{};
   const HostTime deadline = std::min(patience.deadline, HostClock::now() + 2s);
   bool babbles = false;
   while (HostClock::now() < deadline && !patience.cancelled.stop_requested()) {

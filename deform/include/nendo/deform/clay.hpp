@@ -34,10 +34,10 @@ struct ClayOptions {
   /// So many of the last bodies stand still, such as a table. They press nothing by themselves, and
   /// contacts() does not tell of them.
   std::size_t still_bodies = 0;
-  int most_constraints = 256; ///< of one pass
+  int max_constraints = 256; ///< of one pass
   /// Of one call. When they are used up, the bodies' step is shortened, and the rest of their way
   /// waits for the next call. What has begun is always finished.
-  int most_passes = 48;
+  int max_passes = 48;
   EvaluationOptions evaluation{};
   /// Vertices of weight 0 do not move, bit for bit. Bodies pass through what moves by less than
   /// half.
@@ -57,7 +57,7 @@ struct ClayReport {
   FieldStatus status = FieldStatus::ok;
   int sub_steps = 0;
   int passes = 0;            ///< of all sub-steps; each is a field that does not fold
-  int most_constraints = 0;  ///< of a pass
+  int max_constraints = 0;   ///< of a pass
   int touching = 0;          ///< conditions that pushed in the last pass
   std::size_t distances = 0; ///< from a vertex to a part
   /// How deep a vertex still was in a body after the passes, before it was pushed straight out.
@@ -108,7 +108,7 @@ public:
   /// Returns what the last press_to() took.
   const ClayReport& report() const noexcept { return report_; }
   /// Returns the places where bodies touch the surface after the last press_to(): at most
-  /// ClayOptions::most_constraints, evenly over what is touched.
+  /// ClayOptions::max_constraints, evenly over what is touched.
   std::span<const ClayContact> contacts() const noexcept;
   /// Returns the shape's volume after the last call, in cubic model units; 0 if none is kept.
   double volume() const noexcept;

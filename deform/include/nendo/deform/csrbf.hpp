@@ -74,13 +74,13 @@ public:
   /// how sparse one would be.
   static constexpr Eigen::Index lean_size = 100;
   /// With more points than this, supports that hold more than an eighth of them are too_dense. A
-  /// factor of more than `most_factor_entries`, which take 800 MB, is too_dense as well.
-  static constexpr Eigen::Index most_dense_points = 4096;
-  static constexpr Eigen::Index most_factor_entries = Eigen::Index{1} << 26;
+  /// factor of more than `max_factor_entries`, which take 800 MB, is too_dense as well.
+  static constexpr Eigen::Index max_dense_points = 4096;
+  static constexpr Eigen::Index max_factor_entries = Eigen::Index{1} << 26;
   /// With keep_volume, whose matrix has three rows a point, more points than this are too_dense.
-  static constexpr Eigen::Index most_volume_points = 1024;
+  static constexpr Eigen::Index max_volume_points = 1024;
   /// More pairs of an own function and a start point in its reach than this are too_dense.
-  static constexpr std::size_t most_own_values = std::size_t{1} << 23;
+  static constexpr std::size_t max_own_values = std::size_t{1} << 23;
 
   explicit CsrbfSolver(CsrbfOptions options);
   ~CsrbfSolver();

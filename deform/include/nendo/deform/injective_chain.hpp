@@ -26,20 +26,19 @@ struct HeldPair {
 };
 
 struct InjectiveOptions {
-  double most_bound = 0.9; ///< largest Lipschitz bound of a link; below 1
-  int most_links = 64;     ///< of one call
-  double least_gap = 0.05; ///< of a point's least radius; 0 lets points come as near as they like
+  double max_bound = 0.9; ///< largest Lipschitz bound of a link; below 1
+  int max_links = 64;     ///< of one call
+  double min_gap = 0.05;  ///< of a point's least radius; 0 lets points come as near as they like
 };
 
 struct ChainReport {
   FieldStatus status = FieldStatus::ok;
-  int links = 0;            ///< how many links were made
-  double whole_bound = 0.0; ///< Lipschitz bound of the first link's field, had it not been cut
-  double bound = 0.0;       ///< the largest of the links'
-  double least_determinant =
-      1.0;             ///< of the chain's Jacobian, round the points; see DeterminantProbe
-  int held_pairs = 0;  ///< pairs that are kept from where they were told to go
-  bool reached = true; ///< false if `most_links` were not enough for the whole way
+  int links = 0;                ///< how many links were made
+  double whole_bound = 0.0;     ///< Lipschitz bound of the first link's field, had it not been cut
+  double bound = 0.0;           ///< the largest of the links'
+  double min_determinant = 1.0; ///< of the chain's Jacobian, round the points; see DeterminantProbe
+  int held_pairs = 0;           ///< pairs that are kept from where they were told to go
+  bool reached = true;          ///< false if `max_links` were not enough for the whole way
 };
 
 /// Call one of the two ways of going, then apply field() to the shape as long as next() is true:
@@ -61,12 +60,10 @@ public:
   /// last.
   FieldStatus from_start(const Points& ends) noexcept;
   /// Type-2: goes on from where the chain has come to, with the walls that stand, in at most
-  /// `most_links` links. The links are for the shape as it is now. If an end is not finite, no link
+  /// `max_links` links. The links are for the shape as it is now. If an end is not finite, no link
   /// follows.
-  FieldStatus from_here(const Points& ends, int most_links) noexcept;
-  FieldStatus from_here(const Points& ends) noexcept {
-    return from_here(ends, options_.most_links);
-  }
+  FieldStatus from_here(const Points& ends, int max_links) noexcept;
+  FieldStatus from_here(const Points& ends) noexcept { return from_here(ends, options_.max_links); }
 
   /// Makes the next link's field. Returns false if there is none; the report is then complete.
   bool next() noexcept;
@@ -83,7 +80,7 @@ public:
   std::span<const HeldPair> walls() const noexcept;
 
 private:
-  FieldStatus go(int most_links) noexcept;
+  FieldStatus go(int max_links) noexcept;
   FieldStatus make_link() noexcept;
   void extend(double part, bool first) noexcept;
   bool end(FieldStatus status) noexcept;
@@ -96,7 +93,7 @@ private:
   bool grabbed_ = false;
   bool at_start_ = false; ///< places_ are the start points
   bool ended_ = true;
-  int most_links_ = 0;
+  int max_links_ = 0;
   Points starts_;
   Eigen::VectorXd radii_; ///< the least at each point
   Points places_;

@@ -38,7 +38,7 @@ public:
 
   /// Returns the least determinant that any point has had since the start; 1 if there are no
   /// points.
-  double least() const noexcept { return least_; }
+  double least() const noexcept { return min_; }
 
   static constexpr Eigen::Index ring_size = 7;
 
@@ -48,7 +48,7 @@ private:
 
   Eigen::Matrix<double, Eigen::Dynamic, 4> places_; ///< x, y, z, determinant
   Eigen::Index used_ = 0;                           ///< in whole vectors
-  double least_ = 1.0;
+  double min_ = 1.0;
 };
 
 } // namespace nendo::deform

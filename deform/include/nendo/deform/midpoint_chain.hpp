@@ -12,7 +12,7 @@
 namespace nendo::deform {
 
 /// Fields of one frame at most, where the volume is kept: two for each midpoint step.
-inline constexpr int most_midpoint_fields = 64;
+inline constexpr int max_midpoint_fields = 64;
 
 /// Call go(), then apply field() to the shape as long as next() is true, in the order in which
 /// displace() applies several fields. A step has two, of which the first is halfway. After the
@@ -20,8 +20,8 @@ inline constexpr int most_midpoint_fields = 64;
 class NENDO_API MidpointChain {
 public:
   /// Steps are a twentieth of the least radius, and the last is what remains, so that the shape is
-  /// continuous in the way. A way longer than `most_steps` of them is cut into so many longer ones.
-  MidpointChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf, int most_steps);
+  /// continuous in the way. A way longer than `max_steps` of them is cut into so many longer ones.
+  MidpointChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf, int max_steps);
   ~MidpointChain();
   MidpointChain(MidpointChain&&) noexcept;
   MidpointChain& operator=(MidpointChain&&) noexcept;
@@ -43,12 +43,12 @@ private:
   FieldStatus make_step(double part) noexcept;
 
   Supports supports_;
-  double most_length_;                 ///< of a step
+  double max_length_;                  ///< of a step
   std::array<CsrbfSolver, 2> solvers_; ///< one has the start points' factor
   std::size_t kept_ = 0;               ///< which is the start points'
   Points starts_, displacements_, places_, step_;
   std::array<CsrbfField, 2> fields_; ///< of a step: halfway, and the whole
-  int most_steps_;
+  int max_steps_;
   double done_ = 0.0, part_ = 1.0; ///< of the way; of it in a step
   bool is_halfway_ = false;        ///< of a step the first field was the last
   FieldStatus status_ = FieldStatus::singular;

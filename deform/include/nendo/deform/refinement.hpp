@@ -31,8 +31,8 @@ struct EdgeOperation {
 };
 
 struct RefinementLimits {
-  std::size_t most_vertices = std::size_t{1} << 22; ///< no edge is split beyond it
-  std::size_t budget = 20000;                       ///< splits and collapses
+  std::size_t max_vertices = std::size_t{1} << 22; ///< no edge is split beyond it
+  std::size_t budget = 20000;                      ///< splits and collapses
 };
 
 /// A refined mesh. Vertices that stay come first, in their order and with their bits.

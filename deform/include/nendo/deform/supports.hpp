@@ -56,7 +56,7 @@ struct NENDO_API Supports {
 NENDO_API bool reach_all_of(const Box& box, const Points& starts, const Supports& supports);
 
 /// Returns the least and the largest radius of all functions.
-NENDO_API double least_radius(const Supports& supports) noexcept;
+NENDO_API double min_radius(const Supports& supports) noexcept;
 NENDO_API double largest_radius(const Supports& supports) noexcept;
 
 /// Returns one shared function with this radius in model units, > 0.

@@ -61,11 +61,11 @@ struct SurfaceSetup {
 class NENDO_API SurfaceField {
 public:
   /// Above it, control vectors of a millimetre would need coefficients of metres.
-  static constexpr double most_condition = 1e4;
+  static constexpr double max_condition = 1e4;
 
   /// Computes all functions: a shortest way for each point. The layout must be the mesh's. Error:
   /// bad_input (two points are so near to each other, for their radii, that the condition is above
-  /// most_condition; it names them). Allocates.
+  /// max_condition; it names them). Allocates.
   static Result<std::shared_ptr<const SurfaceField>>
   make(const Mesh& mesh, const BlockLayout& layout, const SurfaceSetup& setup);
 

@@ -31,11 +31,11 @@ struct StrokeResult {
 /// makes in double of the same piece.
 class NENDO_API Type2Deformer {
 public:
-  static constexpr int most_pieces = 16; ///< of one call, without `injective`
+  static constexpr int max_pieces = 16; ///< of one call, without `injective`
 
   /// Allocates for the shape (3 by #vertices) and for `control_points` fingertips. piece_length is
   /// > 0, in model units. With `injective`, a piece is made in as many links as it takes; a call
-  /// makes at most InjectiveOptions::most_links, and the rest waits for the next call. With
+  /// makes at most InjectiveOptions::max_links, and the rest waits for the next call. With
   /// keep_volume it is made in one midpoint step or two, and `injective` is left out.
   Type2Deformer(Points shape, Eigen::Index control_points, double piece_length,
                 const DeformerOptions& options);
@@ -66,7 +66,7 @@ public:
   /// Changes the shape, and begins a new stroke at `tips`. On failure the shape stays.
   FieldStatus go(HistoryMove move, const Points& tips);
   /// Extends the curves to `tips` and deforms by the pieces that are whole. What is left, less than
-  /// one and a half pieces, waits for the next call. A jump is made in at most most_pieces, so that
+  /// one and a half pieces, waits for the next call. A jump is made in at most max_pieces, so that
   /// the time of a call is bounded. Does not allocate. A piece without a usable field is skipped.
   /// If a fingertip is not finite, nothing happens and the status is not_finite.
   StrokeResult stroke_to(const Points& tips);

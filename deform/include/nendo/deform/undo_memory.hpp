@@ -26,8 +26,8 @@ NENDO_API std::unique_ptr<SavedBlock[]> make_saved_blocks(std::size_t count, Sav
 /// The memory of one deformer. The deformer keeps the blocks that it has taken and uses them again.
 class NENDO_API UndoMemory {
 public:
-  /// refill() keeps `blocks_ahead` blocks of 832 bytes free until it has allocated `most_bytes`.
-  UndoMemory(std::size_t blocks_ahead, std::size_t most_bytes);
+  /// refill() keeps `blocks_ahead` blocks of 832 bytes free until it has allocated `max_bytes`.
+  UndoMemory(std::size_t blocks_ahead, std::size_t max_bytes);
   ~UndoMemory();
   UndoMemory(const UndoMemory&) = delete;
   UndoMemory& operator=(const UndoMemory&) = delete;
@@ -47,7 +47,7 @@ public:
 private:
   std::size_t blocks_ahead_;
   std::size_t slab_blocks_;
-  std::size_t most_bytes_;
+  std::size_t max_bytes_;
   std::size_t bytes_ = 0;
   std::vector<std::unique_ptr<SavedBlock[]>> slabs_;
   SpscRing<SavedChain> given_;

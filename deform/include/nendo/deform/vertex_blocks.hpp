@@ -116,6 +116,6 @@ private:
 };
 
 /// The largest number that may stand in a block. Sums of such numbers do not overflow; squares may.
-inline constexpr double most_units = 1e35;
+inline constexpr double max_units = 1e35;
 
 } // namespace nendo::deform

@@ -163,7 +163,7 @@ private:
 
 Result<void> measure_latency(const LatencyOptions& options, const LatencySinks& sinks,
                              const std::atomic<bool>& stop) {
-  if (!(options.rate_hz >= 1.0 && options.rate_hz <= CyberGloveUnit::most_rate_hz)) {
+  if (!(options.rate_hz >= 1.0 && options.rate_hz <= CyberGloveUnit::max_rate_hz)) {
     return Error{Errc::usage, "the rate must be from 1 to 480 records a second"};
   }
   auto driver_wire = make_wire(options.line);

@@ -79,8 +79,8 @@ void FaultInjector::pass(std::span<const std::byte> message, bool record, Time n
   if (!swallowed) {
     touched = std::exchange(joined_, false);
     if (record && strikes(FaultKind::burst)) {
-      constexpr std::uint64_t most_bytes = 64;
-      for (std::uint64_t left = 1 + random_() % most_bytes; left > 0; --left)
+      constexpr std::uint64_t max_bytes = 64;
+      for (std::uint64_t left = 1 + random_() % max_bytes; left > 0; --left)
         wire.push_back(random_byte());
       touched = true;
     }

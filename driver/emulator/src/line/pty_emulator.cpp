@@ -40,7 +40,7 @@ constexpr std::size_t wire_full = 4096;
 
 // At the host's pace, so many records are made before faults, `stop` and the host are checked
 // again.
-constexpr int most_records_a_turn = 256;
+constexpr int max_records_a_turn = 256;
 
 // At the end, the emulator waits so long for a host that takes nothing.
 constexpr auto last_patience = 300ms;
@@ -139,7 +139,7 @@ private:
       return;
     }
     collect();
-    for (int n = 0; n < most_records_a_turn && host_present() && wire_.size() < wire_full; ++n) {
+    for (int n = 0; n < max_records_a_turn && host_present() && wire_.size() < wire_full; ++n) {
       const auto due = unit_->next_due();
       if (!due) return;
       now_ = std::max(now_, *due);

@@ -9,7 +9,7 @@
 namespace nendo::emulator {
 namespace {
 
-constexpr std::uintmax_t most_bytes = 64U << 20U;
+constexpr std::uintmax_t max_bytes = 64U << 20U;
 // A text record of 24 values with time stamp, status and errors has 130.
 constexpr std::ptrdiff_t longest_record = 160;
 
@@ -40,7 +40,7 @@ Result<std::vector<unit::Message>> read_capture(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, error)) return bad("there is no such file");
   const auto size = std::filesystem::file_size(path, error);
   if (error) return bad(error.message());
-  if (size > most_bytes) return bad("it is larger than 64 MiB; give a part of it");
+  if (size > max_bytes) return bad("it is larger than 64 MiB; give a part of it");
   std::vector<char> bytes(size);
   std::ifstream file(path, std::ios::binary);
   if (!file.read(bytes.data(), static_cast<std::streamsize>(size))) return bad("cannot read it");

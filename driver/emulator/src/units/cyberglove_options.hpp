@@ -22,7 +22,7 @@ struct UnitOptions {
   unsigned model = 1;     ///< CyberGlove I, II or III
   bool touch = false;     ///< it has CyberTouch's vibrators
   driver::Motion motion = driver::Motion::sculpt;
-  double rate_hz = 90.0; ///< until the host sets a period: 1..most_rate_hz
+  double rate_hz = 90.0; ///< until the host sets a period: 1..max_rate_hz
   std::uint32_t seed = 1;
   unsigned reply_bytes = 2; ///< of a set command: the letter and NUL, or 3 with a byte between
   unit::WordOrder period_order = unit::WordOrder::high_first;

@@ -25,11 +25,11 @@ constexpr std::array<Flag, 9> flags{{{'W', 1, &Settings::switch_on},
                                      {'Q', 16, &Settings::quantised}}};
 
 // The counts that the sensors of one wearer were seen to span, slot by slot.
-constexpr std::array<Byte, sensor_slots> least_seen{79, 149, 87, 59, 16, 58, 61, 0,  22, 67, 83, 53,
-                                                    31, 68,  72, 21, 41, 91, 76, 70, 70, 67, 87, 0};
-constexpr std::array<Byte, sensor_slots> most_seen{228, 206, 176, 217, 155, 193, 201, 254,
-                                                   177, 168, 165, 162, 174, 176, 175, 159,
-                                                   173, 168, 255, 163, 197, 186, 220, 254};
+constexpr std::array<Byte, sensor_slots> min_seen{79, 149, 87, 59, 16, 58, 61, 0,  22, 67, 83, 53,
+                                                  31, 68,  72, 21, 41, 91, 76, 70, 70, 67, 87, 0};
+constexpr std::array<Byte, sensor_slots> max_seen{228, 206, 176, 217, 155, 193, 201, 254,
+                                                  177, 168, 165, 162, 174, 176, 175, 159,
+                                                  173, 168, 255, 163, 197, 186, 220, 254};
 constexpr int whole_gain = 64;
 
 // The slot of the n-th sensor that the glove has.
@@ -94,10 +94,10 @@ Settings power_up_settings(double rate_hz, const PluggedGlove& glove) noexcept {
   const auto ticks = std::llround(static_cast<double>(tick_hz) / rate_hz);
   settings.period_repeats = ticks > 0xFFFF ? 2 : 1;
   settings.period_ticks = static_cast<std::uint16_t>(ticks / settings.period_repeats);
-  settings.offsets = least_seen;
+  settings.offsets = min_seen;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     settings.gains[slot] =
-        static_cast<Byte>(std::min(whole_gain * 254 / (most_seen[slot] - least_seen[slot]), 255));
+        static_cast<Byte>(std::min(whole_gain * 254 / (max_seen[slot] - min_seen[slot]), 255));
   }
   return settings;
 }

@@ -6,7 +6,7 @@ namespace nendo::emulator::unit {
 namespace {
 
 // The glove is said to reach 120 records a second over USB.
-constexpr unsigned most_frames = 4;
+constexpr unsigned max_frames = 4;
 constexpr std::uint64_t frame_ticks = 115200 / 30;
 
 constexpr bool is_sink(Byte letter) noexcept { // USB, Wi-Fi, the SD card
@@ -14,7 +14,7 @@ constexpr bool is_sink(Byte letter) noexcept { // USB, Wi-Fi, the SD card
 }
 
 bool set_frames(ThreeSettings& settings, unsigned frames) noexcept {
-  if (frames < 1 || frames > most_frames) return false;
+  if (frames < 1 || frames > max_frames) return false;
   settings.frames = frames;
   return true;
 }

@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 
 // No source tells how often a host may ask. A program that asks as fast as it can sees some 90
 // records a second.
-constexpr std::uint64_t most_polls_hz = 90;
+constexpr std::uint64_t max_polls_hz = 90;
 // Nor how much the unit hears meanwhile.
 constexpr std::size_t waiting_room = 64;
 
@@ -41,7 +41,7 @@ CyberGloveUnit::CyberGloveUnit(const UnitOptions& options)
                options.capture),
       settings_(power_up()) {
   records_.play(options.played);
-  assert(options.rate_hz >= 1.0 && options.rate_hz <= most_rate_hz);
+  assert(options.rate_hz >= 1.0 && options.rate_hz <= max_rate_hz);
   if (options.streaming) start_stream('S', Time{});
 }
 
@@ -129,7 +129,7 @@ std::uint64_t CyberGloveUnit::own_ticks() const noexcept {
 
 // The data sheet's rates of the first model for 18 sensors, with the digital filter and without;
 // what the others were seen to do. A host that asks for more gets these, and `es` in every record.
-std::uint64_t CyberGloveUnit::least_ticks() const noexcept {
+std::uint64_t CyberGloveUnit::min_ticks() const noexcept {
   if (options_.overrun) return own_ticks();
   const std::uint64_t first_hz = settings_.filter ? 112 : 150;
   return tick_hz / (options_.model == 1 ? first_hz : options_.model == 2 ? 90 : 120);
@@ -137,7 +137,7 @@ std::uint64_t CyberGloveUnit::least_ticks() const noexcept {
 
 void CyberGloveUnit::start_stream(Byte header, Time now) {
   const std::uint64_t asked = std::uint64_t{settings_.period_ticks} * settings_.period_repeats;
-  const std::uint64_t least = std::min(own_ticks(), least_ticks());
+  const std::uint64_t least = std::min(own_ticks(), min_ticks());
   // A product of 0 asks for "as fast as possible".
   stream_ = {header, now, std::max(asked, least), 1, asked != 0 && asked < least};
 }
@@ -151,7 +151,7 @@ void CyberGloveUnit::start_three(Time now) {
 bool CyberGloveUnit::start_sync(Time now) {
   const Byte header = settings_.binary_sync ? Byte{'Y'} : settings_.text_sync ? Byte{'y'} : Byte{0};
   if (header == stream_.header) return true;
-  if (header != 0 && own_ticks() < least_ticks()) return false;
+  if (header != 0 && own_ticks() < min_ticks()) return false;
   stream_ = {};
   if (header != 0) stream_ = {header, now, own_ticks(), 1, false};
   return true;
@@ -222,7 +222,7 @@ bool CyberGloveUnit::send_next() {
 
 void CyberGloveUnit::poll(Byte header, Time now) {
   const Time soonest =
-      last_single_ ? *last_single_ + to_time(std::min(own_ticks(), tick_hz / most_polls_hz)) : now;
+      last_single_ ? *last_single_ + to_time(std::min(own_ticks(), tick_hz / max_polls_hz)) : now;
   if (soonest <= now) {
     send_single(header, now);
   } else {

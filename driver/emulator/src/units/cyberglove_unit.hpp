@@ -31,7 +31,7 @@ Result<std::unique_ptr<EmulatedUnit>> make_cyberglove_unit(const EmulatorOptions
 
 class CyberGloveUnit final : public EmulatedUnit {
 public:
-  static constexpr double most_rate_hz = 480.0; ///< records of 24 bytes that 115200 baud can carry
+  static constexpr double max_rate_hz = 480.0; ///< records of 24 bytes that 115200 baud can carry
 
   explicit CyberGloveUnit(const UnitOptions& options);
 
@@ -90,7 +90,7 @@ private:
   void reply(const Message& message);
 
   std::uint32_t parameters() const noexcept;
-  std::uint64_t least_ticks() const noexcept; ///< the shortest period that the unit manages
+  std::uint64_t min_ticks() const noexcept; ///< the shortest period that the unit manages
   std::uint64_t own_ticks() const noexcept;
 
   UnitOptions options_;

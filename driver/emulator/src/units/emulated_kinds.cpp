@@ -71,16 +71,16 @@ Result<Chosen> find_variants(const EmulatorOptions& options) {
 // send.
 double choose(const Chosen& chosen, LucidGlovesUnitOptions& unit) {
   unit.firmware = static_cast<LucidGlovesFirmware>(chosen.firmware);
-  return LucidGlovesUnit::most_rate_hz;
+  return LucidGlovesUnit::max_rate_hz;
 }
 double choose(const Chosen& chosen, FiveDtUnitOptions& unit) {
   unit.left_pinky_first = chosen.firmware == 1;
   unit.wireless = chosen.connection == 1;
-  return unit.wireless ? FiveDtUnit::most_wireless_rate_hz : FiveDtUnit::most_rate_hz;
+  return unit.wireless ? FiveDtUnit::max_wireless_rate_hz : FiveDtUnit::max_rate_hz;
 }
 double choose(const Chosen& chosen, ForteUnitOptions& unit) {
   unit.bluetooth = chosen.connection == 1;
-  return ForteUnit::most_rate_hz;
+  return ForteUnit::max_rate_hz;
 }
 
 /// Makes a unit of the options that every kind has.
@@ -91,10 +91,10 @@ Result<std::unique_ptr<EmulatedUnit>> make_unit(const EmulatorOptions& options) 
   const auto chosen = find_variants(options);
   if (!chosen) return chosen.error();
   UnitOptions unit;
-  const double most_rate_hz = choose(*chosen, unit);
-  if (!(options.rate_hz >= 1.0 && options.rate_hz <= most_rate_hz)) {
+  const double max_rate_hz = choose(*chosen, unit);
+  if (!(options.rate_hz >= 1.0 && options.rate_hz <= max_rate_hz)) {
     return Error{Errc::usage, "rate: a " + options.glove + " glove sends 1 to " +
-                                  std::to_string(static_cast<int>(most_rate_hz)) +
+                                  std::to_string(static_cast<int>(max_rate_hz)) +
                                   " records a second"};
   }
   unit.side = options.side;

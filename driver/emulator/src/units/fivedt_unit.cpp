@@ -24,7 +24,7 @@ FiveDtUnit::FiveDtUnit(const FiveDtUnitOptions& options)
     : options_(options), period_(std::llround(1e9 / options.rate_hz)),
       motion_(options.motion, options.side, options.seed), streaming_(options.wireless) {
   assert(options.rate_hz >= 1.0 &&
-         options.rate_hz <= (options.wireless ? most_wireless_rate_hz : most_rate_hz));
+         options.rate_hz <= (options.wireless ? max_wireless_rate_hz : max_rate_hz));
 }
 
 void FiveDtUnit::receive(std::span<const std::byte> bytes, Time now) {

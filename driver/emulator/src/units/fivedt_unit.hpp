@@ -20,7 +20,7 @@ namespace nendo::emulator {
 struct FiveDtUnitOptions {
   Side side = Side::right;
   driver::Motion motion = driver::Motion::sculpt;
-  double rate_hz = 100.0; ///< 1..most_rate_hz
+  double rate_hz = 100.0; ///< 1..max_rate_hz
   std::uint32_t seed = 1;
   bool wireless = false;         ///< streams by itself and hears nothing; ten bytes a sample
   bool ten_bytes = false;        ///< a wired unit of those that send 0x55 after each sample
@@ -30,8 +30,8 @@ struct FiveDtUnitOptions {
 class FiveDtUnit final : public EmulatedUnit {
 public:
   /// The rate of ten-byte samples that 19200 baud can carry. A wireless glove sends half as many.
-  static constexpr double most_rate_hz = 190.0;
-  static constexpr double most_wireless_rate_hz = 95.0;
+  static constexpr double max_rate_hz = 190.0;
+  static constexpr double max_wireless_rate_hz = 95.0;
 
   explicit FiveDtUnit(const FiveDtUnitOptions& options);
 

@@ -24,7 +24,7 @@ std::uint8_t flexion_byte(const driver::JointAngles& angles, Sensor sensor) {
 ForteUnit::ForteUnit(const ForteUnitOptions& options)
     : options_(options), period_(std::llround(1e9 / options.rate_hz)),
       motion_(options.motion, options.side, options.seed) {
-  assert(options.rate_hz >= 1.0 && options.rate_hz <= most_rate_hz);
+  assert(options.rate_hz >= 1.0 && options.rate_hz <= max_rate_hz);
 }
 
 void ForteUnit::receive(std::span<const std::byte> bytes, Time now) {

@@ -20,7 +20,7 @@ namespace nendo::emulator {
 struct ForteUnitOptions {
   Side side = Side::right; ///< of the motion; the glove itself does not tell it
   driver::Motion motion = driver::Motion::sculpt;
-  double rate_hz = 90.0; ///< 1..most_rate_hz
+  double rate_hz = 90.0; ///< 1..max_rate_hz
   std::uint32_t seed = 1;
   bool bluetooth = false; ///< the host is at its Bluetooth port
 };
@@ -28,7 +28,7 @@ struct ForteUnitOptions {
 class ForteUnit final : public EmulatedUnit {
 public:
   /// The rate of records that 115200 baud can carry, with a frame of motion after each.
-  static constexpr double most_rate_hz = 370.0;
+  static constexpr double max_rate_hz = 370.0;
 
   explicit ForteUnit(const ForteUnitOptions& options);
 

@@ -8,11 +8,11 @@
 namespace nendo::emulator {
 namespace {
 
-constexpr int analog_most = 4095;         // an ESP32's converter, 12 bits
+constexpr int analog_max = 4095;          // an ESP32's converter, 12 bits
 constexpr std::size_t command_room = 100; // the firmware's buffer
-constexpr std::size_t least_command = 5;  // shorter lines are ignored
+constexpr std::size_t min_command = 5;    // shorter lines are ignored
 constexpr std::size_t line_room = 256;    // an ESP32's buffer of what it has received
-constexpr int most_brake = 1000;
+constexpr int max_brake = 1000;
 constexpr double splay_end_rad = from_degrees(20.0); // as OpenGloves shows it
 
 // What a calibration that saw less than the whole way makes of it.
@@ -34,7 +34,7 @@ std::optional<int> argument(std::string_view command, char letter) {
 LucidGlovesUnit::LucidGlovesUnit(const LucidGlovesUnitOptions& options)
     : options_(options), period_(std::llround(1e9 / options.rate_hz)),
       motion_(options.motion, options.side, options.seed) {
-  assert(options.rate_hz >= 1.0 && options.rate_hz <= most_rate_hz);
+  assert(options.rate_hz >= 1.0 && options.rate_hz <= max_rate_hz);
 }
 
 bool LucidGlovesUnit::is_legacy() const noexcept {
@@ -56,8 +56,8 @@ bool LucidGlovesUnit::is_deaf() const noexcept {
 // `part` of the way from one end to the other, as the firmware sends it.
 int LucidGlovesUnit::number(double part) const {
   if (is_unclamped())
-    return static_cast<int>(std::lround((part - seen_from) / seen_part * analog_most));
-  return static_cast<int>(std::lround(std::clamp(part, 0.0, 1.0) * analog_most));
+    return static_cast<int>(std::lround((part - seen_from) / seen_part * analog_max));
+  return static_cast<int>(std::lround(std::clamp(part, 0.0, 1.0) * analog_max));
 }
 
 void LucidGlovesUnit::receive(std::span<const std::byte> bytes, Time now) {
@@ -91,10 +91,10 @@ void LucidGlovesUnit::handle(std::string_view command) {
     streaming_ = command == "(ZA)";
     return;
   }
-  if (waits() && command.size() < least_command) return;
+  if (waits() && command.size() < min_command) return;
   for (std::size_t finger = 0; finger < brakes_.size(); ++finger) {
     const auto value = argument(command, static_cast<char>('A' + finger));
-    if (value && *value >= 0) brakes_[finger] = std::min(*value, most_brake);
+    if (value && *value >= 0) brakes_[finger] = std::min(*value, max_brake);
   }
 }
 
@@ -102,12 +102,12 @@ void LucidGlovesUnit::handle(std::string_view command) {
 // these lock, which is the worst.
 void LucidGlovesUnit::set_legacy_brakes(std::string_view command) {
   if (command.empty()) return;
-  brakes_.fill(most_brake);
+  brakes_.fill(max_brake);
   for (int& brake : brakes_) {
     const std::size_t end = std::min(command.find('&'), command.size());
     int value = 0; // what atoi makes of text
     std::from_chars(command.data(), command.data() + end, value);
-    brake = std::clamp(value, 0, most_brake);
+    brake = std::clamp(value, 0, max_brake);
     if (end == command.size()) return;
     command.remove_prefix(end + 1);
   }
@@ -178,9 +178,9 @@ std::string LucidGlovesUnit::line(Time now) const {
   for (std::size_t finger = 0; finger < curls.size(); ++finger)
     text += static_cast<char>('A' + finger) + std::to_string(curls[finger]);
   // Joystick in the middle; the firmware makes the trigger of the index finger's upper half.
-  const int trigger = std::max(0, 2 * (curls[1] - analog_most / 2));
-  text += "F2048G2048P" + std::to_string(std::min(trigger, analog_most));
-  if (*std::min_element(curls.begin(), curls.end()) > analog_most / 2) text += 'L';
+  const int trigger = std::max(0, 2 * (curls[1] - analog_max / 2));
+  text += "F2048G2048P" + std::to_string(std::min(trigger, analog_max));
+  if (*std::min_element(curls.begin(), curls.end()) > analog_max / 2) text += 'L';
   for (std::size_t finger = 0; finger < splays_rad.size(); ++finger) {
     text += std::string("(") + static_cast<char>('A' + finger) + "B)";
     text += std::to_string(number(0.5 + 0.5 * splays_rad[finger] / splay_end_rad));

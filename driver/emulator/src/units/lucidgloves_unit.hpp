@@ -33,14 +33,14 @@ enum class LucidGlovesFirmware : std::uint8_t {
 struct LucidGlovesUnitOptions {
   Side side = Side::right;
   driver::Motion motion = driver::Motion::sculpt;
-  double rate_hz = 100.0; ///< 1..most_rate_hz; a waiting one is as fast as it is answered
+  double rate_hz = 100.0; ///< 1..max_rate_hz; a waiting one is as fast as it is answered
   std::uint32_t seed = 1;
   LucidGlovesFirmware firmware = LucidGlovesFirmware::senseshift;
 };
 
 class LucidGlovesUnit final : public EmulatedUnit {
 public:
-  static constexpr double most_rate_hz = 140.0; ///< lines of up to 82 bytes, at 115200 baud
+  static constexpr double max_rate_hz = 140.0; ///< lines of up to 82 bytes, at 115200 baud
   /// What a waiting firmware does between hearing a line and sending its next one.
   static constexpr Time loop_time = std::chrono::milliseconds(1);
   /// Arduino's time limit for a line, from its beginning and from each of its bytes on.

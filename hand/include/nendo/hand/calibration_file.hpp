@@ -20,8 +20,8 @@ namespace nendo::hand {
 /// Tells how well one sensor's line is known.
 struct SensorQuality {
   double residual_rad = 0.0; ///< root mean square distance of the poses from the line
-  double least_counts = 0.0; ///< the least that this wearer reached
-  double most_counts = 0.0;  ///< the most that this wearer reached
+  double min_counts = 0.0;   ///< the least that this wearer reached
+  double max_counts = 0.0;   ///< the most that this wearer reached
   double confidence = 0.0;   ///< 0 to 1
   friend bool operator==(const SensorQuality&, const SensorQuality&) = default;
 };
@@ -61,7 +61,7 @@ NENDO_API Result<std::string> calibration_text(const WearerCalibration& wearer);
 NENDO_API Result<WearerCalibration> read_calibration(const std::filesystem::path& path);
 
 /// How many earlier versions stay beside a calibration file.
-inline constexpr std::size_t most_earlier_versions = 20;
+inline constexpr std::size_t max_earlier_versions = 20;
 
 /// Writes a temporary file beside `path`, syncs and renames it, so that `path` is always the old
 /// file or the whole new one. Makes the folder if need be. An old file stays as NAME.DATE.toml

@@ -11,24 +11,23 @@
 
 namespace nendo::hand {
 
-/// A joint's range of motion, radians: least < soft_least < soft_most < most.
+/// A joint's range of motion, radians: least < soft_min < soft_max < most.
 struct NENDO_API JointLimit {
-  double least_rad;
-  double soft_least_rad; ///< below it, angles are compressed
-  double soft_most_rad;  ///< above it, angles are compressed
-  double most_rad;
+  double min_rad;
+  double soft_min_rad; ///< below it, angles are compressed
+  double soft_max_rad; ///< above it, angles are compressed
+  double max_rad;
 
-  /// Returns the angle itself from soft_least to soft_most. Beyond that, returns an angle on the
+  /// Returns the angle itself from soft_min to soft_max. Beyond that, returns an angle on the
   /// same side of them and no farther than the end of the range. The function is monotone with a
   /// continuous slope, and is halfway to the end where the given angle is at the end. The result is
   /// finite for every double: NaN becomes the lower end. Wait-free.
   double soften(double angle_rad) const noexcept;
 };
 
-constexpr JointLimit limit_deg(double least, double soft_least, double soft_most,
+constexpr JointLimit limit_deg(double least, double soft_min, double soft_max,
                                double most) noexcept {
-  return {from_degrees(least), from_degrees(soft_least), from_degrees(soft_most),
-          from_degrees(most)};
+  return {from_degrees(least), from_degrees(soft_min), from_degrees(soft_max), from_degrees(most)};
 }
 
 // Ranges of motion as clinical goniometry gives them (American Academy of Orthopaedic Surgeons:

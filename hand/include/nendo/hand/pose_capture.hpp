@@ -32,10 +32,10 @@ public:
   /// These limits are for 255 counts. Other scales have them in proportion, but never so low that a
   /// flickering last bit exceeds them.
   static constexpr double still_range_counts = 6.0;
-  static constexpr double most_noise_counts = 2.0;
-  static constexpr double least_change_counts = 8.0;
+  static constexpr double max_noise_counts = 2.0;
+  static constexpr double min_change_counts = 8.0;
   static constexpr double hold_s = 1.0;
-  static constexpr std::uint32_t least_samples = 10; ///< within hold_s
+  static constexpr std::uint32_t min_samples = 10; ///< within hold_s
 
   explicit PoseCapture(CountScale scale = {}) noexcept;
 

@@ -50,15 +50,15 @@ NENDO_API LearnedRanges learned_from(const SensorRanges& ranges, Side side) noex
 class NENDO_API RangeAdaptation {
 public:
   /// Learning changes the angle of a count at most this fast.
-  static constexpr double most_drift_rad_s = 0.1;
+  static constexpr double max_drift_rad_s = 0.1;
   /// A movement over less than this part of the usual range, in the default's counts, is no swing.
-  static constexpr double least_swing = 0.15;
+  static constexpr double min_swing = 0.15;
   /// How far the end of one swing moves a bound at most, as a part of that range: for the first
   /// swing, and once there have been many.
-  static constexpr double most_first_step = 0.25;
-  static constexpr double most_step = 0.05;
+  static constexpr double max_first_step = 0.25;
+  static constexpr double max_step = 0.05;
   /// The bounds never come nearer to each other than this part of that range.
-  static constexpr double least_span = 0.35;
+  static constexpr double min_span = 0.35;
 
   /// Begins with the default calibration for a glove of this scale. With `most` = 0 nothing is ever
   /// learned.

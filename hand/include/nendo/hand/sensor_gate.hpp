@@ -15,14 +15,14 @@ class NENDO_API SensorGate {
 public:
   /// Fast finger flexion peaks near 20 to 25 rad/s (flicks and taps at full effort); the wrist and
   /// spreading are slower.
-  static constexpr double most_speed_rad_s = 25.0;
+  static constexpr double max_speed_rad_s = 25.0;
   /// How far noise and the converter's steps may change an angle in addition: four counts of a
   /// CyberGlove.
   static constexpr double noise_rad = 0.05;
   /// Without a glove's own clock, times of arrival tell little about when a sample was taken,
   /// because serial adapters hand over bytes every 16 ms. An interval then counts as at least that
   /// long.
-  static constexpr double least_arrival_interval_s = 0.016;
+  static constexpr double min_arrival_interval_s = 0.016;
 
   /// Takes the next sample in time and returns the sample to use instead of it. The gains of
   /// `calibration` tell how far a count turns a joint; it must be that of the glove that sent this

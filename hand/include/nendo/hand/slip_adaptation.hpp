@@ -23,16 +23,16 @@ struct WornEnds {
 };
 
 /// Returns the least slip that is worth telling: half a count of a glove that counts to 255.
-constexpr double least_slip_counts(CountScale counts) noexcept {
+constexpr double min_slip_counts(CountScale counts) noexcept {
   return 0.5 * counts.most / 255.0;
 }
 
 class NENDO_API SlipAdaptation {
 public:
   /// Learning changes angles at most this fast.
-  static constexpr double most_drift_rad_s = 0.02;
+  static constexpr double max_drift_rad_s = 0.02;
   /// No slip is taken for greater than this part of the sensor's range.
-  static constexpr double most_slip = 0.2;
+  static constexpr double max_slip = 0.2;
 
   /// Begins with the calibration as it was made for a glove of these counts.
   SlipAdaptation(const Calibration& made, const WornEnds& ends, CountScale counts) noexcept;

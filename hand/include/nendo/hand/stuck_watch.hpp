@@ -16,8 +16,8 @@ namespace nendo::hand {
 /// same. Wait-free, no allocation.
 class NENDO_API StuckWatch {
 public:
-  static constexpr double least_still_s = 3.0;       ///< before a sensor is taken to be stuck
-  static constexpr double least_swing_counts = 16.0; ///< of 255: about 11 degrees
+  static constexpr double min_still_s = 3.0;       ///< before a sensor is taken to be stuck
+  static constexpr double min_swing_counts = 16.0; ///< of 255: about 11 degrees
 
   /// `stuck` are the sensors that an earlier watch of the same glove had found.
   explicit StuckWatch(CountScale scale = {}, SensorMask stuck = {}) noexcept;

@@ -19,10 +19,10 @@ public:
   };
 
   /// Takes the next count in time, and returns the end that it shows, if any. A count that is gone
-  /// again within two samples is not seen. A movement over less than `least_swing` counts is no
+  /// again within two samples is not seen. A movement over less than `min_swing` counts is no
   /// swing. Where the first count lies in its swing is not known, so that the first turn is no end.
   /// Wait-free, no allocation.
-  std::optional<End> push(std::uint16_t count, double least_swing) noexcept;
+  std::optional<End> push(std::uint16_t count, double min_swing) noexcept;
   /// Forgets what came before, as after a pause.
   void begin_anew() noexcept { seen_ = 0; }
 

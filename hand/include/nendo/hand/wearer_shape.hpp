@@ -91,7 +91,7 @@ constexpr std::string_view name_of(ShapeTerm term) noexcept {
 
 /// Returns the most that a term may be, either way: half as long again, 30 mm, 60 degrees, pads 5
 /// mm. No hand differs that much.
-constexpr double most_of(ShapeTerm term) noexcept {
+constexpr double max_of(ShapeTerm term) noexcept {
   if (term >= ShapeTerm::pad_depth) return 0.005;
   if (term <= ShapeTerm::little_distal) return 0.4;
   return term <= ShapeTerm::thumb_base_z ? 0.03 : 1.05;

@@ -28,7 +28,7 @@ struct CoreOptions {
   puppet::RigState rig_state{}; ///< the state of the puppet's player at first
   /// Further puppets, for change_puppet() by their numbers, from 1 on.
   std::vector<std::shared_ptr<const puppet::Rig>> more_rigs{};
-  std::size_t undo_most_bytes = 0; ///< UndoRoom::most_bytes, of all versions together
+  std::size_t undo_max_bytes = 0; ///< UndoRoom::max_bytes, of all versions together
 };
 
 /// Asking thread, which may be the loop's, but for the last two functions. Changes that the loop

@@ -54,7 +54,7 @@ NENDO_API HandTouch touch_of(std::span<const deform::ClayContact> contacts,
 /// tell where the hands are. None but the constructors allocates.
 class NENDO_API ClayHands {
 public:
-  /// `radius_m` tells how far clay gives way about a hand, on the stage; less than least_radius_m
+  /// `radius_m` tells how far clay gives way about a hand, on the stage; less than min_radius_m
   /// counts as that, because palms crease the surface otherwise. `shape` must outlive this.
   /// With a `mirror`, the x of a plane in model units, the hands' mirror images press as well.
   /// `scales_few_vertices`: see deform::ClayOptions.
@@ -62,7 +62,7 @@ public:
             std::shared_ptr<const HandBodies> bodies, double radius_m,
             const deform::DeformerOptions& options, std::optional<double> mirror,
             bool scales_few_vertices = true);
-  static constexpr double least_radius_m = 0.020;
+  static constexpr double min_radius_m = 0.020;
 
   deform::FieldStatus begin(const deform::Points&) { return clay_.begin(parts()); }
   deform::FieldStatus grab(const deform::Points&) { return clay_.grab(parts()); }

@@ -30,7 +30,7 @@ struct Subdivide {
 /// Makes a model of the present one whose triangles suit the present shape (deform::Refiner).
 struct Refine {
   /// No edge is split beyond it.
-  std::uint32_t most_vertices = std::uint32_t{1} << 22;
+  std::uint32_t max_vertices = std::uint32_t{1} << 22;
   friend bool operator==(const Refine&, const Refine&) = default;
 };
 /// Lets what is thinner than its edges part, open, or fuse (deform::change_topology()).
@@ -159,9 +159,9 @@ constexpr bool is_of_shape(ModelSource source) noexcept {
 struct ChangeModel {
   std::uint32_t number = 0;
   ModelSource source = ModelSource::kept;
-  std::uint32_t most_vertices = 0; ///< Refine::most_vertices of what is refined
-  double seam_width = 0.0;         ///< JoinParts::seam_width of what is joined
-  std::uint32_t part = 0;          ///< that is copied or removed (deform::ModelParts)
+  std::uint32_t max_vertices = 0; ///< Refine::max_vertices of what is refined
+  double seam_width = 0.0;        ///< JoinParts::seam_width of what is joined
+  std::uint32_t part = 0;         ///< that is copied or removed (deform::ModelParts)
   bool is_new() const noexcept { return source != ModelSource::kept; }
   friend bool operator==(const ChangeModel&, const ChangeModel&) = default;
 };
@@ -187,7 +187,7 @@ static_assert(std::is_trivially_copyable_v<Command>);
 constexpr std::optional<ChangeModel> model_asked_by(const Command& command) noexcept {
   if (std::holds_alternative<Subdivide>(command)) return ChangeModel{0, ModelSource::subdivided};
   if (const auto* refine = std::get_if<Refine>(&command))
-    return ChangeModel{0, ModelSource::refined, refine->most_vertices};
+    return ChangeModel{0, ModelSource::refined, refine->max_vertices};
   if (std::holds_alternative<ChangeTopology>(command)) return ChangeModel{0, ModelSource::topology};
   if (const auto* join = std::get_if<JoinParts>(&command))
     return ChangeModel{0, ModelSource::joined, 0, join->seam_width};
@@ -203,7 +203,7 @@ constexpr Command asking_for(const ChangeModel& change) noexcept {
     return EditPart{change.source == ModelSource::removed, change.part};
   if (change.source == ModelSource::joined) return JoinParts{change.seam_width};
   if (change.source == ModelSource::topology) return ChangeTopology{};
-  if (change.source == ModelSource::refined) return Refine{change.most_vertices};
+  if (change.source == ModelSource::refined) return Refine{change.max_vertices};
   return Subdivide{};
 }
 

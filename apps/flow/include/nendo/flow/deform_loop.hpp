@@ -33,10 +33,10 @@ public:
   DeformLoop& operator=(const DeformLoop&) = delete;
 
   /// Runs ticks on the calling thread, which is then the loop's thread, until `stop` or for
-  /// `most_ticks` deadlines of the grid, also skipped ones. A tick does not allocate or lock; its
+  /// `max_ticks` deadlines of the grid, also skipped ones. A tick does not allocate or lock; its
   /// only system call is the sleep. Call make_thread_realtime() first to make wake-ups punctual.
   void run(const std::atomic<bool>& stop,
-           std::uint64_t most_ticks = std::numeric_limits<std::uint64_t>::max()) noexcept;
+           std::uint64_t max_ticks = std::numeric_limits<std::uint64_t>::max()) noexcept;
   /// Runs one tick without its sleep, for callers with a clock of their own. Loop's thread.
   void tick(std::uint64_t number, HostTime scheduled) noexcept;
   /// Repeats a tick from an input log. Durations that are measured of it mean nothing.

@@ -111,7 +111,7 @@ struct Frame {
   std::uint32_t puppet = 0; ///< the number of the puppet whose functions made this frame
   /// The values of a puppet's functions, in their order, and how many there are; 0 without a
   /// puppet.
-  std::array<float, puppet::Puppet::most_functions> functions{};
+  std::array<float, puppet::Puppet::max_functions> functions{};
   std::uint32_t function_count = 0;
   std::array<bool, 2> let_go{}; ///< by side: that hand has let go of all that it plays
   bool symmetric = false;       ///< one hand plays both sides

@@ -43,7 +43,7 @@ struct HandInput {
   }
 };
 
-/// Checks that a loop can be made of these: one to most_inputs, and of each side at most one that
+/// Checks that a loop can be made of these: one to max_inputs, and of each side at most one that
 /// is no layer, before its layers. Error: bad_input, naming the input that is wrong.
 NENDO_API Result<void> check_inputs(std::span<const HandInput> inputs);
 /// Returns how many hands shape: one or two.

@@ -40,8 +40,8 @@ private:
   // There are 64 buckets an octave; values below 64 ns have one each. Values above 2^40 ns, which
   // is 18 minutes, share the last bucket.
   static constexpr unsigned sub_bits = 6;
-  static constexpr unsigned most_bits = 40;
-  static constexpr std::size_t bucket_count = (most_bits - sub_bits + 1) << sub_bits;
+  static constexpr unsigned max_bits = 40;
+  static constexpr std::size_t bucket_count = (max_bits - sub_bits + 1) << sub_bits;
   static std::size_t bucket_of(std::uint64_t ns) noexcept;
   static std::uint64_t top_of(std::size_t bucket) noexcept;
 

@@ -13,7 +13,7 @@
 namespace nendo::flow {
 
 /// The inputs that a loop may have: the hands and the layers over them.
-inline constexpr std::size_t most_inputs = 16;
+inline constexpr std::size_t max_inputs = 16;
 
 class NENDO_API InputScript {
 public:
@@ -104,7 +104,7 @@ private:
   HostClock::duration shift_{};
   HostClock::duration offset_{}; ///< from the script's time to that of the loop
   std::size_t next_ = 0;
-  std::array<Stream, most_inputs> streams_{};
+  std::array<Stream, max_inputs> streams_{};
   std::atomic<bool> ended_{false};
   CommandRing for_others_{256};
 };

@@ -47,7 +47,7 @@ struct LoopOptions : PaceOptions {
     Blade blade = Blade::wire;
   };
   std::optional<WireTime> wire_time{};
-  std::size_t undo_most_bytes = 0; ///< UndoRoom::most_bytes, of all versions together
+  std::size_t undo_max_bytes = 0; ///< UndoRoom::max_bytes, of all versions together
   /// The sinks that are shown every frame. They must outlive the loop.
   std::vector<FrameSink*> sinks;
   /// Is notified of each sample that comes; OverrunPolicy::sample needs it. It must outlive the

@@ -51,12 +51,12 @@ struct LoopStats {
   std::uint64_t undo_steps = 0;       ///< as many commits can be undone
   std::uint64_t forgotten_steps = 0;  ///< could not any more, for want of memory
   std::uint64_t refused_steps = 0;    ///< undos, redos and resets that found too many waiting
-  int most_links = 0;                 ///< of a tick; 0 unless the sculptor is injective
-  double most_bound = 0.0;            ///< Lipschitz bound of a tick, had it been one link
-  double least_determinant = 1.0;     ///< ChainReport::least_determinant of any tick
+  int max_links = 0;                  ///< of a tick; 0 unless the sculptor is injective
+  double max_bound = 0.0;             ///< Lipschitz bound of a tick, had it been one link
+  double min_determinant = 1.0;       ///< ChainReport::min_determinant of any tick
   std::uint64_t held_apart_ticks = 0; ///< in which fingertips were held apart
   std::uint64_t touching_ticks = 0;   ///< in which hands touched clay
-  double most_penetration_mm = 0.0;   ///< of clay in a hand, before it was set right
+  double max_penetration_mm = 0.0;    ///< of clay in a hand, before it was set right
   ClayState clay{};                   ///< of the last tick in which hands shaped clay
   Histogram wake_latency;             ///< from TickRecord::scheduled to the loop's running
   Histogram work;                     ///< from there to the published frame

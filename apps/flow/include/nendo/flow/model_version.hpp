@@ -24,7 +24,7 @@ namespace nendo::flow {
 /// more that memory may grow.
 struct UndoRoom {
   std::size_t bytes = 0;
-  std::size_t most_bytes = 0;
+  std::size_t max_bytes = 0;
 };
 
 /// How a version came from the one before.
@@ -96,7 +96,7 @@ public:
   std::size_t count_unfit(const deform::BlockShape& shape) const;
 
   /// The corners of faces of the largest model that can be subdivided: 16 times, a triangle can.
-  static constexpr std::size_t most_corners = std::size_t{6} << 20;
+  static constexpr std::size_t max_corners = std::size_t{6} << 20;
 
 private:
   struct Subdividing {

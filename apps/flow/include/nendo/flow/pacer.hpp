@@ -17,7 +17,7 @@ namespace nendo::flow {
 /// What happens after a tick that ended after the next deadline.
 enum class OverrunPolicy : std::uint8_t {
   skip,      ///< deadlines that passed are missed; the next tick is on the grid again
-  catch_up,  ///< they are run at once, the newest `most_catch_up` of them; older ones are missed
+  catch_up,  ///< they are run at once, the newest `max_catch_up` of them; older ones are missed
   re_anchor, ///< the next tick runs at once, and the grid begins anew there; none is missed
   sample,    ///< no grid: a tick runs when a sample comes
 };
@@ -25,7 +25,7 @@ enum class OverrunPolicy : std::uint8_t {
 struct PaceOptions {
   double rate_hz = 90.0; ///< within TickGrid's limits
   OverrunPolicy policy = OverrunPolicy::skip;
-  unsigned most_catch_up = 4; ///< at least 1
+  unsigned max_catch_up = 4; ///< at least 1
   /// If set, the pacer wakes before the deadline and spins until it (SpinMargin). DeformLoop does
   /// so only under SCHED_FIFO: under the ordinary scheduler, a thread that spins misses twice as
   /// many deadlines.
@@ -36,7 +36,7 @@ struct PaceOptions {
 
 /// Returns "skip", "catch-up" or "catch-up:N" with N from 1 to 1000, "re-anchor", or "sample".
 NENDO_API std::string describe_policy(const PaceOptions& options);
-/// Sets policy and most_catch_up by such a text. Error: usage, naming the text and these; then
+/// Sets policy and max_catch_up by such a text. Error: usage, naming the text and these; then
 /// nothing changes.
 NENDO_API Result<void> parse_policy(std::string_view text, PaceOptions& options);
 

@@ -18,7 +18,7 @@ struct RealtimeOptions {
   bool lock_memory = false;       ///< no page of the process is ever fetched again
 };
 inline constexpr unsigned usual_priority = 80;
-inline constexpr unsigned most_priority = 97;
+inline constexpr unsigned max_priority = 97;
 constexpr unsigned reader_priority(unsigned of_loop) noexcept {
   return of_loop == 0 ? 0 : of_loop + 2;
 }

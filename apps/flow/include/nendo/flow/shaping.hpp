@@ -16,9 +16,9 @@
 namespace nendo::flow {
 
 struct ShapingOptions {
-  std::size_t most_requests = 64; ///< undos, redos and resets that may wait; others are refused
-  bool held = true;               ///< at first
-  bool pull_is_step = true;       ///< LoopOptions::pull_is_step
+  std::size_t max_requests = 64; ///< undos, redos and resets that may wait; others are refused
+  bool held = true;              ///< at first
+  bool pull_is_step = true;      ///< LoopOptions::pull_is_step
   /// The caller makes the change that an undo or a redo awaits (Frame::awaited) in the same tick,
   /// so shape() completes the stroke.
   bool changes_at_once = false;

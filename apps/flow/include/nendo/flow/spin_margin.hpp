@@ -18,7 +18,7 @@ class NENDO_API SpinMargin {
 public:
   static constexpr std::chrono::microseconds most{100};
   static constexpr std::chrono::microseconds reserve{5};
-  static constexpr int most_of_period = 25; ///< a 25th of it is spun on the average, at the most
+  static constexpr int max_of_period = 25; ///< a 25th of it is spun on the average, at the most
 
   explicit SpinMargin(HostClock::duration period) noexcept;
 

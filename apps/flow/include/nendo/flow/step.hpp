@@ -58,10 +58,10 @@ struct Step {
 /// The last steps that can be undone, the oldest first, and then the first of those that were
 /// undone.
 struct StepList {
-  static constexpr std::size_t most_undoable = 48;
-  static constexpr std::size_t most_undone = 16;
+  static constexpr std::size_t max_undoable = 48;
+  static constexpr std::size_t max_undone = 16;
 
-  std::array<Step, most_undoable + most_undone> steps;
+  std::array<Step, max_undoable + max_undone> steps;
   std::uint32_t count = 0;
   std::uint32_t undoable = 0; ///< as many of them, at the beginning
   /// The hands have shaped something that is no step yet, which an undo would undo first.

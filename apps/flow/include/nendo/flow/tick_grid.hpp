@@ -11,8 +11,8 @@ namespace nendo::flow {
 
 class NENDO_API TickGrid {
 public:
-  static constexpr double least_rate_hz = 1.0;
-  static constexpr double most_rate_hz = 10'000.0;
+  static constexpr double min_rate_hz = 1.0;
+  static constexpr double max_rate_hz = 10'000.0;
 
   /// The rate is kept to a thousandth of a hertz. Asserts that it is within the limits.
   TickGrid(HostTime start, double rate_hz) noexcept;

@@ -14,7 +14,7 @@ namespace nendo::flow {
 /// and forth by a few steps is, too.
 class NENDO_API WirePath {
 public:
-  static constexpr std::size_t most_places = 128;
+  static constexpr std::size_t max_places = 128;
 
   /// Begins another wire, of which places that are nearer to each other than `step`, or than 1/40
   /// of the wire's greatest length, are one.
@@ -38,7 +38,7 @@ private:
   bool is_near_last(const deform::WirePlace& place) const noexcept;
   void forget_detour(const deform::WirePlace& place) noexcept;
 
-  std::array<deform::WirePlace, most_places> places_{};
+  std::array<deform::WirePlace, max_places> places_{};
   std::uint32_t count_ = 0;
   std::uint32_t completed_ = 0;
   std::uint64_t version_ = 0; ///< differs where anything does

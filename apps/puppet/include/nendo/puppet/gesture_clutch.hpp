@@ -33,7 +33,7 @@ public:
   static constexpr double ease_s = 0.2;        ///< less than any held_s
   static constexpr double look_back_s = 0.6;   ///< closing a hand may take so long
   static constexpr double rest_s = 0.15;       ///< fingers at rest hardly move for so long
-  static constexpr double most_rest_s = 1.0;   ///< after which they are taken to be at rest
+  static constexpr double max_rest_s = 1.0;    ///< after which they are taken to be at rest
   static constexpr double fist_ends_at = 0.8;  ///< of its bound
   static constexpr double pinch_ends_at = 1.5; ///< of its bound
 

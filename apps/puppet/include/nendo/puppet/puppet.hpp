@@ -43,7 +43,7 @@ struct PuppetPoint {
   std::vector<deform::Support> supports() const {
     return mix.empty() ? std::vector{deform::Support{radius, 1.0}} : mix;
   }
-  static constexpr std::size_t most_radii = 4; ///< of a mix
+  static constexpr std::size_t max_radii = 4; ///< of a mix
   friend bool operator==(const PuppetPoint&, const PuppetPoint&) = default;
 };
 
@@ -139,8 +139,8 @@ struct NENDO_API Puppet {
   /// Compares all but the text.
   NENDO_API friend bool operator==(const Puppet& one, const Puppet& other) noexcept;
 
-  static constexpr std::size_t most_points = 1000; ///< and radii of all points together
-  static constexpr std::size_t most_functions = 64;
+  static constexpr std::size_t max_points = 1000; ///< and radii of all points together
+  static constexpr std::size_t max_functions = 64;
 };
 
 /// Returns "browRight" for "browLeft", and the other way round; other names are their own twins.

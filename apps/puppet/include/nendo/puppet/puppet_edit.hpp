@@ -73,7 +73,7 @@ NENDO_API Result<Puppet> with_masks_inverted(const Rig& rig);
 NENDO_API Result<Puppet> with_symmetry(const Rig& rig, bool on, double at);
 
 /// Two points are at least so much of the smaller radius apart.
-inline constexpr double least_gap_of_points = 0.1;
-inline constexpr std::size_t most_painted_masks = 500;
+inline constexpr double min_gap_of_points = 0.1;
+inline constexpr std::size_t max_painted_masks = 500;
 
 } // namespace nendo::puppet

@@ -35,7 +35,7 @@ struct TwinCheck {
 
 struct NENDO_API RigCheck {
   /// Of the moved triangles of one function alone, so many may turn over: rolling lips do.
-  static constexpr double most_turned = 0.005;
+  static constexpr double max_turned = 0.005;
   /// Twins are symmetric within this part of the diagonal, and what the model itself lacks.
   static constexpr double symmetric_within = 1e-6;
   /// A vertex has a mirror image if there is a vertex within this part of the diagonal.
@@ -50,7 +50,7 @@ struct NENDO_API RigCheck {
   double model_apart = 0.0;
 
   static bool folds(const LimitCheck& limit) noexcept {
-    return static_cast<double>(limit.turned) > most_turned * static_cast<double>(limit.moved);
+    return static_cast<double>(limit.turned) > max_turned * static_cast<double>(limit.moved);
   }
   bool are_symmetric(const TwinCheck& pair) const noexcept {
     return pair.apart <= symmetric_within + 2.0 * model_apart;

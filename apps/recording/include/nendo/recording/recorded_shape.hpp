@@ -20,10 +20,10 @@ struct RecordedShape {
 
 inline constexpr ChunkType shape_chunk = chunk_type("SHAP");
 /// The greatest number of vertices that a chunk has room for.
-inline constexpr std::size_t most_recorded_vertices = (max_payload_bytes - 12) / 12;
+inline constexpr std::size_t max_recorded_vertices = (max_payload_bytes - 12) / 12;
 
 NENDO_API RecordedShape shape_of(std::uint64_t tick, const deform::Points& vertices);
-/// Writes the payload of a chunk. The shape must have at most most_recorded_vertices.
+/// Writes the payload of a chunk. The shape must have at most max_recorded_vertices.
 NENDO_API void put_shape(ByteWriter& writer, const RecordedShape& shape);
 /// Returns nothing if the payload is not what put_shape() writes, or has a number that is not
 /// finite.

@@ -20,7 +20,7 @@ NENDO_API Result<hand::WornEnds> ends_of(const hand::StoredCalibration& file,
 /// What became of slips.
 struct KeptSlips {
   std::filesystem::path path; ///< of the calibration
-  bool is_changed = false;    ///< false: no sensor has slipped by hand::least_slip_counts()
+  bool is_changed = false;    ///< false: no sensor has slipped by hand::min_slip_counts()
 };
 
 /// Writes the user's calibration, from which slips were learned, with the sensors' offsets and ends

@@ -16,12 +16,12 @@ namespace nendo::sculpting {
 /// Asking thread, but for `ended`.
 class LoopThread {
 public:
-  /// Starts the loop, which must outlive this. It runs until stop(), or for `most_ticks`.
+  /// Starts the loop, which must outlive this. It runs until stop(), or for `max_ticks`.
   explicit LoopThread(flow::DeformLoop& loop, const flow::RealtimeOptions& realtime = {},
-                      std::uint64_t most_ticks = std::numeric_limits<std::uint64_t>::max())
-      : start(HostClock::now()), thread_([this, &loop, realtime, most_ticks] {
+                      std::uint64_t max_ticks = std::numeric_limits<std::uint64_t>::max())
+      : start(HostClock::now()), thread_([this, &loop, realtime, max_ticks] {
           prepared_.set_value(flow::make_thread_realtime(realtime));
-          loop.run(over_, most_ticks);
+          loop.run(over_, max_ticks);
           ended = true;
         }) {}
   ~LoopThread() { stop(); }

@@ -31,9 +31,9 @@ NENDO_API deform::Supports usual_supports(const deform::Mesh& model, flow::Mode 
 /// hands need with them.
 NENDO_API void set_supports(deform::Supports supports, flow::SculptorOptions& sculptor);
 
-/// Sets how many bytes undo has at the beginning, and that it may have `most_bytes`. The
+/// Sets how many bytes undo has at the beginning, and that it may have `max_bytes`. The
 /// asking thread calls ChangeBroker::refill_undo() now and then.
-NENDO_API void set_undo_room(const deform::Mesh& model, std::size_t most_bytes,
+NENDO_API void set_undo_room(const deform::Mesh& model, std::size_t max_bytes,
                              flow::LoopOptions& loop);
 
 struct PlacingOptions {

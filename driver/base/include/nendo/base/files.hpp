@@ -24,8 +24,8 @@ NENDO_API Result<OpenFile> open_file(const std::filesystem::path& path, std::str
 
 /// Returns the contents of a regular file; a device or a pipe is refused, since it might never end.
 /// `kind` says in errors what the file ought to be, e.g. "mesh". Error: bad_input, also if the file
-/// has more than `most_bytes`.
-NENDO_API Result<std::string> read_file(const std::filesystem::path& path, std::uint64_t most_bytes,
+/// has more than `max_bytes`.
+NENDO_API Result<std::string> read_file(const std::filesystem::path& path, std::uint64_t max_bytes,
                                         std::string_view kind);
 
 /// Replaces the file that `path` or its link leads to; it must be a regular file, if it exists.

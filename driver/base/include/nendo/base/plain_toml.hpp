@@ -20,12 +20,12 @@ struct TomlFault {
 
 /// The most parts that a key may have (a.b.c has three), and the most lists and tables in braces
 /// that may stand within each other. Files of this project need four.
-inline constexpr int most_toml_depth = 16;
+inline constexpr int max_toml_depth = 16;
 
 /// Returns the first place where the text is not plain TOML, or nothing if toml++ may read it.
 /// Plain is what the files of this project have: tables, keys, and as values decimal numbers,
 /// truths, dates with a time, texts on one line or in three single quotes, lists, and tables in
-/// braces, nested at most `most_toml_depth` deep. It does not judge what only toml++ can tell:
+/// braces, nested at most `max_toml_depth` deep. It does not judge what only toml++ can tell:
 /// whether a number has too many digits, an escape is known, or a key stands twice. Takes a time
 /// proportional to the size of the text.
 NENDO_API std::optional<TomlFault> find_toml_fault(std::string_view text);

@@ -29,10 +29,10 @@ constexpr double to_seconds(HostClock::duration d) noexcept {
 /// Returns the duration, without parts of a nanosecond. Seconds that HostClock cannot count give
 /// the longest or the shortest duration, and NaN gives zero.
 constexpr HostClock::duration from_seconds(double seconds) noexcept {
-  constexpr double most_s = to_seconds(HostClock::duration::max());
+  constexpr double max_s = to_seconds(HostClock::duration::max());
   if (seconds != seconds) return HostClock::duration::zero();
-  if (seconds >= most_s) return HostClock::duration::max();
-  if (seconds <= -most_s) return HostClock::duration::min();
+  if (seconds >= max_s) return HostClock::duration::max();
+  if (seconds <= -max_s) return HostClock::duration::min();
   return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
 }
 

@@ -1,4 +1,4 @@
-#include "deformer/least_gap.hpp"
+#include "deformer/min_gap.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "support/test_meshes.hpp"
 
-namespace least_gap_test {
+namespace min_gap_test {
 
 using namespace nendo::deform;
 using Eigen::Vector3d;
@@ -182,4 +182,4 @@ TEST_SUITE("least gap") {
   }
 }
 
-} // namespace least_gap_test
+} // namespace min_gap_test

@@ -1,4 +1,4 @@
-#include "deformer/least_gap.hpp"
+#include "deformer/min_gap.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace nendo::deform {
 namespace {
 constexpr double never = 2.0;
 /// Points nearer than this coincide: squares of it would underflow.
-constexpr double least_distance = 1e-150;
+constexpr double min_distance = 1e-150;
 
 /// Of unit vectors: across a way that meets the gap head on, along one that grazes it. With c the
 /// cosine of the angle between them, what the wall takes off a way is in proportion to c^2, thus to
@@ -46,13 +46,13 @@ void LeastGap::release(const Points& wanted) noexcept {
 /// Hildreth's method: Gauss-Seidel on the pushes, none of which may pull. It converges to the
 /// projection; where it is stopped sooner, a pair may come a little nearer than its gap.
 void LeastGap::project(const Points& wanted, Points& allowed) noexcept {
-  constexpr int most_sweeps = 64;
+  constexpr int max_sweeps = 64;
   constexpr double tolerance = 1e-12; // of the gap
   allowed = wanted;
   for (HeldPair& wall : walls_)
     wall.push = 0.0;
   bool settled = walls_.empty();
-  for (int sweep = 0; sweep < most_sweeps && !settled; ++sweep) {
+  for (int sweep = 0; sweep < max_sweeps && !settled; ++sweep) {
     settled = true;
     for (HeldPair& wall : walls_) {
       const double apart = wall.normal.dot(allowed.col(wall.first) - allowed.col(wall.second));
@@ -84,7 +84,7 @@ bool LeastGap::hold(const Points& from, const Points& to, double part) {
           (1.0 - at) * (from.col(first) - from.col(second)) + at * (to.col(first) - to.col(second));
       const Eigen::Vector3d motion =
           to.col(first) - from.col(first) - (to.col(second) - from.col(second));
-      if (!(apart.norm() > least_distance)) continue;
+      if (!(apart.norm() > min_distance)) continue;
       const Eigen::Vector3d normal = wall_normal(apart.normalized(), motion.normalized());
       walls_.push_back({first, second, normal, normal.dot(apart)});
     }
@@ -100,7 +100,7 @@ bool LeastGap::has_wall(Eigen::Index first, Eigen::Index second) const noexcept 
 double LeastGap::gap_of(Eigen::Index first, Eigen::Index second) const noexcept {
   const double at_first = (starts_.col(first) - starts_.col(second)).norm();
   const double gap = std::min(fraction_ * std::min(radii_[first], radii_[second]), 0.5 * at_first);
-  return gap > 2.0 * least_distance ? gap : 0.0;
+  return gap > 2.0 * min_distance ? gap : 0.0;
 }
 
 /// When the pair comes to its gap, or never. Written with the nearest approach, so that no square
