@@ -47,7 +47,7 @@ struct Verdict {
   std::vector<double> fit_ms;
 };
 
-/// Adds a wearer's errors. The floors are judged, too, if the wearer is a stranger whose true hand
+/// Adds a wearer's errors. The floors are judged, if the wearer is a stranger whose true hand
 /// is given; this takes a second.
 void judge(const JudgedWearer& wearer, Verdict& verdict, const StrangerHand* hand = nullptr);
 

@@ -30,8 +30,8 @@ public:
   int ticks() const noexcept;
   /// Otherwise the hands carry and turn it.
   bool lies_on_table() const noexcept { return thing_ != KneadedThing::sausage; }
-  /// Tells where the vertices of the clay are, 3 x n. The hands that roll it stay about its middle,
-  /// and across its long axis.
+  /// Returns where the vertices of the clay are, 3 x n. The hands that roll it stay about its
+  /// middle, and across its long axis.
   void see(const Eigen::Matrix3Xd& vertices);
   /// Returns the parts of both bodies in that tick: of two hands, or of a hand and a table.
   std::span<const deform::ContactPart> at(int tick);

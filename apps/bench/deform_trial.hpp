@@ -10,7 +10,7 @@
 namespace nendo::bench {
 
 /// The microseconds of a frame, the best of many. A frame has new displacements, solving, and all
-/// vertices; one of Type-2 has assembling and factorising, too.
+/// vertices; one of Type-2 has assembling and factorising.
 struct CellTimes {
   double plain1_us = 0.0; ///< 0 if the processor has no AVX2
   double plain2_us = 0.0;

@@ -21,7 +21,7 @@ struct FaultCase {
   std::vector<std::string> faults; ///< as the emulator takes them
   double longest_gap_s = 0.5;      ///< between two samples, the fault's own time included
   bool flips = false;              ///< single wrong bits in sensor bytes are to be expected
-  bool counts_all = true; ///< sent = delivered + missed must hold: the stream never began anew
+  bool counts_all = true; ///< sent = delivered + missed must hold: the stream never began again
   bool swaps_hand = false;
   bool swaps_sensors = false;
 };

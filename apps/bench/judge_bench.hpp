@@ -8,7 +8,7 @@ namespace nendo::bench::judge_bench {
 struct Output {
   bool json = false;
   bool markdown = false;
-  bool floor = false; ///< judges the floor, too; the wearers must be strangers
+  bool floor = false; ///< judges the floor; the wearers must be strangers
 };
 
 /// Judges the calibration of every wearer of a file, and prints the table. Returns the exit code.

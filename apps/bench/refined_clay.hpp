@@ -21,7 +21,7 @@ public:
   const deform::ClayReport& press_to(std::span<const deform::ContactPart> parts) {
     return clay_->press_to(parts);
   }
-  /// Splits and collapses edges, if any is too long or too short, and takes hold again at `parts`.
+  /// Splits and collapses edges, if any is too long or too short, and grabs again at `parts`.
   /// Allocates.
   void refine(std::span<const deform::ContactPart> parts);
   /// Returns the mesh as it was pressed.

@@ -142,7 +142,7 @@ private:
   }
   double clamped(std::size_t n, double angle) const { return std::clamp(angle, low_[n], high_[n]); }
 
-  /// Goes on smoothly from where the hand is, and shows each moment.
+  /// Continues smoothly from where the hand is, and shows each moment.
   template <class Show>
   void go(const SensorAngles& to, double seconds, Show&& show) {
     const SensorAngles from = now_;

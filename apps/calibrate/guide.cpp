@@ -82,7 +82,7 @@ CalibrationGuide::Event CalibrationGuide::push(const GloveSample& sample) {
   return Event::captured;
 }
 
-/// Goes on to the next pose that is not kept yet.
+/// Continues to the next pose that is not kept yet.
 void CalibrationGuide::advance() {
   while (at_ < poses_.size() && kept_[at_])
     ++at_;
@@ -174,7 +174,7 @@ void CalibrationGuide::restore(std::span<const hand::PoseReading> readings,
   }
   at_ = 0;
   advance();
-  // The hand that goes on is often still in the pose before.
+  // The hand that continues is often still in the pose before.
   if (const std::ptrdiff_t last = last_kept(); last >= 0)
     capture_.set_last(*kept_[static_cast<std::size_t>(last)]);
 }

@@ -52,12 +52,12 @@ public:
   /// Returns the sensor that makes the last held pose implausible, or nullopt.
   std::optional<Sensor> implausible_sensor() const noexcept { return implausible_; }
 
-  /// Tells whether the pose asked for was taken before and is taken again.
+  /// Returns whether the pose asked for was taken before and is taken again.
   bool is_again() const noexcept;
 
   void go_back();    ///< forgets the pose before this one and asks for it again
   void take_again(); ///< asks for the pose before this one once more; both takes count
-  void skip();       ///< goes on without this pose; flat and fist are asked for again at the end
+  void skip();       ///< continues without this pose; flat and fist are asked for again at the end
   void begin_anew(); ///< forgets all poses and the free motion, and asks for the first pose
   /// Restores what an earlier session kept. Poses that are not asked for here are left out, and so
   /// are takes of a pose beyond `max_takes`. The last pose restored counts as held last.
@@ -66,7 +66,7 @@ public:
 
   /// Returns the held poses in the order in which they are asked for, without what is left out.
   std::vector<hand::PoseReading> readings() const;
-  /// Tells whether there are readings.
+  /// Returns whether there are readings.
   bool has_any() const noexcept;
 
 private:

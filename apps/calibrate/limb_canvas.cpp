@@ -45,7 +45,7 @@ LimbCanvas::LimbCanvas(int columns, int rows)
     : width_(columns * dots_across), height_(rows * dots_down),
       parts_(static_cast<std::size_t>(width_ * height_), nothing),
       depths_(parts_.size(), -std::numeric_limits<double>::infinity()) {
-  // A hand with spread fingers is as wide as it is long. The wrist must fit, too.
+  // A hand with spread fingers is as wide as it is long. The wrist must fit.
   metres_a_dot_ = std::max(0.235 / height_, 0.21 / width_);
 }
 

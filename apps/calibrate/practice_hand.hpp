@@ -17,7 +17,7 @@
 
 namespace nendo::calibrate {
 
-/// One thread may ask for angles while another one says when to go on.
+/// One thread may ask for angles while another one says when to continue.
 class PracticeHand {
 public:
   static constexpr double free_motion_s = 8.0; ///< with hold_s: how long the free motion is
@@ -32,7 +32,7 @@ public:
   /// `time_s` must not fall.
   hand::SensorAngles at(double time_s);
 
-  /// Goes on to the next pose, or back to the one before. Any thread.
+  /// Continues to the next pose, or back to the one before. Any thread.
   void go_on() noexcept {
     if (shown_ <= pose_count()) ++asked_;
   }

@@ -29,7 +29,7 @@ struct CalibrationPicture {
 };
 
 /// Returns lines of printable ASCII, at most as many and as long as the screen. What is longer than
-/// the screen is broad goes on in the next line, but for the title. On a small screen first the
+/// the screen is broad continues in the next line, but for the title. On a small screen first the
 /// drawing is left out and then the bars; the instruction and the keys stay.
 std::vector<std::string> calibration_lines(const CalibrationPicture& picture, cli::ScreenSize size);
 

@@ -32,7 +32,7 @@ struct Session {
   bool begun = false;
   std::string notice{};   ///< why there is no calibration yet; stays until something is done
   SensorMask announced{}; ///< the sensors left out that the wearer knows of
-  bool asks_anew = false; ///< the key that begins anew was pressed once
+  bool asks_anew = false; ///< the key that restarts was pressed once
   struct Demonstration {
     hand::PoseId of;
     hand::HandPose pose;
@@ -86,7 +86,7 @@ struct Session {
     undetermined = found ? found->undetermined : sensors();
   }
   /// Ends the session if a calibration fits the poses. Otherwise asks for a pose: without one,
-  /// neither this session nor one that goes on from its poses would have a way on.
+  /// neither this session nor one that continues from its poses would have a way on.
   std::optional<SessionEnd> finish(SessionEnd end) {
     const auto found = fitted();
     if (found) return end;

@@ -16,7 +16,7 @@ enum class SessionEnd : std::uint8_t {
 };
 
 /// Runs the calibration until one of these ends; `guide` then holds what was taken. If no
-/// calibration fits the poses, the picture says why, and the session goes on: with the last pose
+/// calibration fits the poses, the picture says why, and the session continues: with the last pose
 /// once more if all were taken. Starts the glove and stops it. Blocks.
 Result<SessionEnd> run_calibration_session(driver::Glove& glove, const std::string& user,
                                            const hand::FitOptions& fit, CalibrationGuide& guide);

@@ -19,7 +19,7 @@ bool bends_far(Sensor sensor) noexcept {
   return !is_gap(sensor) && sensor != Sensor::palm_arch && sensor != Sensor::wrist_yaw;
 }
 
-/// Tells whether the poses ask for angles of that sensor which no still joint can have.
+/// Returns whether the poses ask for angles of that sensor which no still joint can have.
 bool asks_to_move(std::span<const PoseId> poses, std::size_t slot) {
   if (poses.size() >= enough_poses) return true;
   if (poses.size() < min_poses) return false;
@@ -74,7 +74,7 @@ bool StillSensors::contradicts(Sensor sensor, PoseId pose) const {
   return asks_to_move(poses, slot);
 }
 
-/// Tells whether so many per cent of the other sensors have moved over so many counts of 255.
+/// Returns whether so many per cent of the other sensors have moved over so many counts of 255.
 bool StillSensors::others_moved(std::size_t slot, double counts, int part) const {
   int others = 0, moved = 0;
   for (std::size_t other = 0; other < sensor_slots; ++other) {

@@ -26,7 +26,7 @@ public:
   /// others swung (hand::StuckWatch), or over poses that ask for different angles, or since the
   /// beginning at an end of their counts.
   SensorMask stuck() const;
-  /// Tells whether a sensor, which makes a held pose implausible, has not changed over the poses
+  /// Returns whether a sensor, which makes a held pose implausible, has not changed over the poses
   /// before it, though this one asks for another angle.
   bool contradicts(Sensor sensor, hand::PoseId pose) const;
   /// Returns those that have not changed since the beginning, while the hand went through a free

@@ -24,7 +24,7 @@
 namespace nendo::cli {
 namespace {
 
-/// Tells whether a value is empty or zero. --help does not show it as a default then.
+/// Returns whether a value is empty or zero. --help does not show it as a default then.
 template <class T>
 bool is_blank(const T& value) {
   if constexpr (std::is_arithmetic_v<T>) {

@@ -50,11 +50,11 @@ public:
   template <class T>
   Option add_duration(const std::string& names, T& seconds, const std::string& summary);
   /// Adds an option whose value is a length, such as 18.5cm, in millimetres. A bare number is
-  /// millimetres, too. T is as for add_duration().
+  /// millimetres. T is as for add_duration().
   template <class T>
   Option add_millimetres(const std::string& names, T& length_mm, const std::string& summary);
   /// Adds an option whose value is a short time, such as 1ms, in microseconds, or a rate, such as
-  /// 90Hz, in hertz. A bare number is that, too. T is as for add_duration().
+  /// 90Hz, in hertz. A bare number is that. T is as for add_duration().
   template <class T>
   Option add_microseconds(const std::string& names, T& time_us, const std::string& summary);
   template <class T>

@@ -16,7 +16,7 @@ constexpr const char* variable = "GLIBC_TUNABLES";
 constexpr const char* tunable = "glibc.malloc.hugetlb";
 
 bool must_be_asked_for() {
-  std::string modes; // the one in force in brackets
+  std::string modes; // the one in effect in brackets
   std::getline(std::ifstream("/sys/kernel/mm/transparent_hugepage/enabled"), modes);
   return modes.find("[madvise]") != std::string::npos;
 }

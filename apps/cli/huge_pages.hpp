@@ -8,7 +8,7 @@ namespace nendo::cli {
 /// ask (transparent_hugepage/enabled is "madvise"). The library reads that wish at a program's
 /// start (GLIBC_TUNABLES, glibc.malloc.hugetlb=1, glibc 2.35 and newer), so this starts the program
 /// once more, in the same process. Whoever sets glibc.malloc.hugetlb, to 0 for instance, is obeyed.
-/// If it cannot be done, it returns, and the program goes on as it is. Call it first in main().
+/// If it cannot be done, it returns, and the program continues as it is. Call it first in main().
 void use_huge_pages(char** argv) noexcept;
 
 } // namespace nendo::cli

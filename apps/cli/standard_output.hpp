@@ -12,8 +12,8 @@ namespace nendo::cli {
 
 /// Takes the place of std::cout and stdout while it lives, which must not be more than one at a
 /// time. The first write that fails ends all output, and sets stop_requested(), so that a command
-/// that goes on until somebody stops it ends. Writes that a signal interrupts go on, so that no
-/// line ends in its middle.
+/// that continues until somebody stops it ends. Writes that a signal interrupts continue, so that
+/// no line ends in its middle.
 class StandardOutput {
 public:
   StandardOutput();

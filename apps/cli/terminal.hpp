@@ -33,12 +33,12 @@ public:
   Keys(const Keys&) = delete;
   Keys& operator=(const Keys&) = delete;
 
-  /// Tells whether keys can come.
+  /// Returns whether keys can come.
   bool are_available() const noexcept { return saved_.has_value(); }
   /// Returns the next key, or nothing if none comes within `timeout` or a signal ends the wait. If
   /// no keys can come, it sleeps for that time. Ctrl-Z suspends the program and all of its job, as
-  /// the terminal would: this returns when the job goes on. If it goes on in the background, the
-  /// terminal is left alone until it is in the foreground.
+  /// the terminal would: this returns when the job continues. If it continues in the background,
+  /// the terminal is left alone until it is in the foreground.
   std::optional<char> next(std::chrono::milliseconds timeout) noexcept;
   /// Returns true once standard input has ended, as when the window was closed.
   bool have_ended() const noexcept { return gone_; }
@@ -67,7 +67,7 @@ ScreenSize screen_size(int descriptor) noexcept;
 class Terminal final : private Keys::Page {
 public:
   /// Takes standard output, which must be a terminal, with its alternate screen and a hidden
-  /// cursor. Takes keys, too, if they can come. If it does not obey control codes, it gets none.
+  /// cursor. Takes keys, if they can come. If it does not obey control codes, it gets none.
   Terminal();
   ~Terminal(); ///< leave()
   Terminal(const Terminal&) = delete;

@@ -58,10 +58,10 @@ struct Row {
   bool (*is_on)(const Situation& now) = nullptr;
   /// Returns why the command is not possible now, as a sentence; null: it is possible.
   const char* (*refusal)(const Situation& now) = nullptr;
-  /// Tells whether a window shows the button; null: it does.
+  /// Returns whether a window shows the button; null: it does.
   bool (*is_shown)(const Situation& now) = nullptr;
 
-  /// Tells whether the run obeys it, and not the window or the page.
+  /// Returns whether the run obeys it, and not the window or the page.
   constexpr bool is_for_run() const noexcept { return make != nullptr || choose != nullptr; }
   bool is_on_in(const Situation& now) const { return is_on != nullptr && is_on(now); }
   /// Returns null if the command is possible.

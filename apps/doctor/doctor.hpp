@@ -26,7 +26,7 @@ struct Finding {
   std::string_view check; ///< a stable name, e.g. "permission"
   std::string subject;    ///< e.g. /dev/ttyUSB0; empty: the machine
   std::string what;       ///< what is wrong
-  std::string remedy;     ///< the command or deed that mends it
+  std::string remedy;     ///< the command or deed that fixes it
 };
 
 /// What a subject's checks found, and what they looked at, for whoever wonders what was left out.

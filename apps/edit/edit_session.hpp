@@ -35,7 +35,7 @@ public:
 
   /// Returns the view of the present state. It is valid until the next call.
   const viewer::TimelineView& view();
-  /// Returns the exact hands at the play head, and where they took hold. The frame has no vertices.
+  /// Returns the exact hands at the play head, and where they grabbed. The frame has no vertices.
   const render::SceneFrame& scene_frame();
   /// Returns the available shape that is nearest to the play head.
   timeline::ShapeCache::Found shape() const { return cache_.nearest(head_.time_s()); }

@@ -117,7 +117,7 @@ std::string stream_line(const MonitorPicture& picture, const std::string& keys, 
     text += fixed(1000.0 * std::max(picture.age_s, 0.0), 0) + " ms old";
   }
   text += ", " + losses(*picture.info, picture.stats);
-  // --help tells the keys, too, but nothing else tells what was lost.
+  // --help tells the keys, but nothing else tells what was lost.
   const bool keys_fit = text.size() + 2 + keys.size() <= static_cast<std::size_t>(width);
   return both_ends(text, keys_fit ? keys : "", width);
 }

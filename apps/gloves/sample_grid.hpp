@@ -21,7 +21,7 @@ public:
   }
 
   /// Takes the next sample. Calls `emit(HostTime, const GloveSample&)` for the grid times before
-  /// it; `emit` returns whether to go on. Returns false if `emit` did.
+  /// it; `emit` returns whether to continue. Returns false if `emit` did.
   template <class Emit>
   bool take(const GloveSample& sample, Emit&& emit) {
     if (!grid_) return emit(sample.arrival, sample);

@@ -56,7 +56,7 @@ private:
     return motion;
   }
 
-  static constexpr double open_gap_m = 0.055; ///< wide enough to have let go
+  static constexpr double open_gap_m = 0.055; ///< wide enough to have released
   static constexpr double into_m = 0.012;     ///< the model, from its side
   static constexpr double lift = 0.5;         ///< of the model's height
   static constexpr double press = 0.02;       ///< likewise: deeper than it was

@@ -84,7 +84,7 @@ public:
 private:
   static constexpr double turn_s = 1.8;   ///< from one press to the same hand's next
   static constexpr double lift_m = 0.09;  ///< between presses
-  static constexpr double aside_m = 0.11; ///< then, too: there the other hand has room
+  static constexpr double aside_m = 0.11; ///< then: there the other hand has room
   static constexpr std::size_t presses = 5;
   static constexpr std::array<double, presses> turn_deg{25.0, 75.0, -5.0, 50.0, 10.0};
   /// Of the model's height, after each press of both hands.

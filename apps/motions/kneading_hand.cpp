@@ -23,7 +23,7 @@ constexpr double knead_step_s = 1.0 / 60.0;
 constexpr std::array<std::string_view, knead_tasks.size()> task_names{
     "press", "knead", "grip", "carry", "bore", "cut", "slice"};
 
-/// Tells whether a place is where hands take the upper part, within this part of the height.
+/// Returns whether a place is where hands take the upper part, within this part of the height.
 bool is_upper(double y, double low, double height, double within) noexcept {
   return std::abs(y - low - KneadedModel::upper * height) <= within * height;
 }

@@ -17,7 +17,7 @@
 
 namespace nendo::motions {
 
-/// What a hand does. A left hand helps the right one, and can do it alone, too.
+/// What a hand does. A left hand helps the right one, and can do it alone.
 enum class KneadTask : std::uint8_t {
   press, ///< flattens the model on its table with the palm, turned from press to press; by turns
   knead, ///< thumbs it into a bowl; left: holds the wall from outside

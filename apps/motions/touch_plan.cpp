@@ -85,7 +85,7 @@ TouchPlan::Row row_of(const JointAngles& angles) noexcept {
   return row;
 }
 
-/// Makes a plan: takes hold, finds how far the fingers reach, and solves the keys.
+/// Makes a plan: grabs, finds how far the fingers reach, and solves the keys.
 class Planner {
 public:
   Planner(const deform::Mesh& model, const hand::HandSkeleton& skeleton,

@@ -7,7 +7,7 @@
 namespace nendo::motions {
 namespace {
 
-// Of a stroke that is held so long, its corners are extremes, too.
+// Of a stroke that is held so long, its corners are extremes.
 constexpr double long_hold_s = 1.5;
 
 double within_period(double time_s, double period_s) noexcept {

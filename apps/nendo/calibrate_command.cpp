@@ -281,8 +281,8 @@ int calibrate_from_capture(const Options& options) {
   return fit_and_write(options, wearer, guide);
 }
 
-/// Keeps what was taken, so that the same command goes on from there. If the session `went_on` from
-/// kept poses and has none any more, they are removed, or they would come back.
+/// Keeps what was taken, so that the same command continues from there. If the session `went_on`
+/// from kept poses and has none any more, they are removed, or they would come back.
 int keep_for_later(const Wearer& wearer, const calibrate::CalibrationGuide& guide, bool went_on) {
   const auto readings = guide.readings();
   std::error_code ignored;

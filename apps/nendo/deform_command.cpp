@@ -161,7 +161,7 @@ Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vect
   return status;
 }
 
-/// Tells what is hardly meant: radii in another unit than the model's.
+/// Returns what is hardly meant: radii in another unit than the model's.
 void note_oddities(const Mesh& mesh, const ControlVectors& vectors, const Supports& supports,
                    const Options& options) {
   const Box box = box_of_faces(mesh);

@@ -1,4 +1,4 @@
-// nendo doctor: what keeps gloves from working on this machine, and the command that mends it.
+// nendo doctor: what keeps gloves from working on this machine, and the command that fixes it.
 
 #include <algorithm>
 #include <array>

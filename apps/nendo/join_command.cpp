@@ -70,7 +70,7 @@ Result<std::vector<NamedMesh>> read_parts(const std::vector<std::string>& files,
   return parts;
 }
 
-/// Tells what was done, and what is hardly meant.
+/// Returns what was done, and what is hardly meant.
 void note_step(const std::string& name, const Options& options, const JoinStep& step) {
   if (step.swallowed) {
     cli::note(name + ": it and what was joined before do not cross, one lies inside of the other; "

@@ -56,7 +56,7 @@ Result<Views> open_views(const RunArguments& options) {
   return views;
 }
 
-/// Tells what is hardly meant: a radius in another unit than the model's.
+/// Returns what is hardly meant: a radius in another unit than the model's.
 void note_oddities(const deform::Mesh& model, const RunArguments& options) {
   const deform::Box box = deform::box_of_faces(model);
   const double size = (box.highest - box.lowest).maxCoeff();

@@ -262,7 +262,7 @@ void Wearer::approach(const hand::Touch& touch, const std::vector<std::size_t>& 
     moved[slots[n]] += 1e-5;
     slopes.col(static_cast<Eigen::Index>(n)) = (gap(touch, moved) - slip_m - apart) / 1e-5;
   }
-  // The shortest way there, damped; joints at an end of their range that would go on stay there,
+  // The shortest way there, damped; joints at an end of their range that would continue stay there,
   // and the others do their part.
   for (int round = 0; round < 3; ++round) {
     const Eigen::Matrix3d square = slopes * slopes.transpose() + 1e-6 * Eigen::Matrix3d::Identity();

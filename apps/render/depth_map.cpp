@@ -40,7 +40,7 @@ private:
 };
 
 // For each place, a number of 16 bits along each axis: twice the number of the sample whose middle
-// is the last one before it, and 1 more if it is not at that middle. It is even, too, where it is
+// is the last one before it, and 1 more if it is not at that middle. It is even, where it is
 // not known. So a triangle of which all corners have the same odd number covers no sample.
 std::uint32_t cell_of(std::int32_t on_axis) noexcept {
   const std::int32_t from_middle = on_axis - 128;

@@ -11,7 +11,7 @@ using Eigen::Vector3f;
 
 namespace {
 
-// Linear. From light to dark, so that it is read without seeing red from green, too.
+// Linear. From light to dark, so that it is read without seeing red from green.
 const std::array<Vector3f, 5> ramp{
     Vector3f{0.400F, 0.400F, 0.390F}, Vector3f{0.991F, 0.694F, 0.181F},
     Vector3f{0.982F, 0.266F, 0.045F}, Vector3f{0.768F, 0.010F, 0.012F},

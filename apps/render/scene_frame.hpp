@@ -38,7 +38,7 @@ struct SceneFrame {
   std::vector<deform::WirePlace> wire{}; ///< that hands draw now; on the stage, metres
 };
 
-/// Remembers where the fingertips took hold. The places are exact if the tracker sees every frame.
+/// Remembers where the fingertips grabbed. The places are exact if the tracker sees every frame.
 /// Otherwise they are off by the distance that the fingers moved between two frames that it saw.
 class HoldTracker {
 public:

@@ -1,5 +1,5 @@
 #pragma once
-// What goes on to a running loop. Nothing is dropped silently.
+// What continues to a running loop. Nothing is dropped silently.
 
 #include <cstddef>
 #include <optional>

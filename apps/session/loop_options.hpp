@@ -23,7 +23,7 @@ struct LoopArguments {
   std::uint32_t threads = 1;
 
   /// Adds the options, with the names that cyclictest gives them. With `short_names`, adds -p, -a
-  /// and -m, too.
+  /// and -m.
   void add_to(cli::Command& command, bool short_names = false);
   /// Reads the options into `loop` and `realtime`. Errors: usage, naming the option and what it may
   /// be; failed (no processor for a second thread).

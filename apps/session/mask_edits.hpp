@@ -1,6 +1,6 @@
 #pragma once
-// What people ask of the masks and of symmetry while a run goes on, as edits of the puppet that the
-// loop has, which is mostly one without points.
+// What people ask of the masks and of symmetry while a run continues, as edits of the puppet that
+// the loop has, which is mostly one without points.
 
 #include <memory>
 

@@ -55,9 +55,9 @@ public:
   virtual void update(const RunStatus& status, Asks& asks) = 0;
   /// Tells the person who watches what became of a command.
   virtual void report(const std::string& message) { static_cast<void>(message); }
-  /// Tells whether update() waits by itself, as a window waits for its screen.
+  /// Returns whether update() waits by itself, as a window waits for its screen.
   virtual bool sets_pace() const noexcept { return false; }
-  /// Tells whether the run goes on when all gloves have ended (Glove::has_ended()), because
+  /// Returns whether the run continues when all gloves have ended (Glove::has_ended()), because
   /// somebody would be surprised: a window closes only when its person closes it.
   virtual bool stays_open() const noexcept { return false; }
   /// Called after the loop, when the shape has been written. An error becomes the run's.

@@ -38,7 +38,7 @@ struct LoopStart {
 
 /// Makes the loop that options.loop describes, with the radii of options.radius, and places
 /// the hands at the model, or makes the loop of options.over, with them as layers. Errors: usage
-/// (radius, or too many layers), failed (the hands cannot take hold of the
+/// (radius, or too many layers), failed (the hands cannot grab the
 /// model).
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                               const deform::Mesh& model);

@@ -22,7 +22,7 @@ void RunCommands::follow_frame(const flow::Frame& frame) {
   if (is_news && !frame.wire.is_drawn()) models_.cut(frame.wire);
 }
 
-// A run goes on where there is no memory for what one command needs.
+// A run continues where there is no memory for what one command needs.
 void RunCommands::obey(const Asks& asks) {
   const auto obey_one = [this](const auto& one) {
     try {

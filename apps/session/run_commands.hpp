@@ -37,11 +37,11 @@ public:
   /// Obeys these and what the take that is played over asks for, as far as that goes at once.
   void obey(const Asks& asks);
   /// Does what is due: passes on the newest settings when the loop has those before, changes
-  /// puppets, begins or ends a recording, and goes on with making a model.
+  /// puppets, begins or ends a recording, and continues with making a model.
   void follow(bool fresh);
-  /// Tells whether something was asked for and is not done.
+  /// Returns whether something was asked for and is not done.
   bool is_due() const;
-  /// Tells whether somebody has asked for the end.
+  /// Returns whether somebody has asked for the end.
   bool ends() const noexcept { return ends_; }
 
 private:

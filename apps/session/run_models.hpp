@@ -1,5 +1,5 @@
 #pragma once
-// Makes other versions of the model while a run goes on, and hands them over to the loop.
+// Makes other versions of the model while a run continues, and hands them over to the loop.
 
 #include <future>
 #include <memory>
@@ -37,9 +37,9 @@ public:
   /// again, without `may_begin` while the loop is not to hold still. Returns a message for people,
   /// if there is something to tell.
   std::optional<std::string> follow(bool may_begin);
-  /// Tells whether something was asked for and is not done.
+  /// Returns whether something was asked for and is not done.
   bool is_due() const noexcept { return asked_ || (!is_by_itself_ && (finer_ || making_.valid())); }
-  /// Tells whether the loop holds still, or will, or is about to get a model. No recording may
+  /// Returns whether the loop holds still, or will, or is about to get a model. No recording may
   /// begin or end then.
   bool is_handing_over() const noexcept { return stage_ != Stage::none; }
 

@@ -48,7 +48,7 @@ struct RunOptions {
   gloves::HandLength length;
   hand::FilterOptions filter; ///< of both hands
   flow::LoopOptions loop;
-  std::shared_ptr<Overdub> over{}; ///< a take that plays, too; null: none
+  std::shared_ptr<Overdub> over{}; ///< a take that plays; null: none
   LivePart live{};                 ///< what the gloves play; nothing: all
   RecordingOptions recording;
   flow::RealtimeOptions realtime; ///< of the loop's thread

@@ -1,5 +1,5 @@
 #pragma once
-// Draws the picture of a run: the model in the hands as they took hold of it, and as they left it.
+// Draws the picture of a run: the model in the hands as they grabbed it, and as they left it.
 
 #include <filesystem>
 

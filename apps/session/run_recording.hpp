@@ -67,7 +67,7 @@ public:
   /// `frame` is the latest. Not while is_changing().
   void set_file(bool on, const flow::Frame& frame);
   /// Does what is due when the loop has changed. To be called again and again. Returns a message
-  /// for people if a recording could not be begun; the run goes on.
+  /// for people if a recording could not be begun; the run continues.
   std::optional<std::string> follow();
   /// Ends the recording. To be called after the loop's last tick, with its final shape.
   void end(const deform::Points& shape);

@@ -1,5 +1,5 @@
 #pragma once
-// Saves shapes and recordings: while a run goes on, without a pause of its loop, and at its end.
+// Saves shapes and recordings: while a run continues, without a pause of its loop, and at its end.
 
 #include <string>
 
@@ -17,7 +17,7 @@ namespace nendo::session {
 Result<void> write_shape(const std::string& out, const deform::Mesh& shape,
                          deform::UpAxis up = deform::UpAxis::y);
 
-/// Saves a few times a second at most, even if it is asked more often.
+/// Saves a few times per second at most, even if it is asked more often.
 class RunSaving {
 public:
   /// Saved shapes are named after `options.out` and numbered. `recorder` must outlive this.

@@ -30,7 +30,7 @@ struct RunOutcome {
 /// Returns how many deadlines of the grid a run lasts. The number is unlimited if only the clock
 /// says when the run is over.
 std::uint64_t ticks_for(const RunOptions& options) noexcept;
-/// Tells whether a run that began at `start` has lasted its duration, by the clock.
+/// Returns whether a run that began at `start` has lasted its duration, by the clock.
 bool is_over(const RunOptions& options, HostTime start) noexcept;
 
 /// Called about four times a second with the latest frame.
@@ -51,7 +51,7 @@ struct RunParticipants {
 ///
 /// Simulated hands and recordings of gloves begin when the loop does (gloves::begin_again()).
 /// The loop takes all commands without a pause. What a change of settings needs is made on the main
-/// thread beforehand. If a command cannot be obeyed, the observers are told, and the run goes on.
+/// thread beforehand. If a command cannot be obeyed, the observers are told, and the run continues.
 /// Blocks.
 Result<RunOutcome> run_session(RunOptions options, std::vector<gloves::OpenHand>& hands,
                                deform::Mesh model, const RunParticipants& participants,

@@ -30,7 +30,7 @@ public:
 
   // For the main thread:
 
-  /// Sets the target of the version with which the loop will go on, before the loop has it.
+  /// Sets the target of the version with which the loop will continue, before the loop has it.
   void prepare(std::shared_ptr<Target> next) noexcept {
     next_ = std::move(next);
     next_in_tick_.store(next_.get(), std::memory_order_release);

@@ -21,7 +21,7 @@ struct ChangeTally {
 /// By whether there were changes: without, with.
 using ChangeTallies = std::array<ChangeTally, 2>;
 
-/// Tells whether the settings change in the second of that time of a run.
+/// Returns whether the settings change in the second of that time of a run.
 bool changes_at(HostTime start, HostTime time) noexcept;
 
 void count(const flow::TickRecord& record, HostTime start, ChangeTallies& tallies) noexcept;

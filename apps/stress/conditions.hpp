@@ -27,7 +27,7 @@ struct Condition {
 Result<std::vector<Condition>> parse_conditions(const std::string& text);
 
 /// Returns the conditions that the report fulfils, each with its figure: "p99.9>200us (312.4 us)".
-/// A figure that was not measured, for want of samples for example, fulfils its condition, too, so
+/// A figure that was not measured, for want of samples for example, fulfils its condition, so
 /// that it is reported.
 std::vector<std::string> fulfilled(const std::vector<Condition>& conditions,
                                    const nlohmann::ordered_json& report);

@@ -43,7 +43,7 @@ struct Incident {
 using UsualTimes = std::array<std::chrono::nanoseconds, phase_names.size()>;
 
 /// Returns the lateness of `now`, the tick after `before`, and the phase with the largest share in
-/// it: the wake-up, or a stage of the previous tick that went on beyond the deadline.
+/// it: the wake-up, or a stage of the previous tick that continued beyond the deadline.
 Incident incident_of(const flow::TickRecord& before, const flow::TickRecord& now,
                      std::chrono::nanoseconds period) noexcept;
 

@@ -28,7 +28,7 @@ struct Distribution {
   flow::Histogram corrected;
 };
 
-/// The lateness over time in a limited number of slices, which get longer as time goes on.
+/// The lateness over time in a limited number of slices, which get longer as time continues.
 class LatenessTrace {
 public:
   static constexpr std::size_t max_slices = 512;

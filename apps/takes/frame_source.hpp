@@ -27,7 +27,7 @@ public:
   /// the latest frame, or one before it, has (Frame::model).
   virtual const deform::Mesh& model(std::uint32_t version) const = 0;
   virtual const deform::BlockLayout& layout(std::uint32_t version) const = 0; ///< of its shapes
-  /// Tells whether all frames are of the first version.
+  /// Returns whether all frames are of the first version.
   virtual bool has_one_model() const { return true; }
   /// Returns the puppet of frame(), or of the first frame before next(); nothing if the hands touch
   /// the model.
@@ -41,7 +41,7 @@ public:
   virtual bool next() = 0;
   virtual const flow::Frame& frame() const = 0; ///< the latest; not before next()
   virtual double time_s() const = 0;            ///< of the latest, since the take began
-  /// Tells whether the hand of that side has angles of its own, by a calibration, or else an
+  /// Returns whether the hand of that side has angles of its own, by a calibration, or else an
   /// average hand's; nothing if that is not known, as of a timeline.
   virtual std::optional<bool> is_calibrated(Side) const { return std::nullopt; }
   /// Returns true while nothing was missing in the source, so that the frames equal the original

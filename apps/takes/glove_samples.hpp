@@ -1,6 +1,6 @@
 #pragma once
 // The samples in a recording, one after another, each with the calibration with which its hand was
-// recorded. It makes no difference whether a loop was recorded, too.
+// recorded. It makes no difference whether a loop was recorded.
 
 #include <cstddef>
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace nendo::takes {
 
-/// Tells whether a recorded hand has angles of its own: its calibration is not the default one of
+/// Returns whether a recorded hand has angles of its own: its calibration is not the default one of
 /// such a glove, or is learned, or the hand is a simulated one, which the default is made for.
 bool is_calibrated(const recording::Setup& setup, std::size_t glove);
 /// Tells the same of the hand that is shaped as one of that side; nothing if there is none.

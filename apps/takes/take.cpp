@@ -23,7 +23,7 @@ namespace {
 
 using OpenFrames = decltype(Take::open);
 
-/// The scenes of a take at any time. It plays on for a later time, and begins anew for an earlier
+/// The scenes of a take at any time. It plays on for a later time, and restarts for an earlier
 /// one.
 class ScenePlayer {
 public:

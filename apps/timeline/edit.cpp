@@ -53,7 +53,7 @@ Key between(const Key& one, const Key& other, double factor) {
 }
 
 // Of all keys, in order and without the same twice. What moves towards a key behind the end does so
-// up to the end, which then is a key's time, too.
+// up to the end, which then is a key's time.
 std::vector<double> times_of(const std::vector<Key>& one, const std::vector<Key>& other,
                              double end_s) {
   std::vector<double> times;

@@ -131,7 +131,7 @@ public:
   }
 
   /// What the puppet is told that is played then, and marks. Roles of functions that it has not say
-  /// nothing; a loop passes over them, too.
+  /// nothing; a loop passes over them.
   void hear_told(const flow::Command& command, const flow::DeformLoop& loop) {
     const auto& played = loop.changes().puppet(loop.changes().newest_puppet());
     const auto* role = std::get_if<flow::SetRole>(&command);
@@ -210,7 +210,7 @@ private:
     timeline_.events.push_back({time_s, command});
   }
 
-  /// By which hands let go of a puppet, and take hold of it again.
+  /// By which hands release a puppet, and grab it again.
   void hear_switches(const flow::Frame& frame, const flow::LoopStats& stats) {
     for (const Side side : {Side::left, Side::right}) {
       const std::size_t slot = flow::Placement::index_of(side);

@@ -19,7 +19,7 @@ struct MadeTimeline {
 /// Runs the recorded loop again over `model`, which should be the recorded one. The hands' angles
 /// become keys; requests, what the wrist switch did, what a puppet was told, and marks become
 /// events. The points of a puppet are off by the tolerance at most, by both hands together. The key
-/// at 0 s is the pose in which a hand took hold, one period before the first tick. Blocks. Errors:
+/// at 0 s is the pose in which a hand grabbed, one period before the first tick. Blocks. Errors:
 /// those of TakeReader::open() and LoopReplay::make(); bad_input (no tick, or more than `most`
 /// frames or events; a puppet that was begun on the way).
 /// A timeline has one puppet. Where a take has several, because one was edited on the way, it is

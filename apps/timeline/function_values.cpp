@@ -50,7 +50,7 @@ private:
     HandCurve curve;
   };
 
-  /// Returns true if the functions take hold anew at the end of the frame.
+  /// Returns true if the functions re-grab at the end of the frame.
   bool ask(const flow::Command& command) {
     hands_.apply(command);
     if (const auto* request = std::get_if<flow::Request>(&command)) {

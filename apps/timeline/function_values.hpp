@@ -16,7 +16,7 @@ struct PuppetMoment {
 };
 
 /// Calls `see` with the number of each time and the functions as they are then. At the time of a
-/// frame they are those of Player, unless the hands cannot take hold of the model there. Times must
+/// frame they are those of Player, unless the hands cannot grab the model there. Times must
 /// not fall. The timeline must have a puppet and be playable (complaint_about()).
 void play_functions(const Timeline& timeline, std::span<const double> times_s,
                     const std::function<void(std::size_t, const PuppetMoment&)>& see);

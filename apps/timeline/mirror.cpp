@@ -12,7 +12,7 @@ Side other_of(Side side) noexcept {
 
 void mirror_key(Key& key, double plane_x_m) {
   key.wrist_m.x() = 2.0 * plane_x_m - key.wrist_m.x();
-  // The turn seen in a mirror whose hand is mirrored, too: about x as before, about y and z the
+  // The turn seen in a mirror whose hand is mirrored: about x as before, about y and z the
   // other way.
   key.wrist_turn.y() = -key.wrist_turn.y();
   key.wrist_turn.z() = -key.wrist_turn.z();

@@ -175,7 +175,7 @@ void Player::finish_change() {
   if (!changes_.offers().take(change)) return;
   core_.finish(*change, hands(), frame_, stats_);
   changes_.offers().done();
-  changes_.is_changing(); // takes back what the change replaced
+  changes_.is_changing(); // undoes what the change replaced
 }
 
 bool Player::ask_what_is_due(double time_s) {

@@ -45,7 +45,7 @@ public:
   /// Returns the timeline, now with a field along the surface if its puppet needs one. Another
   /// player of it over the same model then need not make that again.
   const Timeline& timeline() const noexcept { return timeline_; }
-  /// Returns the options in force.
+  /// Returns the options in effect.
   const flow::SculptorOptions& sculptor_options() const noexcept {
     return changes_.sculptor_options();
   }

@@ -17,7 +17,7 @@ public:
   /// Returns how far any point is off where the signals are `one` in place of `other`, in metres on
   /// the stage. It is a bound: limits of functions, and ways that cancel each other, make it less.
   double off_m(const Eigen::VectorXd& one, const Eigen::VectorXd& other) const;
-  /// Returns the times at which functions may take hold of the hands. If hands are off there, so
+  /// Returns the times at which functions may grab the hands. If hands are off there, so
   /// are the values from then on.
   const std::vector<double>& held_at_s() const noexcept { return held_at_s_; }
 

@@ -36,7 +36,7 @@ struct Reduction {
 /// Returns keys for the frames, which must fulfil the conditions of HandTrack::keys. The first and
 /// the last frame become keys. As long as the curve is too far off, the worst frame between two
 /// keys becomes a key. At the end, keys that are not needed are removed. With `sway`, the points of
-/// the puppet that the hand plays count, too, and the frames at which its functions take hold, and
+/// the puppet that the hand plays count, and the frames at which its functions grab, and
 /// those before them, stay keys.
 Reduction reduce_keys(const hand::HandSkeleton& skeleton, std::span<const Key> frames,
                       const Tolerance& tolerance, const PointSway* sway = nullptr);

@@ -82,7 +82,7 @@ void ShapeCache::make_shapes(Timeline timeline, std::uint64_t number) {
   changed_.notify_all();
 }
 
-/// Room for the shapes of another timeline; what is true of it, too, stays fresh.
+/// Room for the shapes of another timeline; what is true of it, stays fresh.
 void ShapeCache::settle(const Player& player, std::uint64_t number) {
   const Timeline& timeline = player.timeline();
   const std::uint64_t frames = player.frame_count();

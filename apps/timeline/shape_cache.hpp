@@ -21,7 +21,7 @@ struct CachedShape {
   std::uint64_t frame = 0;
   double time_s = 0.0;
   bool held = false;
-  double held_since_s = 0.0;        ///< where the fingertips took hold, if held
+  double held_since_s = 0.0;        ///< where the fingertips grabbed, if held
   std::array<double, 5> radius_m{}; ///< of each finger then
   std::vector<float> functions;     ///< their values, of a puppet
   deform::BlockShape shape;

@@ -39,7 +39,7 @@ struct HandTrack {
   hand::HandSkeleton skeleton() const { return hand::HandSkeleton(side, size); }
 };
 
-/// Tells whether the command makes another version of the model.
+/// Returns whether the command makes another version of the model.
 bool changes_model(const flow::Command& command) noexcept;
 
 struct Event {
@@ -55,7 +55,7 @@ struct Event {
 bool same_bits(const Event& one, const Event& other) noexcept;
 bool same_bits(const puppet::FunctionState& one, const puppet::FunctionState& other) noexcept;
 
-/// Times begin at 0, when the hands take hold of the unchanged model.
+/// Times begin at 0, when the hands grab the unchanged model.
 struct Timeline {
   std::string take;             ///< the recording's file name, for people; may be empty
   std::string mesh;             ///< the model's file
@@ -71,7 +71,7 @@ struct Timeline {
   std::shared_ptr<const puppet::Rig> rig{};
   puppet::RigState rig_state; ///< at 0 s; has all functions
   /// Without a puppet: the masks of the fingertips, and whether these are mirrored, by their
-  /// numbers. The first is in force at 0 s. Null: there are none; empty: there never are.
+  /// numbers. The first is in effect at 0 s. Null: there are none; empty: there never are.
   std::vector<std::shared_ptr<const puppet::Rig>> masks{};
   /// Wires and knives that cut the model, in its units.
   std::vector<std::vector<deform::WirePlace>> wires{};
@@ -99,7 +99,7 @@ std::string_view clutched_name(std::uint8_t finger) noexcept;
 std::optional<std::uint8_t> clutched_named(std::string_view name) noexcept;
 
 /// Returns what the event does, in words: "commit", "type1, wendland-c4, may fold, radius 12 cm
-/// (0.3)", "the left index finger lets go".
+/// (0.3)", "the left index finger releases".
 std::string in_words(const Timeline& timeline, const Event& event);
 
 inline constexpr std::size_t max_keys = 1'000'000; ///< of a hand

@@ -28,7 +28,7 @@ Result<Timeline> parse_timeline(std::string_view text, std::string_view name);
 Result<Timeline> read_timeline(const std::filesystem::path& path);
 /// Writes the file atomically and replaces an existing one. Error: failed. Blocks.
 Result<void> write_timeline(const std::filesystem::path& path, const Timeline& timeline);
-/// Tells whether a file is a timeline, by the ending of its name only.
+/// Returns whether a file is a timeline, by the ending of its name only.
 bool is_timeline(const std::filesystem::path& path);
 
 } // namespace nendo::timeline

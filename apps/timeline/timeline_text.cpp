@@ -168,7 +168,7 @@ std::string clutch_text(const flow::SetClutch& clutch) {
          ", holds = " + word(clutch.holds) + " }";
 }
 
-/// The texts of all masks, by their numbers.
+/// The strings of all masks, by their numbers.
 std::string masks_text(const Timeline& timeline) {
   if (timeline.masks.empty()) return {};
   std::string texts;

@@ -246,7 +246,7 @@ void complain_in_text(TomlReader& reader, const toml::node& text, const std::str
   reader.complain(source.begin.line + (is_below ? line : 0), "the puppet's text" + what);
 }
 
-/// The texts of all masks, by their numbers; an empty one: none.
+/// The strings of all masks, by their numbers; an empty one: none.
 void read_masks(TomlReader& reader, const toml::table& root, Timeline& timeline) {
   const toml::array* const texts = reader.array(root, "masks");
   if (texts == nullptr) return;

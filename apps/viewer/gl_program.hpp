@@ -8,7 +8,7 @@
 
 namespace nendo::viewer {
 
-/// Makes a program of the two shaders' texts and returns its name. Error: failed (this OpenGL
+/// Makes a program of the two shaders' strings and returns its name. Error: failed (this OpenGL
 /// refuses them; the message tells why).
 Result<unsigned> make_program(const char* vertex, const char* fragment);
 

@@ -56,7 +56,7 @@ public:
   /// Shows where hands touch clay, or not.
   void show_contacts(bool yes) noexcept;
 
-  /// Edits the puppet, if begin() has been called of it, too.
+  /// Edits the puppet, if begin() has been called of it.
   PuppetEditor& editor() noexcept { return *editor_; }
 
   /// Returns the line below the panel's buttons: the report, or why a command was not possible.

@@ -32,7 +32,7 @@ public:
   /// Takes the puppet that the loop plays, which an undo may have changed, and looks at the hands:
   /// a finger that bends far enough moves the place that was clicked last.
   void follow(const RigPointer& in_force, const flow::Frame& frame);
-  /// Returns, once, the puppet that the loop shall go on with; null: no other one.
+  /// Returns, once, the puppet that the loop shall continue with; null: no other one.
   RigPointer take() { return std::exchange(to_loop_, nullptr); }
 
   bool is_on() const noexcept { return is_on_; }
@@ -79,7 +79,7 @@ public:
   const puppet::AxisTurn* dragged_turn() const noexcept;
   void end_drag();
   bool is_dragging() const noexcept { return drag_.has_value(); }
-  /// Returns where that point goes in the chosen function, while it is dragged, too.
+  /// Returns where that point goes in the chosen function, while it is dragged.
   Eigen::Vector3d way_of(std::size_t point) const;
 
   /// Makes the radius of the chosen point, or of places to come, larger by so many tenths. The loop
@@ -94,9 +94,9 @@ public:
   void toggle_brush();
   /// Begins to paint what fingertips leave alone, or ends that.
   void toggle_masks();
-  /// Tells whether it is on for that alone.
+  /// Returns whether it is on for that alone.
   bool paints_masks() const noexcept { return only_masks_; }
-  /// Tells whether fingertips have masks, which are drawn whether they are edited or not.
+  /// Returns whether fingertips have masks, which are drawn whether they are edited or not.
   bool has_masks() const noexcept;
   void paint(const SurfaceHit& hit, bool erases);
   void end_stroke();
@@ -135,7 +135,7 @@ private:
   deform::Mesh loaded_, shown_;
   RigPointer rig_, empty_;
   RigPointer in_force_;                       ///< in the loop, as follow() had it last
-  std::vector<RigPointer> sent_;              ///< to the loop, and not in force yet
+  std::vector<RigPointer> sent_;              ///< to the loop, and not in effect yet
   RigPointer to_loop_;                        ///< not taken yet
   std::unique_ptr<puppet::RigShapes> shapes_; ///< of rig_ on shown_; null: none, or not made yet
   std::optional<deform::BlockShape> plain_;   ///< shown_ itself, where there is no puppet

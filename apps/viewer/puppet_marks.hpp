@@ -16,7 +16,7 @@ namespace nendo::viewer {
 class PuppetMarks {
 public:
   /// Returns coloured patches of the model: the reach of the chosen point, or of the place that was
-  /// clicked, and the masks. They are made anew when the editor's version changes.
+  /// clicked, and the masks. They are made again when the editor's version changes.
   const std::vector<render::Surface>& veils(const PuppetEditor& editor,
                                             const render::SceneBuilder& builder);
 

@@ -13,7 +13,7 @@ namespace nendo::viewer {
 /// was pressed.
 template <class Now>
 bool row_button(const commands::Row& row, const Now& now, float width);
-/// Draws the buttons of a timeline's group in one line, those with two texts twice as wide, and
+/// Draws the buttons of a timeline's group in one line, those with two strings twice as wide, and
 /// adds what was pressed to `asked`.
 void edit_buttons(commands::Buttons group, const commands::EditFacts& now, float width,
                   std::vector<commands::EditCommand>& asked);

@@ -13,14 +13,14 @@ struct KeyStroke {
   bool control = false;
   bool shift = false;
 
-  /// Tells whether it is this one. Shift matters for letters, and with control, but not for signs,
-  /// which some keyboards have on other keys.
+  /// Returns whether it is this one. Shift matters for letters, and with control, but not for
+  /// signs, which some keyboards have on other keys.
   bool fits(bool with_control, bool with_shift) const noexcept;
 };
 /// Returns the stroke of a key by its name in the table: "e", "E", "Home", "Ctrl Shift Z".
 KeyStroke stroke_of(std::string_view name) noexcept;
 
-/// Tells whether a key of the row has just gone down in the present picture. With row.repeats, a
+/// Returns whether a key of the row has just gone down in the present picture. With row.repeats, a
 /// key that is held down counts again at intervals.
 bool is_struck(const commands::Row& row);
 

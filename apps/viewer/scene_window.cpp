@@ -304,7 +304,7 @@ render::Camera SceneWindow::stage_camera() const noexcept {
 }
 
 render::Image SceneWindow::screenshot() {
-  draw_all(true); // anew, for what was shown may be gone
+  draw_all(true); // again, for what was shown may be gone
   return read_pixels(pixels_of(window_));
 }
 

@@ -44,7 +44,7 @@ public:
   void follow(const deform::BlockShape& shape) { renderer_->follow(shape); }
 
   /// Begins a picture: processes the input since the last one and builds the scene's parts other
-  /// than the model. The camera is chosen anew for each frame until the first one with is_whole.
+  /// than the model. The camera is chosen again for each frame until the first one with is_whole.
   /// Widgets may follow.
   void begin_picture(const render::SceneFrame& scene_frame, bool is_whole = true);
   /// Adds a translucent or an opaque surface to the picture that has begun, in metres of the scene.
@@ -68,8 +68,8 @@ public:
   bool take_close_request() noexcept;
   /// Reserves that many pixels at the bottom of the window, which the scene does not use.
   void leave_below(int pixels) noexcept { below_ = pixels; }
-  /// Tells how many pixels at the left of the window something covers. The scene is behind it, but
-  /// its middle is the middle of what is free, as long as that is most of the window.
+  /// Returns how many pixels at the left of the window something covers. The scene is behind it,
+  /// but its middle is the middle of what is free, as long as that is most of the window.
   void leave_left(int pixels) noexcept { left_ = pixels; }
   render::Size scene_size() const noexcept; ///< from the window's top left corner
   const render::Camera& camera() const noexcept { return camera_; }
@@ -94,7 +94,8 @@ private:
     std::uint64_t blocks_sent = 0;
     bool facets = false;
     bool smooth = false; ///< at edges; does not count as a change
-    /// Tells whether the picture would be the same now. Compares the scene last, as it is largest.
+    /// Returns whether the picture would be the same now. Compares the scene last, as it is
+    /// largest.
     bool is_of(const SceneWindow& window, render::Size wanted) const;
   };
 

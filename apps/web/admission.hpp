@@ -21,7 +21,7 @@ struct Admission {
 /// request for a WebSocket must conform to RFC 6455, section 4.2.1.
 Admission admit(const HttpRequest& request, std::string_view token) noexcept;
 
-/// Compares two texts in a time that depends on their lengths only.
+/// Compares two strings in a time that depends on their lengths only.
 bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept;
 
 } // namespace nendo::web

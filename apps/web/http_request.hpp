@@ -32,7 +32,7 @@ struct HttpRequest {
   std::optional<std::string_view> parameter(std::string_view name) const noexcept;
 };
 
-/// Returns whether the texts are equal except for the case of ASCII letters.
+/// Returns whether the strings are equal except for the case of ASCII letters.
 bool equal_ignoring_case(std::string_view a, std::string_view b) noexcept;
 
 struct HttpHead {

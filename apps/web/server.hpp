@@ -106,8 +106,8 @@ public:
   /// Sets the puppet that is played, by the loop's number for it; null: none. Clients are told when
   /// they come and when it changes. Any thread may call it; does not wait for the network.
   void set_puppet(std::uint32_t number, const puppet::Rig* rig);
-  /// Sets what the page shows of clay. Clients are told when it changes, 30 times a second at most.
-  /// Any thread may call it; does not wait for the network.
+  /// Sets what the page shows of clay. Clients are told when it changes, 30 times per second at
+  /// most. Any thread may call it; does not wait for the network.
   void set_clay(const flow::Frame& frame);
   /// Sets what the page shows of each glove. Any thread may call it; wait-free.
   void set_gloves(const GloveStates& gloves) noexcept;

@@ -57,7 +57,7 @@ void Server::Work::present(std::shared_ptr<FrameStream> stream, std::vector<std:
   wake();
 }
 
-// What the loop was asked for last may be refused, so that it goes on with older ones.
+// What the loop was asked for last may be refused, so that it continues with older ones.
 void Server::Work::add_weights(std::uint64_t number, std::vector<std::byte> message) {
   const std::scoped_lock lock(mutex_);
   weights_.push_back({number, std::make_shared<const std::vector<std::byte>>(std::move(message))});
@@ -125,7 +125,7 @@ void Server::Work::run() {
   end();
 }
 
-// The last frame is sent, too, because it is the shape that the run leaves.
+// The last frame is sent, because it is the shape that the run leaves.
 void Server::Work::end() {
   const HostTime now = HostClock::now();
   send_frames(now);

@@ -36,7 +36,7 @@ enum class StepContent : std::uint8_t { fields = 0, vectors = 1 };
 struct UpdateHead {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::update);
   /// Bit 0: the hands hold the model; 1, 2: left, right is uncalibrated; 3: StepList::in_hand.
-  /// Of a puppet: 4, 5: left, right has let go of it; 6: one hand plays both sides; 7: there is
+  /// Of a puppet: 4, 5: left, right has released it; 6: one hand plays both sides; 7: there is
   /// one.
   std::uint8_t state = 0;
   /// Bits 0, 1: left, right is there; 2, 3: silent; 4, 5: other bones.
@@ -129,8 +129,8 @@ inline constexpr std::size_t history_head_bytes = 8;
 inline constexpr std::size_t history_step_bytes = 8;
 inline constexpr std::size_t puppet_head_bytes = 8; ///< of the puppet's message
 
-/// Tells whether a joint's rotation is sent with each frame. The other joints do not move relative
-/// to their parents.
+/// Returns whether a joint's rotation is sent with each frame. The other joints do not move
+/// relative to their parents.
 constexpr bool rotation_is_sent(hand::Joint joint) noexcept {
   using hand::Joint;
   for (const Joint fixed :

@@ -29,8 +29,8 @@ void append_vector(const Vector3d& vector, std::string& text) {
   }
 }
 
-// The angles of R = Ry(y) Rz(z) Rx(x). x is what is left once y is taken back, so that the three
-// give R again at z = 90 degrees, too, where y and x turn about one axis.
+// The angles of R = Ry(y) Rz(z) Rx(x). x is what is left once y is undone, so that the three
+// give R again at z = 90 degrees, where y and x turn about one axis.
 Vector3d turns_yzx(const Matrix3d& r) {
   const double y = std::atan2(-r(2, 0), r(0, 0));
   const double z = std::atan2(r(1, 0), std::hypot(r(0, 0), r(2, 0)));

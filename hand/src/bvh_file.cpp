@@ -112,7 +112,7 @@ Result<void> BvhFile::flush() {
   if (pending_frames_ == 0) return {};
   if (!write_all(fd_, pending_, size_)) {
     const int error_number = errno;
-    // Some readers go by the lines and not by the count. If this fails, too, the count still holds.
+    // Some readers go by the lines and not by the count. If this fails, the count still holds.
     [[maybe_unused]] const int cut = ::ftruncate(fd_, static_cast<off_t>(size_));
     return failure(error_number);
   }

@@ -13,13 +13,13 @@ namespace nendo::hand {
 /// No calibration file of any format may be larger.
 inline constexpr std::uint64_t max_calibration_bytes = std::uint64_t{1} << 20;
 
-/// Tells whether counts usually rise with the joint's angle: the sensor measures bending, or lies
+/// Returns whether counts usually rise with the joint's angle: the sensor measures bending, or lies
 /// between two fingers. For the sensors of the wrist, of the arch and the other ones of the thumb,
-/// the sign depends on how a glove is sewn. Those between fingers are known with both signs, too,
+/// the sign depends on how a glove is sewn. Those between fingers are known with both signs,
 /// so that only a bending sensor's falling line is complained about.
 bool rises_with_angle(Sensor sensor) noexcept;
-/// Tells whether this slot may be calibrated. Slot 23 has a place in the protocol, but no glove has
-/// a sensor for it.
+/// Returns whether this slot may be calibrated. Slot 23 has a place in the protocol, but no glove
+/// has a sensor for it.
 bool may_be_calibrated(Sensor sensor) noexcept;
 
 std::string complaint_about_text(std::string_view text, bool may_be_empty);

@@ -20,7 +20,7 @@ constexpr std::string_view header = "sensor,gain_rad_per_count,offset_counts";
 constexpr std::string_view gain_rad = "gain_rad_per_count";
 constexpr std::string_view gain_deg = "gain_deg_per_count";
 
-/// TOML's lines may begin with [, too, but no line of ours has a joint's name of a ROS driver.
+/// TOML's lines may begin with [, but no line of ours has a joint's name of a ROS driver.
 bool looks_like_yaml(std::string_view line) noexcept {
   const auto has = [&](std::string_view what) { return line.find(what) != std::string_view::npos; };
   return line.starts_with('{') || line.starts_with('%') || line.starts_with("---") ||

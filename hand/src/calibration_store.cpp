@@ -37,7 +37,7 @@ std::uint64_t hash_of(const std::string& text) noexcept {
   return hash;
 }
 
-/// One part of a file name, no two texts the same.
+/// One part of a file name, no two strings the same.
 std::string part_of(const std::string& text) {
   constexpr std::size_t most = 80;
   constexpr std::string_view hex = "0123456789ABCDEF";

@@ -1,7 +1,7 @@
 #pragma once
 // One finger's part of inverse kinematics: finds its four angles from a place for its tip, with the
 // palm held still. Also defines what makes a posture natural, which the solver for the whole hand
-// needs, too.
+// needs.
 
 #include <algorithm>
 

@@ -10,7 +10,7 @@ namespace nendo::hand {
 namespace {
 
 constexpr std::size_t folds = 4;
-// Two fits that foretell about equally well are told apart by chance; then the full one has more
+// Two fits that predict about equally well are told apart by chance; then the full one has more
 // behind it.
 constexpr double clearly_better = 0.85;
 constexpr std::size_t min_held_out = 3;

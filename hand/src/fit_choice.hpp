@@ -10,7 +10,7 @@
 namespace nendo::hand {
 
 /// Puts the quick fit's lines in place of the full fit's for each group of like joints of which
-/// they foretell poses better that were held out: the full fit is made anew without a quarter of
+/// they predict poses better that were held out: the full fit is made again without a quarter of
 /// the takes, four times, and both are asked for the angles of these. Flat and fist are never held
 /// out, because the quick fit rests on them. `solution` is the full fit's.
 void choose_by_held_out_poses(CalibrationFit& fit, std::span<const PoseReading> readings, Side side,

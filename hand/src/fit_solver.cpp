@@ -56,7 +56,7 @@ void minimise(const FitProblem& problem, const FreeUnknowns& free, double in_cou
         next[free[n]] += step[static_cast<Eigen::Index>(n)];
       problem.evaluate(next, residuals, nullptr);
       problem.weigh_as(at, next, in_counts, residuals);
-      // false, too, of what is not a number
+      // false, of what is not a number
       better = residuals.squaredNorm() + next.squaredNorm() <= cost;
       if (!better) continue;
       at = next;

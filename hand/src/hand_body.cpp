@@ -65,7 +65,7 @@ Facet facet_of(const BodyPart& part) noexcept {
   return {normal, slope, slope.squaredNorm() < 1.0};
 }
 
-// As for a cone: in a plane the distance from the balls is convex, too. If its least is not within
+// As for a cone: in a plane the distance from the balls is convex. If its least is not within
 // the triangle, it is on an edge.
 BallNear ball_of_triangle(const BodyPart& part, const Vector3d& place_m) noexcept {
   const Vector3d& corner_m = part.corners_m[0];

@@ -40,7 +40,7 @@ Aims aims_of(const FingertipTargets& targets, const Isometry3d& T_world_wrist, S
     Vector3d place_m =
         T_world_wrist.linear().transpose() * (target.position_m - T_world_wrist.translation());
     if (side == Side::left) place_m.x() = -place_m.x();
-    // Written so that a NaN is refused, of the wrist's pose, too.
+    // Written so that a NaN is refused, of the wrist's pose.
     const bool usable = target.weight > 0.0 && std::isfinite(target.weight) &&
                         place_m.cwiseAbs().sum() <= FingertipTarget::farthest_m;
     if (usable) aims[f] = {place_m, target.weight};
@@ -115,7 +115,7 @@ Attempt reach_all(const HandIk& hand, const Box<row_size>& box, const AllAngles&
   return attempt;
 }
 
-/// Palm and wrist, too: downhill from `start`, and where that does not arrive, from other fingers.
+/// Palm and wrist: downhill from `start`, and where that does not arrive, from other fingers.
 Attempt reach_with_hand(const HandIk& hand, const Box<row_size>& box, const Box<row_size>& free,
                         const AllAngles& start, double enough_m) noexcept {
   const auto try_from = [&](AllAngles at) {

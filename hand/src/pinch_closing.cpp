@@ -72,8 +72,8 @@ public:
 
   bool are_there() const noexcept { return count_ > 0; }
 
-  /// Goes on to the most likely turns, given that the gaps are closed as far as their weights say:
-  /// a Gauss-Newton step, solved in the space of the gaps.
+  /// Continues to the most likely turns, given that the gaps are closed as far as their weights
+  /// say: a Gauss-Newton step, solved in the space of the gaps.
   void step(const DigitAngles& variances) noexcept {
     const Fingertip& thumb = pads_[0];
     const auto size = static_cast<Index>(3 * count_);

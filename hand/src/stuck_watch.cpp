@@ -73,7 +73,7 @@ int StuckWatch::swung(const Sensors& sensors, std::size_t of, std::size_t times)
 }
 
 /// Of a finger's flexion: the other joints of the finger move; where only one of them does, and it
-/// may be bent alone, the same joints of other fingers must, too.
+/// may be bent alone, the same joints of other fingers must.
 bool StuckWatch::shown_by_finger(std::size_t slot) const noexcept {
   const std::size_t finger = slot / 4 - 1, joint = slot % 4;
   int usable = 0;
@@ -93,7 +93,7 @@ bool StuckWatch::shown_by_thumb(std::size_t slot) const noexcept {
   return moved >= 2 || (moved == 1 && shown_by_hand(slot, 4, 50));
 }
 
-/// Tells whether so many per cent of all other sensors have swung so often.
+/// Returns whether so many per cent of all other sensors have swung so often.
 bool StuckWatch::shown_by_hand(std::size_t slot, std::size_t times, int part) const noexcept {
   int others = 0, moved = 0;
   for (std::size_t other = 0; other < sensor_slots; ++other) {

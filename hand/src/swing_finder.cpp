@@ -16,7 +16,7 @@ std::optional<double> SwingFinder::median(std::uint16_t count) noexcept {
 std::optional<SwingFinder::End> SwingFinder::push(std::uint16_t count, double min_swing) noexcept {
   const std::optional<double> now = median(count);
   if (!now) return std::nullopt;
-  if (seen_ == window) { // the first since it began anew
+  if (seen_ == window) { // the first since it began again
     rises_ = falls_ = false;
     top_ = bottom_ = *now;
   }

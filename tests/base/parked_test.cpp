@@ -1,5 +1,6 @@
-// Lock-free means: whoever is stopped, and wherever, the other one goes on. Here it is stopped 300
-// times at instructions that chance picks. The control is a queue behind a mutex, which must fail.
+// Lock-free means: whoever is stopped, and wherever, the other one continues. Here it is stopped
+// 300 times at instructions that chance picks. The control is a queue behind a mutex, which must
+// fail.
 
 #include <array>
 #include <cstdint>

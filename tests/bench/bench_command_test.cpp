@@ -284,7 +284,7 @@ TEST_SUITE("bench") {
         {"bench", "models", "--cells", "20", "--repetitions", "1", "--seconds", "1", "--json"});
     REQUIRE_MESSAGE(done.exit_code == 0, done.err);
     auto lines = lines_of(done.out);
-    REQUIRE(lines.size() == 3); // hands that have let go, hands that hold, and changes of radius
+    REQUIRE(lines.size() == 3); // hands that have released, hands that hold, and changes of radius
     const auto changes = nlohmann::json::parse(lines.back());
     CHECK(changes["changes"].get<int>() > 5);
     CHECK(changes["taken"].get<int>() > 5);

@@ -168,7 +168,7 @@ TEST_SUITE("calibration_guide") {
     CHECK(session.hold(flat, 2.0) == CalibrationGuide::Event::captured);
     CHECK(session.guide.readings().size() == 2);
     CHECK(session.guide.asked() == PoseId::fist);
-    Session after(3008); // a session that goes on has both
+    Session after(3008); // a session that continues has both
     after.guide.restore(session.guide.readings(), {});
     CHECK(after.guide.readings().size() == 2);
     CHECK(after.guide.asked() == PoseId::fist);

@@ -119,7 +119,7 @@ void check(std::uint64_t seed, const std::vector<Held>& stuck, const Errors& wit
     CAPTURE(to_degrees(without.rad[at]));
     CAPTURE(to_degrees(with.deviation_rad[at]));
     if (sources[at] == usual[at]) {
-      // Evidence is lost, too, and what is left agrees otherwise.
+      // Evidence is lost, and what is left agrees otherwise.
       CHECK(with.rad[at] <= 1.6 * without.rad[at] + from_degrees(6.0));
     } else {
       // All joints of a free motion go their own ways, so nothing estimates them well.

@@ -92,7 +92,7 @@ TEST_SUITE("clay_go_on") {
     CHECK(pull(*after) > 10.0);
     CHECK(after->clay.report().held == before->clay.report().held);
     CHECK(nendo::test::count_self_intersections(after->now()) == 0);
-    // They let go as ever.
+    // They release as ever.
     for (int call = 1; call <= 30; ++call)
       after->clay.press_to(pinch(16.0 + call, 37.0));
     CHECK(after->clay.report().held == 0);

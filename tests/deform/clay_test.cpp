@@ -352,7 +352,7 @@ TEST_SUITE("clay") {
     ball.go(parts, {0, 25, 10}, 40);
     const Vector3d by = middle_of(ball.now()) - before;
     CHECK((by - Vector3d(0, 25, 10)).norm() < 3.0);
-    // They turn it, too.
+    // They turn it.
     const Eigen::Index east = [&] {
       Eigen::Index at = 0;
       ball.now().vertices.row(0).maxCoeff(&at);
@@ -386,7 +386,7 @@ TEST_SUITE("clay") {
     };
     ball.clay.begin(pinch(gap, {22, 0, 0}));
     CHECK(move_to(16.0, 60) > 4);
-    // Tremor does not let go.
+    // Tremor does not release.
     std::mt19937 random(43);
     std::uniform_real_distribution<double> tremor(-0.2, 0.2);
     for (int tick = 0; tick < 100; ++tick) {

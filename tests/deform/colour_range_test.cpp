@@ -62,7 +62,7 @@ TEST_CASE("deform/colour_range/one number above 1 tells that an OBJ's colours ar
   check_colour(model.mesh, 2, 1.0, 0.2, 0.4);
   REQUIRE(model.notes.size() == 1);
   CHECK(model.notes[0] == "colours above 1 were found, so colours are read as 0 to 255");
-  // Of fractions, too, and of dark ones.
+  // Of fractions, and of dark ones.
   check_colour(parse(obj_of("0 0 0", "1 2 0", "0 0 3")).mesh, 1, 1.0 / 255.0, 2.0 / 255.0, 0.0);
   check_colour(parse(obj_of("127.5 0 0", "0 0 0", "0 0 0.5")).mesh, 0, 0.5, 0.0, 0.0);
 }

@@ -205,7 +205,7 @@ TEST_SUITE("part_mover") {
     const Isometry3d mean = Eigen::Translation3d(middle) * AngleAxisd(0.3, Vector3d::UnitY()) *
                             Eigen::Translation3d(-middle);
     CHECK(bench.off(1, mean) < rounding);
-    // When one lets go, nothing jumps, and the other carries on.
+    // When one releases, nothing jumps, and the other carries on.
     bench.grips[0].is_closed = false;
     bench.move();
     CHECK(bench.off(1, mean) < rounding);

@@ -1,4 +1,4 @@
-// Who holds a device, from the kernel's texts, and what the table of devices says of it.
+// Who holds a device, from the kernel's strings, and what the table of devices says of it.
 
 #include <algorithm>
 #include <string>

@@ -190,7 +190,7 @@ TEST_SUITE("record_check") {
         ++(same ? harmless : slipped);
         if (records[3].values != truth->values) ++sensor_bits;
       }
-      // Whatever happened, the stream goes on: at most the next record is lost with it.
+      // Whatever happened, the stream continues: at most the next record is lost with it.
       for (std::uint32_t k = 1; k < 5; ++k)
         parser.push(record_bytes(start + k * period), check, sink);
       CHECK(records.back().ticks == start + 4 * period);

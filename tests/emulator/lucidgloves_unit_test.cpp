@@ -121,7 +121,7 @@ TEST_SUITE("lucidgloves_unit") {
     bench.after(1ms);
     bench.after(700ms);
     CHECK(bench.ask("A1B2C").empty());
-    CHECK(bench.after(999ms).empty()); // the time limit begins anew with each byte
+    CHECK(bench.after(999ms).empty()); // the time limit restarts with each byte
     CHECK(bench.unit.brakes() == std::array{0, 0, 0, 0, 0});
     CHECK(lines_in(bench.after(2ms)) == 1);
     CHECK(bench.unit.brakes() == std::array{1, 2, 0, 0, 0});

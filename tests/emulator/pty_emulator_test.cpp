@@ -54,7 +54,7 @@ TEST_SUITE("pty_emulator") {
         REQUIRE(stream[24 * n] == 'S');
         REQUIRE(stream.find('\0', 24 * n) == 24 * n + 23);
       }
-    } // gone without a word: the stream goes on
+    } // gone without a word: the stream continues
     std::this_thread::sleep_for(100ms);
     for (int round = 0; round < 3; ++round) {
       PtyHost host(options.link);

@@ -83,7 +83,7 @@ TEST_SUITE("pty_faults") {
     CHECK_FALSE(fs::exists(fs::symlink_status(options.link)));
     REQUIRE(test::eventually([&] { return fs::exists(folder.path() / "second"); }));
     test::PtyHost after(folder.path() / "second");
-    CHECK(after.receive(48).size() >= 48); // the unit has gone on all the time
+    CHECK(after.receive(48).size() >= 48); // the unit has continued all the time
     CHECK(done(emulator->stats(), "unplug") == 1);
   }
 

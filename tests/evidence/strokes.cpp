@@ -9,7 +9,7 @@ using deform::Points;
 namespace {
 
 constexpr Eigen::Index fingertips = 10;
-constexpr double min_distance = 0.25; // of the radius, between fingertips when they take hold
+constexpr double min_distance = 0.25; // of the radius, between fingertips when they grab
 
 Eigen::Vector3d direction(std::mt19937& random) {
   std::normal_distribution<double> normal;

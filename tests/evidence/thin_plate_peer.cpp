@@ -1,6 +1,6 @@
 // Table 1 of the paper by VTK's thin-plate spline transform with the same control points, and by
 // Nendo with one thread and with two, in the same run. VTK's transform has one thread; it solves
-// anew in every frame, as both of its users would have it: it keeps no factor for frozen points.
+// again in every frame, as both of its users would have it: it keeps no factor for frozen points.
 
 #include <algorithm>
 #include <array>

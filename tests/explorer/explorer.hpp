@@ -63,7 +63,7 @@ struct Verdict {
   std::vector<Site> sites;      ///< the operations that were executed, with their unchanged orders
 };
 
-/// `make` builds the program, and what its threads share, anew for each execution. Stops at the
+/// `make` builds the program, and what its threads share, again for each execution. Stops at the
 /// first fault. One call at a time.
 Verdict explore(const std::function<Program()>& make, const Options& options = {});
 

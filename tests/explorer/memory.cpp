@@ -74,7 +74,7 @@ Value Memory::apply(std::size_t thread, const Operation& operation, const Choose
   assert(message.stamp != messages[at].stamp);
   self.now.seen[operation.location] = message.stamp;
   message.released = releases(operation.order) ? self.now : self.released;
-  if (updates) message.released.join(messages[at].released); // the release sequence goes on
+  if (updates) message.released.join(messages[at].released); // the release sequence continues
   messages.insert(messages.begin() + static_cast<std::ptrdiff_t>(at) + 1, message);
   return read;
 }

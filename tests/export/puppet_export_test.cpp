@@ -258,7 +258,7 @@ TEST_SUITE("puppet_export") {
         }
         CHECK(*std::min_element(frames.begin(), frames.end()) > 15);
         CHECK(worst < ControlMorphs::max_error * take.diagonal());
-        // At other rates the frames are held while the take goes on.
+        // At other rates the frames are held while the take continues.
         const auto slow = take.export_it({.rate_hz = 24.0});
         REQUIRE(slow);
         CHECK(slow->morphs->basis == MorphBasis::functions);

@@ -1,5 +1,5 @@
-// A loop goes on with other masks of its fingertips, and with symmetry: what is held stays bit for
-// bit, both sides are shaped alike, and the one history leads across all of it.
+// A loop continues with other masks of its fingertips, and with symmetry: what is held stays bit
+// for bit, both sides are shaped alike, and the one history leads across all of it.
 
 #include <cstring>
 #include <doctest/doctest.h>

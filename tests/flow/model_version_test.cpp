@@ -1,4 +1,4 @@
-// A loop goes on with another version of its model: nothing of the shape and of the hands' way is
+// A loop continues with another version of its model: nothing of the shape and of the hands' way is
 // lost, and undo and redo go through all versions.
 
 #include <algorithm>
@@ -114,7 +114,7 @@ TEST_SUITE("model_version") {
     const deform::Points kept = run.bent(17);
     CHECK_FALSE(run.frame().held);
     CHECK(run.frame().settings == settings);
-    CHECK(old_gap(kept, still) > 1e-3); // what was shaped until the hands let go
+    CHECK(old_gap(kept, still) > 1e-3); // what was shaped until the hands release
     CHECK(gap(run.bent(30), kept) == 0.0);
     CHECK(run.kinds() ==
           std::vector{StepKind::stroke, StepKind::subdivide, StepKind::radius, StepKind::stroke});

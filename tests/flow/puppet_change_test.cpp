@@ -1,5 +1,5 @@
-// A loop goes on with an edited puppet: the shape changes by what the edit asks for, and by nothing
-// else.
+// A loop continues with an edited puppet: the shape changes by what the edit asks for, and by
+// nothing else.
 
 #include <cmath>
 #include <random>
@@ -208,7 +208,7 @@ TEST_SUITE("puppet change") {
       loop.stroke(0, 12);
       const deform::Points whole = loop.bent(12);
       REQUIRE(rig(loop).puppet().functions.size() > 1);
-      // All points that one of the functions moves, so that it goes, too.
+      // All points that one of the functions moves, so that it goes.
       while (has_named(rig(loop).puppet().functions, "push")) {
         const auto& moves = rig(loop).puppet().functions[function(loop, "push")].moves;
         REQUIRE(loop.test.loop->changes().change_puppet(
@@ -342,7 +342,7 @@ TEST_SUITE("puppet change") {
       InputLog log;
       test::LoopFixture fixture{.rings_of_ball = 6, .input_log = &log};
       if (seed % 2 == 0) fixture.puppet = test::ball_puppet;
-      const bool is_large = seed >= 4; // in type 2, whose equations are solved anew in each tick
+      const bool is_large = seed >= 4; // in type 2, whose equations are solved again in each tick
       if (is_large) fixture.puppet = large.c_str();
       const std::size_t most = is_large ? 66 : 10;
       const Mode mode = is_large ? Mode::type2 : Mode::type1;

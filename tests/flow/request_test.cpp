@@ -68,7 +68,7 @@ TEST_SUITE("request") {
     CHECK((person.shape() - person.test.model.vertices).cwiseAbs().maxCoeff() <= test::float_gap);
     CHECK(anew.redo_steps == 1);
     CHECK(anew.undo_steps == 0);
-    // As a person whose hands were there when they took hold first.
+    // As a person whose hands were there when they grabbed first.
     Person other(Mode::type1);
     other.ask(Request::let_go, 0);
     other.move(0, 15);
@@ -139,7 +139,7 @@ TEST_SUITE("request") {
       }
       person.ask(Request::let_go, 0);
       for (std::uint64_t undos = 1; undos <= 3; ++undos) {
-        // Letting go was a commit without a change, for type 1; type 2 keeps changes alone.
+        // Releasing was a commit without a change, for type 1; type 2 keeps changes alone.
         if (undos == 1 && mode == Mode::type1) person.ask(Request::undo, 0);
         shapes.pop_back();
         const Frame& frame = person.ask(Request::undo, 0);

@@ -217,7 +217,7 @@ TEST_SUITE("sleep_only" * doctest::skip(!nendo::test::restraint_is_counted)) {
       const auto taken = recorded.end(); // faster than a disk perhaps, but all is accounted for
       REQUIRE(taken);
       CHECK(taken->ticks > 0);
-      // Clay has two moved wrists a tick, too, and 201 resets.
+      // Clay has two moved wrists a tick, and 201 resets.
       const std::uint64_t offered = mode == Mode::clay ? 5 * 100'300 + 201 : 3 * 100'300;
       const auto summary = recording::summarise(recorded.path);
       REQUIRE(summary);

@@ -1,4 +1,4 @@
-// What wearers are off by, each time anew or by habit, and what becomes of it in a fit.
+// What wearers are off by, each time again or by habit, and what becomes of it in a fit.
 
 #include <array>
 #include <cmath>

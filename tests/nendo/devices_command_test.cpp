@@ -61,7 +61,7 @@ TEST_SUITE("devices") {
     for (const auto& line : nendo::test::lines_of(done.out)) {
       const auto device = nlohmann::json::parse(line);
       CHECK(keys_of(device) == device_keys);
-      if (device["kind"] == "portless_adapter") continue; // which more than a permission mends
+      if (device["kind"] == "portless_adapter") continue; // which more than a permission fixes
       CHECK(device["may_open"].get<bool>() == device["remedy"].get<std::string>().empty());
     }
   }

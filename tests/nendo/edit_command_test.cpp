@@ -133,7 +133,7 @@ TEST_SUITE("edit_command") {
       const json told = json::parse(run.fine({"play", run.timeline, "--out", played, "--json"}));
       CHECK(told["frames"].get<int>() >= run.made["left"]["frames"].get<int>());
       CHECK(told["failed"] == 0);
-      // A stroke of type 2 is sampled at deadlines, too, that the live loop missed.
+      // A stroke of type 2 is sampled at deadlines, that the live loop missed.
       if (mode == "type1" || told["frames"] == run.made["left"]["frames"])
         CHECK(farthest(played, run.shape) < 1e-4);
     }

@@ -28,7 +28,7 @@ TEST_SUITE("info") {
     REQUIRE(info["sensors"].size() == 18);
     for (const auto& name : info["sensors"])
       CHECK(name.get<std::string>().find("dip") == std::string::npos);
-    // A glove without DIP sensors: those are estimated, the middle finger's direction, too.
+    // A glove without DIP sensors: those are estimated, the middle finger's direction.
     REQUIRE(info["angles"].size() == 23);
     for (const auto& item : info["angles"].items()) {
       const std::string& angle = item.key();

@@ -1,4 +1,4 @@
-// nendo run --adapt --user: what is learned of a wearer is kept, and gone on from.
+// nendo run --adapt --user: what is learned of a wearer is kept, and continued from.
 
 #include <cstdlib>
 #include <string>

@@ -80,7 +80,7 @@ TEST_SUITE("replay_end") {
       CHECK(shaped.exit_code == 0);
       CHECK(shaped.seconds < 40.0); // the run ended before its duration
       const json summary = last_object(shaped);
-      // Recordings begin anew when the loop is ready, which knows by then how the hands begin.
+      // Recordings restart when the loop is ready, which knows by then how the hands begin.
       CHECK(summary["left"]["samples"] == recorded.samples(0));
       CHECK(summary["right"]["samples"] == recorded.samples(1));
       CHECK(shaped.seconds > 0.8); // the slower of the two

@@ -134,7 +134,7 @@ TEST_SUITE("view_command") {
   TEST_CASE("the screen goes on when its last client leaves") {
     const test::MemoryScreen screen;
     if (!screen.is_there() || !Person::does("version")) return;
-    // A screen that begins anew puts the pointer in its middle, and refuses a window meanwhile.
+    // A screen that restarts puts the pointer in its middle, and refuses a window meanwhile.
     REQUIRE(Person::does("mousemove 11 12"));
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     const auto told = test::shell("xdotool getmouselocation");

@@ -278,7 +278,7 @@ TEST_SUITE("publish_program") {
     CHECK(shape.wait() == 0);
     CHECK(coordinates_in(contents(shape.out())).size() ==
           coordinates_in(contents(NENDO_MODELS "/head.obj")).size());
-    // With the setup of a loop made anew, of which there is no tick yet, the same shape is none.
+    // With the setup of a loop made again, of which there is no tick yet, the same shape is none.
     std::string anew = contents(segment_path(name));
     const auto setup = number_at(anew, 48);
     for (const std::uint64_t at : {setup, setup + 8}) { // stage, 2 g + 2, and generation g

@@ -34,7 +34,7 @@ inline publish::LoopOutline outline_of(const LoopUnderTest& test) {
   return outline;
 }
 
-/// Makes the loop anew, with these sinks.
+/// Makes the loop again, with these sinks.
 inline void attach(LoopUnderTest& test, std::vector<flow::FrameSink*> sinks) {
   test.options.sinks = std::move(sinks);
   test.loop =
@@ -116,7 +116,7 @@ public:
     test_.bend(bent_, HostClock::now());
     if (tick_ > 10 && random_() % 15 == 0)
       test_.commands.try_push(flow::requests[random_() % flow::requests.size()]);
-    // Who lets go soon takes hold again.
+    // Who releases soon grabs again.
     if (tick_ % 10 == 0) test_.commands.try_push(flow::Request::grab);
     return test_.frame_after_tick(tick_++);
   }

@@ -113,7 +113,7 @@ TEST_SUITE("segment") {
     CHECK((segment.rest() - test.model.vertices).cwiseAbs().maxCoeff() < 2 * test::float_gap);
     Player anew(test);
     const Points shape = test.vertices_of(anew.next());
-    CHECK(segment.newest() == 21); // numbers go on
+    CHECK(segment.newest() == 21); // numbers continue
     CHECK(test::head_of(segment.record(21)).generation == 2);
     CHECK((segment.shape(21) - shape).cwiseAbs().maxCoeff() < 2 * test::float_gap);
 

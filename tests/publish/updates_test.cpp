@@ -92,7 +92,7 @@ struct Follower {
     const bool undid = head.shape_jumps != jumps;
     if (head.mode == 2) {
       step(!missed && !undid, record, shape, published);
-      rest = shape; // from which type-1 goes on, should the mode change
+      rest = shape; // from which type-1 continues, should the mode change
       knows_rest = true;
     } else {
       if (missed && (committed || undid)) knows_rest = false;

@@ -164,7 +164,7 @@ TEST_SUITE("layered_take") {
           for (std::size_t tick = 0; tick < 30; ++tick)
             CHECK((take.shapes[tick] == shapes.back()[tick]));
           const bool differs = take.shapes[80] != shapes.back()[80];
-          CHECK((differs || puppet != nullptr)); // which may have let go
+          CHECK((differs || puppet != nullptr)); // which may have released
           shapes.push_back(take.shapes);
           const auto summary = summarise(name(over));
           REQUIRE(summary);
@@ -186,7 +186,7 @@ TEST_SUITE("layered_take") {
     auto input = read_take_input(first.path);
     REQUIRE(input);
     input->script->begin_at(begin);
-    // A hand at rest below its own layer, too.
+    // A hand at rest below its own layer.
     std::vector<flow::HandInput> inputs{
         test::scripted(like.inputs[1]), test::layer_of(like.inputs[1], AngleSet::all(), false),
         test::layer_of(like.inputs[0], *flow::angles_named("middle"), false)};

@@ -251,7 +251,7 @@ TEST_SUITE("live_settings") {
       REQUIRE(live.end());
       const auto again = replayed(live.path, live.test.model);
       CHECK(again.shapes == shapes);
-      // What is copied has the puppets, too.
+      // What is copied has the puppets.
       const auto copy = live.folder.path() / "copy.nendo";
       REQUIRE(add_shapes(live.path, copy, live.test.model, 10.0));
       CHECK(replayed(copy, live.test.model).shapes == shapes);

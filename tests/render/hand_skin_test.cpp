@@ -93,7 +93,7 @@ TEST_SUITE("hand_skin") {
     for (const Side side : {Side::left, Side::right}) {
       const HandSkin skin(side);
       for (int round = 0; round < 6; ++round) {
-        // Hands of other sizes, too, and bent as far as hands bend.
+        // Hands of other sizes, and bent as far as hands bend.
         const hand::HandSkeleton skeleton(side, {0.16 + 0.01 * round, 0.075 + 0.004 * round});
         hand::JointAngles angles;
         std::uniform_real_distribution<double> bend(0.0, 1.0);
@@ -198,7 +198,7 @@ TEST_SUITE("hand_skin") {
   TEST_CASE("a fist has about the flat hand's volume, and so has a bigger hand's, to its scale") {
     const HandSkin skin(Side::right);
     const double flat = volume_of(draped(skin, Side::right, {}));
-    // Hands of 187 mm displace some 350 to 450 ml up to the wrist; here is some forearm, too.
+    // Hands of 187 mm displace some 350 to 450 ml up to the wrist; here is some forearm.
     CHECK(flat > 300e-6);
     CHECK(flat < 600e-6);
     const double bent = volume_of(draped(skin, Side::right, fist()));

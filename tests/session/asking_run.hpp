@@ -36,7 +36,7 @@ protected:
 /// What is asked for at the same time, one after another.
 using Changes = std::vector<std::vector<flow::Command>>;
 
-/// Asks for one change after another when the run has gone on for some frames, and then for its
+/// Asks for one change after another when the run has continued for some frames, and then for its
 /// end. It is shown each frame in the tick.
 class Asker final : public Sink, public Observer {
 public:
@@ -135,7 +135,7 @@ struct Run {
     REQUIRE(outcome);
     return *std::move(outcome);
   }
-  /// Opens the left hand for a run over `take`, of which the left index finger is played anew, and
+  /// Opens the left hand for a run over `take`, of which the left index finger is played again, and
   /// which is recorded to `file`.
   Result<RunHands> open_over(const std::string& take, const std::string& file) {
     const OverdubArguments arguments{take, "left.index", "", ""};

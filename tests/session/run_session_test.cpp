@@ -253,7 +253,7 @@ TEST_SUITE("run_session") {
                         {reset},
                         {change(back)},
                         {flow::Request::undo},
-                        {change(back)}}); // which is in force already
+                        {change(back)}}); // which is in effect already
     const auto outcome = run.follow({&asker});
     CHECK(asker.begun == 1);
     CHECK(asker.leaps == 0);

@@ -138,7 +138,8 @@ TEST_SUITE("stress tally") {
     CHECK(incident.phase == Phase::wake);
     CHECK(incident.lateness == 3ms);
     CHECK(incident.phase_time == 3ms);
-    // The tick before worked for 4.5 ms; its deformation, 70 % of that, went on beyond deadline 5.
+    // The tick before worked for 4.5 ms; its deformation, 70 % of that, continued beyond
+    // deadline 5.
     incident = incident_of(record(4, 0us, 4'500'000), record(9, 0us, 100'000, 4), period);
     CHECK(incident.phase == Phase::deform);
     CHECK(incident.due == first_tick + 5 * period);

@@ -52,7 +52,7 @@ private:
   std::size_t max_vertices_;
   std::unique_ptr<flow::FinerModel> finer_;
   bool asked_ = false;
-  unsigned long late_ = 0; ///< turns until it goes on
+  unsigned long late_ = 0; ///< turns until it continues
   int made_ = 0;
 };
 

@@ -10,8 +10,8 @@
 
 namespace nendo::test {
 
-/// An Xvfb of this test's own; its number is in DISPLAY while it lives. It goes on when its last
-/// client leaves: without -noreset it would begin anew then, and refuse who comes meanwhile.
+/// An Xvfb of this test's own; its number is in DISPLAY while it lives. It continues when its last
+/// client leaves: without -noreset it would restart then, and refuse who comes meanwhile.
 class MemoryScreen {
 public:
   MemoryScreen() {

@@ -132,7 +132,7 @@ private:
   Program program_;
 };
 
-/// Tells whether an error is one line that begins with the program's name and mentions `what`.
+/// Returns whether an error is one line that begins with the program's name and mentions `what`.
 inline bool is_one_line_about(const std::string& err, std::string_view what) {
   return lines_of(err).size() == 1 && err.starts_with("nendo: ") &&
          err.find(what) != std::string::npos;

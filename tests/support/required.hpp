@@ -1,5 +1,5 @@
 #pragma once
-// What a test cannot go on without.
+// What a test cannot continue without.
 
 #include <utility>
 

@@ -12,8 +12,8 @@
 namespace nendo::test {
 
 /// Adds to `sum` what the ticks did that they must not. The loop's log is `log`. next_rig(now,
-/// random): the puppet, or the masks, that the loop shall go on with; null: none. With a mode, it
-/// stays in that one.
+/// random): the puppet, or the masks, that the loop shall continue with; null: none. With a mode,
+/// it stays in that one.
 template <class NextRig>
 void tick_with_changes(LoopUnderTest& test, flow::InputLog& log, std::uint64_t ticks, unsigned seed,
                        const NextRig& next_rig, RestraintCounts& sum,

@@ -46,7 +46,7 @@ RestraintCounts Restraint::counts() const noexcept {
 #if NENDO_COUNTS_RESTRAINT
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): glibc's own names
 // glibc's own entry points, and these definitions in the program take their callers' place. They
-// are not hidden, so that shared libraries find them, too.
+// are not hidden, so that shared libraries find them.
 #pragma GCC visibility push(default)
 extern "C" {
 void* __libc_malloc(std::size_t);

@@ -97,7 +97,7 @@ struct RecordedLoop {
   }
 };
 
-/// Of how a puppet is played: who lets go, who takes hold, what listens to what.
+/// Of how a puppet is played: who releases, who grabs, what listens to what.
 template <class Random>
 flow::Command any_role(Random& random) {
   const Side side = random() % 2 == 0 ? Side::left : Side::right;
@@ -114,7 +114,7 @@ flow::Command any_role(Random& random) {
 
 /// Plays what people do: hands bend and move at random, requests are made, a switch is turned now
 /// and then, and ticks find several samples or none. With `changes`, settings and models are
-/// changed, too.
+/// changed.
 /// `see` is called with each frame.
 template <class See>
 void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed, bool changes, See see) {

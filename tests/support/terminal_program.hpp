@@ -103,7 +103,7 @@ public:
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
 
-  /// Tells whether the terminal is as it was before the program.
+  /// Returns whether the terminal is as it was before the program.
   bool is_restored() const {
     termios after{};
     tcgetattr(slave_, &after);
@@ -111,7 +111,7 @@ public:
            after.c_iflag == before_.c_iflag && after.c_oflag == before_.c_oflag &&
            std::equal(std::begin(after.c_cc), std::end(after.c_cc), std::begin(before_.c_cc));
   }
-  /// Tells whether what a line editor changes is as it was before the program.
+  /// Returns whether what a line editor changes is as it was before the program.
   bool has_lines_and_echo() const {
     termios now{};
     tcgetattr(slave_, &now);

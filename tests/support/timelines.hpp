@@ -167,7 +167,7 @@ inline std::shared_ptr<const puppet::Rig> symmetric_rig() {
   return std::make_shared<const puppet::Rig>(std::move(puppet), std::move(starts));
 }
 
-/// Returns waved_timeline(), in which the hands play the symmetric puppet, let go, take hold, and
+/// Returns waved_timeline(), in which the hands play the symmetric puppet, release, grab, and
 /// change their roles.
 inline timeline::Timeline puppet_timeline(const deform::Mesh& model, std::size_t frames = 90) {
   timeline::Timeline made = waved_timeline(model, flow::Mode::type1, frames);

@@ -81,7 +81,7 @@ struct UdevVerdict {
   bool mentions(const std::string& path, const std::string& text) const {
     return said.at(path).find(text) != std::string::npos;
   }
-  /// Tells whether udev complains about a place in the rules: "60-x.rules:1 Unknown key ...".
+  /// Returns whether udev complains about a place in the rules: "60-x.rules:1 Unknown key ...".
   bool complains() const {
     for (const auto& [path, text] : said) {
       for (const std::string& line : lines_of(text)) {

@@ -20,8 +20,8 @@ using UsbBytes = std::vector<std::uint8_t>;
 /// The counts that a report sent, by sensor slot; -1 for a sensor that is not measured.
 using SentCounts = std::array<int, sensor_slots>;
 
-/// Tells whether the sample has exactly these counts. (It makes a mask first: GCC 12.2 miscompiles
-/// the comparison of a bit with the sign of a number.)
+/// Returns whether the sample has exactly these counts. (It makes a mask first: GCC 12.2
+/// miscompiles the comparison of a bit with the sign of a number.)
 inline bool tells(const GloveSample& sample, const SentCounts& sent) {
   SensorMask measured;
   SentCounts told{};

@@ -87,7 +87,7 @@ TEST_SUITE("player") {
       REQUIRE(reader);
       auto replay = recording::LoopReplay::make(reader->setup(), taken.live.test.model);
       REQUIRE(replay);
-      REQUIRE(player->next()); // where the hands took hold
+      REQUIRE(player->next()); // where the hands grabbed
       CHECK(player->time_s() == 0.0);
       Points wanted;
       Points shape;

@@ -168,7 +168,7 @@ TEST_SUITE("shape_cache") {
     cache.wait();
     CHECK(cache.nearest(0.2).shape != before);
     CHECK_FALSE(same_bits(cache.nearest(0.2).shape->shape, before->shape));
-    // Events, too, and where the timeline ends.
+    // Events, and where the timeline ends.
     const auto at_begin = cache.nearest(0.1).shape;
     timeline.events[2].time_s = 0.45;
     cache.follow(timeline);

@@ -1,4 +1,4 @@
-// The loop is sacred, with somebody looking, too.
+// The loop is sacred, with somebody looking.
 
 #include <atomic>
 

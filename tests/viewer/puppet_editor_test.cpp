@@ -100,7 +100,7 @@ TEST_SUITE("puppet editor") {
     maker.editor.drag({0.1, 0.0, 0.0});
     maker.editor.drag({0.1, 0.05, 0.0});
     CHECK(maker.moved() == doctest::Approx((way + Vector3d(0.2, 0.05, 0)).norm()).epsilon(0.02));
-    CHECK_FALSE(maker.editor.take()); // the loop goes on meanwhile as it was
+    CHECK_FALSE(maker.editor.take()); // the loop continues meanwhile as it was
     maker.editor.end_drag();
     REQUIRE(maker.hand_over());
     CHECK((maker.editor.way_of(point) - way - Vector3d(0.2, 0.05, 0)).norm() < 1e-3);
@@ -218,7 +218,7 @@ TEST_SUITE("puppet editor") {
     CHECK(maker.editor.function() == 0);
     const double radius = maker.puppet().points[0].radius;
     maker.editor.scale_radius(3.0);
-    CHECK_FALSE(maker.editor.take()); // the wheel may go on
+    CHECK_FALSE(maker.editor.take()); // the wheel may continue
     maker.editor.choose_point(0);
     REQUIRE(maker.hand_over());
     CHECK(maker.puppet().points[0].radius == doctest::Approx(radius * 1.331).epsilon(1e-3));

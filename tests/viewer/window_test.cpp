@@ -145,7 +145,7 @@ TEST_SUITE("window") {
     settings.radius_m.fill(1.1 * 0.1);
     CHECK(type(GLFW_KEY_RIGHT_BRACKET) == Commands{flow::ChangeSettings{settings}});
     CHECK(window.show(frame, false, {}).empty()); // once is enough
-    // What somebody else asks for is shown, and the next key goes on from there.
+    // What somebody else asks for is shown, and the next key continues from there.
     settings.mode = flow::Mode::type1;
     settings.radius_m = {0.1, 0.2, 0.3, 0.3, 0.2};
     frame.settings = settings;

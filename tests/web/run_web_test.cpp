@@ -79,7 +79,7 @@ struct Browser {
       if (frame->opcode == 2) REQUIRE(follower->take(frame->payload));
     }
   }
-  /// Sends a command when the run has gone on for a while, and follows until it is obeyed.
+  /// Sends a command when the run has continued for a while, and follows until it is obeyed.
   void ask(const std::string& command, const std::function<bool(const FollowingClient&)>& obeyed) {
     const int then = follower->updates + 30;
     follow_until([&] { return follower->follows() && follower->updates > then; });

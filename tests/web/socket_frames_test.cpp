@@ -90,7 +90,7 @@ TEST_SUITE("socket_frames") {
       fault(client_frame(0x80 | opcode, "x"), CloseCode::protocol_error);
     fault(client_frame(0x09, "x"), CloseCode::protocol_error); // a ping in parts
     fault(client_frame(0x89, std::string(126, 'x')), CloseCode::protocol_error);
-    fault(client_frame(0x80, "x"), CloseCode::protocol_error); // goes on from nothing
+    fault(client_frame(0x80, "x"), CloseCode::protocol_error); // continues from nothing
     fault(client_frame(0x01, "x") + client_frame(0x81, "y"), CloseCode::protocol_error);
     fault(client_frame(0x81, std::string(max_client_message + 1, 'x')), CloseCode::too_big);
     fault(client_frame(0x01, std::string(max_client_message, 'x')) + client_frame(0x80, "y"),

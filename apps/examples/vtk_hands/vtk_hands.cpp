@@ -1,5 +1,5 @@
 // Gloves shape a model, and VTK, which the paper used, draws both: in a window, or in pictures of
-// the first and the last moment. VTK wants an X display for pictures, too: xvfb-run.
+// the first and the last moment. VTK wants an X display for pictures: xvfb-run.
 
 #include <charconv>
 #include <chrono>

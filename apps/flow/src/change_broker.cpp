@@ -103,8 +103,8 @@ void ChangeBroker::Parts::make_ready() {
   change->ready.puppet_step = kind_of_edit(before, asked_rig());
 }
 
-/// A mode that the loop has already goes on: in older recordings puppets are in any mode, and have
-/// any number of points.
+/// A mode that the loop has already continues: in older recordings puppets are in any mode, and
+/// have any number of points.
 Result<SculptorSetup> ChangeBroker::Parts::setup_for(const SculptorSetup& before,
                                                      const LoopSettings& settings) const {
   const puppet::Rig* const rig = asked_rig();
@@ -159,7 +159,7 @@ std::optional<LoopState> ChangeBroker::take_state() {
   return state;
 }
 
-/// Takes back the change that the loop has not taken yet, or makes another.
+/// Undoes the change that the loop has not taken yet, or makes another.
 PreparedChange& ChangeBroker::Parts::next_change() {
   if (is_offered && offers.withdraw()) is_offered = false;
   while (take_back_done()) // the loop is in its tick

@@ -19,7 +19,7 @@ Masks masks_of(const puppet::Rig* rig) {
   return rig == nullptr ? Masks() : Masks(rig->puppet().masks, rig->puppet().inverted);
 }
 
-/// Tells whether the points of both have the same field along the surface.
+/// Returns whether the points of both have the same field along the surface.
 bool have_same_field(const puppet::Rig& one, const puppet::Rig& other) {
   const auto field = [](const puppet::Rig& of) {
     const puppet::Puppet& all = of.puppet();

@@ -55,7 +55,7 @@ TakenSample InputScript::now_played(TakenSample taken, HostClock::duration at) n
     sample.arrival = std::max(sample.arrival, stream.last.arrival);
     sample.measured = std::max(sample.measured, stream.last.measured);
   }
-  // Numbers that are missing in the recording are missing here, too; a new round is no gap.
+  // Numbers that are missing in the recording are missing here; a new round is no gap.
   if (stream.begun)
     sample.sequence =
         stream.last.sequence + (recorded > stream.recorded ? recorded - stream.recorded : 1);

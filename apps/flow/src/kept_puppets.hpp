@@ -28,7 +28,7 @@ public:
 
   /// Returns how many hands' supports with_settings() makes; 0: the supports are a puppet's.
   int hands_of(std::uint32_t number) const noexcept;
-  /// Tells whether hands without a puppet can take over: the loop has begun with them.
+  /// Returns whether hands without a puppet can take over: the loop has begun with them.
   bool can_touch() const noexcept { return tip_supports_.has_value(); }
   Eigen::Index control_points(std::uint32_t number, const SculptorOptions& options) const noexcept;
   /// Returns what the first setup would be with that puppet.

@@ -98,7 +98,7 @@ void Shaping::regrab(const Points& tips) noexcept {
 
 FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats& stats,
                                     bool completes) noexcept {
-  const bool commits = commit_due_ || !hold_wanted_; // letting go keeps what has been shaped
+  const bool commits = commit_due_ || !hold_wanted_; // releasing keeps what has been shaped
   const FieldStatus status = commits || completes ? sculptor_->finish(tips, frame.shape)
                                                   : sculptor_->update(tips, frame.shape);
   frame.fields.follow(sculptor_->fields());
@@ -143,8 +143,8 @@ void Shaping::track_clay(const ClayState& clay, LoopStats& stats) noexcept {
   stats.clay = clay;
 }
 
-/// Tells whether a stroke of whole hands has ended. In clay, a stroke is a contact, until the hands
-/// are away and the clay has come to rest. With parts, it lasts until no hand holds anything.
+/// Returns whether a stroke of whole hands has ended. In clay, a stroke is a contact, until the
+/// hands are away and the clay has come to rest. With parts, it lasts until no hand holds anything.
 bool Shaping::is_contact_over() const noexcept {
   if (!shaped_ && !in_step_) return false;
   if (const PartHands* const hands = sculptor_->parts()) return !hands->state().is_held();
@@ -267,7 +267,7 @@ bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
     make_room(frame);
     show_rest(frame);
   }
-  // Where the hands keep their grip, the rest shape stays, and readers of fields go on from it.
+  // Where the hands keep their grip, the rest shape stays, and readers of fields continue from it.
   if (!holds_on) {
     ++strokes_ended_;
     if (kind == Exchange::awaited_step) ++shape_jumps_;

@@ -58,14 +58,14 @@ bool Shaping::take_step(Request step, const Points& tips, LoopStats& stats) noex
   return true;
 }
 
-/// Tells whether the step undoes or redoes a change. An undo of what the hands have shaped since
+/// Returns whether the step undoes or redoes a change. An undo of what the hands have shaped since
 /// the last step comes first. By the old rule (LoopOptions::pull_is_step), a pull in type 1 is
 /// dropped together with the change.
 bool Shaping::is_change_next(Request step) const noexcept {
   if (step == Request::reset) return false;
   const auto other = target_of(step);
   if (!other) return false;
-  // What hands pull goes on across an edit of their puppet.
+  // What hands pull continues across an edit of their puppet.
   const bool goes_on = other->puppet != puppet_ && is_pulled() && !in_step_;
   return step != Request::undo || goes_on || !is_in_hand();
 }
@@ -162,7 +162,7 @@ std::size_t Shaping::undo_steps() const noexcept {
   return held_ && shaped_ ? std::max<std::size_t>(steps, 1) : steps;
 }
 
-/// Tells whether the hands have pulled in type 1, which is a step of its own.
+/// Returns whether the hands have pulled in type 1, which is a step of its own.
 bool Shaping::is_pulled() const noexcept {
   return held_ && shaped_ && pull_is_step_ && sculptor_->mode() == Mode::type1;
 }

@@ -37,7 +37,7 @@ double eased(double value, double limit) noexcept {
   return std::copysign(std::abs(limit) * (straight + rest * over * (2.0 - over)), value);
 }
 
-/// A hand that takes hold again moves the function at once, however far beyond its limit it was.
+/// A hand that grabs again moves the function at once, however far beyond its limit it was.
 double within_reach(const Function& function, double value) noexcept {
   const double reach = function.eases ? slowing : 1.0;
   return std::clamp(value, reach * function.least, reach * function.most);
@@ -177,7 +177,7 @@ void RigPlayer::set_clutch(Side side, std::uint8_t finger, bool holds,
                            const Hands& hands) noexcept {
   bool& hand_holds = state_.hand_holds[static_cast<std::size_t>(side)];
   ++grips_[static_cast<std::size_t>(side)];
-  const bool is_alone = holds && finger != all_fingers && !hand_holds; // of a hand that let go
+  const bool is_alone = holds && finger != all_fingers && !hand_holds; // of a hand that release
   for (std::size_t at = 0; at < holds_.size(); ++at) {
     FunctionState& state = state_.functions[at];
     if (state.input.side() != side) continue;

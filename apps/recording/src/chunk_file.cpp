@@ -195,8 +195,8 @@ void ChunkReader::count_number(std::uint32_t number) {
   next_number_ = number + 1;
 }
 
-/// Where to go on: behind the payload if a chunk begins there, or else where the next one does, for
-/// bytes may be missing.
+/// Where to continue: behind the payload if a chunk begins there, or else where the next one does,
+/// for bytes may be missing.
 std::uint64_t ChunkReader::after_bad_payload(const Header& header) {
   const std::uint64_t behind = at_ + chunk_header_bytes + header.length + chunk_checksum_bytes;
   if (behind <= end_ && (behind == end_ || header_at(behind))) return behind;

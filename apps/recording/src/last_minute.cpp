@@ -70,7 +70,7 @@ void LastMinute::drop_oldest() noexcept {
 std::size_t LastMinute::place_for(std::size_t bytes) noexcept {
   const std::size_t begin = next_offset_ + bytes <= memory_.size() ? next_offset_ : 0;
   const auto is_in_the_way = [&](const Slot& there) {
-    // When writing goes on at the front, the payloads at the end are the oldest.
+    // When writing continues at the front, the payloads at the end are the oldest.
     const bool passed = begin < next_offset_ && there.offset >= next_offset_;
     return passed || (there.offset < begin + bytes && begin < there.offset + there.bytes);
   };

@@ -52,7 +52,7 @@ std::string reason_of(ChunkType type, const Setup& setup) {
 } // namespace
 
 Result<void> check_readable(const Setup& setup, std::span<const std::byte> bytes) {
-  if (setup.loop && setup.loop->mesh.size() > UINT16_MAX) // a writer cuts texts off there
+  if (setup.loop && setup.loop->mesh.size() > UINT16_MAX) // a writer cuts strings off there
     return Error{Errc::failed, "this run cannot be recorded: " + reason_of_loop(*setup.loop)};
   auto chunks = ChunkReader::of(bytes, "the recording");
   if (!chunks) return chunks.error();

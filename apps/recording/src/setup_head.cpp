@@ -68,7 +68,7 @@ void read_learned(ByteReader& reader, CheckedReader& checked, hand::LearnedRange
 /// refuse it.
 constexpr unsigned ends_bit = 64;
 
-/// Tells whether the wearer's ends follow.
+/// Returns whether the wearer's ends follow.
 bool read_filter(CheckedReader& checked, hand::FilterOptions& filter) {
   const bool ends_follow = checked.filter_kind(filter, ends_bit) != 0;
   flow::for_each_filter_number(

@@ -113,7 +113,7 @@ void put_brushes(ByteWriter& writer, const flow::LoopSettings& settings);
 inline constexpr std::size_t brushes_bytes = 5 + 8;
 bool read_brushes(ByteReader& reader, flow::LoopSettings& settings);
 
-/// How clayey the model is, and what of the hands holds it; behind the brushes, too.
+/// How clayey the model is, and what of the hands holds it; behind the brushes.
 void put_hold(ByteWriter& writer, const flow::LoopSettings& settings);
 inline constexpr std::size_t hold_bytes = 8 + 1;
 bool read_hold(ByteReader& reader, flow::LoopSettings& settings);

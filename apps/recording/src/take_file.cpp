@@ -80,7 +80,7 @@ Error TakeFile::give_up(const std::string& reason, const std::string& remedy) {
   if (!file_.is_permanent())
     return Error{Errc::failed, name + ": cannot be written: " + reason + "; " + remedy +
                                    " and try again: nothing of it was kept"};
-  // What is half-written goes; should that fail, too, the chunk's checksum tells.
+  // What is half-written goes; should that fail, the chunk's checksum tells.
   if (::ftruncate(file_.fd(), static_cast<off_t>(bytes_)) == 0) ::fdatasync(file_.fd());
   return Error{Errc::failed, name +
                                  ": recording has ended early, what was written until now is "

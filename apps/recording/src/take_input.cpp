@@ -37,7 +37,7 @@ private:
     ++samples_[recorded.glove];
     put(flow::TakenSample{recorded.glove, recorded.sample});
   }
-  // Recorders repeat what is in force, also while an undo waits for something else.
+  // Recorders repeat what is in effect, also while an undo waits for something else.
   void add_one(const flow::LoopSettings& settings) {
     if (std::exchange(settings_, settings) == settings) return;
     put(flow::Command(flow::ChangeSettings{settings}));

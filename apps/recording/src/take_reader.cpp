@@ -254,7 +254,7 @@ Result<TakeReader> TakeReader::of(std::span<const std::byte> bytes, std::string_
   return begin(*std::move(chunks), std::string(name));
 }
 
-/// Goes on to the next chunk of an input log. Returns false if there is none.
+/// Continues to the next chunk of an input log. Returns false if there is none.
 bool TakeReader::next_chunk() {
   for (;;) {
     const auto chunk = chunks_.next();

@@ -23,8 +23,8 @@ public:
   /// The layout must outlive it. options.brushes.rings must be of the layout.
   BrushStroke(const BlockLayout& layout, Eigen::Index points, const DeformerOptions& options);
 
-  /// Lets all brushes go on their way (3 by points, model units). Returns whether that changed the
-  /// shape.
+  /// Lets all brushes continue their way (3 by points, model units). Returns whether that changed
+  /// the shape.
   bool go(const Points& from, const Points& to, BoundedShape& shape) noexcept;
 
 private:

@@ -27,7 +27,8 @@ public:
   Work(const SculptedShape& shape, std::span<const std::uint32_t> triangles, std::size_t bodies,
        std::size_t parts_a_body, const ClayOptions& options);
 
-  /// Tells whether all numbers are usable. There must be as many parts as the constructor was told.
+  /// Returns whether all numbers are usable. There must be as many parts as the constructor was
+  /// told.
   bool accepts(std::span<const ContactPart> parts) const noexcept;
   /// Puts the bodies there, and takes the shape's volume as the one to keep.
   void take_hold(const BoundedShape& shape, std::span<const ContactPart> parts) noexcept;

@@ -26,7 +26,7 @@ public:
   /// Returns the load of a vertex at that distance: what it was pressed by, less the gap.
   double at(std::uint32_t place, double distance) const noexcept;
   std::uint8_t& slips(std::uint32_t place) noexcept { return slips_[place]; }
-  /// Tells whether the last round left any load.
+  /// Returns whether the last round left any load.
   bool is_any() const noexcept { return was_any_; }
 
 private:

@@ -43,7 +43,7 @@ public:
   std::size_t bodies() const noexcept { return bodies_; }
   /// Leaves a part out of each_near(), or no longer.
   void leave_out(std::size_t part, bool is_out) noexcept { is_out_[part] = is_out ? 1 : 0; }
-  /// Tells whether a block is within `margin` of a box of one of the bodies.
+  /// Returns whether a block is within `margin` of a box of one of the bodies.
   bool is_any_near(const BoundedShape& shape, std::span<const BoxGate> boxes,
                    double margin) const noexcept;
   const BoxGate& box_of(std::size_t body) const noexcept { return body_boxes_[body]; }

@@ -54,8 +54,8 @@ bool looks_away(const Eigen::Vector3f& normal, const Eigen::Vector3f& way) noexc
   return !(normal.x() * way.x() + normal.y() * way.y() + normal.z() * way.z() > 0.0F);
 }
 
-/// Tells whether the angle between the axes, and those around both, are together wider. Cosines and
-/// sines of sums tell it without the angles, which would take longer.
+/// Returns whether the angle between the axes, and those around both, are together wider. Cosines
+/// and sines of sums tell it without the angles, which would take longer.
 bool may_face(const RingFacts& one, const RingFacts& other) noexcept {
   const float cosine = one.min_cosine * other.min_cosine - one.sine * other.sine;
   const float sine = one.sine * other.min_cosine + one.min_cosine * other.sine;
@@ -72,7 +72,7 @@ void extend(BlockBounds& box, const BlockBounds& by) noexcept {
     box.sides[side] = std::min(box.sides[side], by.sides[side]);
 }
 
-/// Two registers of four sides each, without branches, which would be foretold badly.
+/// Two registers of four sides each, without branches, which would be predicted badly.
 bool overlap(const BlockBounds& a, const BlockBounds& b) noexcept {
   using Four = float __attribute__((vector_size(16)));
   using Two = std::uint64_t __attribute__((vector_size(16)));
@@ -217,7 +217,7 @@ Eigen::Vector3f FaceMeetings::direction_at(std::uint32_t place) const noexcept {
   return vertex_in(rings_[place / block_size].direction, place % block_size);
 }
 
-/// Tells whether some face of the block looks away from the direction of one of its vertices.
+/// Returns whether some face of the block looks away from the direction of one of its vertices.
 bool FaceMeetings::has_face_away(const BlockShape& shape, std::uint32_t block) const noexcept {
   for (Triangle at = first_triangles_[block]; at < first_triangles_[block + 1]; ++at) {
     const Eigen::Vector3f normal = normal_of(shape, corners_[at]);
@@ -249,7 +249,7 @@ void FaceMeetings::measure_boxes(const BlockShape& shape, std::uint32_t block) n
 }
 
 /// Where all faces around a vertex look to one side, none of them meet. All: those that belong to
-/// other blocks, too, which nobody may have looked at.
+/// other blocks, which nobody may have looked at.
 bool FaceMeetings::is_uneven(const BlockShape& shape, std::uint32_t place) noexcept {
   if (!gone_round_.add(place)) return uneven_.has(place);
   for (const Triangle at : triangles_at_[place])

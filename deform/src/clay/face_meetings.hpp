@@ -35,7 +35,7 @@ public:
   void find_at(std::span<const std::uint32_t> places, const BlockShape& shape,
                const BlockShape& before) noexcept;
   std::span<const std::pair<Triangle, Triangle>> pairs() const noexcept { return met_; }
-  /// Tells whether the search was given up, because clay is crumpled all over.
+  /// Returns whether the search was given up, because clay is crumpled all over.
   bool is_given_up() const noexcept;
   const Corners& corners(Triangle triangle) const noexcept { return corners_[triangle]; }
 

@@ -109,7 +109,7 @@ void Grip::follow(std::span<const ContactPart> parts) noexcept {
   }
 }
 
-/// Places beside the vertex are held, too, so that a part also turns what it holds.
+/// Places beside the vertex are held, so that a part also turns what it holds.
 void Grip::hold(const ContactPart& part, const ContactPoint& point, const Vector3d& by) noexcept {
   const Vector3d place = point.at + by;
   held_.push_back({point.part, part.frame.inverse(Eigen::Isometry) * place, place, place});

@@ -1,5 +1,5 @@
 #pragma once
-// A hand that takes hold of clay: two of its parts close on it from sides that face each other.
+// A hand that grabs clay: two of its parts close on it from sides that face each other.
 // What lies under them then follows them both ways, until they have opened. All lengths are in a
 // layout's coordinates.
 
@@ -33,7 +33,7 @@ public:
   /// Takes note of a loaded place, once a call, between begin_look() and end_look().
   void begin_look() noexcept;
   void look(const ContactPoint& point, double load) noexcept;
-  /// Ends the look and takes hold or lets go. `parts` are all parts with the frames that carry what
+  /// Ends the look and grabs or releases. `parts` are all parts with the frames that carry what
   /// is held. Returns true if that changed.
   bool end_look(std::span<const ContactPart> parts) noexcept;
   void let_go() noexcept;
@@ -86,7 +86,7 @@ private:
   std::vector<Loaded> loaded_;
   std::vector<HeldPoint> held_;
   std::size_t held_side_ = 0; ///< points before this are of the first side
-  double narrowest_ = 0.0;    ///< between the sides, since it took hold
+  double narrowest_ = 0.0;    ///< between the sides, since it grabbed
   int calls_ = 0;             ///< for which the parts have faced, or been open
 };
 

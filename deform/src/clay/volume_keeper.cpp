@@ -87,7 +87,7 @@ bool VolumeKeeper::has_changed(const BoundedShape& shape, std::size_t block) con
   });
 }
 
-/// In which directions a shape swells need not be known to the last call: a block's are found anew
+/// In which directions a shape swells need not be known to the last call: a block's are found again
 /// in one of some calls. The first call, which knows none, goes round some times.
 double VolumeKeeper::volume(const BoundedShape& shape) noexcept {
   const int rounds = facts_.size() <= max_blocks_for_all_rounds ? first_rounds : 1;

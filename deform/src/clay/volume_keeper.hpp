@@ -1,6 +1,6 @@
 #pragma once
 // Keeps the volume of a closed surface: what is pressed in comes out where nothing touches. Each
-// block knows its part of the volume, which is computed anew only where vertices have moved.
+// block knows its part of the volume, which is computed again only where vertices have moved.
 
 #include <algorithm>
 #include <array>
@@ -32,12 +32,12 @@ public:
   /// Allocates. `triangles` are vertices of the mesh.
   VolumeKeeper(const BlockLayout& layout, std::span<const std::uint32_t> triangles);
 
-  /// Tells whether the triangles are a closed, oriented surface: each edge is run along once in
+  /// Returns whether the triangles are a closed, oriented surface: each edge is run along once in
   /// each direction. Otherwise there is no volume, and the other functions must not be called.
   bool is_closed() const noexcept { return ring_layout_.has_value(); }
   /// Returns the volume of that shape. Does not allocate.
   double volume(const BoundedShape& shape) noexcept;
-  /// The next volume() then measures all anew. Between, only what has changed is measured, and the
+  /// The next volume() then measures all again. Between, only what has changed is measured, and the
   /// directions in which the shape swells are, to rounding, those of the calls before.
   void forget() noexcept;
   /// Somebody has changed that block, and its stamp has stayed.

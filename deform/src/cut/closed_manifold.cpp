@@ -115,7 +115,8 @@ ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
 
 namespace {
 
-/// Tells whether a face goes through a vertex twice, but not twice in a row: as one with a bridge.
+/// Returns whether a face goes through a vertex twice, but not twice in a row: as one with a
+/// bridge.
 bool has_bridge(const Mesh& mesh, std::size_t face, std::vector<std::uint32_t>& sorted) {
   const std::uint32_t begin = mesh.face_starts[face], end = mesh.face_starts[face + 1];
   if (end - begin < 4) return false;

@@ -165,7 +165,7 @@ Outcome Cutter::attempt() {
   if (!choose_loops(surface))
     return refuse(surface.loops().empty() ? "is not touched by the blade"
                                           : "is not cut: the blade does not go through");
-  // Loops that turn out not to part anything are left, and then everything is made anew.
+  // Loops that turn out not to part anything are left, and then everything is made again.
   for (std::size_t round = 0; round <= surface.loops().size(); ++round) {
     if (const Outcome outcome = make_cap_of(surface); outcome != Outcome::cut) return outcome;
     const ChosenCut chosen{mesh_,  blade_,          give_,          diagonal_,

@@ -51,7 +51,7 @@ public:
 
   bool bends() const noexcept { return blade_.bends(); }
   bool is_active(std::size_t face) const noexcept { return active_[face] != 0; }
-  /// Tells whether refine() has split triangles of an active face.
+  /// Returns whether refine() has split triangles of an active face.
   bool is_split(std::size_t face) const noexcept { return active_[face] == 2; }
   bool is_up(std::uint32_t vertex) const noexcept { return sides_[vertex] > give_; }
   double above(std::uint32_t vertex) const noexcept { return sides_[vertex] - give_; }

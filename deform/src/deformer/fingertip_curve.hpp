@@ -21,12 +21,12 @@ public:
 
   /// Starts at these fingertips, 3 by points.
   void begin(const Points& tips);
-  /// Goes on to `tips` if a fingertip is at least half a piece away from the curve's end.
+  /// Continues to `tips` if a fingertip is at least half a piece away from the curve's end.
   /// Fingertips that are nearer than a quarter of a piece stay, so that trembling does not lengthen
   /// the curve. If this gives more than `max_pieces` pieces, that many longer ones are made
   /// instead.
   void extend(const Points& tips);
-  /// Goes on to `tips`, however near they are. The last cut is there.
+  /// Continues to `tips`, however near they are. The last cut is there.
   void end_at(const Points& tips);
   /// Writes the next cut. Returns false if there is none yet.
   bool next_cut(Points& cut) noexcept;

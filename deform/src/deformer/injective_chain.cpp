@@ -110,9 +110,9 @@ bool InjectiveChain::next() noexcept {
   return true;
 }
 
-/// A way that meets walls has corners. A link goes on round them, with its centres where it began:
-/// were it cut there, a wall that is only grazed would change how the way is divided, and the shape
-/// would jump.
+/// A way that meets walls has corners. A link continues round them, with its centres where it
+/// began: were it cut there, a wall that is only grazed would change how the way is divided, and
+/// the shape would jump.
 FieldStatus InjectiveChain::make_link() noexcept {
   CsrbfSolver& solver = solvers_[at_start_ ? kept_ : 1 - kept_];
   FieldStatus status = at_start_ ? FieldStatus::ok : solver.build(places_, supports_);

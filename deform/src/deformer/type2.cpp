@@ -135,7 +135,7 @@ StrokeResult Type2Deformer::end_at(const Points& tips) {
   return follow(tips, &FingertipCurve::end_at);
 }
 
-/// A piece without a usable field leaves the shape alone; the curve goes on behind it.
+/// A piece without a usable field leaves the shape alone; the curve continues behind it.
 StrokeResult Type2Deformer::follow(const Points& tips, Lead lead) {
   assert(tips.cols() == current_.cols());
   report_ = {};
@@ -208,7 +208,7 @@ FieldStatus Type2Deformer::apply(const CsrbfField& field) {
   return FieldStatus::ok;
 }
 
-/// Fingertips that are held stay where they are; the next piece tells them anew where to go.
+/// Fingertips that are held stay where they are; the next piece tells them again where to go.
 FieldStatus Type2Deformer::apply_links() {
   FieldStatus status = chain_->from_here(pulling(next_), max_links_ - report_.links);
   while (is_solved(status) && chain_->next())

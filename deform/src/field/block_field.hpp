@@ -30,7 +30,7 @@ public:
   /// Takes over a field. Returns false if a number in it is not finite or is too large for float;
   /// this is then the zero field. Allocates only for more entries than ever before.
   bool assign(const CsrbfField& field, Zeros zeros);
-  /// Tells whether sums are made in double, because in float the coefficients' rounding errors
+  /// Returns whether sums are made in double, because in float the coefficients' rounding errors
   /// would be visible.
   bool is_precise() const noexcept { return view_.precise_entries != nullptr; }
   const FieldView& view() const noexcept { return view_; }

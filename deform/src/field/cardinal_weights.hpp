@@ -29,7 +29,7 @@ public:
     return cache_.used_bytes + cache_.used_entries * sizeof(WeightEntry);
   }
 
-  /// Tells whether displacements (3 by #starts, model units) keep the rest shape finite.
+  /// Returns whether displacements (3 by #starts, model units) keep the rest shape finite.
   bool fits(const Points& displacements, const BoundedShape& rest) const noexcept;
   /// Computes to = rest + W displacements. The displacements must fit. `to` may be the rest's own
   /// blocks.

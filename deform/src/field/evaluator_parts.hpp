@@ -17,7 +17,7 @@
 
 namespace nendo::deform {
 
-/// Tells whether a shape is too large to be expected to stay in the caches (350 000 vertices).
+/// Returns whether a shape is too large to be expected to stay in the caches (350 000 vertices).
 inline bool leaves_caches(const BlockShape& shape) noexcept {
   return shape.block_count() * sizeof(VertexBlock) > std::size_t{4} << 20;
 }

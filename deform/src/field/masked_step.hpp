@@ -1,5 +1,5 @@
 #pragma once
-// A step that changes a shape in place, of which a mask then takes back what it does not leave.
+// A step that changes a shape in place, of which a mask then undoes what it does not leave.
 
 #include <cstdint>
 #include <memory>

@@ -17,7 +17,7 @@ enum class ColourNumbers {
 /// Finds out, from all colours of a file, which number stands for full. Floats are from 0 to 1 as
 /// long as none is above 1; else from 0 to 255, or from 0 to 65535. Where fractions are above 1 and
 /// none is above 2, they are from 0 to 1, and what is above is full; so are factors up to 10.
-/// Integers of 8 bits are from 0 to 255; those of more bits, too, as long as none is above 255, and
+/// Integers of 8 bits are from 0 to 255; those of more bits, as long as none is above 255, and
 /// from 0 to 65535 else.
 class ColourRange {
 public:

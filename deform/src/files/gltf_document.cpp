@@ -252,7 +252,7 @@ FolderFile GltfDocument::file_named(const std::string& uri, std::uint64_t max_by
 
 void GltfDocument::read_buffers() {
   const std::size_t count = size_of("buffers");
-  own_.resize(count); // so that its texts stay in their places
+  own_.resize(count); // so that its strings stay in their places
   std::uint64_t left = max_buffer_bytes;
   for (std::size_t at = 0; at < count; ++at) {
     const Json& buffer = item("buffers", at);

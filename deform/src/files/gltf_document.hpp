@@ -20,7 +20,7 @@ struct GltfRefusal {
   std::string what;
 };
 
-/// Tells whether a file is glTF: binary, or JSON.
+/// Returns whether a file is glTF: binary, or JSON.
 bool is_gltf(std::string_view file) noexcept;
 
 /// `count` rows of `width` numbers each.

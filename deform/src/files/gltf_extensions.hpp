@@ -15,7 +15,7 @@ void require_readable(const GltfDocument::Json& root);
 /// Returns the extension of an item of the document, or null.
 const GltfDocument::Json* gltf_extension(const GltfDocument::Json& item, const char* name);
 
-/// Tells whether a model loses nothing here without this extension, or another note says what.
+/// Returns whether a model loses nothing here without this extension, or another note says what.
 bool is_harmless_extension(std::string_view name) noexcept;
 
 } // namespace nendo::deform

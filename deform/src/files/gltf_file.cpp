@@ -181,7 +181,7 @@ private:
   }
 
   /// Of each of the part's vertices, the model's. Exporters split a vertex where texture
-  /// coordinates or materials meet; it becomes one again. Where normals differ, too, it stays
+  /// coordinates or materials meet; it becomes one again. Where normals differ, it stays
   /// split.
   std::vector<std::uint32_t> add_vertices(const Part& part, const Json& attributes,
                                           const GltfPlacedMesh& placed) {
@@ -217,7 +217,7 @@ private:
       colours_.push_back(k < width ? static_cast<float>(std::clamp(channels[k], 0.0, 1.0)) : 1.0F);
   }
 
-  /// The number of the part's first texture coordinate. Primitives that share them do so here, too.
+  /// The number of the part's first texture coordinate. Primitives that share them do so here.
   std::uint32_t texcoords_of(const Part& part, const Json& attributes, std::uint32_t material) {
     if (!part.texcoords) return no_index;
     Eigen::Affine2d turned = Eigen::Affine2d::Identity();

@@ -22,7 +22,7 @@ struct GltfPlacedMesh {
   std::shared_ptr<const std::vector<Eigen::Affine3d>> joints;
   std::vector<double> weights; ///< of morph targets; empty: all are 0
 
-  /// Tells whether the node turns faces inside out.
+  /// Returns whether the node turns faces inside out.
   bool mirrors() const noexcept;
   /// Returns the vertices in the scene. `attributes` are the primitive's. Throws GltfRefusal.
   std::vector<Eigen::Vector3d> moved(const GltfDocument& document,

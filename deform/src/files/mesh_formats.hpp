@@ -1,5 +1,5 @@
 #pragma once
-// Converts meshes from and to the texts of the two file formats. mesh_file.hpp says what is kept
+// Converts meshes from and to the strings of the two file formats. mesh_file.hpp says what is kept
 // and which errors there are.
 
 #include <cstddef>

@@ -34,7 +34,7 @@ bool is_absolute_anywhere(std::string_view name) noexcept {
   return name.starts_with('/') || has_drive;
 }
 
-/// Tells whether a name with slashes leads out of any folder that it is relative to.
+/// Returns whether a name with slashes leads out of any folder that it is relative to.
 bool leads_out(std::string_view name) noexcept {
   if (is_absolute_anywhere(name)) return true;
   for (std::string_view rest = name; !rest.empty();)

@@ -41,7 +41,7 @@ public:
   explicit ModelFolder(const std::filesystem::path& model);
 
   /// Reads the file that a model names so, in any spelling of capitals and blanks. If `beside` is
-  /// the name of another file of the model, names are relative to that file's folder, too. A name
+  /// the name of another file of the model, names are relative to that file's folder. A name
   /// that leads out of the model's folder means the file of the same name within it. Nothing is
   /// read that is too large or no regular file, or if a link leads out of the folder. One thread at
   /// a time may call it. Blocks.

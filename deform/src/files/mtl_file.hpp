@@ -23,7 +23,7 @@ namespace nendo::deform {
 /// How material files of this program begin. Others are never replaced.
 inline constexpr std::string_view mtl_mark = "# nendo\n";
 
-/// Fills in a look's materials from the texts of material files: Kd (taken as linear, as Blender
+/// Fills in a look's materials from the strings of material files: Kd (taken as linear, as Blender
 /// writes it), d or Tr, and map_Kd. It never fails: a model can do without its materials, so lines
 /// that make no sense are skipped.
 class MtlReader {

@@ -13,9 +13,9 @@ namespace nendo::deform {
 /// With this begins what stl_text() writes.
 inline constexpr std::string_view stl_mark = "binary STL by nendo";
 
-/// Tells whether the text is an STL: it begins with "solid" and has facets, or with "facet normal",
-/// or is binary and has as many bytes as its count says. If `name` ends in .stl, all that is binary
-/// is one.
+/// Returns whether the text is an STL: it begins with "solid" and has facets, or with "facet
+/// normal", or is binary and has as many bytes as its count says. If `name` ends in .stl, all that
+/// is binary is one.
 bool is_stl(std::string_view text, std::string_view name) noexcept;
 
 /// Reads an STL. Each facet has vertices of its own. Solids are objects; colours of facets, in the

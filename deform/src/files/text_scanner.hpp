@@ -26,7 +26,7 @@ public:
   /// Returns the next field of this line, or the first field of a later line; empty at the end of
   /// the text.
   std::string_view field_on_any_line() noexcept;
-  /// Returns what is left of this line, a comment too, and does not go on.
+  /// Returns what is left of this line, a comment too, and does not continue.
   std::string_view rest_of_line() const noexcept;
   /// Goes to the start of the next line; returns false at the end of the text.
   bool next_line() noexcept;

@@ -38,7 +38,7 @@ public:
   /// that holds everything.
   ConstrainedTriangulation(const PlanePoint& lowest, const PlanePoint& highest);
 
-  /// Makes room for so many points. Everything works without, too.
+  /// Makes room for so many points. Everything works without.
   void reserve(std::size_t points);
   /// Adds a point. The k-th point that was taken has the number k, from 0.
   PlaneFault add(const PlanePoint& point);

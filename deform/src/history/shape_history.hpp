@@ -26,7 +26,7 @@ public:
   ~ShapeHistory();
   ShapeHistory(ShapeHistory&&) noexcept = default;
 
-  /// Tells whether there is any memory, so that revert() can go back.
+  /// Returns whether there is any memory, so that revert() can go back.
   bool is_kept() const noexcept { return kept_.block_count() > 0; }
   /// Ends a step, which leads from the shape kept last to this one, and forgets undone steps. If
   /// nothing changed, there is no step. A step for which there is no room is not kept, and neither

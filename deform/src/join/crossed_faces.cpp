@@ -86,7 +86,7 @@ private:
     y_ = (axis + 2) % 3;
     if (normal[axis] < 0.0) std::swap(x_, y_);
   }
-  /// Crossings inside of the face are ends of several segments; those on its rim are in rim_, too.
+  /// Crossings inside of the face are ends of several segments; those on its rim are in rim_.
   void remove_repeated() {
     std::size_t kept = rim_.size();
     for (std::size_t at = rim_.size(); at < numbers_.size(); ++at) {

@@ -1,5 +1,6 @@
 #pragma once
-// The faces of a part that another part crosses, triangulated anew so that the crossings are edges.
+// The faces of a part that another part crosses, triangulated again so that the crossings are
+// edges.
 
 #include <array>
 #include <cstdint>

@@ -13,7 +13,7 @@ constexpr double min_flat_cosine = 0.85;
 constexpr double needle = 1e-3;
 /// Below it a triangle is not made worse.
 constexpr double fair_enough = 0.25;
-/// A flip that gains less may be taken back by the next one.
+/// A flip that gains less may be undone by the next one.
 constexpr double min_gain = 1.02;
 
 /// The least height of a triangle.

@@ -45,7 +45,7 @@ TriangleSurface surface_of(const Mesh& mesh, const LookCollector& looks, bool ha
   return surface;
 }
 
-/// Numbers what is used anew, in the old order.
+/// Numbers what is used again, in the old order.
 class UsedEntries {
 public:
   explicit UsedEntries(std::size_t count) : numbers_(count, no_index) {}

@@ -13,7 +13,7 @@ namespace nendo::deform {
 
 struct Seam {
   TriangleSurface surface;
-  std::vector<std::uint32_t> changed; ///< faces that were made anew or of which a point moved
+  std::vector<std::uint32_t> changed; ///< faces that were made again or of which a point moved
   double moved = 0.0;                 ///< the farthest that a point of the seam moved
   /// The volume cannot have changed by more than this: the area of the moved faces, before and
   /// after, times the farthest motion.

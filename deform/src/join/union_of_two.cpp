@@ -71,7 +71,7 @@ private:
     pairs.insert(pairs.end(), more.begin(), more.end());
     return pairs;
   }
-  /// Takes back what was given to the faces of the pairs. Returns false if that was nothing.
+  /// Undoes what was given to the faces of the pairs. Returns false if that was nothing.
   bool give_up(const std::vector<TrianglePair>& pairs) {
     bool any = false;
     for (const auto& [one, other] : pairs)

@@ -47,7 +47,7 @@ Vector3d nearest_weights(const Vector3d& a, const Vector3d& b, const Vector3d& c
   return {va / sum, vb / sum, vc / sum};
 }
 
-/// Tells whether straight ways between corners of a face stay on it. Around the notch of a quad
+/// Returns whether straight ways between corners of a face stay on it. Around the notch of a quad
 /// that is hardly concave, as modellers make them, the way is next to no longer.
 bool is_open(const Mesh& mesh, FaceTriangles& triangles, std::size_t face) {
   constexpr double max_detour = 1.02;

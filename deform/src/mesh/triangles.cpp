@@ -44,7 +44,7 @@ bool is_none(const SpacePoint& vector) noexcept {
   return vector[0] == 0.0 && vector[1] == 0.0 && vector[2] == 0.0;
 }
 
-/// Tells whether all triangles of the fan about the first corner face the way of the polygon.
+/// Returns whether all triangles of the fan about the first corner face the way of the polygon.
 bool is_fan(const std::vector<SpacePoint>& places, const SpacePoint& normal) noexcept {
   for (std::size_t at = 2; at < places.size(); ++at)
     if (turn_about(places[0], places[at - 1], places[at], normal) <= 0) return false;

@@ -9,7 +9,7 @@ namespace nendo::deform {
 /// `mesh`, and it has texture coordinates and colours if `mesh` has. Allocates.
 void append_mesh(const Mesh& more, Mesh& mesh);
 
-/// Tells whether all the numbers of both together can be counted.
+/// Returns whether all the numbers of both together can be counted.
 bool fit_together(const Mesh& a, const Mesh& b) noexcept;
 
 } // namespace nendo::deform

@@ -101,7 +101,7 @@ bool add_loads(const NearestLanes& nearest, float most, float* loads) noexcept;
 /// Coordinates of places, and of the normals there, in rows of a multiple of this many.
 using PlaceRows = std::array<const float*, 6>;
 inline constexpr std::size_t place_lanes = 64;
-/// Tells whether one of the first `count` places is nearer to `place` than the root of `squared`
+/// Returns whether one of the first `count` places is nearer to `place` than the root of `squared`
 /// and has a normal within 60 degrees of its one. What follows them must be far away.
 bool is_crowded(const PlaceRows& rows, std::size_t count, const std::array<float, 6>& place,
                 float squared) noexcept;

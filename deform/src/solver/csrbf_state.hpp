@@ -38,7 +38,7 @@ private:
   bool has_polynomial() const noexcept {
     return options_.polynomial != Polynomial::none && !keeps_volume();
   }
-  /// Tells whether p(x) is solved apart. With own functions it cannot join M, since a solution
+  /// Returns whether p(x) is solved apart. With own functions it cannot join M, since a solution
   /// would then not be certain for every choice. So p(x) is what the shared functions alone would
   /// make it, and all functions together make up the rest.
   bool is_polynomial_apart() const noexcept { return has_polynomial() && own_.size() > 0; }

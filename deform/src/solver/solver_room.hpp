@@ -22,7 +22,7 @@ Supports rounded(Supports supports, const BlockLayout& layout);
 /// Returns, for each point, the least radius of the functions that have it as their centre.
 Eigen::VectorXd min_radii(const Supports& supports, Eigen::Index points);
 
-/// Tells whether strokes keep the volume, in midpoint steps.
+/// Returns whether strokes keep the volume, in midpoint steps.
 inline bool keeps_volume(const DeformerOptions& options) noexcept {
   return options.csrbf.keep_volume > 0.0;
 }

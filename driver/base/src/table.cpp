@@ -28,8 +28,8 @@ std::size_t length_of_line_end(std::string_view text) noexcept {
   return text.starts_with("\r\n") ? 2 : text.empty() ? 0 : 1;
 }
 
-/// Tells whether `c` stands in the line outside of quotes. A tab beside a comma or a semicolon is a
-/// blank that follows it.
+/// Returns whether `c` stands in the line outside of quotes. A tab beside a comma or a semicolon is
+/// a blank that follows it.
 bool separates(std::string_view line, char c) noexcept {
   bool is_quoted = false;
   char before = '\0'; // the last character that is no blank

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto text_timeout = 1000ms;    ///< of long texts [V]
+constexpr auto text_timeout = 1000ms;    ///< of long strings [V]
 constexpr auto restart_timeout = 2500ms; ///< the vendor's library; the manual says 1.75 s [V, p.45]
 
 using ThreeBytes = std::array<std::uint8_t, 3>;

@@ -206,7 +206,7 @@ private:
   HiResCheck hires_check_;
   TickUnwrapper ticks_;
   DeviceClock clock_;
-  bool same_clock_ = false; ///< the stream paused, but the glove's clock went on
+  bool same_clock_ = false; ///< the stream paused, but the glove's clock continued
   bool pulled_ = false;     ///< records said so; who is there now has not been asked
   bool doubtful_ = false;   ///< records came since then
 };

@@ -107,7 +107,7 @@ public:
     push(chunk, [](Record&) { return Verdict{}; }, sink);
   }
 
-  /// Gives up the unfinished record and goes on with records of another shape.
+  /// Gives up the unfinished record and continues with records of another shape.
   void reset(const RecordShape& shape) noexcept;
   /// See StreamCounters::count_discarded.
   void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }

@@ -19,7 +19,7 @@ inline constexpr std::byte terminator{0x00};
 // Control commands, a single byte each.
 inline constexpr std::byte interrupt{0x03}; ///< ^C: ends a stream; answered 03 00 [V, D]
 inline constexpr std::byte reread_glove{
-    0x09}; ///< ^I: read the glove's memory anew, after a swap [V]
+    0x09}; ///< ^I: read the glove's memory again, after a swap [V]
 inline constexpr std::byte restart_firmware{
     0x12}; ///< ^R: answered 12 0D 0A 00 after about 1.75 s [V, p.45]; a left glove's ends at LF [D]
 

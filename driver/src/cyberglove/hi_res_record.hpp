@@ -8,11 +8,11 @@
 
 namespace nendo::driver::cyberglove {
 
-/// Tells whether the last of `bytes`, at most hi_res_bytes, may stand where it does. The others
+/// Returns whether the last of `bytes`, at most hi_res_bytes, may stand where it does. The others
 /// must have been found right.
 bool continues_hi_res(std::span<const std::byte> bytes) noexcept;
 
-/// Tells whether a record may begin with all of `bytes`, which are fewer than hi_res_bytes.
+/// Returns whether a record may begin with all of `bytes`, which are fewer than hi_res_bytes.
 bool begins_hi_res(std::span<const std::byte> bytes) noexcept;
 
 /// Returns the content of a whole record, for which continues_hi_res() was true at every byte.

@@ -55,7 +55,7 @@ public:
     return {};
   }
 
-  /// The stream goes on: nobody knows what ends it.
+  /// The stream continues: nobody knows what ends it.
   void end_stream(Transport& /*transport*/, const ReplyDeadline& /*patience*/) noexcept override {}
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,

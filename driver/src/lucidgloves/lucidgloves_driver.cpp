@@ -123,7 +123,7 @@ public:
     return {};
   }
 
-  /// The stream goes on, since a glove that somebody stopped looks dead to programs that know no
+  /// The stream continues, since a glove that somebody stopped looks dead to programs that know no
   /// (ZA). But nobody's fingers are to stay locked.
   void end_stream(Transport& transport, const ReplyDeadline& /*patience*/) noexcept override {
     brakes_ = {};
@@ -147,7 +147,7 @@ public:
   }
 
   /// One answer to whatever lines came together, however many: so those that wait in the glove
-  /// become fewer where the host was late, and brakes take effect soon. Damaged lines count, too,
+  /// become fewer where the host was late, and brakes take effect soon. Damaged lines count,
   /// and a glove that says nothing for 0.1 s is waiting for an answer that was lost.
   void answer(Transport& transport) noexcept override {
     if (!std::exchange(its_turn_, false)) return;

@@ -220,7 +220,7 @@ constexpr std::array<Bends, expression_count> expressions{{
 }};
 
 Pose faces(Side side, double time_s) noexcept {
-  constexpr double first_s = 1.4; // at rest, so that the hands take hold of a face at rest
+  constexpr double first_s = 1.4; // at rest, so that the hands grab a face at rest
   constexpr double each_s = 1.6;
   constexpr double talk_hz = 2.6;
   Pose add{};

@@ -48,7 +48,7 @@ HostTime DeviceClock::to_host(nanoseconds device_time, HostTime arrival) noexcep
 void DeviceClock::reset() noexcept {
   const Nanoseconds last_result = last_result_;
   *this = {};
-  last_result_ = last_result; // the host's time goes on
+  last_result_ = last_result; // the host's time continues
 }
 
 double DeviceClock::drift_ppm() const noexcept {

@@ -20,7 +20,7 @@ public:
   /// up over the years, since 9 ticks are 78125 ns. A silence of more than one wrap cannot be
   /// noticed.
   std::chrono::nanoseconds unwrap(std::uint32_t ticks) noexcept;
-  /// Starts again, because the device's clock began anew.
+  /// Starts again, because the device's clock began again.
   void reset() noexcept { total_ticks_ = 0; }
 
 private:
@@ -44,7 +44,7 @@ public:
   /// while arrivals do not run back. A device time that runs back, or is 10 s or more off, is taken
   /// for a new clock. For times beyond 73 years, returns `arrival` and learns nothing.
   HostTime to_host(std::chrono::nanoseconds device_time, HostTime arrival) noexcept;
-  /// Starts again, because the device's clock began anew.
+  /// Starts again, because the device's clock began again.
   void reset() noexcept;
   /// Returns by how many parts in a million the device's clock is fast. It is 0 for the first 4 s,
   /// and at most 500.

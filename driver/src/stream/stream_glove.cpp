@@ -296,7 +296,7 @@ void StreamGlove::reopen(const std::stop_token& token) {
   }
 }
 
-/// Asks anew who is there, sets it up as before and starts the stream.
+/// Asks again who is there, sets it up as before and starts the stream.
 bool StreamGlove::restart(const std::stop_token& token, IdentifyReason occasion) {
   const ReplyDeadline patience{HostClock::now() + open_budget, token};
   const auto info = protocol_->identify(*transport_, info_.source, occasion, patience);

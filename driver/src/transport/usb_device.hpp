@@ -22,8 +22,8 @@ std::string node_of(const UsbIdentity& identity);
 
 inline constexpr std::size_t max_usb_ports = 7; ///< on the way to a device (USB 2.0, 4.1.1)
 
-/// Returns what the kernel says of a device. `ports` lead from the bus's root to the device. Texts
-/// stay empty where the kernel says nothing, as in a container without /sys.
+/// Returns what the kernel says of a device. `ports` lead from the bus's root to the device.
+/// Strings stay empty where the kernel says nothing, as in a container without /sys.
 UsbIdentity identify_usb(UsbId id, unsigned bus, unsigned address,
                          std::span<const std::uint8_t> ports);
 

@@ -28,7 +28,7 @@ struct ClayOptions {
   bool scales_few_vertices = true;
   /// Otherwise bodies carry, turn and roll the model by what sticks to them and presses it.
   bool lies_on_table = true;
-  /// Two parts of a body that press from sides that face each other take hold of what is under
+  /// Two parts of a body that press from sides that face each other grab what is under
   /// them, until they have opened.
   bool grips = true;
   /// So many of the last bodies stand still, such as a table. They press nothing by themselves, and
@@ -68,7 +68,7 @@ struct ClayReport {
   double carried_mm = 0.0;    ///< the way of the model's middle as a rigid body
   double turned_rad = 0.0;    ///< and its turns, added up
   bool is_moved = false;      ///< something of the shape has changed
-  double volume_change = 0.0; ///< relative to that when the bodies took hold; 0 if none is kept
+  double volume_change = 0.0; ///< relative to that when the bodies grabbed; 0 if none is kept
 };
 
 class NENDO_API ClayDeformer {
@@ -92,7 +92,7 @@ public:
   /// was the previous deformer of this clay, perhaps with other triangles. The volume to keep is
   /// that of `before` if `keeps_volume`. Does nothing for other bodies. Does not allocate.
   void go_on_from(const ClayDeformer& before, bool keeps_volume) noexcept;
-  /// Lets go until the next begin() or grab(). With `is_step`, the stroke has ended.
+  /// Releases until the next begin() or grab(). With `is_step`, the stroke has ended.
   void release(bool is_step) noexcept;
   /// Moves the bodies from where they are to `parts`, in as many sub-steps as keep each from
   /// passing through a thin part, and deforms the shape. Does not allocate, lock or call the

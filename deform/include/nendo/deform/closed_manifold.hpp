@@ -1,6 +1,6 @@
 #pragma once
 // Whether a surface is closed and two-manifold, which cutting and joining need: only then does it
-// have an inside. What is wrong is said with its place, so that a user can find and mend it.
+// have an inside. What is wrong is said with its place, so that a user can find and fix it.
 
 #include <cstddef>
 #include <cstdint>

@@ -61,7 +61,7 @@ struct CutModel {
                      ///< the first attempt and three times as much in each further one
 };
 
-/// Cuts a model that is closed and two-manifold. Every part is so, too, and no cut face meets
+/// Cuts a model that is closed and two-manifold. Every part is so, and no cut face meets
 /// another face but at shared edges and corners. New corners get texture coordinates and colours
 /// from the edges that they lie on; cut faces get a material of their own, and planar texture
 /// coordinates if the model has any. The same call gives the same bits. Allocates. Errors, which go

@@ -35,7 +35,7 @@ public:
   std::span<const CsrbfField> fields() const noexcept { return {fields_.data(), used_}; }
   /// Returns how many fields there is room for.
   std::size_t room() const noexcept { return fields_.size(); }
-  /// Tells whether follow() copies any fields of such a sequence without allocating.
+  /// Returns whether follow() copies any fields of such a sequence without allocating.
   bool has_room_of(const FieldSequence& other) const noexcept {
     return room() >= other.room() &&
            (other.room() == 0 || fields_[0].centres.cols() == other.fields_[0].centres.cols());

@@ -1,7 +1,7 @@
 #pragma once
 // Deforming without folding (the fourth item of the paper's outlook): the straight way of the start
 // points is cut into links. Each link is a field with its centres where the points then are, and so
-// short that x -> x + s(x) is a homeomorphism; the chain of links is one, too. Where paths cross,
+// short that x -> x + s(x) is a homeomorphism; the chain of links is one. Where paths cross,
 // no link would be short enough, so those points are held apart (LeastGap).
 
 #include <array>
@@ -59,7 +59,7 @@ public:
   /// rest shape and depend on nothing else. If an end is not finite, the chain goes where it went
   /// last.
   FieldStatus from_start(const Points& ends) noexcept;
-  /// Type-2: goes on from where the chain has come to, with the walls that stand, in at most
+  /// Type-2: continues from where the chain has come to, with the walls that stand, in at most
   /// `max_links` links. The links are for the shape as it is now. If an end is not finite, no link
   /// follows.
   FieldStatus from_here(const Points& ends, int max_links) noexcept;

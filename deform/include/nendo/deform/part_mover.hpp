@@ -83,7 +83,7 @@ public:
   FieldStatus begin(std::span<const PartGrip> grips) noexcept;
   /// Does the same, but without ending the stroke before.
   FieldStatus grab(std::span<const PartGrip> grips) noexcept;
-  /// Lets go until the next begin() or grab(). With `is_step`, the stroke has ended.
+  /// Releases until the next begin() or grab(). With `is_step`, the stroke has ended.
   void release(bool is_step) noexcept;
   /// Moves what is held, and takes or puts down what hands that close or open have under them.
   /// Wait-free, without allocation; its cost is that of the vertices that move, and of all where a
@@ -95,7 +95,7 @@ public:
 
   const BlockLayout& layout() const noexcept { return shape_->layout(); }
   const BlockShape& shape() const noexcept { return shape_->shape(); }
-  /// Tells whether the last move_to() moved anything.
+  /// Returns whether the last move_to() moved anything.
   bool is_moved() const noexcept;
   /// Returns the part that a hand holds; no_index: none.
   std::uint32_t held_by(std::size_t hand) const noexcept;

@@ -47,12 +47,13 @@ struct NENDO_API Supports {
 
   /// Returns how many functions the field of so many start points has.
   Eigen::Index functions(Eigen::Index points) const noexcept;
-  /// Tells whether all radii and weights are finite, at most 1e100, and > 0.
+  /// Returns whether all radii and weights are finite, at most 1e100, and > 0.
   bool are_usable() const noexcept;
 };
 
-/// Tells whether all of the box is within the largest radius of each of these start points, so that
-/// nothing in it stays where it is. False if the box or the list is empty, or the box is one point.
+/// Returns whether all of the box is within the largest radius of each of these start points, so
+/// that nothing in it stays where it is. False if the box or the list is empty, or the box is one
+/// point.
 NENDO_API bool reach_all_of(const Box& box, const Points& starts, const Supports& supports);
 
 /// Returns the least and the largest radius of all functions.
@@ -79,9 +80,9 @@ NENDO_API void assign_radii(Supports& out, const Eigen::VectorXd& radii);
 /// and ":" before a weight. Returns nullopt if the text has another form, or if a number is not
 /// finite, above 1e100, or not > 0.
 NENDO_API std::optional<std::vector<Support>> parse_supports(std::string_view text);
-/// Parses one such text that all start points share, or several texts with commas between them,
-/// which are the fingers' own supports beside a common radius. The number of texts must divide
-/// `points`; they repeat, so that five texts for the ten fingertips of two hands make both hands
+/// Parses one such text that all start points share, or several strings with commas between them,
+/// which are the fingers' own supports beside a common radius. The number of strings must divide
+/// `points`; they repeat, so that five strings for the ten fingertips of two hands make both hands
 /// alike. Returns nullopt if the text has another form.
 NENDO_API std::optional<Supports> parse_supports_by_point(std::string_view text,
                                                           Eigen::Index points);

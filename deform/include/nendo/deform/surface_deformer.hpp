@@ -38,7 +38,7 @@ public:
   /// room.
   void write_move(SurfaceMove& move) const { field_->write_move(coefficients_, move); }
   ChainReport report() const noexcept { return {}; }
-  /// Tells whether the last apply() moved anything.
+  /// Returns whether the last apply() moved anything.
   bool is_moved() const noexcept { return !coefficients_.all.isZero(0.0F); }
 
 private:

@@ -33,7 +33,7 @@ class NENDO_API FaceTriangles {
 public:
   /// The places of the mesh's vertices decide. The mesh must outlive this.
   explicit FaceTriangles(const Mesh& mesh) : FaceTriangles(mesh, mesh.vertices) {}
-  /// Other places of the vertices decide; they must outlive this, too. Vertices of faces that are
+  /// Other places of the vertices decide; they must outlive this. Vertices of faces that are
   /// asked for must be among them.
   FaceTriangles(const Mesh& mesh, const Points& places);
   ~FaceTriangles();
@@ -49,7 +49,7 @@ public:
     one_ = {begin, begin + 1, begin + 2};
     return {&one_, 1};
   }
-  /// Tells whether no corner of the face is reflex. Faces without area count as convex.
+  /// Returns whether no corner of the face is reflex. Faces without area count as convex.
   bool is_convex(std::size_t face);
 
 private:

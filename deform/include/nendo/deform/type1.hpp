@@ -1,7 +1,7 @@
 #pragma once
 // Type-1 (the paper, 2.3.1): the start points are frozen when the operator grabs. Every tick only
 // the end points move, so everything that depends on start points alone is kept, down to what each
-// vertex gets of each displacement, and the rest shape is deformed anew: nothing accumulates.
+// vertex gets of each displacement, and the rest shape is deformed again: nothing accumulates.
 
 #include <memory>
 #include <optional>
@@ -60,7 +60,7 @@ public:
   /// Changes the rest shape, and makes `tips` the start points. What apply() made since the last
   /// commit is dropped; a reset makes it a step of its own. On failure nothing changes.
   FieldStatus go(HistoryMove move, const Points& tips);
-  /// Takes back what apply() made since the last commit, as a step of its own, and makes `tips` the
+  /// Undoes what apply() made since the last commit, as a step of its own, and makes `tips` the
   /// start points. A redo brings it back, unless there was no memory for it. Older steps stay.
   FieldStatus take_back(const Points& tips);
 
@@ -72,7 +72,7 @@ public:
   /// each link, or two for each midpoint step. The centres are the start points rounded by
   /// BlockLayout::rounded(); those of later links are where the link before leads.
   const FieldSequence& fields() const noexcept { return fields_; }
-  /// Tells whether a mask holds vertices, so that fields() does not tell all.
+  /// Returns whether a mask holds vertices, so that fields() does not tell all.
   bool is_masked() const noexcept;
   /// Returns what the last apply() took; all is 0 unless the deformer is injective.
   ChainReport report() const noexcept { return chain_ ? chain_->report() : ChainReport{}; }

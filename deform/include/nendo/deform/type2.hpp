@@ -61,7 +61,7 @@ public:
   FieldStatus begin(const Points& tips);
   /// Does the same, but without ending the stroke before.
   FieldStatus grab(const Points& tips) { return take_hold(tips); }
-  /// Lets go of the shape until the next begin() or grab(). With `is_step`, the stroke has ended.
+  /// Releases the shape until the next begin() or grab(). With `is_step`, the stroke has ended.
   void release(bool is_step) noexcept;
   /// Changes the shape, and begins a new stroke at `tips`. On failure the shape stays.
   FieldStatus go(HistoryMove move, const Points& tips);
@@ -81,10 +81,10 @@ public:
   /// Returns the fields that the last call applied to the shape. Their centres are the fingertips
   /// rounded by BlockLayout::rounded(). None along the surface.
   const FieldSequence& fields() const noexcept { return fields_; }
-  /// Tells whether a brush has changed the shape in the last call, so that fields() does not tell
+  /// Returns whether a brush has changed the shape in the last call, so that fields() does not tell
   /// all.
   bool is_brushed() const noexcept { return is_brushed_; }
-  /// Tells whether a mask holds vertices, which fields() does not tell either.
+  /// Returns whether a mask holds vertices, which fields() does not tell either.
   bool is_masked() const noexcept;
   /// Returns what the stroke has done along the surface; null: distances go through the air.
   const SurfaceStroke* along() const noexcept { return along_.get(); }

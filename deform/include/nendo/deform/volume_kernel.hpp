@@ -5,7 +5,7 @@
 // pressed in comes out nearby. With u = (x - c) / r and t = |u| < 1, of Wendland's C4 function:
 //   K(u) = (1 - t)^4 ((1 + 4 t - 20 t^2) I + 15 u u^T),   K(0) = I, and 0 for t >= 1.
 // Between the two is (1 - keep) psi(t) I + keep K(u). Both are positive definite, so each of these
-// sums is one for 0 <= keep <= 1, too, and its divergence is 1 - keep times that of air.
+// sums is one for 0 <= keep <= 1, and its divergence is 1 - keep times that of air.
 
 #include <nendo/deform/wendland.hpp>
 

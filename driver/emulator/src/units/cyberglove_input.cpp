@@ -176,7 +176,7 @@ void CyberGloveUnit::set(Byte letter, const Message& argument, Time now) {
 }
 
 // A text is answered by a line: a program that sets up a real unit in text waits for more than a
-// letter and NUL, and does not go on before.
+// letter and NUL, and does not continue before.
 void CyberGloveUnit::confirm(Byte letter, const Message& argument) {
   const bool text = is_lower(letter);
   Message echo{letter};

@@ -120,7 +120,7 @@ void LucidGlovesUnit::advance(Time now) {
   }
   if (waits()) return advance_loop(now);
   if (streaming_) send_due(next_line_, period_, now, [this](Time due) { return line(due); });
-  while (next_line_ <= now) // while it is stopped the grid goes on
+  while (next_line_ <= now) // while it is stopped the grid continues
     next_line_ += period_;
 }
 
@@ -142,7 +142,7 @@ void LucidGlovesUnit::advance_loop(Time now) {
 }
 
 // Returns the line that ends the wait, without its LF: a whole one, as much of one as the buffer
-// takes, or what there is when the time is up. Nothing: the wait goes on.
+// takes, or what there is when the time is up. Nothing: the wait continues.
 std::optional<LucidGlovesUnit::Heard> LucidGlovesUnit::take_line(Time now) {
   const std::size_t end = heard_.find('\n');
   const bool whole = end < command_room || heard_.size() >= command_room;

@@ -67,7 +67,7 @@ constexpr std::optional<Sensor> sensor_named(std::string_view name) noexcept {
   return std::nullopt;
 }
 
-/// Tells whether the sensor measures the gap between two neighbouring fingers.
+/// Returns whether the sensor measures the gap between two neighbouring fingers.
 constexpr bool is_gap(Sensor sensor) noexcept {
   return sensor == Sensor::index_middle_abduction || sensor == Sensor::middle_ring_abduction ||
          sensor == Sensor::ring_pinky_abduction;

@@ -62,7 +62,7 @@ public:
   const RangeAdaptation* adaptation() const noexcept { return ranges_ ? &*ranges_ : nullptr; }
   /// Returns what is being learned of a calibration's slips, or null if nothing is.
   const SlipAdaptation* slips() const noexcept { return slips_ ? &*slips_ : nullptr; }
-  /// Returns the state from which learning can go on; nullopt if nothing is being learned yet.
+  /// Returns the state from which learning can continue; nullopt if nothing is being learned yet.
   std::optional<LearnedRanges> learned() const noexcept {
     if (slips_) return slips_->learned();
     return ranges_ ? ranges_->learned() : std::nullopt;

@@ -17,7 +17,7 @@
 
 namespace nendo::hand {
 
-/// Tells how well one sensor's line is known.
+/// Returns how well one sensor's line is known.
 struct SensorQuality {
   double residual_rad = 0.0; ///< root mean square distance of the poses from the line
   double min_counts = 0.0;   ///< the least that this wearer reached
@@ -28,8 +28,8 @@ struct SensorQuality {
 /// Moves the ends that the wearer reached, as the sensor slips, within what the glove can count.
 NENDO_API void move_ends(SensorQuality& quality, double by_counts, CountScale glove) noexcept;
 
-/// A wearer's calibration with its origin. Texts are one line of UTF-8, at most 200 bytes. A sensor
-/// whose gain is 0 is not calibrated.
+/// A wearer's calibration with its origin. Strings are one line of UTF-8, at most 200 bytes. A
+/// sensor whose gain is 0 is not calibrated.
 struct WearerCalibration {
   std::string user;
   std::string glove_model;  ///< as GloveInfo::model; empty: any
@@ -72,7 +72,7 @@ NENDO_API Result<std::filesystem::path> write_calibration(const std::filesystem:
 /// Takes the file out of use: it becomes an earlier version of itself, whose path is returned.
 /// Error: failed.
 NENDO_API Result<std::filesystem::path> retire_calibration(const std::filesystem::path& path);
-/// Tells whether a path is named as an earlier version is.
+/// Returns whether a path is named as an earlier version is.
 NENDO_API bool is_earlier_version(const std::filesystem::path& path);
 
 /// Returns the calibration in the counts of a glove of this scale. A sensor that is not calibrated

@@ -7,7 +7,7 @@
 // 2000), on the ends of a free motion, and, very softly, on the default calibration. What the poses
 // do not determine stays at the default and is reported as undetermined.
 //
-// The hand is unknown, too: its size, its bones, the base and the axes of the thumb, and the tilt
+// The hand is unknown: its size, its bones, the base and the axes of the thumb, and the tilt
 // of the knuckles are fitted with the sensors, each as far as published hands differ. So a touch
 // teaches mostly the hand where that is uncertain, and angles where it is known.
 
@@ -98,7 +98,7 @@ struct CalibrationFit {
   /// Root mean square distance between the pads that touched, under the fit; 0 without touches.
   double touch_residual_m = 0.0;
   std::vector<SetAside> set_aside;
-  /// Sensors whose lines are those of the quick fit, because these foretell poses that were held
+  /// Sensors whose lines are those of the quick fit, because these predict poses that were held
   /// out better than those of the full fit. They go by groups of like joints.
   SensorMask by_two_poses;
   std::array<SensorFit, sensor_slots> sensors{};

@@ -62,7 +62,7 @@ struct NENDO_API JointAngles {
 /// - all others, and a thumb without any flexion sensor: zero, that is closed fingers, a flat palm,
 ///   a straight wrist.
 /// Angles of sensors that are present but `left_out`, because they are stuck, are estimated from
-/// more: from the same joints of the fingers beside, too, and where nothing tells them, they are
+/// more: from the same joints of the fingers beside, and where nothing tells them, they are
 /// those of a hand at rest.
 /// Wait-free; the result is finite.
 NENDO_API JointAngles joint_angles(const GloveSample& sample, const Calibration& calibration,

@@ -47,7 +47,7 @@ struct FilterLatency {
 
 class NENDO_API JointFilter {
 public:
-  /// After a pause longer than this, or if the clock goes back farther, the filter begins anew.
+  /// After a pause longer than this, or if the clock goes back farther, the filter restarts.
   static constexpr double longest_interval_s = 0.5;
 
   /// Limits the cutoffs to 0.001 to 100000 Hz and beta to 0 to 100000; NaN becomes the lower limit.

@@ -30,7 +30,7 @@ struct SensorRange {
 };
 using SensorRanges = std::array<SensorRange, sensor_slots>;
 
-/// The state of a learner, from which another one can go on.
+/// The state of a learner, from which another one can continue.
 struct LearnedRanges {
   struct Sensor {
     double low_counts = 0.0, high_counts = 0.0; ///< as in SensorRange
@@ -44,7 +44,8 @@ struct LearnedRanges {
 /// Returns the line that such a range leads to in the end; a gain of 0 for one that was not
 /// learned.
 NENDO_API SensorCalibration line_of(std::size_t slot, const SensorRange& range) noexcept;
-/// Returns a state from which another learner goes on: its lines are those that the ranges lead to.
+/// Returns a state from which another learner continues: its lines are those that the ranges lead
+/// to.
 NENDO_API LearnedRanges learned_from(const SensorRanges& ranges, Side side) noexcept;
 
 class NENDO_API RangeAdaptation {
@@ -64,11 +65,11 @@ public:
   /// learned.
   explicit RangeAdaptation(CountScale counts = {}) noexcept;
   /// Continues from `learned`, as after a pause in which no sensor sent anything. A sensor whose
-  /// values in `learned` cannot have been learned begins anew.
+  /// values in `learned` cannot have been learned restarts.
   RangeAdaptation(CountScale counts, const LearnedRanges& learned) noexcept;
 
   /// Takes the next sample in time. Ignores a count that is gone again within two samples. A sample
-  /// of the other hand, which is another glove's, begins anew from the default. Wait-free, no
+  /// of the other hand, which is another glove's, restarts from the default. Wait-free, no
   /// allocation.
   void push(const GloveSample& sample) noexcept;
 
@@ -79,8 +80,8 @@ public:
   SensorRanges ranges() const noexcept;
   /// Returns the hand whose ranges are learned; nullopt before the first sample.
   std::optional<Side> side() const noexcept { return side_; }
-  /// Returns the state from which another learner can go on. It is nullopt before the first sample,
-  /// because then not even the hand is known.
+  /// Returns the state from which another learner can continue. It is nullopt before the first
+  /// sample, because then not even the hand is known.
   std::optional<LearnedRanges> learned() const noexcept;
 
 private:

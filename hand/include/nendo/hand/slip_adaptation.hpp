@@ -37,7 +37,7 @@ public:
   /// Begins with the calibration as it was made for a glove of these counts.
   SlipAdaptation(const Calibration& made, const WornEnds& ends, CountScale counts) noexcept;
   /// Continues from `learned`, as after a pause. A sensor whose values in `learned` cannot have
-  /// been learned begins anew.
+  /// been learned restarts.
   SlipAdaptation(const Calibration& made, const WornEnds& ends, CountScale counts,
                  const LearnedRanges& learned) noexcept;
 
@@ -52,7 +52,7 @@ public:
   SensorAngles slips_counts() const noexcept;
   /// Returns the ends of each sensor's swings by now, and how many turns have taught them.
   SensorRanges ranges() const noexcept;
-  /// Returns the state from which another learner goes on.
+  /// Returns the state from which another learner continues.
   LearnedRanges learned() const noexcept;
 
 private:

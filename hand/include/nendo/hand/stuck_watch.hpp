@@ -1,7 +1,7 @@
 #pragma once
 // Finds sensors that stand still though their joints move. A sensor may stand still because its
 // joint rests; that it is stuck shows only where its neighbours move to and fro for long, which no
-// hand does without moving this joint by a count, too. So nothing is found while nothing moves, and
+// hand does without moving this joint by a count. So nothing is found while nothing moves, and
 // a finger that moves alone shows nothing of the others.
 
 #include <array>
@@ -22,7 +22,7 @@ public:
   /// `stuck` are the sensors that an earlier watch of the same glove had found.
   explicit StuckWatch(CountScale scale = {}, SensorMask stuck = {}) noexcept;
 
-  /// Takes the next sample in time. Samples of another hand or other sensors begin anew.
+  /// Takes the next sample in time. Samples of another hand or other sensors restart.
   void push(const GloveSample& sample) noexcept;
 
   /// Returns the sensors that are stuck. One that moves again is none for long.
@@ -66,20 +66,20 @@ private:
   std::uint64_t number_ = 0; ///< of the sample
 };
 
-/// Tells whether a count is at an end of what a bare converter can count, where a broken sensor
+/// Returns whether a count is at an end of what a bare converter can count, where a broken sensor
 /// usually stands. A glove that calibrates itself is at an end whenever a joint is.
 constexpr bool is_at_end(std::uint16_t count, CountScale scale) noexcept {
   return !scale.whole_range && (count <= 1 || count + 1 >= scale.most);
 }
 
-/// Tells whether a sensor that counts from `low` to `high` stands still. A twelve-bit converter may
-/// flicker by its last two bits, and so does the last bit at an end.
+/// Returns whether a sensor that counts from `low` to `high` stands still. A twelve-bit converter
+/// may flicker by its last two bits, and so does the last bit at an end.
 constexpr bool is_still(std::uint16_t low, std::uint16_t high, CountScale scale) noexcept {
   const bool same_end = high - low <= 1 && is_at_end(low, scale) && is_at_end(high, scale);
   return high - low <= scale.most / 1024 || same_end;
 }
 
-/// Tells whether counts reach an end of a glove that calibrates itself, where it holds a straight
+/// Returns whether counts reach an end of a glove that calibrates itself, where it holds a straight
 /// or a fully bent joint: to stand still there means nothing.
 constexpr bool rests_at_end(double low, double high, CountScale scale) noexcept {
   return scale.whole_range && (low <= 0.0 || high >= scale.most);

@@ -32,7 +32,7 @@ private:
   std::optional<double> median(std::uint16_t count) noexcept;
 
   std::array<std::uint16_t, window> recent_{};
-  std::size_t seen_ = 0;            ///< of `recent_`, since it began anew
+  std::size_t seen_ = 0;            ///< of `recent_`, since it began again
   double bottom_ = 0.0, top_ = 0.0; ///< the swing under way, counts
   bool rises_ = false, falls_ = false;
 };

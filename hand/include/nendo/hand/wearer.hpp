@@ -28,9 +28,9 @@ struct Wearer {
   /// If it is set, the ranges of the sensors are learned from a glove with such counts, and the
   /// calibrations of `left` and `right` are not used, unless there are `ends`.
   std::optional<CountScale> adapt{};
-  /// What an earlier adaptation has learned; learning goes on from there.
+  /// What an earlier adaptation has learned; learning continues from there.
   std::optional<LearnedRanges> learned{};
-  /// If it is set, too, only slips from the calibration of that side are learned. The other side's
+  /// If it is set, only slips from the calibration of that side are learned. The other side's
   /// stays as it is.
   std::optional<WornEnds> ends{};
   /// If it is set, sensors of a glove with such counts that stand still while others move are left

@@ -1,5 +1,5 @@
 #pragma once
-// The udev rules on this machine: which are in force, and how to change those in /etc. `root` is
+// The udev rules on this machine: which are in effect, and how to change those in /etc. `root` is
 // the folder that stands for /, so that images and tests can be treated likewise.
 
 #include <cstdint>
@@ -21,7 +21,7 @@ enum class RuleState : std::uint8_t {
 
 struct RuleFile {
   std::string name;
-  std::filesystem::path path; ///< of the file in force; where install would write if it is missing
+  std::filesystem::path path; ///< of the file in effect; where install would write if it is missing
   RuleState state = RuleState::missing;
 };
 

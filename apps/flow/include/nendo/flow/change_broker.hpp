@@ -41,7 +41,7 @@ public:
                const deform::BlockShape* first = nullptr);
   ~ChangeBroker();
 
-  /// Tells whether the loop has yet to take a change.
+  /// Returns whether the loop has yet to take a change.
   bool is_changing();
 
   /// Makes all that these settings need: the stroke in hand then ends, and the fingertips grab the
@@ -96,7 +96,7 @@ public:
   /// Lets the hands stop shaping at the end of the next tick (Shaping::hold_still()). Error:
   /// failed, if the loop has yet to take a change or holds still already; then nothing changes.
   Result<void> hold_still();
-  /// Tells whether the loop has done so, and waits for a model.
+  /// Returns whether the loop has done so, and waits for a model.
   bool is_still();
   /// Finishes the model, which must be made of newest_model(), for the loop, which must be still.
   /// `accepts` is called with the new version before the loop has it. Settings that are asked for

@@ -79,7 +79,7 @@ public:
   /// Always empty: no short formula describes what hands do.
   const deform::FieldSequence& fields() const noexcept { return fields_; }
   deform::ChainReport report() const noexcept { return {}; }
-  /// Tells whether the last follow() changed the shape.
+  /// Returns whether the last follow() changed the shape.
   bool is_moved() const noexcept { return is_moved_; }
   ClayState state() const noexcept;
   std::span<const deform::ClayContact> contacts() const noexcept { return clay_.contacts(); }

@@ -18,12 +18,14 @@
 
 namespace nendo::flow {
 
-/// Lets the loop go on with these settings from its next tick on (DeformLoop::change_settings()).
+/// Lets the loop continue with these settings from its next tick on
+/// (DeformLoop::change_settings()).
 struct ChangeSettings {
   LoopSettings settings;
   friend bool operator==(const ChangeSettings&, const ChangeSettings&) = default;
 };
-/// Makes a finer model of the present one (deform::subdivide()), with which the loop then goes on.
+/// Makes a finer model of the present one (deform::subdivide()), with which the loop then
+/// continues.
 struct Subdivide {
   friend bool operator==(const Subdivide&, const Subdivide&) = default;
 };
@@ -58,7 +60,7 @@ struct SaveRecording {
 struct Mark {
   friend bool operator==(const Mark&, const Mark&) = default;
 };
-/// Lets a hand, or one of its fingers, let go of the functions of a puppet that it plays, or take
+/// Lets a hand, or one of its fingers, release the functions of a puppet that it plays, or take
 /// hold of them again (puppet::RigPlayer::set_clutch()).
 struct SetClutch {
   Side side = Side::left;
@@ -112,7 +114,7 @@ enum class Blade : std::uint8_t {
   knife, ///< from the tip of an index finger on, where it points to; as long as the model
 };
 /// Begins to draw a wire, or a knife, through the model (WirePath). Or ends that, and what it swept
-/// then cuts the model. Meanwhile the hands let go of the model.
+/// then cuts the model. Meanwhile the hands release the model.
 struct DrawWire {
   bool on = false;
   Blade blade = Blade::wire;
@@ -136,7 +138,7 @@ struct EndRun {
 };
 
 /// The hands stop shaping at the end of a tick. Nobody asks for it but who makes a model of that
-/// shape; the ChangeModel that follows lets them go on where they have stopped.
+/// shape; the ChangeModel that follows lets them continue where they have stopped.
 struct HoldStill {
   friend bool operator==(const HoldStill&, const HoldStill&) = default;
 };
@@ -151,11 +153,11 @@ enum class ModelSource : std::uint8_t {
   removed,    ///< it is the shape before, without one of its parts
   topology,   ///< it is the shape before, changed where it was thin
 };
-/// Tells whether such a model is made of the shape before, which becomes its rest.
+/// Returns whether such a model is made of the shape before, which becomes its rest.
 constexpr bool is_of_shape(ModelSource source) noexcept {
   return source >= ModelSource::cut;
 }
-/// The loop goes on with another version of the model (ModelVersion::number).
+/// The loop continues with another version of the model (ModelVersion::number).
 struct ChangeModel {
   std::uint32_t number = 0;
   ModelSource source = ModelSource::kept;
@@ -166,8 +168,8 @@ struct ChangeModel {
   friend bool operator==(const ChangeModel&, const ChangeModel&) = default;
 };
 
-/// The loop goes on with another puppet (DeformLoop::change_puppet()). It only tells a log, and who
-/// plays that log.
+/// The loop continues with another puppet (DeformLoop::change_puppet()). It only tells a log, and
+/// who plays that log.
 struct ChangePuppet {
   std::uint32_t number = 0; ///< DeformLoop::puppet()
   friend bool operator==(const ChangePuppet&, const ChangePuppet&) = default;
@@ -210,13 +212,13 @@ constexpr Command asking_for(const ChangeModel& change) noexcept {
 /// The asking thread pushes commands, and the loop's thread takes them.
 using CommandRing = SpscRing<Command>;
 
-/// Tells whether it is about how a puppet is played.
+/// Returns whether it is about how a puppet is played.
 constexpr bool is_for_puppet(const Command& command) noexcept {
   return std::holds_alternative<SetClutch>(command) || std::holds_alternative<SetRole>(command) ||
          std::holds_alternative<SetSymmetry>(command);
 }
 
-/// Tells whether a running loop obeys the command by itself.
+/// Returns whether a running loop obeys the command by itself.
 constexpr bool is_for_loop(const Command& command) noexcept {
   return std::holds_alternative<Request>(command) || std::holds_alternative<WristMove>(command) ||
          std::holds_alternative<Mark>(command) || std::holds_alternative<SetLayer>(command) ||

@@ -20,7 +20,7 @@ NENDO_API Played played_by(const puppet::Rig* rig) noexcept;
 /// How a message names a setting: as the command line has it, or in words.
 enum class Naming : std::uint8_t { options, words };
 
-/// Tells whether a loop can shape with all of these. Error, in one line: which two exclude each
+/// Returns whether a loop can shape with all of these. Error, in one line: which two exclude each
 /// other, why, and what to do; usage where it names options, otherwise bad_input. Allocates.
 NENDO_API Result<void> compatible(const LoopSettings& settings, Played played,
                                   Naming naming = Naming::words);

@@ -67,7 +67,7 @@ struct Frame {
   std::uint64_t ticks_run = 0; ///< how many ticks have run
   std::uint64_t missed = 0;    ///< how many deadlines were skipped
   LoopSettings settings;       ///< with which this frame was made
-  /// How often somebody made permanent what the hands had shaped, by a commit or by letting go, and
+  /// How often somebody made permanent what the hands had shaped, by a commit or by releasing, and
   /// how often somebody undid a step: as LoopStats counts them.
   std::uint64_t commits = 0;
   std::uint64_t undos = 0;
@@ -82,7 +82,7 @@ struct Frame {
   /// `surface`, without a copy.
   std::uint64_t surface_moves = 0;
   /// How often one can undo, and how often redo, after this frame. At 0 it changes nothing. What
-  /// hands that hold the model have shaped since the last commit is a step, too.
+  /// hands that hold the model have shaped since the last commit is a step.
   std::uint64_t undo_steps = 0;
   std::uint64_t redo_steps = 0;
   StepList steps; ///< the names of the last of them
@@ -113,7 +113,7 @@ struct Frame {
   /// puppet.
   std::array<float, puppet::Puppet::max_functions> functions{};
   std::uint32_t function_count = 0;
-  std::array<bool, 2> let_go{}; ///< by side: that hand has let go of all that it plays
+  std::array<bool, 2> let_go{}; ///< by side: that hand has released all that it plays
   bool symmetric = false;       ///< one hand plays both sides
   /// Which inputs of the loop are layers that play, or are coming in; bit k is input k.
   std::uint32_t layers_on = 0;

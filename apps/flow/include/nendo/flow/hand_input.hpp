@@ -23,7 +23,7 @@ struct HandInput {
   SampleRing* ring = nullptr;
   Side side = Side::right; ///< which hand it is on the stage, whichever glove it wears
   hand::Wearer wearer;
-  GloveSample first;            ///< the pose in which the hand takes hold of the model
+  GloveSample first;            ///< the pose in which the hand grabs the model
   bool gated = true;            ///< hand::SensorGate keeps out counts that no hand can have caused
   hand::FilterOptions filter{}; ///< for the joint angles, at the samples' own times
   /// Measured bones (HandSkeleton::of_bones) for gloves of the first sample's side, in place of the

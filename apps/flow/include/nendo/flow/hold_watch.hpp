@@ -1,5 +1,5 @@
 #pragma once
-// Finds the frames in which the fingertips took hold of the model.
+// Finds the frames in which the fingertips grabbed the model.
 
 #include <nendo/flow/frame.hpp>
 
@@ -9,7 +9,7 @@ namespace nendo::flow {
 /// change of the rest shape or a jump of the shape is counted. Wait-free.
 class HoldWatch {
 public:
-  /// Returns true if the fingertips took hold in this frame.
+  /// Returns true if the fingertips grabbed in this frame.
   bool follow(const Frame& frame) noexcept {
     const bool anew = frame.held && (!held_ || frame.rest_changes != rest_changes_ ||
                                      frame.shape_jumps != jumps_);

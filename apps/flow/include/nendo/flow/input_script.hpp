@@ -22,7 +22,7 @@ public:
     HostClock::duration at{}; ///< since the first tick: when the tick was due that took it
     InputLogEntry entry;
   };
-  /// Where it begins again, and at what time it then goes on.
+  /// Where it begins again, and at what time it then continues.
   struct Round {
     HostClock::duration from{};
     HostClock::duration to{}; ///< later than `from` by shortest_round at least
@@ -70,7 +70,7 @@ public:
       ended_.store(true, std::memory_order_release);
   }
 
-  /// Tells whether all of it has been played. Never, if it repeats. Thread-safe.
+  /// Returns whether all of it has been played. Never, if it repeats. Thread-safe.
   bool has_ended() const noexcept { return ended_.load(std::memory_order_acquire); }
   /// What a loop does not obey by itself: changes of settings and puppets, and Subdivide. Whoever
   /// runs the loop takes them from here, and reports how many its counters() say were refused.

@@ -70,7 +70,7 @@ struct LoopOptions : PaceOptions {
   /// exactly.
   std::optional<LoopSettings> settings{};
 
-  /// Whether an undo takes back what the hands have pulled in type 1 since the last commit as a
+  /// Whether an undo undoes what the hands have pulled in type 1 since the last commit as a
   /// step of its own. If not, it goes together with the step that is undone, as in recordings
   /// before format 1.5.
   bool pull_is_step = true;

@@ -1,5 +1,5 @@
 #pragma once
-// The settings that a person may change while a run goes on, from one tick to the next.
+// The settings that a person may change while a run continues, from one tick to the next.
 
 #include <array>
 
@@ -22,7 +22,7 @@ struct NENDO_API LoopSettings {
   double keep_volume = 0.0; ///< 0, air, to 1, clay (deform::CsrbfOptions)
   Hold hold = Hold::fingertips;
 
-  /// Tells whether all numbers are finite and within their ranges (setting.hpp). A loop takes no
+  /// Returns whether all numbers are finite and within their ranges (setting.hpp). A loop takes no
   /// others.
   bool are_usable() const noexcept;
 
@@ -33,7 +33,7 @@ struct NENDO_API LoopSettings {
 /// LoopSettings leaves the hands as they are, for the poses of timelines, which are closed already.
 NENDO_API LoopSettings usual_settings() noexcept;
 
-/// Tells whether hands close pinches: not in clay, which may be between their pads.
+/// Returns whether hands close pinches: not in clay, which may be between their pads.
 constexpr bool closes_pinches(const hand::FilterOptions& filter, Mode mode) noexcept {
   return filter.close_pinches && mode != Mode::clay;
 }

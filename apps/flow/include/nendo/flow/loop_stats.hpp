@@ -42,8 +42,8 @@ struct LoopStats {
   std::array<Side, 2> range_sides{};          ///< of the gloves that taught them
   /// By how many counts sensors have slipped; zeros if that is not learned.
   std::array<hand::SensorAngles, 2> slips_counts{};
-  std::uint64_t grabs = 0;            ///< times the hands took hold again
-  std::uint64_t commits = 0;          ///< times it became the rest shape, also by letting go
+  std::uint64_t grabs = 0;            ///< times the hands grabbed again
+  std::uint64_t commits = 0;          ///< times it became the rest shape, also by releasing
   std::uint64_t undos = 0;            ///< times it became an earlier one
   std::uint64_t redos = 0;            ///< times it became what it had been before an undo
   std::uint64_t resets = 0;           ///< times it became what it was at first

@@ -1,6 +1,7 @@
 #pragma once
 // The versions of a model. What changes its vertices or faces makes a new version, beside the loop,
-// and the loop goes on with it from one tick to the next. An undo goes back to the version before.
+// and the loop continues with it from one tick to the next. An undo goes back to the version
+// before.
 
 #include <cstddef>
 #include <cstdint>
@@ -87,7 +88,7 @@ public:
   Result<std::unique_ptr<ModelVersion>> finish(std::uint32_t number, const UndoRoom& undo,
                                                bool keeps_rest = false);
   bool found_nothing() const noexcept { return found_nothing_; } ///< finish() did
-  /// Tells whether it is made of the shape.
+  /// Returns whether it is made of the shape.
   bool is_of_shape() const noexcept { return std::holds_alternative<Remaking>(making_); }
   /// Returns the change to that version.
   ChangeModel change_to(const ModelVersion& version) const noexcept;

@@ -18,7 +18,7 @@ namespace nendo::flow {
 enum class OverrunPolicy : std::uint8_t {
   skip,      ///< deadlines that passed are missed; the next tick is on the grid again
   catch_up,  ///< they are run at once, the newest `max_catch_up` of them; older ones are missed
-  re_anchor, ///< the next tick runs at once, and the grid begins anew there; none is missed
+  re_anchor, ///< the next tick runs at once, and the grid restarts there; none is missed
   sample,    ///< no grid: a tick runs when a sample comes
 };
 

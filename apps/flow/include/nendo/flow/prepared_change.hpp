@@ -19,7 +19,7 @@
 namespace nendo::flow {
 
 /// Where a loop is between two ticks, without the hands' grip, which ends there. A loop that is
-/// made of this (LoopOptions::held, and a first shape) does the same as the one that goes on.
+/// made of this (LoopOptions::held, and a first shape) does the same as the one that continues.
 struct LoopState {
   /// Of an input of the loop.
   struct Input {
@@ -43,7 +43,7 @@ struct LoopState {
 struct LogChange {
   InputLog* log = nullptr; ///< null: nowhere
   LoopState state;         ///< with which the log begins, or that it led to
-  /// Room for the shape, if the change leads to another version of the model, too.
+  /// Room for the shape, if the change leads to another version of the model.
   deform::BlockShape of_other_model;
 };
 
@@ -59,14 +59,14 @@ struct ReadyRig {
   deform::Points tips{};           ///< room for the positions of its points
 };
 
-/// What a loop goes on with from a tick on. It swaps pointers, and gives back what it had before.
+/// What a loop continues with from a tick on. It swaps pointers, and gives back what it had before.
 struct PreparedChange {
   bool holds_still = false; ///< at the end of that tick, until the next change with a `model`
   std::optional<ChangeModel> model{};     ///< the version that `ready` works on
-  std::optional<LoopSettings> settings{}; ///< the loop goes on with them
+  std::optional<LoopSettings> settings{}; ///< the loop continues with them
   SculptorSetup before{};                 ///< which this change of settings replaces
-  bool is_refused = false;       ///< by the loop, which goes on as it was (Shaping::exchange())
-  std::optional<ReadyRig> rig{}; ///< the hands go on with that puppet
+  bool is_refused = false;       ///< by the loop, which continues as it was (Shaping::exchange())
+  std::optional<ReadyRig> rig{}; ///< the hands continue with that puppet
   ReadySculptor ready{};
   std::optional<LogChange> log{};
 

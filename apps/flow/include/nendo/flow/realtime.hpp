@@ -33,7 +33,7 @@ struct Grant {
   std::string wanted; ///< "SCHED_FIFO 80"
   bool granted = false;
   std::string why;    ///< the system's words; empty if granted
-  std::string remedy; ///< the command or deed that mends it; empty if granted
+  std::string remedy; ///< the command or deed that fixes it; empty if granted
 };
 /// Returns a line for each refused right: what was refused, why, and the remedy.
 NENDO_API std::vector<std::string> refusals(const std::vector<Grant>& grants);

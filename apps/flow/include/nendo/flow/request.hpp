@@ -12,13 +12,13 @@ namespace nendo::flow {
 
 /// Recordings keep the numbers, so new values are added at the end.
 enum class Request : std::uint8_t {
-  grab,   ///< the hands take hold of the model
-  let_go, ///< and let go of it; what they have shaped stays
-  commit, ///< the shape so far becomes the rest shape, and the hands hold it anew
+  grab,   ///< the hands grab the model
+  let_go, ///< and release it; what they have shaped stays
+  commit, ///< the shape so far becomes the rest shape, and the hands hold it again
   undo,   ///< back to the rest shape before the last commit (deform::HistoryMove)
   redo,   ///< undoes the last undo, if nothing was committed since
-  reset,  ///< back to the model as it was loaded, which an undo takes back
-  /// The hands that hold the model take hold anew where they are, without a commit
+  reset,  ///< back to the model as it was loaded, which an undo undoes
+  /// The hands that hold the model re-grab where they are, without a commit
   /// (Shaping::ask()).
   take_hold,
 };
@@ -27,7 +27,7 @@ inline constexpr std::array requests{Request::grab,     Request::let_go, Request
                                      Request::undo,     Request::redo,   Request::reset,
                                      Request::take_hold};
 
-/// Tells whether a request goes back or forth: Shaping does these one after another.
+/// Returns whether a request goes back or forth: Shaping does these one after another.
 constexpr bool goes_through_history(Request request) noexcept {
   return request == Request::undo || request == Request::redo || request == Request::reset;
 }

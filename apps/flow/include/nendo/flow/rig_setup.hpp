@@ -14,7 +14,7 @@
 
 namespace nendo::flow {
 
-/// Tells whether hands play that puppet, which may be null. Otherwise fingertips touch the model.
+/// Returns whether hands play that puppet, which may be null. Otherwise fingertips touch the model.
 NENDO_API bool is_played(const puppet::Rig* rig) noexcept;
 /// Returns how many control points that many hands move by that puppet; null: by none.
 NENDO_API Eigen::Index control_points_of(const puppet::Rig* rig, const SculptorOptions& sculptor,
@@ -25,9 +25,9 @@ NENDO_API Eigen::Index supported_points(const puppet::Rig* rig, Eigen::Index han
 /// Returns the x of the plane, in model units, of whose both sides the fingertips shape; nothing:
 /// of none.
 NENDO_API std::optional<double> mirror_of(const puppet::Rig* rig) noexcept;
-/// Tells whether hands with that puppet, which may be null, can press clay: it has no points.
+/// Returns whether hands with that puppet, which may be null, can press clay: it has no points.
 NENDO_API bool can_press(const puppet::Rig* rig) noexcept;
-/// Tells whether a tick can solve for that puppet's points without allocating. Error, bad_input:
+/// Returns whether a tick can solve for that puppet's points without allocating. Error, bad_input:
 /// there are more than deform::CsrbfSolver::lean_size. Where distances go along the surface, any
 /// number is good, because their field is solved for beforehand; type 2 of older recordings
 /// (SculptorOptions::type2_along_surface) has none.

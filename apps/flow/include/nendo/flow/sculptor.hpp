@@ -18,14 +18,14 @@
 
 namespace nendo::flow {
 
-/// With type1, the start points are frozen and the rest shape is deformed anew each tick. With
+/// With type1, the start points are frozen and the rest shape is deformed again each tick. With
 /// type2, the fingertips' paths are followed piece by piece. With clay, whole hands press the
 /// surface out of themselves. With parts, hands take parts of the model and move them.
 enum class Mode : std::uint8_t { type1, type2, clay, parts };
 inline constexpr std::uint8_t mode_count = 4;
 inline constexpr std::string_view mode_names = "type1, type2, clay or parts"; ///< for messages
 
-/// Tells whether whole hands shape in this mode. Otherwise points do, and a puppet may play.
+/// Returns whether whole hands shape in this mode. Otherwise points do, and a puppet may play.
 constexpr bool is_by_hands(Mode mode) noexcept {
   return mode == Mode::clay || mode == Mode::parts;
 }
@@ -72,9 +72,9 @@ struct NENDO_API SculptorOptions {
   std::shared_ptr<const ClayModel> clay{};
   std::shared_ptr<const deform::ModelParts> parts{};
 
-  /// Tells whether a brush does something that needs the triangles about each vertex.
+  /// Returns whether a brush does something that needs the triangles about each vertex.
   bool needs_rings() const noexcept;
-  /// Tells whether distances are measured along the surface.
+  /// Returns whether distances are measured along the surface.
   bool is_along_surface() const noexcept;
   /// Returns how many points of a hand hold the model; not of a puppet.
   Eigen::Index points_of_hand() const noexcept;
@@ -96,11 +96,11 @@ public:
 
   Eigen::Index control_points() const noexcept { return control_points_; }
 
-  /// Tells whether fields() describes the last update completely. It does not where distances are
+  /// Returns whether fields() describes the last update completely. It does not where distances are
   /// along the surface, where a brush or a whole hand changed something, or with a mask.
   bool is_described_by_fields() const noexcept;
 
-  /// Lets the fingertips take hold of the model at `tips` (3 by control_points, model units).
+  /// Lets the fingertips grab the model at `tips` (3 by control_points, model units).
   deform::FieldStatus grab(const deform::Points& tips) noexcept;
   /// Does the same in the middle of a step, after release(false).
   deform::FieldStatus continue_grab(const deform::Points& tips) noexcept;
@@ -118,20 +118,20 @@ public:
   /// nothing changes. It does not allocate.
   deform::FieldStatus commit(const deform::Points& tips) noexcept;
 
-  /// Ends the stroke and lets go of the shape, which stays as update() made it last, for another
-  /// sculptor to take hold of. With `is_step`, undo can go back before the stroke; without, it
+  /// Ends the stroke and releases the shape, which stays as update() made it last, for another
+  /// sculptor to grab. With `is_step`, undo can go back before the stroke; without, it
   /// becomes one step with the next. It does not allocate.
   void release(bool is_step) noexcept;
-  /// Does the same, but in type 1 what the fingertips have pulled since they took hold is not kept.
+  /// Does the same, but in type 1 what the fingertips have pulled since they grabbed is not kept.
   void drop(bool is_step) noexcept;
   /// Changes the rest shape, or the shape of the strokes. The fingertips then hold it at `tips`. If
   /// the equations have no solution, nothing changes. It does not allocate.
   deform::FieldStatus go(deform::HistoryMove move, const deform::Points& tips) noexcept;
-  /// Takes back what the fingertips have shaped since the last commit, or in this stroke, as a step
+  /// Undoes what the fingertips have shaped since the last commit, or in this stroke, as a step
   /// of its own (Type1Deformer::take_back; in other modes an undo). Otherwise as go().
   deform::FieldStatus take_back(const deform::Points& tips) noexcept;
 
-  /// Returns how often the fingertips took hold of a shape at the tips that a function was given.
+  /// Returns how often the fingertips grabbed a shape at the tips that a function was given.
   std::uint64_t holds() const noexcept { return holds_; }
 
   /// Returns the shape that remains when no hand holds the model: the rest shape, or the shape at
@@ -148,7 +148,7 @@ public:
   bool has_room(const deform::SurfaceMove& move) const noexcept; ///< for write_move()
   /// Returns a move with room for write_move(). Allocates.
   deform::SurfaceMove room_for_move() const;
-  /// Tells whether the last update() moved anything.
+  /// Returns whether the last update() moved anything.
   bool moves_anything() const noexcept;
   /// Returns what the last update() needed to stay injective; all 0 without `injective`.
   deform::ChainReport report() const noexcept;

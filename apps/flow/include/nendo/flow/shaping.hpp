@@ -1,5 +1,5 @@
 #pragma once
-// Applies people's requests to a sculptor: the hands take hold and let go, shapes are committed,
+// Applies people's requests to a sculptor: the hands grab and release, shapes are committed,
 // undone and redone. The loop uses it, and so does code that shapes without a loop.
 
 #include <array>
@@ -60,17 +60,17 @@ public:
   Shaping(ModelVersion& model, const SculptorSetup& setup, Eigen::Index control_points,
           const ShapingOptions& options);
 
-  /// Lets the fingertips take hold for the first time (3 by control_points, model units).
+  /// Lets the fingertips grab for the first time (3 by control_points, model units).
   deform::FieldStatus begin(const deform::Points& tips) noexcept { return sculptor_->grab(tips); }
   /// Sets the time of the next calls, since the beginning.
   void set_time(HostClock::duration time) noexcept { time_ = time; }
   /// Makes the next shape() do it. Wait-free. Request::take_hold, without effect on hands that hold
   /// nothing, grabs again where the fingertips are; the paper separates this from a commit (2.3.1).
-  /// In type 1 the pull is taken back, a redo restores it, and the rest shape stays. In type 2 the
+  /// In type 1 the pull is undone, a redo restores it, and the rest shape stays. In type 2 the
   /// shape stays, the strokes before and after are one step, and the path to the next piece is
   /// dropped. It waits while an undo or a redo waits (Frame::awaited).
   void ask(Request request) noexcept;
-  /// Requests a grab if the last request was to let go, and the reverse.
+  /// Requests a grab if the last request was to release, and the reverse.
   void toggle_hold() noexcept { hold_wanted_ = !hold_wanted_; }
   /// Requests a commit that waits until the hands hold the model.
   void commit_when_held() noexcept { commit_due_ = true; }
@@ -84,11 +84,11 @@ public:
   deform::Points final_shape(const deform::Points& tips);
 
   bool is_held() const noexcept { return held_; }
-  const LoopSettings& settings() const noexcept { return settings_; } ///< in force
+  const LoopSettings& settings() const noexcept { return settings_; } ///< in effect
   const Sculptor& sculptor() const noexcept { return *sculptor_; }
   bool is_still() const noexcept { return is_still_; }
-  const ModelVersion& model() const noexcept { return *model_; } ///< in force
-  std::uint32_t puppet() const noexcept { return puppet_; }      ///< in force
+  const ModelVersion& model() const noexcept { return *model_; } ///< in effect
+  std::uint32_t puppet() const noexcept { return puppet_; }      ///< in effect
   const deform::BlockLayout& layout() const noexcept { return model_->layout(); }
 
   /// Stops the hands from shaping. Call after shape() with `completes`, in the same tick. What they
@@ -96,11 +96,11 @@ public:
   /// they stopped, so that none of their path is lost. Wait-free, without allocation.
   void hold_still(const deform::Points& tips, Frame& frame, LoopStats& stats) noexcept;
   /// Puts another sculptor with that many control points into `ready`, for that version of the
-  /// model. Asking thread, at any time. For a version that is not in force, the caller
+  /// model. Asking thread, at any time. For a version that is not in effect, the caller
   /// makes `shape_room`. Allocates.
   static void prepare(const SculptorSetup& setup, ModelVersion& model, Eigen::Index control_points,
                       ReadySculptor& ready);
-  /// Tells whether the hands keep their grip in exchange() (ReadySculptor::holds_on).
+  /// Returns whether the hands keep their grip in exchange() (ReadySculptor::holds_on).
   bool holds_on(const ReadySculptor& ready) const noexcept;
   /// Continues with that sculptor; `ready` then has the previous one. Call after shape() with
   /// `completes`, in the same tick. The stroke ends, and the fingertips grab again at `tips`, or at
@@ -183,14 +183,14 @@ private:
   bool hold_wanted_; ///< held_ follows at the next tick that can
   bool commit_due_ = false;
   bool regrab_due_ = false;         ///< Request::take_hold
-  bool shaped_ = false;             ///< since the hands took hold, or since the last commit
+  bool shaped_ = false;             ///< since the hands grabbed, or since the last commit
   std::uint64_t strokes_ended_ = 0; ///< without a commit
   std::uint64_t refused_steps_ = 0; ///< LoopStats::refused_steps
   std::uint64_t shape_jumps_ = 0;   ///< Frame::shape_jumps
   std::uint64_t surface_moves_ = 0; ///< Frame::surface_moves
   bool in_step_ = false;            ///< something shaped before a change is no step yet
-  LoopSettings settings_;           ///< in force
-  std::uint32_t puppet_ = 0;        ///< in force
+  LoopSettings settings_;           ///< in effect
+  std::uint32_t puppet_ = 0;        ///< in effect
   std::optional<Awaited> awaited_;  ///< by the first of steps_due_
   HostClock::duration time_{};
   std::optional<HostClock::duration> exchanged_at_; ///< settings alone, last

@@ -65,7 +65,7 @@ public:
 
   const Shaping& shaping() const noexcept { return shaping_; }
   const PuppetPlayer* puppet() const noexcept { return puppet_ ? &*puppet_ : nullptr; }
-  /// Tells whether the switch at that hand's wrist is the clutch of the puppet.
+  /// Returns whether the switch at that hand's wrist is the clutch of the puppet.
   bool has_clutch(Side side) const noexcept;
   const WirePath& completed_wire() const noexcept;
   /// Completes the stroke and returns the shape, 3 by #vertices. Allocates.

@@ -15,7 +15,7 @@ struct LoopSettings;
 
 /// Clients of the browser's protocol know the numbers, so new values are added at the end.
 enum class StepKind : std::uint8_t {
-  stroke, ///< of the hands, up to a commit, to letting go, or to a change
+  stroke, ///< of the hands, up to a commit, to releasing, or to a change
   reset,  ///< back to the model as it was loaded
   mode,   ///< these five, brush, volume and hold: a change of this setting alone
   kernel,
@@ -45,7 +45,7 @@ constexpr bool is_setting(StepKind kind) noexcept {
   return (kind >= StepKind::mode && kind <= StepKind::settings) || kind == StepKind::brush ||
          kind == StepKind::volume || kind == StepKind::hold;
 }
-/// Tells whether such a step needs another sculptor, and so another thread, to be undone.
+/// Returns whether such a step needs another sculptor, and so another thread, to be undone.
 constexpr bool is_change(StepKind kind) noexcept {
   return kind >= StepKind::mode;
 }

@@ -26,8 +26,8 @@ private:
   std::uint64_t rate_mhz_; ///< thousandths of a hertz
 };
 
-/// Sleeps until an absolute time, and goes on sleeping after a signal. This is the only system call
-/// of a tick.
+/// Sleeps until an absolute time, and continues sleeping after a signal. This is the only system
+/// call of a tick.
 NENDO_API void sleep_until(HostTime deadline) noexcept;
 
 } // namespace nendo::flow

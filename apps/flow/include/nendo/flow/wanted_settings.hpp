@@ -10,7 +10,7 @@
 
 namespace nendo::flow {
 
-/// Shows what was asked for until a loop has had time to take it, and then what is in force,
+/// Shows what was asked for until a loop has had time to take it, and then what is in effect,
 /// whoever has asked for it. Asking thread; does not allocate.
 class NENDO_API WantedSettings {
 public:

@@ -11,7 +11,7 @@ namespace nendo::flow {
 
 /// The places of a wire's ends one after another, in model units. It has a fixed size and does not
 /// allocate. Where a wire is drawn far, every second place is forgotten; and what a hand goes back
-/// and forth by a few steps is, too.
+/// and forth by a few steps is.
 class NENDO_API WirePath {
 public:
   static constexpr std::size_t max_places = 128;

@@ -20,7 +20,7 @@ struct NENDO_API WristMove {
   static constexpr double farthest_m = 100.0;
 
   static WristMove to(Side side, const Eigen::Isometry3d& T_stage_wrist) noexcept;
-  /// Tells whether the position is within farthest_m of the stage's middle and the quaternion is
+  /// Returns whether the position is within farthest_m of the stage's middle and the quaternion is
   /// not zero. The loop refuses a move that is not usable.
   bool is_usable() const noexcept;
   /// What is said where a move is refused.

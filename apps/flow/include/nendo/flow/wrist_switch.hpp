@@ -14,8 +14,8 @@ namespace nendo::flow {
 enum class SwitchAction : std::uint8_t {
   none,   ///< nothing: the hands hold the model all the time
   grab,   ///< the hands hold the model while a switch is on
-  commit, ///< turning one on makes the shape so far the rest shape, and the hands hold it anew
-  toggle, ///< turning one on has the hands let go of the model, the next time take hold of it again
+  commit, ///< turning one on makes the shape so far the rest shape, and the hands hold it again
+  toggle, ///< turning one on has the hands release the model, the next time grab it again
   keep,   ///< turning one on keeps what was just done: a recorder's task, nothing to the loop
 };
 

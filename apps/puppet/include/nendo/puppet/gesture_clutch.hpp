@@ -1,5 +1,5 @@
 #pragma once
-// Gestures by which a hand lets go of a puppet, and takes hold of it again: a fist, or a pinch,
+// Gestures by which a hand releases a puppet, and grabs it again: a fist, or a pinch,
 // that is held for a moment. While a gesture is made, the functions go back to where they were
 // before it, so that the gesture itself does not play the puppet.
 
@@ -24,8 +24,8 @@ NENDO_API double gesture_strength(ClutchMeans means, const HandState& hand) noex
 ///
 /// A gesture begins where its strength reaches the bound of the puppet, and ends below a lower one.
 /// From its beginning on, the functions are drawn to the values that they had before the hand
-/// closed, within ease_s. If it lasts for ClutchOptions::held_s, the hand lets go. A hand that had
-/// let go takes hold anew when the gesture has ended and the fingers have come to rest, so that
+/// closed, within ease_s. If it lasts for ClutchOptions::held_s, the hand releases. A hand that had
+/// release re-grabs when the gesture has ended and the fingers have come to rest, so that
 /// opening the hand plays nothing either. If a gesture is shorter, the functions go back to what
 /// the hand shows, within ease_s.
 class NENDO_API GestureClutch {
@@ -51,7 +51,7 @@ private:
     open,    ///< no gesture
     made,    ///< a gesture, not long enough yet
     done,    ///< a gesture that has had its effect
-    taking,  ///< a gesture, behind whose end the hand takes hold
+    taking,  ///< a gesture, behind whose end the hand grabs
     opening, ///< its end
   };
   struct Moment {

@@ -96,7 +96,7 @@ struct Mask {
   friend bool operator==(const Mask&, const Mask&) = default;
 };
 
-/// With what a hand lets go of its functions and takes hold of them again, besides keys.
+/// With what a hand releases its functions and grabs them again, besides keys.
 enum class ClutchMeans : std::uint8_t {
   none,
   fist,         ///< all four fingers bent
@@ -132,7 +132,8 @@ struct NENDO_API Puppet {
   ClutchOptions clutch;
   std::string text; ///< of the file
 
-  /// Tells whether hands play it. Otherwise it has no points, and their fingertips touch the model.
+  /// Returns whether hands play it. Otherwise it has no points, and their fingertips touch the
+  /// model.
   bool is_played() const noexcept { return !points.empty(); }
   /// Returns the number of the function with that name.
   std::optional<std::size_t> function_named(std::string_view name) const noexcept;

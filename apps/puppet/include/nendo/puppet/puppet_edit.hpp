@@ -40,7 +40,7 @@ NENDO_API Result<Puppet> with_pinned(const Rig& rig, std::size_t point, bool pin
 /// Lets a function move the point by that vector, model units. Errors: it is a pin, or turns.
 NENDO_API Result<Puppet> with_move(const Rig& rig, std::size_t function, std::size_t point,
                                    const Eigen::Vector3d& vector);
-/// Lets a function turn the point so. Points that the function turns already go on doing so, by
+/// Lets a function turn the point so. Points that the function turns already continue doing so, by
 /// their parts; if it turned none, all that it moves turn. Errors: it is a pin, or the turn has no
 /// axis or more than 360 degrees.
 NENDO_API Result<Puppet> with_turn(const Rig& rig, std::size_t function, std::size_t point,

@@ -52,17 +52,17 @@ NENDO_API double asked_for(const Function& function, double value) noexcept;
 inline constexpr std::size_t no_function = static_cast<std::size_t>(-1);
 NENDO_API std::vector<std::size_t> functions_before(const Puppet& before, const Puppet& after);
 
-/// What a player of a rig needs to go on where another one is.
+/// What a player of a rig needs to continue where another one is.
 struct FunctionState {
   double asked = 0.0; ///< of the function by its hand, before its limits
   HandSignal input;
-  bool held = true; ///< it has not been let go of by itself
+  bool held = true; ///< it has not been released by itself
   friend bool operator==(const FunctionState&, const FunctionState&) = default;
 };
 struct RigState {
   std::vector<FunctionState> functions; ///< none: as the puppet file says, at 0
   bool symmetric = false;
-  std::array<bool, 2> hand_holds{true, true}; ///< left and right; false: all of it is let go of
+  std::array<bool, 2> hand_holds{true, true}; ///< left and right; false: all of it is released
   friend bool operator==(const RigState&, const RigState&) = default;
 };
 
@@ -73,7 +73,7 @@ public:
 
   explicit RigPlayer(std::shared_ptr<const Rig> rig);
 
-  /// Lets all functions take hold of the hands as they are, at the values that they have: relaxed
+  /// Lets all functions grab the hands as they are, at the values that they have: relaxed
   /// hands then leave the model as it is.
   void take_hold(const Hands& hands) noexcept;
   /// Follows the hands. Functions whose hand is not there keep their values.
@@ -81,12 +81,12 @@ public:
   /// Writes where the points are (Rig::place()).
   void write(deform::Points& points) const noexcept { rig_->place(values_, points); }
 
-  /// Lets a hand, or one of its fingers, let go of its functions, which then keep their values, or
-  /// take hold of them again. finger: HandSignal::finger(), or all_fingers.
+  /// Lets a hand, or one of its fingers, release its functions, which then keep their values, or
+  /// grab them again. finger: HandSignal::finger(), or all_fingers.
   static constexpr std::uint8_t all_fingers = 255;
   void set_clutch(Side side, std::uint8_t finger, bool holds, const Hands& hands) noexcept;
-  /// Lets a hand let go of all its functions if it holds any, and otherwise take hold of them
-  /// again, but for fingers that had let go by themselves.
+  /// Lets a hand release all its functions if it holds any, and otherwise grab them
+  /// again, but for fingers that had released by themselves.
   void toggle_clutch(Side side, const Hands& hands) noexcept;
   /// While a gesture is made, draws what that hand asks for to `kept` (of each function, as
   /// asked()), in place of following it: by no part (0, as at first), or all the way (1). `kept`
@@ -102,19 +102,19 @@ public:
   /// Returns the value of each function.
   std::span<const double> values() const noexcept { return values_; }
   const RigState& state() const noexcept { return state_; }
-  /// Goes on from that state, if it is one of as many functions. Call take_hold() then.
+  /// Continues from that state, if it is one of as many functions. Call take_hold() then.
   void set_state(const RigState& state) noexcept;
   /// Takes over from an earlier player of the same rig what go_on_from() needs for functions that
   /// come back, as by an undo. Call it before.
   void remember(const RigPlayer& earlier);
-  /// Goes on where a player of another rig is. from: for each function, the number of the one
+  /// Continues where a player of another rig is. from: for each function, the number of the one
   /// that it was there (functions_before()). Their values stay, as far as their limits let them,
-  /// and inputs that were chosen since stay chosen. Functions that come back (remember()) go on as
-  /// if they had not been away, or, if their hand has taken hold anew meanwhile, from the values
-  /// that they had; new functions begin at 0. Does not allocate.
+  /// and inputs that were chosen since stay chosen. Functions that come back (remember()) continue
+  /// as if they had not been away, or, if their hand has re-grabbed meanwhile, from the values that
+  /// they had; new functions begin at 0. Does not allocate.
   void go_on_from(const RigPlayer& before, std::span<const std::size_t> from,
                   const Hands& hands) noexcept;
-  /// Tells whether nothing of that hand is held.
+  /// Returns whether nothing of that hand is held.
   bool has_let_go(Side side) const noexcept;
   /// Returns what was asked of that function, before its limits.
   double asked(std::size_t function) const noexcept { return state_.functions[function].asked; }
@@ -128,7 +128,7 @@ private:
     return state.held && state_.hand_holds[static_cast<std::size_t>(state.input.side())];
   }
   struct Hold {
-    double signal = 0.0; ///< at which the hand took hold
+    double signal = 0.0; ///< at which the hand grabbed
     double value = 0.0;  ///< that it had asked for until then
   };
   void take_hold(std::size_t function, const Hands& hands) noexcept;
@@ -137,7 +137,7 @@ private:
   std::shared_ptr<const Rig> rig_;
   std::vector<std::size_t> twins_; ///< of each function; itself, if it has none
   std::vector<Hold> holds_;
-  std::array<std::uint32_t, 2> grips_{};              ///< by side: how often it took hold
+  std::array<std::uint32_t, 2> grips_{};              ///< by side: how often it grabbed
   std::optional<std::array<std::uint32_t, 2>> known_; ///< grips_ of the player it remembers
   std::array<Kept, 2> kept_{};                        ///< by side
   RigState state_;

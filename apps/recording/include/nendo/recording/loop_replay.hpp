@@ -24,7 +24,7 @@ class NENDO_API LoopReplay {
 public:
   /// Makes the recorded loop in its first state, over `model`, which should be the recorded one
   /// (LoopSetup::mesh_sum). Error: bad_input (no loop was recorded, the data about the loop is
-  /// damaged, or the hands cannot take hold of the model).
+  /// damaged, or the hands cannot grab the model).
   static Result<std::unique_ptr<LoopReplay>> make(const Setup& setup, const deform::Mesh& model);
 
   /// Feeds the next entry of the recording. Returns true if it was a tick, which has then run.

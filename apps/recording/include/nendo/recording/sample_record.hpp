@@ -86,7 +86,7 @@ struct RecordedGlove {
 /// Writes the payload of a GLOV chunk.
 NENDO_API void put_glove(ByteWriter& writer, const RecordedGlove& glove);
 /// Returns the glove that the payload of a GLOV chunk describes; nullopt if put_glove() cannot have
-/// written it. In its texts, characters other than printable ASCII become '?'.
+/// written it. In its strings, characters other than printable ASCII become '?'.
 NENDO_API std::optional<RecordedGlove> glove_of(std::span<const std::byte> payload);
 
 } // namespace nendo::recording

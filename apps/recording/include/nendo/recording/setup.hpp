@@ -63,7 +63,7 @@ struct Setup {
 /// Returns a setup that begins now.
 NENDO_API Setup begin_setup(std::string program);
 
-/// Makes of a loop's setup, as it began, the one of a loop that goes on from a later state.
+/// Makes of a loop's setup, as it began, the one of a loop that continues from a later state.
 /// `layout` is the loop's.
 NENDO_API void continue_from(const flow::LoopState& state, const deform::BlockLayout& layout,
                              Setup& setup);
@@ -72,8 +72,8 @@ NENDO_API void continue_from(const flow::LoopState& state, const deform::BlockLa
 /// number of these chunks.
 NENDO_API std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks);
 
-/// Tells whether setup_bytes() of a setup can be read again. Error: failed, with what is out of its
-/// range, and what to do. A recorder refuses such a setup before anything is recorded.
+/// Returns whether setup_bytes() of a setup can be read again. Error: failed, with what is out of
+/// its range, and what to do. A recorder refuses such a setup before anything is recorded.
 NENDO_API Result<void> check_readable(const Setup& setup, std::span<const std::byte> bytes);
 
 /// Reads a chunk into `setup`. Returns false if the chunk is of a setup, but holds something that

@@ -29,8 +29,8 @@ struct Gap {
   std::uint64_t entries = 0; ///< 0 means an unknown number
 };
 
-/// The loop goes on with that puppet. Its text and its points stand in a chunk before, and are with
-/// the entry.
+/// The loop continues with that puppet. Its text and its points stand in a chunk before, and are
+/// with the entry.
 struct PuppetChange {
   std::uint32_t number = 0;
   std::shared_ptr<const RecordedPuppet> puppet; ///< null: the one with which the recording began
@@ -43,7 +43,7 @@ using Entry = std::variant<RecordedSample, flow::Request, flow::WristMove, flow:
 
 template <class One, class Of = Entry>
 inline constexpr bool is_entry = false;
-/// Tells whether that type is one of an Entry's.
+/// Returns whether that type is one of an Entry's.
 template <class One, class... Types>
 inline constexpr bool is_entry<One, std::variant<Types...>> = (std::is_same_v<One, Types> || ...);
 

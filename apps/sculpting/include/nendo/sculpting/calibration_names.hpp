@@ -21,7 +21,7 @@ using Note = std::function<void(std::string_view)>;
 NENDO_API hand::CalibrationList stored_calibrations(const Note& note);
 
 /// Returns the calibration that `name` means. A text with a slash or the ending .toml is a path. A
-/// wearer's name means those of the wearer's calibrations that are in force. Blocks. Errors:
+/// wearer's name means those of the wearer's calibrations that are in effect. Blocks. Errors:
 /// bad_input (there is none, or it cannot be read), usage (several are meant).
 NENDO_API Result<hand::StoredCalibration> named_calibration(const std::string& name,
                                                             const Note& note);

@@ -69,8 +69,8 @@ NENDO_API Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side 
                                            const CalibrationOptions& options, const Note& note,
                                            FoundCalibration* found = nullptr);
 
-/// Tells whether angles of that side are an average hand's, though a person wears the glove: it is
-/// neither simulated nor recorded, has the default calibration, and learns none.
+/// Returns whether angles of that side are an average hand's, though a person wears the glove: it
+/// is neither simulated nor recorded, has the default calibration, and learns none.
 NENDO_API bool is_uncalibrated(const driver::GloveInfo& glove, const hand::Wearer& wearer,
                                Side side);
 

@@ -12,7 +12,7 @@
 
 namespace nendo::sculpting {
 
-/// Tells whether a calibration is what keep_ranges() writes.
+/// Returns whether a calibration is what keep_ranges() writes.
 NENDO_API bool is_kept_ranges(const hand::WearerCalibration& wearer);
 
 /// Returns the ranges that were kept for this user, glove and hand; nullopt without a user, or if

@@ -37,7 +37,7 @@ using OpenNamed = std::function<Result<OpenHand>(const std::string& glove, Side 
 
 /// Opens the gloves that this machine has, one for each of these hands, by `open`. A glove that is
 /// there but may not be used is an error. If one does not answer, a note says so, and the other
-/// hand goes on alone. Without any glove the hands are simulated as `simulated` says, and a note
+/// hand continues alone. Without any glove the hands are simulated as `simulated` says, and a note
 /// says so. Blocks for some seconds. Errors: those of `open`.
 NENDO_API Result<std::vector<OpenHand>> open_found(std::span<const Side> sides,
                                                    const std::string& simulated,

@@ -48,7 +48,7 @@ NENDO_API flow::Placement place(const deform::Mesh& model, std::span<const flow:
                                 const PlacingOptions& options);
 
 /// Makes the loop, whose shape is at first `first`, or the model without it. Errors: failed (the
-/// hands cannot take hold of the model), and those of flow::check_inputs() and check_points().
+/// hands cannot grab the model), and those of flow::check_inputs() and check_points().
 NENDO_API Result<std::unique_ptr<flow::DeformLoop>>
 make_loop(const deform::Mesh& model, const flow::Placement& placement,
           const std::vector<flow::HandInput>& hands, const flow::LoopOptions& options,

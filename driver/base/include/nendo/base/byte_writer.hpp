@@ -1,5 +1,5 @@
 #pragma once
-// Writes numbers and texts, little-endian, at the end of a vector, so that ByteReader can read
+// Writes numbers and strings, little-endian, at the end of a vector, so that ByteReader can read
 // them.
 
 #include <bit>

@@ -7,7 +7,7 @@
 
 namespace nendo {
 
-/// Tells whether the path ends in `ending` (".obj", in small letters), in any case.
+/// Returns whether the path ends in `ending` (".obj", in small letters), in any case.
 constexpr bool ends_in(std::string_view path, std::string_view ending) noexcept {
   const auto same = [](char in_path, char in_ending) {
     const char small =

@@ -1,8 +1,8 @@
 #pragma once
 // Looks at a TOML text of unknown origin before toml++ reads it. Debian's toml++ (3.3 in Debian 12,
-// 3.4 in Debian 13) takes some wrong texts for impossible: `a = #` or `[ ,]` are failed assertions
-// or undefined behaviour in it, as are blanks beyond ASCII, and keys with thousands of points
-// overflow its stack.
+// 3.4 in Debian 13) takes some wrong strings for impossible: `a = #` or `[ ,]` are failed
+// assertions or undefined behaviour in it, as are blanks beyond ASCII, and keys with thousands of
+// points overflow its stack.
 
 #include <cstddef>
 #include <optional>
@@ -24,7 +24,7 @@ inline constexpr int max_toml_depth = 16;
 
 /// Returns the first place where the text is not plain TOML, or nothing if toml++ may read it.
 /// Plain is what the files of this project have: tables, keys, and as values decimal numbers,
-/// truths, dates with a time, texts on one line or in three single quotes, lists, and tables in
+/// booleans, dates with a time, strings on one line or in three single quotes, lists, and tables in
 /// braces, nested at most `max_toml_depth` deep. It does not judge what only toml++ can tell:
 /// whether a number has too many digits, an escape is known, or a key stands twice. Takes a time
 /// proportional to the size of the text.

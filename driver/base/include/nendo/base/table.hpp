@@ -32,7 +32,7 @@ public:
   /// Reads the names of the columns. `example` is a head as messages give it, like "x,y,z". Error:
   /// there is none, or the text is no text (UTF-16, an archive).
   Result<void> read_head(std::string_view example);
-  /// Does without names: there are `columns` cells in each row, which blanks may separate, too. A
+  /// Does without names: there are `columns` cells in each row, which blanks may separate. A
   /// first row of as many cells, none of them a number, is taken for names, and skipped. Error: as
   /// read_head(), but for an empty text.
   Result<void> begin_without_head(std::size_t columns);
@@ -40,7 +40,7 @@ public:
   /// Returns the place of a column, or nullopt, and marks it as read. `name` is as plain() gives
   /// it.
   std::optional<std::size_t> find(std::string_view name);
-  /// Tells whether there are two columns of that name.
+  /// Returns whether there are two columns of that name.
   bool is_double(std::string_view name) const;
   /// The names, as plain() gives them, in the order of the columns; empty where a cell is.
   const std::vector<std::string>& names() const noexcept { return names_; }

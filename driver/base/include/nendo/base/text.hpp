@@ -45,7 +45,7 @@ NENDO_API std::string_view cut(std::string_view& rest, char separator) noexcept;
 NENDO_API std::vector<std::string_view> fields_of(std::string_view line, std::size_t most = 16);
 
 /// Returns the number that the whole field is, or nullopt. A leading plus sign is allowed. "nan"
-/// and "inf" are numbers, too; use to_finite_number() where they are not wanted.
+/// and "inf" are numbers; use to_finite_number() where they are not wanted.
 NENDO_API std::optional<double> to_number(std::string_view field) noexcept;
 NENDO_API std::optional<double> to_finite_number(std::string_view field) noexcept;
 /// Returns the metres of "5mm", "1.8cm" or "0.2m". Nothing if the field is no finite length, or has
@@ -64,7 +64,7 @@ NENDO_API std::string printable(std::string_view text);
 /// Returns the text for a message: printable, in single quotes, cut after 40 characters.
 NENDO_API std::string in_quotes(std::string_view text);
 
-/// Tells whether the text is well-formed UTF-8: no overlong forms, no surrogates, nothing beyond
+/// Returns whether the text is well-formed UTF-8: no overlong forms, no surrogates, nothing beyond
 /// U+10FFFF.
 NENDO_API bool is_utf8(std::string_view text) noexcept;
 

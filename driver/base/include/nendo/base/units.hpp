@@ -53,7 +53,7 @@ constexpr double seconds_between(HostTime from, HostTime to) noexcept {
   return to_seconds(HostClock::duration(static_cast<HostClock::rep>(ticks(to) - ticks(from))));
 }
 
-/// These convert degrees to radians and back. Degrees are for people: texts, options, and tables
+/// These convert degrees to radians and back. Degrees are for people: strings, options, and tables
 /// taken from publications.
 constexpr double from_degrees(double angle_deg) noexcept {
   return angle_deg * std::numbers::pi / 180.0;
