@@ -207,7 +207,7 @@ Result<std::string> calibration_text(const WearerCalibration& wearer) {
                      left_out_line(wearer.left_out) + mixed_in_lines(wearer.calibration);
   text += "\n[glove]\nmodel = " + toml_string(wearer.glove_model) +
           "\nserial = " + toml_string(wearer.glove_serial) +
-          "\ncounts_max = " + std::to_string(wearer.counts.most) +
+          "\ncounts_most = " + std::to_string(wearer.counts.most) +
           "\nwhole_range = " + (wearer.counts.whole_range ? "true" : "false") + "\n";
   text += "\n[hand_size]\nlength_m = " + decimal_text(wearer.size.length_m) +
           "\nbreadth_m = " + decimal_text(wearer.size.breadth_m) + "\n" +
