@@ -13,6 +13,7 @@
 #include "support/cut_laws.hpp"
 #include "support/nasty_meshes.hpp"
 #include "support/random_blades.hpp"
+#include "support/test_meshes.hpp"
 
 namespace cut_test {
 
@@ -248,6 +249,26 @@ TEST_SUITE("cut") {
     Mesh broken = ball;
     broken.vertices(1, 3) = nan;
     CHECK(why(cut_model(broken, CutPlane{{0, 0, 0}, {0, 0, 1}})).first == Errc::bad_input);
+  }
+
+  TEST_CASE("faces whose triangles touch along one line are refused") {
+    Mesh spindle; // three quads from tip to tip, whose diagonals all are its axis
+    spindle.vertices.resize(3, 5);
+    spindle.vertices << 0, 0, 1, -0.5, -0.5, 0, 0, 0, 0.9, -0.9, 1, -1, 0, 0.05, 0.1;
+    for (std::uint32_t k = 0; k < 3; ++k)
+      add_face(spindle, {0, 2 + k, 1, 2 + (k + 1) % 3});
+    REQUIRE(check_closed_manifold(spindle));
+    const auto by_plane = cut_model(spindle, CutPlane{{0, 0, 0.1}, {0.1, 0.2, 1}});
+    REQUIRE_FALSE(by_plane);
+    CHECK(by_plane.error().code == Errc::failed);
+    CutWire bent;
+    for (int k = -10; k <= 10; ++k) {
+      const double x = 0.2 * k, height = 0.3 * x * x;
+      bent.places.push_back({{x, -3, height - 0.1}, {x, 3, height + 0.05}});
+    }
+    const auto by_wire = cut_model(spindle, bent);
+    REQUIRE_FALSE(by_wire);
+    CHECK(by_wire.error().code == Errc::failed);
   }
 
   TEST_CASE("a wire that turns back on itself is refused or cuts soundly") {

@@ -161,7 +161,7 @@ Outcome Cutter::attempt() {
   CutSurface surface(mesh_, rest_, edges_, blade_, give_, sides_);
   if (!surface.refine(0.02 * edge_))
     return refuse("cannot be cut here: the blade bends too often for its size");
-  surface.cross();
+  if (!surface.cross()) return Outcome::again;
   if (!choose_loops(surface))
     return refuse(surface.loops().empty() ? "is not touched by the blade"
                                           : "is not cut: the blade does not go through");

@@ -1,7 +1,6 @@
 #include "cut/cut_surface.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -131,9 +130,10 @@ double CutSurface::sag_of(const Piece& piece) const noexcept {
   return worst;
 }
 
-/// Returns the piece that has this edge, and activates the face whose it is.
+/// Returns the piece that has this edge, and activates the face whose it is. no_index: pieces of
+/// several faces had the edge, and it was split in another one.
 std::uint32_t CutSurface::piece_at(std::uint32_t from, std::uint32_t to) {
-  const auto found = piece_of_edge_.find(way_of(from, to));
+  auto found = piece_of_edge_.find(way_of(from, to));
   if (found != piece_of_edge_.end()) return found->second;
   for (const std::uint32_t edge : edges_.out[from]) {
     if (mesh_.face_corners[edges_.next[edge]] != to) continue;
@@ -141,7 +141,8 @@ std::uint32_t CutSurface::piece_at(std::uint32_t from, std::uint32_t to) {
     activate(static_cast<std::uint32_t>(behind - mesh_.face_starts.begin() - 1));
     break;
   }
-  return piece_of_edge_.at(way_of(from, to));
+  found = piece_of_edge_.find(way_of(from, to));
+  return found == piece_of_edge_.end() ? no_index : found->second;
 }
 
 /// Puts a vertex between the ends of an edge, near its middle, but not on the blade.
@@ -171,6 +172,7 @@ void CutSurface::halve(std::uint32_t from, std::uint32_t to, std::vector<std::ui
 void CutSurface::split(std::uint32_t from, std::uint32_t to, std::uint32_t middle, double part,
                        std::vector<std::uint32_t>& changed) {
   const std::uint32_t number = piece_at(from, to);
+  if (number == no_index) return;
   const Piece old = pieces_[number];
   std::size_t k = 0;
   while (old.vertices[k] != from)
@@ -258,7 +260,7 @@ std::uint32_t CutSurface::crossing(std::uint32_t one, std::uint32_t other) {
   return found->second;
 }
 
-void CutSurface::cross() {
+bool CutSurface::cross() {
   for (std::uint32_t number = 0; number < pieces_.size(); ++number) {
     const Piece& piece = pieces_[number];
     if (!is_crossed(piece)) continue;
@@ -271,19 +273,21 @@ void CutSurface::cross() {
     const std::uint32_t before = crossing(corner, piece.vertices[(lone + 2) % 3]);
     crossed_.push_back({number, lone, after, before});
   }
-  link_loops();
+  return link_loops();
 }
 
 /// On a closed two-manifold each crossing has one before it and one behind it, so all form loops.
-void CutSurface::link_loops() {
+/// Triangles are another surface than the faces where two diagonals have the same ends.
+bool CutSurface::link_loops() {
   next_.assign(crossings_.size(), no_index);
   loop_of_.assign(crossings_.size(), no_index);
   for (const CrossedPiece& crossed : crossed_) {
     const bool lone_is_up = is_up(pieces_[crossed.piece].vertices[crossed.lone]);
     const std::uint32_t from = lone_is_up ? crossed.after : crossed.before;
-    assert(next_[from] == no_index);
+    if (next_[from] != no_index) return false;
     next_[from] = lone_is_up ? crossed.before : crossed.after;
   }
+  if (std::find(next_.begin(), next_.end(), no_index) != next_.end()) return false;
   for (std::uint32_t first = 0; first < crossings_.size(); ++first) {
     if (loop_of_[first] != no_index) continue;
     const auto number = static_cast<std::uint32_t>(loops_.size());
@@ -293,6 +297,7 @@ void CutSurface::link_loops() {
       loops_.back().push_back(at);
     }
   }
+  return true;
 }
 
 TexturePoint CutSurface::texcoord(std::uint32_t index) const noexcept {

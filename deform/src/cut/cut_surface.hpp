@@ -46,8 +46,9 @@ public:
   /// Halves edges until a blade that bends is nowhere farther than `sag` from the chord in which it
   /// crosses a triangle. Returns false if that takes too many vertices.
   bool refine(double sag);
-  /// Finds the crossings, and the closed loops that they form.
-  void cross();
+  /// Finds the crossings, and the closed loops that they form. Returns false if there are no such
+  /// loops, because triangles of several faces touch along one line.
+  bool cross();
 
   bool bends() const noexcept { return blade_.bends(); }
   bool is_active(std::size_t face) const noexcept { return active_[face] != 0; }
@@ -87,7 +88,7 @@ private:
              std::vector<std::uint32_t>& changed);
   std::uint32_t crossing(std::uint32_t from, std::uint32_t to);
   double crossing_part(std::uint32_t from, std::uint32_t to) const noexcept;
-  void link_loops();
+  bool link_loops();
   TexturePoint texcoord(std::uint32_t index) const noexcept;
 
   const Mesh& mesh_;
