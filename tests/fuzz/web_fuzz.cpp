@@ -64,8 +64,6 @@ void check_settings(const NamedSettings& named) {
   settings.radius_m.fill(1.0);
   named.apply_to(settings);
   require(settings.are_usable());
-  for (const double radius_m : settings.radius_m)
-    require(radius_m >= min_radius_m && radius_m <= max_radius_m);
   const auto again = parse_named_settings(text_of(settings));
   require(static_cast<bool>(again));
   nendo::flow::LoopSettings read;
