@@ -68,7 +68,7 @@ void Server::set_commands(const commands::Situation& now) {
 }
 
 void Server::set_puppet(std::uint32_t number, const puppet::Rig* rig) {
-  work_->set_fact(puppet_fact, message_of(number, rig));
+  work_->set_fact(puppet_fact, number, [&] { return message_of(number, rig); });
 }
 
 void Server::set_clay(const flow::Frame& frame) {
@@ -76,7 +76,7 @@ void Server::set_clay(const flow::Frame& frame) {
 }
 
 void Server::set_steps(const flow::StepList& steps) {
-  work_->set_fact(history_fact, message_of(steps));
+  work_->set_fact(history_fact, steps.version, [&] { return message_of(steps); });
 }
 
 void Server::set_gloves(const GloveStates& gloves) noexcept {

@@ -28,6 +28,17 @@ public:
   void add_weights(std::uint64_t number, std::vector<std::byte> message);
   void report(std::string message);
   void set_fact(Fact fact, std::vector<std::byte> message);
+  /// The same, but calls make() for the message only if the version is another one than the last.
+  template <class Make>
+  void set_fact(Fact fact, std::uint64_t version, const Make& make) {
+    {
+      const std::scoped_lock lock(mutex_);
+      if (facts_[fact] && version == versions_[fact]) return;
+      versions_[fact] = version;
+      facts_[fact] = std::make_shared<const std::vector<std::byte>>(make());
+    }
+    wake();
+  }
   void set_clay(const flow::Frame& frame);
 
   const Endpoint endpoint;
@@ -89,13 +100,14 @@ private:
 
   const ServerLimits limits_;
   Descriptor listener_, waker_;
-  std::mutex mutex_;              ///< guards the next seven
+  std::mutex mutex_;              ///< guards the next eight
   std::optional<Presented> next_; ///< set by present() and not taken yet
   std::uint16_t loops_ = 0;
-  std::string report_;           ///< the newest one; empty if it has been sent
-  HostTime next_clay_{};         ///< not before that
-  Facts facts_;                  ///< as messages; null before they are known
-  std::vector<Weights> weights_; ///< the newest last
+  std::string report_;                               ///< the newest one; empty if it has been sent
+  HostTime next_clay_{};                             ///< not before that
+  Facts facts_;                                      ///< as messages; null before they are known
+  std::array<std::uint64_t, fact_count> versions_{}; ///< the last versions of facts that have them
+  std::vector<Weights> weights_;                     ///< the newest last
   std::uint64_t weights_in_use_ = 0;
   Presented presented_;
   std::list<Connection> connections_; ///< the oldest first
