@@ -16,7 +16,7 @@ namespace {
 /// frames before, as the sums that these were. So each frame is needed once.
 class TakeMorphs {
 public:
-  /// The source must be at the first frame, which tells the scale.
+  /// The source must be at the first frame, which has the scale.
   TakeMorphs(const GltfJob& job, bool has_puppet)
       : job_(job), has_puppet_(has_puppet), document_(job.options) {
     const takes::FrameSource& source = job.frames.source();
@@ -65,8 +65,8 @@ public:
 private:
   const GltfJob& job_;
   bool has_puppet_;
-  double diagonal_ = 0.0;  ///< of the model, model units
-  double tolerance_ = 0.0; ///< of key shapes, model units
+  double diagonal_ = 0.0;  ///< the model's, model units
+  double tolerance_ = 0.0; ///< error limit of key shapes, model units
   GltfTake document_;
   std::vector<std::unique_ptr<ExactMorphs>> exact_; ///< the kinds that give all frames so far
   std::optional<KeyShapeModels> keys_;              ///< once there are none of these

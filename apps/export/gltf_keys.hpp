@@ -38,8 +38,8 @@ private:
   double frame_error_;
   GlbFile& file_;
   std::vector<MovingModel> models_;
-  double rest_error_ = 0.0;       ///< of the frames of the last model, before keys are chosen
-  std::optional<KeyShapes> keys_; ///< of the last model
+  double rest_error_ = 0.0;       ///< max error of the last model's frames, before keys are chosen
+  std::optional<KeyShapes> keys_; ///< the last model's
 };
 
 } // namespace nendo::exporting

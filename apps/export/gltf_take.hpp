@@ -63,9 +63,9 @@ struct GltfTake {
 struct MovingModel {
   GltfModel model;
   std::uint32_t version = 0;    ///< Frame::model
-  std::vector<float> times_s{}; ///< of its weights, since the first frame of the take
-  std::vector<float> weights{}; ///< of all targets, moment by moment; empty: of its key shapes
-  double greatest_error = 0.0;  ///< of a vertex, model units
+  std::vector<float> times_s{}; ///< times of the weights, since the first frame of the take
+  std::vector<float> weights{}; ///< all targets, time by time; empty: those of key shapes
+  double greatest_error = 0.0;  ///< a vertex' max error, model units
 };
 
 /// Adds the models, which follow each other in time, and the hands, and writes the file. `report`

@@ -40,7 +40,7 @@ struct TimelineView {
   bool computing = false;
   bool shape_is_old = false; ///< the visible shape was made before the last edits
   std::string message;       ///< about the last action; may be empty
-  bool refused = false;      ///< the action was refused, and `message` tells why
+  bool refused = false;      ///< the action was refused, and `message` has the reason
 };
 
 using commands::EditCommand;

@@ -93,15 +93,15 @@ public:
   std::optional<ClientCommand> next_command() noexcept;
   /// Sends a text for people to all clients. Any thread may call it; does not wait for the network.
   void report(std::string message);
-  /// Sets what the loop runs with. Clients are told when they come and when it changes. Any thread
-  /// may call it; does not wait for the network.
+  /// Sets what the loop runs with. Notifies clients when they connect and when it changes. Any
+  /// thread may call it; does not wait for the network.
   void set_settings(const flow::LoopSettings& settings);
   /// Sets which commands of the table are on, and which are not possible, with the reason. Clients
   /// are told when they come and when it changes. Any thread may call it; does not wait for the
   /// network.
   void set_commands(const commands::Situation& now);
-  /// Sets the steps of the history. Clients are told when they come and when it changes. Any thread
-  /// may call it; does not wait for the network.
+  /// Sets the steps of the history. Notifies clients when they connect and when it changes. Any
+  /// thread may call it; does not wait for the network.
   void set_steps(const flow::StepList& steps);
   /// Sets the puppet that is played, by the loop's number for it; null: none. Clients are told when
   /// they come and when it changes. Any thread may call it; does not wait for the network.

@@ -27,7 +27,7 @@ class Shaping {
     return { label, name, range, output, at }
   }
 
-  // Shows what is in force, whoever has asked for it, when what was asked for here has had time to come.
+  // Shows the current settings, from any client, after the requests of this page have had time to take effect.
   follow(inForce = this.inForce) {
     this.inForce = inForce
     const waits = this.due.size > 0 || performance.now() - this.askedAt < PATIENCE
@@ -54,7 +54,7 @@ class Shaping {
   change(name, value) {
     this.wanted[name] = value
     this.due.add(name)
-    this.shown = null // so that what is in force comes back if this is refused
+    this.shown = null // so that the current settings come back if this is refused
     this.show()
   }
   send() {
@@ -63,7 +63,7 @@ class Shaping {
     this.due.clear()
     this.askedAt = performance.now()
   }
-  // Sends what is due, and shows what comes in force next: the server is about to change it.
+  // Sends the requests that are due, and shows the next settings: the server is about to change them.
   giveWay() {
     this.send()
     Object.assign(this, { askedAt: -Infinity, shown: this.inForce })

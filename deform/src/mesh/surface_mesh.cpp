@@ -88,16 +88,16 @@ std::uint32_t SurfaceMesh::split(std::uint32_t edge) {
 
 /// Gives the half at the edge's end to a new face, and returns that half.
 std::uint32_t SurfaceMesh::split_face(std::uint32_t edge, std::uint32_t point) {
-  const std::uint32_t behind = next(edge);
+  const std::uint32_t following = next(edge);
   const std::uint32_t tip = last(edge);
   const std::uint32_t fresh = 3 * face_count();
-  faces_.push_back({point, from(behind), from(tip)});
+  faces_.push_back({point, from(following), from(tip)});
   twins_.resize(twins_.size() + 3, no_index);
-  link(next(fresh), twins_[behind]);
-  link(last(fresh), behind);
-  edge_at_[from(behind)] = next(fresh);
-  faces_[edge / 3][behind % 3] = point;
-  edge_at_[point] = behind;
+  link(next(fresh), twins_[following]);
+  link(last(fresh), following);
+  edge_at_[from(following)] = next(fresh);
+  faces_[edge / 3][following % 3] = point;
+  edge_at_[point] = following;
   edge_at_[from(tip)] = tip;
   return fresh;
 }

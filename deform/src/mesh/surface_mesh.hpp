@@ -3,7 +3,7 @@
 // the structure of all that edits a surface (refinement, joining, changes of topology).
 //
 // It has numbers only. What belongs to points, faces or edges stands beside it in columns, which
-// have one entry for each number; whoever edits the mesh lets them grow with it. Numbers of points
+// have one entry for each number; the editor of the mesh lets them grow with it. Numbers of points
 // and faces that are gone are not used again, until take() renumbers what is left.
 
 #include <cstddef>
@@ -107,10 +107,10 @@ private:
   std::uint32_t split_face(std::uint32_t edge, std::uint32_t point);
   void link(std::uint32_t edge, std::uint32_t twin);
 
-  std::vector<Corners> faces_; ///< of no_index, those that are gone
+  std::vector<Corners> faces_; ///< removed faces have corners no_index
   std::vector<std::uint32_t> twins_;
-  std::vector<std::uint32_t> edge_at_; ///< of each point some edge that begins there
-  std::unordered_map<std::uint64_t, std::uint32_t> boundary_; ///< edges by the points of both ends
+  std::vector<std::uint32_t> edge_at_; ///< by point: an edge that begins there
+  std::unordered_map<std::uint64_t, std::uint32_t> boundary_; ///< edges, by the points of both ends
 };
 
 } // namespace nendo::deform
