@@ -77,10 +77,6 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& names, T& value,
   return option;
 }
 
-bool is_shown(const CLI::App* command) {
-  return !command->get_group().empty();
-}
-
 /// Returns the words in a type like "TEXT:{left,right}", as CLI11 writes the choices of one_of().
 std::vector<std::string> choices_in(const std::string& type) {
   std::vector<std::string> choices;
@@ -126,14 +122,14 @@ CommandModel model_of(const CLI::App& app) {
   CommandModel model{app.get_name(), app.get_description(), app.get_footer(), {}, {}};
   for (const CLI::Option* option : app.get_options())
     add_models_of(*option, model.options);
-  for (const CLI::App* command : app.get_subcommands(is_shown))
+  for (const CLI::App* command : app.get_subcommands({}))
     model.commands.push_back(model_of(*command));
   return model;
 }
 
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const auto* command : app.get_subcommands(is_shown))
+  for (const auto* command : app.get_subcommands({}))
     names.push_back(command->get_name());
   return names;
 }
@@ -173,7 +169,7 @@ std::optional<std::string> unknown_command(CLI::App& program, int argc, char** a
   std::string path = "nendo";
   for (int word = 1; word < argc; ++word) {
     const std::string name = argv[word];
-    if (name.empty() || name.starts_with('-') || at->get_subcommands(is_shown).empty()) break;
+    if (name.empty() || name.starts_with('-') || at->get_subcommands({}).empty()) break;
     const auto named =
         at->get_subcommands([&](const CLI::App* command) { return command->get_name() == name; });
     if (named.empty()) {
@@ -314,16 +310,17 @@ void Command::on_chosen(std::function<int()> command) {
   app_->callback([chosen = chosen_, command = std::move(command)] { *chosen = command; });
 }
 
-void Command::hide() {
-  app_->group("");
-}
-
-CommandModel Command::model() const {
-  return model_of(*app_);
-}
-
 void Command::require_command() {
   app_->require_subcommand(1);
+}
+
+CommandModel describe_program(const std::string& summary,
+                              const std::function<void(Command&)>& add_commands) {
+  CLI::App app{summary};
+  std::function<int()> chosen;
+  Command program(app, chosen);
+  add_commands(program);
+  return model_of(app);
 }
 
 int run_program(int argc, char** argv, const std::string& summary,

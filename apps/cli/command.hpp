@@ -71,16 +71,15 @@ public:
   /// Returns the first of these options, by one name of each, that the arguments have; empty: none.
   /// For the function of on_chosen().
   std::string first_given(const std::vector<std::string>& names) const;
-  /// Leaves the command out of all lists, because it is not for users.
-  void hide();
-  /// Returns everything that was described so far, as --help shows it.
-  CommandModel model() const;
 
 private:
   CLI::App* app_;
   std::function<int()>* chosen_;
 };
 
+/// Returns everything that `add_commands` describes, as --help shows it.
+CommandModel describe_program(const std::string& summary,
+                              const std::function<void(Command&)>& add_commands);
 /// Describes the program by `add_commands`, runs the command that the arguments choose, and returns
 /// the exit code. Wrong usage prints one line on standard error.
 int run_program(int argc, char** argv, const std::string& summary,

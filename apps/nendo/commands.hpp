@@ -6,6 +6,11 @@
 
 namespace nendo::app {
 
+/// The first lines of --help: what the program is, and its exit codes.
+extern const char* const program_summary;
+/// Describes all commands, in the order of --help.
+void add_commands(cli::Command& program);
+
 namespace bench_command {
 void add(cli::Command& program);
 /// Becomes the nendo-bench that stands beside this program. `arguments` begin with the word after
@@ -51,9 +56,6 @@ namespace info_command {
 void add(cli::Command& program);
 }
 namespace join_command {
-void add(cli::Command& program);
-}
-namespace manual_command {
 void add(cli::Command& program);
 }
 namespace monitor_command {

@@ -34,39 +34,7 @@ int run(int argc, char** argv) {
   // The drivers' log lines must not mix with what a command prints.
   spdlog::set_default_logger(spdlog::stderr_color_mt("nendo"));
   spdlog::set_pattern("nendo: %v");
-  return cli::run_program(
-      argc, argv,
-      "Nendo: data gloves that shape 3-D models.\n"
-      "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no such glove or no answer, "
-      "4 no permission, 5 bad input file.",
-      [](cli::Command& program) {
-        demo_command::add(program);
-        run_command::add(program);
-        run_command::add_view(program);
-        monitor_command::add(program);
-        calibrate_command::add(program);
-        poses_command::add(program);
-        devices_command::add(program);
-        doctor_command::add(program);
-        udev_command::add(program);
-        info_command::add(program);
-        calibration_command::add(program);
-        puppet_command::add(program);
-        deform_command::add(program);
-        cut_command::add(program);
-        join_command::add(program);
-        repair_command::add(program);
-        picture_command::add(program);
-        emulate_command::add(program);
-        record_command::add(program);
-        replay_command::add(program);
-        recording_command::add(program);
-        export_command::add(program);
-        edit_command::add(program);
-        stress_command::add(program);
-        bench_command::add(program);
-        manual_command::add(program);
-      });
+  return cli::run_program(argc, argv, program_summary, add_commands);
 }
 
 } // namespace

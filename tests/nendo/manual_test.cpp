@@ -63,12 +63,9 @@ std::vector<Words> command_lines() {
 class Manual {
 public:
   Manual() {
-    const auto described = nendo::test::nendo({"bench", "describe"});
-    REQUIRE(described.exit_code == 0);
-    write_file(path("bench.json"), described.out);
-    const auto written = nendo::test::nendo(
-        {"manual", folder_.path().string(), "--date", "2026-01-02", "--bench", path("bench.json")});
-    REQUIRE_MESSAGE(written.exit_code == 0, written.err);
+    const auto written =
+        shell("'" NENDO_MANUAL "' '" + folder_.path().string() + "' 2026-01-02");
+    REQUIRE_MESSAGE(written.exit_code == 0, written.out);
   }
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
   /// What readline would offer for the words, of which the last one is being typed.
@@ -140,11 +137,13 @@ TEST_SUITE("manual") {
     CHECK_FALSE(shell("man --warnings -P cat -l " + page + " >/dev/null").out.empty());
   }
 
-  TEST_CASE("what is hidden from --help is in no manual") {
-    const Manual manual;
-    CHECK(help_of({}).find("  manual") == std::string::npos);
-    CHECK_FALSE(std::filesystem::exists(manual.path("nendo-manual.1")));
-    CHECK(manual.bash("nendo man").empty());
+  TEST_CASE("nendo-manual names a folder that cannot be written, and its usage") {
+    const auto failed = shell("'" NENDO_MANUAL "' /proc/manual 2026-01-02 2>&1");
+    CHECK(failed.exit_code == 1);
+    CHECK(failed.out.find("/proc/manual/nendo.1") != std::string::npos);
+    const auto usage = shell("'" NENDO_MANUAL "' 2>&1");
+    CHECK(usage.exit_code == 2);
+    CHECK(usage.out.find("nendo-manual FOLDER DATE") != std::string::npos);
   }
 
   TEST_CASE("bash completes commands, options and values") {

@@ -51,7 +51,7 @@ struct LoopSetup {
 struct Setup {
   std::chrono::sys_time<std::chrono::nanoseconds> begun; ///< by the system clock
   HostTime begun_host{};                                 ///< the same moment by HostClock
-  std::string program;                   ///< the program that recorded it, such as "nendo 0.1.0"
+  std::string program;                   ///< the program that recorded it, such as "nendo 0.2.0"
   std::string wearer;                    ///< empty means unknown
   std::vector<driver::GloveInfo> gloves; ///< by their numbers
   /// By the numbers of their gloves, also if there is no loop. They have no rings and no measured

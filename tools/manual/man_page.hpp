@@ -12,7 +12,7 @@ namespace nendo::manual {
 /// The origin of a page, as its head and foot show it.
 struct PageOrigin {
   std::string date;    ///< "2026-11-22"
-  std::string version; ///< "0.1.0"
+  std::string version; ///< "0.2.0"
 };
 
 /// Returns nendo.1, the page of the program and its commands.

@@ -1,25 +1,8 @@
 // The commands of nendo bench.
 
-#include <iostream>
-
 #include "bench/bench.hpp"
-#include "manual/model_json.hpp"
 
 namespace nendo::bench {
-namespace {
-
-void add_describe(cli::Command& bench) {
-  cli::Command command =
-      bench.add_command("describe", "Prints what these commands are, for nendo manual --bench");
-  command.hide();
-  command.on_chosen([bench] {
-    std::cout << manual::model_json(bench.model()) << '\n';
-    return 0;
-  });
-}
-
-} // namespace
-
 void add_bench(cli::Command& program) {
   cli::Command bench = program.add_command(
       "bench", "Measures this program on this machine: latency, faults, load, loop, rings, hands, "
@@ -40,7 +23,6 @@ void add_bench(cli::Command& program) {
   solve_bench::add(bench);
   table1_bench::add(bench);
   wearers_bench::add(bench);
-  add_describe(bench);
 }
 
 } // namespace nendo::bench
