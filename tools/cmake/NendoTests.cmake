@@ -5,8 +5,10 @@
 # clock and no device, and give way to tests that do.
 include(doctest)
 
-# What tools/check builds with the address sanitizer: the tests that do not need the program, and the fuzz targets.
+# What tools/check builds with the address sanitizer: the tests of libraries and of parsers, and the fuzz
+# targets.
 add_custom_target(library_tests)
+set(library_tests base explorer udev driver emulator hand deform puppet flow recording sculpting publish web serialport usb)
 add_custom_target(fuzz_targets)
 
 # doctest's own implementation, compiled once for all test programs.
@@ -38,12 +40,13 @@ function(nendo_test name)
   endif()
   target_link_libraries(${target} PRIVATE nendo_test_main ${ARG_LIBRARIES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${ARG_INCLUDES})
-  if(NOT ARG_PROGRAM)
+  if(name IN_LIST library_tests)
     add_dependencies(library_tests ${target})
-  else()
+  endif()
+  if(ARG_PROGRAM)
     target_compile_definitions(${target} PRIVATE NENDO_PROGRAM="$<TARGET_FILE:nendo>")
     add_dependencies(${target} nendo)
-    if(TARGET nendo-bench) # which `nendo bench` starts
+    if(TARGET nendo-bench) # nendo bench starts it
       add_dependencies(${target} nendo-bench)
     endif()
   endif()
