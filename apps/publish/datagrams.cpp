@@ -34,9 +34,9 @@ Result<void> DatagramPublisher::open() {
                      std::generic_category().message(number) + "; " + remedy};
   };
   const int family = target_.address.any.sa_family;
-  Descriptor socket(::socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  UniqueFd socket(::socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   // A socket that is connected would hear of ports that nobody listens at, and count losses there.
-  const Descriptor probe(::socket(family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const UniqueFd probe(::socket(family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (!socket.is_open() || !probe.is_open())
     return failure("no socket", "a service needs RestrictAddressFamilies=AF_INET AF_INET6");
   if (::connect(probe.get(), &target_.address.any, target_.length) != 0)

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <nendo/base/descriptor.hpp>
+#include <nendo/base/unique_fd.hpp>
 #include <nendo/flow/frame_sink.hpp>
 
 #include "publish/frame_record.hpp"
@@ -58,7 +58,7 @@ private:
 
   std::string name_;
   DatagramTarget target_;
-  Descriptor socket_;
+  UniqueFd socket_;
   // Used by the loop's thread.
   FrameRecord record_;
   std::unique_ptr<AtomicWord[]> memory_;

@@ -46,8 +46,8 @@ bool is_segment(int file) noexcept {
 }
 
 // No link is followed, and a pipe is not waited for.
-Descriptor look_at(const std::string& path) noexcept {
-  return Descriptor(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+UniqueFd look_at(const std::string& path) noexcept {
+  return UniqueFd(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
 }
 
 bool is_same(int one, int other) noexcept {
@@ -79,11 +79,11 @@ public:
   /// Does not wait. Errors: as SharedMemory::announce().
   Result<void> take(const std::string& path) {
     for (;;) {
-      Descriptor file(::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
+      UniqueFd file(::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
       if (!file.is_open()) return system_error(path_, "cannot be made", another_name);
       struct flock lock = whole_file(F_WRLCK);
       if (::fcntl(file.get(), F_OFD_SETLK, &lock) != 0) return taken(path);
-      const Descriptor there = look_at(path_);
+      const UniqueFd there = look_at(path_);
       if (!there.is_open() || !is_same(there.get(), file.get())) continue; // its holder has gone
       file_ = std::move(file);
       return {};
@@ -92,12 +92,12 @@ public:
 
 private:
   std::string path_;
-  Descriptor file_;
+  UniqueFd file_;
 };
 
 // Removes what a dead run left; anything else stays.
 Result<void> remove_stale(const std::string& path) {
-  const Descriptor old = look_at(path);
+  const UniqueFd old = look_at(path);
   if (!old.is_open()) {
     if (errno == ENOENT) return {};
     return system_error(path, "cannot be looked at", another_name);
@@ -118,7 +118,7 @@ Result<void> remove_stale(const std::string& path) {
 Result<SharedMemory> SharedMemory::create(const std::string& name, std::size_t bytes,
                                           const std::optional<unsigned>& group) {
   const std::string path = "/dev/shm/nendo-" + name;
-  Descriptor file(::open("/dev/shm", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600));
+  UniqueFd file(::open("/dev/shm", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600));
   if (!file.is_open())
     return system_error(path, "cannot be made", "is /dev/shm there, and may you write to it?");
   SharedMemory made(path, std::move(file), bytes);
@@ -168,7 +168,7 @@ SharedMemory::SharedMemory(SharedMemory&& other) noexcept
 SharedMemory::~SharedMemory() {
   if (memory_ != nullptr) ::munmap(memory_, bytes_);
   if (!named_) return;
-  const Descriptor there = look_at(path_);
+  const UniqueFd there = look_at(path_);
   if (there.is_open() && is_same(there.get(), file_.get())) ::unlink(path_.c_str());
 }
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include <nendo/base/descriptor.hpp>
 #include <nendo/base/result.hpp>
+#include <nendo/base/unique_fd.hpp>
 
 #include "publish/record_ring.hpp"
 
@@ -36,12 +36,12 @@ public:
   bool is_locked() const noexcept { return locked_; }
 
 private:
-  SharedMemory(std::string path, Descriptor file, std::size_t bytes)
+  SharedMemory(std::string path, UniqueFd file, std::size_t bytes)
       : path_(std::move(path)), file_(std::move(file)), bytes_(bytes) {}
   Result<void> lay_out(const std::optional<unsigned>& group);
 
   std::string path_;
-  Descriptor file_; ///< its lock shows that the writer is alive
+  UniqueFd file_; ///< its lock shows that the writer is alive
   void* memory_ = nullptr;
   std::size_t bytes_;
   bool locked_ = false;

@@ -23,7 +23,7 @@ SharedBytes shared_bytes(std::string_view text) {
   return std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end());
 }
 
-Connection::Connection(Descriptor socket, HostTime now, const ServerLimits& limits)
+Connection::Connection(UniqueFd socket, HostTime now, const ServerLimits& limits)
     : socket_(std::move(socket)), limits_(limits), stage_since_(now), last_progress_(now),
       queue_empty_(now), last_heard_(now), last_ping_(now), messages_left_(limits.message_burst),
       last_message_(now) {}

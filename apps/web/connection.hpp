@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <nendo/base/descriptor.hpp>
+#include <nendo/base/unique_fd.hpp>
 
 #include "web/feed.hpp"
 #include "web/server.hpp"
@@ -40,7 +40,7 @@ public:
   };
 
   /// `limits` must outlive the connection.
-  Connection(Descriptor socket, HostTime now, const ServerLimits& limits);
+  Connection(UniqueFd socket, HostTime now, const ServerLimits& limits);
 
   int fd() const noexcept { return socket_.get(); }
   Stage stage() const noexcept { return stage_; }
@@ -91,7 +91,7 @@ private:
   void flush(HostTime now);
   void end_sending(HostTime now);
 
-  Descriptor socket_;
+  UniqueFd socket_;
   const ServerLimits& limits_;
   Stage stage_ = Stage::head;
   HostTime stage_since_;

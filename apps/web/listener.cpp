@@ -28,7 +28,7 @@ Error refused(const Endpoint& endpoint, int error) {
   return {Errc::failed, at + std::strerror(error) + "; choose another address or port"};
 }
 
-int bind_to(const Descriptor& socket, const Endpoint& endpoint) {
+int bind_to(const UniqueFd& socket, const Endpoint& endpoint) {
   if (endpoint.is_ipv6()) {
     sockaddr_in6 address{};
     address.sin6_family = AF_INET6;
@@ -45,9 +45,9 @@ int bind_to(const Descriptor& socket, const Endpoint& endpoint) {
 
 } // namespace
 
-Result<Descriptor> listen_at(Endpoint& endpoint) {
+Result<UniqueFd> listen_at(Endpoint& endpoint) {
   const int family = endpoint.is_ipv6() ? AF_INET6 : AF_INET;
-  Descriptor socket(::socket(family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  UniqueFd socket(::socket(family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!socket.is_open()) return refused(endpoint, errno);
   const int yes = 1; // so that a run can take the port of a run that has just ended
   ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -62,8 +62,8 @@ Result<Descriptor> listen_at(Endpoint& endpoint) {
   return socket;
 }
 
-std::optional<Descriptor> accept_from(const Descriptor& listener, std::size_t buffer_bytes) {
-  Descriptor socket(::accept4(listener.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+std::optional<UniqueFd> accept_from(const UniqueFd& listener, std::size_t buffer_bytes) {
+  UniqueFd socket(::accept4(listener.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (!socket.is_open()) return std::nullopt;
   const int yes = 1; // updates are small, and must not wait for more
   ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <optional>
 
-#include <nendo/base/descriptor.hpp>
 #include <nendo/base/result.hpp>
+#include <nendo/base/unique_fd.hpp>
 
 #include "web/endpoint.hpp"
 
@@ -13,9 +13,9 @@ namespace nendo::web {
 
 /// Opens a non-blocking socket that listens at `endpoint`, and writes the port to `endpoint`.
 /// Error: failed.
-Result<Descriptor> listen_at(Endpoint& endpoint);
+Result<UniqueFd> listen_at(Endpoint& endpoint);
 /// Returns the next connection as a non-blocking socket, or nothing if there is none. buffer_bytes:
 /// the size of the socket's send buffer.
-std::optional<Descriptor> accept_from(const Descriptor& listener, std::size_t buffer_bytes);
+std::optional<UniqueFd> accept_from(const UniqueFd& listener, std::size_t buffer_bytes);
 
 } // namespace nendo::web

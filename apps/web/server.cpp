@@ -17,7 +17,7 @@ Result<std::unique_ptr<Server>> Server::open(const Endpoint& endpoint, ServerLim
   auto listener = listen_at(where);
   if (!listener) return listener.error();
   std::string token = random_hex(16);
-  Descriptor waker(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
+  UniqueFd waker(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
   if (token.empty() || !waker.is_open())
     return Error{Errc::failed, "--web: the system gives no randomness or no descriptor; close "
                                "some programs and try again"};

@@ -29,7 +29,7 @@ void write_loop(std::uint16_t loop, std::size_t at, std::vector<std::byte>& mess
 
 } // namespace
 
-Server::Work::Work(Endpoint where, std::string secret, Descriptor listener, Descriptor waker,
+Server::Work::Work(Endpoint where, std::string secret, UniqueFd listener, UniqueFd waker,
                    ServerLimits limits)
     : endpoint(std::move(where)), token(std::move(secret)), limits_(limits),
       listener_(std::move(listener)), waker_(std::move(waker)), thread_([this] { run(); }) {}

@@ -17,7 +17,7 @@ namespace nendo::web {
 
 class Server::Work {
 public:
-  Work(Endpoint endpoint, std::string token, Descriptor listener, Descriptor waker,
+  Work(Endpoint endpoint, std::string token, UniqueFd listener, UniqueFd waker,
        ServerLimits limits);
   ~Work();
   Work(const Work&) = delete;
@@ -99,7 +99,7 @@ private:
   std::size_t clients() const noexcept;
 
   const ServerLimits limits_;
-  Descriptor listener_, waker_;
+  UniqueFd listener_, waker_;
   std::mutex mutex_;              ///< guards the next eight
   std::optional<Presented> next_; ///< set by present() and not taken yet
   std::uint16_t loops_ = 0;

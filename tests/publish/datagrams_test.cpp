@@ -42,7 +42,7 @@ public:
   }
 
 private:
-  Descriptor socket_;
+  UniqueFd socket_;
   DatagramTarget target_;
   bool is_bound_ = false;
 };

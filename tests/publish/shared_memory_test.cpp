@@ -134,7 +134,7 @@ TEST_SUITE("shared_memory") {
                                    std::filesystem::perm_options::add);
       write_file(path_of(name), NENDO_PUBLISH_MAGIC + std::string(bytes, 'x'));
       // Who reads the old one, and locks it as a reader can, changes nothing.
-      const Descriptor reader(::open(path_of(name).c_str(), O_RDONLY | O_CLOEXEC));
+      const UniqueFd reader(::open(path_of(name).c_str(), O_RDONLY | O_CLOEXEC));
       struct flock lock{};
       lock.l_type = F_RDLCK;
       CHECK(::fcntl(reader.get(), F_OFD_SETLK, &lock) == 0);

@@ -81,7 +81,7 @@ struct Filled {
   }
   Kept written() {
     std::filesystem::remove(path);
-    const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600));
+    const UniqueFd file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600));
     REQUIRE(ring->write(file.get()));
     return read(path);
   }

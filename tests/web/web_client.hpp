@@ -13,7 +13,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <nendo/base/descriptor.hpp>
+#include <nendo/base/unique_fd.hpp>
 
 #include "web/server.hpp"
 
@@ -173,7 +173,7 @@ private:
   }
 
   std::string authority_, token_, received_;
-  Descriptor socket_;
+  UniqueFd socket_;
   bool connected_ = false;
   bool ended_ = false;
 };

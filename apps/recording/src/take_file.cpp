@@ -20,7 +20,7 @@ std::string last_error() {
 } // namespace
 
 Result<NewFile> NewFile::create(const std::filesystem::path& path) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666));
+  UniqueFd file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666));
   if (file.is_open()) return NewFile(path, std::move(file));
   if (errno == EEXIST)
     return Error{Errc::failed, path.string() + ": is there already, and no recording is written "

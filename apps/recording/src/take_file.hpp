@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include <nendo/base/descriptor.hpp>
 #include <nendo/base/result.hpp>
+#include <nendo/base/unique_fd.hpp>
 #include <nendo/recording/chunk_file.hpp>
 
 namespace nendo::recording {
@@ -36,11 +36,11 @@ public:
   const std::filesystem::path& path() const noexcept { return path_; }
 
 private:
-  NewFile(std::filesystem::path path, Descriptor file)
+  NewFile(std::filesystem::path path, UniqueFd file)
       : path_(std::move(path)), file_(std::move(file)), provisional_(true) {}
 
   std::filesystem::path path_;
-  Descriptor file_;
+  UniqueFd file_;
   bool provisional_;
 };
 

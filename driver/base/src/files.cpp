@@ -39,18 +39,18 @@ fs::path temporary_beside(const fs::path& target) {
 }
 
 // Not mkstemp: its 0600 would override the umask.
-Descriptor new_temporary(const fs::path& target, fs::path& name) {
+UniqueFd new_temporary(const fs::path& target, fs::path& name) {
   constexpr int max_leftovers = 100;
   for (int turn = 0;; ++turn) {
     name = temporary_beside(target);
-    Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    UniqueFd file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.is_open() || errno != EEXIST || turn == max_leftovers) return file;
   }
 }
 
 } // namespace
 
-bool Descriptor::close() noexcept {
+bool UniqueFd::close() noexcept {
   const int fd = std::exchange(fd_, -1);
   return fd < 0 || ::close(fd) == 0;
 }
@@ -67,7 +67,7 @@ bool write_all(int fd, std::span<const std::byte> rest) noexcept {
 
 void sync_folder_of(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const UniqueFd opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (opened.is_open()) ::fsync(opened.get());
 }
 
@@ -76,7 +76,7 @@ Result<OpenFile> open_file(const fs::path& path, std::string_view kind) {
     return Error{Errc::bad_input, path.string() + ": " + what};
   };
   // O_NONBLOCK: opening a pipe that nobody writes to would wait for ever.
-  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file.is_open()) return bad("cannot be opened: " + why(errno));
   struct stat info{};
   if (::fstat(file.get(), &info) != 0) return bad("cannot be read: " + why(errno));
@@ -97,7 +97,7 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t max_bytes,
   };
   const auto opened = open_file(path, kind);
   if (!opened) return opened.error();
-  const Descriptor& file = opened->file;
+  const UniqueFd& file = opened->file;
   const std::uint64_t size = opened->size;
   if (size > max_bytes) return too_large();
   std::string contents(size + 1, '\0'); // one more than is there: its end is seen in one turn

@@ -12,7 +12,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <nendo/base/descriptor.hpp>
+#include <nendo/base/unique_fd.hpp>
 
 #include "cyberglove/cyberglove_driver.hpp"
 #include "transport/open_transport.hpp"
@@ -24,8 +24,8 @@ namespace {
 using namespace std::chrono_literals;
 
 struct Wire {
-  Descriptor device;
-  Descriptor host;
+  UniqueFd device;
+  UniqueFd host;
 };
 
 Result<Wire> make_wire(Line line) {
@@ -34,17 +34,17 @@ Result<Wire> make_wire(Line line) {
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()) != 0)
       return none;
-    return Wire{Descriptor(ends[0]), Descriptor(ends[1])};
+    return Wire{UniqueFd(ends[0]), UniqueFd(ends[1])};
   }
   constexpr int flags = O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC;
-  Descriptor device(::posix_openpt(flags));
+  UniqueFd device(::posix_openpt(flags));
   std::array<char, 64> name{};
   const int fd = device.get();
   if (fd < 0 || ::grantpt(fd) != 0 || ::unlockpt(fd) != 0 ||
       ::ptsname_r(fd, name.data(), name.size()) != 0) {
     return none;
   }
-  Descriptor host(::open(name.data(), flags));
+  UniqueFd host(::open(name.data(), flags));
   termios settings{};
   if (!host.is_open() || ::tcgetattr(host.get(), &settings) != 0) return none;
   ::cfmakeraw(&settings);
@@ -177,7 +177,7 @@ Result<void> measure_latency(const LatencyOptions& options, const LatencySinks& 
   std::atomic<bool> opened{false};
   std::thread dialogue([&] { device.serve_dialogue(opened); });
   const auto open_port = [&]() -> Result<std::unique_ptr<driver::Transport>> {
-    Descriptor host = std::move(driver_wire->host); // the transport gets a copy of its own
+    UniqueFd host = std::move(driver_wire->host); // the transport gets a copy of its own
     const int fd = host.is_open() ? ::fcntl(host.get(), F_DUPFD_CLOEXEC, 0) : -1;
     if (fd < 0) return Error{Errc::no_device, "the line was closed"};
     return driver::transport_of(fd);

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include <nendo/base/descriptor.hpp>
 #include <nendo/base/result.hpp>
+#include <nendo/base/unique_fd.hpp>
 
 namespace nendo::emulator {
 
@@ -45,7 +45,7 @@ public:
 private:
   explicit PseudoTerminal(int fd) noexcept : device_(fd) {}
 
-  Descriptor device_;
+  UniqueFd device_;
   std::string path_;
   std::optional<SymbolicLink> link_; ///< last, so that it is removed first
 };

@@ -99,7 +99,7 @@ private:
   void count_number(std::uint32_t number);
 
   std::string name_;
-  Descriptor file_;                  ///< open, or else:
+  UniqueFd file_;                    ///< open, or else:
   std::span<const std::byte> bytes_; ///< all there is; of a file, its part from window_at_ on
   std::vector<std::byte> window_;
   std::uint64_t window_at_ = 0;

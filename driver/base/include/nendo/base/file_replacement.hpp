@@ -6,8 +6,8 @@
 #include <span>
 #include <string_view>
 
-#include <nendo/base/descriptor.hpp>
 #include <nendo/base/result.hpp>
+#include <nendo/base/unique_fd.hpp>
 
 namespace nendo {
 
@@ -41,7 +41,7 @@ private:
   std::filesystem::path path_; ///< as it was named
   std::filesystem::path target_;
   std::filesystem::path temporary_; ///< empty: there is none
-  Descriptor file_;
+  UniqueFd file_;
   std::uint64_t size_ = 0;
 };
 

@@ -9,13 +9,13 @@
 #include <string>
 #include <string_view>
 
-#include <nendo/base/descriptor.hpp>
 #include <nendo/base/result.hpp>
+#include <nendo/base/unique_fd.hpp>
 
 namespace nendo {
 
 struct OpenFile {
-  Descriptor file;
+  UniqueFd file;
   std::uint64_t size = 0; ///< when it was opened
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Owns a file descriptor and closes it when it goes.
+// The owner of a file descriptor, which closes it in the destructor.
 
 #include <utility>
 
@@ -7,14 +7,14 @@
 
 namespace nendo {
 
-class NENDO_API Descriptor {
+class NENDO_API UniqueFd {
 public:
-  Descriptor() = default;
-  /// Takes over what open() returned. A negative number means that no file is open.
-  explicit Descriptor(int fd) noexcept : fd_(fd) {}
-  ~Descriptor() { close(); }
-  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
+  UniqueFd() = default;
+  /// Takes over a descriptor, as open() returned it. A negative number means that no file is open.
+  explicit UniqueFd(int fd) noexcept : fd_(fd) {}
+  ~UniqueFd() { close(); }
+  UniqueFd(UniqueFd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  UniqueFd& operator=(UniqueFd&& other) noexcept {
     if (this != &other) {
       close();
       fd_ = std::exchange(other.fd_, -1);
