@@ -1,4 +1,4 @@
-#include "cyberglove/channel_map.hpp"
+#include "cyberglove/cyberglove_parser.hpp"
 
 #include <array>
 #include <bit>

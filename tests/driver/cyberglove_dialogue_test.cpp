@@ -22,7 +22,7 @@ using namespace std::string_view_literals;
 namespace {
 
 /// Time for an answer that is there already, on a busy machine; silence takes all of it.
-constexpr auto patience = 250ms;
+constexpr auto max_wait = 250ms;
 
 struct Exchange {
   Answer answer;
@@ -32,7 +32,7 @@ struct Exchange {
 
 Exchange ask_mask(std::string_view reply) {
   CannedTransport transport(reply);
-  Dialogue dialogue(transport, HostClock::now() + patience);
+  Dialogue dialogue(transport, HostClock::now() + max_wait);
   Exchange exchange{};
   exchange.answer = dialogue.ask(ask_hardware_mask, exchange.data, 1s);
   exchange.written = transport.written;
@@ -49,13 +49,13 @@ TEST_SUITE("cyberglove_dialogue") {
     CHECK(zeros.data == std::array{std::byte{0}, std::byte{0}, std::byte{1}});
   }
 
-  TEST_CASE("what stands before a reply is skipped") {
+  TEST_CASE("bytes before a reply are skipped") {
     CHECK(ask_mask("junk?\x00"
                    "e?\x01?K\x7F\xFF\x7F\x00"sv)
               .answer == Answer::good);
   }
 
-  TEST_CASE("errors are told apart") {
+  TEST_CASE("errors are distinguished") {
     CHECK(ask_mask("e?\0"sv).answer == Answer::unknown);
     CHECK(ask_mask("en\0"sv).answer == Answer::bad_number);
     CHECK(ask_mask("ey\0"sv).answer == Answer::bad_sync_rate);
@@ -102,7 +102,7 @@ TEST_SUITE("cyberglove_dialogue") {
       CAPTURE(one.echo);
       CAPTURE(one.reply);
       CannedTransport transport(one.reply);
-      Dialogue dialogue(transport, HostClock::now() + patience);
+      Dialogue dialogue(transport, HostClock::now() + max_wait);
       CHECK(dialogue.command(std::as_bytes(std::span("D\x01"sv)), one.echo, 1s) == one.answer);
       CHECK(transport.written == "D\x01");
     }
@@ -128,29 +128,10 @@ TEST_SUITE("cyberglove_dialogue") {
     CHECK(pause("").first == Answer::silent);
   }
 
-  TEST_CASE("a restart is over when its line has come, with NUL or without") {
-    const auto restart = [](std::string_view reply) {
-      CannedTransport transport(reply);
-      Dialogue dialogue(transport, HostClock::now() + 100ms);
-      const Answer answer = dialogue.restart(50ms);
-      CHECK(transport.written == "\x12");
-      return answer;
-    };
-    CHECK(restart("\x12\r\n\0"sv) == Answer::good);
-    CHECK(restart("\x12\r\n"sv) == Answer::good);
-    CHECK(restart("^R\r\n\0"sv) == Answer::good);
-    CHECK(restart("\x10\x20\0\x12\r\n\0"sv) == Answer::good);
-    CHECK(restart("\x12\r"sv) == Answer::nonsense);
-    CHECK(restart("\r\n\0"sv) == Answer::nonsense);
-    CHECK(restart("e?\0"sv) == Answer::unknown);
-    CHECK(restart("") == Answer::silent);
-    CHECK(restart(std::string(100'000, 'x')) == Answer::nonsense);
-  }
-
   TEST_CASE("text ends at NUL and is bounded") {
     std::string text;
     CannedTransport good("?i CyberGlove\0more"sv);
-    CHECK(Dialogue(good, HostClock::now() + patience).ask_text('i', text, 1s) == Answer::good);
+    CHECK(Dialogue(good, HostClock::now() + max_wait).ask_text('i', text, 1s) == Answer::good);
     CHECK(text == " CyberGlove");
     const std::string endless = "?i" + std::string(10'000, 'x');
     CannedTransport flood(endless);
@@ -166,7 +147,6 @@ TEST_SUITE("cyberglove_dialogue") {
     CHECK(lost.ask(ask_state, data, 10s) == Answer::gone);
     CHECK(lost.command(data, "D", 10s) == Answer::gone);
     CHECK(lost.pause_stream(10s) == Answer::gone);
-    CHECK(lost.restart(10s) == Answer::gone);
     CHECK(lost.stop_stream() == Answer::gone);
 
     transport.gone = false;
@@ -176,7 +156,6 @@ TEST_SUITE("cyberglove_dialogue") {
     const HostTime start = HostClock::now();
     CHECK(cancelled.ask(ask_state, data, 10s) == Answer::silent);
     CHECK(cancelled.pause_stream(10s) == Answer::silent);
-    CHECK(cancelled.restart(10s) == Answer::silent);
     CHECK(HostClock::now() - start < 1s);
   }
 }

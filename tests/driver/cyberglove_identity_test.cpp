@@ -4,7 +4,6 @@
 
 #include <doctest/doctest.h>
 
-#include "cyberglove/cyberglove_greeting.hpp"
 #include "support/canned_transport.hpp"
 
 namespace cyberglove_identity_test {
@@ -26,7 +25,7 @@ struct Meeting {
       : transport(script),
         greeting(greet(transport, dialogue,
                        bauds_to_try(options.baud.value_or(115'200), !options.baud.has_value()))),
-        greeted(check_state("port", greeting.reply, greeting.asked)),
+        greeted(check_state("port", greeting.reply, greeting.query)),
         identity(greeted ? identify(dialogue, "port", {options, greeting.baud, order})
                          : Result<Identity>(greeted.error())) {}
 
@@ -58,7 +57,7 @@ bool contains(const std::string& text, const std::string& part) {
 } // namespace
 
 TEST_SUITE("cyberglove_identity") {
-  TEST_CASE("a unit that knows all commands tells all facts, quickly") {
+  TEST_CASE("a unit that knows all commands reports all facts, quickly") {
     Script script = unit_that_knows_all();
     script.cybertouch = true;
     const HostTime start = HostClock::now();
@@ -142,7 +141,7 @@ TEST_SUITE("cyberglove_identity") {
     CHECK_FALSE(contains(met.heard(), "?P"));
   }
 
-  TEST_CASE("options are set, and told") {
+  TEST_CASE("options are set, and reported") {
     Options options;
     options.rate_hz = 100.0;
     options.mask = SensorMask{0x00000F};
@@ -288,7 +287,7 @@ TEST_SUITE("cyberglove_identity") {
     CHECK(named.identity.error().message.starts_with("port: no answer to ?G at 19200 baud; "));
   }
 
-  TEST_CASE("what others left behind does not disturb the start") {
+  TEST_CASE("leftovers of other programs do not disturb the start") {
     using namespace std::string_literals;
     for (const std::string& waiting :
          {"e?\0"s, "e?\0e?\0e?\0"s, "AT\r\nAT+GCAP\r\n"s, "\x11\x03\0"s, "?G"s}) {

@@ -16,7 +16,6 @@
 
 #include "cyberglove/cyberglove_dialogue.hpp"
 #include "cyberglove/cyberglove_driver.hpp"
-#include "cyberglove/cyberglove_greeting.hpp"
 #include "cyberglove/cyberglove_identity.hpp"
 #include "support/eventually.hpp"
 #include "support/required.hpp"

@@ -7,9 +7,6 @@
 
 #include <doctest/doctest.h>
 
-#include "cyberglove/cyberglove_line.hpp"
-#include "cyberglove/cyberglove_period.hpp"
-
 namespace cyberglove_options_test {
 
 using namespace nendo;
@@ -58,7 +55,7 @@ TEST_SUITE("cyberglove_options") {
     CHECK(options_of("?hires=on")->hires);
   }
 
-  TEST_CASE("what an option cannot be is a usage error that names it") {
+  TEST_CASE("a bad value is a usage error that names the option") {
     for (const char* text : {"?baud=9601",
                              "?baud=38400x",
                              "?rate=0",
@@ -161,12 +158,9 @@ TEST_SUITE("cyberglove_options") {
                            Row{0x14, 2400}, Row{0x15, 1200}, Row{0x16, 600}, Row{0x17, 300}}) {
       CAPTURE(row.byte);
       CHECK(baud_of_register(static_cast<std::uint8_t>(row.byte)) == row.baud);
-      CHECK(register_of_baud(row.baud) == row.byte);
     }
     for (const unsigned none : {0x08U, 0x18U, 0x40U, 0xFFU})
       CHECK_FALSE(baud_of_register(static_cast<std::uint8_t>(none)));
-    CHECK_FALSE(register_of_baud(115201));
-    CHECK_FALSE(register_of_baud(8862)); // 115200 / 13 is no whole number
   }
 
   TEST_CASE("a rate that the line cannot carry is refused with the arithmetic") {

@@ -1,4 +1,4 @@
-#include "cyberglove/hi_res_check.hpp"
+#include "cyberglove/record_check.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -70,7 +70,7 @@ Tally run(Line line, HiResCheck check, int records, Spoil&& spoil) {
     tally.lost += before_last;
     before_last = std::exchange(waiting, 0);
   }
-  tally.tells = check.tells_missed();
+  tally.tells = check.counts_missed();
   return tally;
 }
 
@@ -200,7 +200,7 @@ TEST_SUITE("hi_res_check") {
       missed += check(line.record(), line.now).missed;
     }
     CHECK(missed <= 2 * 45); // half a second each
-    CHECK(check.tells_missed());
+    CHECK(check.counts_missed());
   }
 
   TEST_CASE("numbers that make no sense are given up, and then nobody knows") {
@@ -214,7 +214,7 @@ TEST_SUITE("hi_res_check") {
       record.sub_frame = static_cast<std::uint8_t>(random() % 10);
       check(record, line.now);
     }
-    CHECK_FALSE(check.tells_missed());
+    CHECK_FALSE(check.counts_missed());
   }
 }
 

@@ -1,7 +1,7 @@
 // High-resolution records. The first byte chooses how the rest, the stream, is cut into chunks.
 
 #include "cyberglove/cyberglove_parser.hpp"
-#include "cyberglove/hi_res_check.hpp"
+#include "cyberglove/record_check.hpp"
 
 #include "parser_fuzz.hpp"
 

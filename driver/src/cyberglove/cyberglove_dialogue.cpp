@@ -1,7 +1,11 @@
 #include "cyberglove/cyberglove_dialogue.hpp"
 
 #include <algorithm>
+#include <cassert>
+#include <charconv>
 #include <optional>
+
+#include <nendo/base/byte_reader.hpp>
 
 namespace nendo::driver::cyberglove {
 namespace {
@@ -12,11 +16,12 @@ constexpr auto quiet_line = 50ms;
 constexpr auto quiet_end = 30ms;       ///< after what may be the end of a reply, or not quite
 constexpr auto rest_of_answer = 100ms; ///< after a beginning that came late; 90 bytes at 9600 baud
 constexpr auto write_timeout = 200ms;
-constexpr auto longest_wait = 100ms; ///< between two looks at the stop token
+constexpr auto max_wait = 100ms; ///< between two looks at the stop token
 constexpr std::size_t max_junk_bytes = 4096;
 constexpr std::size_t max_text_bytes = 2048;
+constexpr auto text_timeout = 1000ms; ///< the vendor's, for long strings [V]
 
-/// The error that came last, if any; its NUL may not have come yet.
+/// The last error, if any; its NUL may not have arrived yet.
 std::optional<Answer> error_at_end(const Tail& tail) noexcept {
   struct Known {
     char letter;
@@ -34,7 +39,7 @@ std::optional<Answer> error_at_end(const Tail& tail) noexcept {
   return std::nullopt;
 }
 
-/// What a frame, of which `tail` is the end without NUL, says to a command.
+/// The answer to a command in a frame that ends with `tail` and NUL.
 std::optional<Answer> check_confirmation(const Tail& tail, std::string_view echo) noexcept {
   // An echo like "1es" ends like an error; one like "y" is the end of an error.
   if (echo.size() > 2 && tail.ends_with(echo)) return Answer::good;
@@ -45,6 +50,28 @@ std::optional<Answer> check_confirmation(const Tail& tail, std::string_view echo
     if (tail.ends_with(echo, more)) return Answer::good;
   }
   return std::nullopt;
+}
+
+template <class T, std::size_t size, class Decode>
+Reply<T> decoded(const Reply<std::array<std::byte, size>>& reply, Decode&& decode) noexcept {
+  ByteReader reader(reply.value);
+  return {reply.answer, decode(reader)};
+}
+
+std::uint8_t one_byte(ByteReader& reader) noexcept {
+  return reader.u8();
+}
+
+SensorMask mask_of(ByteReader& reader) noexcept {
+  return {reader.u24_le()};
+}
+
+template <std::size_t size>
+std::array<std::uint8_t, size> all_bytes(ByteReader& reader) noexcept {
+  std::array<std::uint8_t, size> bytes{};
+  for (std::uint8_t& byte : bytes)
+    byte = reader.u8();
+  return bytes;
 }
 
 } // namespace
@@ -84,10 +111,10 @@ Answer Dialogue::next(std::byte& byte, HostTime until) noexcept {
   using std::chrono::milliseconds;
   while (unread_.empty()) {
     if (cancelled_.stop_requested()) return Answer::silent;
-    // What has arrived counts, also where this thread was kept from looking until it was too late.
+    // Bytes in the buffer count, even if this thread was delayed beyond `until`.
     const auto left = std::max(std::chrono::ceil<milliseconds>(until - HostClock::now()), 0ms);
     const auto [status, count] =
-        transport_.read_some(buffer_, std::min<milliseconds>(left, longest_wait));
+        transport_.read_some(buffer_, std::min<milliseconds>(left, max_wait));
     if (status == IoStatus::gone) return Answer::gone;
     if (count == 0 && left == 0ms) return Answer::silent;
     bytes_received_ += count;
@@ -130,9 +157,9 @@ Answer Dialogue::find_reply(std::string_view head, HostTime& until) noexcept {
   });
 }
 
-Answer Dialogue::drain(std::chrono::milliseconds longest) noexcept {
+Answer Dialogue::drain(std::chrono::milliseconds max_time) noexcept {
   unread_ = {};
-  const HostTime until = at_most(longest);
+  const HostTime until = at_most(max_time);
   for (;;) {
     std::byte ignored{};
     const HostTime quiet_at = HostClock::now() + quiet_line;
@@ -144,17 +171,17 @@ Answer Dialogue::drain(std::chrono::milliseconds longest) noexcept {
   }
 }
 
-Answer Dialogue::stop_stream(std::chrono::milliseconds longest) noexcept {
+Answer Dialogue::stop_stream(std::chrono::milliseconds max_time) noexcept {
   const Answer sent = send(std::span(&interrupt, 1));
-  return sent == Answer::good ? drain(longest) : sent;
+  return sent == Answer::good ? drain(max_time) : sent;
 }
 
 Answer Dialogue::pause_stream(std::chrono::milliseconds timeout) noexcept {
   HostTime until = at_most(timeout);
   if (const Answer sent = send(std::span(&interrupt, 1)); sent != Answer::good) return sent;
-  // 03 00 on its own is the answer. At the end of something longer it is the answer behind a record
-  // that was broken off, or a record whose last value is 3: then more follows, or it gets quiet. A
-  // 03 of its own, behind a record of 12 bits, is the answer if nothing follows.
+  // 03 00 on its own is the answer. At the end of something longer it is the answer after a broken
+  // record, or a record whose last value is 3: then more bytes follow, or none. A 03 of its own,
+  // after a record of 12 bits, is the answer if nothing follows.
   bool perhaps = false;
   std::byte last{};
   for (std::size_t length = 1;; ++length) {
@@ -223,53 +250,177 @@ Answer Dialogue::command(std::span<const std::byte> bytes, std::string_view echo
   });
 }
 
-Answer Dialogue::ask_record(std::size_t least, std::span<std::byte> record, std::size_t& size,
-                            std::chrono::milliseconds timeout) noexcept {
-  HostTime until = answered_by(timeout);
-  const std::array command{record_command};
-  if (const Answer sent = send(std::as_bytes(std::span(command))); sent != Answer::good) {
-    return sent;
-  }
-  Tail tail;
-  size = 0;
-  return read_until(until, [&](std::byte byte) -> std::optional<Answer> {
-    if (size < record.size()) record[size] = byte;
-    ++size; // beyond the record's room if the frame is too long to be one
-    if (byte != terminator) {
-      tail.push(byte);
-      return std::nullopt;
-    }
-    const bool fits = size >= least && size <= record.size();
-    if (fits && std::to_integer<char>(record[0]) == record_command) return Answer::good;
-    if (const auto error = error_at_end(tail)) return error;
-    size = 0;
-    return std::nullopt;
-  });
-}
-
-Answer Dialogue::restart(std::chrono::milliseconds timeout) noexcept {
-  HostTime until = at_most(timeout);
-  const auto slowest = slowest_answer_; // a restart takes its time, and is no answer
-  if (const Answer sent = send(std::span(&restart_firmware, 1)); sent != Answer::good) return sent;
-  Tail tail;
-  const Answer answer = read_until(until, [&](std::byte byte) -> std::optional<Answer> {
-    if (byte == terminator) {
-      if (const auto error = error_at_end(tail)) return error;
-    }
-    tail.push(byte);
-    // One driver expects the command as it would be printed.
-    if (tail.ends_with("\x12\r\n") || tail.ends_with("^R\r\n")) return Answer::good;
-    return std::nullopt;
-  });
-  slowest_answer_ = slowest;
-  if (answer != Answer::good) return answer;
-  // A left glove's answer may lack its NUL.
-  std::byte end{};
-  return next(end, at_most(quiet_end)) == Answer::gone ? Answer::gone : Answer::good;
-}
-
 Answer Dialogue::start_stream(std::string_view command) noexcept {
   return send(std::as_bytes(std::span(command)));
+}
+
+template <std::size_t size>
+Reply<std::array<std::byte, size>> Commands::ask(const Query& query) noexcept {
+  assert(query.data_bytes == size);
+  Reply<std::array<std::byte, size>> reply;
+  reply.answer = dialogue_.ask(query, reply.value, timeout_);
+  return reply;
+}
+
+Answer Commands::set(std::string_view head, std::span<const std::uint8_t> arguments) noexcept {
+  std::array<std::byte, 16> message{}; // the longest sets a period: t, two words and CR
+  assert(head.size() + arguments.size() <= message.size());
+  const auto letters = std::as_bytes(std::span(head));
+  const auto numbers = std::as_bytes(arguments);
+  const auto end = std::copy(letters.begin(), letters.end(), message.begin());
+  std::copy(numbers.begin(), numbers.end(), end);
+  const auto bytes = std::span(message).first(letters.size() + numbers.size());
+  const Answer answer = dialogue_.command(bytes, head, timeout_);
+  // A unit that does not know the command takes the arguments for further commands: their errors
+  // must not be taken for the next replies, nor may one of them wait for an argument.
+  if (answer != Answer::good && answer != Answer::gone) dialogue_.stop_stream();
+  return answer;
+}
+
+Answer Commands::set(std::string_view head, std::uint8_t argument) noexcept {
+  return set(head, std::span(&argument, 1));
+}
+
+Reply<std::string> Commands::information() {
+  Reply<std::string> reply;
+  reply.answer = dialogue_.ask_text(ask_information, reply.value, std::max(timeout_, text_timeout));
+  return reply;
+}
+
+Reply<std::string> Commands::firmware_text() {
+  Reply<std::string> reply;
+  reply.answer = dialogue_.ask_text(ask_firmware_text, reply.value, timeout_);
+  return reply;
+}
+
+Reply<std::array<std::uint8_t, 4>> Commands::firmware() noexcept {
+  return decoded<std::array<std::uint8_t, 4>>(ask<4>(ask_firmware), all_bytes<4>);
+}
+
+Reply<GloveState> Commands::state() noexcept {
+  return decoded<GloveState>(ask<1>(ask_state), [](ByteReader& reader) {
+    const std::uint8_t bits = reader.u8();
+    return GloveState{(bits & state_initialised) != 0, (bits & state_connected) != 0};
+  });
+}
+
+Reply<std::uint8_t> Commands::sensor_count() noexcept {
+  return decoded<std::uint8_t>(ask<1>(ask_sensor_count), one_byte);
+}
+
+Reply<SensorMask> Commands::hardware_mask() noexcept {
+  return decoded<SensorMask>(ask<3>(ask_hardware_mask), mask_of);
+}
+
+Reply<Side> Commands::side() noexcept {
+  return decoded<Side>(ask<1>(ask_right_hand), [](ByteReader& reader) {
+    return reader.u8() == 0 ? Side::left : Side::right;
+  });
+}
+
+Reply<bool> Commands::get(Setting setting) noexcept {
+  return decoded<bool>(ask<1>({static_cast<char>(setting), 1}),
+                       [](ByteReader& reader) { return reader.u8() != 0; });
+}
+
+Answer Commands::set(Setting setting, bool on) noexcept {
+  const auto letter = static_cast<char>(setting);
+  return set({&letter, 1}, on ? 1 : 0);
+}
+
+Reply<SensorMask> Commands::software_mask() noexcept {
+  return decoded<SensorMask>(ask<3>(ask_software_mask), mask_of);
+}
+
+Answer Commands::set_software_mask(SensorMask mask) noexcept {
+  return set(cyberglove::set_software_mask,
+             std::array{static_cast<std::uint8_t>(mask.bits & 0xFFU),
+                        static_cast<std::uint8_t>(mask.bits >> 8U & 0xFFU),
+                        static_cast<std::uint8_t>(mask.bits >> 16U & 0xFFU)});
+}
+
+Reply<std::uint8_t> Commands::value_count() noexcept {
+  return decoded<std::uint8_t>(ask<1>(ask_value_count), one_byte);
+}
+
+Answer Commands::set_value_count(std::uint8_t count) noexcept {
+  return set(cyberglove::set_value_count, count);
+}
+
+Reply<std::uint32_t> Commands::parameters() noexcept {
+  return decoded<std::uint32_t>(ask<3>(ask_parameters),
+                                [](ByteReader& reader) { return reader.u24_le(); });
+}
+
+Answer Commands::set_sync(bool on) noexcept {
+  return set(cyberglove::set_sync, on ? 1 : 0);
+}
+
+Reply<std::array<std::byte, 4>> Commands::period_bytes() noexcept {
+  return ask<4>(ask_period);
+}
+
+Reply<std::optional<WordOrder>> Commands::set_period(Period period) noexcept {
+  std::array<char, 13> text{}; // " 65535 65535\r"
+  char* end = text.begin();
+  for (const unsigned word : {period.ticks, period.times}) {
+    *end++ = ' ';
+    end = std::to_chars(end, text.end(), word).ptr;
+  }
+  *end++ = '\r';
+  std::array<std::uint8_t, text.size()> bytes{};
+  std::copy(text.begin(), end, bytes.begin());
+  const auto size = static_cast<std::size_t>(end - text.begin());
+  const Answer done = set(set_period_text, std::span(bytes).first(size));
+  // An unreadable confirmation is no confirmation, but the query shows what the unit did.
+  if (done != Answer::good && done != Answer::nonsense) return {done, std::nullopt};
+  const auto reply = period_bytes();
+  if (reply.answer == Answer::unknown) return {done, std::nullopt};
+  if (!reply) return {reply.answer, std::nullopt};
+  const auto order = order_of(reply.value, period);
+  return {order ? Answer::good : Answer::other_value, order};
+}
+
+Reply<HardwareCalibration> Commands::hardware_calibration(std::size_t sensors) noexcept {
+  assert(sensors <= sensor_slots);
+  std::array<std::byte, 2 * sensor_slots> data{};
+  const auto used = std::span(data).first(2 * sensors);
+  Reply<HardwareCalibration> reply;
+  reply.answer = dialogue_.ask({ask_calibration, used.size()}, used, timeout_);
+  reply.value.sensors = sensors;
+  ByteReader reader(used);
+  for (std::size_t k = 0; k < sensors; ++k)
+    reply.value.offset[k] = reader.u8();
+  for (std::size_t k = 0; k < sensors; ++k)
+    reply.value.gain[k] = reader.u8();
+  return reply;
+}
+
+Reply<std::uint8_t> Commands::baud_register() noexcept {
+  return decoded<std::uint8_t>(ask<1>(ask_baud), one_byte);
+}
+
+Reply<Vibration> Commands::vibration() noexcept {
+  return decoded<Vibration>(ask<6>(ask_vibration), all_bytes<6>);
+}
+
+Answer Commands::set_vibration(const Vibration& strength) noexcept {
+  std::array<std::uint8_t, 1 + std::tuple_size_v<Vibration>> bytes{all_vibrators};
+  std::copy(strength.begin(), strength.end(), bytes.begin() + 1);
+  return set(cyberglove::set_vibration, bytes);
+}
+
+Answer Commands::reread_glove() noexcept {
+  const auto letter = std::to_integer<char>(cyberglove::reread_glove);
+  return set({&letter, 1});
+}
+
+Answer Commands::enable_hires() noexcept {
+  return set(third_enable_usb);
+}
+
+Answer Commands::set_frame_rate(std::uint8_t thirties) noexcept {
+  return set(third_frame_rate, thirties);
 }
 
 } // namespace nendo::driver::cyberglove

@@ -1,7 +1,8 @@
 #pragma once
-// Asks the glove's interface unit, and reads its answers, while it does not stream. Replies may
-// contain NUL and are therefore read by length. Bytes before a reply are skipped, since the unit
-// may still be answering another program.
+// Commands and queries to the glove's interface unit while it does not stream: Dialogue sends and
+// receives bytes, and Commands has a typed function for each command that the driver uses;
+// cyberglove_protocol.hpp has the bytes. Replies may contain NUL and are therefore read by length.
+// Bytes before a reply are skipped, since the unit may still be answering another program.
 
 #include <algorithm>
 #include <array>
@@ -17,6 +18,7 @@
 
 #include <nendo/base/units.hpp>
 
+#include "cyberglove/cyberglove_options.hpp"
 #include "cyberglove/cyberglove_protocol.hpp"
 #include "transport/transport.hpp"
 
@@ -31,18 +33,17 @@ enum class Answer : std::uint8_t {
   bad_sync_rate, ///< ey
   no_glove,      ///< eg : no glove is plugged into the unit
   bad_rate,      ///< es : it cannot sample as fast
-  other_value,   ///< it says that it did not do what it was told
-  nonsense,      ///< something came that is no answer
+  other_value,   ///< the unit took another value
+  nonsense,      ///< bytes came that are no answer
 };
 
-/// The last bytes that came, in which short patterns are recognised.
+/// The last bytes received, in which short patterns are recognised.
 class Tail {
 public:
   void push(std::byte byte) noexcept {
     bytes_ = bytes_ << 8U | std::to_integer<std::uint64_t>(byte);
   }
-  /// Returns true if `pattern`, at most 8 bytes, is what came last, or stands just before the last
-  /// `back` bytes.
+  /// Returns true if the bytes received end with `pattern`, at most 8 bytes, and then `back` more.
   bool ends_with(std::string_view pattern, unsigned back = 0) const noexcept;
 
 private:
@@ -57,13 +58,12 @@ public:
   Dialogue(Transport& transport, HostTime deadline, std::stop_token cancelled = {}) noexcept
       : transport_(transport), deadline_(deadline), cancelled_(std::move(cancelled)) {}
 
-  /// From now on waits so long for an answer to begin, if that is longer, while nothing at all
-  /// comes: a unit that is slow now and then is quiet before it answers, and what is no unit may
-  /// babble.
+  /// Sets the min time to wait for the first byte of an answer: a slow unit is quiet before it
+  /// answers, while another device may send bytes without end.
   void wait_on_quiet_line(std::chrono::milliseconds time) noexcept { quiet_wait_ = time; }
   /// Lets calls last until `deadline`, if that is later.
   void prolong(HostTime deadline) noexcept { deadline_ = std::max(deadline_, deadline); }
-  /// Expects answers to take so long, e.g. as in an earlier dialogue with the same unit.
+  /// Expects answers to take this time, e.g. as in an earlier dialogue with the same unit.
   void expect_late_answers(std::chrono::milliseconds time) noexcept {
     slowest_answer_ = std::max(slowest_answer_, time);
   }
@@ -71,8 +71,8 @@ public:
   std::chrono::milliseconds slowest_answer() const noexcept { return slowest_answer_; }
 
   /// Ends a stream and reads until the line has been quiet for 50 ms. Gives up with `nonsense` if
-  /// bytes still come after `longest`.
-  Answer stop_stream(std::chrono::milliseconds longest = longest_drain) noexcept;
+  /// bytes still come after `max_time`.
+  Answer stop_stream(std::chrono::milliseconds max_time = max_drain) noexcept;
   /// Ends a stream and reads up to the answer. It is quicker, but needs a line without noise.
   Answer pause_stream(std::chrono::milliseconds timeout) noexcept;
   /// Asks for data. `data` must have the size that the query states; it is filled if the answer is
@@ -85,23 +85,17 @@ public:
   /// has 1 to 4 characters.
   Answer command(std::span<const std::byte> bytes, std::string_view echo,
                  std::chrono::milliseconds timeout) noexcept;
-  /// Asks for one record, which has at least `least` bytes. `size` becomes its length with header
-  /// and NUL.
-  Answer ask_record(std::size_t least, std::span<std::byte> record, std::size_t& size,
-                    std::chrono::milliseconds timeout) noexcept;
-  /// Restarts the firmware. All settings are then as after power-up.
-  Answer restart(std::chrono::milliseconds timeout) noexcept;
   /// Sends a command that begins a stream. All bytes that arrive from now on are records.
   Answer start_stream(std::string_view command) noexcept;
 
   /// Returns how many bytes were read from the transport so far.
   std::uint64_t bytes_received() const noexcept { return bytes_received_; }
 
-  static constexpr std::chrono::milliseconds longest_drain{500};
+  static constexpr std::chrono::milliseconds max_drain{500};
 
 private:
   Answer send(std::span<const std::byte> command) noexcept;
-  Answer drain(std::chrono::milliseconds longest) noexcept;
+  Answer drain(std::chrono::milliseconds max_time) noexcept;
   Answer next(std::byte& byte, HostTime until) noexcept;
   template <class Judge>
   Answer read_until(HostTime& until, Judge&& judge) noexcept; ///< `judge(byte)` ends it
@@ -115,9 +109,82 @@ private:
   std::array<std::byte, 256> buffer_{};
   std::span<const std::byte> unread_;
   std::uint64_t bytes_received_ = 0;
-  HostTime sent_at_{}; ///< the last command or question
+  HostTime sent_at_{}; ///< time of the last command or query
   std::chrono::milliseconds quiet_wait_{0};
   std::chrono::milliseconds slowest_answer_{0};
+};
+
+/// A reply. `value` is valid only if the answer is good.
+template <class T>
+struct Reply {
+  Answer answer = Answer::silent;
+  T value{};
+  explicit operator bool() const noexcept { return answer == Answer::good; }
+};
+
+struct GloveState {
+  bool initialised = false;
+  bool connected = false; ///< a glove is plugged into the unit
+};
+
+/// The offsets and gains by which the unit quantises values. The first `sensors` of each are valid.
+struct HardwareCalibration {
+  std::size_t sensors = 0;
+  std::array<std::uint8_t, sensor_slots> offset{};
+  std::array<std::uint8_t, sensor_slots> gain{};
+};
+
+using Vibration = std::array<std::uint8_t, 6>; ///< thumb to pinky, palm
+
+/// Each call waits for its reply, at most `timeout` unless stated otherwise.
+class Commands {
+public:
+  explicit Commands(Dialogue& dialogue, std::chrono::milliseconds timeout) noexcept
+      : dialogue_(dialogue), timeout_(timeout) {}
+
+  // Queries about the glove and its unit.
+  Reply<std::string> information(); ///< several lines; up to 1 s
+  Reply<std::string> firmware_text();
+  Reply<std::array<std::uint8_t, 4>> firmware() noexcept;
+  Reply<GloveState> state() noexcept;
+  Reply<std::uint8_t> sensor_count() noexcept;
+  Reply<SensorMask> hardware_mask() noexcept;
+  Reply<Side> side() noexcept;
+
+  // Settings, which the unit forgets when it is switched off.
+  Reply<bool> get(Setting setting) noexcept;
+  Answer set(Setting setting, bool on) noexcept;
+  Reply<SensorMask> software_mask() noexcept;
+  Answer set_software_mask(SensorMask mask) noexcept;
+  Reply<std::uint8_t> value_count() noexcept;
+  Answer set_value_count(std::uint8_t count) noexcept;
+  Reply<std::uint32_t> parameters() noexcept; ///< flags, see cyberglove_protocol.hpp
+  /// Makes records begin with Y and come at the pulses of the sync input. Pulses that are too fast
+  /// give bad_sync_rate.
+  Answer set_sync(bool on) noexcept;
+  Reply<std::array<std::byte, 4>> period_bytes() noexcept; ///< see decode_period()
+  /// Sets the period in text, which has no byte order, and then asks for it in bytes. The value is
+  /// the byte order that the reply shows, if the unit knows the query. bad_rate and bad_number mean
+  /// that the unit refuses, and other_value that it set another period.
+  Reply<std::optional<WordOrder>> set_period(Period period) noexcept;
+  Reply<HardwareCalibration> hardware_calibration(std::size_t sensors) noexcept;
+  Reply<std::uint8_t> baud_register() noexcept; ///< see baud_of_register()
+  Reply<Vibration> vibration() noexcept;
+  Answer set_vibration(const Vibration& strength) noexcept;
+  Answer reread_glove() noexcept; ///< reads the memory of a glove that was swapped
+
+  // CyberGlove III only.
+  Answer enable_hires() noexcept;                        ///< 12-bit records over the cable
+  Answer set_frame_rate(std::uint8_t thirties) noexcept; ///< in steps of 30 Hz
+
+private:
+  template <std::size_t size>
+  Reply<std::array<std::byte, size>> ask(const Query& query) noexcept;
+  Answer set(std::string_view head, std::span<const std::uint8_t> arguments = {}) noexcept;
+  Answer set(std::string_view head, std::uint8_t argument) noexcept;
+
+  Dialogue& dialogue_;
+  const std::chrono::milliseconds timeout_;
 };
 
 } // namespace nendo::driver::cyberglove

@@ -6,15 +6,11 @@
 
 #include <spdlog/spdlog.h>
 
-#include "cyberglove/cyberglove_commands.hpp"
 #include "cyberglove/cyberglove_dialogue.hpp"
-#include "cyberglove/cyberglove_greeting.hpp"
 #include "cyberglove/cyberglove_identity.hpp"
-#include "cyberglove/cyberglove_line.hpp"
 #include "cyberglove/cyberglove_options.hpp"
-#include "cyberglove/cyberglove_parameters.hpp"
 #include "cyberglove/cyberglove_parser.hpp"
-#include "cyberglove/hi_res_check.hpp"
+#include "cyberglove/cyberglove_protocol.hpp"
 #include "cyberglove/record_check.hpp"
 #include "stream/device_clock.hpp"
 #include "transport/follow_port.hpp"
@@ -24,9 +20,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto state_answer = 300ms; ///< of a unit that has just answered all else
+constexpr auto state_answer = 300ms; ///< the unit has just answered other queries
 constexpr std::uint16_t max_hires_count = 4095;
-constexpr int tries_at_start = 4;   ///< to ask a unit how it is, before the stream begins
+constexpr int tries_at_start = 4;   ///< to ask for the state before the stream begins
 constexpr int answers_at_start = 4; ///< two tries, each as long as one and a half of the slowest
 constexpr auto pause_answer = 150ms;
 constexpr auto control_answer = 100ms; ///< while the stream waits
@@ -36,10 +32,10 @@ public:
   explicit CyberGloveProtocol(const Options& options)
       : options_(options), baud_(options.baud.value_or(usual_bauds.front())) {}
 
-  Result<GloveInfo> identify(Transport& transport, const std::string& source,
-                             IdentifyReason occasion, const ReplyDeadline& patience) override {
-    Dialogue dialogue(transport, patience.deadline, patience.cancelled);
-    auto identity = ask(transport, dialogue, source, occasion);
+  Result<GloveInfo> identify(Transport& transport, const std::string& source, IdentifyReason reason,
+                             const ReplyDeadline& limit) override {
+    Dialogue dialogue(transport, limit.deadline, limit.cancelled);
+    auto identity = ask(transport, dialogue, source, reason);
     parser_.count_discarded(dialogue.bytes_received());
     if (!identity) {
       begin_records();
@@ -48,7 +44,7 @@ public:
     identity_ = *std::move(identity);
     slowest_answer_ = dialogue.slowest_answer();
     begin_records();
-    if (occasion == IdentifyReason::opening) {
+    if (reason == IdentifyReason::opening) {
       for (const std::string& note : identity_.notes)
         spdlog::warn("device: {}: {}", source, note);
     }
@@ -64,8 +60,8 @@ public:
   }
 
   Result<void> start_stream(Transport& transport, const std::string& source,
-                            const ReplyDeadline& patience) override {
-    Dialogue dialogue(transport, patience.deadline, patience.cancelled);
+                            const ReplyDeadline& limit) override {
+    Dialogue dialogue(transport, limit.deadline, limit.cancelled);
     dialogue.expect_late_answers(slowest_answer_);
     dialogue.prolong(HostClock::now() + answers_at_start * slowest_answer_);
     dialogue.stop_stream();
@@ -82,21 +78,21 @@ public:
     return answer == Answer::good ? Result<void>() : went_away(source);
   }
 
-  void end_stream(Transport& transport, const ReplyDeadline& patience) noexcept override {
-    Dialogue dialogue(transport, patience.deadline, patience.cancelled);
+  void end_stream(Transport& transport, const ReplyDeadline& limit) noexcept override {
+    Dialogue dialogue(transport, limit.deadline, limit.cancelled);
     dialogue.stop_stream();
     if (identity_.sync) Commands(dialogue, control_answer).set_sync(false);
     parser_.count_discarded(dialogue.bytes_received());
   }
 
   void set_feedback(Transport& transport, const Feedback& feedback,
-                    const ReplyDeadline& patience) noexcept override {
+                    const ReplyDeadline& limit) noexcept override {
     const Abilities& can = identity_.abilities;
     if (!can.light && !can.vibration) return;
-    Dialogue dialogue(transport, patience.deadline, patience.cancelled);
+    Dialogue dialogue(transport, limit.deadline, limit.cancelled);
     Commands commands(dialogue, control_answer);
     dialogue.pause_stream(pause_answer);
-    // From now on the light is the program's: the switch would turn it against what it was told.
+    // From now on the program controls the light: the switch would change it.
     if (std::exchange(identity_.switch_drives_light, false))
       commands.set(Setting::switch_drives_light, false);
     if (can.light) commands.set(Setting::light, feedback.light);
@@ -109,45 +105,45 @@ public:
 
   void push(std::span<const std::byte> chunk, HostTime arrival,
             SampleSink& sink) noexcept override {
-    // After eg there may be another glove in the unit: what it measures is not known until it was
-    // asked.
+    // After eg another glove may be in the unit: its sensors are unknown until the unit was asked.
     const auto check = [&](Record& record) {
-      if (!pulled_) return identity_.hires ? hires_check_(record, arrival) : check_(record);
-      doubtful_ = true;
+      if (!glove_removed_) return identity_.hires ? hires_check_(record, arrival) : check_(record);
+      is_doubtful_ = true;
       return Verdict{false, 0};
     };
     parser_.push(chunk, check,
                  FindingSink{[&](const Record& record) { deliver(record, arrival, sink); },
                              [&](BadRecord) { sink.reject(); },
-                             [&](Unplugged) { pulled_ = true; }});
+                             [&](Unplugged) { glove_removed_ = true; }});
   }
 
-  bool is_doubtful() const noexcept override { return doubtful_; }
+  bool is_doubtful() const noexcept override { return is_doubtful_; }
 
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }
 
   bool tells_missed() const noexcept override {
-    if (identity_.hires) return hires_check_.tells_missed();
+    if (identity_.hires) return hires_check_.counts_missed();
     return identity_.shape.time_stamp && check_.trusts_stamps();
   }
 
 private:
-  /// Greets the unit, at another line rate if need be, asks and sets up.
+  /// Greets the unit, at another line rate if needed, identifies the glove and sets it up.
   Result<Identity> ask(Transport& transport, Dialogue& dialogue, const std::string& source,
-                       IdentifyReason occasion) {
-    if (occasion == IdentifyReason::damaged || unplugged_ || pulled_) {
+                       IdentifyReason reason) {
+    if (reason == IdentifyReason::damaged || answered_without_glove_ || glove_removed_) {
       transport.set_baud(baud_);
       if (dialogue.stop_stream() != Answer::gone)
         Commands(dialogue, control_answer).reread_glove(); // it may be another one
     }
     const Greeting greeting =
         greet(transport, dialogue, bauds_to_try(baud_, !options_.baud.has_value()));
-    if (auto state = check_state(source, greeting.reply, greeting.asked); !state) {
+    if (auto state = check_state(source, greeting.reply, greeting.query); !state) {
       const Reply<GloveState>& reply = greeting.reply;
-      if (reply.answer == Answer::no_glove || (reply && !reply.value.connected)) unplugged_ = true;
+      if (reply.answer == Answer::no_glove || (reply && !reply.value.connected))
+        answered_without_glove_ = true;
       return state.error();
     }
-    unplugged_ = pulled_ = doubtful_ = false;
+    answered_without_glove_ = glove_removed_ = is_doubtful_ = false;
     baud_ = greeting.baud;
     return cyberglove::identify(dialogue, source, {options_, baud_, identity_.word_order});
   }
@@ -161,7 +157,7 @@ private:
     return dialogue.start_stream(identity_.hires ? third_stream : stream_command);
   }
 
-  /// Whatever comes from now on has nothing to do with the records before.
+  /// The next records have nothing to do with the previous ones.
   void begin_records() noexcept {
     parser_.reset(identity_.shape);
     const bool keeps_period = identity_.rate_hz > 0.0 && !identity_.sync;
@@ -171,7 +167,7 @@ private:
     same_clock_ = false;
   }
 
-  void tell_time(const Record& record, HostTime arrival, GloveSample& sample) noexcept {
+  void set_time(const Record& record, HostTime arrival, GloveSample& sample) noexcept {
     if (record.stamp == Stamp::none) return;
     if (record.stamp == Stamp::begins && !std::exchange(same_clock_, false)) {
       ticks_.reset();
@@ -189,7 +185,7 @@ private:
       sample.raw[channels.slot[k]] = RawCount{record.values[k]};
     }
     sample.present = channels.sensors();
-    tell_time(record, arrival, sample);
+    set_time(record, arrival, sample);
     sample.sampled_too_fast = record.sampled_too_fast;
     sample.wrist_switch = wrist_switch_of(record.status);
     sample.side = identity_.side;
@@ -197,18 +193,18 @@ private:
   }
 
   const Options options_;
-  int baud_; ///< at which the unit answered last
+  int baud_; ///< the rate at which the unit answered last
   std::chrono::milliseconds slowest_answer_{0};
-  bool unplugged_ = false; ///< the unit answers, but has lost its glove
+  bool answered_without_glove_ = false; ///< the unit's last answer said so
   Identity identity_;
   Parser parser_{RecordShape{}};
   RecordCheck check_;
   HiResCheck hires_check_;
   TickUnwrapper ticks_;
   DeviceClock clock_;
-  bool same_clock_ = false; ///< the stream paused, but the glove's clock continued
-  bool pulled_ = false;     ///< records said so; who is there now has not been asked
-  bool doubtful_ = false;   ///< records came since then
+  bool same_clock_ = false;    ///< the stream paused, but the glove's clock continued
+  bool glove_removed_ = false; ///< a record said so, and the unit was not asked since
+  bool is_doubtful_ = false;   ///< records came since then
 };
 
 } // namespace

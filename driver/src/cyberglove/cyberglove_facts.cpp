@@ -1,11 +1,9 @@
-#include "cyberglove/cyberglove_facts.hpp"
+#include "cyberglove/cyberglove_identity.hpp"
 
 #include <string>
 #include <utility>
 
 #include <spdlog/fmt/fmt.h>
-
-#include "cyberglove/cyberglove_line.hpp"
 
 namespace nendo::driver::cyberglove {
 namespace {
@@ -14,8 +12,8 @@ using namespace std::chrono_literals;
 
 /// Longer than a Bluetooth link or an adapter's latency timer delays a reply.
 constexpr auto optional_answer = 250ms;
-/// Of a unit that is late with each answer, not all can be asked.
-constexpr auto longest_interview = 2s;
+/// A unit that is late with each answer receives only some of the queries.
+constexpr auto max_interview = 2s;
 constexpr std::size_t max_fact_characters = 200;
 
 /// Printable characters only; the end of a line becomes a slash, blanks become one.
@@ -34,133 +32,24 @@ std::string one_line(std::string_view text) {
   return line;
 }
 
-std::string on_off(bool on) {
-  return on ? "on" : "off";
-}
-
-/// Asks, until two questions were met with silence or nonsense, or it has taken too long.
+/// Asks until two queries got silence or nonsense, or the time is over.
 class Inquiry {
 public:
   template <class Ask>
   auto operator()(Ask&& ask) -> decltype(ask()) {
-    constexpr int patience = 2;
-    if (unanswered_ >= patience || HostClock::now() >= until_) return {};
+    constexpr int max_unanswered = 2;
+    if (unanswered_ >= max_unanswered || HostClock::now() >= until_) return {};
     auto reply = ask();
     if (!reply && reply.answer != Answer::unknown) ++unanswered_;
     return reply;
   }
 
 private:
-  const HostTime until_ = HostClock::now() + longest_interview;
+  const HostTime until_ = HostClock::now() + max_interview;
   int unanswered_ = 0;
 };
 
-class Interview {
-public:
-  Interview(Dialogue& dialogue, Identity& identity)
-      : commands_(dialogue, optional_answer), identity_(identity) {}
-
-  void ask_texts();
-  void ask_settings();
-  void ask_rest();
-
-private:
-  void add(const char* name, std::string value) {
-    if (!value.empty()) identity_.facts.push_back({name, std::move(value)});
-  }
-  void add_settings(const Parameters& parameters);
-  void ask_setting(const char* name, Setting setting);
-  void ask_calibration();
-
-  Commands commands_;
-  Identity& identity_;
-  Inquiry inquire_;
-};
-
-void Interview::ask_texts() {
-  const auto information = inquire_([this] { return commands_.information(); });
-  if (information) {
-    identity_.model = model_line(information.value);
-    add("information", one_line(information.value));
-  }
-  identity_.model += ", " + std::to_string(identity_.channels.count) + " sensors";
-  if (const auto text = inquire_([this] { return commands_.firmware_text(); })) {
-    add("firmware", one_line(text.value));
-  } else if (const auto bytes = inquire_([this] { return commands_.firmware(); })) {
-    // What the four bytes mean, nobody tells.
-    const auto& [a, b, c, d] = bytes.value;
-    add("firmware", fmt::format("{}.{}.{}.{}", a, b, c, d));
-  }
-}
-
-void Interview::add_settings(const Parameters& parameters) {
-  add("filter", on_off(parameters.filter));
-  add("time_stamp", on_off(parameters.time_stamp));
-  add("status_byte", on_off(parameters.status_byte));
-  add("switch_drives_light", on_off(parameters.switch_drives_light));
-  add("quantised", on_off(parameters.quantised));
-  add("wrist_switch", on_off(parameters.wrist_switch));
-  add("light", on_off(parameters.light));
-  add("cybertouch", parameters.cybertouch ? "yes" : "no");
-  identity_.switch_drives_light = parameters.switch_drives_light;
-  identity_.abilities.light = true;
-  identity_.abilities.vibration = parameters.cybertouch;
-}
-
-void Interview::ask_setting(const char* name, Setting setting) {
-  const auto reply = inquire_([&] { return commands_.get(setting); });
-  if (!reply) return;
-  add(name, on_off(reply.value));
-  if (setting == Setting::light) identity_.abilities.light = true;
-  if (setting == Setting::switch_drives_light) identity_.switch_drives_light = reply.value;
-}
-
-void Interview::ask_settings() {
-  identity_.abilities.wrist_switch = identity_.shape.status;
-  if (const auto parameters = inquire_([this] { return commands_.parameters(); })) {
-    add_settings(parameters.value);
-    return;
-  }
-  ask_setting("filter", Setting::filter);
-  ask_setting("time_stamp", Setting::time_stamp);
-  ask_setting("status_byte", Setting::status_byte);
-  ask_setting("switch_drives_light", Setting::switch_drives_light);
-  ask_setting("quantised", Setting::quantised);
-  ask_setting("wrist_switch", Setting::wrist_switch);
-  ask_setting("light", Setting::light);
-}
-
-void Interview::ask_calibration() {
-  const auto reply = inquire_([this] { return commands_.hardware_calibration(identity_.sensors); });
-  if (!reply) return;
-  std::string offsets = "offsets";
-  std::string gains = "gains";
-  for (std::size_t k = 0; k < reply.value.sensors; ++k) {
-    offsets += " " + std::to_string(reply.value.offset[k]);
-    gains += " " + std::to_string(reply.value.gain[k]);
-  }
-  add("hardware_calibration", offsets + ", " + gains);
-}
-
-void Interview::ask_rest() {
-  if (identity_.abilities.vibration) {
-    if (const auto reply = inquire_([this] { return commands_.vibration(); })) {
-      std::string strengths;
-      for (const unsigned value : reply.value)
-        strengths += (strengths.empty() ? "" : " ") + std::to_string(value);
-      add("vibration", strengths);
-    }
-  }
-  if (const auto reply = inquire_([this] { return commands_.baud_register(); })) {
-    const auto baud = baud_of_register(reply.value);
-    add("baud_register", baud ? fmt::format("0x{:02X} ({} baud)", reply.value, *baud)
-                              : fmt::format("0x{:02X}", reply.value));
-  }
-  ask_calibration(); // last: how many values the reply has, is the least certain
-}
-
-} // namespace
-
+/// The first line that is not empty, without characters that could disturb a terminal.
 std::string model_line(std::string_view text) {
   constexpr std::size_t max_characters = 60;
   std::string line;
@@ -174,16 +63,113 @@ std::string model_line(std::string_view text) {
   return line.empty() ? "CyberGlove" : line;
 }
 
+class Interview {
+public:
+  Interview(Dialogue& dialogue, Identity& identity)
+      : commands_(dialogue, optional_answer), identity_(identity) {}
+
+  void ask_descriptions();
+  void ask_settings();
+  void ask_vibration();
+  void ask_baud_register();
+  void ask_calibration();
+
+private:
+  void add(const char* name, std::string value) {
+    if (!value.empty()) identity_.facts.push_back({name, std::move(value)});
+  }
+
+  Commands commands_;
+  Identity& identity_;
+  Inquiry inquire_;
+};
+
+void Interview::ask_descriptions() {
+  const auto information = inquire_([this] { return commands_.information(); });
+  if (information) {
+    identity_.model = model_line(information.value);
+    add("information", one_line(information.value));
+  }
+  identity_.model += ", " + std::to_string(identity_.channels.count) + " sensors";
+  if (const auto text = inquire_([this] { return commands_.firmware_text(); })) {
+    add("firmware", one_line(text.value));
+  } else if (const auto bytes = inquire_([this] { return commands_.firmware(); })) {
+    // No source says what the four bytes mean.
+    const auto& [a, b, c, d] = bytes.value;
+    add("firmware", fmt::format("{}.{}.{}.{}", a, b, c, d));
+  }
+}
+
+/// All at once by ?P, or one by one.
+void Interview::ask_settings() {
+  struct Known {
+    const char* name;
+    Setting setting;
+    unsigned flag;
+  };
+  constexpr std::array settings{
+      Known{"filter", Setting::filter, flag_filter},
+      Known{"time_stamp", Setting::time_stamp, flag_time_stamp},
+      Known{"status_byte", Setting::status_byte, flag_status_byte},
+      Known{"switch_drives_light", Setting::switch_drives_light, flag_switch_drives_light},
+      Known{"quantised", Setting::quantised, flag_quantised},
+      Known{"wrist_switch", Setting::wrist_switch, flag_wrist_switch},
+      Known{"light", Setting::light, flag_light},
+  };
+  Abilities& abilities = identity_.abilities;
+  abilities.wrist_switch = identity_.shape.status;
+  const auto flags = inquire_([this] { return commands_.parameters(); });
+  const auto flag = [&](unsigned bit) { return (flags.value >> bit & 1U) != 0; };
+  for (const Known& known : settings) {
+    const Reply<bool> reply = flags ? Reply<bool>{Answer::good, flag(known.flag)}
+                                    : inquire_([&] { return commands_.get(known.setting); });
+    if (!reply) continue;
+    add(known.name, reply.value ? "on" : "off");
+    if (known.setting == Setting::light) abilities.light = true;
+    if (known.setting == Setting::switch_drives_light) identity_.switch_drives_light = reply.value;
+  }
+  if (!flags) return;
+  abilities.vibration = flag(flag_cybertouch);
+  add("cybertouch", abilities.vibration ? "yes" : "no");
+}
+
+void Interview::ask_vibration() {
+  if (!identity_.abilities.vibration) return;
+  if (const auto reply = inquire_([this] { return commands_.vibration(); }))
+    add("vibration", fmt::format("{}", fmt::join(reply.value, " ")));
+}
+
+void Interview::ask_baud_register() {
+  const auto reply = inquire_([this] { return commands_.baud_register(); });
+  if (!reply) return;
+  const auto baud = baud_of_register(reply.value);
+  add("baud_register", baud ? fmt::format("0x{:02X} ({} baud)", reply.value, *baud)
+                            : fmt::format("0x{:02X}", reply.value));
+}
+
+void Interview::ask_calibration() {
+  const auto reply = inquire_([this] { return commands_.hardware_calibration(identity_.sensors); });
+  if (!reply) return;
+  const auto& [sensors, offsets, gains] = reply.value;
+  add("hardware_calibration",
+      fmt::format("offsets {}, gains {}", fmt::join(std::span(offsets).first(sensors), " "),
+                  fmt::join(std::span(gains).first(sensors), " ")));
+}
+
+} // namespace
+
 void ask_facts(Dialogue& dialogue, const Request& request, Identity& identity) {
-  const std::size_t bytes = identity.hires ? third_record_bytes : identity.shape.bytes();
+  const std::size_t bytes = identity.shape.bytes();
   identity.facts.push_back({"baud", std::to_string(request.baud)});
   identity.facts.push_back({"record_bytes", std::to_string(bytes)});
   identity.facts.push_back(
       {"line_limit_hz", fmt::format("{:.1f}", line_limit_hz(request.baud, bytes))});
   Interview interview(dialogue, identity);
-  interview.ask_texts();
+  interview.ask_descriptions();
   interview.ask_settings();
-  interview.ask_rest();
+  interview.ask_vibration();
+  interview.ask_baud_register();
+  interview.ask_calibration(); // last: the size of its reply is the least certain
 }
 
 } // namespace nendo::driver::cyberglove

@@ -7,21 +7,20 @@
 
 #include <nendo/driver/glove_options.hpp>
 
-#include "cyberglove/cyberglove_facts.hpp"
-
 namespace nendo::driver::cyberglove {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// Where something else comes instead. On a quiet line, what the drivers with the manual at hand
-/// allow for a command: a Bluetooth link that was asleep takes more than half of it.
+/// Time for an answer on a line with other traffic, and on a quiet one. The second is the time that
+/// drivers of authors with the manual allow for a command: a Bluetooth link that was asleep takes
+/// more than half of it.
 constexpr auto needed_answer = 400ms;
 constexpr auto needed_answer_quiet = 1000ms;
 /// The caller's deadline is for units that answer at once. One that has shown that it is there may
-/// take so many of its slowest answers more; there are some twenty questions.
+/// take this number of its slowest answers more; there are some twenty queries.
 constexpr int max_answers = 30;
-constexpr int tries = 2; ///< for anything that noise on the line explains
+constexpr int tries = 2; ///< for failures that noise on the line explains
 
 bool is_final(Answer answer) noexcept {
   return answer == Answer::good || answer == Answer::gone || answer == Answer::no_glove;
@@ -47,7 +46,7 @@ Error bad_answer(const std::string& source, Answer answer, const std::string& qu
   }
 }
 
-/// What the unit's refusal of an option means; for answers that are errors of the unit.
+/// The meaning of an error with which the unit refuses an option, or nullptr.
 const char* refusal(Answer answer) noexcept {
   switch (answer) {
   case Answer::unknown:
@@ -71,7 +70,35 @@ std::string text_of(double number) {
   return fmt::format("{:.6g}", number);
 }
 
-/// The way from a greeted unit to an Identity, in the order of its functions.
+// The time that drivers of authors with the manual allow for a command; less where success is
+// unlikely.
+constexpr auto first_answer = 1000ms;
+constexpr auto unlikely_answer = 500ms;
+constexpr auto unlikely_drain = 200ms;
+
+/// An answer of the unit itself, good or not.
+bool is_of_unit(Answer answer) noexcept {
+  return answer == Answer::good || answer == Answer::no_glove;
+}
+
+/// `last`: there is no other rate to try, so that a slow unit gets another chance.
+Reply<GloveState> ask_state_twice(Commands& commands, bool last) noexcept {
+  Reply<GloveState> reply = commands.state();
+  const bool hopeless = reply.answer == Answer::gone || (reply.answer == Answer::silent && !last);
+  // An e? may still be the answer to the previous program.
+  return is_of_unit(reply.answer) || hopeless ? reply : commands.state();
+}
+
+std::string list_of(const std::vector<int>& bauds) {
+  std::string text;
+  for (std::size_t k = 0; k < bauds.size(); ++k) {
+    if (k > 0) text += k + 1 == bauds.size() ? " or " : ", ";
+    text += std::to_string(bauds[k]);
+  }
+  return text;
+}
+
+/// Makes an Identity of a greeted unit; the functions are called in their order.
 class SetUp {
 public:
   SetUp(Dialogue& dialogue, const std::string& source, const Request& request)
@@ -105,7 +132,7 @@ private:
     identity_.facts.push_back({name, std::move(value)});
   }
 
-  /// What `ask` replies; `otherwise`, if the unit does not know the question.
+  /// Returns the reply of `ask`, or `otherwise` if the unit does not know the query.
   template <class T, class Ask>
   Result<T> needed(const char* question, std::optional<T> otherwise, Ask&& ask) {
     Reply<T> reply;
@@ -116,7 +143,7 @@ private:
     return reply.value;
   }
 
-  /// Does what an option asks for; `text` is the option.
+  /// Applies an option; `text` is the option.
   template <class Set>
   Result<void> apply(const std::string& text, Set&& set) {
     Answer answer = Answer::silent;
@@ -147,7 +174,7 @@ Result<void> SetUp::set_mask(SensorMask hardware) {
   }
   if (auto done = apply(text, [&] { return commands_.set_software_mask(*options_.mask); }); !done)
     return done;
-  // Otherwise the count of an earlier, smaller mask would cut this one. What it is then, ?N tells.
+  // Otherwise the count of an earlier, smaller mask would cut this one. ?N reports the result.
   const auto count = static_cast<std::uint8_t>(std::popcount(sent));
   const Answer answer = commands_.set_value_count(count);
   return answer == Answer::gone ? Result<void>(bad_answer(source_, answer, text)) : Result<void>();
@@ -217,7 +244,7 @@ Result<void> SetUp::set_switches() {
   return {};
 }
 
-/// True if records carry it now. A unit that does not know it sends records without.
+/// Returns whether records carry it now. A unit that does not know it sends records without.
 Result<bool> SetUp::set_stamp(Setting setting, bool on) {
   Answer answer = Answer::silent;
   for (int k = 0; k < tries && !is_final(answer); ++k)
@@ -227,7 +254,7 @@ Result<bool> SetUp::set_stamp(Setting setting, bool on) {
   return bad_answer(source_, answer, std::string("the setting ") + static_cast<char>(setting));
 }
 
-/// Records a second as the unit is set up already; 0: as fast as it can, or unknown.
+/// Records per second by the unit's present settings; 0: as fast as it can, or unknown.
 double SetUp::ask_present_rate() {
   const auto bytes = commands_.period_bytes();
   if (!bytes) return 0.0;
@@ -266,13 +293,11 @@ Result<void> SetUp::set_records() {
   if (!time_stamp) return time_stamp.error();
   const auto status = set_stamp(Setting::status_byte, plan->stamps);
   if (!status) return status.error();
-  identity_.shape.values = identity_.channels.count;
-  identity_.shape.time_stamp = *time_stamp;
-  identity_.shape.status = *status;
+  identity_.shape = {identity_.channels.count, *time_stamp, *status};
   if (plan->period) {
     if (auto done = set_period(*plan->period); !done) return done;
   }
-  if (options_.sync) identity_.rate_hz = 0.0; // the pulses make it
+  if (options_.sync) identity_.rate_hz = 0.0; // the pulses determine it
   add("rate_hz", text_of(identity_.rate_hz));
   return {};
 }
@@ -285,8 +310,7 @@ Result<void> SetUp::set_hires() {
   }
   const auto steps = plan_hires(options_, request_.baud);
   if (!steps) return Error{steps.error().code, source_ + ": " + steps.error().message};
-  if (auto done = apply("hires=on", [&] { return commands_.set_sink(Sink::usb, true); }); !done)
-    return done;
+  if (auto done = apply("hires=on", [&] { return commands_.enable_hires(); }); !done) return done;
   if (*steps) {
     identity_.rate_hz = **steps * third_frame_step_hz;
     if (auto done = apply("rate=" + text_of(identity_.rate_hz),
@@ -305,9 +329,9 @@ Result<void> SetUp::set_hires() {
 } // namespace
 
 Result<void> check_state(const std::string& source, const Reply<GloveState>& reply,
-                         const std::string& asked) {
-  if (!reply) return bad_answer(source, reply.answer, asked);
-  if (!reply.value.connected) return bad_answer(source, Answer::no_glove, asked);
+                         const std::string& query) {
+  if (!reply) return bad_answer(source, reply.answer, query);
+  if (!reply.value.connected) return bad_answer(source, Answer::no_glove, query);
   if (!reply.value.initialised) {
     return no_device(source,
                      "the glove is plugged in but not ready; switch its interface unit off and on");
@@ -317,6 +341,39 @@ Result<void> check_state(const std::string& source, const Reply<GloveState>& rep
 
 Result<Identity> identify(Dialogue& dialogue, const std::string& source, const Request& request) {
   return SetUp(dialogue, source, request).run();
+}
+
+Greeting greet(Transport& transport, Dialogue& dialogue, const std::vector<int>& bauds) {
+  Greeting greeting;
+  std::vector<int> tried;
+  for (const int baud : bauds) {
+    const bool first = tried.empty();
+    if (!transport.set_baud(baud) && !first) break;
+    tried.push_back(baud);
+    // Other bytes on the line are no reason to give up: the answer may be among them.
+    Reply<GloveState> reply;
+    reply.answer = dialogue.stop_stream(first ? Dialogue::max_drain : unlikely_drain);
+    if (reply.answer != Answer::gone) {
+      Commands commands(dialogue, first ? first_answer : unlikely_answer);
+      reply = first ? ask_state_twice(commands, bauds.size() == 1) : commands.state();
+    }
+    if (first || reply.answer != Answer::silent) greeting.reply = reply;
+    if (is_of_unit(reply.answer) || reply.answer == Answer::gone) {
+      greeting.baud = baud;
+      tried = {baud};
+      break;
+    }
+  }
+  greeting.query = "?G at " + list_of(tried) + " baud";
+  return greeting;
+}
+
+std::vector<int> bauds_to_try(int known, bool guess) {
+  std::vector<int> bauds{known};
+  for (const int usual : usual_bauds) {
+    if (guess && usual != known) bauds.push_back(usual);
+  }
+  return bauds;
 }
 
 } // namespace nendo::driver::cyberglove

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <spdlog/fmt/fmt.h>
 
 #include <nendo/driver/glove_options.hpp>
 
-#include "cyberglove/cyberglove_line.hpp"
 #include "cyberglove/cyberglove_parser.hpp"
+#include "cyberglove/cyberglove_protocol.hpp"
 #include "spec/number_in.hpp"
 
 namespace nendo::driver::cyberglove {
@@ -61,8 +62,8 @@ std::optional<SensorMask> read_mask(std::string_view text) {
   return SensorMask{*bits};
 }
 
-/// Options that exclude each other.
-Result<void> check(const GloveSpec& spec, const Options& options) {
+/// Refuses options that exclude each other.
+Result<void> check_together(const GloveSpec& spec, const Options& options) {
   const auto usage = [&](const char* what) { return Error{Errc::usage, spec.text + ": " + what}; };
   if (options.sync && options.rate_hz)
     return usage("sync=on: the pulses make the rate; leave out rate=");
@@ -73,7 +74,7 @@ Result<void> check(const GloveSpec& spec, const Options& options) {
   return {};
 }
 
-/// Cut, not rounded: what is said to fit must fit.
+/// Rounded down: the rate in a message must fit.
 int whole(double limit_hz) {
   return static_cast<int>(limit_hz);
 }
@@ -106,9 +107,57 @@ Result<Options> read_options(const GloveSpec& spec) {
   const auto hand = hand_option(spec);
   if (good && !hand) good = hand.error();
   if (hand) options.hand = *hand;
-  if (good) good = check(spec, options);
+  if (good) good = check_together(spec, options);
   if (!good) return good.error();
   return options;
+}
+
+double rate_of(Period period) noexcept {
+  if (period.ticks == 0 || period.times == 0) return 0.0;
+  return clock_hz / (static_cast<double>(period.ticks) * period.times);
+}
+
+std::optional<Period> choose_period(double rate_hz) noexcept {
+  constexpr double most = std::numeric_limits<std::uint16_t>::max();
+  if (!(rate_hz > 0.0 && rate_hz <= clock_hz)) return std::nullopt;
+  const double ticks = clock_hz / rate_hz;
+  if (!(ticks <= most * most)) return std::nullopt;
+  // As few repetitions as possible: the words then come nearest.
+  const double times = std::ceil(std::round(ticks) / most);
+  return Period{static_cast<std::uint16_t>(std::round(ticks / times)),
+                static_cast<std::uint16_t>(times)};
+}
+
+Period decode_period(PeriodBytes bytes, WordOrder order) noexcept {
+  const auto word = [&](std::size_t at) {
+    const auto first = std::to_integer<unsigned>(bytes[at]);
+    const auto second = std::to_integer<unsigned>(bytes[at + 1]);
+    return static_cast<std::uint16_t>(order == WordOrder::high_first ? first << 8U | second
+                                                                     : second << 8U | first);
+  };
+  return {word(0), word(2)};
+}
+
+std::optional<WordOrder> order_of(PeriodBytes bytes, Period period) noexcept {
+  for (const WordOrder order : {WordOrder::high_first, WordOrder::low_first}) {
+    if (decode_period(bytes, order) == period) return order;
+  }
+  return std::nullopt;
+}
+
+std::optional<Period> guess_period(PeriodBytes bytes) noexcept {
+  constexpr double max_hz = 1000.0;
+  std::optional<Period> best;
+  for (const WordOrder order : {WordOrder::high_first, WordOrder::low_first}) {
+    const Period period = decode_period(bytes, order);
+    const double rate_hz = rate_of(period);
+    if (rate_hz > max_hz) continue;
+    // Where a low byte is 0, both orders have the same rate: 1280 times 1 is 5 times 256.
+    const bool better = !best || rate_hz > rate_of(*best) ||
+                        (rate_hz == rate_of(*best) && period.times < best->times);
+    if (better) best = period;
+  }
+  return best;
 }
 
 Result<RecordPlan> plan_records(const Options& options, std::size_t values, int baud,
@@ -144,8 +193,8 @@ Result<std::optional<std::uint8_t>> plan_hires(const Options& options, int baud)
     return Error{Errc::usage, fmt::format("rate={:g}: with hires=on it is one of 30, 60, 90, 120",
                                           *options.rate_hz)};
   }
-  if (*options.rate_hz > line_limit_hz(baud, third_record_bytes))
-    return too_fast(*options.rate_hz, third_record_bytes, baud, "lower the rate");
+  if (*options.rate_hz > line_limit_hz(baud, hi_res_bytes))
+    return too_fast(*options.rate_hz, hi_res_bytes, baud, "lower the rate");
   return std::optional(static_cast<std::uint8_t>(steps));
 }
 

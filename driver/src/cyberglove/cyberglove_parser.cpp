@@ -1,10 +1,9 @@
 #include "cyberglove/cyberglove_parser.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 #include <nendo/base/byte_reader.hpp>
-
-#include "cyberglove/hi_res_record.hpp"
 
 namespace nendo::driver::cyberglove {
 namespace {
@@ -32,7 +31,7 @@ std::optional<ErrorPairs> decode_errors(std::span<const std::byte> tail) noexcep
 
 /// Flag bit k says that tick byte k is 0 and was sent as 1, as NUL cannot be sent [V, p.28]; a
 /// flagged byte that is not 1 is damage. Bit 7 is documented to be set but was not seen set on real
-/// gloves, so it is not looked at.
+/// gloves, so it is ignored.
 std::optional<std::uint32_t> decode_ticks(ByteReader& reader) noexcept {
   const unsigned flags = reader.u8();
   std::uint32_t ticks = 0;
@@ -79,6 +78,74 @@ std::optional<Record> decode_plain(std::span<const std::byte> frame,
   return record;
 }
 
+// The layout of the high-resolution record (cyberglove_protocol.hpp).
+
+constexpr std::string_view time_pattern = "00:00:00:00:0S"; ///< 0 stands for any digit
+constexpr std::string_view tail{"\r\n\0", 3};
+static_assert(time_pattern.size() == hi_res_time_bytes);
+
+constexpr int frames_per_second = 30;
+
+int number_at(std::span<const std::byte> bytes, std::size_t tens) noexcept {
+  const auto digit = [&](std::size_t k) { return std::to_integer<int>(bytes[k]) - '0'; };
+  return 10 * digit(tens) + digit(tens + 1);
+}
+
+/// `last` is the index of the last byte, a digit or a separator.
+bool continues_time(std::span<const std::byte> bytes, std::size_t last) noexcept {
+  const auto c = std::to_integer<char>(bytes[last]);
+  if (time_pattern[last] != '0') return c == time_pattern[last];
+  if (c < '0' || c > '9') return false;
+  switch (last) {
+  case 1:
+    return number_at(bytes, 0) < 24;
+  case 4:
+    return number_at(bytes, 3) < 60;
+  case 7:
+    return number_at(bytes, 6) < 60;
+  case 10:
+    return number_at(bytes, 9) <= frames_per_second;
+  default:
+    return true;
+  }
+}
+
+/// Returns whether the last of `bytes`, at most hi_res_bytes, fits the layout. The others must fit.
+bool continues_hi_res(std::span<const std::byte> bytes) noexcept {
+  constexpr std::size_t values_end = hi_res_bytes - tail.size();
+  const std::size_t last = bytes.size() - 1;
+  if (last < hi_res_time_bytes) return continues_time(bytes, last);
+  if (last >= values_end) return std::to_integer<char>(bytes[last]) == tail[last - values_end];
+  const bool high = (last - hi_res_time_bytes) % 2 == 0;
+  return !high || std::to_integer<unsigned>(bytes[last]) <= hi_res_max >> 8U;
+}
+
+/// Returns whether `bytes`, fewer than hi_res_bytes, may begin a record.
+bool begins_hi_res(std::span<const std::byte> bytes) noexcept {
+  for (std::size_t count = 1; count <= bytes.size(); ++count) {
+    if (!continues_hi_res(bytes.first(count))) return false;
+  }
+  return true;
+}
+
+/// Returns the content of a whole record, for which continues_hi_res() was true at every byte.
+Record read_hi_res(std::span<const std::byte> frame) noexcept {
+  Record record;
+  const int minutes = 60 * number_at(frame, 0) + number_at(frame, 3);
+  record.second = static_cast<std::uint32_t>(60 * minutes + number_at(frame, 6));
+  record.frame = static_cast<std::uint8_t>(number_at(frame, 9));
+  record.sub_frame = static_cast<std::uint8_t>(std::to_integer<int>(frame[12]) - '0');
+  ByteReader reader(frame.subspan(hi_res_time_bytes));
+  for (std::size_t k = 0; k < hi_res_values; ++k) {
+    const unsigned high = reader.u8();
+    const auto value = static_cast<std::uint16_t>(high << 8U | reader.u8());
+    record.values[k] = std::max<std::uint16_t>(value, 1);
+    record.clamped += value == 0 ? 1U : 0U;
+  }
+  record.no_glove = record.clamped == hi_res_values;
+  return record;
+}
+
 } // namespace
 
 std::optional<Record> decode_record(std::span<const std::byte> frame,
@@ -104,7 +171,7 @@ std::optional<Record> Parser::extend_plain() noexcept {
   if (frame_[held_ - 1] == terminator) return end_plain();
   if (held_ < shape_.bytes() + max_error_bytes) return std::nullopt;
   if (nul_in_stamp_) {
-    drop_bad_frame(); // that NUL was a terminator; what followed it begins the next frame
+    drop_bad_frame(); // that NUL was a terminator; the next frame begins after it
   } else {
     overlong_ = true;
     discard(held_);
@@ -120,7 +187,7 @@ std::optional<Record> Parser::end_plain() noexcept {
     }
     if (nul_in_stamp_) {
       drop_bad_frame();
-      return end_plain(); // of what is left, which is shorter
+      return end_plain(); // with fewer bytes
     }
     if (may_be_stamp()) {
       nul_in_stamp_ = true;
@@ -131,19 +198,19 @@ std::optional<Record> Parser::end_plain() noexcept {
   return std::nullopt;
 }
 
-/// The last byte, a NUL, stands where a time stamp begins. Sources disagree if one can begin so.
+/// The last byte, a NUL, is at the first byte of a time stamp. Sources disagree if it can be NUL.
 bool Parser::may_be_stamp() const noexcept {
   return shape_.time_stamp && held_ == 1 + shape_.values + 1 && is_header(frame_[0]);
 }
 
-/// Up to its NUL: the last byte, or the one that was taken for a time stamp's.
+/// Drops a frame up to its NUL: the last byte, or the one that was taken for a time stamp's.
 void Parser::drop_bad_frame() noexcept {
   count_bad();
   discard(nul_in_stamp_ ? 1 + shape_.values + 1 : held_);
   overlong_ = nul_in_stamp_ = false;
 }
 
-/// What is held always begins a record; a byte that does not fit moves the beginning on.
+/// The held bytes always begin a record; a byte that does not fit moves the beginning.
 std::optional<Record> Parser::extend_hi_res() noexcept {
   const auto held = std::span(frame_).first(held_);
   const std::byte byte = held.back();
@@ -205,7 +272,7 @@ bool Parser::settle(const Record& record, const Verdict& verdict) noexcept {
   return true;
 }
 
-/// The first `count` of the bytes held.
+/// Discards the first `count` held bytes.
 void Parser::discard(std::size_t count) noexcept {
   counters_.discarded_bytes += count;
   std::copy(frame_.begin() + static_cast<std::ptrdiff_t>(count),

@@ -1,17 +1,16 @@
 #pragma once
 // Splits the CyberGlove's byte stream into records. It is pure (no I/O, clock, log or allocation),
-// and bytes are not trusted. Framing finds where a record ends; decoding judges what stands there.
+// and bytes are not trusted. Framing finds the end of a record; decoding checks its content.
 //
 // Plain records end in NUL, which occurs nowhere else in them (but see decode_record). So damage
 // costs at most the record that it is in and the next one. High-resolution records contain many
 // NULs and are found by their whole layout, wherever it begins.
 //
 // The protocol has no checksum. With the status byte on, one gap in a stream, or one run of extra
-// bytes without NUL, yields no record with a value in the wrong place. A lost byte and an extra
+// bytes without NUL, yields no record with a value at a wrong index. A lost byte and an extra
 // byte in the same record do, and that cannot be seen.
 
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -25,7 +24,7 @@ namespace nendo::driver::cyberglove {
 
 enum class RecordForm : std::uint8_t { plain, hi_res };
 
-/// The parts that a record is expected to have. `values` is 1 to max_values, and 22 in the hi_res
+/// The expected fields of a record. `values` is 1 to max_values, and 22 in the hi_res
 /// form, which has neither time stamp nor status.
 struct RecordShape {
   std::size_t values = 22;
@@ -52,16 +51,12 @@ struct Record {
   Stamp stamp = Stamp::none;
   bool sampled_too_fast = false; ///< the glove could not keep its period; the values are good
   bool no_glove = false;         ///< the values mean nothing; counted, never delivered
-  /// Of the hi_res form only: the time since midnight by the glove's own clock. A frame counts 1/30
-  /// s. No source says what a sub-frame is, so each counts a tenth of a frame. The order is right
-  /// in any case, but the time only to within a frame, so it is not for a DeviceClock.
-  std::chrono::nanoseconds time_of_day{};
-  std::uint32_t second = 0;   ///< of the hi_res form: since midnight
-  std::uint8_t frame = 0;     ///< of the hi_res form: within the second, 0 to 30
-  std::uint8_t sub_frame = 0; ///< of the hi_res form: 0 to 9
-  /// Of the hi_res form: sensors that sent 0, which a sensor sends that has failed. Their values
-  /// are
-  /// 1. If all have, no_glove is set.
+  // Of the hi_res form only. No source says what a sub-frame is, so the time is exact only to
+  // within a frame, and not for a DeviceClock.
+  std::uint32_t second = 0;   ///< second since midnight by the glove's own clock
+  std::uint8_t frame = 0;     ///< number within the second, 0 to 30
+  std::uint8_t sub_frame = 0; ///< 0 to 9
+  /// Failed sensors: those that sent 0. Their values are 1. If all have failed, no_glove is set.
   unsigned clamped = 0;
 };
 
@@ -71,7 +66,38 @@ struct Record {
 std::optional<Record> decode_record(std::span<const std::byte> frame,
                                     const RecordShape& shape) noexcept;
 
-/// The judgement on a well-formed record.
+/// Maps each value of a record to its sensor slot. The map is computed from the masks that the
+/// glove reports, and not from a table for gloves of 18 or 22 sensors, because the program that
+/// used the glove last may have changed its masks.
+struct ChannelMap {
+  std::array<std::uint8_t, max_values> slot{}; ///< the slot of value k
+  std::size_t count = 0;                       ///< values in a record
+
+  constexpr SensorMask sensors() const noexcept {
+    SensorMask mask;
+    for (std::size_t k = 0; k < count; ++k)
+      mask.bits |= 1U << slot[k];
+    return mask;
+  }
+  friend constexpr bool operator==(const ChannelMap&, const ChannelMap&) = default;
+};
+
+/// Returns the map of the first `max_count` sensors that are both built in and wanted.
+constexpr ChannelMap make_channel_map(SensorMask hardware, SensorMask software,
+                                      std::size_t max_count) noexcept {
+  ChannelMap map;
+  for (std::uint8_t slot = 0; slot < sensor_slots && map.count < max_count; ++slot) {
+    if (((hardware.bits & software.bits) >> slot & 1U) != 0) map.slot[map.count++] = slot;
+  }
+  return map;
+}
+
+/// High-resolution records do not depend on masks. They always carry the 22 values of the full
+/// glove.
+inline constexpr ChannelMap hi_res_channels =
+    make_channel_map(sensors_22, sensors_22, hi_res_values);
+
+/// The result of checking a well-formed record.
 struct Verdict {
   bool plausible = true;
   std::uint64_t missed = 0; ///< records known to have been lost since the last plausible one
@@ -81,9 +107,9 @@ class Parser {
 public:
   explicit Parser(const RecordShape& shape) noexcept : shape_(shape) {}
 
-  /// Takes the next bytes of the stream, cut anywhere. Each well-formed record is given to
-  /// `check(Record&) -> Verdict` and, if that finds it plausible, to `sink(const Record&)`. The
-  /// sink is also told of each BadRecord and Unplugged (findings.hpp).
+  /// Takes the next bytes of the stream, cut anywhere. Each well-formed record is passed to
+  /// `check(Record&) -> Verdict` and, if plausible, to `sink(const Record&)`. The sink also
+  /// receives each BadRecord and Unplugged (findings.hpp).
   template <class Check, class Sink>
   void push(std::span<const std::byte> chunk, Check&& check, Sink&& sink) {
     for (const std::byte byte : chunk) {
@@ -134,9 +160,9 @@ private:
   std::size_t held_ = 0;
   bool overlong_ = false;       ///< plain: the frame outgrew every record; skip to its NUL
   bool nul_in_stamp_ = false;   ///< plain: the frame holds a NUL where a time stamp may have one
-  std::uint8_t tail_ = 0;       ///< hi_res: how much of CR LF NUL was just seen
+  std::uint8_t tail_ = 0;       ///< hi_res: bytes of CR LF NUL just seen
   bool damage_counted_ = false; ///< hi_res: the record that the next tail ends is counted already
-  unsigned bad_ = 0;            ///< found by the last byte, not yet told
+  unsigned bad_ = 0;            ///< bad records found by the last byte, not yet reported
   StreamCounters counters_;
 };
 

@@ -20,27 +20,18 @@ inline constexpr std::byte terminator{0x00};
 inline constexpr std::byte interrupt{0x03}; ///< ^C: ends a stream; answered 03 00 [V, D]
 inline constexpr std::byte reread_glove{
     0x09}; ///< ^I: read the glove's memory again, after a swap [V]
-inline constexpr std::byte restart_firmware{
-    0x12}; ///< ^R: answered 12 0D 0A 00 after about 1.75 s [V, p.45]; a left glove's ends at LF [D]
 
 inline constexpr std::string_view stream_command =
-    "S";                                    ///< one record after the other until `interrupt` [D]
-inline constexpr char record_command = 'G'; ///< one record [D]
+    "S"; ///< one record after the other until `interrupt` [D]
 
 // Settings are a letter and raw bytes. They are answered by the letter and NUL [D], or with a byte
 // between them [V]. In text they are the small letter, decimal numbers and CR.
 inline constexpr std::string_view set_software_mask = "M"; ///< 3 bytes, LSB first [V, D]
 inline constexpr std::string_view set_value_count = "N";   ///< 1 byte [V, D]
-inline constexpr std::string_view set_parameters = "P";    ///< 3 bytes, LSB first [V]
-inline constexpr std::string_view set_baud = "B";          ///< 1 byte, see cyberglove_line.hpp [V]
 inline constexpr std::string_view set_sync = "Y";          ///< bool: records at external pulses [V]
-inline constexpr std::string_view set_sync_text = "y";     ///< the same for records in text
 inline constexpr std::string_view set_period_text = "t";   ///< two numbers; T's order is disputed
-inline constexpr std::string_view set_vibration = "A";    ///< count, so many pairs index, value [D]
-inline constexpr std::uint8_t all_vibrators = 0xFF;       ///< a count: then 6 values follow [D]
-inline constexpr std::string_view set_calibration = "CA"; ///< all offsets, all gains [D]
-inline constexpr std::string_view set_offset = "CO";      ///< index, value [D]
-inline constexpr std::string_view set_gain = "CG";        ///< index, value [D]
+inline constexpr std::string_view set_vibration = "A"; ///< count, so many pairs index, value [D]
+inline constexpr std::uint8_t all_vibrators = 0xFF;    ///< a count: then 6 values follow [D]
 
 /// On-off settings. The letter and a byte of 0 or 1 sets one, '?' and the letter asks for it.
 enum class Setting : char {
@@ -65,27 +56,34 @@ inline constexpr Query ask_software_mask{'M', 3}; ///< sensors wanted, LSB first
 inline constexpr Query ask_value_count{'N', 1};   ///< only the first so many are sent [V]
 inline constexpr Query ask_right_hand{'R', 1};    ///< 1: right [V]
 inline constexpr Query ask_period{'T', 4};        ///< two 16-bit words, byte order disputed [p.47]
-inline constexpr Query ask_parameters{'P', 3};    ///< see cyberglove_parameters.hpp [V]
+inline constexpr Query ask_parameters{'P', 3};    ///< flags, LSB first; bits below [V, two drivers]
 inline constexpr Query ask_firmware{'V', 4};      ///< two 16-bit words, meaning unknown [D]
-inline constexpr Query ask_baud{'B', 1};          ///< as 'B' sets it [V]
+inline constexpr Query ask_baud{'B', 1};          ///< the baud register, see baud_of_register() [V]
 inline constexpr Query ask_vibration{'A', 6};     ///< thumb to pinky, palm [D]
 inline constexpr char ask_calibration = 'C';      ///< an offset a sensor, then a gain a sensor [D]
 inline constexpr char ask_information = 'i';      ///< text of several lines; NUL ends it [V, D]
 inline constexpr char ask_firmware_text = 'v';    ///< text [V]
-inline constexpr char ask_help = '?';             ///< text: the commands and errors [D]
 
 // Commands of the CyberGlove III only. They are answered by the same and NUL [D]; but 1S without
-// NUL, and the `interrupt` that ends its stream by one byte [two drivers]. Sinks are u, w, s.
-inline constexpr std::string_view third_enable = "1e";     ///< and a sink
-inline constexpr std::string_view third_disable = "1d";    ///< and a sink
-inline constexpr std::string_view third_frame_rate = "1m"; ///< a byte: so many times 30 Hz
-inline constexpr std::string_view third_divider = "1";     ///< a sink, a byte
-inline constexpr std::string_view third_stream = "1S";     ///< 12-bit records until `interrupt`
+// NUL, and the `interrupt` that ends its stream by one byte [two drivers].
+inline constexpr std::string_view third_enable_usb = "1eu"; ///< 12-bit records over the cable
+inline constexpr std::string_view third_frame_rate = "1m";  ///< a byte: so many times 30 Hz
+inline constexpr std::string_view third_stream = "1S";      ///< 12-bit records until `interrupt`
 inline constexpr double third_frame_step_hz = 30.0;
-inline constexpr std::size_t third_record_bytes = 61;
 
-inline constexpr std::uint8_t state_initialised = 0x01; ///< of ?G [V, p.31]
-inline constexpr std::uint8_t state_connected = 0x02;   ///< of ?G [V, p.31]
+// The bits of the reply to ?G [V, p.31].
+inline constexpr std::uint8_t state_initialised = 0x01;
+inline constexpr std::uint8_t state_connected = 0x02;
+
+// The flags of ?P: their bits. The lowest byte is the status byte, as records carry it.
+inline constexpr unsigned flag_wrist_switch = 1;
+inline constexpr unsigned flag_light = 2;
+inline constexpr unsigned flag_status_byte = 10;
+inline constexpr unsigned flag_switch_drives_light = 11;
+inline constexpr unsigned flag_filter = 12;
+inline constexpr unsigned flag_time_stamp = 13;
+inline constexpr unsigned flag_quantised = 16;
+inline constexpr unsigned flag_cybertouch = 17; ///< vibrators are built in
 
 // Errors have two letters each. They occur as replies and within records [V, D].
 inline constexpr char error_mark = 'e';
@@ -109,7 +107,6 @@ inline constexpr std::size_t max_plain_bytes =
 // The status byte [p.41].
 inline constexpr std::uint8_t status_plugged_in = 0x01;
 inline constexpr std::uint8_t status_switch = 0x02;
-inline constexpr std::uint8_t status_light = 0x04;
 inline constexpr std::uint8_t status_reserved = 0x78;
 inline constexpr std::uint8_t status_always = 0x80; ///< always set
 
@@ -122,6 +119,12 @@ inline constexpr std::size_t hi_res_bytes = hi_res_time_bytes + 2 * hi_res_value
 
 /// The longest record of either form.
 inline constexpr std::size_t max_record_bytes = hi_res_bytes;
+
+/// Returns the switch's position from a record's status byte, which is 0 if the record has none.
+constexpr WristSwitch wrist_switch_of(std::uint8_t status) noexcept {
+  if (status == 0) return WristSwitch::unknown;
+  return (status & status_switch) != 0 ? WristSwitch::on : WristSwitch::off;
+}
 
 inline constexpr double clock_hz = 115'200.0; ///< of the period [p.47] and the time stamp [p.28]
 

@@ -1,11 +1,56 @@
 #include "cyberglove/record_check.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <span>
 #include <utility>
 
+#include "cyberglove/cyberglove_protocol.hpp"
+
 namespace nendo::driver::cyberglove {
 namespace {
+
+using namespace std::chrono_literals;
+
+/// Returns `gap` in periods, rounded, at least 1. It has 64 bits, as both may be large.
+std::uint32_t whole_periods(std::uint64_t gap, std::uint64_t period) noexcept {
+  return static_cast<std::uint32_t>(std::max<std::uint64_t>(1, (gap + period / 2) / period));
+}
+
+// StampJitter.
+
+/// Stamp and period come from one clock, so that a stamp errs only by delays of the firmware:
+/// interrupts, and the conversion of a few channels. No source gives their length. A sixteenth of a
+/// period (0.6 ms at 100 Hz) is always allowed. Between two stamps that is an eighth, into which a
+/// wrong stamp falls by chance in one of four cases.
+constexpr std::uint32_t min_part = 8;
+/// Where records were lost, a device that is known to be punctual is allowed less: a wrong bit that
+/// fits makes the stamp some periods longer there, and all of them would be counted as missed.
+constexpr std::uint32_t min_part_after_loss = 16;
+/// Until the mean is known, a quarter of a period is allowed.
+constexpr std::uint32_t unknown_part = 4;
+/// A device whose stamps wander more is allowed five times its mean deviation: if stamps err evenly
+/// to both sides, the largest one is three times the mean.
+constexpr std::uint32_t times_mean = 5;
+/// Number of deviations in the mean. A single wrong stamp in it widens nothing.
+constexpr std::uint32_t mean_steps = 16;
+/// No single deviation counts for more, so that stamps are only taken to wander if more than half
+/// of them do.
+constexpr std::uint32_t max_counted_part = 4;
+/// Beyond three eighths one cannot tell late from early. A mean of an eighth is a period that is
+/// not kept closely.
+constexpr std::uint32_t max_eighths = 3;
+constexpr std::uint32_t hidden_part = 8;
+constexpr std::uint32_t fraction = 256; ///< deviations are summed in this fraction of a tick
+
+/// The difference between the gap and a whole number of periods.
+std::uint32_t deviation(std::uint32_t gap, std::uint32_t period) noexcept {
+  const std::uint32_t whole = whole_periods(gap, period) * period;
+  return gap > whole ? gap - whole : whole - gap;
+}
+
+// RecordCheck.
 
 /// Each of the two gaps of a new clock may err by two sixteenths, as those of the known one.
 constexpr std::uint32_t equal_part = 4;
@@ -16,8 +61,8 @@ constexpr std::uint32_t min_late_part = 16;
 constexpr std::uint32_t max_periods = 16;
 /// A longer one is a new clock. The reader starts a silent stream again long before.
 constexpr std::uint32_t seconds_60 = 60 * 115'200;
-/// No glove is used with fewer records than one in four minutes; leaves room for 16 periods.
-constexpr std::uint32_t longest_period = std::uint32_t{1} << 25U;
+/// No glove is used with fewer records than one in four minutes; 16 periods fit into 32 bits.
+constexpr std::uint32_t max_period_ticks = std::uint32_t{1} << 25U;
 
 constexpr int agreeing_records = 3;
 constexpr int doubt_by_refusal =
@@ -34,10 +79,55 @@ std::uint32_t loosely_rounded(std::uint32_t gap, std::uint32_t period) noexcept 
   return std::uint64_t{4} * gap < std::uint64_t{7} * period ? 1 : whole_periods(gap, period);
 }
 
+// HiResCheck.
+
+constexpr std::int64_t frames_in_second = 30;
+constexpr std::int64_t seconds_per_day = 86'400;
+/// A sub-frame that is seen once may be a wrong digit.
+constexpr int times_seen = 2;
+/// The time by which a record may seem to come too early: bytes come in portions.
+constexpr auto early_tolerance = 200ms;
+/// Max relative drift of the two clocks: a thousandth is more than any quartz.
+constexpr int clock_drift_part = 1000;
+/// Of three numbers in a row that do not fit, the last one begins a new count.
+constexpr std::int64_t max_strays = 3;
+constexpr int confusion_by_contradiction = 3;
+constexpr int max_confusion = 60;
+
 } // namespace
 
+std::uint64_t StampJitter::mean() const noexcept {
+  return sum_ / (mean_steps * fraction);
+}
+
+void StampJitter::learn(std::uint32_t gap, std::uint32_t period) noexcept {
+  const std::uint64_t now =
+      std::uint64_t{fraction} * std::min(deviation(gap, period), period / max_counted_part);
+  if (known_ == mean_steps) {
+    sum_ = sum_ - sum_ / mean_steps + now;
+    return;
+  }
+  // The mean of the known deviations, as if there were mean_steps of them.
+  const std::uint64_t sum = sum_ * known_ / mean_steps + now;
+  sum_ = sum * mean_steps / ++known_;
+}
+
+bool StampJitter::allows(std::uint32_t gap, std::uint32_t period) const noexcept {
+  const std::uint32_t part = whole_periods(gap, period) != 1 ? min_part_after_loss
+                             : known_ < mean_steps           ? unknown_part
+                                                             : min_part;
+  const std::uint64_t max_allowed = std::uint64_t{period} * max_eighths / 8;
+  const std::uint64_t allowed =
+      std::max<std::uint64_t>(period / part, std::min(max_allowed, times_mean * mean()));
+  return deviation(gap, period) <= allowed;
+}
+
+bool StampJitter::hides(std::uint32_t period) const noexcept {
+  return known_ == mean_steps && mean() > period / hidden_part;
+}
+
 RecordCheck::RecordCheck(std::uint64_t period_ticks) noexcept
-    : period_(period_ticks <= longest_period ? static_cast<std::uint32_t>(period_ticks) : 0),
+    : period_(period_ticks <= max_period_ticks ? static_cast<std::uint32_t>(period_ticks) : 0),
       steady_(period_ != 0) {
   if (steady_) gap_count_ = gaps_.size(); // nothing to learn
 }
@@ -103,7 +193,7 @@ Verdict RecordCheck::accept(const Record& record, std::uint64_t missed) noexcept
 std::uint32_t RecordCheck::agreed_period(const Record& record) noexcept {
   const Suspects before = suspects_;
   const Step step{record.ticks - before.ticks, before.late, record.sampled_too_fast};
-  const bool advances = step.gap != 0 && step.gap <= longest_gap();
+  const bool advances = step.gap != 0 && step.gap <= max_gap();
   suspects_ = {before.count > 0 && advances ? 2 : 1, record.ticks, record.sampled_too_fast, step};
   if (before.count < agreeing_records - 1 || !advances) return 0;
   const std::uint32_t longer = std::max(before.step.gap, step.gap);
@@ -112,14 +202,14 @@ std::uint32_t RecordCheck::agreed_period(const Record& record) noexcept {
   const bool same_period = keeps_period(before.step) && keeps_period(step) &&
                            !(equal && whole_periods(step.gap, period_) > 1);
   if (same_period) return period_;
-  return equal ? std::min(step.gap, longest_period) : 0;
+  return equal ? std::min(step.gap, max_period_ticks) : 0;
 }
 
 /// Three records agree with each other: their clock and their period hold from now on.
 Verdict RecordCheck::begin_again(Record& record, std::uint32_t agreed) noexcept {
   const std::uint32_t gap = record.ticks - last_ticks_;
   const bool late = last_late_ || record.sampled_too_fast;
-  if (trusted_ && agreed == period_ && gap <= longest_gap() &&
+  if (trusted_ && agreed == period_ && gap <= max_gap() &&
       (!steady_ || late || jitter_.allows(gap, period_))) {
     doubt_ = std::max(0, doubt_ - doubt_by_refusal * (agreeing_records - 1));
     return accept(record, whole_periods(gap, period_) - 1);
@@ -157,7 +247,7 @@ Verdict RecordCheck::lose_trust(Record& record) noexcept {
 /// How many periods the step takes; 0 if it contradicts.
 std::uint32_t RecordCheck::periods(const Step& step) const noexcept {
   if (step.gap == 0) return 0;
-  if (period_ == 0) return step.gap <= longest_gap() ? 1 : 0;
+  if (period_ == 0) return step.gap <= max_gap() ? 1 : 0;
   if (step.gap > max_periods * std::max(period_, late_pace_)) return 0;
   if (steady_) return steady_periods(step);
   if (step.gap >= period_ / 2) return loosely_rounded(step.gap, period_);
@@ -189,22 +279,22 @@ std::uint32_t RecordCheck::steady_periods(const Step& step) const noexcept {
 
 /// Before the record is judged. Wrong stamps count as well.
 void RecordCheck::learn_jitter(const Step& step) noexcept {
-  const bool tells = steady_ && trusted_ && !step.was_late && !step.is_late && step.gap != 0 &&
-                     step.gap <= max_periods * period_;
-  if (!tells) return;
+  const bool usable = steady_ && trusted_ && !step.was_late && !step.is_late && step.gap != 0 &&
+                      step.gap <= max_periods * period_;
+  if (!usable) return;
   jitter_.learn(step.gap, period_);
   if (jitter_.hides(period_)) steady_ = false;
 }
 
 /// Learns from an accepted step. Returns the records that were missed.
 std::uint64_t RecordCheck::follow(const Step& step, std::uint32_t count) noexcept {
-  late_pace_ = step.was_late && step.is_late ? std::min(step.gap / count, longest_period) : 0;
+  late_pace_ = step.was_late && step.is_late ? std::min(step.gap / count, max_period_ticks) : 0;
   if (steady_) return count - 1;
   if (gap_count_ < gaps_.size()) return learn(step.gap);
   // A mean over about eight records, in which no single one weighs much.
   const auto pace = std::int64_t{step.gap / count};
   period_ = std::min(static_cast<std::uint32_t>(period_ + (pace - std::int64_t{period_}) / 8),
-                     longest_period);
+                     max_period_ticks);
   return count - 1;
 }
 
@@ -220,15 +310,126 @@ std::uint64_t RecordCheck::learn(std::uint32_t gap) noexcept {
     total += one;
     count += loosely_rounded(one, shortest);
   }
-  period_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(total / count, longest_period));
+  period_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(total / count, max_period_ticks));
   const std::uint64_t missed = count - gaps.size();
   const std::uint64_t counted = learnt_missed_;
   learnt_missed_ = std::max(missed, counted);
   return learnt_missed_ - counted;
 }
 
-std::uint32_t RecordCheck::longest_gap() const noexcept {
+std::uint32_t RecordCheck::max_gap() const noexcept {
   return std::max(seconds_60, max_periods * period_);
+}
+
+HiResCheck::HiResCheck(double rate_hz) noexcept
+    : sub_frames_(std::llround(rate_hz / third_frame_step_hz)) {}
+
+Verdict HiResCheck::operator()(const Record& record, HostTime arrival) noexcept {
+  if (given_up_) return {};
+  const Mark mark{record.second, record.frame, record.sub_frame, arrival, {}};
+  return known_ ? count(mark) : learn(mark);
+}
+
+/// Counts the first records once the numbering is known.
+Verdict HiResCheck::learn(const Mark& mark) noexcept {
+  first_[static_cast<std::size_t>(learnt_)] = mark;
+  ++seen_[mark.sub_frame];
+  if (++learnt_ < learning_records) return {};
+  known_ = true;
+  const auto is_sent = [](int times) { return times >= times_seen; };
+  const auto begin = std::find_if(seen_.begin(), seen_.end(), is_sent);
+  const auto end = std::find_if(seen_.rbegin(), seen_.rend(), is_sent).base();
+  sub_frames_ = std::max({std::int64_t{1}, sub_frames_, std::int64_t{end - begin}});
+  std::int64_t common = 0;
+  for (std::size_t k = 1; k < first_.size(); ++k)
+    common = std::gcd(common, steps(first_[k - 1], first_[k]));
+  stride_ = std::max(std::int64_t{1}, common);
+  Verdict all;
+  for (const Mark& one : first_)
+    all.missed += count(one).missed;
+  return all;
+}
+
+std::int64_t HiResCheck::per_second() const noexcept {
+  return frames_in_second * sub_frames_;
+}
+
+HostClock::duration HiResCheck::time_of(std::int64_t records) const noexcept {
+  return from_seconds(static_cast<double>(records) / static_cast<double>(per_second()));
+}
+
+/// By the clock alone, from 0 up to a day.
+std::int64_t HiResCheck::difference(const Mark& from, const Mark& to) const noexcept {
+  const auto number = [&](const Mark& mark) {
+    return (mark.second * frames_in_second + mark.frame) * sub_frames_ + mark.sub_frame;
+  };
+  const std::int64_t day = seconds_per_day * per_second();
+  return ((number(to) - number(from)) % day + day) % day;
+}
+
+/// Records from one to the other, 1 if none is between them; 0 if the numbers contradict.
+std::int64_t HiResCheck::steps(const Mark& from, const Mark& to) const noexcept {
+  const std::int64_t passed = difference(from, to);
+  const bool is_early =
+      time_of(passed) > to.arrival - from.arrival + from.lateness + early_tolerance;
+  if (passed > 0 && !is_early && !seconds_stopped_) return passed / stride_;
+  return steps_by_arrival(from, to, passed);
+}
+
+/// The same where only the clock's frames within a second are right.
+std::int64_t HiResCheck::steps_by_arrival(const Mark& from, const Mark& to,
+                                          std::int64_t difference) const noexcept {
+  const auto second = static_cast<double>(per_second());
+  const double expected = to_seconds(to.arrival - from.arrival) * second;
+  const auto part = static_cast<double>(difference % per_second());
+  const double passed = part + second * std::max(0.0, std::round((expected - part) / second));
+  if (std::abs(passed - expected) > second / 4) return 0;
+  return static_cast<std::int64_t>(passed) / stride_;
+}
+
+Verdict HiResCheck::count(Mark mark) noexcept {
+  if (!last_) {
+    last_ = mark;
+    return {};
+  }
+  std::int64_t taken = steps(*last_, mark);
+  if (taken == 0 && before_ && strays_ == 0) { // was it the last one's number that was wrong?
+    const std::int64_t since_before = steps(*before_, mark);
+    if (since_before > 1) {
+      taken = since_before;
+      gap_ = 0;
+      last_ = before_;
+      strays_ = strays_before_ + 1;
+    }
+  }
+  if (taken == 0) return contradict(mark);
+  accept(mark, taken);
+  const std::int64_t gap = std::max(std::int64_t{0}, taken - 1 - strays_);
+  before_ = std::exchange(last_, mark);
+  strays_before_ = std::exchange(strays_, 0);
+  return {true, static_cast<std::uint64_t>(std::exchange(gap_, gap))};
+}
+
+void HiResCheck::accept(Mark& mark, std::int64_t taken) noexcept {
+  doubt_ = std::max(0, doubt_ - 1);
+  const bool by_clock = difference(*last_, mark) / stride_ == taken;
+  if (by_clock && mark.second != last_->second) seconds_stopped_ = false;
+  if (!by_clock) seconds_stopped_ = true;
+  const auto waited = mark.arrival - last_->arrival;
+  mark.lateness =
+      std::max(HostClock::duration{0},
+               last_->lateness + waited - time_of(taken * stride_) - waited / clock_drift_part);
+}
+
+Verdict HiResCheck::contradict(const Mark& mark) noexcept {
+  doubt_ += confusion_by_contradiction;
+  given_up_ = doubt_ >= max_confusion;
+  if (++strays_ < max_strays) return {};
+  const auto missed = static_cast<std::uint64_t>(std::exchange(gap_, 0));
+  before_.reset();
+  strays_ = strays_before_ = 0;
+  last_ = mark;
+  return {true, missed};
 }
 
 } // namespace nendo::driver::cyberglove
