@@ -15,9 +15,8 @@ void check_record(const Record& record) {
   const auto values = std::span(record.values).first(hi_res_values);
   require(std::all_of(values.begin(), values.end(),
                       [](auto value) { return value >= 1 && value <= hi_res_max; }));
-  // Frame 30 of a day's last second, if frames are numbered from 1.
-  require(record.time_of_day >= std::chrono::seconds(0));
-  require(record.time_of_day < std::chrono::hours(24) + std::chrono::milliseconds(34));
+  // Frame 30 is the last one of a second, if frames are numbered from 1.
+  require(record.second < 24 * 3600 && record.frame <= 30 && record.sub_frame <= 9);
 }
 
 } // namespace

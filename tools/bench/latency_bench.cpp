@@ -7,17 +7,17 @@
 
 #include <nlohmann/json.hpp>
 
-#include <nendo/emulator/latency_probe.hpp>
 #include <nendo/flow/histogram.hpp>
 
 #include "bench/bench.hpp"
+#include "bench/latency_probe.hpp"
 #include "cli/cli.hpp"
 
 namespace nendo::bench::latency_bench {
 namespace {
 
 struct DriverOptions {
-  emulator::LatencyOptions latency;
+  LatencyOptions latency;
   bool json = false;
 };
 
@@ -79,14 +79,13 @@ int bench_driver(DriverOptions& options) {
     return cli::report({Errc::usage, "--records 0: measure at least one"});
   }
   cli::install_stop_signals();
-  constexpr std::array<std::pair<emulator::Line, const char*>, 2> lines{
-      {{emulator::Line::pseudo_terminal, "pseudo-terminal"},
-       {emulator::Line::socket_pair, "socket pair"}}};
+  constexpr std::array<std::pair<Line, const char*>, 2> lines{
+      {{Line::pseudo_terminal, "pseudo-terminal"}, {Line::socket_pair, "socket pair"}}};
   for (const auto& [line, name] : lines) {
     flow::Histogram driver;
     flow::Histogram bare;
     options.latency.line = line;
-    const auto measured = emulator::measure_latency(
+    const auto measured = measure_latency(
         options.latency,
         {[&](auto time) { driver.record(time); }, [&](auto time) { bare.record(time); }},
         cli::stop_requested());

@@ -11,7 +11,7 @@
 #include <nendo/base/result.hpp>
 #include <nendo/base/units.hpp>
 
-namespace nendo::emulator {
+namespace nendo::bench {
 
 enum class Line {
   pseudo_terminal, ///< what an emulated glove has; its far end is a kernel worker of no priority
@@ -20,14 +20,14 @@ enum class Line {
 
 struct LatencyOptions {
   Line line = Line::pseudo_terminal;
-  std::size_t records = 2000; ///< of each
-  double rate_hz = 300.0;     ///< 1 to 480, records a second to the driver; with stamps, 384 fit
+  std::size_t records = 2000; ///< number of records per path
+  double rate_hz = 300.0;     ///< 1 to 480, records per second to the driver; with stamps, 384 fit
 };
 
 /// Each sink receives the latency of every record.
 struct LatencySinks {
-  std::function<void(HostClock::duration)> driver; ///< of the CyberGlove driver
-  std::function<void(HostClock::duration)> bare;   ///< of the thread that only polls and reads
+  std::function<void(HostClock::duration)> driver; ///< the CyberGlove driver's
+  std::function<void(HostClock::duration)> bare; ///< those of the thread that only polls and reads
 };
 
 /// Measures until done or until `stop` becomes true. Blocks for records / rate_hz plus about 2 s.
@@ -36,4 +36,4 @@ struct LatencySinks {
 Result<void> measure_latency(const LatencyOptions& options, const LatencySinks& sinks,
                              const std::atomic<bool>& stop);
 
-} // namespace nendo::emulator
+} // namespace nendo::bench

@@ -1,4 +1,4 @@
-#include <nendo/emulator/latency_probe.hpp>
+#include "bench/latency_probe.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 namespace latency_probe_test {
 
 using namespace nendo;
-using namespace nendo::emulator;
+using namespace nendo::bench;
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include <nendo/emulator/latency_probe.hpp>
+#include "bench/latency_probe.hpp"
 
 #include <array>
 #include <cstdlib>
@@ -18,9 +18,10 @@
 #include "transport/open_transport.hpp"
 #include "units/cyberglove_unit.hpp"
 
-namespace nendo::emulator {
+namespace nendo::bench {
 namespace {
 
+using emulator::CyberGloveUnit;
 using namespace std::chrono_literals;
 
 struct Wire {
@@ -52,8 +53,8 @@ Result<Wire> make_wire(Line line) {
   return Wire{std::move(device), std::move(host)};
 }
 
-UnitOptions at_rate(double rate_hz) {
-  UnitOptions options;
+emulator::UnitOptions at_rate(double rate_hz) {
+  emulator::UnitOptions options;
   options.rate_hz = rate_hz;
   return options;
 }
@@ -177,7 +178,7 @@ Result<void> measure_latency(const LatencyOptions& options, const LatencySinks& 
   std::atomic<bool> opened{false};
   std::thread dialogue([&] { device.serve_dialogue(opened); });
   const auto open_port = [&]() -> Result<std::unique_ptr<driver::Transport>> {
-    UniqueFd host = std::move(driver_wire->host); // the transport gets a copy of its own
+    UniqueFd host = std::move(driver_wire->host); // the transport gets a duplicate
     const int fd = host.is_open() ? ::fcntl(host.get(), F_DUPFD_CLOEXEC, 0) : -1;
     if (fd < 0) return Error{Errc::no_device, "the line was closed"};
     return driver::transport_of(fd);
@@ -202,4 +203,4 @@ Result<void> measure_latency(const LatencyOptions& options, const LatencySinks& 
   return {};
 }
 
-} // namespace nendo::emulator
+} // namespace nendo::bench
