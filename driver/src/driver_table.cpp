@@ -1,4 +1,4 @@
-// The one place that knows all drivers. To add one: an include and a line in the table.
+// The table of all drivers. To add one: its function in drivers.hpp, and a line here.
 
 #include <nendo/driver/open_glove.hpp>
 
@@ -6,12 +6,8 @@
 
 #include "cyberglove/cyberglove_driver.hpp"
 #include "cyberglove/cyberglove_options.hpp"
-#include "discovery/auto_glove.hpp"
-#include "fivedt/fivedt_driver.hpp"
-#include "forte/forte_driver.hpp"
+#include "drivers.hpp"
 #include "lucidgloves/lucidgloves_driver.hpp"
-#include "simulated/simulated_driver.hpp"
-#include "usb_gloves/open_usb_glove.hpp"
 
 namespace nendo::driver {
 namespace {
@@ -27,7 +23,7 @@ constexpr std::array own_drivers{
     GloveDriver{"serial", cyberglove::options_grammar,
                 "a CyberGlove at a serial, USB or Bluetooth port", alone<cyberglove::open_serial>},
     GloveDriver{"lucidgloves", "lucidgloves:PATH[?baud=N&range=4095|1023&hand=left|right]",
-                "LucidGloves, or what else speaks OpenGloves' encoding, at a serial port",
+                "LucidGloves, or another glove with OpenGloves' encoding, at a serial port",
                 alone<lucidgloves::open_lucidgloves>},
     GloveDriver{"5dt", "5dt:PATH[?baud=19200|9600&hand=left|right]",
                 "a 5DT Data Glove 5 at a serial port; 9600: a wireless one",
@@ -36,15 +32,14 @@ constexpr std::array own_drivers{
                 "a BeBop Forte Data Glove at a serial port, by USB or Bluetooth",
                 alone<forte::open_forte>},
     GloveDriver{"usb", "usb:VID:PID[?serial=TEXT&hand=left|right]",
-                "a P5 (0d7f:0100) or 5DT Ultra (5d70:....) at USB", alone<open_usb_glove>},
-    GloveDriver{"auto", "auto[:left|right]", "the glove that its name or a udev rule makes known",
+                "a P5 (0d7f:0100) or 5DT Ultra (5d70:....) at USB", alone<open_usb>},
+    GloveDriver{"auto", "auto[:left|right]", "the glove that its name or a udev rule identifies",
                 alone<open_auto>},
     GloveDriver{"sim", "sim[:MOTION][?seed=N&rate=HZ&hand=left|right&sensors=18|22]",
                 "a simulated glove", open_simulated},
 };
 
-/// Names the glove as it was typed: its port alone does not tell which of two it was, nor what
-/// `auto` has chosen.
+/// Adds the glove's name as it was typed: the port alone is ambiguous with two gloves or `auto`.
 Error of_glove(const GloveSpec& spec, const Error& error) {
   const bool is_of_port = error.code == Errc::no_device || error.code == Errc::no_permission;
   if (!is_of_port || error.message.find(spec.text) != std::string::npos) return error;

@@ -6,7 +6,6 @@
 
 #include <doctest/doctest.h>
 
-#include "fivedt/fivedt_information.hpp"
 #include "support/captures.hpp"
 #include "support/parser_laws.hpp"
 

@@ -11,7 +11,6 @@
 
 #include <doctest/doctest.h>
 
-#include "lucidgloves/lucidgloves_slots.hpp"
 #include "support/captures.hpp"
 
 namespace lucidgloves_parser_test {

@@ -15,7 +15,7 @@
 #include "support/temporary_folder.hpp"
 #include "transport/port_access.hpp"
 #include "transport/sysfs.hpp"
-#include "usb/usb_opener.hpp"
+#include "usb/usb_glove.hpp"
 
 namespace programs_test {
 

@@ -1,4 +1,4 @@
-#include "simulated/simulated_driver.hpp"
+#include "drivers.hpp"
 
 #include <algorithm>
 #include <array>

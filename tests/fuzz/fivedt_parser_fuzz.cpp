@@ -3,7 +3,6 @@
 
 #include "fivedt/fivedt_parser.hpp"
 
-#include "fivedt/fivedt_information.hpp"
 #include "parser_fuzz.hpp"
 
 using namespace nendo::driver::fivedt;

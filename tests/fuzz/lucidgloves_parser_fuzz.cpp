@@ -2,7 +2,6 @@
 
 #include "lucidgloves/lucidgloves_parser.hpp"
 
-#include "lucidgloves/lucidgloves_slots.hpp"
 #include "parser_fuzz.hpp"
 
 using namespace nendo::driver::lucidgloves;

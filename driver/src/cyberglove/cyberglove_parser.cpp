@@ -156,7 +156,6 @@ std::optional<Record> decode_record(std::span<const std::byte> frame,
 }
 
 std::optional<Record> Parser::push_byte(std::byte byte) noexcept {
-  ++counters_.bytes;
   frame_[held_++] = byte;
   return shape_.form == RecordForm::hi_res ? extend_hi_res() : extend_plain();
 }
@@ -264,11 +263,9 @@ bool Parser::settle(const Record& record, const Verdict& verdict) noexcept {
     discard(held_);
     return false;
   }
-  ++counters_.records;
   counters_.clamped += record.clamped;
   counters_.too_fast += record.sampled_too_fast ? 1U : 0U;
-  counters_.record_bytes += held_;
-  held_ = 0;
+  accept_held();
   return true;
 }
 

@@ -17,8 +17,7 @@
 #include <span>
 
 #include "cyberglove/cyberglove_protocol.hpp"
-#include "stream/findings.hpp"
-#include "stream/stream_counters.hpp"
+#include "stream/stream_parser.hpp"
 
 namespace nendo::driver::cyberglove {
 
@@ -103,19 +102,19 @@ struct Verdict {
   std::uint64_t missed = 0; ///< records known to have been lost since the last plausible one
 };
 
-class Parser {
+class Parser : public StreamParser<Parser> {
 public:
   explicit Parser(const RecordShape& shape) noexcept : shape_(shape) {}
 
   /// Takes the next bytes of the stream, cut anywhere. Each well-formed record is passed to
   /// `check(Record&) -> Verdict` and, if plausible, to `sink(const Record&)`. The sink also
-  /// receives each BadRecord and Unplugged (findings.hpp).
+  /// receives each BadRecord and Unplugged .
   template <class Check, class Sink>
   void push(std::span<const std::byte> chunk, Check&& check, Sink&& sink) {
     for (const std::byte byte : chunk) {
+      ++counters_.bytes;
       auto record = push_byte(byte);
-      for (; bad_ > 0; --bad_)
-        report(sink, BadRecord{});
+      report_bad(sink);
       if (!record) continue;
       if (record->no_glove) {
         count_unplugged();
@@ -135,12 +134,6 @@ public:
 
   /// Gives up the unfinished record and continues with records of another shape.
   void reset(const RecordShape& shape) noexcept;
-  /// See StreamCounters::count_discarded.
-  void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
-
-  const StreamCounters& counters() const noexcept { return counters_; }
-  /// Returns the bytes of the unfinished record, always less than max_record_bytes.
-  std::size_t pending() const noexcept { return held_; }
 
 private:
   std::optional<Record> push_byte(std::byte byte) noexcept;
@@ -151,19 +144,15 @@ private:
   bool settle(const Record& record, const Verdict& verdict) noexcept;
   void count_unplugged() noexcept;
   bool may_be_stamp() const noexcept;
-  void count_bad() noexcept { ++counters_.bad_records, ++bad_; }
   void drop_bad_frame() noexcept;
   void discard(std::size_t count) noexcept;
 
   RecordShape shape_;
   std::array<std::byte, max_record_bytes> frame_{};
-  std::size_t held_ = 0;
   bool overlong_ = false;       ///< plain: the frame outgrew every record; skip to its NUL
   bool nul_in_stamp_ = false;   ///< plain: the frame holds a NUL where a time stamp may have one
   std::uint8_t tail_ = 0;       ///< hi_res: bytes of CR LF NUL just seen
   bool damage_counted_ = false; ///< hi_res: the record that the next tail ends is counted already
-  unsigned bad_ = 0;            ///< bad records found by the last byte, not yet reported
-  StreamCounters counters_;
 };
 
 } // namespace nendo::driver::cyberglove

@@ -1,5 +1,3 @@
-#include "fivedt/fivedt_driver.hpp"
-
 #include <array>
 #include <string>
 #include <utility>
@@ -8,9 +6,8 @@
 
 #include <nendo/driver/glove_options.hpp>
 
-#include "fivedt/fivedt_information.hpp"
+#include "drivers.hpp"
 #include "fivedt/fivedt_parser.hpp"
-#include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"
 
@@ -44,20 +41,20 @@ public:
         hands_(wishes.hands) {}
 
   Result<GloveInfo> identify(Transport& transport, const std::string& source,
-                             IdentifyReason /*occasion*/, const ReplyDeadline& patience) override {
-    return wireless_ ? recognise(transport, source, patience) : ask(transport, source, patience);
+                             IdentifyReason /*reason*/, const ReplyDeadline& limit) override {
+    return wireless_ ? recognise(transport, source, limit) : ask(transport, source, limit);
   }
 
   Result<void> start_stream(Transport& transport, const std::string& source,
-                            const ReplyDeadline& /*patience*/) override {
+                            const ReplyDeadline& /*limit*/) override {
     parser_.count_discarded(drop_waiting(transport));
     parser_.reset();
     if (!wireless_ && send(transport, stream_command) == IoStatus::gone) return went_away(source);
     return {};
   }
 
-  void end_stream(Transport& transport, const ReplyDeadline& patience) noexcept override {
-    if (!wireless_) reset(transport, patience, quiet_time);
+  void end_stream(Transport& transport, const ReplyDeadline& limit) noexcept override {
+    if (!wireless_) reset(transport, limit, quiet_time);
   }
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
@@ -92,16 +89,16 @@ private:
 
   /// Throws away what comes until nothing has come for quiet_time: timeout, as hoped. Done: it
   /// never stopped.
-  IoStatus fall_quiet(Transport& transport, const ReplyDeadline& patience) noexcept {
+  IoStatus fall_quiet(Transport& transport, const ReplyDeadline& limit) noexcept {
     const HostTime until = HostClock::now() + longest_babble;
     IoStatus heard = IoStatus::done;
     while (heard == IoStatus::done && HostClock::now() < until)
-      heard = hear(transport, patience, quiet_time);
+      heard = hear(transport, limit, quiet_time);
     return heard;
   }
-  IoStatus hear(Transport& transport, const ReplyDeadline& patience,
+  IoStatus hear(Transport& transport, const ReplyDeadline& limit,
                 std::chrono::milliseconds longest) noexcept {
-    return listen(transport, patience, longest, [&](std::span<const std::byte> chunk) {
+    return listen(transport, limit, longest, [&](std::span<const std::byte> chunk) {
       parser_.count_discarded(chunk.size());
       return true;
     });
@@ -109,36 +106,36 @@ private:
 
   /// Ends whatever streams; waits `answer` for the first byte of the reply. Where a stream ran, the
   /// reply is somewhere among its last samples.
-  IoStatus reset(Transport& transport, const ReplyDeadline& patience,
+  IoStatus reset(Transport& transport, const ReplyDeadline& limit,
                  std::chrono::milliseconds answer) noexcept {
     if (send(transport, reset_command) == IoStatus::gone) return IoStatus::gone;
-    const IoStatus heard = hear(transport, patience, answer);
-    return heard == IoStatus::done ? fall_quiet(transport, patience) : heard;
+    const IoStatus heard = hear(transport, limit, answer);
+    return heard == IoStatus::done ? fall_quiet(transport, limit) : heard;
   }
 
   /// A glove that was reset says what it is asked and no more.
-  IoStatus ask_information(Transport& transport, const ReplyDeadline& patience,
+  IoStatus ask_information(Transport& transport, const ReplyDeadline& limit,
                            InformationFinder& finder) {
     finder = {};
     if (send(transport, information_command) == IoStatus::gone) return IoStatus::gone;
     const IoStatus heard =
-        listen(transport, patience, answer_time, [&](std::span<const std::byte> chunk) {
+        listen(transport, limit, answer_time, [&](std::span<const std::byte> chunk) {
           parser_.count_discarded(chunk.size());
           return finder.push(chunk);
         });
     if (heard != IoStatus::done) return heard;
-    return fall_quiet(transport, patience) == IoStatus::timeout ? IoStatus::done
+    return fall_quiet(transport, limit) == IoStatus::timeout ? IoStatus::done
                                                                 : IoStatus::timeout;
   }
 
   Result<GloveInfo> ask(Transport& transport, const std::string& source,
-                        const ReplyDeadline& patience) {
+                        const ReplyDeadline& limit) {
     const std::uint64_t before = parser_.counters().bytes;
     InformationFinder finder;
     IoStatus heard = IoStatus::timeout;
     for (int k = 0; k < tries && heard == IoStatus::timeout; ++k) {
-      heard = reset(transport, patience, answer_time);
-      if (heard != IoStatus::gone) heard = ask_information(transport, patience, finder);
+      heard = reset(transport, limit, answer_time);
+      if (heard != IoStatus::gone) heard = ask_information(transport, limit, finder);
     }
     if (heard == IoStatus::gone) return went_away(source);
     const auto information =
@@ -157,14 +154,14 @@ private:
 
   /// One sample may be noise; two of them, one right behind the other, are none by chance.
   Result<GloveInfo> recognise(Transport& transport, const std::string& source,
-                              const ReplyDeadline& patience) {
+                              const ReplyDeadline& limit) {
     Parser parser;
     bool seen_one = false;
     bool proven = false;
     FindingSink take{[&](const Record&) { proven = std::exchange(seen_one, true) || proven; },
                      [&](BadRecord) { seen_one = false; }};
     const IoStatus heard =
-        listen(transport, patience, open_budget, [&](std::span<const std::byte> chunk) {
+        listen(transport, limit, open_budget, [&](std::span<const std::byte> chunk) {
           parser.push(chunk, take);
           return proven;
         });

@@ -1,5 +1,5 @@
 #pragma once
-// Splits the byte stream of a 5DT Data Glove 5 into samples. It is pure (no I/O, clock, log or
+// Splits the byte stream of a 5DT Data Glove 5 into samples, and finds the glove's answer to 'G'. It is pure (no I/O, clock, log or
 // allocation), and bytes are not trusted. Nothing marks a sample's beginning for certain. So nine
 // bytes are a sample if they begin with the header and their checksum fits; otherwise one byte is
 // dropped.
@@ -9,10 +9,12 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
+
+#include <nendo/driver/sample.hpp>
 
 #include "fivedt/fivedt_protocol.hpp"
-#include "stream/findings.hpp"
-#include "stream/stream_counters.hpp"
+#include "stream/stream_parser.hpp"
 
 namespace nendo::driver::fivedt {
 
@@ -23,41 +25,45 @@ struct Record {
 /// Decodes nine bytes. Returns nothing if header or checksum are wrong.
 std::optional<Record> decode_record(std::span<const std::byte, sample_bytes> frame) noexcept;
 
-class Parser {
+/// A damaged sample counts once as bad, even if many bytes are dropped before the next good one.
+class Parser : public StreamParser<Parser> {
 public:
-  /// Takes the next bytes of the stream, cut anywhere, and hands each whole sample to `sink(const
-  /// Record&)`. A sample that is damaged counts once as bad, however many bytes are dropped before
-  /// the next good one.
-  template <class Sink>
-  void push(std::span<const std::byte> chunk, Sink&& sink) {
-    for (const std::byte byte : chunk) {
-      const auto record = push_byte(byte);
-      for (; bad_ > 0; --bad_)
-        report(sink, BadRecord{});
-      if (record) sink(*record);
-    }
-  }
-
   /// Drops the unfinished sample. The next byte may come from anywhere in a sample.
   void reset() noexcept;
-  /// See StreamCounters::count_discarded.
-  void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
-
-  const StreamCounters& counters() const noexcept { return counters_; }
-  /// Returns the bytes of the unfinished sample, always less than sample_bytes.
-  std::size_t pending() const noexcept { return held_; }
 
 private:
+  friend StreamParser;
+
   std::optional<Record> push_byte(std::byte byte) noexcept;
   void drop_first() noexcept;
-  void count_bad() noexcept { ++counters_.bad_records, ++bad_; }
 
   std::array<std::byte, sample_bytes> frame_{};
-  std::size_t held_ = 0;
   bool in_step_ = false;  ///< the last sample was good, and no more than extra bytes came since
   std::size_t extra_ = 0; ///< bytes dropped since the last good sample, while in step
-  unsigned bad_ = 0;      ///< found by the last byte, not yet told
-  StreamCounters counters_;
+};
+
+/// A glove's answer to the information command.
+struct Information {
+  Side side = Side::right;
+  std::uint8_t version_major = 0;
+  std::uint8_t version_minor = 0;
+  bool tilt_sensor = false;
+  std::string name; ///< printable, without blanks at its ends; may be empty
+};
+
+/// Returns nullopt if the answer does not begin as it must.
+std::optional<Information> decode_information(std::span<const std::byte, information_bytes> answer);
+
+/// Finds the answer in a glove's bytes, cut anywhere, after a sample or another answer.
+class InformationFinder {
+public:
+  /// Takes the next bytes. Returns true once the whole answer was seen; later bytes are ignored.
+  bool push(std::span<const std::byte> chunk) noexcept;
+  std::span<const std::byte, information_bytes> answer() const noexcept { return answer_; }
+
+private:
+  std::array<std::byte, information_bytes> answer_{};
+  std::size_t held_ = 0;
 };
 
 } // namespace nendo::driver::fivedt

@@ -1,13 +1,11 @@
-#include "forte/forte_driver.hpp"
-
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include <nendo/driver/glove_options.hpp>
 
+#include "drivers.hpp"
 #include "forte/forte_parser.hpp"
-#include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"
 
@@ -29,7 +27,7 @@ public:
 
   /// A glove that streams already is told again: another program may have chosen the other link.
   Result<GloveInfo> identify(Transport& transport, const std::string& source,
-                             IdentifyReason /*occasion*/, const ReplyDeadline& patience) override {
+                             IdentifyReason /*reason*/, const ReplyDeadline& limit) override {
     Parser parser;
     std::optional<Record> record;
     const auto take = [&](std::span<const std::byte> chunk) {
@@ -39,7 +37,7 @@ public:
     IoStatus heard = IoStatus::timeout;
     for (int k = 0; k < tries && heard == IoStatus::timeout; ++k) {
       heard = tell_to_send(transport);
-      if (heard != IoStatus::gone) heard = listen(transport, patience, answer_time, take);
+      if (heard != IoStatus::gone) heard = listen(transport, limit, answer_time, take);
     }
     parser_.count_discarded(parser.counters().bytes);
     if (heard == IoStatus::gone) return went_away(source);
@@ -49,14 +47,14 @@ public:
 
   /// It streams already; what it sent before now is old.
   Result<void> start_stream(Transport& transport, const std::string& /*source*/,
-                            const ReplyDeadline& /*patience*/) override {
+                            const ReplyDeadline& /*limit*/) override {
     parser_.count_discarded(drop_waiting(transport));
     parser_.reset();
     return {};
   }
 
   /// The stream continues: nobody knows what ends it.
-  void end_stream(Transport& /*transport*/, const ReplyDeadline& /*patience*/) noexcept override {}
+  void end_stream(Transport& /*transport*/, const ReplyDeadline& /*limit*/) noexcept override {}
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
             SampleSink& sink) noexcept override {

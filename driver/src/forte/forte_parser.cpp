@@ -25,7 +25,6 @@ std::optional<Record> decode_record(std::span<const std::byte> frame) noexcept {
 }
 
 std::optional<Record> Parser::push_byte(std::byte byte) noexcept {
-  ++counters_.bytes;
   if (byte == frame_begin) {
     if (state_ == State::in_frame) {
       count_bad();
@@ -57,9 +56,8 @@ std::optional<Record> Parser::end_frame() noexcept {
     discard_held();
     return std::nullopt;
   }
-  ++counters_.records;
   counters_.clamped += record->clamped;
-  counters_.record_bytes += std::exchange(held_, 0);
+  accept_held();
   return record;
 }
 
@@ -68,10 +66,6 @@ void Parser::skip_byte(std::byte byte) noexcept {
   ++counters_.discarded_bytes;
   if (byte != frame_end) return;
   if (std::exchange(state_, State::between) == State::between) count_bad();
-}
-
-void Parser::discard_held() noexcept {
-  counters_.discarded_bytes += std::exchange(held_, 0);
 }
 
 void Parser::reset() noexcept {

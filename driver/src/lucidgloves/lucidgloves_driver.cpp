@@ -13,8 +13,6 @@
 #include <nendo/driver/glove_options.hpp>
 
 #include "lucidgloves/lucidgloves_parser.hpp"
-#include "lucidgloves/lucidgloves_slots.hpp"
-#include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"
 

@@ -144,13 +144,34 @@ private:
 
   static constexpr unsigned far_curl = 1, far_splay = 2, far_joint = 4;
   const std::uint16_t range_;
-  std::uint32_t buttons_ = 0; ///< that the line has told, by letter
+  std::uint32_t buttons_ = 0; ///< buttons in the line, by letter
   unsigned far_values_ = 0;   ///< kinds of values that were very far out of range
   Line line_;
 };
 
 bool any(const std::array<Line::Value, fingers>& values) noexcept {
   return std::any_of(values.begin(), values.end(), [](const auto& value) { return bool(value); });
+}
+
+constexpr Sensor none = Sensor::unused;
+
+/// By finger and joint, from the metacarpal out.
+constexpr std::array<std::array<Sensor, joints>, fingers> joint_slots{
+    {{none, Sensor::thumb_mcp, Sensor::thumb_ip, none},
+     {none, Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip},
+     {none, Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip},
+     {none, Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip},
+     {none, Sensor::pinky_mcp, Sensor::pinky_pip, Sensor::pinky_dip}}};
+constexpr std::size_t mcp = 1;
+
+/// Between finger k and the next, from the index finger on.
+constexpr std::size_t index = 1;
+constexpr std::array<Sensor, fingers - 2> pair_slots{
+    Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_pinky_abduction};
+
+std::uint16_t apart(std::uint16_t one, std::uint16_t other, std::uint16_t range) noexcept {
+  const int difference = one > other ? one - other : other - one;
+  return static_cast<std::uint16_t>(std::min(2 * difference, int{range}));
 }
 
 } // namespace
@@ -177,8 +198,24 @@ std::optional<Line> decode_line(std::string_view text, std::uint16_t range) noex
   return decoder.line();
 }
 
+void fill_slots(const Line& line, std::uint16_t range, GloveSample& sample) noexcept {
+  for (std::size_t finger = 0; finger < fingers; ++finger) {
+    if (line.curl[finger]) sample.set(joint_slots[finger][mcp], RawCount{*line.curl[finger]});
+    for (std::size_t joint = 0; joint < joints; ++joint) {
+      const Sensor sensor = joint_slots[finger][joint];
+      if (line.joint[finger][joint] && sensor != none)
+        sample.set(sensor, RawCount{*line.joint[finger][joint]});
+    }
+  }
+  if (line.splay[0]) sample.set(Sensor::thumb_abduction, RawCount{*line.splay[0]});
+  for (std::size_t pair = 0; pair < pair_slots.size(); ++pair) {
+    const auto& one = line.splay[index + pair];
+    const auto& other = line.splay[index + pair + 1];
+    if (one && other) sample.set(pair_slots[pair], RawCount{apart(*one, *other, range)});
+  }
+}
+
 std::optional<Line> Parser::push_byte(std::byte byte) noexcept {
-  ++counters_.bytes;
   const char c = std::to_integer<char>(byte);
   if (c == '\n') return end_line();
   if (state_ != State::in_line && state_ != State::first_piece) {
@@ -212,11 +249,6 @@ std::optional<Line> Parser::end_line() noexcept {
   const bool may_be_cut = before == State::begin_unseen || before == State::first_piece;
   if (!line && !empty && !may_be_cut) count_bad();
   return line;
-}
-
-void Parser::discard_held() noexcept {
-  counters_.discarded_bytes += held_;
-  held_ = 0;
 }
 
 void Parser::reset() noexcept {

@@ -1,13 +1,9 @@
-#include "p5/p5_driver.hpp"
-
 #include <array>
 #include <utility>
 
-#include <nendo/driver/glove_options.hpp>
-
+#include "drivers.hpp"
 #include "p5/p5_parser.hpp"
-#include "usb/await_report.hpp"
-#include "usb/usb_opener.hpp"
+#include "usb/usb_glove.hpp"
 
 namespace nendo::driver::p5 {
 namespace {
@@ -16,17 +12,13 @@ using namespace std::chrono_literals;
 
 constexpr auto control_timeout = 100ms;
 
-class P5Protocol final : public GloveProtocol {
+class P5Protocol final : public UsbGloveProtocol<Parser> {
 public:
   explicit P5Protocol(Side side) noexcept : side_(side) {}
 
   Result<GloveInfo> identify(Transport& transport, const std::string& source,
-                             IdentifyReason /*occasion*/, const ReplyDeadline& patience) override {
-    std::uint64_t bytes = 0;
-    const auto alive = await_report(transport, source, patience, bytes,
-                                    [](auto report) { return decode_report(report).has_value(); });
-    parser_.count_discarded(bytes);
-    if (!alive) return alive.error();
+                             IdentifyReason /*reason*/, const ReplyDeadline& limit) override {
+    if (auto alive = await_report(transport, source, limit); !alive) return alive.error();
     GloveInfo info;
     info.model = "Essential Reality P5, 5 sensors";
     info.side = side_;
@@ -38,19 +30,19 @@ public:
   }
 
   Result<void> start_stream(Transport& transport, const std::string& source,
-                            const ReplyDeadline& /*patience*/) override {
+                            const ReplyDeadline& /*limit*/) override {
     std::array mouse{mouse_report, std::byte{0}};
     std::size_t received = 0;
     auto status = usb(transport).get_feature(mouse, received, control_timeout);
-    // What cannot be read is left alone: it could not be put back.
+    // A mode that cannot be read stays: it could not be restored.
     if (status == ControlStatus::done && received == mouse.size() && mouse[1] == mouse_on) {
-      mouse_was_on_ = true; // and stays so if the stream is started again after a silence
+      mouse_was_on_ = true; // also if the stream is started again after a silence
       status = set_mouse(transport, mouse_off);
     }
     return status == ControlStatus::gone ? went_away(source) : Result<void>();
   }
 
-  void end_stream(Transport& transport, const ReplyDeadline& /*patience*/) noexcept override {
+  void end_stream(Transport& transport, const ReplyDeadline& /*limit*/) noexcept override {
     if (std::exchange(mouse_was_on_, false)) set_mouse(transport, mouse_on);
   }
 
@@ -66,31 +58,23 @@ public:
     sink.deliver(sample);
   }
 
-  const StreamCounters& counters() const noexcept override { return parser_.counters(); }
-
 private:
-  /// open_p5() gives it no other.
-  static UsbTransport& usb(Transport& transport) noexcept {
-    return static_cast<UsbTransport&>(transport);
-  }
   static ControlStatus set_mouse(Transport& transport, std::byte mode) noexcept {
     return usb(transport).set_feature(std::array{mouse_report, mode}, control_timeout);
   }
 
   const Side side_;
-  Parser parser_;
-  bool mouse_was_on_ = false; ///< and was switched off here
+  bool mouse_was_on_ = false; ///< before this driver switched it off
 };
 
 } // namespace
 
 Result<std::unique_ptr<Glove>> open_p5(const GloveSpec& spec, const UsbWanted& wanted,
                                        HostTime deadline) {
-  if (auto allowed = allow_options(spec, {"serial", "hand"}); !allowed) return allowed.error();
-  const auto hand = hand_option(spec);
-  if (!hand) return hand.error();
-  return open_stream_glove(spec.text, usb_opener(wanted, {interface_number, report_bytes}),
-                           std::make_unique<P5Protocol>(hand->value_or(Side::right)), deadline);
+  return open_usb_glove(
+      spec, wanted, {interface_number, report_bytes}, deadline, [](std::optional<Side> hand) {
+        return std::make_unique<P5Protocol>(hand.value_or(Side::right));
+      });
 }
 
 } // namespace nendo::driver::p5

@@ -34,17 +34,7 @@ inline constexpr std::array bend_sensors{Sensor::index_mcp, Sensor::middle_mcp, 
 inline constexpr std::size_t buttons_at = 40;
 inline constexpr std::size_t buttons_bits = 4;
 inline constexpr std::uint8_t button_a = 0x1;
-inline constexpr std::uint8_t button_b = 0x2;
-inline constexpr std::uint8_t button_c = 0x4;
-
-// The views that the receiver's three lenses have of up to four of the glove's eight infrared
-// lights.
-inline constexpr std::size_t lights_at = 44;
-inline constexpr std::size_t light_bits = 4;
-inline constexpr std::uint8_t no_light = 0x8; ///< bit of a light's number: this one is not seen
-inline constexpr std::size_t max_lights = 4;
-inline constexpr std::size_t views_at = 60;
-inline constexpr std::size_t view_bits = 10; ///< three a light: v2, v1, h, two's complement
+// The rest, the views of the receiver's lenses of the glove's infrared lights, is not used.
 
 // Feature report 5 says whether the glove moves the mouse. It can be read and set.
 inline constexpr std::byte mouse_report{5};

@@ -1,5 +1,3 @@
-#include "simulated/simulated_driver.hpp"
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -13,6 +11,7 @@
 #include <nendo/driver/reader_thread.hpp>
 #include <nendo/driver/simulated_glove.hpp>
 
+#include "drivers.hpp"
 #include "simulated/hand_motion.hpp"
 #include "simulated/typical_wearer.hpp"
 #include "spec/number_in.hpp"

@@ -22,9 +22,13 @@ public:
     (record ? counters_.record_bytes : counters_.discarded_bytes) += report.size();
     return record;
   }
-  /// Counts bytes that were read while nobody wanted records.
+  /// Returns whether the report is a record.
+  static bool decodes(std::span<const std::byte> report) noexcept {
+    return decode(report).has_value();
+  }
+  /// Counts bytes that were read before the stream.
   void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
-  /// Counts values of the last record that were out of their range.
+  /// Counts values of the last record outside their range.
   void count_clamped(int values) noexcept {
     counters_.clamped += static_cast<std::uint64_t>(values);
   }

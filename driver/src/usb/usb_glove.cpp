@@ -1,4 +1,4 @@
-#include "usb/usb_opener.hpp"
+#include "usb/usb_glove.hpp"
 
 #include <utility>
 

@@ -1,5 +1,3 @@
-#include "usb_gloves/open_usb_glove.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -7,17 +5,17 @@
 
 #include <nendo/udev/device_table.hpp>
 
-#include "fivedt_usb/fivedt_usb_driver.hpp"
+#include "drivers.hpp"
 #include "fivedt_usb/fivedt_usb_protocol.hpp"
-#include "p5/p5_driver.hpp"
 #include "p5/p5_protocol.hpp"
 #include "spec/number_in.hpp"
 #include "stream/stream_glove.hpp"
+#include "transport/usb_transport.hpp"
 
 namespace nendo::driver {
 namespace {
 
-/// A maker's gloves have one driver.
+/// All gloves of a maker have one driver.
 struct UsbDriver {
   std::uint16_t vendor;
   Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, const UsbWanted& wanted,
@@ -68,7 +66,7 @@ Error unknown(const GloveSpec& spec) {
 
 } // namespace
 
-Result<std::unique_ptr<Glove>> open_usb_glove_by(const GloveSpec& spec, HostTime deadline) {
+Result<std::unique_ptr<Glove>> open_usb_by(const GloveSpec& spec, HostTime deadline) {
   const auto id = id_of(spec);
   if (!id) return id.error();
   const UsbDriver* const driver = find_driver(*id);
@@ -79,8 +77,8 @@ Result<std::unique_ptr<Glove>> open_usb_glove_by(const GloveSpec& spec, HostTime
   return driver->open(spec, wanted, deadline);
 }
 
-Result<std::unique_ptr<Glove>> open_usb_glove(const GloveSpec& spec, std::optional<Side> /*side*/) {
-  return open_usb_glove_by(spec, HostClock::now() + open_budget);
+Result<std::unique_ptr<Glove>> open_usb(const GloveSpec& spec, std::optional<Side> /*side*/) {
+  return open_usb_by(spec, HostClock::now() + open_budget);
 }
 
 } // namespace nendo::driver
