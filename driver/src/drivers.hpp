@@ -33,8 +33,8 @@ Result<std::unique_ptr<Glove>> open_usb_by(const GloveSpec& spec, HostTime deadl
 namespace p5 {
 
 /// Opens the Essential Reality P5 that `wanted` names, which has five bend sensors. Its button A is
-/// the wrist switch. `hand` is an option, because a P5 does not report it; it was sold for the right
-/// hand. While it streams it does not move the mouse.
+/// the wrist switch. `hand` is an option, because a P5 does not report it; it was sold for the
+/// right hand. While it streams it does not move the mouse.
 Result<std::unique_ptr<Glove>> open_p5(const GloveSpec& spec, const UsbWanted& wanted,
                                        HostTime deadline);
 
@@ -65,8 +65,8 @@ namespace forte {
 
 /// Opens `forte:PATH?link=usb|bluetooth&baud=460800|115200&hand=left|right`, a BeBop Forte Data
 /// Glove at a serial port. The glove is set to send over `link`, and recognised by its records.
-/// `hand`, or else `side`, determines the hand. Each finger has two sensors, in the slots of its MCP
-/// and PIP joints (the thumb's MCP and IP).
+/// `hand`, or else `side`, determines the hand. Each finger has two sensors, in the slots of its
+/// MCP and PIP joints (the thumb's MCP and IP).
 Result<std::unique_ptr<Glove>> open_forte(const GloveSpec& spec, std::optional<Side> side);
 
 } // namespace forte

@@ -13,8 +13,8 @@
 
 #include "support/mocked_machine.hpp"
 #include "support/temporary_folder.hpp"
-#include "transport/ftdi_latency.hpp"
-#include "transport/missing_node.hpp"
+#include "transport/port_access.hpp"
+#include "transport/serial_ports.hpp"
 
 namespace discovery_test {
 

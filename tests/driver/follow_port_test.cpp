@@ -10,7 +10,7 @@
 #include "support/required.hpp"
 #include "support/scripted_port.hpp"
 #include "transport/follow_port.hpp"
-#include "transport/ftdi_latency.hpp"
+#include "transport/serial_ports.hpp"
 
 namespace follow_port_test {
 

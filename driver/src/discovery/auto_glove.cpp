@@ -2,9 +2,9 @@
 
 #include <nendo/driver/glove_options.hpp>
 
-#include "drivers.hpp"
 #include "cyberglove/cyberglove_driver.hpp"
 #include "discovery/candidates.hpp"
+#include "drivers.hpp"
 
 namespace nendo::driver {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -11,11 +12,10 @@
 #include <nendo/udev/device_table.hpp>
 
 #include "discovery/programs.hpp"
-#include "discovery/stable_names.hpp"
-#include "transport/ftdi_latency.hpp"
+#include "transport/open_transport.hpp"
 #include "transport/port_access.hpp"
 #include "transport/serial_ports.hpp"
-#include "transport/usb_device.hpp"
+#include "transport/sysfs.hpp"
 #include "transport/usb_identity.hpp"
 
 namespace nendo::driver {
@@ -64,6 +64,32 @@ std::string why_maybe(const SerialPortInfo& port) {
   return adapter != nullptr
              ? "may be a glove: USB-serial adapter (" + std::string(adapter->maker) + ")"
              : "may be a glove: USB serial device";
+}
+
+// The links that udev makes to serial ports; their names stay when the ports' names change. They
+// are read from /dev, and not by libudev: a container may have them without udev's database.
+
+/// The links to one port; a string is empty if there is no such link.
+struct PortLinks {
+  std::string nendo;   ///< /dev/nendo/...: a udev rule says that it is a glove
+  std::string by_id;   ///< /dev/serial/by-id/...: by maker, model and serial number
+  std::string by_path; ///< /dev/serial/by-path/...: by its USB port
+};
+
+/// Returns all links, by port, e.g. "/dev/ttyUSB0".
+std::map<std::string, PortLinks> find_port_links() {
+  std::map<std::string, PortLinks> links;
+  for (const auto& [folder, member] : {std::pair{"/dev/nendo/", &PortLinks::nendo},
+                                       {"/dev/serial/by-id/", &PortLinks::by_id},
+                                       {"/dev/serial/by-path/", &PortLinks::by_path}}) {
+    std::vector<std::string> names = names_in(folder);
+    std::sort(names.begin(), names.end()); // so that it is always the same one of several
+    for (const std::string& name : names) {
+      std::string& link = links[resolve_port(folder + name)].*member;
+      if (link.empty()) link = folder + name;
+    }
+  }
+  return links;
 }
 
 GloveCandidate candidate_of_port(const SerialPortInfo& port, const PortLinks& links,

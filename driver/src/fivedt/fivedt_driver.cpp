@@ -124,8 +124,7 @@ private:
           return finder.push(chunk);
         });
     if (heard != IoStatus::done) return heard;
-    return fall_quiet(transport, limit) == IoStatus::timeout ? IoStatus::done
-                                                                : IoStatus::timeout;
+    return fall_quiet(transport, limit) == IoStatus::timeout ? IoStatus::done : IoStatus::timeout;
   }
 
   Result<GloveInfo> ask(Transport& transport, const std::string& source,

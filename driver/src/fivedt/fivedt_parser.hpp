@@ -1,8 +1,8 @@
 #pragma once
-// Splits the byte stream of a 5DT Data Glove 5 into samples, and finds the glove's answer to 'G'. It is pure (no I/O, clock, log or
-// allocation), and bytes are not trusted. Nothing marks a sample's beginning for certain. So nine
-// bytes are a sample if they begin with the header and their checksum fits; otherwise one byte is
-// dropped.
+// Splits the byte stream of a 5DT Data Glove 5 into samples, and finds the glove's answer to 'G'.
+// It is pure (no I/O, clock, log or allocation), and bytes are not trusted. Nothing marks a
+// sample's beginning for certain. So nine bytes are a sample if they begin with the header and
+// their checksum fits; otherwise one byte is dropped.
 
 #include <array>
 #include <cstddef>

@@ -29,8 +29,8 @@ public:
   FivedtUsbProtocol(const Model& model, std::optional<Side> hand) noexcept
       : model_(model), hand_{hand, std::nullopt}, step_(model.five_sensors ? values_a_finger : 1) {}
 
-  Result<GloveInfo> identify(Transport& transport, const std::string& source,
-                             IdentifyReason reason, const ReplyDeadline& limit) override {
+  Result<GloveInfo> identify(Transport& transport, const std::string& source, IdentifyReason reason,
+                             const ReplyDeadline& limit) override {
     if (auto alive = await_report(transport, source, limit); !alive) return alive.error();
     GloveInfo info;
     info.model = std::string("5DT Data Glove ") + (model_.five_sensors ? "5" : "14") + " Ultra";
@@ -82,9 +82,8 @@ Result<std::unique_ptr<Glove>> open_fivedt_usb(const GloveSpec& spec, const UsbW
   const auto model = model_of(wanted.id.product);
   assert(model);
   return open_usb_glove(
-      spec, wanted, {interface_number, report_bytes}, deadline, [&](std::optional<Side> hand) {
-        return std::make_unique<FivedtUsbProtocol>(*model, hand);
-      });
+      spec, wanted, {interface_number, report_bytes}, deadline,
+      [&](std::optional<Side> hand) { return std::make_unique<FivedtUsbProtocol>(*model, hand); });
 }
 
 } // namespace nendo::driver::fivedt_usb

@@ -17,7 +17,7 @@ namespace nendo::driver::forte {
 struct Record {
   std::array<std::uint8_t, sensor_count> flexion{}; ///< in the order of `slots`, 0 to max_count
   std::uint8_t battery = 0;                         ///< in an unknown unit
-  unsigned clamped = 0; ///< counts above max_count, which are set to it
+  unsigned clamped = 0;                             ///< counts above max_count, which are set to it
 };
 
 /// Decodes a whole frame with its first and last byte. Returns nothing if it is no record: it has

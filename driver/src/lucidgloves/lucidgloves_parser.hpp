@@ -1,7 +1,7 @@
 #pragma once
-// Splits the text stream of a LucidGlove into lines, and maps their values to sensor slots. It is pure (no I/O, clock, log or allocation),
-// and bytes are not trusted. A piece of a line may look like a whole one, so everything before the
-// first LF is skipped.
+// Splits the text stream of a LucidGlove into lines, and maps their values to sensor slots. It is
+// pure (no I/O, clock, log or allocation), and bytes are not trusted. A piece of a line may look
+// like a whole one, so everything before the first LF is skipped.
 
 #include <array>
 #include <cstddef>

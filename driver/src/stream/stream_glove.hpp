@@ -50,8 +50,8 @@ IoStatus listen(Transport& transport, const ReplyDeadline& limit,
   }
 }
 
-/// Discards the bytes that have arrived, also those in the system's buffers; a pseudo-terminal keeps
-/// some 17 kB. Does not wait. Returns the number of bytes read.
+/// Discards the bytes that have arrived, also those in the system's buffers; a pseudo-terminal
+/// keeps some 17 kB. Does not wait. Returns the number of bytes read.
 inline std::uint64_t drop_waiting(Transport& transport) noexcept {
   constexpr std::uint64_t max_bytes = 65'536; // a device may send faster than any host reads
   std::array<std::byte, 1024> buffer;

@@ -8,7 +8,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include "transport/ftdi_latency.hpp"
 #include "transport/open_transport.hpp"
 #include "transport/serial_ports.hpp"
 #include "transport/usb_identity.hpp"
@@ -24,7 +23,7 @@ bool same_make(const UsbIdentity& a, const UsbIdentity& b) {
          a.interface_number == b.interface_number && a.port_number == b.port_number;
 }
 
-/// The ports of this machine that could be `adapter`'s, as far as serial numbers tell.
+/// The ports of this machine that could be `adapter`'s, by their serial numbers.
 std::vector<SerialPortInfo> ports_like(const UsbIdentity& adapter) {
   std::vector<SerialPortInfo> ports = list_serial_ports();
   std::erase_if(ports, [&](const SerialPortInfo& port) {
@@ -42,7 +41,7 @@ public:
     if (!port) return Error{Errc::no_device, gone()};
     auto transport = open_transport(adapter_ ? *port : path_, baud_);
     if (!transport) return transport;
-    // While it is open the kernel gives its name to no other, so this is who was opened.
+    // While it is open the kernel gives its name to no other port, so this adapter was opened.
     const auto opened = usb_identity_of_port(*port);
     if (adapter_ && !(opened && is_adapter(*opened))) return Error{Errc::no_device, gone()};
     if (!adapter_ && opened) remember(*opened);
@@ -72,16 +71,17 @@ private:
   }
   void shorten_latency(const std::string& port) {
     const auto latency = shorten_ftdi_latency(port);
-    if (!latency || *latency <= 1ms || std::exchange(told_, true)) return;
+    if (!latency || *latency <= 1ms || std::exchange(warned_, true)) return;
     spdlog::warn("host: {} holds replies back for {} ms (FTDI latency timer); shorten it: {}", port,
                  latency->count(), latency_timer_remedy(port));
   }
 
   const std::string path_;
   const int baud_;
-  std::optional<UsbIdentity> adapter_; ///< once it was opened, if it is one
+  std::optional<UsbIdentity>
+      adapter_; ///< the adapter, if the port has one, after the first opening
   bool by_place_ = false;
-  bool told_ = false;
+  bool warned_ = false;
 };
 
 } // namespace

@@ -7,7 +7,6 @@
 #include <sys/stat.h>
 
 #include "discovery/programs.hpp"
-#include "transport/missing_node.hpp"
 #include "transport/port_access.hpp"
 
 namespace nendo::driver {

@@ -1,6 +1,9 @@
 #pragma once
-// Tells who may open a device node, and what this user must do to be allowed to.
+// Who may open a device node, and the remedy if this user may not, or if there is no node: a
+// container sees the host's /sys, but has a /dev of its own.
 
+#include <filesystem>
+#include <optional>
 #include <string>
 
 namespace nendo::driver {
@@ -12,9 +15,15 @@ struct PortAccess {
   bool node_missing = false; ///< the kernel has the device, and /dev has no node for it
 };
 
-/// Asks the file system and does not open the node. `who` is empty if there is no node.
+/// Reads the file system and does not open the node. `who` is empty if there is no node.
 PortAccess port_access(const std::string& path);
-/// Returns the same for a device that refused to be opened, whatever the file system says.
+/// Returns the same for a device that could not be opened, independent of its mode.
 PortAccess refused_access(const std::string& path);
+
+/// Returns the remedy if the kernel has the serial port or USB device `path` (/dev/ttyUSB0,
+/// /dev/bus/usb/001/005) and there is no node for it; otherwise nothing. Files below `root` show
+/// the kind of container. Opens no device.
+std::optional<std::string> missing_node(const std::string& path,
+                                        const std::filesystem::path& root = "/");
 
 } // namespace nendo::driver

@@ -2,14 +2,20 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 #include <tuple>
 
+#include "transport/open_transport.hpp"
+#include "transport/sysfs.hpp"
 #include "transport/udev_devices.hpp"
 #include "transport/usb_identity.hpp"
 
 namespace nendo::driver {
 namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
 
 /// Virtual consoles and pseudo-terminals have no parent; sockets of the serial driver that no chip
 /// sits in have type 0. An rfcomm port is virtual until it is connected.
@@ -24,6 +30,12 @@ bool by_name_and_number(const SerialPortInfo& a, const SerialPortInfo& b) {
     return std::tuple(name.substr(0, end), name.size(), name);
   };
   return key(a.path) < key(b.path);
+}
+
+/// Only ftdi_sio makes this file.
+fs::path timer_file(const std::string& port) {
+  return fs::path("/sys/bus/usb-serial/devices") / fs::path(resolve_port(port)).filename() /
+         "latency_timer";
 }
 
 } // namespace
@@ -46,9 +58,25 @@ std::vector<SerialPortInfo> list_serial_ports() {
 
 bool udev_is_done_with(const std::string& port) {
   std::error_code failed;
-  if (!std::filesystem::exists("/run/udev/data", failed)) return true; // udev does not run here
-  const UdevDevice tty = find_udev_device("tty", std::filesystem::path(port).filename().string());
+  if (!fs::exists("/run/udev/data", failed)) return true; // udev does not run here
+  const UdevDevice tty = find_udev_device("tty", fs::path(port).filename().string());
   return !tty || udev_device_get_is_initialized(tty.get()) != 0;
+}
+
+std::optional<milliseconds> ftdi_latency_timer(const std::string& port) {
+  const auto latency_ms = read_number(timer_file(port));
+  return latency_ms ? std::optional(milliseconds(*latency_ms)) : std::nullopt;
+}
+
+std::optional<milliseconds> shorten_ftdi_latency(const std::string& port) {
+  const auto latency = ftdi_latency_timer(port);
+  if (!latency || *latency <= milliseconds(1)) return latency;
+  std::ofstream(timer_file(port)) << "1\n";
+  return ftdi_latency_timer(port);
+}
+
+std::string latency_timer_remedy(const std::string& port) {
+  return "echo 1 | sudo tee " + timer_file(port).string();
 }
 
 } // namespace nendo::driver

@@ -1,6 +1,6 @@
 #pragma once
-// Reading the small text files of /sys, /proc and /run. All of them may vanish at any time, and
-// some repeat what a device says of itself.
+// Reads the small text files of /sys, /proc and /run. All of them may vanish at any time, and some
+// have strings of a device.
 
 #include <filesystem>
 #include <optional>
@@ -10,17 +10,14 @@
 
 namespace nendo::driver {
 
-/// Returns the text as a terminal may show it: what is not printable ASCII became '?', and it is
-/// cut at 128 characters.
+/// Returns at most 128 characters of the text; those that are not printable ASCII become '?'.
 std::string printable(std::string_view text);
 
-/// Returns the first line, printable; an empty text if the file cannot be read.
+/// Returns the first line, printable; an empty string if the file cannot be read.
 std::string read_line(const std::filesystem::path& path);
-/// Returns the file, at most 1 MiB of it; an empty text if it cannot be read.
+/// Returns the file, at most 1 MiB of it; an empty string if it cannot be read.
 std::string read_text(const std::filesystem::path& path);
-/// Returns the number that the text is, and nothing else; nullopt if it is none.
-std::optional<unsigned> parse_number(std::string_view text, int base = 10);
-/// Returns the number that the file holds; nullopt if there is none.
+/// Returns the number in the file's first line; nullopt if there is none.
 std::optional<unsigned> read_number(const std::filesystem::path& path, int base = 10);
 
 /// Returns the names of the entries, 65536 at most; none if the folder cannot be read.

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "spec/number_in.hpp"
 #include "transport/sysfs.hpp"
 
 namespace nendo::driver {
@@ -46,7 +47,7 @@ std::string attribute_of(udev_device& device, const char* name) {
 }
 
 std::optional<unsigned> number_of(udev_device& device, const char* name, int base) {
-  return parse_number(attribute_of(device, name), base);
+  return number_in<unsigned>(attribute_of(device, name), base);
 }
 
 bool has_flag(udev_device& device, const char* property) {

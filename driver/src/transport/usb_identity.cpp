@@ -1,7 +1,11 @@
 #include "transport/usb_identity.hpp"
 
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <utility>
+
+#include <nendo/base/advised_command.hpp>
 
 #include "transport/sysfs.hpp"
 #include "transport/udev_devices.hpp"
@@ -53,13 +57,6 @@ std::optional<UsbIdentity> usb_identity_of_port(const std::string& port) {
   return usb;
 }
 
-std::optional<UsbIdentity> usb_identity_at(unsigned bus, unsigned address) {
-  for (UsbIdentity& usb : list_usb_devices()) {
-    if (usb.bus == bus && usb.address == address) return std::move(usb);
-  }
-  return std::nullopt;
-}
-
 std::vector<UsbIdentity> list_usb_devices() {
   std::vector<UsbIdentity> found;
   for (const UdevDevice& device : list_udev_devices("usb")) {
@@ -68,6 +65,39 @@ std::vector<UsbIdentity> list_usb_devices() {
     if (auto usb = identity_of(*device)) found.push_back(*std::move(usb));
   }
   return found;
+}
+
+std::string node_of(const UsbIdentity& identity) {
+  std::array<char, 40> node{};
+  std::snprintf(node.data(), node.size(), "/dev/bus/usb/%03u/%03u", identity.bus, identity.address);
+  return node.data();
+}
+
+UsbIdentity identify_usb(UsbId id, unsigned bus, unsigned address,
+                         std::span<const std::uint8_t> ports) {
+  for (UsbIdentity& known : list_usb_devices()) {
+    if (known.bus == bus && known.address == address && id_of(known) == id) return std::move(known);
+  }
+  UsbIdentity identity;
+  identity.vendor_id = id.vendor;
+  identity.product_id = id.product;
+  identity.bus = bus;
+  identity.address = address;
+  identity.place = std::to_string(bus);
+  char separator = '-';
+  for (const std::uint8_t port : ports) {
+    identity.place += separator + std::to_string(port);
+    separator = '.';
+  }
+  return identity;
+}
+
+Error usb_permission_error(const UsbIdentity& identity) {
+  const std::string node = node_of(identity);
+  return {Errc::no_permission, "USB device " + to_string(id_of(identity)) + " at " + node +
+                                   ": no permission to open it; " + as_root("udev install") +
+                                   " fixes it for good, sudo chown $USER " + node +
+                                   " until it is plugged in again"};
 }
 
 } // namespace nendo::driver

@@ -1,22 +1,43 @@
 #pragma once
-// Lists USB devices from what the kernel says of them. Nothing is opened.
+// USB devices, from the data that the kernel read when they were plugged in, and that every user
+// may read. Nothing is opened.
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include <nendo/base/result.hpp>
 #include <nendo/driver/devices.hpp>
+#include <nendo/udev/usb_identity.hpp>
 
 namespace nendo::driver {
+
+using udev::id_of;
+using udev::to_string;
+using udev::UsbId;
 
 /// Returns the adapter of a serial port, e.g. /dev/ttyUSB0; nullopt if it has none: a UART, a
 /// pseudo-terminal, Bluetooth. Links are not followed.
 std::optional<UsbIdentity> usb_identity_of_port(const std::string& port);
 
-/// Returns the device that is plugged in as this number; nullopt if there is none (any more).
-std::optional<UsbIdentity> usb_identity_at(unsigned bus, unsigned address);
-
 /// Returns all USB devices; none on a machine without USB.
 std::vector<UsbIdentity> list_usb_devices();
+
+/// Returns the device's node, e.g. /dev/bus/usb/001/007.
+std::string node_of(const UsbIdentity& identity);
+
+inline constexpr std::size_t max_usb_ports =
+    7; ///< between the bus's root and a device (USB 2.0, 4.1.1)
+
+/// Returns the kernel's data about a device. `ports` lead from the bus's root to the device.
+/// Strings are empty if the kernel has none, as in a container without /sys.
+UsbIdentity identify_usb(UsbId id, unsigned bus, unsigned address,
+                         std::span<const std::uint8_t> ports);
+
+/// Returns the error no_permission, with the rule that grants the permission.
+Error usb_permission_error(const UsbIdentity& identity);
 
 } // namespace nendo::driver

@@ -13,7 +13,7 @@
 #include <nendo/base/result.hpp>
 
 #include "transport/transport.hpp"
-#include "transport/usb_device.hpp"
+#include "transport/usb_identity.hpp"
 
 namespace nendo::driver {
 
