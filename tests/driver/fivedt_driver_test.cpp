@@ -25,7 +25,7 @@ Kind wired() {
   return {[](Side side) {
             FiveDtUnitOptions options;
             options.side = side;
-            return make_fivedt_unit(options);
+            return std::make_unique<FiveDtUnit>(options);
           },
           [](const std::string& path) { return "5dt:" + path; }, 9};
 }
@@ -36,7 +36,7 @@ Kind ten_bytes() {
     FiveDtUnitOptions options;
     options.side = side;
     options.ten_bytes = true;
-    return make_fivedt_unit(options);
+    return std::make_unique<FiveDtUnit>(options);
   };
   return kind;
 }
@@ -47,7 +47,7 @@ Kind wireless() {
             options.side = side;
             options.rate_hz = 90.0;
             options.wireless = true;
-            return make_fivedt_unit(options);
+            return std::make_unique<FiveDtUnit>(options);
           },
           [](const std::string& path) { return "5dt:" + path + "?baud=9600"; }, 9};
 }
@@ -178,7 +178,7 @@ TEST_SUITE("fivedt_driver") {
     options.side = Side::left;
     options.motion = Motion::rest;
     options.left_pinky_first = true;
-    const PtyUnit port(make_fivedt_unit(options));
+    const PtyUnit port(std::make_unique<FiveDtUnit>(options));
     SampleRing ring(1U << 14U);
     auto glove = required(open_glove("5dt:" + port.path() + "?left_first=pinky"));
     test::require_ok(glove->start(ring));
@@ -197,7 +197,7 @@ TEST_SUITE("fivedt_driver") {
   TEST_CASE("a hand at rest arrives in the slots of its knuckles") {
     FiveDtUnitOptions options;
     options.motion = Motion::rest;
-    const GloveSample sample = sample_at_rest(make_fivedt_unit(options), "5dt");
+    const GloveSample sample = sample_at_rest(std::make_unique<FiveDtUnit>(options), "5dt");
     check_at_rest(sample, resting_knuckles, 255.0, 2.0); // tremor
   }
 

@@ -22,7 +22,7 @@ Kind by_usb() {
   return {[](Side side) {
             ForteUnitOptions options;
             options.side = side;
-            return make_forte_unit(options);
+            return std::make_unique<ForteUnit>(options);
           },
           [](const std::string& path) { return "forte:" + path; }, 15};
 }
@@ -32,7 +32,7 @@ Kind by_bluetooth() {
             ForteUnitOptions options;
             options.side = side;
             options.bluetooth = true;
-            return make_forte_unit(options);
+            return std::make_unique<ForteUnit>(options);
           },
           [](const std::string& path) { return "forte:" + path + "?link=bluetooth"; }, 15};
 }
@@ -82,7 +82,7 @@ TEST_SUITE("forte_driver") {
   TEST_CASE("a hand at rest arrives in the slots of its joints") {
     ForteUnitOptions options;
     options.motion = Motion::rest;
-    const GloveSample sample = sample_at_rest(make_forte_unit(options), "forte");
+    const GloveSample sample = sample_at_rest(std::make_unique<ForteUnit>(options), "forte");
     check_at_rest(sample, resting_knuckles, 127.0, 2.5); // tremor, and a count of 0.7 degrees
   }
 

@@ -119,7 +119,7 @@ std::unique_ptr<Glove> glove_at(Wire& wire) {
 std::unique_ptr<EmulatedUnit> unit_with(LucidGlovesFirmware firmware) {
   LucidGlovesUnitOptions options;
   options.firmware = firmware;
-  return make_lucidgloves_unit(options);
+  return std::make_unique<LucidGlovesUnit>(options);
 }
 
 Feedback resistance(std::array<std::uint16_t, 5> fingers) {
@@ -132,7 +132,7 @@ Kind lucidgloves() {
   return {[](Side side) {
             LucidGlovesUnitOptions options;
             options.side = side;
-            return make_lucidgloves_unit(options);
+            return std::make_unique<LucidGlovesUnit>(options);
           },
           [](const std::string& path) { return "lucidgloves:" + path; }, 256};
 }
@@ -310,7 +310,7 @@ TEST_SUITE("lucidgloves_driver") {
       LucidGlovesUnitOptions options;
       options.firmware = firmware;
       options.rate_hz = 1.0;
-      PtyUnit port(make_lucidgloves_unit(options));
+      PtyUnit port(std::make_unique<LucidGlovesUnit>(options));
       SampleRing ring(1U << 14U);
       auto glove = required(open_glove("lucidgloves:" + port.path()));
       test::require_ok(glove->start(ring));
@@ -328,7 +328,7 @@ TEST_SUITE("lucidgloves_driver") {
       LucidGlovesUnitOptions options;
       options.firmware = firmware;
       options.motion = Motion::grasp;
-      PtyUnit port(make_lucidgloves_unit(options));
+      PtyUnit port(std::make_unique<LucidGlovesUnit>(options));
       SampleRing ring(1U << 14U);
       auto glove = required(open_glove("lucidgloves:" + port.path()));
       test::require_ok(glove->start(ring));
@@ -576,7 +576,8 @@ TEST_SUITE("lucidgloves_driver") {
   TEST_CASE("a hand at rest arrives in the slots of the joints that it bends") {
     LucidGlovesUnitOptions options;
     options.motion = Motion::rest;
-    const GloveSample sample = sample_at_rest(make_lucidgloves_unit(options), "lucidgloves");
+    const GloveSample sample =
+        sample_at_rest(std::make_unique<LucidGlovesUnit>(options), "lucidgloves");
     check_at_rest(sample, resting_knuckles, 4095.0, 2.0); // tremor
     constexpr std::array splays{RestingJoint{Sensor::thumb_abduction, 30, 40},
                                 RestingJoint{Sensor::index_middle_abduction, 7, 20},

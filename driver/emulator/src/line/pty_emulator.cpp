@@ -7,21 +7,26 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
 
+#include <fcntl.h>
 #include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
+#include <nendo/base/unique_fd.hpp>
 #include <nendo/base/units.hpp>
 
 #include "line/fault.hpp"
 #include "line/fault_injector.hpp"
-#include "line/pseudo_terminal.hpp"
 #include "line/traffic_log.hpp"
 #include "units/emulated_kinds.hpp"
 #include "units/emulated_unit.hpp"
@@ -29,21 +34,122 @@
 namespace nendo::emulator {
 namespace {
 
+namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using Time = EmulatedUnit::Time;
 
-constexpr HostClock::duration longest_wait = 20ms; // how late `stop` may be seen
+constexpr HostClock::duration max_wait = 20ms; // between two checks of `stop`
 
-// The bytes that may wait for the terminal beyond the unit's own output. They allow writes of some
-// size.
+// Max bytes that wait for the terminal beyond the unit's own output, so that writes are large
+// enough.
 constexpr std::size_t wire_full = 4096;
 
-// At the host's pace, so many records are made before faults, `stop` and the host are checked
-// again.
-constexpr int max_records_a_turn = 256;
+// Max records between two checks of faults, `stop` and the host, at the host's pace.
+constexpr int max_records_per_turn = 256;
 
-// At the end, the emulator waits so long for a host that takes nothing.
-constexpr auto last_patience = 300ms;
+// Max wait at the end for a host that reads nothing.
+constexpr auto max_last_wait = 300ms;
+
+/// A symbolic link. The destructor removes it, unless it leads elsewhere by then.
+class SymbolicLink {
+public:
+  /// Makes the link. It replaces an old link in one step, so that a host sees the old target or the
+  /// new one, and never replaces anything but a link. Error: failed.
+  static Result<SymbolicLink> make(const std::string& where, const std::string& target);
+  SymbolicLink(SymbolicLink&& other) noexcept
+      : path_(std::exchange(other.path_, {})), target_(std::move(other.target_)) {}
+  SymbolicLink& operator=(SymbolicLink&&) = delete;
+  ~SymbolicLink();
+
+private:
+  SymbolicLink(std::filesystem::path path, std::string target)
+      : path_(std::move(path)), target_(std::move(target)) {}
+
+  std::filesystem::path path_;
+  std::string target_;
+};
+
+/// A pseudo-terminal in raw mode at 115200 baud. When this is destroyed, hosts see a hang-up. The
+/// link is removed before that, because the system may give the terminal's number to another
+/// program at once.
+class PseudoTerminal {
+public:
+  /// Makes the terminal, and the link unless `link`, its path, is empty. Error: failed.
+  static Result<PseudoTerminal> make(const std::string& link);
+  /// Returns the device's end, which is non-blocking. poll() reports POLLHUP as long as no host has
+  /// the other end open.
+  int fd() const noexcept { return device_.get(); }
+  const std::string& path() const noexcept { return path_; } ///< of the host's end
+
+private:
+  explicit PseudoTerminal(int fd) noexcept : device_(fd) {}
+
+  UniqueFd device_;
+  std::string path_;
+  std::optional<SymbolicLink> link_; ///< last, so that it is removed first
+};
+
+SymbolicLink::~SymbolicLink() {
+  if (path_.empty()) return;
+  std::error_code error;
+  if (fs::read_symlink(path_, error) == target_ && !error) fs::remove(path_, error);
+}
+
+Result<SymbolicLink> SymbolicLink::make(const std::string& where, const std::string& target) {
+  const auto failed = [&where](const std::string& why) {
+    return Error{Errc::failed, "link " + where + ": cannot make it: " + why};
+  };
+  std::error_code error;
+  const fs::path path = fs::absolute(where, error);
+  if (error) return failed(error.message());
+  if (!fs::is_directory(path.parent_path(), error)) {
+    return failed("there is no folder " + path.parent_path().string());
+  }
+  const fs::file_status old = fs::symlink_status(path, error);
+  if (fs::exists(old) && !fs::is_symlink(old)) {
+    return failed(
+        "its place is taken by something that is not a link; remove that or choose another path");
+  }
+  const fs::path temporary = path.string() + "." + std::to_string(::getpid());
+  fs::create_symlink(target, temporary, error);
+  if (error) return failed(error.message());
+  fs::rename(temporary, path, error);
+  if (error) {
+    const std::string why = error.message();
+    fs::remove(temporary, error);
+    return failed(why);
+  }
+  return SymbolicLink(path, target);
+}
+
+Result<PseudoTerminal> PseudoTerminal::make(const std::string& link) {
+  const auto failed = [] {
+    return Error{Errc::failed,
+                 "cannot make a pseudo-terminal: " + std::generic_category().message(errno)};
+  };
+  PseudoTerminal terminal(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  const int fd = terminal.fd();
+  std::array<char, 64> name{};
+  termios raw{};
+  if (fd < 0 || ::grantpt(fd) != 0 || ::unlockpt(fd) != 0 ||
+      ::ptsname_r(fd, name.data(), name.size()) != 0 || ::tcgetattr(fd, &raw) != 0) {
+    return failed();
+  }
+  ::cfmakeraw(&raw);
+  ::cfsetspeed(&raw, B115200);
+  if (::tcsetattr(fd, TCSANOW, &raw) != 0) return failed();
+  // Only a terminal that was opened once tells poll() that nobody has it open.
+  const int once = ::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  if (once < 0) return failed();
+  ::close(once);
+  terminal.path_ = name.data();
+  if (!link.empty()) {
+    auto made = SymbolicLink::make(link, terminal.path_);
+    if (!made) return made.error();
+    terminal.link_.emplace(*std::move(made));
+  }
+  return terminal;
+}
 
 struct Parts {
   EmulatorOptions options;
@@ -139,7 +245,7 @@ private:
       return;
     }
     collect();
-    for (int n = 0; n < max_records_a_turn && host_present() && wire_.size() < wire_full; ++n) {
+    for (int n = 0; n < max_records_per_turn && host_present() && wire_.size() < wire_full; ++n) {
       const auto due = unit_->next_due();
       if (!due) return;
       now_ = std::max(now_, *due);
@@ -183,14 +289,14 @@ private:
 
   // Writes the bytes that count as sent, for as long as the host takes any.
   void empty_wire() {
-    HostTime patience = HostClock::now() + last_patience;
-    while (host_present() && !wire_.empty() && HostClock::now() < patience) {
+    HostTime until = HostClock::now() + max_last_wait;
+    while (host_present() && !wire_.empty() && HostClock::now() < until) {
       const std::uint64_t before = sent_;
       write();
       if (sent_ == before) {
         std::this_thread::sleep_for(1ms);
       } else {
-        patience = HostClock::now() + last_patience;
+        until = HostClock::now() + max_last_wait;
       }
     }
   }
@@ -198,7 +304,7 @@ private:
   // Returns when the unit or a fault has something to do, or `stop` must be checked. A host that
   // writes, or has room for what waits, ends the wait earlier.
   HostTime wake_up() const {
-    const HostTime latest = HostClock::now() + longest_wait;
+    const HostTime latest = HostClock::now() + max_wait;
     if (!terminal_) return std::min(latest, replugged_at_);
     const auto due = unit_->next_due();
     if (at_hosts_pace() && due && host_present()) return wire_.empty() ? last_turn_ : latest;
@@ -214,7 +320,7 @@ private:
       return {};
     }
     const auto left = std::max<Time>(until - HostClock::now(), 0ns);
-    const timespec timeout{0, static_cast<long>(std::min<Time>(left, longest_wait).count())};
+    const timespec timeout{0, static_cast<long>(std::min<Time>(left, max_wait).count())};
     pollfd line{terminal_->fd(), POLLIN, 0};
     if (!wire_.empty()) line.events |= POLLOUT;
     if (::ppoll(&line, 1, &timeout, nullptr) < 0 && errno != EINTR) {

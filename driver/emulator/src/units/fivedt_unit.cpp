@@ -110,8 +110,4 @@ void FiveDtUnit::send_bytes(const std::vector<Byte>& bytes) {
   send(std::as_bytes(std::span(bytes)));
 }
 
-std::unique_ptr<EmulatedUnit> make_fivedt_unit(const FiveDtUnitOptions& options) {
-  return std::make_unique<FiveDtUnit>(options);
-}
-
 } // namespace nendo::emulator

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -54,8 +53,5 @@ private:
   std::optional<Time> motion_origin_; ///< empty until time was seen to pass
   Time next_sample_{};
 };
-
-/// Makes the unit. Never returns null.
-std::unique_ptr<EmulatedUnit> make_fivedt_unit(const FiveDtUnitOptions& options);
 
 } // namespace nendo::emulator

@@ -72,8 +72,4 @@ std::vector<ForteUnit::Byte> ForteUnit::record(Time now) const {
   return bytes;
 }
 
-std::unique_ptr<EmulatedUnit> make_forte_unit(const ForteUnitOptions& options) {
-  return std::make_unique<ForteUnit>(options);
-}
-
 } // namespace nendo::emulator

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -52,8 +51,5 @@ private:
   std::optional<Time> motion_origin_; ///< empty until time was seen to pass
   Time next_record_{};
 };
-
-/// Makes the unit. Never returns null.
-std::unique_ptr<EmulatedUnit> make_forte_unit(const ForteUnitOptions& options);
 
 } // namespace nendo::emulator

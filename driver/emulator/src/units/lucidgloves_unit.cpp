@@ -196,8 +196,4 @@ std::string LucidGlovesUnit::legacy_line(const std::array<int, 5>& curls) const 
   return text + "2048&2048&0&0&0&0&0&0\n";
 }
 
-std::unique_ptr<EmulatedUnit> make_lucidgloves_unit(const LucidGlovesUnitOptions& options) {
-  return std::make_unique<LucidGlovesUnit>(options);
-}
-
 } // namespace nendo::emulator

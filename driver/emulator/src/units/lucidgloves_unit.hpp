@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -90,8 +89,5 @@ private:
   std::string heard_;               ///< and not handled
   std::array<int, 5> brakes_{};
 };
-
-/// Makes the unit. Never returns null.
-std::unique_ptr<EmulatedUnit> make_lucidgloves_unit(const LucidGlovesUnitOptions& options);
 
 } // namespace nendo::emulator
