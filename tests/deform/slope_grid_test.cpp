@@ -10,7 +10,6 @@
 #include <nendo/deform/jacobian.hpp>
 #include <nendo/deform/wendland.hpp>
 
-#include "clay/field_bound.hpp"
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 

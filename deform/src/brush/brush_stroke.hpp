@@ -1,16 +1,76 @@
 #pragma once
-// The brushes of a stroke: which start points have one, and their dabs along a piece of the way.
+// The brushes of a stroke: which start points have one, and their dabs along a piece of the way. A
+// dab is what a brush does to the vertices within its radius while the fingertip goes a short way.
+// Each vertex x is weighted by w(x) = psi(|x - c| / r), the paper's radial function about the dab's
+// centre c, so that a dab ends as smoothly as a field.
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
+#include <nendo/deform/brush.hpp>
 #include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
+#include <nendo/deform/vertex_mask.hpp>
+#include <nendo/deform/wendland.hpp>
 
-#include "brush/brush_dab.hpp"
+#include "field/block_evaluator.hpp"
 
 namespace nendo::deform {
+
+/// Lengths and places are in the units of the shape in blocks.
+struct Dab {
+  Brush brush = Brush::push;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double radius = 1.0; ///< > 0
+  double way = 0.0;    ///< of the fingertip, times the strength; its sign tells which way
+};
+
+/// Belongs to one thread. dab() neither allocates nor waits. It looks at the bounds of all blocks,
+/// and at the triangles around each vertex within the radius.
+class BrushDabs {
+public:
+  /// Allocates 32 bytes a vertex.
+  BrushDabs(std::shared_ptr<const VertexRings> rings, Wendland kernel, double keep_volume,
+            std::shared_ptr<const VertexMask> mask = nullptr);
+
+  /// Changes the shape, with its bounds and stamps. Returns false, and changes nothing, if no
+  /// vertex is within reach or the result might not be finite.
+  bool dab(const Dab& dab, BoundedShape& shape) noexcept {
+    return find(dab, shape) && write(shape);
+  }
+  /// The two halves of dab(): finds the moves, and adds them to the shape, which may have changed
+  /// meanwhile. Both return false, and change nothing, as dab() does.
+  bool find(const Dab& dab, const BoundedShape& shape) noexcept;
+  bool write(BoundedShape& shape) const noexcept;
+
+private:
+  /// A vertex within the radius.
+  struct Reached {
+    std::uint32_t place = 0;
+    float weight = 0.0F;                              ///< w, times the mask's
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero(); ///< area_normal()
+    Eigen::Vector3f move = Eigen::Vector3f::Zero();
+  };
+
+  bool gather(const Dab& dab, const BoundedShape& shape) noexcept;
+  bool find_plane(const BlockShape& shape) noexcept;
+  void move_along_normals(double way) noexcept;
+  void smooth(const Dab& dab, const BlockShape& shape) noexcept;
+  void keep_volume() noexcept;
+  Eigen::Vector3d pushed(const Eigen::Vector3d& u, double weight) const noexcept;
+  template <class MoveOf>
+  void move_each(const BlockShape& shape, const MoveOf& move_of) noexcept;
+
+  std::shared_ptr<const VertexRings> rings_;
+  Wendland kernel_;
+  double keep_volume_;                               ///< of Brush::push (CsrbfOptions)
+  std::shared_ptr<const VertexMask> mask_;           ///< null: all are free
+  std::vector<Reached> reached_;                     ///< in block order
+  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero(); ///< of the reached surface
+  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero(); ///< its mean, of unit length
+};
 
 /// Belongs to one thread. After the constructor nothing allocates.
 class BrushStroke {

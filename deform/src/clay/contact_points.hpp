@@ -2,6 +2,7 @@
 // Chooses the places at which a body pushes: the deepest vertex of each cell of space, one a part,
 // and of those only such as do not crowd.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,10 +10,25 @@
 
 #include <Eigen/Core>
 
-#include "clay/crowded_places.hpp"
 #include "simd/contact_kernels.hpp"
 
 namespace nendo::deform {
+
+/// Places of which none is to crowd another.
+class CrowdedPlaces {
+public:
+  /// Allocates for so many places; nothing else does.
+  explicit CrowdedPlaces(std::size_t most);
+
+  void clear() noexcept;
+  /// Adds a place, unless one is nearer than the root of `squared` whose normal is within 60
+  /// degrees of its normal. Returns whether it did. There must be room.
+  bool add(const Eigen::Vector3f& at, const Eigen::Vector3f& normal, float squared) noexcept;
+
+private:
+  std::size_t count_ = 0;
+  std::array<std::vector<float>, 6> rows_; ///< places and normals; beyond the last, far away
+};
 
 struct ContactPoint {
   std::uint32_t place = 0; ///< of the vertex, in block order

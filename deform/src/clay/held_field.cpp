@@ -4,7 +4,7 @@
 
 #include <nendo/deform/wendland.hpp>
 
-#include "clay/field_bound.hpp"
+#include "clay/slope_grid.hpp"
 
 namespace nendo::deform {
 

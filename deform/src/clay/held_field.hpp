@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <span>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 namespace nendo::deform {

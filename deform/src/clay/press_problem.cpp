@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "clay/field_bound.hpp"
-
 namespace nendo::deform {
 
 using Eigen::Vector3d;

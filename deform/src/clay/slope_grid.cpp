@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
+
 namespace nendo::deform {
 
 namespace {
@@ -11,6 +13,15 @@ constexpr double cells_a_radius_of_slopes = 2.5; // or fewer, where there would 
 constexpr double rounding_of_slopes = 1.0001;    // of sums in float
 
 } // namespace
+
+double bound_of_gram(const Eigen::Matrix3d& gram, double radius) noexcept {
+  constexpr double derivative_norm_squared = 20.0;                   // of Wendland's C2
+  const Eigen::Matrix3d symmetric = 0.5 * (gram + gram.transpose()); // but for rounding it is
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(symmetric, Eigen::EigenvaluesOnly);
+  const double largest = std::max(0.0, solver.eigenvalues()[2]);
+  return std::sqrt(derivative_norm_squared * largest) / radius;
+}
 
 SlopeGrid::SlopeGrid()
     : sums_(hwy::AllocateAligned<float>(slope_cells * slope_cells * slope_cells)) {

@@ -1,8 +1,5 @@
 #pragma once
-// How steep a field of Wendland's C2 functions of one radius can be, cell by cell of space: nowhere
-// steeper than the sum of |a_i| |psi'| / r over the functions that reach there. Where many
-// functions push side by side into one direction, that is less than the field's norm tells
-// (field_bound.hpp), which grows with the surface that they push.
+// How steep a field of Wendland's C2 functions of one radius can be: two bounds.
 
 #include <Eigen/Core>
 
@@ -11,7 +8,14 @@
 
 namespace nendo::deform {
 
-/// Belongs to one thread. After the constructor nothing allocates.
+/// `gram` is the sum of psi_ij a_i a_j^T over all pairs of coefficients. Returns an L with
+/// |s(x) - s(y)| <= L |x - y|, by the field's norm in the native space (jacobian.hpp).
+double bound_of_gram(const Eigen::Matrix3d& gram, double radius) noexcept;
+
+/// Bounds the slope cell by cell of space: nowhere is it steeper than the sum of |a_i| |psi'| / r
+/// over the functions that reach there. Where many functions push side by side into one direction,
+/// that is less than bound_of_gram(), which grows with the surface that they push. Belongs to one
+/// thread. After the constructor nothing allocates.
 class SlopeGrid {
 public:
   SlopeGrid();

@@ -1,7 +1,14 @@
 #include <nendo/deform/field.hpp>
 
-#include "field/field_by_cells.hpp"
-#include "field/field_terms.hpp"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <nendo/deform/volume_kernel.hpp>
+
+#include "geometry/point_grid.hpp"
 
 namespace nendo::deform {
 
@@ -12,6 +19,69 @@ constexpr Eigen::Index min_by_cells = 256;
 
 bool is_zero(const CsrbfField& field) {
   return field.coefficients.isZero(0.0) && field.polynomial.isZero(0.0);
+}
+
+Eigen::Vector3d polynomial_at(const CsrbfField& field, const Eigen::Vector3d& x) noexcept {
+  return field.polynomial.col(0) + field.polynomial.rightCols<3>() * x;
+}
+
+/// Adds the field's i-th function at x to `sum`.
+void add_term(const CsrbfField& field, Eigen::Index i, const Eigen::Vector3d& x,
+              Eigen::Vector3d& sum) noexcept {
+  const double radius = field.radii[i];
+  const double squared = (x - field.centres.col(i)).squaredNorm();
+  if (!(squared < radius * radius)) return;
+  const double t = std::sqrt(squared) / radius;
+  if (field.keep_volume <= 0.0) {
+    sum += wendland(field.kernel, t) * field.coefficients.col(i);
+    return;
+  }
+  const Eigen::Vector3d u = (x - field.centres.col(i)) / radius;
+  const VolumeKernel kernel = volume_kernel(field.kernel, field.keep_volume, t);
+  sum += kernel.identity * field.coefficients.col(i) +
+         kernel.offset * u.dot(field.coefficients.col(i)) * u;
+}
+
+/// By cell, and in their own order within one. Points that are not finite are in some cell.
+std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted_by_cell(const PointGrid& grid,
+                                                                    const Points& points) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted;
+  sorted.reserve(static_cast<std::size_t>(points.cols()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    sorted.emplace_back(grid.cell_of(points.col(i)), static_cast<std::uint32_t>(i));
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
+/// Computes what displace() does, bit for bit: a point's terms are added in the same order, without
+/// those that are out of reach. It takes time only for the functions in reach. `out` must have as
+/// many columns as `points`, and may be `points` itself.
+void displace_by_cells(const CsrbfField& field, const Points& points, Points& out) {
+  const double reach = field.radii.maxCoeff();
+  const PointGrid grid(field.centres, reach);
+  const auto sorted = sorted_by_cell(grid, points);
+  std::vector<std::uint32_t> functions;
+  for (auto begin = sorted.begin(); begin != sorted.end();) {
+    Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+    Eigen::Vector3d high = -low;
+    auto end = begin;
+    for (; end != sorted.end() && end->first == begin->first; ++end) {
+      if (!points.col(end->second).allFinite()) continue; // which no function reaches
+      low = low.cwiseMin(points.col(end->second));
+      high = high.cwiseMax(points.col(end->second));
+    }
+    functions.clear();
+    if (low[0] <= high[0])
+      grid.visit_near(low, high, reach, [&](std::uint32_t i) { functions.push_back(i); });
+    std::sort(functions.begin(), functions.end());
+    for (; begin != end; ++begin) {
+      const Eigen::Vector3d x = points.col(begin->second);
+      Eigen::Vector3d sum = polynomial_at(field, x);
+      for (const std::uint32_t i : functions)
+        add_term(field, i, x, sum);
+      out.col(begin->second) = x + sum;
+    }
+  }
 }
 
 } // namespace

@@ -11,11 +11,36 @@
 
 #include <nendo/deform/step_note.hpp>
 #include <nendo/deform/undo_memory.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
 
 #include "field/block_evaluator.hpp"
-#include "field/saved_block.hpp"
 
 namespace nendo::deform {
+
+struct SavedBlock;
+
+/// What is noted of a step, in a list of all steps.
+struct StepHead {
+  StepNote note;
+  SavedBlock* before; ///< the head of the step before; valid while that step is there
+  SavedBlock* after;  ///< of the step after it, or null
+};
+
+/// A block as it was before a step or, once the step is undone, as it was after the step. The first
+/// one of a step holds no block but the note of the step.
+struct SavedBlock {
+  static constexpr std::uint32_t head = ~std::uint32_t{0};
+
+  union {
+    VertexBlock content;
+    StepHead of_step; ///< if `block` is `head`
+  };
+  std::uint64_t stamp;
+  std::uint64_t step; ///< that changed it
+  SavedBlock* next;
+  SavedBlock* previous;
+  std::uint32_t block;
+};
 
 class ShapeHistory {
 public:

@@ -6,7 +6,7 @@
 
 #include <nendo/base/usable_memory.hpp>
 
-#include "field/saved_block.hpp"
+#include "history/shape_history.hpp"
 
 namespace nendo::deform {
 namespace {

@@ -1,27 +1,178 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include <Eigen/Cholesky>
 
-#include "solver/dense_assembly.hpp"
 #include "solver/kernel_system.hpp"
+#include "solver/shared_kernel.hpp"
+#include "solver/ties.hpp"
 #include "solver/volume_assembly.hpp"
 
 namespace nendo::deform {
 
 namespace {
 
-class DenseSystem final : public KernelSystem {
+/// lower += Psi W Psi^T.
+void add_own(const OwnFunctions& own, Eigen::MatrixXd& lower) {
+  for (std::size_t e = 0; e < own.size(); ++e) {
+    const auto values = own.values(e);
+    for (std::size_t j = 0; j < values.size(); ++j) {
+      const double factor = own.weight(e) * values[j].psi;
+      for (std::size_t i = j; i < values.size(); ++i)
+        lower(values[i].point, values[j].point) += factor * values[i].psi;
+    }
+  }
+}
+
+/// Writes the lower triangle of `lower`, n by n. `diagonal` has n entries and is a scratch array.
+/// Returns whether points were tied. Does not allocate.
+bool assemble_dense(const CsrbfOptions& options, const Points& starts, const Supports& supports,
+                    const OwnFunctions& own, Eigen::MatrixXd& lower, Eigen::VectorXd& diagonal) {
+  const Eigen::Index n = starts.cols();
+  const SharedKernel kernel(options.kernel, supports);
+  const Ties ties(options, supports);
+  const bool has_own = own.size() > 0;
+  const double squared_reach = squared_or_more(std::max(kernel.reach(), ties.reach()));
+  if (has_own) {
+    lower.setZero();
+    add_own(own, lower);
+  }
+  // The own functions' part of the diagonal is wanted as it is until all ties are found.
+  diagonal.setConstant((1.0 + options.smoothing) * kernel.at(0.0));
+  bool merged = false;
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::Index i = j + 1; i < n; ++i) {
+      double value = has_own ? lower(i, j) : 0.0;
+      const double squared = (starts.col(i) - starts.col(j)).squaredNorm();
+      if (squared > squared_reach) { // of local supports most
+        lower(i, j) = value;
+        continue;
+      }
+      const double distance = std::sqrt(squared);
+      if (distance < ties.reach() || distance == 0.0) {
+        const double size = has_own ? (lower(i, i) + lower(j, j)) / 2.0 : 0.0;
+        const double tie = ties.strength(distance, size, size - value);
+        diagonal[i] += tie;
+        diagonal[j] += tie;
+        value -= tie;
+        merged = true;
+      }
+      lower(i, j) = value + kernel.at(distance);
+    }
+  if (has_own)
+    lower.diagonal() += diagonal;
+  else
+    lower.diagonal() = diagonal;
+  return merged;
+}
+
+/// Systems that store all of M's lower triangle.
+class FullSystem : public KernelSystem {
 public:
-  Assembled assemble(const CsrbfOptions& options, const Points& starts, const Supports& supports,
-                     const OwnFunctions& own) override {
-    const bool keeps_volume = options.keep_volume > 0.0;
-    const Eigen::Index rows = keeps_volume ? 3 * starts.cols() : starts.cols();
+  void reserve(Eigen::Index rows) override {
     lower_.resize(rows, rows);
     diagonal_.resize(rows);
-    const bool merged = keeps_volume
+  }
+
+  Assembled assemble(const CsrbfOptions& options, const Points& starts, const Supports& supports,
+                     const OwnFunctions& own) override {
+    reserve(options.keeps_volume() ? 3 * starts.cols() : starts.cols());
+    const bool merged = options.keeps_volume()
                             ? assemble_volume(options, starts, supports, lower_)
                             : assemble_dense(options, starts, supports, own, lower_, diagonal_);
     return merged ? Assembled::merged : Assembled::ok;
   }
 
+  Eigen::Index matrix_entries() const noexcept override {
+    return lower_.rows() * (lower_.rows() + 1) / 2;
+  }
+  Eigen::Index factor_entries() const noexcept override { return matrix_entries(); }
+
+protected:
+  Eigen::MatrixXd lower_;
+  Eigen::VectorXd diagonal_;
+};
+
+class LeanSystem final : public FullSystem {
+public:
+  void reserve(Eigen::Index rows) override {
+    FullSystem::reserve(rows);
+    n_ = rows;
+    if (n_ <= stride_) return;
+    stride_ = n_ + n_ % 2; // columns begin at whole SSE registers
+    factor_.resize(static_cast<std::size_t>(stride_ * stride_));
+    inverse_pivots_.resize(static_cast<std::size_t>(stride_));
+  }
+
+  /// M = L D L^T, Cholesky's without roots, which ten points would wait for one after the other.
+  /// Right-looking: each finished column is taken from those after it, which are contiguous.
+  bool factorise(double ridge) override {
+    for (Eigen::Index j = 0; j < n_; ++j) {
+      for (Eigen::Index i = j; i < n_; ++i)
+        factor_[index(i, j)] = lower_(i, j);
+      factor_[index(j, j)] += ridge;
+    }
+    for (Eigen::Index k = 0; k < n_; ++k) {
+      double* const column = &factor_[index(0, k)];
+      if (!(column[k] > 0.0)) return false;
+      const double inverse = 1.0 / column[k];
+      inverse_pivots_[static_cast<std::size_t>(k)] = inverse;
+      for (Eigen::Index j = k + 1; j < n_; ++j) {
+        double* const target = &factor_[index(0, j)];
+        const double value = column[j] * inverse;
+        for (Eigen::Index i = j; i < n_; ++i)
+          target[i] -= value * column[i];
+      }
+      for (Eigen::Index i = k + 1; i < n_; ++i)
+        column[i] *= inverse;
+    }
+    return true;
+  }
+
+  void solve_in_place(Rows& rows) noexcept override {
+    for (Eigen::Index k = 0; k < n_; ++k) {
+      const double* const column = &factor_[index(0, k)];
+      const Row solved = rows.row(k);
+      for (Eigen::Index i = k + 1; i < n_; ++i)
+        rows.row(i) -= column[i] * solved;
+    }
+    for (Eigen::Index k = n_ - 1; k >= 0; --k) {
+      const double* const column = &factor_[index(0, k)];
+      Row sum = Row(rows.row(k)) * inverse_pivots_[static_cast<std::size_t>(k)];
+      for (Eigen::Index i = n_ - 1; i > k; --i) // the latest row comes last: only it is waited for
+        sum -= column[i] * rows.row(i);
+      rows.row(k) = sum;
+    }
+  }
+
+  void subtract_product(const Rows& x, Rows& residual) const noexcept override {
+    for (Eigen::Index j = 0; j < n_; ++j) {
+      const Row own = x.row(j);
+      Row sum = lower_(j, j) * own;
+      for (Eigen::Index i = j + 1; i < n_; ++i) {
+        const double value = lower_(i, j);
+        sum += value * x.row(i);
+        residual.row(i) -= value * own;
+      }
+      residual.row(j) -= sum;
+    }
+  }
+
+private:
+  using Row = Eigen::RowVector4d;
+  std::size_t index(Eigen::Index row, Eigen::Index column) const noexcept {
+    return static_cast<std::size_t>(column * stride_ + row);
+  }
+
+  Eigen::Index n_ = 0;
+  Eigen::Index stride_ = 0; ///< from one column of the factor to the next; never shrinks
+  std::vector<double> factor_;
+  std::vector<double> inverse_pivots_;
+};
+
+class DenseSystem final : public FullSystem {
+public:
   bool factorise(double ridge) override {
     diagonal_ = lower_.diagonal();
     lower_.diagonal().array() += ridge;
@@ -42,19 +193,16 @@ public:
     residual -= product_;
   }
 
-  Eigen::Index matrix_entries() const noexcept override {
-    return lower_.rows() * (lower_.rows() + 1) / 2;
-  }
-  Eigen::Index factor_entries() const noexcept override { return matrix_entries(); }
-
 private:
-  Eigen::MatrixXd lower_;
-  Eigen::VectorXd diagonal_;
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
   mutable Eigen::MatrixX4d columns_, product_; ///< scratch
 };
 
 } // namespace
+
+std::unique_ptr<KernelSystem> make_lean_system() {
+  return std::make_unique<LeanSystem>();
+}
 
 std::unique_ptr<KernelSystem> make_dense_system() {
   return std::make_unique<DenseSystem>();

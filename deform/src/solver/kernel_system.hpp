@@ -6,7 +6,6 @@
 
 #include "solver/own_functions.hpp"
 #include "solver/solver_choices.hpp"
-#include "solver/ties.hpp"
 
 namespace nendo::deform {
 

@@ -8,9 +8,11 @@
 
 #include <nendo/deform/csrbf.hpp>
 
-#include "solver/rows.hpp"
-
 namespace nendo::deform {
+
+/// A row for each start point, with three coordinates and an unused number, or with the four terms
+/// of the polynomial. A row fills two SSE registers or one of AVX.
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
 class OwnFunctions {
 public:

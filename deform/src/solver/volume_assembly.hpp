@@ -4,7 +4,7 @@
 #include <nendo/deform/csrbf.hpp>
 #include <nendo/deform/volume_kernel.hpp>
 
-#include "solver/rows.hpp"
+#include "solver/own_functions.hpp"
 
 namespace nendo::deform {
 
