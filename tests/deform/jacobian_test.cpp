@@ -10,6 +10,7 @@
 #include <nendo/deform/csrbf.hpp>
 #include <nendo/deform/simd.hpp>
 
+#include "support/jacobian_at.hpp"
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
@@ -19,6 +20,7 @@ using namespace nendo::deform;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using nendo::test::jacobian_at;
 using nendo::test::random_points;
 
 TEST_SUITE("jacobian") {

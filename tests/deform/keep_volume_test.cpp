@@ -9,7 +9,6 @@
 #include <Eigen/Eigenvalues>
 #include <doctest/doctest.h>
 
-#include <nendo/deform/jacobian.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/midpoint_chain.hpp>
 #include <nendo/deform/triangles.hpp>
@@ -19,6 +18,7 @@
 
 #include "reference/icosphere.hpp"
 #include "support/dense_field.hpp"
+#include "support/jacobian_at.hpp"
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
@@ -221,7 +221,7 @@ TEST_SUITE("keep volume") {
       for (int trial = 0; trial < 500; ++trial) {
         const Vector3d x = random_points(random, 1, 1.5).col(0);
         const Matrix3d slopes = differences(field, x);
-        CHECK((jacobian_at(field, x) - Matrix3d::Identity() - slopes).norm() < 1e-8);
+        CHECK((nendo::test::jacobian_at(field, x) - Matrix3d::Identity() - slopes).norm() < 1e-8);
         CHECK(std::sqrt((slopes.transpose() * slopes)
                             .eval()
                             .selfadjointView<Eigen::Lower>()

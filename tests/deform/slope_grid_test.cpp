@@ -7,9 +7,9 @@
 #include <doctest/doctest.h>
 
 #include <nendo/deform/field.hpp>
-#include <nendo/deform/jacobian.hpp>
 #include <nendo/deform/wendland.hpp>
 
+#include "support/jacobian_at.hpp"
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
@@ -38,7 +38,8 @@ CsrbfField field_of(const Points& centres, const Points& coefficients, double ra
 }
 
 double slope_at(const CsrbfField& field, const Vector3d& place) {
-  const Eigen::Matrix3d slope = jacobian_at(field, place) - Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d slope =
+      nendo::test::jacobian_at(field, place) - Eigen::Matrix3d::Identity();
   return slope.jacobiSvd().singularValues()[0];
 }
 

@@ -179,7 +179,7 @@ void ClayDeformer::Work::place_at(double share) noexcept {
 /// way. So a hand that trembles does not knead.
 void ClayDeformer::Work::drag(std::size_t part) noexcept {
   const Eigen::Isometry3d before = skins_[part].frame;
-  const Eigen::Isometry3d lag = before * is_[part].frame.inverse(Eigen::Isometry);
+  const Eigen::Isometry3d lag = motion_between(is_[part].frame, before);
   double farthest = 0.0;
   for (std::size_t at = 0; at < is_[part].corner_count; ++at)
     farthest = std::max(farthest, (lag * is_[part].corners[at] - is_[part].corners[at]).norm());
@@ -190,7 +190,7 @@ void ClayDeformer::Work::drag(std::size_t part) noexcept {
   }
   is_dragging_ = options_.friction > 0.0;
   skins_[part].frame = between(skins_[part], is_[part], 1.0 - give / farthest).frame;
-  ways_[part] = skins_[part].frame * before.inverse(Eigen::Isometry);
+  ways_[part] = motion_between(before, skins_[part].frame);
 }
 
 void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart> parts,
@@ -365,8 +365,8 @@ void ClayDeformer::Work::slide(std::span<const ContactPoint> points) noexcept {
     ContactLoad& load = loads_[point.body];
     const double held = load.at(point.place, -point.depth);
     const bool is_loaded = problem_.pressure(at) + held > loaded_mm * mm_;
-    const Vector3d before = ways_[point.part].inverse(Eigen::Isometry) * point.at;
-    const Vector3d was = rigid_.inverse(Eigen::Isometry) * point.at;
+    const Vector3d before = before_motion(ways_[point.part], point.at);
+    const Vector3d was = before_motion(rigid_, point.at);
     frictions_[at] = {is_loaded ? Vector3d(was - before) : Vector3d::Zero(),
                       is_loaded ? held : -problem_.pressure(at), &load.slips(point.place)};
   }

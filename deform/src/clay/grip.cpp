@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "clay/rigid_fit.hpp"
+
 namespace nendo::deform {
 
 using Eigen::Vector3d;
@@ -54,7 +56,7 @@ double Grip::gone(std::span<const ContactPart> parts, std::size_t side,
                   const Vector3d& way) const noexcept {
   const Vector3d place = sides_[side].place / sides_[side].load;
   const Eigen::Isometry3d& frame = parts[first_part_ + side].frame;
-  return (place - sides_[side].frame * (frame.inverse(Eigen::Isometry) * place)).dot(way);
+  return (place - sides_[side].frame * before_motion(frame, place)).dot(way);
 }
 
 /// Two parts face each other if each pushes something towards the other.
@@ -112,7 +114,7 @@ void Grip::follow(std::span<const ContactPart> parts) noexcept {
 /// Places beside the vertex are held, so that a part also turns what it holds.
 void Grip::hold(const ContactPart& part, const ContactPoint& point, const Vector3d& by) noexcept {
   const Vector3d place = point.at + by;
-  held_.push_back({point.part, part.frame.inverse(Eigen::Isometry) * place, place, place});
+  held_.push_back({point.part, before_motion(part.frame, place), place, place});
 }
 
 /// The first side is that of the first part and of those that push alike.

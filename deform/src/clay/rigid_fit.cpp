@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
+#include "solver/dense.hpp"
 
 namespace nendo::deform {
 
@@ -11,9 +11,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 namespace {
-
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 constexpr int max_rounds = 12;
 constexpr double inertia = 1e-6;       // of what nothing determines
@@ -38,7 +35,7 @@ struct Equations {
   }
   Vector6d solved() noexcept {
     matrix.topRightCorner<3, 3>() = matrix.bottomLeftCorner<3, 3>().transpose();
-    return matrix.ldlt().solve(right);
+    return solve_spd6(matrix, right);
   }
 };
 
@@ -81,6 +78,15 @@ Eigen::Isometry3d fit_rigid_motion(std::span<const Carrier> carriers, const Vect
   if (angle > 0.0) rigid.linear() = Eigen::AngleAxisd(angle, motion.tail<3>() / angle).matrix();
   rigid.translation() = middle + motion.head<3>() - rigid.linear() * middle;
   return rigid;
+}
+
+Eigen::Isometry3d motion_between(const Eigen::Isometry3d& from,
+                                 const Eigen::Isometry3d& to) noexcept {
+  return to * from.inverse(Eigen::Isometry);
+}
+
+Vector3d before_motion(const Eigen::Isometry3d& motion, const Vector3d& point) noexcept {
+  return motion.inverse(Eigen::Isometry) * point;
 }
 
 } // namespace nendo::deform

@@ -24,4 +24,12 @@ struct Carrier {
 Eigen::Isometry3d fit_rigid_motion(std::span<const Carrier> carriers, const Eigen::Vector3d& middle,
                                    double friction, double yields) noexcept;
 
+/// Returns to * from^-1. This and the next function are not inlined: each use of Eigen's inverse
+/// costs half a second of compilation.
+Eigen::Isometry3d motion_between(const Eigen::Isometry3d& from,
+                                 const Eigen::Isometry3d& to) noexcept;
+/// Returns motion^-1 * point.
+Eigen::Vector3d before_motion(const Eigen::Isometry3d& motion,
+                              const Eigen::Vector3d& point) noexcept;
+
 } // namespace nendo::deform

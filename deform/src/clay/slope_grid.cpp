@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include "solver/dense.hpp"
 
 namespace nendo::deform {
 
@@ -17,9 +17,7 @@ constexpr double rounding_of_slopes = 1.0001;    // of sums in float
 double bound_of_gram(const Eigen::Matrix3d& gram, double radius) noexcept {
   constexpr double derivative_norm_squared = 20.0;                   // of Wendland's C2
   const Eigen::Matrix3d symmetric = 0.5 * (gram + gram.transpose()); // but for rounding it is
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(symmetric, Eigen::EigenvaluesOnly);
-  const double largest = std::max(0.0, solver.eigenvalues()[2]);
+  const double largest = std::max(0.0, largest_eigenvalue(symmetric));
   return std::sqrt(derivative_norm_squared * largest) / radius;
 }
 

@@ -33,7 +33,6 @@ public:
 
   /// Returns the present end of the curve.
   const Points& end() const noexcept { return to_; }
-  double piece_length() const noexcept { return piece_length_; }
 
   static constexpr int max_pieces = 16;
 

@@ -114,38 +114,7 @@ double native_bound(const CsrbfField& field) noexcept {
   return sum;
 }
 
-/// u: from the centre, in radii; not 0.
-void add_volume_term(const CsrbfField& field, Eigen::Index i, const Eigen::Vector3d& u,
-                     Eigen::Matrix3d& jacobian) noexcept {
-  const Eigen::Vector3d a = field.coefficients.col(i) / field.radii[i];
-  const VolumeKernel kernel = volume_kernel(field.kernel, field.keep_volume, u.norm());
-  const VolumeKernel slope = volume_kernel_slope(field.kernel, field.keep_volume, u.norm());
-  const double along = u.dot(a);
-  jacobian += (slope.identity * a + slope.offset * along * u) * u.transpose() +
-              kernel.offset * u * a.transpose();
-  jacobian.diagonal().array() += kernel.offset * along;
-}
-
 } // namespace
-
-Eigen::Matrix3d jacobian_at(const CsrbfField& field, const Eigen::Vector3d& x) noexcept {
-  Eigen::Matrix3d jacobian = field.polynomial.rightCols<3>();
-  jacobian.diagonal().array() += 1.0;
-  for (Eigen::Index i = 0; i < field.centres.cols(); ++i) {
-    const Eigen::Vector3d offset = x - field.centres.col(i);
-    const double radius = field.radii[i];
-    const double squared = offset.squaredNorm();
-    if (!(squared < radius * radius) || squared == 0.0) continue;
-    const double distance = std::sqrt(squared);
-    if (field.keep_volume > 0.0) {
-      add_volume_term(field, i, offset / radius, jacobian);
-      continue;
-    }
-    const double slope = wendland_slope(field.kernel, distance / radius) / (radius * distance);
-    jacobian.noalias() += field.coefficients.col(i) * (slope * offset).transpose();
-  }
-  return jacobian;
-}
 
 double lipschitz_bound(const CsrbfField& field) noexcept {
   const double affine = field.polynomial.rightCols<3>().norm();

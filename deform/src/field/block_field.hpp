@@ -30,9 +30,6 @@ public:
   /// Takes over a field. Returns false if a number in it is not finite or is too large for float;
   /// this is then the zero field. Allocates only for more entries than ever before.
   bool assign(const CsrbfField& field, Zeros zeros);
-  /// Returns whether sums are made in double, because in float the coefficients' rounding errors
-  /// would be visible.
-  bool is_precise() const noexcept { return view_.precise_entries != nullptr; }
   const FieldView& view() const noexcept { return view_; }
   const FieldEntry<double>* precise_entries() const noexcept { return precise_entries_.data(); }
   /// Returns a bound of the coordinates of s(x), for all x whose coordinates are at most `extent`.

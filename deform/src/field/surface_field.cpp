@@ -4,8 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "solver/dense.hpp"
 
 namespace nendo::deform {
 
@@ -113,12 +112,12 @@ VectorXd affine_coordinates(const Mesh& mesh, const SurfaceSetup& setup,
   Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
   for (Index k = 0; k < count; ++k)
     gram += about.col(k) * about.col(k).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spreads(gram);
+  const EigenPairs<3> spreads = eigen3(gram);
   Eigen::Vector3d way = Eigen::Vector3d::Zero();
   for (Index k = 0; k < 3; ++k) {
-    const double square = spreads.eigenvalues()[k];
-    if (!(square > min_spread * min_spread * spreads.eigenvalues()[2])) continue;
-    const Eigen::Vector3d axis = spreads.eigenvectors().col(k);
+    const double square = spreads.values[k];
+    if (!(square > min_spread * min_spread * spreads.values[2])) continue;
+    const Eigen::Vector3d axis = spreads.vectors.col(k);
     way += axis.dot(mesh.vertices.col(vertex) - middle) / square * axis;
   }
   VectorXd coordinates(count);
@@ -230,8 +229,7 @@ SurfaceField::make(const Mesh& mesh, const BlockLayout& layout, const SurfaceSet
   SurfaceFieldBuilder builder(mesh, layout, setup);
   std::shared_ptr<SurfaceField> field(new SurfaceField);
   const MatrixXd functions = builder.at_points();
-  const Eigen::PartialPivLU<MatrixXd> factor(functions);
-  field->inverse_ = factor.inverse();
+  field->inverse_ = inverse_of(functions);
   field->condition_ = norm_1(functions) * norm_1(field->inverse_);
   if (!(field->condition_ <= max_condition)) { // also where it is not a number
     const auto [one, other] = nearest_pair(functions);

@@ -1,6 +1,7 @@
 #pragma once
 // The bound of numbers that are accepted from outside.
 
+#include <cmath>
 #include <string_view>
 
 #include <Eigen/Core>
@@ -24,7 +25,11 @@ constexpr std::string_view not_usable(std::string_view field) noexcept {
 
 template <class Derived>
 bool all_usable(const Eigen::DenseBase<Derived>& values, double largest = largest_number) noexcept {
-  return (values.derived().array().abs() <= largest).all();
+  // Plain loops compile in a fraction of the time of Eigen's expressions.
+  for (Eigen::Index column = 0; column < values.cols(); ++column)
+    for (Eigen::Index row = 0; row < values.rows(); ++row)
+      if (!(std::abs(static_cast<double>(values.derived()(row, column))) <= largest)) return false;
+  return true;
 }
 
 } // namespace nendo::deform

@@ -20,7 +20,7 @@ struct ProbeArrays {
   std::size_t count; ///< a multiple of probe_vector
 };
 
-/// Computes determinant *= det(I + ds/dx), as jacobian_at() has it, and then x += s(x). Returns the
+/// Computes determinant *= det(I + ds/dx), and then x += s(x). Returns the
 /// least determinant.
 double advance_probes(const CsrbfField& field, const ProbeArrays& probes) noexcept;
 

@@ -1,6 +1,10 @@
-// Type-1's weights, applied each frame.
+// Type-1's weights: made in double when the start points are frozen, and applied each frame.
 
 #include "simd/weight_kernels.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/weight_kernels.cpp"
@@ -10,10 +14,169 @@
 #include <hwy/highway.h>
 
 #include "simd/kernels-inl.hpp"
+#include "simd/lists-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace nendo::deform::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+
+/// One centre's kernel at all vertices of a block, in double.
+template <Wendland kernel>
+HWY_INLINE void kernel_at(const FieldEntry<double>& entry, const VertexBlock& block,
+                          double* values) {
+  const hn::ScalableTag<double> d;
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const auto place = load_vectors(d, block, lane);
+    const auto x = hn::Sub(place.x, hn::Set(d, entry.x));
+    const auto y = hn::Sub(place.y, hn::Set(d, entry.y));
+    const auto z = hn::Sub(place.z, hn::Set(d, entry.z));
+    const auto squared = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+    const auto o =
+        hn::NegMulAdd(hn::Sqrt(squared), hn::Set(d, entry.inverse_radius), hn::Set(d, 1.0));
+    hn::Store(weight<kernel>(d, hn::Max(o, hn::Zero(d))), d, values + lane);
+  }
+}
+
+HWY_INLINE void kernel_of(Wendland kernel, const FieldEntry<double>& entry,
+                          const VertexBlock& block, double* values) {
+  switch (kernel) {
+  case Wendland::c0:
+    return kernel_at<Wendland::c0>(entry, block, values);
+  case Wendland::c2:
+    return kernel_at<Wendland::c2>(entry, block, values);
+  case Wendland::c4:
+    return kernel_at<Wendland::c4>(entry, block, values);
+  case Wendland::c6:
+    return kernel_at<Wendland::c6>(entry, block, values);
+  }
+}
+
+/// Start point j's weights in a block, stored at `weights`; gives the largest.
+HWY_INLINE double weights_of(const WeightSource& source, std::size_t j, const std::uint32_t* list,
+                             std::size_t count, const VertexBlock& block, float* weights) {
+  const hn::ScalableTag<double> d;
+  auto largest = hn::Zero(d);
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    auto sum = hn::Zero(d);
+    if (source.polynomial != nullptr) {
+      const double* const p = source.polynomial + 4 * j;
+      const auto place = load_vectors(d, block, lane);
+      sum = hn::MulAdd(place.z, hn::Set(d, p[3]), hn::Set(d, p[0]));
+      sum = hn::MulAdd(place.y, hn::Set(d, p[2]), hn::MulAdd(place.x, hn::Set(d, p[1]), sum));
+    }
+    for (std::size_t at = 0; at < count; ++at)
+      sum = hn::MulAdd(hn::Load(d, source.room_for_kernels + at * block_size + lane),
+                       hn::Set(d, source.map[list[at] * source.starts + j]), sum);
+    store_from(d, sum, weights + lane);
+    largest = hn::Max(largest, hn::Abs(sum));
+  }
+  return hn::GetLane(hn::MaxOfLanes(d, largest));
+}
+
+/// What steps of these weights count from; NaN if they are too far apart, or one of them is 0 and
+/// another too far from it.
+HWY_INLINE float middle_of(const float* weights) {
+  const hn::ScalableTag<float> d;
+  auto least = hn::Load(d, weights);
+  auto most = least;
+  auto nearest = hn::Abs(least); // to zero
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const auto w = hn::Load(d, weights + lane);
+    least = hn::Min(least, w);
+    most = hn::Max(most, w);
+    nearest = hn::Min(nearest, hn::Abs(w));
+  }
+  const float lowest = hn::GetLane(hn::MinOfLanes(d, least));
+  const float highest = hn::GetLane(hn::MaxOfLanes(d, most));
+  const bool has_zero = hn::GetLane(hn::MinOfLanes(d, nearest)) == 0.0F;
+  const float middle = has_zero ? 0.0F : 0.5F * (lowest + highest);
+  const bool near = highest - middle <= max_from_middle && middle - lowest <= max_from_middle;
+  return near ? middle : std::numeric_limits<float>::quiet_NaN();
+}
+
+HWY_INLINE void store_steps(const float* weights, float middle, std::byte* to) {
+  const hn::ScalableTag<float> d;
+  const hn::Rebind<std::int16_t, decltype(d)> d16;
+  auto* const steps = reinterpret_cast<std::int16_t*>(to);
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const auto from_middle = hn::Sub(hn::Load(d, weights + lane), hn::Set(d, middle));
+    const auto number = hn::NearestInt(hn::Mul(from_middle, hn::Set(d, 1.0F / weight_step)));
+    hn::Store(hn::DemoteTo(d16, number), d16, steps + lane);
+  }
+}
+
+struct WeightBuild {
+  const FieldView& field;
+  const BlockPass& pass;
+  const WeightSource& source;
+  WeightCache& cache;
+  bool done = true;
+
+  HWY_INLINE void on_block(std::size_t block, const std::uint32_t* list, std::size_t size) {
+    pass.reached[block] = 0;
+    if (!done || (size == 0 && source.polynomial == nullptr)) return;
+    for (std::size_t at = 0; at < size; ++at)
+      kernel_of(field.kernel, field.precise_entries[list[at]], pass.from[block],
+                source.room_for_kernels + at * block_size);
+    WeightedBlock& made = cache.blocks[cache.block_count];
+    made = {static_cast<std::uint32_t>(block), 0, 0, cache.used_entries, cache.used_bytes};
+    done = weigh(list, size, pass.from[block], made);
+    if (!done || made.in_steps + made.in_float == 0) return;
+    pass.reached[block] = 1;
+    ++cache.block_count;
+  }
+
+  /// False if there is no room, or a weight is not finite.
+  HWY_INLINE bool weigh(const std::uint32_t* list, std::size_t size, const VertexBlock& vertices,
+                        WeightedBlock& made) {
+    std::array<WeightEntry, max_weighted_starts> entries;
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < source.starts; ++j) {
+      float* const weights = source.room_for_weights + count * block_size;
+      const double largest = weights_of(source, j, list, size, vertices, weights);
+      if (!(largest <= max_units)) return false; // NaN, too
+      if (largest <= static_cast<double>(source.least)) continue;
+      cache.largest = largest > cache.largest ? largest : cache.largest;
+      entries[count++] = {static_cast<std::uint32_t>(j), middle_of(weights)};
+    }
+    if (cache.used_entries + count > cache.max_entries) return false;
+    for (const bool in_steps : {true, false})
+      for (std::size_t at = 0; at < count; ++at)
+        if (std::isnan(entries[at].middle) != in_steps &&
+            !keep(entries[at], source.room_for_weights + at * block_size, in_steps, made))
+          return false;
+    return true;
+  }
+
+  HWY_INLINE bool keep(WeightEntry entry, const float* weights, bool in_steps,
+                       WeightedBlock& made) {
+    const std::size_t bytes = in_steps ? bytes_in_steps : bytes_in_float;
+    if (cache.used_bytes + bytes > cache.max_bytes) return false;
+    std::byte* const to = cache.weights + cache.used_bytes;
+    if (in_steps) {
+      store_steps(weights, entry.middle, to);
+      ++made.in_steps;
+    } else {
+      std::memcpy(to, weights, bytes);
+      entry.middle = 0.0F;
+      ++made.in_float;
+    }
+    cache.entries[cache.used_entries++] = entry;
+    cache.used_bytes += bytes;
+    return true;
+  }
+};
+
+bool build(const FieldView& field, const BlockPass& pass, const WeightSource& source,
+           WeightCache& cache) {
+  cache.block_count = 0;
+  cache.used_entries = 0;
+  cache.used_bytes = 0;
+  cache.largest = 0.0;
+  WeightBuild work{field, pass, source, cache};
+  for_each_block(field.centres, pass, work);
+  return work.done;
+}
 
 /// So many vectors at a time: twelve sums fit the registers of every instruction set.
 constexpr std::size_t abreast = 4;
@@ -96,25 +259,22 @@ void apply(const WeightCache& cache, const WeightPass& pass) {
   }
 }
 
-void bounds_into(const VertexBlock& block, BlockBounds& bounds) {
-  bounds = vector_bounds(hn::ScalableTag<float>(), block);
-}
-
 } // namespace nendo::deform::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace nendo::deform {
 
+HWY_EXPORT(build);
 HWY_EXPORT(apply);
-HWY_EXPORT(bounds_into);
+
+bool build_weights(const FieldView& field, const BlockPass& pass, const WeightSource& source,
+                   WeightCache& cache) noexcept {
+  return HWY_DYNAMIC_DISPATCH(build)(field, pass, source, cache);
+}
 
 void apply_weights(const WeightCache& cache, const WeightPass& pass) noexcept {
   HWY_DYNAMIC_DISPATCH(apply)(cache, pass);
-}
-
-void update_bounds(const VertexBlock& block, BlockBounds& bounds) noexcept {
-  HWY_DYNAMIC_DISPATCH(bounds_into)(block, bounds);
 }
 
 } // namespace nendo::deform

@@ -80,7 +80,4 @@ struct WeightPass {
 /// Computes to = from + sum_j W_j g_j.
 void apply_weights(const WeightCache& cache, const WeightPass& pass) noexcept;
 
-/// Updates the bounds of a written block, for code that changes a shape in place.
-void update_bounds(const VertexBlock& block, BlockBounds& bounds) noexcept;
-
 } // namespace nendo::deform

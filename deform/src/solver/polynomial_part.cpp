@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "geometry/usable.hpp"
+#include "solver/dense.hpp"
 
 namespace nendo::deform {
 
@@ -40,11 +39,11 @@ void PolynomialPart::orthonormalise(const Eigen::Matrix4d& normalise) {
   Eigen::Matrix4d gram = Eigen::Matrix4d::Zero();
   for (Eigen::Index i = 0; i < basis_.rows(); ++i)
     gram.noalias() += basis_.row(i).transpose() * basis_.row(i);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(gram);
+  const EigenPairs<4> eigen = eigen4(gram);
   const double least = min_eigenvalue * static_cast<double>(basis_.rows());
-  Eigen::Matrix4d change = eigen.eigenvectors();
+  Eigen::Matrix4d change = eigen.vectors;
   for (Eigen::Index k = 0; k < 4; ++k) {
-    const double value = eigen.eigenvalues()[k];
+    const double value = eigen.values[k];
     const bool determined = value > least;
     change.col(k) *= determined ? 1.0 / std::sqrt(value) : 0.0;
     undetermined_[k] = determined ? 0.0 : 1.0;

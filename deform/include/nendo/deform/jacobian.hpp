@@ -1,15 +1,11 @@
 #pragma once
-// How much a field stretches, folds or turns space: the derivative of x -> x + s(x), and bounds on
-// it. Nothing here allocates, locks or calls the system, except where it says so.
+// How much a field stretches, folds or turns space: bounds on the derivative of x -> x + s(x), and
+// its determinants. Nothing here allocates, locks or calls the system, except where it says so.
 
 #include <nendo/base/api.hpp>
 #include <nendo/deform/field.hpp>
 
 namespace nendo::deform {
-
-/// Returns I + ds/dx at x. At a centre of Wendland::c0, where s has no derivative, that centre's
-/// term is left out.
-NENDO_API Eigen::Matrix3d jacobian_at(const CsrbfField& field, const Eigen::Vector3d& x) noexcept;
 
 /// Returns an L with |s(x) - s(y)| <= L |x - y| for all x and y. It is proportional to the field's
 /// coefficients. If L < 1, x -> x + s(x) is a homeomorphism of space: nothing folds, and nothing

@@ -26,15 +26,6 @@ constexpr VolumeKernel volume_kernel(Wendland air, double keep, double t) noexce
           keep * 15.0 * o4};
 }
 
-/// Returns the derivatives of both numbers after t, divided by t, for t > 0.
-constexpr VolumeKernel volume_kernel_slope(Wendland air, double keep, double t) noexcept {
-  if (!(t < 1.0)) return {};
-  const double o = 1.0 - t;
-  const double o3 = o * o * o;
-  return {(1.0 - keep) * wendland_slope(air, t) / t - keep * 60.0 * o3 * (1.0 - 2.0 * t),
-          -keep * 60.0 * o3 / t};
-}
-
 /// The largest slope of K(u) a for |a| = 1: the greatest norm of its derivative, at t = 0.155.
 inline constexpr double volume_kernel_steepest = 3.8724;
 
