@@ -156,11 +156,10 @@ void Assembler::write_colours() {
 
 /// Writes faces in the order of the model's, each one's pieces in its place.
 void Assembler::write_surface() {
-  const auto none = no_index;
   const std::vector<Piece>& pieces = surface_.pieces();
-  first_piece_.assign(cut_.mesh.face_count(), none);
-  next_piece_.assign(pieces.size(), none);
-  crossed_of_piece_.assign(pieces.size(), none);
+  first_piece_.assign(cut_.mesh.face_count(), no_index);
+  next_piece_.assign(pieces.size(), no_index);
+  crossed_of_piece_.assign(pieces.size(), no_index);
   for (auto piece = static_cast<std::uint32_t>(pieces.size()); piece-- > 0;) {
     std::uint32_t& first = first_piece_[pieces[piece].face];
     next_piece_[piece] = first;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <nendo/deform/index.hpp>
+
 namespace nendo::deform {
 namespace {
 
@@ -36,7 +38,7 @@ public:
     cell_ = std::max(cell, span / most);
     columns_ = static_cast<std::ptrdiff_t>((box.high[0] - box.low[0]) / cell_) + 1;
     rows_ = static_cast<std::ptrdiff_t>((box.high[1] - box.low[1]) / cell_) + 1;
-    heads_.assign(static_cast<std::size_t>(columns_ * rows_), no_place);
+    heads_.assign(static_cast<std::size_t>(columns_ * rows_), no_index);
   }
   void add(const PlanePoint& place) {
     std::uint32_t& head =
@@ -49,14 +51,13 @@ public:
     const std::ptrdiff_t low_row = row(to[1] - than), high_row = row(to[1] + than);
     for (std::ptrdiff_t y = low_row; y <= high_row; ++y)
       for (std::ptrdiff_t x = low_column; x <= high_column; ++x)
-        for (std::uint32_t at = heads_[static_cast<std::size_t>(y * columns_ + x)]; at != no_place;
+        for (std::uint32_t at = heads_[static_cast<std::size_t>(y * columns_ + x)]; at != no_index;
              at = places_[at].next)
           if (distance(places_[at].place, to) < than) return true;
     return false;
   }
 
 private:
-  static constexpr std::uint32_t no_place = std::numeric_limits<std::uint32_t>::max();
   struct Linked {
     PlanePoint place;
     std::uint32_t next;
@@ -218,15 +219,14 @@ Cap make_cap(std::span<const CapLoop> loops, std::uint32_t crossings, const CapO
   plane.improve();
   cap.triangles = plane.triangles(PlaneFill::odd);
   cap.on_left = sides_of(loops, cap.triangles);
-  std::vector<std::uint32_t> corner_of(plane.point_count(),
-                                       std::numeric_limits<std::uint32_t>::max());
+  std::vector<std::uint32_t> corner_of(plane.point_count(), no_index);
   std::uint32_t number = 0;
   for (const CapLoop& loop : loops)
     for (const std::uint32_t crossing : loop.crossings)
       corner_of[number++] = crossing;
   for (Corners& triangle : cap.triangles)
     for (std::uint32_t& corner : triangle) {
-      if (corner >= rim && corner_of[corner] == std::numeric_limits<std::uint32_t>::max()) {
+      if (corner >= rim && corner_of[corner] == no_index) {
         corner_of[corner] = crossings + static_cast<std::uint32_t>(cap.inner.size());
         cap.inner.push_back(plane.point(corner));
       }

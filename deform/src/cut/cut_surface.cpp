@@ -5,17 +5,6 @@
 #include <limits>
 
 namespace nendo::deform {
-namespace {
-
-std::uint64_t way_of(std::uint32_t from, std::uint32_t to) noexcept {
-  return std::uint64_t{from} << 32 | to;
-}
-
-std::uint64_t pair_of(std::uint32_t one, std::uint32_t other) noexcept {
-  return way_of(std::min(one, other), std::max(one, other));
-}
-
-} // namespace
 
 CutSurface::CutSurface(const Mesh& mesh, const Points& rest, const HalfEdges& edges,
                        const Blade& blade, double give, const std::vector<double>& sides)
@@ -57,7 +46,7 @@ void CutSurface::activate(std::uint32_t face) {
 void CutSurface::index(std::uint32_t piece) {
   const auto& vertices = pieces_[piece].vertices;
   for (std::size_t k = 0; k < 3; ++k)
-    piece_of_edge_[way_of(vertices[k], vertices[(k + 1) % 3])] = piece;
+    piece_of_edge_[edge_key(vertices[k], vertices[(k + 1) % 3])] = piece;
 }
 
 bool CutSurface::is_crossed(const Piece& piece) const noexcept {
@@ -133,7 +122,7 @@ double CutSurface::sag_of(const Piece& piece) const noexcept {
 /// Returns the piece that has this edge, and activates the face whose it is. no_index: pieces of
 /// several faces had the edge, and it was split in another one.
 std::uint32_t CutSurface::piece_at(std::uint32_t from, std::uint32_t to) {
-  auto found = piece_of_edge_.find(way_of(from, to));
+  auto found = piece_of_edge_.find(edge_key(from, to));
   if (found != piece_of_edge_.end()) return found->second;
   for (const std::uint32_t edge : edges_.out[from]) {
     if (mesh_.face_corners[edges_.next[edge]] != to) continue;
@@ -141,7 +130,7 @@ std::uint32_t CutSurface::piece_at(std::uint32_t from, std::uint32_t to) {
     activate(static_cast<std::uint32_t>(behind - mesh_.face_starts.begin() - 1));
     break;
   }
-  found = piece_of_edge_.find(way_of(from, to));
+  found = piece_of_edge_.find(edge_key(from, to));
   return found == piece_of_edge_.end() ? no_index : found->second;
 }
 
@@ -183,7 +172,7 @@ void CutSurface::split(std::uint32_t from, std::uint32_t to, std::uint32_t middl
       mesh_.corner_texcoords.empty()
           ? 0
           : texcoord_between(middle, old.texcoords[k], old.texcoords[other], part);
-  piece_of_edge_.erase(way_of(from, to));
+  piece_of_edge_.erase(edge_key(from, to));
   pieces_[number] = {{from, middle, old.vertices[apex]},
                      {old.texcoords[k], texcoord, old.texcoords[apex]},
                      old.face};
@@ -250,9 +239,9 @@ double CutSurface::crossing_part(std::uint32_t from, std::uint32_t to) const noe
 
 std::uint32_t CutSurface::crossing(std::uint32_t one, std::uint32_t other) {
   const auto number = static_cast<std::uint32_t>(crossings_.size());
-  const auto [found, is_new] = crossing_of_edge_.try_emplace(pair_of(one, other), number);
+  const auto [from, to] = std::minmax(one, other);
+  const auto [found, is_new] = crossing_of_edge_.try_emplace(edge_key(from, to), number);
   if (is_new) {
-    const auto [from, to] = std::minmax(one, other);
     const double part = crossing_part(from, to);
     crossings_.push_back({from, to, part});
     crossing_points_.push_back(between(point(from), point(to), part));

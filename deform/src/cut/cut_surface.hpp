@@ -1,6 +1,13 @@
 #pragma once
 // The faces of a model that a blade crosses, as triangles: made finer where the blade bends, then
 // crossed. All other faces stay as they are.
+//
+// This is no SurfaceMesh (mesh/surface_mesh.hpp). A plane needs no neighbours of triangles,
+// and finding them takes longer than finding the crossings. A wire needs a face's triangles only
+// when one of them is halved beside it, and the order in which faces become triangles numbers the
+// crossings: SurfaceMesh::split() needs both triangles before. And where diagonals of two faces
+// have the same ends, one edge of a triangle has no twin; then maps by the ends of edges still find
+// the crossing that triangles share, and cross() refuses what does not close.
 
 #include <cstdint>
 #include <unordered_map>

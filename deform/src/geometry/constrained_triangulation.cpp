@@ -4,12 +4,9 @@
 #include <cassert>
 #include <limits>
 
+#include <nendo/deform/index.hpp>
+
 namespace nendo::deform {
-namespace {
-
-constexpr std::uint32_t no_edge = std::numeric_limits<std::uint32_t>::max();
-
-} // namespace
 
 ConstrainedTriangulation::ConstrainedTriangulation(const PlanePoint& lowest,
                                                    const PlanePoint& highest) {
@@ -19,7 +16,7 @@ ConstrainedTriangulation::ConstrainedTriangulation(const PlanePoint& lowest,
   const double y = lowest[1] / 2.0 + highest[1] / 2.0;
   points_ = {{x - far, y - far}, {x + far, y - far}, {x, y + far}};
   corners_ = {0, 1, 2};
-  twins_ = {no_edge, no_edge, no_edge};
+  twins_ = {no_index, no_index, no_index};
   fixed_ = {0, 0, 0};
   edge_from_ = {0, 1, 2};
 }
@@ -47,7 +44,7 @@ bool ConstrainedTriangulation::is_convex(std::uint32_t edge) const noexcept {
 
 bool ConstrainedTriangulation::should_flip(std::uint32_t edge) const noexcept {
   const std::uint32_t twin = twins_[edge];
-  if (twin == no_edge || fixed_[edge] != 0) return false;
+  if (twin == no_index || fixed_[edge] != 0) return false;
   const std::uint32_t other = corners_[last(twin)];
   return in_circle(points_[corners_[edge]], points_[corners_[next(edge)]],
                    points_[corners_[last(edge)]], points_[other]) > 0 &&
@@ -58,7 +55,7 @@ void ConstrainedTriangulation::set(std::uint32_t edge, std::uint32_t corner, std
                                    bool fixed) noexcept {
   corners_[edge] = corner;
   twins_[edge] = twin;
-  if (twin != no_edge) twins_[twin] = edge;
+  if (twin != no_index) twins_[twin] = edge;
   fixed_[edge] = fixed ? 1 : 0;
   edge_from_[corner] = edge;
 }
@@ -84,8 +81,8 @@ void ConstrainedTriangulation::flip(std::uint32_t edge) noexcept {
 /// A triangle's first edge, and how the point lies in it: inside, or on `edge`.
 struct ConstrainedTriangulation::Place {
   PlaneFault fault = PlaneFault::none;
-  std::uint32_t triangle = no_edge;
-  std::uint32_t edge = no_edge;
+  std::uint32_t triangle = no_index;
+  std::uint32_t edge = no_index;
 };
 
 ConstrainedTriangulation::Place
@@ -94,7 +91,7 @@ ConstrainedTriangulation::locate(const PlanePoint& point) const noexcept {
   // In a triangulation that is not Delaunay a straight search may run in a circle. Beginning with
   // another edge in each triangle breaks it; the limit is for the case that it does not.
   for (std::size_t step = 0; step < 4 * corners_.size() + 16; ++step) {
-    Place place{PlaneFault::none, triangle, no_edge};
+    Place place{PlaneFault::none, triangle, no_index};
     std::uint32_t beyond = triangle;
     bool leaves = false;
     for (std::uint32_t k = 0; k < 3 && !leaves; ++k) {
@@ -104,26 +101,26 @@ ConstrainedTriangulation::locate(const PlanePoint& point) const noexcept {
         leaves = true;
         beyond = twins_[edge];
       } else if (turn == 0) {
-        if (place.edge != no_edge) place.fault = PlaneFault::same_point;
+        if (place.edge != no_index) place.fault = PlaneFault::same_point;
         place.edge = edge;
       }
     }
     if (!leaves) return place;
-    if (beyond == no_edge) return {PlaneFault::outside, no_edge, no_edge};
+    if (beyond == no_index) return {PlaneFault::outside, no_index, no_index};
     triangle = beyond - beyond % 3;
   }
-  return {PlaneFault::outside, no_edge, no_edge};
+  return {PlaneFault::outside, no_index, no_index};
 }
 
 PlaneFault ConstrainedTriangulation::add(const PlanePoint& point) {
   const Place place = locate(point);
   if (place.fault != PlaneFault::none) return place.fault;
-  if (place.edge != no_edge && fixed_[place.edge] != 0) return PlaneFault::on_segment;
-  if (place.edge != no_edge && twins_[place.edge] == no_edge) return PlaneFault::outside;
+  if (place.edge != no_index && fixed_[place.edge] != 0) return PlaneFault::on_segment;
+  if (place.edge != no_index && twins_[place.edge] == no_index) return PlaneFault::outside;
   const auto number = static_cast<std::uint32_t>(points_.size());
   points_.push_back(point);
-  edge_from_.push_back(no_edge);
-  if (place.edge == no_edge)
+  edge_from_.push_back(no_index);
+  if (place.edge == no_index)
     split_triangle(place.triangle, number);
   else
     split_edge(place.edge, number);
@@ -194,7 +191,7 @@ void ConstrainedTriangulation::legalise() {
 
 void ConstrainedTriangulation::improve() {
   for (std::uint32_t edge = 0; edge < corners_.size(); ++edge)
-    if (twins_[edge] != no_edge && edge < twins_[edge]) stack_.push_back(edge);
+    if (twins_[edge] != no_index && edge < twins_[edge]) stack_.push_back(edge);
   while (!stack_.empty()) {
     const std::uint32_t edge = stack_.back();
     stack_.pop_back();
@@ -206,7 +203,7 @@ void ConstrainedTriangulation::improve() {
   }
 }
 
-/// Returns the edge from one point to another, or no_edge. `from` is no corner of the outer
+/// Returns the edge from one point to another, or no_index. `from` is no corner of the outer
 /// triangle, so there are triangles all round it.
 std::uint32_t ConstrainedTriangulation::edge_between(std::uint32_t from,
                                                      std::uint32_t to) const noexcept {
@@ -216,7 +213,7 @@ std::uint32_t ConstrainedTriangulation::edge_between(std::uint32_t from,
     if (corners_[next(edge)] == to) return edge;
     edge = twins_[last(edge)];
   } while (edge != first);
-  return no_edge;
+  return no_index;
 }
 
 PlaneFault ConstrainedTriangulation::constrain(std::uint32_t from, std::uint32_t to) {
@@ -224,11 +221,11 @@ PlaneFault ConstrainedTriangulation::constrain(std::uint32_t from, std::uint32_t
   from += 3;
   to += 3;
   std::uint32_t edge = edge_between(from, to);
-  if (edge == no_edge) {
+  if (edge == no_index) {
     if (const PlaneFault fault = collect_crossed(from, to); fault != PlaneFault::none) return fault;
     flip_crossed(from, to);
     edge = edge_between(from, to);
-    assert(edge != no_edge);
+    assert(edge != no_index);
   }
   fixed_[edge] = 1;
   fixed_[twins_[edge]] = 1;
@@ -244,7 +241,7 @@ PlaneFault ConstrainedTriangulation::collect_crossed(std::uint32_t from, std::ui
     const PlanePoint& c = points_[point];
     return (c[0] - a[0]) * (b[0] - a[0]) + (c[1] - a[1]) * (b[1] - a[1]) > 0.0;
   };
-  std::uint32_t leaving = no_edge;
+  std::uint32_t leaving = no_index;
   const std::uint32_t first = edge_from_[from];
   std::uint32_t edge = first;
   do {
@@ -253,8 +250,8 @@ PlaneFault ConstrainedTriangulation::collect_crossed(std::uint32_t from, std::ui
     if (right_turn == 0 && is_ahead(right)) return PlaneFault::on_point;
     if (right_turn < 0 && side(from, to, corners_[last(edge)]) > 0) leaving = next(edge);
     edge = twins_[last(edge)];
-  } while (edge != first && leaving == no_edge);
-  while (leaving != no_edge) {
+  } while (edge != first && leaving == no_index);
+  while (leaving != no_index) {
     if (fixed_[leaving] != 0) return PlaneFault::crossing;
     crossed_.push_back({corners_[leaving], corners_[next(leaving)]});
     const std::uint32_t twin = twins_[leaving];
@@ -299,8 +296,7 @@ void ConstrainedTriangulation::flip_crossed(std::uint32_t from, std::uint32_t to
 
 /// Of each triangle the least number of segments between it and the outermost one.
 std::vector<std::uint32_t> ConstrainedTriangulation::segments_from_outside() const {
-  constexpr std::uint32_t unknown = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> depth(corners_.size() / 3, unknown);
+  std::vector<std::uint32_t> depth(corners_.size() / 3, no_index);
   std::vector<std::uint32_t> here{edge_from_[0] / 3};
   std::vector<std::uint32_t> deeper;
   depth[here.front()] = 0;
@@ -310,11 +306,11 @@ std::vector<std::uint32_t> ConstrainedTriangulation::segments_from_outside() con
       here.pop_back();
       if (depth[triangle] != level) continue;
       for (std::uint32_t edge = 3 * triangle; edge < 3 * triangle + 3; ++edge) {
-        if (twins_[edge] == no_edge) continue;
+        if (twins_[edge] == no_index) continue;
         const std::uint32_t beyond = twins_[edge] / 3;
-        if (depth[beyond] != unknown && depth[beyond] <= level) continue;
+        if (depth[beyond] != no_index && depth[beyond] <= level) continue;
         const bool parted = fixed_[edge] != 0;
-        if (parted && depth[beyond] != unknown) continue;
+        if (parted && depth[beyond] != no_index) continue;
         depth[beyond] = parted ? level + 1 : level;
         (parted ? deeper : here).push_back(beyond);
       }

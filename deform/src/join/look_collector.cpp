@@ -7,8 +7,6 @@
 namespace nendo::deform {
 namespace {
 
-static_assert(no_index == no_index);
-
 bool same_texture(const Texture& a, const Texture& b) {
   if (a.file != b.file) return false;
   return a.contents == b.contents || (a.contents && b.contents && *a.contents == *b.contents);

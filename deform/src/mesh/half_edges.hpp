@@ -1,7 +1,9 @@
 #pragma once
 // Which edges of faces lie opposite to each other. Corner k of a face stands for the edge from this
 // corner to the next one, so an edge has the number of its corner. The faces may be any polygons,
-// and do not change; surface_mesh.hpp has the triangles that do.
+// and do not change. SurfaceMesh (surface_mesh.hpp) has triangles that do, and finds its twins by
+// twins_of(). It cannot replace HalfEdges: the diagonals of triangles would be edges that the model
+// does not have, and its checks name edges of the model.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +24,11 @@ struct HalfEdges {
   std::vector<std::uint32_t> twin;
   RowsByKey<std::uint32_t> out; ///< the edges that begin at each vertex, in rising order
 };
+
+/// Returns a key for maps: the edge from one vertex to another.
+inline std::uint64_t edge_key(std::uint32_t from, std::uint32_t to) noexcept {
+  return std::uint64_t{from} << 32 | to;
+}
 
 /// Each corner must be below `vertices`. Allocates.
 HalfEdges half_edges_of(std::span<const std::uint32_t> face_starts,

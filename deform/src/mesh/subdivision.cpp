@@ -10,6 +10,8 @@
 
 #include <nendo/deform/triangles.hpp>
 
+#include "mesh/half_edges.hpp"
+
 namespace nendo::deform {
 namespace {
 
@@ -18,10 +20,6 @@ struct Edge {
   std::uint64_t ends;
   std::uint32_t corner;
 };
-
-std::uint64_t ends_of(std::uint32_t a, std::uint32_t b) noexcept {
-  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-}
 
 std::span<const std::uint32_t> corners_of(const Mesh& mesh, std::size_t face) {
   return std::span(mesh.face_corners)
@@ -38,7 +36,8 @@ std::vector<Edge> sorted_edges(const Mesh& mesh, const std::vector<std::uint32_t
     if (end - begin < 3) continue;
     for (std::uint32_t at = begin; at < end; ++at) {
       const std::uint32_t next = at + 1 < end ? at + 1 : begin;
-      edges.push_back({ends_of(corner_values[at], corner_values[next]), at});
+      const auto [low, high] = std::minmax(corner_values[at], corner_values[next]);
+      edges.push_back({edge_key(low, high), at});
     }
   }
   std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {

@@ -5,13 +5,6 @@
 #include "mesh/half_edges.hpp"
 
 namespace nendo::deform {
-namespace {
-
-std::uint64_t way_of(std::uint32_t from, std::uint32_t to) noexcept {
-  return std::uint64_t{from} << 32 | to;
-}
-
-} // namespace
 
 SurfaceMesh::SurfaceMesh(std::vector<Corners> faces, std::size_t points)
     : faces_(std::move(faces)), edge_at_(points, no_index) {
@@ -26,7 +19,7 @@ SurfaceMesh::SurfaceMesh(std::vector<Corners> faces, std::size_t points)
                         visit(begins[edge], edge);
                     }));
   for (std::uint32_t edge = 0; edge < begins.size(); ++edge)
-    if (twins_[edge] == no_index) boundary_.emplace(way_of(begins[edge], ends[edge]), edge);
+    if (twins_[edge] == no_index) boundary_.emplace(edge_key(begins[edge], ends[edge]), edge);
 }
 
 std::uint32_t SurfaceMesh::edge_between(std::uint32_t one, std::uint32_t other) const {
@@ -49,7 +42,7 @@ std::uint32_t SurfaceMesh::add_face(const Corners& corners) {
   twins_.resize(twins_.size() + 3, no_index);
   for (std::uint32_t edge = 3 * face; edge < 3 * face + 3; ++edge) {
     edge_at_[from(edge)] = edge;
-    const auto found = boundary_.find(way_of(to(edge), from(edge)));
+    const auto found = boundary_.find(edge_key(to(edge), from(edge)));
     link(edge, found == boundary_.end() ? no_index : found->second);
     if (found != boundary_.end()) boundary_.erase(found);
   }
@@ -60,7 +53,7 @@ void SurfaceMesh::remove_faces(std::span<const std::uint32_t> faces) {
   for (const std::uint32_t face : faces) {
     for (std::uint32_t edge = 3 * face; edge < 3 * face + 3; ++edge) {
       edge_at_[from(edge)] = no_index;
-      if (twins_[edge] == no_index) boundary_.erase(way_of(from(edge), to(edge)));
+      if (twins_[edge] == no_index) boundary_.erase(edge_key(from(edge), to(edge)));
     }
     faces_[face].fill(no_index);
   }
@@ -106,7 +99,7 @@ std::uint32_t SurfaceMesh::split_face(std::uint32_t edge, std::uint32_t point) {
 void SurfaceMesh::link(std::uint32_t edge, std::uint32_t twin) {
   twins_[edge] = twin;
   if (twin == no_index)
-    boundary_[way_of(from(edge), to(edge))] = edge;
+    boundary_[edge_key(from(edge), to(edge))] = edge;
   else
     twins_[twin] = edge;
 }

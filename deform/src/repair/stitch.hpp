@@ -15,7 +15,9 @@ namespace nendo::deform {
 /// are one. Allocates.
 std::vector<std::uint32_t> exact_places(const Points& points);
 
-/// The edge behind a corner, from the lesser place to the greater one.
+/// The edge after a corner, from the lesser place to the greater one. Broken models have edges with
+/// any number of faces, which may face any way, so twins (HalfEdges, SurfaceMesh) cannot describe
+/// them: all steps of repairing share this sorted table instead.
 struct PlacedEdge {
   std::uint32_t low, high;
   std::uint32_t corner, next; ///< of its face
