@@ -9,6 +9,7 @@
 
 #include "cut/cut_assembly.hpp"
 #include "cut/cut_check.hpp"
+#include "mesh/columns.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -17,10 +18,6 @@ namespace {
 constexpr double largest_size = 1e60;
 constexpr double smallest_size = 1e-60;
 constexpr std::uint32_t max_attempts = 8;
-
-SpacePoint space_point(const Eigen::Vector3d& vector) noexcept {
-  return {vector[0], vector[1], vector[2]};
-}
 
 bool is_fit(const Eigen::Vector3d& vector) noexcept {
   return (vector.array().abs() <= largest_size).all();
@@ -61,8 +58,7 @@ double give_of(const std::vector<double>& sides, double diagonal, std::uint32_t 
 double edge_length_at(const Mesh& mesh, const HalfEdges& edges, const std::vector<double>& sides,
                       double give) {
   const auto point = [&](std::uint32_t corner) {
-    const double* at = mesh.vertices.data() + 3 * std::size_t{mesh.face_corners[corner]};
-    return SpacePoint{at[0], at[1], at[2]};
+    return space_point(mesh.vertices, mesh.face_corners[corner]);
   };
   const auto is_up = [&](std::uint32_t corner) { return sides[mesh.face_corners[corner]] > give; };
   const auto mean = [&](const auto& counts) {
@@ -133,10 +129,8 @@ Result<CutModel> Cutter::run() {
   if (const auto fine = check(); !fine) return fine.error();
   const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
   sides_.resize(vertices);
-  for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
-    const double* at = mesh_.vertices.data() + 3 * vertex;
-    sides_[vertex] = blade_.side({at[0], at[1], at[2]});
-  }
+  for (std::size_t vertex = 0; vertex < vertices; ++vertex)
+    sides_[vertex] = blade_.side(space_point(mesh_.vertices, vertex));
   faces_inwards_ = volume_of(mesh_) < 0.0;
   edge_ = options_.edge > 0.0
               ? options_.edge
@@ -265,7 +259,8 @@ Result<CutModel> cut_model(const Mesh& mesh, const CutPlane& plane, const CutOpt
   if (!is_fit(plane.point) || !is_fit(plane.normal) || !(length > 0.0))
     return Error{Errc::usage,
                  "cannot be cut by this plane: its normal is zero, or a number too large"};
-  const PlaneBlade blade(space_point(plane.point), space_point(plane.normal / length));
+  const PlaneBlade blade(space_point(plane.point),
+                         space_point(Eigen::Vector3d(plane.normal / length)));
   return Cutter(mesh, blade, options).run();
 }
 
@@ -292,10 +287,9 @@ double volume_of(const Mesh& mesh) {
   if (mesh.vertices.cols() == 0) return 0.0;
   // About a point in the model, so that few digits cancel.
   const Box box = finite_box_of(mesh.vertices);
-  const SpacePoint origin = space_point(box.lowest / 2.0 + box.highest / 2.0);
+  const SpacePoint origin = space_point(Eigen::Vector3d(box.lowest / 2.0 + box.highest / 2.0));
   const auto from_origin = [&](std::uint32_t vertex) {
-    const double* of = mesh.vertices.data() + 3 * std::size_t{vertex};
-    return SpacePoint{of[0], of[1], of[2]} - origin;
+    return space_point(mesh.vertices, vertex) - origin;
   };
   double sum = 0.0;
   for_each_triangle(mesh, [&](const Triangle& at) {

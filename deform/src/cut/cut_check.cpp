@@ -9,6 +9,7 @@
 
 #include "geometry/box_tree.hpp"
 #include "geometry/triangle_meeting.hpp"
+#include "mesh/columns.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -30,14 +31,7 @@ public:
   CutCheck(const CutAssembly& assembly, const CutSurface& surface, const Points& rest, double reach)
       : assembly_(assembly), mesh_(assembly.mesh), rest_(rest), surface_(surface), reach_(reach),
         first_added_(static_cast<std::uint32_t>(static_cast<std::size_t>(mesh_.vertices.cols()) -
-                                                assembly.added.size())) {
-    points_.resize(static_cast<std::size_t>(mesh_.vertices.cols()));
-    const double* at = mesh_.vertices.data();
-    for (SpacePoint& point : points_) {
-      point = {at[0], at[1], at[2]};
-      at += 3;
-    }
-  }
+                                                assembly.added.size())) {}
   bool is_sound(bool up) const;
 
 private:
@@ -52,7 +46,7 @@ private:
   const CutSurface& surface_;
   double reach_; ///< no face whose corners are all farther from the blade can meet cut faces
   std::uint32_t first_added_;
-  std::vector<SpacePoint> points_;
+  std::vector<SpacePoint> points_ = space_points(mesh_.vertices);
 };
 
 /// A piece has at least one corner that was there before.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/columns.hpp"
+
 namespace nendo::deform {
 
 CutSurface::CutSurface(const Mesh& mesh, const Points& rest, const HalfEdges& edges,
@@ -24,8 +26,7 @@ CutSurface::CutSurface(const Mesh& mesh, const Points& rest, const HalfEdges& ed
 SpacePoint CutSurface::point(std::uint32_t vertex) const noexcept {
   const auto old = static_cast<std::uint32_t>(mesh_.vertices.cols());
   if (vertex >= old) return added_points_[vertex - old];
-  const double* at = mesh_.vertices.data() + 3 * std::size_t{vertex};
-  return {at[0], at[1], at[2]};
+  return space_point(mesh_.vertices, vertex);
 }
 
 /// Takes a face as triangles.

@@ -3,6 +3,7 @@
 #include <nendo/deform/cut.hpp>
 
 #include "cut/cut_assembly.hpp"
+#include "mesh/columns.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -64,13 +65,7 @@ void copy_face(const Mesh& from, std::uint32_t face, Renumbered& vertices, Renum
     if (!from.corner_texcoords.empty())
       to.corner_texcoords.push_back(texcoords(from.corner_texcoords[at]));
   }
-  to.face_starts.push_back(static_cast<std::uint32_t>(to.face_corners.size()));
-  const auto take = [&](const std::vector<std::uint32_t>& values, std::vector<std::uint32_t>& of) {
-    if (!values.empty()) of.push_back(values[face]);
-  };
-  take(from.look.face_materials, to.look.face_materials);
-  take(from.look.groups.of_face, to.look.groups.of_face);
-  take(from.look.objects.of_face, to.look.objects.of_face);
+  end_face(from, face, to);
 }
 
 } // namespace

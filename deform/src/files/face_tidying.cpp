@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include "mesh/columns.hpp"
+
 namespace nendo::deform {
 
 namespace {
@@ -105,8 +107,7 @@ void FaceTidier::keep_corners(std::uint32_t begin, std::uint32_t end) {
 }
 
 void FaceTidier::keep_names(std::size_t face) {
-  for (auto* of_face :
-       {&mesh_.look.face_materials, &mesh_.look.groups.of_face, &mesh_.look.objects.of_face})
+  for (auto* of_face : face_columns(mesh_.look))
     if (!of_face->empty()) (*of_face)[faces_kept_] = (*of_face)[face];
 }
 
@@ -114,8 +115,7 @@ void FaceTidier::shrink() {
   mesh_.face_starts.resize(faces_kept_ + 1);
   mesh_.face_corners.resize(corners_kept_);
   if (!mesh_.corner_texcoords.empty()) mesh_.corner_texcoords.resize(corners_kept_);
-  for (auto* of_face :
-       {&mesh_.look.face_materials, &mesh_.look.groups.of_face, &mesh_.look.objects.of_face})
+  for (auto* of_face : face_columns(mesh_.look))
     if (!of_face->empty()) of_face->resize(faces_kept_);
 }
 

@@ -7,6 +7,7 @@
 #include <nendo/deform/triangles.hpp>
 
 #include "join/look_collector.hpp"
+#include "mesh/columns.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -26,9 +27,7 @@ void add_faces(const Mesh& mesh, const LookCollector& looks, TriangleSurface& su
 TriangleSurface surface_of(const Mesh& mesh, const LookCollector& looks, bool has_colours,
                            bool has_texture) {
   TriangleSurface surface;
-  surface.points.reserve(static_cast<std::size_t>(mesh.vertices.cols()));
-  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i)
-    surface.points.push_back({mesh.vertices(0, i), mesh.vertices(1, i), mesh.vertices(2, i)});
+  surface.points = space_points(mesh.vertices);
   for (Eigen::Index i = 0; i < mesh.look.vertex_colours.cols(); ++i) {
     const Eigen::Vector4f colour = mesh.look.vertex_colours.col(i);
     surface.colours.push_back({colour[0], colour[1], colour[2], colour[3]});

@@ -10,6 +10,7 @@
 
 #include <nendo/deform/triangles.hpp>
 
+#include "mesh/columns.hpp"
 #include "mesh/half_edges.hpp"
 
 namespace nendo::deform {
@@ -146,23 +147,17 @@ std::vector<std::uint32_t> faces_before(const Mesh& mesh) {
   return before;
 }
 
-std::vector<std::uint32_t> inherited(const std::vector<std::uint32_t>& of_face,
-                                     const std::vector<std::uint32_t>& before) {
-  std::vector<std::uint32_t> values;
-  if (of_face.empty()) return values;
-  values.reserve(before.size());
-  for (const std::uint32_t face : before)
-    values.push_back(of_face[face]);
-  return values;
-}
-
 /// All but the colours of vertices. Faces look as those that they were part of.
 void inherit_look(const Mesh& mesh, Mesh& finer) {
   finer.look = mesh.look;
   const std::vector<std::uint32_t> before = faces_before(mesh);
-  finer.look.face_materials = inherited(mesh.look.face_materials, before);
-  finer.look.groups.of_face = inherited(mesh.look.groups.of_face, before);
-  finer.look.objects.of_face = inherited(mesh.look.objects.of_face, before);
+  for (auto* column : face_columns(finer.look)) {
+    if (column->empty()) continue;
+    const std::vector<std::uint32_t> of_face = std::exchange(*column, {});
+    column->reserve(before.size());
+    for (const std::uint32_t face : before)
+      column->push_back(of_face[face]);
+  }
 }
 
 /// Of each face whether the new faces around its middle would fold, as in that of a letter L.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/ear_clipping.hpp"
+#include "mesh/columns.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -68,10 +69,8 @@ FaceTriangles::~FaceTriangles() = default;
 bool FaceTriangles::take(std::uint32_t begin, std::uint32_t count) {
   if (!parts_) parts_ = std::make_unique<Parts>();
   parts_->places.resize(count);
-  for (std::uint32_t at = 0; at < count; ++at) {
-    const double* of = places_.data() + 3 * std::size_t{mesh_.face_corners[begin + at]};
-    parts_->places[at] = {of[0], of[1], of[2]};
-  }
+  for (std::uint32_t at = 0; at < count; ++at)
+    parts_->places[at] = space_point(places_, mesh_.face_corners[begin + at]);
   parts_->normal = face_normal(parts_->places);
   return !is_none(parts_->normal);
 }
@@ -120,54 +119,25 @@ std::vector<std::uint32_t> corners_of_triangles(const Mesh& mesh) {
   return corners;
 }
 
-namespace {
-
-/// Appends to lists of corners and faces what a face, or a piece of it, has.
-class FaceCopier {
-public:
-  FaceCopier(const Mesh& from, Mesh& to) : from_(from), to_(to) {}
-  void corner(std::uint32_t at) {
-    to_.face_corners.push_back(from_.face_corners[at]);
-    if (!from_.corner_texcoords.empty()) to_.corner_texcoords.push_back(from_.corner_texcoords[at]);
-  }
-  void end(std::size_t face) {
-    to_.face_starts.push_back(static_cast<std::uint32_t>(to_.face_corners.size()));
-    const Appearance& look = from_.look;
-    take(look.face_materials, face, to_.look.face_materials);
-    take(look.groups.of_face, face, to_.look.groups.of_face);
-    take(look.objects.of_face, face, to_.look.objects.of_face);
-  }
-
-private:
-  static void take(const std::vector<std::uint32_t>& of_face, std::size_t face,
-                   std::vector<std::uint32_t>& to) {
-    if (!of_face.empty()) to.push_back(of_face[face]);
-  }
-  const Mesh& from_;
-  Mesh& to_;
-};
-
-} // namespace
-
 Mesh with_split_faces(const Mesh& mesh, const Points& places, const std::vector<bool>& is_split) {
   Mesh split = mesh;
   split.face_starts.assign(1, 0);
-  for (auto* list : {&split.face_corners, &split.corner_texcoords, &split.look.face_materials,
-                     &split.look.groups.of_face, &split.look.objects.of_face})
-    list->clear();
-  FaceCopier copier(mesh, split);
+  split.face_corners.clear();
+  split.corner_texcoords.clear();
+  for (auto* column : face_columns(split.look))
+    column->clear();
   FaceTriangles triangles(mesh, places);
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     if (!is_split[face]) {
       for (std::uint32_t at = mesh.face_starts[face]; at < mesh.face_starts[face + 1]; ++at)
-        copier.corner(at);
-      copier.end(face);
+        append_corner(mesh, at, split);
+      end_face(mesh, face, split);
       continue;
     }
     for (const Triangle& triangle : triangles.of(face)) {
       for (const std::uint32_t corner : triangle)
-        copier.corner(corner);
-      copier.end(face);
+        append_corner(mesh, corner, split);
+      end_face(mesh, face, split);
     }
   }
   return split;

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "mesh/columns.hpp"
+
 namespace nendo::deform {
 namespace {
 
@@ -33,9 +35,8 @@ void append_mesh(const Mesh& more, Mesh& mesh) {
   append_numbers(more.face_corners, vertices, mesh.face_corners);
   append_numbers(more.corner_texcoords, texcoords, mesh.corner_texcoords);
   append_numbers(std::span(more.face_starts).subspan(1), corners, mesh.face_starts);
-  append_numbers(more.look.face_materials, 0, mesh.look.face_materials);
-  append_numbers(more.look.groups.of_face, 0, mesh.look.groups.of_face);
-  append_numbers(more.look.objects.of_face, 0, mesh.look.objects.of_face);
+  for (std::size_t k = 0; k < 3; ++k)
+    append_numbers(*face_columns(more.look)[k], 0, *face_columns(mesh.look)[k]);
   mesh.detail.clear(); // what is new has none
 }
 

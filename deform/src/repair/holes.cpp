@@ -12,6 +12,7 @@
 #include "cut/cut_assembly.hpp"
 #include "cut/cut_cap.hpp"
 #include "join/self_intersections.hpp"
+#include "mesh/columns.hpp"
 #include "mesh/half_edges.hpp"
 #include "repair/min_area.hpp"
 
@@ -46,8 +47,7 @@ private:
   bool goes_through(const Rim& rim, const std::vector<Corners>& lid);
   void add(const Rim& rim, const std::vector<Corners>& lid);
   SpacePoint point(std::uint32_t corner) const noexcept {
-    const double* const at = mesh_.vertices.data() + 3 * std::size_t{mesh_.face_corners[corner]};
-    return {at[0], at[1], at[2]};
+    return space_point(mesh_.vertices, mesh_.face_corners[corner]);
   }
   std::string where(std::uint32_t corner) const {
     return place_text(mesh_.vertices.col(mesh_.face_corners[corner]), mesh_.offset);
@@ -168,9 +168,7 @@ bool HoleFiller::goes_through(const Rim& rim, const std::vector<Corners>& lid) {
   constexpr std::size_t max_looks = 100'000'000; // faces
   looks_ += mesh_.face_count();
   if (looks_ > max_looks) return false;
-  std::vector<SpacePoint> points;
-  for (Eigen::Index at = 0; at < mesh_.vertices.cols(); ++at)
-    points.push_back({mesh_.vertices(0, at), mesh_.vertices(1, at), mesh_.vertices(2, at)});
+  const std::vector<SpacePoint> points = space_points(mesh_.vertices);
   std::vector<Corners> triangles;
   for_each_triangle(mesh_, [&](const Triangle& triangle) { triangles.push_back(triangle); });
   std::vector<std::uint32_t> changed;
@@ -183,24 +181,17 @@ bool HoleFiller::goes_through(const Rim& rim, const std::vector<Corners>& lid) {
 }
 
 void HoleFiller::add(const Rim& rim, const std::vector<Corners>& lid) {
-  Appearance& look = mesh_.look;
   const auto like = static_cast<std::size_t>(std::upper_bound(mesh_.face_starts.begin(),
                                                               mesh_.face_starts.end(), rim[0]) -
                                              mesh_.face_starts.begin()) -
                     1;
   for (const Corners& triangle : lid) {
     for (const std::uint32_t k : triangle)
-      for (auto* values : {&mesh_.face_corners, &mesh_.corner_texcoords})
-        if (!values->empty()) {
-          const std::uint32_t value = (*values)[rim[k]];
-          values->push_back(value);
-        }
+      for (auto* column : {&mesh_.face_corners, &mesh_.corner_texcoords})
+        if (!column->empty()) column->push_back(std::uint32_t{(*column)[rim[k]]});
     mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
-    for (auto* values : {&look.face_materials, &look.groups.of_face, &look.objects.of_face})
-      if (!values->empty()) {
-        const std::uint32_t value = (*values)[like];
-        values->push_back(value);
-      }
+    for (auto* column : face_columns(mesh_.look))
+      if (!column->empty()) column->push_back(std::uint32_t{(*column)[like]});
     for (std::size_t k = 0; k < 3; ++k)
       edges_.insert(std::minmax(mesh_.face_corners[rim[triangle[k]]],
                                 mesh_.face_corners[rim[triangle[(k + 1) % 3]]]));

@@ -4,14 +4,13 @@
 #include <numbers>
 #include <tuple>
 
-#include "geometry/space.hpp"
+#include "mesh/columns.hpp"
 
 namespace nendo::deform {
 namespace {
 
 SpacePoint corner_point(const Mesh& mesh, std::uint32_t corner) noexcept {
-  const double* at = mesh.vertices.data() + 3 * std::size_t{mesh.face_corners[corner]};
-  return {at[0], at[1], at[2]};
+  return space_point(mesh.vertices, mesh.face_corners[corner]);
 }
 
 /// The polygon's area vector.

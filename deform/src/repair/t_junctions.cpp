@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/space.hpp"
+#include "mesh/columns.hpp"
 #include "repair/stitch.hpp"
 
 namespace nendo::deform {
@@ -16,11 +16,6 @@ struct JunctionPoint {
   double along;
   std::uint32_t place;
 };
-
-SpacePoint place_point(const Mesh& mesh, std::uint32_t place) noexcept {
-  const double* const at = mesh.vertices.data() + 3 * std::size_t{place};
-  return {at[0], at[1], at[2]};
-}
 
 /// By the corner behind which they come.
 using Junctions = std::map<std::uint32_t, std::vector<JunctionPoint>>;
@@ -36,15 +31,15 @@ std::optional<Junctions> junctions_of(const Mesh& mesh, const std::vector<std::u
   std::vector<std::pair<double, std::uint32_t>> by_x; // open places
   for (const PlacedEdge& edge : open)
     for (const std::uint32_t place : {edge.low, edge.high})
-      by_x.emplace_back(place_point(mesh, place)[0], place);
+      by_x.emplace_back(space_point(mesh.vertices, place)[0], place);
   std::sort(by_x.begin(), by_x.end());
   by_x.erase(std::unique(by_x.begin(), by_x.end()), by_x.end());
   Junctions found;
   std::size_t looks = 0;
   for (const PlacedEdge& edge : open) {
     const std::uint32_t from = place_of[edge.corner], to = place_of[edge.next];
-    const SpacePoint begin = place_point(mesh, from);
-    const SpacePoint way = place_point(mesh, to) - begin;
+    const SpacePoint begin = space_point(mesh.vertices, from);
+    const SpacePoint way = space_point(mesh.vertices, to) - begin;
     const double length = length_of(way);
     if (!(length > 2.0 * tolerance)) continue;
     const double low = std::min(begin[0], begin[0] + way[0]) - tolerance;
@@ -53,7 +48,7 @@ std::optional<Junctions> junctions_of(const Mesh& mesh, const std::vector<std::u
          at != by_x.end() && at->first <= high; ++at) {
       if (++looks > max_looks) return std::nullopt;
       if (at->second == from || at->second == to) continue;
-      const SpacePoint beside = place_point(mesh, at->second) - begin;
+      const SpacePoint beside = space_point(mesh.vertices, at->second) - begin;
       const double along = dot(beside, way) / (length * length);
       if (along * length <= tolerance || (1.0 - along) * length <= tolerance) continue;
       if (length_of(beside - along * way) > tolerance) continue;

@@ -9,6 +9,7 @@
 
 #include "cut/cut_assembly.hpp"
 #include "join/crossings.hpp"
+#include "mesh/columns.hpp"
 #include "repair/stitch.hpp"
 
 namespace nendo::deform {
@@ -73,10 +74,8 @@ struct ClosedParts {
   std::vector<ClosedPart> parts;
   bool any_inwards = false;
 
-  explicit ClosedParts(const Mesh& mesh) {
+  explicit ClosedParts(const Mesh& mesh) : points(space_points(mesh.vertices)) {
     parts.resize(number_parts(mesh, part_of));
-    for (Eigen::Index at = 0; at < mesh.vertices.cols(); ++at)
-      points.push_back({mesh.vertices(0, at), mesh.vertices(1, at), mesh.vertices(2, at)});
     for_each_triangle(mesh, [&](const Triangle& triangle) {
       parts[part_of[triangle[0]]].triangles.push_back(triangle);
     });

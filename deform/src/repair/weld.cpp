@@ -8,6 +8,7 @@
 
 #include <nendo/deform/corner_colours.hpp>
 
+#include "mesh/columns.hpp"
 #include "repair/stitch.hpp"
 
 namespace nendo::deform {
@@ -97,9 +98,8 @@ void keep_faces_with(Mesh& mesh, std::span<const std::uint8_t> faces,
                      std::span<const std::uint8_t> corners, std::vector<std::uint32_t> starts) {
   keep_values(mesh.face_corners, corners);
   keep_values(mesh.corner_texcoords, corners);
-  keep_values(mesh.look.face_materials, faces);
-  keep_values(mesh.look.groups.of_face, faces);
-  keep_values(mesh.look.objects.of_face, faces);
+  for (auto* column : face_columns(mesh.look))
+    keep_values(*column, faces);
   mesh.face_starts = std::move(starts);
 }
 

@@ -1,0 +1,53 @@
+#pragma once
+// The columns of a mesh, as algorithms read and copy them: points as plain numbers, and what each
+// corner and each face has.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <nendo/deform/mesh.hpp>
+
+#include "geometry/space.hpp"
+
+namespace nendo::deform {
+
+inline SpacePoint space_point(const Points& points, std::size_t at) noexcept {
+  const double* const of = points.data() + 3 * at;
+  return {of[0], of[1], of[2]};
+}
+
+inline SpacePoint space_point(const Eigen::Vector3d& vector) noexcept {
+  return {vector[0], vector[1], vector[2]};
+}
+
+inline std::vector<SpacePoint> space_points(const Points& points) {
+  std::vector<SpacePoint> all(static_cast<std::size_t>(points.cols()));
+  for (std::size_t at = 0; at < all.size(); ++at)
+    all[at] = space_point(points, at);
+  return all;
+}
+
+/// Returns the columns with one entry per face. Each may be empty.
+inline std::array<std::vector<std::uint32_t>*, 3> face_columns(Appearance& look) noexcept {
+  return {&look.face_materials, &look.groups.of_face, &look.objects.of_face};
+}
+inline std::array<const std::vector<std::uint32_t>*, 3>
+face_columns(const Appearance& look) noexcept {
+  return {&look.face_materials, &look.groups.of_face, &look.objects.of_face};
+}
+
+inline void append_corner(const Mesh& from, std::uint32_t corner, Mesh& to) {
+  to.face_corners.push_back(from.face_corners[corner]);
+  if (!from.corner_texcoords.empty()) to.corner_texcoords.push_back(from.corner_texcoords[corner]);
+}
+
+/// Ends the face whose corners were appended. It gets the entries of `face`.
+inline void end_face(const Mesh& from, std::size_t face, Mesh& to) {
+  to.face_starts.push_back(static_cast<std::uint32_t>(to.face_corners.size()));
+  for (std::size_t k = 0; k < 3; ++k)
+    if (const auto& column = *face_columns(from.look)[k]; !column.empty())
+      face_columns(to.look)[k]->push_back(column[face]);
+}
+
+} // namespace nendo::deform
