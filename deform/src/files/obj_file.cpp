@@ -3,19 +3,26 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include <nendo/base/text.hpp>
 
 #include "files/colour_range.hpp"
 #include "files/mesh_formats.hpp"
 #include "files/number_text.hpp"
-#include "files/obj_left_out.hpp"
-#include "files/polypaint.hpp"
 #include "files/srgb.hpp"
 #include "files/text_scanner.hpp"
 #include "geometry/usable.hpp"
@@ -23,6 +30,101 @@
 namespace nendo::deform {
 
 namespace {
+
+/// Reads a comment "#MRGB mmrrggbb...": of each vertex in turn a mask, red, green and blue, two
+/// hexadecimal digits each. Appends 0xRRGGBB for each of them to `colours`; any other comment
+/// changes nothing.
+void read_polypaint(std::string_view comment, std::vector<std::uint32_t>& colours) {
+  constexpr std::string_view mark = "#MRGB";
+  constexpr std::size_t digits = 8;
+  if (!comment.starts_with(mark)) return;
+  const std::string_view numbers = trimmed(comment.substr(mark.size()));
+  for (std::size_t at = 0; at + digits <= numbers.size(); at += digits) {
+    const char* const begin = numbers.data() + at;
+    std::uint32_t number = 0;
+    const auto read = std::from_chars(begin, begin + digits, number, 16);
+    if (read.ec != std::errc() || read.ptr != begin + digits) return;
+    colours.push_back(number & 0xFFFFFFU);
+  }
+}
+
+/// Returns the colours of so many vertices, linear (Appearance). Those of which there is none are
+/// white.
+Eigen::Matrix4Xf colours_of_polypaint(const std::vector<std::uint32_t>& colours,
+                                      Eigen::Index vertices) {
+  Eigen::Matrix4Xf linear = Eigen::Matrix4Xf::Ones(4, vertices);
+  const Eigen::Index painted = std::min(vertices, static_cast<Eigen::Index>(colours.size()));
+  for (Eigen::Index vertex = 0; vertex < painted; ++vertex)
+    for (Eigen::Index channel = 0; channel < 3; ++channel) {
+      const std::uint32_t byte =
+          colours[static_cast<std::size_t>(vertex)] >> (16 - 8 * channel) & 0xFFU;
+      linear(channel, vertex) = linear_of(static_cast<float>(byte) / 255.0F);
+    }
+  return linear;
+}
+
+class ObjLeftOut {
+public:
+  /// Counts a statement that is not read. Known ones that change no polygon, such as vn and s, do
+  /// not count.
+  void statement(std::string_view keyword, std::size_t line);
+  void weight(double w) noexcept { weights_ += w != 1.0 ? 1 : 0; }
+  /// One note for each kind.
+  void add_to(std::vector<std::string>& notes) const;
+
+private:
+  std::size_t lines_ = 0, points_ = 0, curves_ = 0, weights_ = 0;
+  std::size_t unknown_ = 0, first_unknown_line_ = 0;
+  std::string first_unknown_;
+};
+
+/// Statements of the format (Wavefront's Appendix B1) that leave polygons as they are: normals,
+/// smoothing, display and the parts of curves, which curv and surf stand for.
+constexpr std::string_view harmless[] = {
+    "vn",     "vp",     "s",   "mg",   "lod",  "bevel",  "c_interp",   "d_interp",
+    "usemap", "maplib", "deg", "bmat", "step", "cstype", "parm",       "trim",
+    "hole",   "scrv",   "sp",  "end",  "con",  "ctech",  "stech",      "call",
+    "csh",    "bzp",    "bsp", "cdc",  "cdp",  "res",    "shadow_obj", "trace_obj",
+};
+
+std::string several(std::size_t count, const char* one, const char* more) {
+  return std::to_string(count) + " " + (count == 1 ? one : more);
+}
+
+void ObjLeftOut::statement(std::string_view keyword, std::size_t line) {
+  if (keyword == "l")
+    ++lines_;
+  else if (keyword == "p")
+    ++points_;
+  else if (keyword == "curv" || keyword == "curv2" || keyword == "surf")
+    ++curves_;
+  else if (std::find(std::begin(harmless), std::end(harmless), keyword) == std::end(harmless)) {
+    if (unknown_++ > 0) return;
+    first_unknown_ = in_quotes(keyword);
+    first_unknown_line_ = line;
+  }
+}
+
+void ObjLeftOut::add_to(std::vector<std::string>& notes) const {
+  std::string what;
+  const auto add = [&](std::size_t count, const char* one, const char* more) {
+    if (count > 0) what += (what.empty() ? "" : ", ") + several(count, one, more);
+  };
+  add(lines_, "line of edges (l)", "lines of edges (l)");
+  add(points_, "line of points (p)", "lines of points (p)");
+  add(curves_, "curve or curved surface (curv, surf)", "curves and curved surfaces (curv, surf)");
+  const bool is_one = lines_ + points_ + curves_ == 1;
+  if (!what.empty())
+    notes.push_back(what + (is_one ? " is" : " are") + " left out; only faces (f) are read");
+  if (weights_ > 0)
+    notes.push_back("the fourth number of " + several(weights_, "vertex", "vertices") +
+                    " is left out, because w weights curves and not polygons");
+  if (unknown_ > 0)
+    notes.push_back(several(unknown_, "line", "lines") + " of an unknown kind " +
+                    (unknown_ == 1 ? "is" : "are") + " left out (" +
+                    (unknown_ == 1 ? "" : "first ") + first_unknown_ + " in line " +
+                    std::to_string(first_unknown_line_) + ")");
+}
 
 constexpr float no_colour = std::numeric_limits<float>::infinity(); // white, in every range
 

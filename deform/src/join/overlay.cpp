@@ -1,14 +1,185 @@
 #include "join/overlay.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
+#include "geometry/constrained_triangulation.hpp"
 #include "geometry/union_find.hpp"
+#include "join/crossings.hpp"
+#include "join/triangle_surface.hpp"
 #include "mesh/surface_mesh.hpp"
 
 namespace nendo::deform {
 namespace {
+
+/// The crossings on a part's edges, in the order of edges and then along them.
+class EdgeCrossings {
+public:
+  EdgeCrossings(std::uint32_t part, const Crossings& crossings) : all_(crossings.points) {
+    for (std::uint32_t at = 0; at < all_.size(); ++at)
+      if (all_[at].part == part) sorted_.push_back(at);
+    std::sort(sorted_.begin(), sorted_.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return std::pair(ends_of(a), all_[a].along) < std::pair(ends_of(b), all_[b].along);
+    });
+  }
+  /// Of the edge, from `from` to `to`.
+  void append(std::uint32_t from, std::uint32_t to, std::vector<std::uint32_t>& list) const {
+    const std::pair<std::uint32_t, std::uint32_t> ends = std::minmax(from, to);
+    auto first = std::lower_bound(
+        sorted_.begin(), sorted_.end(), ends,
+        [&](std::uint32_t at, const auto& wanted) { return ends_of(at) < wanted; });
+    const std::size_t before = list.size();
+    for (; first != sorted_.end() && ends_of(*first) == ends; ++first)
+      list.push_back(*first);
+    if (from > to) std::reverse(list.begin() + static_cast<std::ptrdiff_t>(before), list.end());
+  }
+
+private:
+  std::pair<std::uint32_t, std::uint32_t> ends_of(std::uint32_t at) const {
+    return {all_[at].from, all_[at].to};
+  }
+  const std::vector<Crossing>& all_;
+  std::vector<std::uint32_t> sorted_;
+};
+
+/// One face: its corners and crossings in a plane, seen along the axis that it faces the most.
+class FaceCutter {
+public:
+  FaceCutter(const CrossedPart& part, std::uint32_t number, const Crossings& crossings)
+      : part_(part), crossings_(crossings), on_edges_(number, crossings) {}
+
+  /// Appends the pieces of the face. `segments` are the crossing segments in it.
+  bool cut(std::uint32_t face, std::span<const std::pair<std::uint32_t, std::uint32_t>> segments,
+           PartPieces& pieces) {
+    look_at(face);
+    const Corners& corners = part_.faces[face];
+    for (std::size_t k = 0; k < 3; ++k) {
+      rim_.push_back(corners[k]);
+      on_edge_.clear();
+      on_edges_.append(corners[k], corners[(k + 1) % 3], on_edge_);
+      for (const std::uint32_t crossing : on_edge_)
+        rim_.push_back(base() + crossing);
+    }
+    numbers_ = rim_;
+    for (const auto& [face_again, at] : segments)
+      for (const std::uint32_t end : crossings_.segments[at].ends)
+        numbers_.push_back(base() + end);
+    std::sort(numbers_.begin() + static_cast<std::ptrdiff_t>(rim_.size()), numbers_.end());
+    remove_repeated();
+    return triangulate(face, segments, pieces);
+  }
+
+private:
+  std::uint32_t base() const { return static_cast<std::uint32_t>(part_.points.size()); }
+  const SpacePoint& place_of(std::uint32_t number) const {
+    return number < base() ? part_.points[number] : crossings_.points[number - base()].place;
+  }
+  PlanePoint flat(std::uint32_t number) const {
+    const SpacePoint& place = place_of(number);
+    return {place[x_], place[y_]};
+  }
+  void look_at(std::uint32_t face) {
+    rim_.clear();
+    const Corners& corner = part_.faces[face];
+    const SpacePoint normal =
+        area_vector(part_.points[corner[0]], part_.points[corner[1]], part_.points[corner[2]]);
+    std::size_t axis = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+      if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
+    x_ = (axis + 1) % 3;
+    y_ = (axis + 2) % 3;
+    if (normal[axis] < 0.0) std::swap(x_, y_);
+  }
+  /// Crossings inside of the face are ends of several segments; those on its rim are in rim_.
+  void remove_repeated() {
+    std::size_t kept = rim_.size();
+    for (std::size_t at = rim_.size(); at < numbers_.size(); ++at) {
+      const std::uint32_t number = numbers_[at];
+      const bool is_repeated = kept > rim_.size() && numbers_[kept - 1] == number;
+      if (!is_repeated && std::find(rim_.begin(), rim_.end(), number) == rim_.end())
+        numbers_[kept++] = number;
+    }
+    numbers_.resize(kept);
+  }
+  std::uint32_t local(std::uint32_t number) const {
+    return static_cast<std::uint32_t>(std::find(numbers_.begin(), numbers_.end(), number) -
+                                      numbers_.begin());
+  }
+  bool triangulate(std::uint32_t face,
+                   std::span<const std::pair<std::uint32_t, std::uint32_t>> segments,
+                   PartPieces& pieces) {
+    PlanePoint low = flat(numbers_[0]);
+    PlanePoint high = low;
+    for (const std::uint32_t number : numbers_)
+      for (std::size_t k = 0; k < 2; ++k) {
+        low[k] = std::min(low[k], flat(number)[k]);
+        high[k] = std::max(high[k], flat(number)[k]);
+      }
+    ConstrainedTriangulation plane(low, high);
+    plane.reserve(numbers_.size());
+    for (const std::uint32_t number : numbers_)
+      if (plane.add(flat(number)) != PlaneFault::none) return false;
+    const auto rim_size = static_cast<std::uint32_t>(rim_.size());
+    for (std::uint32_t at = 0; at < rim_size; ++at)
+      if (plane.constrain(at, (at + 1) % rim_size) != PlaneFault::none) return false;
+    for (const auto& [face_again, at] : segments) {
+      const auto& ends = crossings_.segments[at].ends;
+      const std::uint32_t from = local(base() + ends[0]);
+      const std::uint32_t to = local(base() + ends[1]);
+      if (plane.constrain(from, to) != PlaneFault::none) return false;
+    }
+    plane.improve();
+    const auto triangles = plane.triangles(PlaneFill::enclosed);
+    for (const auto& triangle : triangles) {
+      pieces.faces.push_back({numbers_[triangle[0]], numbers_[triangle[1]], numbers_[triangle[2]]});
+      pieces.from.push_back(face);
+    }
+    return !triangles.empty();
+  }
+
+  const CrossedPart& part_;
+  const Crossings& crossings_;
+  EdgeCrossings on_edges_;
+  std::size_t x_ = 0, y_ = 1;
+  std::vector<std::uint32_t> rim_, on_edge_, numbers_;
+};
+
+/// Returns false if some face cannot be triangulated: crossings coincide, or segments cross each
+/// other, after rounding.
+bool cut_faces(const CrossedPart& part, std::uint32_t number, const Crossings& crossings,
+               PartPieces& pieces) {
+  pieces = {};
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> segments; // face, segment
+  segments.reserve(crossings.segments.size());
+  for (std::uint32_t at = 0; at < crossings.segments.size(); ++at)
+    segments.emplace_back(crossings.segments[at].faces[number], at);
+  std::sort(segments.begin(), segments.end());
+  auto next = segments.begin();
+  for (std::uint32_t face = 0; face < part.faces.size(); ++face) {
+    if (next != segments.end() && next->first == face) {
+      while (next != segments.end() && next->first == face)
+        ++next;
+      continue;
+    }
+    pieces.faces.push_back(part.faces[face]);
+    pieces.from.push_back(face);
+  }
+  pieces.whole = pieces.faces.size();
+  FaceCutter cutter(part, number, crossings);
+  for (std::size_t at = 0; at < segments.size();) {
+    std::size_t end = at;
+    while (end < segments.size() && segments[end].first == segments[at].first)
+      ++end;
+    if (!cutter.cut(segments[at].first, std::span(segments).subspan(at, end - at), pieces))
+      return false;
+    at = end;
+  }
+  return true;
+}
 
 /// Ways in which the second surface gives way: odd directions, one for each attempt.
 constexpr std::array<SpacePoint, max_overlay_attempts> give_ways{{{0.6137, -0.4219, 0.6673},

@@ -12,10 +12,18 @@
 
 #include <nendo/base/result.hpp>
 
-#include "join/crossed_faces.hpp"
+#include "join/crossings.hpp"
 #include "join/triangle_surface.hpp"
 
 namespace nendo::deform {
+
+/// All faces of a part: those that are not crossed, in their order, then the pieces of the others.
+/// Points have the part's numbers; crossing c has the number c + the part's points.
+struct PartPieces {
+  std::vector<Corners> faces;
+  std::vector<std::uint32_t> from; ///< the face of each piece
+  std::size_t whole = 0;           ///< the number of faces that are not crossed
+};
 
 struct Overlay {
   std::vector<SpacePoint> second_points; ///< of the second surface, after it has given way
