@@ -1,4 +1,4 @@
-#include "files/foreign_format.hpp"
+#include "files/mesh_formats.hpp"
 
 #include <algorithm>
 #include <span>

@@ -3,6 +3,7 @@
 // numbers of its accessors. All that a hostile file could say is checked here.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -82,5 +83,28 @@ std::vector<double> gltf_numbers(const GltfDocument::Json& object, const char* n
                                  std::size_t count);
 /// Returns a member if it is a text, or an empty one.
 std::string gltf_text(const GltfDocument::Json& object, const char* name);
+
+/// Throws GltfRefusal, with the extension's name and the remedy, if the document needs one that is
+/// not known here.
+void require_readable(const GltfDocument::Json& root);
+/// The refusals of the two extensions that compress the numbers of a model.
+[[noreturn]] void refuse_meshopt(const std::string& extension);
+[[noreturn]] void refuse_draco();
+
+/// Returns the extension of an item of the document, or null.
+const GltfDocument::Json* gltf_extension(const GltfDocument::Json& item, const char* name);
+
+/// Returns whether a model loses nothing here without this extension, or another note says what.
+bool is_harmless_extension(std::string_view name) noexcept;
+
+/// Returns the text with the bytes that %XX stands for. A % without two digits stays.
+std::string percent_decoded(std::string_view uri);
+
+bool is_data_uri(std::string_view uri) noexcept;
+/// Returns the data of a data URI in base64, or nothing if it is damaged.
+std::optional<std::string> data_of_uri(std::string_view uri);
+
+/// Returns a URI for a message: printable, and cut after 40 characters.
+std::string printable_uri(std::string_view uri);
 
 } // namespace nendo::deform

@@ -15,10 +15,7 @@
 
 #include "files/colour_range.hpp"
 #include "files/gltf_document.hpp"
-#include "files/gltf_extensions.hpp"
-#include "files/gltf_materials.hpp"
-#include "files/gltf_morphs.hpp"
-#include "files/gltf_nodes.hpp"
+#include "files/gltf_scene.hpp"
 #include "files/mesh_formats.hpp"
 #include "files/mtl_file.hpp"
 #include "geometry/usable.hpp"

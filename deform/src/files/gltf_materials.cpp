@@ -1,11 +1,10 @@
-#include "files/gltf_materials.hpp"
+#include "files/gltf_scene.hpp"
 
 #include <algorithm>
 #include <map>
 #include <optional>
 
-#include "files/gltf_extensions.hpp"
-#include "files/uri.hpp"
+#include "files/gltf_document.hpp"
 
 namespace nendo::deform {
 

@@ -1,11 +1,11 @@
-#include "files/gltf_nodes.hpp"
+#include "files/gltf_scene.hpp"
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
-#include "files/gltf_extensions.hpp"
-#include "files/gltf_morphs.hpp"
+#include "files/gltf_document.hpp"
+#include "geometry/usable.hpp"
 
 namespace nendo::deform {
 
@@ -13,7 +13,28 @@ namespace {
 
 using Json = GltfDocument::Json;
 
-/// Of these three, each may be null. The rotation is x, y, z, w.
+std::vector<double> weights_in(const Json& item) {
+  std::vector<double> weights;
+  const Json* const list = gltf_member(item, "weights");
+  if (list == nullptr || !list->is_array()) return weights;
+  for (const Json& number : *list) {
+    if (!number.is_number() || !is_usable(number.get<double>()))
+      throw GltfRefusal{"a weight of a morph target is not a finite number"};
+    weights.push_back(number.get<double>());
+  }
+  return weights;
+}
+
+/// The node's own weights, or the mesh's. None if all are 0.
+std::vector<double> default_weights(const Json& node, const Json& mesh) {
+  const bool has_own = gltf_member(node, "weights") != nullptr;
+  auto weights = weights_in(has_own ? node : mesh);
+  if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0.0; }))
+    weights.clear();
+  return weights;
+}
+
+/// Each of these three may be null. The rotation is x, y, z, w.
 Eigen::Affine3d transform_by(const double* translation, const double* rotation,
                              const double* scale) {
   Eigen::Affine3d transform = Eigen::Affine3d::Identity();
@@ -237,6 +258,24 @@ std::vector<GltfPlacedMesh> placed_meshes(const GltfDocument& document) {
     }
   }
   return placed;
+}
+
+std::size_t apply_targets(const GltfDocument& document, const Json& primitive,
+                          const std::vector<double>& weights, GltfNumbers& places) {
+  const Json* const targets = gltf_member(primitive, "targets");
+  if (targets == nullptr || !targets->is_array()) return 0;
+  std::size_t read = 0;
+  for (std::size_t at = 0; at < std::min(weights.size(), targets->size()); ++at) {
+    const Json& target = (*targets)[at];
+    if (weights[at] == 0.0 || gltf_member(target, "POSITION") == nullptr) continue;
+    const GltfNumbers moved = document.numbers(gltf_count(target, "POSITION", 0));
+    if (moved.width != 3 || moved.count != places.count)
+      throw GltfRefusal{"a morph target is of another size than its vertices"};
+    read += moved.count;
+    for (std::size_t k = 0; k < places.values.size(); ++k)
+      places.values[k] += weights[at] * moved.values[k];
+  }
+  return read;
 }
 
 } // namespace nendo::deform

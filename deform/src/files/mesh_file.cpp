@@ -15,12 +15,10 @@
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/up_axis.hpp>
 
-#include "files/foreign_format.hpp"
 #include "files/gltf_document.hpp"
 #include "files/mesh_formats.hpp"
 #include "files/model_folder.hpp"
-#include "files/obj_beside.hpp"
-#include "files/stl_file.hpp"
+#include "files/mtl_file.hpp"
 #include "files/text_scanner.hpp"
 #include "files/texture_files.hpp"
 #include "geometry/usable.hpp"

@@ -1,9 +1,10 @@
 #pragma once
-// Converts meshes from and to the strings of the two file formats. mesh_file.hpp says what is kept
-// and which errors there are.
+// Converts meshes from and to the contents of files. mesh_file.hpp says what is kept and which
+// errors there are.
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +18,7 @@ namespace nendo::deform {
 
 struct ObjModel {
   Mesh mesh;                          ///< its materials have names only
-  std::vector<std::string> libraries; ///< what each mtllib says: one file, or several
+  std::vector<std::string> libraries; ///< the words of each mtllib: one file, or several
 };
 
 Result<ObjModel> parse_obj(std::string_view text, std::string_view name, ReadNotes& notes);
@@ -39,8 +40,8 @@ std::string obj_text(const Mesh& mesh, std::string_view library);
 /// Returns the mesh as binary little-endian PLY, with coordinates in double.
 std::string ply_text(const Mesh& mesh);
 
-/// The largest index of a list and where it stood. A face may come before its vertices, so that
-/// only the end of the file tells whether an index is good.
+/// The largest index of a list and its place. A face may come before its vertices, so that only the
+/// end of the file shows whether an index is good.
 struct HighestIndex {
   std::uint32_t index = 0;
   std::size_t place = 0; ///< line or byte offset, as the format counts; 0 if there was no index
@@ -59,5 +60,34 @@ Eigen::Matrix<double, rows, Eigen::Dynamic> columns_of(const std::vector<double>
   return Eigen::Map<const Eigen::Matrix<double, rows, Eigen::Dynamic>>(
       numbers.data(), rows, static_cast<Eigen::Index>(numbers.size()) / rows);
 }
+
+/// Returns the file's format and what to do with it, as words after the file's name; nothing if its
+/// first bytes are those of no other format.
+std::optional<std::string> foreign_format(std::string_view bytes);
+
+/// Returns why a text is no model, for one in which no vertex was found: what it seems to be, or
+/// what its first line is. The words follow the file's name.
+std::string why_no_model(std::string_view text);
+
+/// The beginning of each STL that stl_text() writes.
+inline constexpr std::string_view stl_mark = "binary STL by nendo";
+
+/// Returns whether the text is an STL: it begins with "solid" and has facets, or with "facet
+/// normal", or is binary and has as many bytes as its count says. If `name` ends in .stl, all that
+/// is binary is one.
+bool is_stl(std::string_view text, std::string_view name) noexcept;
+
+/// Reads an STL, text or binary (3D Systems 1988). Each facet has vertices of its own. Solids are
+/// objects; colours of facets, in the forms of VisCAM and of Magics, are materials. Notes say what
+/// is left out.
+Result<Mesh> parse_stl(std::string_view text, std::string_view name,
+                       std::vector<std::string>& notes);
+
+/// Returns the mesh as binary STL. Error: failed (more triangles than an STL can count, or a
+/// coordinate beyond its floats), in words for after the file's name.
+Result<std::string> stl_text(const Mesh& mesh);
+
+/// Returns how far a float's rounding moves a vertex at the most, in parts of the model's size.
+double rounding_in_floats(const Mesh& mesh) noexcept;
 
 } // namespace nendo::deform

@@ -1,10 +1,11 @@
 #pragma once
-// Material files of OBJ: the base colour, its texture, and the opacity.
+// The files beside an OBJ: its materials (base colour, texture, opacity) and their textures.
 
 #include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include <nendo/base/result.hpp>
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/read_notes.hpp>
 
@@ -41,12 +43,12 @@ public:
   void read_textures(const ModelFolder& folder);
 
 private:
-  struct Stated { ///< of one material
+  struct Stated { ///< what the files say about one material
     bool described = false;
     std::optional<std::array<double, 3>> kd;
     std::optional<float> d, tr;
   };
-  struct Named { ///< one texture of the files
+  struct Named { ///< a texture of the files
     std::string name, file;
     auto operator<=>(const Named&) const = default;
   };
@@ -61,17 +63,18 @@ private:
   Appearance& look_;
   NoteSum& notes_;
   std::map<std::string, std::size_t, std::less<>> by_name_;
-  std::vector<Stated> stated_; ///< of each material
+  std::vector<Stated> stated_; ///< one per material
   std::map<Named, std::uint32_t> textures_;
-  std::vector<Named> named_; ///< of each texture
+  std::vector<Named> named_; ///< one per texture
   bool has_read_ = false;
   std::size_t first_texture_ = 0; ///< those before are not from these files
   std::size_t material_ = 0;      ///< beyond the materials: lines are of none of them
   ColourRange colours_{ColourNumbers::factors};
 };
 
-/// Makes all materials opaque if each face has one that cannot be seen, for nobody models that, and
-/// notes that and materials whose faces are left out of pictures because one sees through them.
+/// Makes all materials opaque if each face has one that cannot be seen, because that is no
+/// modeller's intention, and notes that and materials whose faces are left out of pictures because
+/// one sees through them.
 void settle_hidden(Appearance& look, NoteSum& notes);
 
 /// Returns the materials as a text, under the names that unique_names() gives them.
@@ -83,5 +86,17 @@ std::vector<std::string> unique_names(const std::vector<Material>& materials);
 
 /// Returns a name as a line of an OBJ can hold it; it may be empty.
 std::string line_name(std::string_view name);
+
+/// Reads what `libraries` name, as each mtllib has it, into the mesh's materials, and then their
+/// textures. What is missing stays unknown, and is noted. Blocks.
+void read_materials(const ModelFolder& folder, const std::vector<std::string>& libraries,
+                    Mesh& mesh, ReadNotes& notes);
+
+/// Writes the materials of the OBJ in the file `obj`, and their textures, and returns the name for
+/// its mtllib; empty, and nothing is written, if there are none. `wanted` is the materials' file;
+/// `obj` with another ending if it is empty. Where another program's file has that name, the name
+/// gets an addition. Blocks. Error: failed.
+Result<std::string> write_materials(const std::filesystem::path& obj, const Appearance& look,
+                                    const std::filesystem::path& wanted);
 
 } // namespace nendo::deform

@@ -1,4 +1,3 @@
-#include "files/stl_file.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "files/uri.hpp"
+#include "files/gltf_document.hpp"
 
 #include <cstdint>
 

@@ -50,4 +50,14 @@ inline SpacePoint square_to(const SpacePoint& a) noexcept {
   return unit_of(cross(a, other));
 }
 
+inline double distance_between(const SpacePoint& a, const SpacePoint& b) noexcept {
+  return length_of(b - a);
+}
+
+/// Twice the triangle's area vector.
+inline SpacePoint area_vector(const SpacePoint& a, const SpacePoint& b,
+                              const SpacePoint& c) noexcept {
+  return cross(b - a, c - a);
+}
+
 } // namespace nendo::deform

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "join/space.hpp"
+#include "geometry/space.hpp"
 
 namespace nendo::deform {
 

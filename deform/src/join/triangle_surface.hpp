@@ -10,7 +10,7 @@
 
 #include <nendo/deform/mesh.hpp>
 
-#include "join/space.hpp"
+#include "geometry/space.hpp"
 #include "mesh/surface_mesh.hpp"
 #include "mesh/texture_point.hpp"
 

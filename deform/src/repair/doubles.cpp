@@ -1,4 +1,4 @@
-#include "repair/doubles.hpp"
+#include "repair/steps.hpp"
 
 #include <algorithm>
 #include <numeric>

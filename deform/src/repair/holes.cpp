@@ -1,4 +1,4 @@
-#include "repair/holes.hpp"
+#include "repair/steps.hpp"
 
 #include <algorithm>
 #include <cstdint>

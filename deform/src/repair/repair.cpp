@@ -19,11 +19,8 @@
 #include <nendo/deform/triangles.hpp>
 
 #include "cut/cut_assembly.hpp"
-#include "repair/doubles.hpp"
-#include "repair/holes.hpp"
+#include "repair/steps.hpp"
 #include "repair/stitch.hpp"
-#include "repair/t_junctions.hpp"
-#include "repair/turning.hpp"
 #include "repair/weld.hpp"
 
 namespace nendo::deform {

@@ -1,4 +1,4 @@
-#include "repair/t_junctions.hpp"
+#include "repair/steps.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-#include "repair/turning.hpp"
+#include "repair/steps.hpp"
 
 #include <algorithm>
 #include <cmath>
