@@ -35,13 +35,85 @@ public:
       : assembly_(assembly), mesh_(assembly.mesh), rest_(rest), surface_(surface), reach_(reach),
         first_added_(static_cast<std::uint32_t>(static_cast<std::size_t>(mesh_.vertices.cols()) -
                                                 assembly.added.size())) {}
-  bool is_sound(bool up) const;
+  /// The cut faces of both sides lie in the same places, so they are compared among themselves only
+  /// on the upper side.
+  bool is_sound(bool up) const {
+    const CutSide side = side_of(up);
+    const std::vector<Corners>& triangles = side.triangles;
+    const BoxTree tree(points_, triangles);
+    const auto meets = [&](const Corners& triangle, const auto& is_asked) {
+      const SpaceBox box = box_around(points_, triangle);
+      return tree.any([&](const SpaceBox& other) { return meet(box, other); },
+                      [&](std::uint32_t other) {
+                        return is_asked(other) &&
+                               triangles_meet(points_, triangle, triangles[other]);
+                      });
+    };
+    for (std::uint32_t piece = 0; piece < side.pieces; ++piece)
+      if (meets(triangles[piece], [&](std::uint32_t other) { return other > piece; })) return false;
+    for (const Corners& triangle : side.near)
+      if (meets(triangle, [&](std::uint32_t other) { return other >= side.pieces; })) return false;
+    if (!up) return true;
+    for (auto face = static_cast<std::uint32_t>(side.pieces); face < triangles.size(); ++face) {
+      const Corners& corner = triangles[face];
+      if (is_degenerate(points_[corner[0]], points_[corner[1]], points_[corner[2]])) return false;
+      if (reach_ == 0.0 && is_inner(triangles[face])) continue;
+      const bool bad = meets(triangles[face], [&](std::uint32_t other) {
+        return other >= side.pieces && other != face;
+      });
+      if (bad) return false;
+    }
+    return true;
+  }
 
 private:
-  CutSide side_of(bool up) const;
-  bool is_up(std::uint32_t face) const noexcept;
-  void add_near(bool up, std::vector<Corners>& triangles) const;
-  bool is_inner(const Corners& triangle) const noexcept;
+  CutSide side_of(bool up) const {
+    CutSide side;
+    for (const std::uint32_t face : assembly_.cut_pieces)
+      if (is_up(face) == up) side.triangles.push_back(corners_of_face(mesh_, face));
+    side.pieces = side.triangles.size();
+    const std::size_t half = (mesh_.face_count() - assembly_.first_cut_face) / 2;
+    const std::size_t first = assembly_.first_cut_face + (up ? 0 : half);
+    for (std::size_t face = first; face < first + half; ++face)
+      side.triangles.push_back(corners_of_face(mesh_, face));
+    // A plane has all faces that it does not cross on one side, far beyond rounding.
+    if (reach_ > 0.0) add_near(up, side.near);
+    return side;
+  }
+  /// A piece has at least one corner that was there before.
+  bool is_up(std::uint32_t face) const noexcept {
+    for (const std::uint32_t corner : corners_of_face(mesh_, face))
+      if (corner < surface_.vertex_count()) return surface_.is_up(corner);
+    return false;
+  }
+  void add_near(bool up, std::vector<Corners>& triangles) const {
+    const std::uint32_t old = surface_.vertex_count();
+    FaceTriangles of_faces(mesh_, rest_);
+    for (std::size_t face = 0; face < assembly_.first_cut_face; ++face) {
+      const std::uint32_t begin = mesh_.face_starts[face];
+      const std::uint32_t end = mesh_.face_starts[face + 1];
+      double nearest = std::numeric_limits<double>::infinity();
+      double longest = 0.0;
+      bool belongs = true;
+      for (std::uint32_t at = begin; at < end && belongs; ++at) {
+        const std::uint32_t corner = mesh_.face_corners[at];
+        belongs = corner < old && surface_.is_up(corner) == up;
+        if (!belongs) break;
+        nearest = std::min(nearest, std::abs(surface_.above(corner)));
+        const SpacePoint edge = points_[corner] - points_[mesh_.face_corners[begin]];
+        longest = std::max(longest, dot(edge, edge));
+      }
+      if (!belongs || nearest > reach_ + 1.5 * std::sqrt(longest)) continue;
+      for (const auto& [a, b, c] : of_faces.of(face))
+        triangles.push_back({mesh_.face_corners[a], mesh_.face_corners[b], mesh_.face_corners[c]});
+    }
+  }
+  /// Cut faces of a plane that do not touch its rim lie amid other cut faces of the same plane.
+  bool is_inner(const Corners& triangle) const noexcept {
+    return std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t corner) {
+      return assembly_.added[corner - first_added_].from == no_index;
+    });
+  }
 
   const CutAssembly& assembly_;
   const Mesh& mesh_;
@@ -51,87 +123,6 @@ private:
   std::uint32_t first_added_;
   std::vector<SpacePoint> points_ = space_points(mesh_.vertices);
 };
-
-/// A piece has at least one corner that was there before.
-bool CutCheck::is_up(std::uint32_t face) const noexcept {
-  for (const std::uint32_t corner : corners_of_face(mesh_, face))
-    if (corner < surface_.vertex_count()) return surface_.is_up(corner);
-  return false;
-}
-
-void CutCheck::add_near(bool up, std::vector<Corners>& triangles) const {
-  const std::uint32_t old = surface_.vertex_count();
-  FaceTriangles of_faces(mesh_, rest_);
-  for (std::size_t face = 0; face < assembly_.first_cut_face; ++face) {
-    const std::uint32_t begin = mesh_.face_starts[face];
-    const std::uint32_t end = mesh_.face_starts[face + 1];
-    double nearest = std::numeric_limits<double>::infinity();
-    double longest = 0.0;
-    bool belongs = true;
-    for (std::uint32_t at = begin; at < end && belongs; ++at) {
-      const std::uint32_t corner = mesh_.face_corners[at];
-      belongs = corner < old && surface_.is_up(corner) == up;
-      if (!belongs) break;
-      nearest = std::min(nearest, std::abs(surface_.above(corner)));
-      const SpacePoint edge = points_[corner] - points_[mesh_.face_corners[begin]];
-      longest = std::max(longest, dot(edge, edge));
-    }
-    if (!belongs || nearest > reach_ + 1.5 * std::sqrt(longest)) continue;
-    for (const auto& [a, b, c] : of_faces.of(face))
-      triangles.push_back({mesh_.face_corners[a], mesh_.face_corners[b], mesh_.face_corners[c]});
-  }
-}
-
-CutSide CutCheck::side_of(bool up) const {
-  CutSide side;
-  for (const std::uint32_t face : assembly_.cut_pieces)
-    if (is_up(face) == up) side.triangles.push_back(corners_of_face(mesh_, face));
-  side.pieces = side.triangles.size();
-  const std::size_t half = (mesh_.face_count() - assembly_.first_cut_face) / 2;
-  const std::size_t first = assembly_.first_cut_face + (up ? 0 : half);
-  for (std::size_t face = first; face < first + half; ++face)
-    side.triangles.push_back(corners_of_face(mesh_, face));
-  // A plane has all faces that it does not cross on one side, far beyond rounding.
-  if (reach_ > 0.0) add_near(up, side.near);
-  return side;
-}
-
-/// Cut faces of a plane that do not touch its rim lie amid other cut faces of the same plane.
-bool CutCheck::is_inner(const Corners& triangle) const noexcept {
-  return std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t corner) {
-    return assembly_.added[corner - first_added_].from == no_index;
-  });
-}
-
-/// The cut faces of both sides lie in the same places, so they are compared among themselves only
-/// on the upper side.
-bool CutCheck::is_sound(bool up) const {
-  const CutSide side = side_of(up);
-  const std::vector<Corners>& triangles = side.triangles;
-  const BoxTree tree(points_, triangles);
-  const auto meets = [&](const Corners& triangle, const auto& is_asked) {
-    const SpaceBox box = box_around(points_, triangle);
-    return tree.any([&](const SpaceBox& other) { return meet(box, other); },
-                    [&](std::uint32_t other) {
-                      return is_asked(other) && triangles_meet(points_, triangle, triangles[other]);
-                    });
-  };
-  for (std::uint32_t piece = 0; piece < side.pieces; ++piece)
-    if (meets(triangles[piece], [&](std::uint32_t other) { return other > piece; })) return false;
-  for (const Corners& triangle : side.near)
-    if (meets(triangle, [&](std::uint32_t other) { return other >= side.pieces; })) return false;
-  if (!up) return true;
-  for (auto face = static_cast<std::uint32_t>(side.pieces); face < triangles.size(); ++face) {
-    const Corners& corner = triangles[face];
-    if (is_degenerate(points_[corner[0]], points_[corner[1]], points_[corner[2]])) return false;
-    if (reach_ == 0.0 && is_inner(triangles[face])) continue;
-    const bool bad = meets(triangles[face], [&](std::uint32_t other) {
-      return other >= side.pieces && other != face;
-    });
-    if (bad) return false;
-  }
-  return true;
-}
 
 /// Returns true if no cut face and no piece of a crossed face meets another of these, or a face
 /// beside them on its side of the cut, but at shared corners and edges. `reach` is how far cut
@@ -212,15 +203,134 @@ public:
   Cutter(const Mesh& mesh, const Blade& blade, const CutOptions& options)
       : mesh_(mesh), rest_(options.rest != nullptr ? *options.rest : mesh.vertices), blade_(blade),
         options_(options) {}
-  Result<CutModel> run();
+  Result<CutModel> run() {
+    if (const auto fine = check(); !fine) return fine.error();
+    const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
+    sides_.resize(vertices);
+    for (std::size_t vertex = 0; vertex < vertices; ++vertex)
+      sides_[vertex] = blade_.side(space_point(mesh_.vertices, vertex));
+    faces_inwards_ = volume_of(mesh_) < 0.0;
+    edge_ = options_.edge > 0.0
+                ? options_.edge
+                : edge_length_at(mesh_, edges_, sides_, give_of(sides_, diagonal_, 0));
+    // A bend needs edges that can follow it; and no cut needs more than some 100,000 faces.
+    if (blade_.bends()) edge_ = std::min(edge_, diagonal_ / 40.0);
+    edge_ = std::max(edge_, diagonal_ / 400.0);
+    for (std::uint32_t number = 0; number < max_attempts; ++number) {
+      give_ = give_of(sides_, diagonal_, number);
+      result_ = {};
+      result_.attempts = number + 1;
+      result_.give = give_;
+      const Outcome outcome = attempt();
+      if (outcome == Outcome::cut) return std::move(result_);
+      if (outcome == Outcome::refused) return error_;
+    }
+    return Error{Errc::failed,
+                 "cannot be cut here: its surface, or the blade, passes through itself"};
+  }
 
 private:
-  Result<void> check();
-  Outcome attempt();
-  bool choose_loops(const CutSurface& surface);
-  Outcome make_cap_of(const CutSurface& surface);
-  bool drop_wrong_sides(const Cap& cap, const std::vector<std::uint32_t>& loops);
-  bool drop_rings(const CutSurface& surface, const CutAssembly& assembly);
+  Result<void> check() {
+    diagonal_ = diagonal_of(mesh_.vertices);
+    if (!(mesh_.vertices.array().abs() <= largest_size).all() || !(diagonal_ >= smallest_size))
+      return Error{Errc::bad_input, "has coordinates that are too large, or no size"};
+    const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
+    edges_ = half_edges_of(mesh_.face_starts, mesh_.face_corners, vertices);
+    ManifoldCheck closed = check_closed_manifold(mesh_.face_starts, mesh_.face_corners, edges_);
+    if (closed.fault == ManifoldFault::repeated_corner) closed = check_closed_manifold(mesh_);
+    if (!closed) return Error{Errc::bad_input, describe(closed, mesh_)};
+    return {};
+  }
+  Outcome attempt() {
+    CutSurface surface(mesh_, rest_, edges_, blade_, give_, sides_);
+    if (!surface.refine(0.02 * edge_))
+      return refuse("cannot be cut here: the blade bends too often for its size");
+    if (!surface.cross()) return Outcome::again;
+    if (!choose_loops(surface))
+      return refuse(surface.loops().empty() ? "is not touched by the blade"
+                                            : "is not cut: the blade does not go through");
+    // Loops that turn out not to part anything are left, and then everything is made again.
+    for (std::size_t round = 0; round <= surface.loops().size(); ++round) {
+      if (const Outcome outcome = make_cap_of(surface); outcome != Outcome::cut) return outcome;
+      const ChosenCut chosen{mesh_,  blade_,          give_,          diagonal_,
+                             keeps_, std::move(cap_), faces_inwards_, options_};
+      CutAssembly assembly = assemble(chosen, surface);
+      result_.parts = number_parts(assembly.mesh, result_.part_of_vertex);
+      if (drop_rings(surface, assembly)) {
+        if (std::count(keeps_.begin(), keeps_.end(), 1) == 0)
+          return refuse("is not cut: the blade opens a ring of it, but no part comes off");
+        continue;
+      }
+      if (!is_sound(assembly, surface, rest_, blade_.bends() ? 0.5 * edge_ : 0.0))
+        return Outcome::again;
+      if (!check_closed_manifold(assembly.mesh)) return Outcome::again;
+      result_.mesh = std::move(assembly.mesh);
+      result_.added = std::move(assembly.added);
+      result_.first_cut_face = assembly.first_cut_face;
+      result_.loops = static_cast<std::uint32_t>(std::count(keeps_.begin(), keeps_.end(), 1));
+      result_.left_whole = static_cast<std::uint32_t>(keeps_.size()) - result_.loops;
+      return Outcome::cut;
+    }
+    return Outcome::again;
+  }
+  /// Takes the loops that lie within the blade. Returns false if there is none.
+  bool choose_loops(const CutSurface& surface) {
+    keeps_.clear();
+    for (const auto& loop : surface.loops())
+      keeps_.push_back(std::all_of(loop.begin(), loop.end(),
+                                   [&](std::uint32_t crossing) {
+                                     return blade_.covers(surface.crossing_points()[crossing]);
+                                   })
+                           ? 1
+                           : 0);
+    return std::count(keeps_.begin(), keeps_.end(), 1) > 0;
+  }
+  Outcome make_cap_of(const CutSurface& surface) {
+    for (;;) {
+      std::vector<CapLoop> loops;
+      std::vector<std::uint32_t> numbers;
+      for (std::uint32_t number = 0; number < keeps_.size(); ++number) {
+        if (keeps_[number] == 0) continue;
+        numbers.push_back(number);
+        CapLoop& loop = loops.emplace_back();
+        loop.crossings = surface.loops()[number];
+        for (const std::uint32_t crossing : loop.crossings)
+          loop.places.push_back(blade_.chart(surface.crossing_points()[crossing]));
+      }
+      if (loops.empty()) return refuse("is not cut: the blade does not go through");
+      cap_ = make_cap(loops, static_cast<std::uint32_t>(surface.crossings().size()),
+                      {edge_, blade_.bends()});
+      if (cap_.fault != PlaneFault::none) return Outcome::again;
+      if (!drop_wrong_sides(cap_, numbers)) return Outcome::cut;
+      if (!blade_.bends())
+        return refuse(
+            "has parts that face inwards, which `nendo repair IN --out OUT` turns, or lies "
+            "inside itself");
+    }
+  }
+  /// Of a hollow whose outer rim is not cut the inside would be filled. Such loops are left whole.
+  bool drop_wrong_sides(const Cap& cap, const std::vector<std::uint32_t>& loops) {
+    bool dropped = false;
+    for (std::size_t at = 0; at < loops.size(); ++at)
+      if ((cap.on_left[at] != 0) == faces_inwards_) {
+        keeps_[loops[at]] = 0;
+        dropped = true;
+      }
+    return dropped;
+  }
+  /// Where both sides of a cut belong to one part, nothing comes off, and two faces would lie in
+  /// one place. Such loops are left whole.
+  bool drop_rings(const CutSurface& surface, const CutAssembly& assembly) {
+    bool dropped = false;
+    for (std::size_t number = 0; number < keeps_.size(); ++number) {
+      if (keeps_[number] == 0) continue;
+      const std::uint32_t up = assembly.crossing_vertices[surface.loops()[number].front()];
+      if (result_.part_of_vertex[up] != result_.part_of_vertex[up + 1]) continue;
+      keeps_[number] = 0;
+      dropped = true;
+    }
+    return dropped;
+  }
   Outcome refuse(std::string why) {
     error_ = Error{Errc::failed, std::move(why)};
     return Outcome::refused;
@@ -241,138 +351,6 @@ private:
   CutModel result_;
   Error error_;
 };
-
-Result<void> Cutter::check() {
-  diagonal_ = diagonal_of(mesh_.vertices);
-  if (!(mesh_.vertices.array().abs() <= largest_size).all() || !(diagonal_ >= smallest_size))
-    return Error{Errc::bad_input, "has coordinates that are too large, or no size"};
-  const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
-  edges_ = half_edges_of(mesh_.face_starts, mesh_.face_corners, vertices);
-  ManifoldCheck closed = check_closed_manifold(mesh_.face_starts, mesh_.face_corners, edges_);
-  if (closed.fault == ManifoldFault::repeated_corner) closed = check_closed_manifold(mesh_);
-  if (!closed) return Error{Errc::bad_input, describe(closed, mesh_)};
-  return {};
-}
-
-Result<CutModel> Cutter::run() {
-  if (const auto fine = check(); !fine) return fine.error();
-  const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
-  sides_.resize(vertices);
-  for (std::size_t vertex = 0; vertex < vertices; ++vertex)
-    sides_[vertex] = blade_.side(space_point(mesh_.vertices, vertex));
-  faces_inwards_ = volume_of(mesh_) < 0.0;
-  edge_ = options_.edge > 0.0
-              ? options_.edge
-              : edge_length_at(mesh_, edges_, sides_, give_of(sides_, diagonal_, 0));
-  // A bend needs edges that can follow it; and no cut needs more than some 100,000 faces.
-  if (blade_.bends()) edge_ = std::min(edge_, diagonal_ / 40.0);
-  edge_ = std::max(edge_, diagonal_ / 400.0);
-  for (std::uint32_t number = 0; number < max_attempts; ++number) {
-    give_ = give_of(sides_, diagonal_, number);
-    result_ = {};
-    result_.attempts = number + 1;
-    result_.give = give_;
-    const Outcome outcome = attempt();
-    if (outcome == Outcome::cut) return std::move(result_);
-    if (outcome == Outcome::refused) return error_;
-  }
-  return Error{Errc::failed,
-               "cannot be cut here: its surface, or the blade, passes through itself"};
-}
-
-Outcome Cutter::attempt() {
-  CutSurface surface(mesh_, rest_, edges_, blade_, give_, sides_);
-  if (!surface.refine(0.02 * edge_))
-    return refuse("cannot be cut here: the blade bends too often for its size");
-  if (!surface.cross()) return Outcome::again;
-  if (!choose_loops(surface))
-    return refuse(surface.loops().empty() ? "is not touched by the blade"
-                                          : "is not cut: the blade does not go through");
-  // Loops that turn out not to part anything are left, and then everything is made again.
-  for (std::size_t round = 0; round <= surface.loops().size(); ++round) {
-    if (const Outcome outcome = make_cap_of(surface); outcome != Outcome::cut) return outcome;
-    const ChosenCut chosen{mesh_,  blade_,          give_,          diagonal_,
-                           keeps_, std::move(cap_), faces_inwards_, options_};
-    CutAssembly assembly = assemble(chosen, surface);
-    result_.parts = number_parts(assembly.mesh, result_.part_of_vertex);
-    if (drop_rings(surface, assembly)) {
-      if (std::count(keeps_.begin(), keeps_.end(), 1) == 0)
-        return refuse("is not cut: the blade opens a ring of it, but no part comes off");
-      continue;
-    }
-    if (!is_sound(assembly, surface, rest_, blade_.bends() ? 0.5 * edge_ : 0.0))
-      return Outcome::again;
-    if (!check_closed_manifold(assembly.mesh)) return Outcome::again;
-    result_.mesh = std::move(assembly.mesh);
-    result_.added = std::move(assembly.added);
-    result_.first_cut_face = assembly.first_cut_face;
-    result_.loops = static_cast<std::uint32_t>(std::count(keeps_.begin(), keeps_.end(), 1));
-    result_.left_whole = static_cast<std::uint32_t>(keeps_.size()) - result_.loops;
-    return Outcome::cut;
-  }
-  return Outcome::again;
-}
-
-/// Takes the loops that lie within the blade. Returns false if there is none.
-bool Cutter::choose_loops(const CutSurface& surface) {
-  keeps_.clear();
-  for (const auto& loop : surface.loops())
-    keeps_.push_back(std::all_of(loop.begin(), loop.end(),
-                                 [&](std::uint32_t crossing) {
-                                   return blade_.covers(surface.crossing_points()[crossing]);
-                                 })
-                         ? 1
-                         : 0);
-  return std::count(keeps_.begin(), keeps_.end(), 1) > 0;
-}
-
-Outcome Cutter::make_cap_of(const CutSurface& surface) {
-  for (;;) {
-    std::vector<CapLoop> loops;
-    std::vector<std::uint32_t> numbers;
-    for (std::uint32_t number = 0; number < keeps_.size(); ++number) {
-      if (keeps_[number] == 0) continue;
-      numbers.push_back(number);
-      CapLoop& loop = loops.emplace_back();
-      loop.crossings = surface.loops()[number];
-      for (const std::uint32_t crossing : loop.crossings)
-        loop.places.push_back(blade_.chart(surface.crossing_points()[crossing]));
-    }
-    if (loops.empty()) return refuse("is not cut: the blade does not go through");
-    cap_ = make_cap(loops, static_cast<std::uint32_t>(surface.crossings().size()),
-                    {edge_, blade_.bends()});
-    if (cap_.fault != PlaneFault::none) return Outcome::again;
-    if (!drop_wrong_sides(cap_, numbers)) return Outcome::cut;
-    if (!blade_.bends())
-      return refuse("has parts that face inwards, which `nendo repair IN --out OUT` turns, or lies "
-                    "inside itself");
-  }
-}
-
-/// Of a hollow whose outer rim is not cut the inside would be filled. Such loops are left whole.
-bool Cutter::drop_wrong_sides(const Cap& cap, const std::vector<std::uint32_t>& loops) {
-  bool dropped = false;
-  for (std::size_t at = 0; at < loops.size(); ++at)
-    if ((cap.on_left[at] != 0) == faces_inwards_) {
-      keeps_[loops[at]] = 0;
-      dropped = true;
-    }
-  return dropped;
-}
-
-/// Where both sides of a cut belong to one part, nothing comes off, and two faces would lie in one
-/// place. Such loops are left whole.
-bool Cutter::drop_rings(const CutSurface& surface, const CutAssembly& assembly) {
-  bool dropped = false;
-  for (std::size_t number = 0; number < keeps_.size(); ++number) {
-    if (keeps_[number] == 0) continue;
-    const std::uint32_t up = assembly.crossing_vertices[surface.loops()[number].front()];
-    if (result_.part_of_vertex[up] != result_.part_of_vertex[up + 1]) continue;
-    keeps_[number] = 0;
-    dropped = true;
-  }
-  return dropped;
-}
 
 } // namespace
 

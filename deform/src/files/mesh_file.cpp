@@ -71,73 +71,65 @@ class FaceTidier {
 public:
   explicit FaceTidier(Mesh& mesh) noexcept : mesh_(mesh) {}
 
-  void tidy(std::vector<std::string>& notes);
+  void tidy(std::vector<std::string>& notes) {
+    const std::size_t faces = mesh_.face_count();
+    std::uint32_t begin = 0;
+    for (std::size_t face = 0; face < faces; ++face) {
+      const std::uint32_t end = mesh_.face_starts[face + 1];
+      const CornerSpan corners = CornerSpan(mesh_.face_corners).subspan(begin, end - begin);
+      if (!has_three_corners(corners)) {
+        left_out_.note(face);
+      } else {
+        if (repeats_corner(corners)) mended_.note(face);
+        keep_corners(begin, end);
+        keep_names(face);
+        mesh_.face_starts[++faces_kept_] = corners_kept_;
+      }
+      begin = end;
+    }
+    shrink();
+    if (left_out_.count > 0)
+      notes.push_back(left_out_.faces("has", "have") + " fewer than three different corners and " +
+                      (left_out_.count == 1 ? "is" : "are") + " left out");
+    if (mended_.count > 0)
+      notes.push_back(mended_.faces("names", "name") +
+                      " a corner twice in a row, which is taken once");
+  }
 
 private:
-  void keep_corners(std::uint32_t begin, std::uint32_t end);
-  void keep_names(std::size_t face);
-  void shrink();
+  void keep_corners(std::uint32_t begin, std::uint32_t end) {
+    const std::uint32_t first = corners_kept_;
+    const auto is_last_kept = [&](std::uint32_t vertex) {
+      return corners_kept_ > first && mesh_.face_corners[corners_kept_ - 1] == vertex;
+    };
+    for (std::uint32_t at = begin; at < end; ++at) {
+      const std::uint32_t vertex = mesh_.face_corners[at];
+      if (is_last_kept(vertex)) continue;
+      mesh_.face_corners[corners_kept_] = vertex;
+      if (!mesh_.corner_texcoords.empty())
+        mesh_.corner_texcoords[corners_kept_] = mesh_.corner_texcoords[at];
+      ++corners_kept_;
+    }
+    while (is_last_kept(mesh_.face_corners[first]) && corners_kept_ > first + 1)
+      --corners_kept_;
+  }
+  void keep_names(std::size_t face) {
+    for (auto* of_face : face_columns(mesh_.look))
+      if (!of_face->empty()) (*of_face)[faces_kept_] = (*of_face)[face];
+  }
+  void shrink() {
+    mesh_.face_starts.resize(faces_kept_ + 1);
+    mesh_.face_corners.resize(corners_kept_);
+    if (!mesh_.corner_texcoords.empty()) mesh_.corner_texcoords.resize(corners_kept_);
+    for (auto* of_face : face_columns(mesh_.look))
+      if (!of_face->empty()) of_face->resize(faces_kept_);
+  }
 
   Mesh& mesh_;
   std::uint32_t corners_kept_ = 0;
   std::size_t faces_kept_ = 0;
   Tally left_out_, mended_;
 };
-
-void FaceTidier::tidy(std::vector<std::string>& notes) {
-  const std::size_t faces = mesh_.face_count();
-  std::uint32_t begin = 0;
-  for (std::size_t face = 0; face < faces; ++face) {
-    const std::uint32_t end = mesh_.face_starts[face + 1];
-    const CornerSpan corners = CornerSpan(mesh_.face_corners).subspan(begin, end - begin);
-    if (!has_three_corners(corners)) {
-      left_out_.note(face);
-    } else {
-      if (repeats_corner(corners)) mended_.note(face);
-      keep_corners(begin, end);
-      keep_names(face);
-      mesh_.face_starts[++faces_kept_] = corners_kept_;
-    }
-    begin = end;
-  }
-  shrink();
-  if (left_out_.count > 0)
-    notes.push_back(left_out_.faces("has", "have") + " fewer than three different corners and " +
-                    (left_out_.count == 1 ? "is" : "are") + " left out");
-  if (mended_.count > 0)
-    notes.push_back(mended_.faces("names", "name") +
-                    " a corner twice in a row, which is taken once");
-}
-
-void FaceTidier::keep_corners(std::uint32_t begin, std::uint32_t end) {
-  const std::uint32_t first = corners_kept_;
-  const auto is_last_kept = [&](std::uint32_t vertex) {
-    return corners_kept_ > first && mesh_.face_corners[corners_kept_ - 1] == vertex;
-  };
-  for (std::uint32_t at = begin; at < end; ++at) {
-    const std::uint32_t vertex = mesh_.face_corners[at];
-    if (is_last_kept(vertex)) continue;
-    mesh_.face_corners[corners_kept_] = vertex;
-    if (!mesh_.corner_texcoords.empty())
-      mesh_.corner_texcoords[corners_kept_] = mesh_.corner_texcoords[at];
-    ++corners_kept_;
-  }
-  while (is_last_kept(mesh_.face_corners[first]) && corners_kept_ > first + 1)
-    --corners_kept_;
-}
-
-void FaceTidier::keep_names(std::size_t face) {
-  for (auto* of_face : face_columns(mesh_.look))
-    if (!of_face->empty()) (*of_face)[faces_kept_] = (*of_face)[face];
-}
-
-void FaceTidier::shrink() {
-  mesh_.face_starts.resize(faces_kept_ + 1);
-  mesh_.face_corners.resize(corners_kept_);
-  if (!mesh_.corner_texcoords.empty()) mesh_.corner_texcoords.resize(corners_kept_);
-  for (auto* of_face : face_columns(mesh_.look))
-    if (!of_face->empty()) of_face->resize(faces_kept_);
-}
 
 /// Takes a corner that a face names twice in a row once only, and leaves out faces with fewer than
 /// three different corners. Adds a note for each of both, if there are any. Other faces, and all

@@ -63,21 +63,6 @@ Eigen::Matrix4Xf colours_of_polypaint(const std::vector<std::uint32_t>& colours,
   return linear;
 }
 
-class ObjLeftOut {
-public:
-  /// Counts a statement that is not read. Known ones that change no polygon, such as vn and s, do
-  /// not count.
-  void statement(std::string_view keyword, std::size_t line);
-  void weight(double w) noexcept { weights_ += w != 1.0 ? 1 : 0; }
-  /// One note for each kind.
-  void add_to(std::vector<std::string>& notes) const;
-
-private:
-  std::size_t lines_ = 0, points_ = 0, curves_ = 0, weights_ = 0;
-  std::size_t unknown_ = 0, first_unknown_line_ = 0;
-  std::string first_unknown_;
-};
-
 /// Statements of the format (Wavefront's Appendix B1) that leave polygons as they are: normals,
 /// smoothing, display and the parts of curves, which curv and surf stand for.
 constexpr std::string_view harmless[] = {
@@ -91,40 +76,51 @@ std::string several(std::size_t count, const char* one, const char* more) {
   return std::to_string(count) + " " + (count == 1 ? one : more);
 }
 
-void ObjLeftOut::statement(std::string_view keyword, std::size_t line) {
-  if (keyword == "l")
-    ++lines_;
-  else if (keyword == "p")
-    ++points_;
-  else if (keyword == "curv" || keyword == "curv2" || keyword == "surf")
-    ++curves_;
-  else if (std::find(std::begin(harmless), std::end(harmless), keyword) == std::end(harmless)) {
-    if (unknown_++ > 0) return;
-    first_unknown_ = in_quotes(keyword);
-    first_unknown_line_ = line;
+class ObjLeftOut {
+public:
+  /// Counts a statement that is not read. Known ones that change no polygon, such as vn and s, do
+  /// not count.
+  void statement(std::string_view keyword, std::size_t line) {
+    if (keyword == "l")
+      ++lines_;
+    else if (keyword == "p")
+      ++points_;
+    else if (keyword == "curv" || keyword == "curv2" || keyword == "surf")
+      ++curves_;
+    else if (std::find(std::begin(harmless), std::end(harmless), keyword) == std::end(harmless)) {
+      if (unknown_++ > 0) return;
+      first_unknown_ = in_quotes(keyword);
+      first_unknown_line_ = line;
+    }
   }
-}
+  void weight(double w) noexcept { weights_ += w != 1.0 ? 1 : 0; }
+  /// One note for each kind.
+  void add_to(std::vector<std::string>& notes) const {
+    std::string what;
+    const auto add = [&](std::size_t count, const char* one, const char* more) {
+      if (count > 0) what += (what.empty() ? "" : ", ") + several(count, one, more);
+    };
+    add(lines_, "line of edges (l)", "lines of edges (l)");
+    add(points_, "line of points (p)", "lines of points (p)");
+    add(curves_, "curve or curved surface (curv, surf)", "curves and curved surfaces (curv, surf)");
+    const bool is_one = lines_ + points_ + curves_ == 1;
+    if (!what.empty())
+      notes.push_back(what + (is_one ? " is" : " are") + " left out; only faces (f) are read");
+    if (weights_ > 0)
+      notes.push_back("the fourth number of " + several(weights_, "vertex", "vertices") +
+                      " is left out, because w weights curves and not polygons");
+    if (unknown_ > 0)
+      notes.push_back(several(unknown_, "line", "lines") + " of an unknown kind " +
+                      (unknown_ == 1 ? "is" : "are") + " left out (" +
+                      (unknown_ == 1 ? "" : "first ") + first_unknown_ + " in line " +
+                      std::to_string(first_unknown_line_) + ")");
+  }
 
-void ObjLeftOut::add_to(std::vector<std::string>& notes) const {
-  std::string what;
-  const auto add = [&](std::size_t count, const char* one, const char* more) {
-    if (count > 0) what += (what.empty() ? "" : ", ") + several(count, one, more);
-  };
-  add(lines_, "line of edges (l)", "lines of edges (l)");
-  add(points_, "line of points (p)", "lines of points (p)");
-  add(curves_, "curve or curved surface (curv, surf)", "curves and curved surfaces (curv, surf)");
-  const bool is_one = lines_ + points_ + curves_ == 1;
-  if (!what.empty())
-    notes.push_back(what + (is_one ? " is" : " are") + " left out; only faces (f) are read");
-  if (weights_ > 0)
-    notes.push_back("the fourth number of " + several(weights_, "vertex", "vertices") +
-                    " is left out, because w weights curves and not polygons");
-  if (unknown_ > 0)
-    notes.push_back(several(unknown_, "line", "lines") + " of an unknown kind " +
-                    (unknown_ == 1 ? "is" : "are") + " left out (" +
-                    (unknown_ == 1 ? "" : "first ") + first_unknown_ + " in line " +
-                    std::to_string(first_unknown_line_) + ")");
-}
+private:
+  std::size_t lines_ = 0, points_ = 0, curves_ = 0, weights_ = 0;
+  std::size_t unknown_ = 0, first_unknown_line_ = 0;
+  std::string first_unknown_;
+};
 
 constexpr float no_colour = std::numeric_limits<float>::infinity(); // white, in every range
 
@@ -139,7 +135,22 @@ public:
   }
   void ends_face() { names_.of_face.push_back(current_); }
   /// Leaves out names that no face has.
-  FaceNames take() &&;
+  FaceNames take() && {
+    std::vector<const std::string*> by_number(numbers_.size());
+    for (const auto& [name, number] : numbers_)
+      by_number[number] = &name;
+    std::vector<std::uint32_t> renumbered(by_number.size(), no_index);
+    for (std::uint32_t& number : names_.of_face) {
+      if (number == no_index) continue;
+      if (renumbered[number] == no_index) {
+        renumbered[number] = static_cast<std::uint32_t>(names_.names.size());
+        names_.names.push_back(*by_number[number]);
+      }
+      number = renumbered[number];
+    }
+    if (names_.names.empty()) names_.of_face.clear();
+    return std::move(names_);
+  }
 
 private:
   std::map<std::string, std::uint32_t> numbers_;
@@ -147,21 +158,11 @@ private:
   std::uint32_t current_ = no_index;
 };
 
-FaceNames CurrentName::take() && {
-  std::vector<const std::string*> by_number(numbers_.size());
-  for (const auto& [name, number] : numbers_)
-    by_number[number] = &name;
-  std::vector<std::uint32_t> renumbered(by_number.size(), no_index);
-  for (std::uint32_t& number : names_.of_face) {
-    if (number == no_index) continue;
-    if (renumbered[number] == no_index) {
-      renumbered[number] = static_cast<std::uint32_t>(names_.names.size());
-      names_.names.push_back(*by_number[number]);
-    }
-    number = renumbered[number];
-  }
-  if (names_.names.empty()) names_.of_face.clear();
-  return std::move(names_);
+/// What to do if a program has counted from 0.
+std::string if_from_zero(std::string_view field) {
+  return to_integer(field.substr(0, field.find('/'))) == 0
+             ? ", because an OBJ counts vertices from 1; add 1 to all, if they count from 0"
+             : "";
 }
 
 class ObjParser {
@@ -169,19 +170,163 @@ public:
   ObjParser(std::string_view text, std::string_view name, ReadNotes& notes)
       : scanner_(text, TextScanner::Dialect::obj), name_(name), notes_(notes) {}
 
-  Result<ObjModel> parse();
+  Result<ObjModel> parse() {
+    do {
+      if (const auto done = statement(); !done) return done.error();
+    } while (scanner_.next_line());
+    if (const auto good = check_indices(); !good) return good.error();
+    mesh_.vertices = columns_of<3>(vertices_);
+    finish_texcoords();
+    finish_look();
+    if (!vertices_.empty()) left_out_.add_to(notes_);
+    return ObjModel{std::move(mesh_), std::move(libraries_)};
+  }
 
 private:
-  Result<void> statement();
-  Result<void> vertex();
-  Result<void> coordinates(std::vector<double>& list, int needed, int kept);
-  Result<void> face();
-  Result<void> corner(std::string_view field);
+  Result<void> statement() {
+    const std::string_view keyword = scanner_.field();
+    if (keyword == "v") return vertex();
+    if (keyword == "vt") return coordinates(texcoords_, 1, 2);
+    if (keyword == "f" || keyword == "fo") return face();
+    if (keyword == "usemtl")
+      material_.set(joined_fields(scanner_));
+    else if (keyword == "g")
+      group_.set(joined_fields(scanner_));
+    else if (keyword == "o")
+      object_.set(joined_fields(scanner_));
+    else if (keyword == "mtllib")
+      libraries_.push_back(joined_fields(scanner_));
+    else if (keyword.empty())
+      read_polypaint(scanner_.rest_of_line(), painted_);
+    else
+      left_out_.statement(keyword, scanner_.line());
+    return {};
+  }
+  /// Three coordinates, and after them w, three parts of a colour, or w and those. Vertices without
+  /// a colour are white, if others have one.
+  Result<void> vertex() {
+    if (auto done = coordinates(vertices_, 3, 3); !done) return done;
+    Eigen::Vector4f colour = Eigen::Vector4f::Constant(no_colour);
+    std::array<double, 4> more{};
+    std::size_t count = 0;
+    for (; count < more.size(); ++count) {
+      const auto number = to_number_of_any_program(scanner_.field());
+      if (!number || !std::isfinite(*number)) break;
+      more[count] = *number;
+    }
+    const bool has_weight = count == 1 || count == 4;
+    if (has_weight) left_out_.weight(more[0]);
+    if (count < 3) return {};
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      colour[static_cast<Eigen::Index>(channel)] =
+          static_cast<float>(std::clamp(more[has_weight ? channel + 1 : channel], -1e30, 1e30));
+    colours_.resize(4 * (vertices_.size() / 3 - 1), no_colour);
+    colours_.insert(colours_.end(), colour.begin(), colour.end());
+    for (Eigen::Index channel = 0; channel < 3; ++channel)
+      colour_range_.see(static_cast<double>(colour[channel]));
+    return {};
+  }
+  /// Up to `kept` numbers; of these, those beyond `needed` may be missing and are 0.
+  Result<void> coordinates(std::vector<double>& list, int needed, int kept) {
+    for (int i = 0; i < kept; ++i) {
+      const std::string_view field = scanner_.field();
+      if (field.empty() && i < needed)
+        return bad("needs " + std::to_string(needed) + " numbers, has " + std::to_string(i));
+      const auto number = field.empty() ? 0.0 : to_number_of_any_program(field);
+      if (!number || !is_usable(*number))
+        return bad(in_quotes(field) + std::string(not_usable(field)));
+      list.push_back(*number);
+    }
+    return {};
+  }
+  Result<void> face() {
+    for (auto field = scanner_.field(); !field.empty(); field = scanner_.field())
+      if (auto done = corner(field); !done) return done;
+    mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
+    for (CurrentName* name : {&material_, &group_, &object_})
+      name->ends_face();
+    return {};
+  }
+  /// v, v/vt, v//vn or v/vt/vn.
+  Result<void> corner(std::string_view field) {
+    const std::size_t slash = field.find('/');
+    const auto vertex = index(field.substr(0, slash), vertices_.size() / 3, highest_vertex_);
+    if (!vertex) return bad(in_quotes(field) + " names no vertex" + if_from_zero(field));
+    mesh_.face_corners.push_back(*vertex);
+    std::string_view texcoord;
+    if (slash != std::string_view::npos) {
+      texcoord = field.substr(slash + 1);
+      texcoord = texcoord.substr(0, texcoord.find('/'));
+    }
+    std::uint32_t texcoord_index = no_index;
+    if (!texcoord.empty()) {
+      const auto found = index(texcoord, texcoords_.size() / 2, highest_texcoord_);
+      if (!found) return bad(in_quotes(field) + " names no texture coordinate");
+      texcoord_index = *found;
+    }
+    mesh_.corner_texcoords.push_back(texcoord_index);
+    return {};
+  }
+  /// Counted from 1, or backwards from the newest.
   std::optional<std::uint32_t> index(std::string_view field, std::size_t count,
-                                     HighestIndex& highest) const;
-  Result<void> check_indices() const;
-  void finish_texcoords();
-  void finish_look();
+                                     HighestIndex& highest) const {
+    const auto number = to_integer(field);
+    if (!number || *number == 0) return std::nullopt;
+    const std::int64_t from_zero =
+        *number > 0 ? *number - 1 : static_cast<std::int64_t>(count) + *number;
+    if (from_zero < 0 || from_zero >= no_index) return std::nullopt;
+    const auto found = static_cast<std::uint32_t>(from_zero);
+    highest.note(found, scanner_.line());
+    return found;
+  }
+  Result<void> check_indices() const {
+    const auto beyond = [&](const HighestIndex& highest, std::size_t count, const char* what) {
+      return bad_line(name_, highest.place,
+                      std::string(what) + " " + std::to_string(highest.index + std::uint64_t{1}) +
+                          " of " + std::to_string(count));
+    };
+    const std::size_t vertices = vertices_.size() / 3;
+    const std::size_t texcoords = texcoords_.size() / 2;
+    if (highest_vertex_.is_beyond(vertices))
+      return beyond(highest_vertex_, vertices, "a face names vertex");
+    if (highest_texcoord_.is_beyond(texcoords))
+      return beyond(highest_texcoord_, texcoords, "a face names texture coordinate");
+    return {};
+  }
+  /// Corners without a texture coordinate share one more at (0, 0), if others have one.
+  void finish_texcoords() {
+    if (highest_texcoord_.place == 0) {
+      mesh_.corner_texcoords.clear();
+      return;
+    }
+    const auto extra = static_cast<std::uint32_t>(texcoords_.size() / 2);
+    bool used = false;
+    for (auto& index : mesh_.corner_texcoords) {
+      if (index != no_index) continue;
+      index = extra;
+      used = true;
+    }
+    if (used) texcoords_.insert(texcoords_.end(), {0.0, 0.0});
+    mesh_.texcoords = columns_of<2>(texcoords_);
+  }
+  void finish_look() {
+    Appearance& look = mesh_.look;
+    auto materials = std::move(material_).take();
+    look.face_materials = std::move(materials.of_face);
+    for (std::string& name : materials.names)
+      look.materials.push_back({std::move(name), std::nullopt, no_index, true});
+    look.groups = std::move(group_).take();
+    look.objects = std::move(object_).take();
+    if (colours_.empty() && !painted_.empty())
+      look.vertex_colours = colours_of_polypaint(painted_, mesh_.vertices.cols());
+    if (colours_.empty()) return;
+    colours_.resize(4 * static_cast<std::size_t>(mesh_.vertices.cols()), no_colour);
+    for (float& channel : colours_)
+      channel = linear_of(colour_range_.part_of(static_cast<double>(channel)));
+    if (auto note = colour_range_.note(); !note.empty()) notes_.push_back(std::move(note));
+    look.vertex_colours =
+        Eigen::Map<const Eigen::Matrix4Xf>(colours_.data(), 4, mesh_.vertices.cols());
+  }
 
   Error bad(const std::string& what) const { return bad_line(name_, scanner_.line(), what); }
 
@@ -200,178 +345,6 @@ private:
   Mesh mesh_;
   std::vector<std::string> libraries_;
 };
-
-Result<ObjModel> ObjParser::parse() {
-  do {
-    if (const auto done = statement(); !done) return done.error();
-  } while (scanner_.next_line());
-  if (const auto good = check_indices(); !good) return good.error();
-  mesh_.vertices = columns_of<3>(vertices_);
-  finish_texcoords();
-  finish_look();
-  if (!vertices_.empty()) left_out_.add_to(notes_);
-  return ObjModel{std::move(mesh_), std::move(libraries_)};
-}
-
-Result<void> ObjParser::statement() {
-  const std::string_view keyword = scanner_.field();
-  if (keyword == "v") return vertex();
-  if (keyword == "vt") return coordinates(texcoords_, 1, 2);
-  if (keyword == "f" || keyword == "fo") return face();
-  if (keyword == "usemtl")
-    material_.set(joined_fields(scanner_));
-  else if (keyword == "g")
-    group_.set(joined_fields(scanner_));
-  else if (keyword == "o")
-    object_.set(joined_fields(scanner_));
-  else if (keyword == "mtllib")
-    libraries_.push_back(joined_fields(scanner_));
-  else if (keyword.empty())
-    read_polypaint(scanner_.rest_of_line(), painted_);
-  else
-    left_out_.statement(keyword, scanner_.line());
-  return {};
-}
-
-/// What to do if a program has counted from 0.
-std::string if_from_zero(std::string_view field) {
-  return to_integer(field.substr(0, field.find('/'))) == 0
-             ? ", because an OBJ counts vertices from 1; add 1 to all, if they count from 0"
-             : "";
-}
-
-/// Three coordinates, and after them w, three parts of a colour, or w and those. Vertices without
-/// a colour are white, if others have one.
-Result<void> ObjParser::vertex() {
-  if (auto done = coordinates(vertices_, 3, 3); !done) return done;
-  Eigen::Vector4f colour = Eigen::Vector4f::Constant(no_colour);
-  std::array<double, 4> more{};
-  std::size_t count = 0;
-  for (; count < more.size(); ++count) {
-    const auto number = to_number_of_any_program(scanner_.field());
-    if (!number || !std::isfinite(*number)) break;
-    more[count] = *number;
-  }
-  const bool has_weight = count == 1 || count == 4;
-  if (has_weight) left_out_.weight(more[0]);
-  if (count < 3) return {};
-  for (std::size_t channel = 0; channel < 3; ++channel)
-    colour[static_cast<Eigen::Index>(channel)] =
-        static_cast<float>(std::clamp(more[has_weight ? channel + 1 : channel], -1e30, 1e30));
-  colours_.resize(4 * (vertices_.size() / 3 - 1), no_colour);
-  colours_.insert(colours_.end(), colour.begin(), colour.end());
-  for (Eigen::Index channel = 0; channel < 3; ++channel)
-    colour_range_.see(static_cast<double>(colour[channel]));
-  return {};
-}
-
-/// Up to `kept` numbers; of these, those beyond `needed` may be missing and are 0.
-Result<void> ObjParser::coordinates(std::vector<double>& list, int needed, int kept) {
-  for (int i = 0; i < kept; ++i) {
-    const std::string_view field = scanner_.field();
-    if (field.empty() && i < needed)
-      return bad("needs " + std::to_string(needed) + " numbers, has " + std::to_string(i));
-    const auto number = field.empty() ? 0.0 : to_number_of_any_program(field);
-    if (!number || !is_usable(*number))
-      return bad(in_quotes(field) + std::string(not_usable(field)));
-    list.push_back(*number);
-  }
-  return {};
-}
-
-Result<void> ObjParser::face() {
-  for (auto field = scanner_.field(); !field.empty(); field = scanner_.field())
-    if (auto done = corner(field); !done) return done;
-  mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
-  for (CurrentName* name : {&material_, &group_, &object_})
-    name->ends_face();
-  return {};
-}
-
-/// v, v/vt, v//vn or v/vt/vn.
-Result<void> ObjParser::corner(std::string_view field) {
-  const std::size_t slash = field.find('/');
-  const auto vertex = index(field.substr(0, slash), vertices_.size() / 3, highest_vertex_);
-  if (!vertex) return bad(in_quotes(field) + " names no vertex" + if_from_zero(field));
-  mesh_.face_corners.push_back(*vertex);
-  std::string_view texcoord;
-  if (slash != std::string_view::npos) {
-    texcoord = field.substr(slash + 1);
-    texcoord = texcoord.substr(0, texcoord.find('/'));
-  }
-  std::uint32_t texcoord_index = no_index;
-  if (!texcoord.empty()) {
-    const auto found = index(texcoord, texcoords_.size() / 2, highest_texcoord_);
-    if (!found) return bad(in_quotes(field) + " names no texture coordinate");
-    texcoord_index = *found;
-  }
-  mesh_.corner_texcoords.push_back(texcoord_index);
-  return {};
-}
-
-/// Counted from 1, or backwards from the newest.
-std::optional<std::uint32_t> ObjParser::index(std::string_view field, std::size_t count,
-                                              HighestIndex& highest) const {
-  const auto number = to_integer(field);
-  if (!number || *number == 0) return std::nullopt;
-  const std::int64_t from_zero =
-      *number > 0 ? *number - 1 : static_cast<std::int64_t>(count) + *number;
-  if (from_zero < 0 || from_zero >= no_index) return std::nullopt;
-  const auto found = static_cast<std::uint32_t>(from_zero);
-  highest.note(found, scanner_.line());
-  return found;
-}
-
-Result<void> ObjParser::check_indices() const {
-  const auto beyond = [&](const HighestIndex& highest, std::size_t count, const char* what) {
-    return bad_line(name_, highest.place,
-                    std::string(what) + " " + std::to_string(highest.index + std::uint64_t{1}) +
-                        " of " + std::to_string(count));
-  };
-  const std::size_t vertices = vertices_.size() / 3;
-  const std::size_t texcoords = texcoords_.size() / 2;
-  if (highest_vertex_.is_beyond(vertices))
-    return beyond(highest_vertex_, vertices, "a face names vertex");
-  if (highest_texcoord_.is_beyond(texcoords))
-    return beyond(highest_texcoord_, texcoords, "a face names texture coordinate");
-  return {};
-}
-
-/// Corners without a texture coordinate share one more at (0, 0), if others have one.
-void ObjParser::finish_texcoords() {
-  if (highest_texcoord_.place == 0) {
-    mesh_.corner_texcoords.clear();
-    return;
-  }
-  const auto extra = static_cast<std::uint32_t>(texcoords_.size() / 2);
-  bool used = false;
-  for (auto& index : mesh_.corner_texcoords) {
-    if (index != no_index) continue;
-    index = extra;
-    used = true;
-  }
-  if (used) texcoords_.insert(texcoords_.end(), {0.0, 0.0});
-  mesh_.texcoords = columns_of<2>(texcoords_);
-}
-
-void ObjParser::finish_look() {
-  Appearance& look = mesh_.look;
-  auto materials = std::move(material_).take();
-  look.face_materials = std::move(materials.of_face);
-  for (std::string& name : materials.names)
-    look.materials.push_back({std::move(name), std::nullopt, no_index, true});
-  look.groups = std::move(group_).take();
-  look.objects = std::move(object_).take();
-  if (colours_.empty() && !painted_.empty())
-    look.vertex_colours = colours_of_polypaint(painted_, mesh_.vertices.cols());
-  if (colours_.empty()) return;
-  colours_.resize(4 * static_cast<std::size_t>(mesh_.vertices.cols()), no_colour);
-  for (float& channel : colours_)
-    channel = linear_of(colour_range_.part_of(static_cast<double>(channel)));
-  if (auto note = colour_range_.note(); !note.empty()) notes_.push_back(std::move(note));
-  look.vertex_colours =
-      Eigen::Map<const Eigen::Matrix4Xf>(colours_.data(), 4, mesh_.vertices.cols());
-}
 
 } // namespace
 

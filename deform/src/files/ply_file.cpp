@@ -151,57 +151,6 @@ bool is_channel(Use use) noexcept {
   return use >= Use::red && use <= Use::alpha;
 }
 
-class PlyParser {
-public:
-  PlyParser(std::string_view text, const PlyHeader& header, std::string_view name, ReadNotes& notes)
-      : header_(header), name_(name), notes_(notes), body_(text, header, name) {}
-
-  Result<PlyModel> parse();
-
-private:
-  Result<std::vector<Use>> uses_of(const PlyElement& element) const;
-  Result<void> read_element(const PlyElement& element);
-  Result<void> read_list(const PlyProperty& property, Use use);
-  Result<std::optional<std::uint32_t>> read_index(PlyType type, Use use);
-  void add_corner(std::optional<std::uint32_t> index, Use use);
-  void note_left_out(const PlyElement& element, const std::vector<Use>& uses);
-  Result<void> read_value(const PlyProperty& property, Use use);
-  void keep_vertex();
-  void end_row(const PlyElement& element);
-  void finish_colours();
-
-  const PlyHeader& header_;
-  std::string_view name_;
-  ReadNotes& notes_;
-  PlyBody body_;
-  std::vector<double> coordinates_;
-  double vertex_[3] = {};
-  std::vector<float> colours_; ///< four numbers each, as they are in the file
-  bool has_colours_ = false;
-  std::array<ColourNumbers, 4> colour_numbers_{};
-  std::array<float, 4> colour_{};
-  HighestIndex highest_;
-  std::array<double, 2> texcoord_{};
-  PlyLook look_;
-  TriangleStrip strip_;
-  Mesh mesh_;
-};
-
-Result<PlyModel> PlyParser::parse() {
-  for (const auto& element : header_.elements)
-    if (const auto done = read_element(element); !done) return done.error();
-  mesh_.vertices = columns_of<3>(coordinates_);
-  const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
-  if (highest_.is_beyond(vertices))
-    return body_.error_at(highest_.place, "a face names vertex " + std::to_string(highest_.index) +
-                                              ", counted from 0, of " + std::to_string(vertices));
-  finish_colours();
-  mesh_.look.vertex_colours = Eigen::Map<const Eigen::Matrix4Xf>(
-      colours_.data(), 4, static_cast<Eigen::Index>(colours_.size() / 4));
-  look_.finish(header_.textures, mesh_, notes_);
-  return PlyModel{std::move(mesh_), header_.textures};
-}
-
 /// Red, green, blue and opacity, by the names that programs give them.
 using ColourNames = std::array<std::string_view, 4>;
 constexpr std::array<ColourNames, 4> known_colours{
@@ -285,201 +234,232 @@ std::size_t channel_of(Use use) noexcept {
   return static_cast<std::size_t>(use) - static_cast<std::size_t>(Use::red);
 }
 
-Result<std::vector<Use>> PlyParser::uses_of(const PlyElement& element) const {
-  std::vector<Use> uses;
-  int wanted = 0;
-  const bool is_strips = element.name == "tristrips";
-  const ColourNames colours = colours_in(element);
-  const auto texcoords = texcoords_in(element);
-  for (const auto& property : element.properties) {
-    Use use = Use::skip;
-    if (element.name == "vertex" && !property.count_type)
-      use = use_in_vertex(property.name, colours, texcoords);
-    else if (element.name == "face" || is_strips)
-      use = use_in_face(property, is_strips);
-    wanted += use != Use::skip && use < Use::red ? 1 : 0;
-    uses.push_back(use);
-  }
-  const std::string name(name_);
-  if (element.name == "vertex" && wanted != 3)
-    return Error{Errc::bad_input, name + ": a PLY vertex needs one x, one y and one z"};
-  const bool is_list = element.name == "face" || is_strips;
-  if (is_list && element.count > 0 && wanted != 1)
-    return Error{Errc::bad_input, name + ": a PLY " + (is_strips ? "tristrips" : "face") +
-                                      " needs one list vertex_indices"};
-  return uses;
-}
-
 /// Normals are computed, because they change.
 bool is_computed(const PlyProperty& property) noexcept {
   return property.name == "nx" || property.name == "ny" || property.name == "nz";
 }
 
-void PlyParser::note_left_out(const PlyElement& element, const std::vector<Use>& uses) {
-  if (element.count == 0) return;
-  const std::string name = in_quotes(element.name);
-  if (element.name != "vertex" && element.name != "face" && element.name != "tristrips") {
-    notes_.push_back(std::to_string(element.count) + " of the element " + name + " are left out");
-    return;
-  }
-  constexpr std::size_t max_named = 12;
-  std::string names;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < uses.size(); ++i) {
-    if (uses[i] != Use::skip || is_computed(element.properties[i])) continue;
-    if (++count <= max_named)
-      names += (names.empty() ? "" : ", ") + printable(element.properties[i].name.substr(0, 40));
-  }
-  if (count > max_named) names += ", and " + std::to_string(count - max_named) + " more";
-  if (count > 0)
-    notes_.push_back((count == 1 ? "the property " : "the properties ") + names + " of each " +
-                     name + (count == 1 ? " is" : " are") + " left out");
-}
+class PlyParser {
+public:
+  PlyParser(std::string_view text, const PlyHeader& header, std::string_view name, ReadNotes& notes)
+      : header_(header), name_(name), notes_(notes), body_(text, header, name) {}
 
-Result<void> PlyParser::read_element(const PlyElement& element) {
-  const auto uses = uses_of(element);
-  if (!uses) return uses.error();
-  if (element.properties.empty()) return {};
-  note_left_out(element, *uses);
-  std::uint64_t min_bytes = 0;
-  for (const auto& property : element.properties)
-    min_bytes += size_of(property.count_type.value_or(property.type));
-  if (!body_.has_room_for(element.count, min_bytes))
-    return body_.bad("the header promises " + std::to_string(element.count) + " of " +
-                     in_quotes(element.name) + ", the file is too short for them");
-  if (element.name == "vertex") {
-    coordinates_.reserve(3 * element.count);
-    has_colours_ = has_colours(*uses);
-    look_.has_vertices = has_once(*uses, Use::across) && has_once(*uses, Use::up);
-    colour_.fill(std::numeric_limits<float>::infinity()); // full, in every range
-    for (std::size_t at = 0; at < uses->size(); ++at)
-      if (is_channel((*uses)[at]))
-        colour_numbers_[channel_of((*uses)[at])] = colour_numbers_of(element.properties[at].type);
+  Result<PlyModel> parse() {
+    for (const auto& element : header_.elements)
+      if (const auto done = read_element(element); !done) return done.error();
+    mesh_.vertices = columns_of<3>(coordinates_);
+    const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
+    if (highest_.is_beyond(vertices))
+      return body_.error_at(highest_.place, "a face names vertex " +
+                                                std::to_string(highest_.index) +
+                                                ", counted from 0, of " + std::to_string(vertices));
+    finish_colours();
+    mesh_.look.vertex_colours = Eigen::Map<const Eigen::Matrix4Xf>(
+        colours_.data(), 4, static_cast<Eigen::Index>(colours_.size() / 4));
+    look_.finish(header_.textures, mesh_, notes_);
+    return PlyModel{std::move(mesh_), header_.textures};
   }
-  if (element.name == "face") {
-    look_.has_faces = has_once(*uses, Use::texcoords);
-    look_.has_numbers = has_once(*uses, Use::texture);
-  }
-  for (std::uint64_t row = 0; row < element.count; ++row) {
-    for (std::size_t i = 0; i < uses->size(); ++i) {
-      const auto& property = element.properties[i];
-      auto done =
-          property.count_type ? read_list(property, (*uses)[i]) : read_value(property, (*uses)[i]);
-      if (!done) return done;
+
+private:
+  Result<std::vector<Use>> uses_of(const PlyElement& element) const {
+    std::vector<Use> uses;
+    int wanted = 0;
+    const bool is_strips = element.name == "tristrips";
+    const ColourNames colours = colours_in(element);
+    const auto texcoords = texcoords_in(element);
+    for (const auto& property : element.properties) {
+      Use use = Use::skip;
+      if (element.name == "vertex" && !property.count_type)
+        use = use_in_vertex(property.name, colours, texcoords);
+      else if (element.name == "face" || is_strips)
+        use = use_in_face(property, is_strips);
+      wanted += use != Use::skip && use < Use::red ? 1 : 0;
+      uses.push_back(use);
     }
-    end_row(element);
+    const std::string name(name_);
+    if (element.name == "vertex" && wanted != 3)
+      return Error{Errc::bad_input, name + ": a PLY vertex needs one x, one y and one z"};
+    const bool is_list = element.name == "face" || is_strips;
+    if (is_list && element.count > 0 && wanted != 1)
+      return Error{Errc::bad_input, name + ": a PLY " + (is_strips ? "tristrips" : "face") +
+                                        " needs one list vertex_indices"};
+    return uses;
   }
-  return {};
-}
-
-void PlyParser::end_row(const PlyElement& element) {
-  if (element.name == "vertex") keep_vertex();
-  if (element.name != "face") return;
-  const std::size_t faces = mesh_.face_count();
-  look_.end_face(mesh_.face_starts[faces] - mesh_.face_starts[faces - 1]);
-}
-
-/// Makes parts of 1 of them, linear. Colours are encoded as on screens, opacity is not. Red, green
-/// and blue have one range, unless they are of different types.
-void PlyParser::finish_colours() {
-  std::array<ColourRange, 4> ranges;
-  for (std::size_t channel = 0; channel < 4; ++channel) {
-    ColourRange& range = ranges[channel];
-    range = ColourRange(colour_numbers_[channel]);
-    for (std::size_t at = 0; at < colours_.size(); ++at) {
-      const bool is_opacity = at % 4 == 3;
-      if (is_opacity == (channel == 3) && colour_numbers_[at % 4] == colour_numbers_[channel])
-        range.see(static_cast<double>(colours_[at]));
+  Result<void> read_element(const PlyElement& element) {
+    const auto uses = uses_of(element);
+    if (!uses) return uses.error();
+    if (element.properties.empty()) return {};
+    note_left_out(element, *uses);
+    std::uint64_t min_bytes = 0;
+    for (const auto& property : element.properties)
+      min_bytes += size_of(property.count_type.value_or(property.type));
+    if (!body_.has_room_for(element.count, min_bytes))
+      return body_.bad("the header promises " + std::to_string(element.count) + " of " +
+                       in_quotes(element.name) + ", the file is too short for them");
+    if (element.name == "vertex") {
+      coordinates_.reserve(3 * element.count);
+      has_colours_ = has_colours(*uses);
+      look_.has_vertices = has_once(*uses, Use::across) && has_once(*uses, Use::up);
+      colour_.fill(std::numeric_limits<float>::infinity()); // full, in every range
+      for (std::size_t at = 0; at < uses->size(); ++at)
+        if (is_channel((*uses)[at]))
+          colour_numbers_[channel_of((*uses)[at])] = colour_numbers_of(element.properties[at].type);
     }
-  }
-  for (std::size_t at = 0; at < colours_.size(); ++at) {
-    const float part = ranges[at % 4].part_of(static_cast<double>(colours_[at]));
-    colours_[at] = at % 4 == 3 ? part : linear_of(part);
-  }
-  if (auto note = ranges[0].note(); !note.empty()) notes_.push_back(std::move(note));
-}
-
-void PlyParser::keep_vertex() {
-  coordinates_.insert(coordinates_.end(), vertex_, vertex_ + 3);
-  if (has_colours_) colours_.insert(colours_.end(), colour_.begin(), colour_.end());
-  if (look_.has_vertices) look_.add_vertex(texcoord_[0], texcoord_[1]);
-}
-
-Result<void> PlyParser::read_list(const PlyProperty& property, Use use) {
-  const auto count = body_.number(*property.count_type);
-  if (!count) return body_.no_number();
-  if (!(*count >= 0.0) || *count != std::floor(*count) ||
-      *count > std::numeric_limits<std::uint32_t>::max())
-    return body_.bad("the length of a list is not a whole number from 0 on");
-  const auto length = static_cast<std::uint64_t>(*count);
-  if (!body_.has_room_for(length, size_of(property.type)))
-    return body_.bad("a list of " + std::to_string(length) + " reaches beyond the end of the file");
-  const bool is_corners = use == Use::corners || use == Use::strips;
-  for (std::uint64_t i = 0; i < length; ++i) {
-    if (!is_corners) {
-      if (auto done = read_value(property, use); !done) return done;
-      continue;
+    if (element.name == "face") {
+      look_.has_faces = has_once(*uses, Use::texcoords);
+      look_.has_numbers = has_once(*uses, Use::texture);
     }
-    const auto index = read_index(property.type, use);
-    if (!index) return index.error();
-    add_corner(*index, use);
+    for (std::uint64_t row = 0; row < element.count; ++row) {
+      for (std::size_t i = 0; i < uses->size(); ++i) {
+        const auto& property = element.properties[i];
+        auto done = property.count_type ? read_list(property, (*uses)[i])
+                                        : read_value(property, (*uses)[i]);
+        if (!done) return done;
+      }
+      end_row(element);
+    }
+    return {};
   }
-  strip_.reset();
-  if (use == Use::corners)
-    mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
-  return {};
-}
-
-/// Nothing where a strip ends: at a negative number, which unsigned types show as their greatest.
-Result<std::optional<std::uint32_t>> PlyParser::read_index(PlyType type, Use use) {
-  constexpr std::uint32_t greatest = std::numeric_limits<std::uint32_t>::max();
-  const auto value = body_.number(type);
-  if (!value) return body_.no_number();
-  if (use == Use::strips && (*value < 0.0 || *value == greatest))
-    return std::optional<std::uint32_t>();
-  if (!(*value >= 0.0) || *value != std::floor(*value) || *value > greatest)
-    return body_.bad("a vertex index is not a whole number from 0 on");
-  const auto index = static_cast<std::uint32_t>(*value);
-  highest_.note(index, body_.place());
-  return std::optional(index);
-}
-
-/// Of a strip, each corner makes a triangle with the two before it. Every other one is turned over.
-/// A corner that comes twice only leads the strip elsewhere.
-void PlyParser::add_corner(std::optional<std::uint32_t> index, Use use) {
-  if (use == Use::corners) {
-    mesh_.face_corners.push_back(*index);
-    return;
-  }
-  if (!index) {
+  Result<void> read_list(const PlyProperty& property, Use use) {
+    const auto count = body_.number(*property.count_type);
+    if (!count) return body_.no_number();
+    if (!(*count >= 0.0) || *count != std::floor(*count) ||
+        *count > std::numeric_limits<std::uint32_t>::max())
+      return body_.bad("the length of a list is not a whole number from 0 on");
+    const auto length = static_cast<std::uint64_t>(*count);
+    if (!body_.has_room_for(length, size_of(property.type)))
+      return body_.bad("a list of " + std::to_string(length) +
+                       " reaches beyond the end of the file");
+    const bool is_corners = use == Use::corners || use == Use::strips;
+    for (std::uint64_t i = 0; i < length; ++i) {
+      if (!is_corners) {
+        if (auto done = read_value(property, use); !done) return done;
+        continue;
+      }
+      const auto index = read_index(property.type, use);
+      if (!index) return index.error();
+      add_corner(*index, use);
+    }
     strip_.reset();
-    return;
+    if (use == Use::corners)
+      mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
+    return {};
   }
-  const auto triangle = strip_.add(*index);
-  if (!triangle) return;
-  mesh_.face_corners.insert(mesh_.face_corners.end(), triangle->begin(), triangle->end());
-  mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
-}
+  /// Nothing where a strip ends: at a negative number, which unsigned types show as their greatest.
+  Result<std::optional<std::uint32_t>> read_index(PlyType type, Use use) {
+    constexpr std::uint32_t greatest = std::numeric_limits<std::uint32_t>::max();
+    const auto value = body_.number(type);
+    if (!value) return body_.no_number();
+    if (use == Use::strips && (*value < 0.0 || *value == greatest))
+      return std::optional<std::uint32_t>();
+    if (!(*value >= 0.0) || *value != std::floor(*value) || *value > greatest)
+      return body_.bad("a vertex index is not a whole number from 0 on");
+    const auto index = static_cast<std::uint32_t>(*value);
+    highest_.note(index, body_.place());
+    return std::optional(index);
+  }
+  /// Of a strip, each corner makes a triangle with the two before it. Every other one is turned
+  /// over. A corner that comes twice only leads the strip elsewhere.
+  void add_corner(std::optional<std::uint32_t> index, Use use) {
+    if (use == Use::corners) {
+      mesh_.face_corners.push_back(*index);
+      return;
+    }
+    if (!index) {
+      strip_.reset();
+      return;
+    }
+    const auto triangle = strip_.add(*index);
+    if (!triangle) return;
+    mesh_.face_corners.insert(mesh_.face_corners.end(), triangle->begin(), triangle->end());
+    mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
+  }
+  void note_left_out(const PlyElement& element, const std::vector<Use>& uses) {
+    if (element.count == 0) return;
+    const std::string name = in_quotes(element.name);
+    if (element.name != "vertex" && element.name != "face" && element.name != "tristrips") {
+      notes_.push_back(std::to_string(element.count) + " of the element " + name + " are left out");
+      return;
+    }
+    constexpr std::size_t max_named = 12;
+    std::string names;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+      if (uses[i] != Use::skip || is_computed(element.properties[i])) continue;
+      if (++count <= max_named)
+        names += (names.empty() ? "" : ", ") + printable(element.properties[i].name.substr(0, 40));
+    }
+    if (count > max_named) names += ", and " + std::to_string(count - max_named) + " more";
+    if (count > 0)
+      notes_.push_back((count == 1 ? "the property " : "the properties ") + names + " of each " +
+                       name + (count == 1 ? " is" : " are") + " left out");
+  }
+  Result<void> read_value(const PlyProperty& property, Use use) {
+    const auto value = body_.number(property.type);
+    if (!value) return body_.no_number();
+    if (use == Use::skip) return {};
+    if (use == Use::across || use == Use::up) {
+      texcoord_[use == Use::across ? 0 : 1] = *value;
+      return {};
+    }
+    if (use == Use::texcoords) look_.add_number(*value);
+    if (use == Use::texture) look_.set_texture(*value);
+    if (use == Use::texcoords || use == Use::texture) return {};
+    if (is_channel(use)) {
+      colour_[channel_of(use)] = static_cast<float>(std::clamp(*value, -1e30, 1e30));
+      return {};
+    }
+    if (!is_usable(*value)) return body_.bad("a coordinate is not finite or beyond 1e100");
+    vertex_[static_cast<int>(use) - static_cast<int>(Use::x)] = *value;
+    return {};
+  }
+  void keep_vertex() {
+    coordinates_.insert(coordinates_.end(), vertex_, vertex_ + 3);
+    if (has_colours_) colours_.insert(colours_.end(), colour_.begin(), colour_.end());
+    if (look_.has_vertices) look_.add_vertex(texcoord_[0], texcoord_[1]);
+  }
+  void end_row(const PlyElement& element) {
+    if (element.name == "vertex") keep_vertex();
+    if (element.name != "face") return;
+    const std::size_t faces = mesh_.face_count();
+    look_.end_face(mesh_.face_starts[faces] - mesh_.face_starts[faces - 1]);
+  }
+  /// Makes parts of 1 of them, linear. Colours are encoded as on screens, opacity is not. Red,
+  /// green and blue have one range, unless they are of different types.
+  void finish_colours() {
+    std::array<ColourRange, 4> ranges;
+    for (std::size_t channel = 0; channel < 4; ++channel) {
+      ColourRange& range = ranges[channel];
+      range = ColourRange(colour_numbers_[channel]);
+      for (std::size_t at = 0; at < colours_.size(); ++at) {
+        const bool is_opacity = at % 4 == 3;
+        if (is_opacity == (channel == 3) && colour_numbers_[at % 4] == colour_numbers_[channel])
+          range.see(static_cast<double>(colours_[at]));
+      }
+    }
+    for (std::size_t at = 0; at < colours_.size(); ++at) {
+      const float part = ranges[at % 4].part_of(static_cast<double>(colours_[at]));
+      colours_[at] = at % 4 == 3 ? part : linear_of(part);
+    }
+    if (auto note = ranges[0].note(); !note.empty()) notes_.push_back(std::move(note));
+  }
 
-Result<void> PlyParser::read_value(const PlyProperty& property, Use use) {
-  const auto value = body_.number(property.type);
-  if (!value) return body_.no_number();
-  if (use == Use::skip) return {};
-  if (use == Use::across || use == Use::up) {
-    texcoord_[use == Use::across ? 0 : 1] = *value;
-    return {};
-  }
-  if (use == Use::texcoords) look_.add_number(*value);
-  if (use == Use::texture) look_.set_texture(*value);
-  if (use == Use::texcoords || use == Use::texture) return {};
-  if (is_channel(use)) {
-    colour_[channel_of(use)] = static_cast<float>(std::clamp(*value, -1e30, 1e30));
-    return {};
-  }
-  if (!is_usable(*value)) return body_.bad("a coordinate is not finite or beyond 1e100");
-  vertex_[static_cast<int>(use) - static_cast<int>(Use::x)] = *value;
-  return {};
-}
+  const PlyHeader& header_;
+  std::string_view name_;
+  ReadNotes& notes_;
+  PlyBody body_;
+  std::vector<double> coordinates_;
+  double vertex_[3] = {};
+  std::vector<float> colours_; ///< four numbers each, as they are in the file
+  bool has_colours_ = false;
+  std::array<ColourNumbers, 4> colour_numbers_{};
+  std::array<float, 4> colour_{};
+  HighestIndex highest_;
+  std::array<double, 2> texcoord_{};
+  PlyLook look_;
+  TriangleStrip strip_;
+  Mesh mesh_;
+};
 
 } // namespace
 

@@ -1,4 +1,3 @@
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -124,14 +123,80 @@ public:
   TextStl(std::string_view text, std::string_view name)
       : words_(text, TextScanner::Dialect::plain), name_(name) {}
 
-  Result<Mesh> parse(ReadNotes& notes);
+  Result<Mesh> parse(ReadNotes& notes) {
+    for (auto word = words_.field_on_any_line(); !word.empty(); word = words_.field_on_any_line())
+      if (const auto done = statement(word); !done) return done.error();
+    if (in_loop_) return bad("the file is cut off within a facet");
+    if (faces_.mesh.face_count() == 0)
+      return Error{Errc::bad_input,
+                   std::string(name_) + ": is an STL without a facet; export it once more"};
+    note_all(notes);
+    Mesh mesh = std::move(faces_).take();
+    if (!objects_.names.empty()) mesh.look.objects = std::move(objects_);
+    return mesh;
+  }
 
 private:
-  Result<void> statement(std::string_view word);
-  Result<void> vertex();
-  Result<void> facet_ends();
-  void solid_begins();
-  void note_all(ReadNotes& notes) const;
+  Result<void> statement(std::string_view word) {
+    if (is_word(word, "vertex")) return vertex();
+    if (is_word(word, "endloop")) return facet_ends();
+    if (is_word(word, "solid")) {
+      solid_begins();
+    } else if (is_word(word, "endsolid")) {
+      joined_fields(words_);
+      in_solid_ = false;
+      object_ = no_index;
+    } else if (is_word(word, "normal")) {
+      // It is computed, because it changes.
+      for (int number = 0; number < 3; ++number)
+        words_.field_on_any_line();
+    } else if (is_word(word, "loop")) {
+      if (in_loop_) return bad("a loop begins within a loop");
+      in_loop_ = true;
+    } else if (!is_word(word, "facet") && !is_word(word, "outer") && !is_word(word, "endfacet")) {
+      if (unknown_++ == 0) first_unknown_ = words_.line();
+      joined_fields(words_);
+    }
+    return {};
+  }
+  Result<void> vertex() {
+    if (!in_loop_) return bad("a vertex stands outside of a loop");
+    std::array<double, 3> place{};
+    for (double& coordinate : place) {
+      const std::string_view field = words_.field_on_any_line();
+      if (field.empty()) return bad("the file is cut off within a vertex");
+      const auto number = to_number_of_any_program(field);
+      if (!number || !is_usable(*number))
+        return bad(in_quotes(field) + std::string(not_usable(field)));
+      coordinate = *number;
+    }
+    faces_.add_vertex(place);
+    return {};
+  }
+  Result<void> facet_ends() {
+    if (!in_loop_) return bad("endloop stands outside of a loop");
+    in_loop_ = false;
+    if (faces_.end_face()) objects_.of_face.push_back(object_);
+    return {};
+  }
+  void solid_begins() {
+    std::string name = joined_fields(words_);
+    in_solid_ = true;
+    ++solids_;
+    if (name.empty() && solids_ > 1) name = "solid " + std::to_string(solids_);
+    object_ = no_index;
+    if (name.empty()) return;
+    object_ = static_cast<std::uint32_t>(objects_.names.size());
+    objects_.names.push_back(std::move(name));
+  }
+  void note_all(ReadNotes& notes) const {
+    faces_.note_left_out(notes);
+    if (in_solid_) notes.push_back("ends without endsolid; it may be cut off");
+    if (unknown_ > 0)
+      notes.push_back(std::to_string(unknown_) + (unknown_ == 1 ? " line" : " lines") +
+                      " that no STL has " + (unknown_ == 1 ? "is" : "are") +
+                      " left out (the first is line " + std::to_string(first_unknown_) + ")");
+  }
 
   Error bad(const std::string& what) const { return bad_line(name_, words_.line(), what); }
 
@@ -143,84 +208,6 @@ private:
   std::uint32_t object_ = no_index;
   StlFaces faces_;
 };
-
-Result<Mesh> TextStl::parse(ReadNotes& notes) {
-  for (auto word = words_.field_on_any_line(); !word.empty(); word = words_.field_on_any_line())
-    if (const auto done = statement(word); !done) return done.error();
-  if (in_loop_) return bad("the file is cut off within a facet");
-  if (faces_.mesh.face_count() == 0)
-    return Error{Errc::bad_input,
-                 std::string(name_) + ": is an STL without a facet; export it once more"};
-  note_all(notes);
-  Mesh mesh = std::move(faces_).take();
-  if (!objects_.names.empty()) mesh.look.objects = std::move(objects_);
-  return mesh;
-}
-
-void TextStl::note_all(ReadNotes& notes) const {
-  faces_.note_left_out(notes);
-  if (in_solid_) notes.push_back("ends without endsolid; it may be cut off");
-  if (unknown_ > 0)
-    notes.push_back(std::to_string(unknown_) + (unknown_ == 1 ? " line" : " lines") +
-                    " that no STL has " + (unknown_ == 1 ? "is" : "are") +
-                    " left out (the first is line " + std::to_string(first_unknown_) + ")");
-}
-
-Result<void> TextStl::statement(std::string_view word) {
-  if (is_word(word, "vertex")) return vertex();
-  if (is_word(word, "endloop")) return facet_ends();
-  if (is_word(word, "solid")) {
-    solid_begins();
-  } else if (is_word(word, "endsolid")) {
-    joined_fields(words_);
-    in_solid_ = false;
-    object_ = no_index;
-  } else if (is_word(word, "normal")) {
-    // It is computed, because it changes.
-    for (int number = 0; number < 3; ++number)
-      words_.field_on_any_line();
-  } else if (is_word(word, "loop")) {
-    if (in_loop_) return bad("a loop begins within a loop");
-    in_loop_ = true;
-  } else if (!is_word(word, "facet") && !is_word(word, "outer") && !is_word(word, "endfacet")) {
-    if (unknown_++ == 0) first_unknown_ = words_.line();
-    joined_fields(words_);
-  }
-  return {};
-}
-
-void TextStl::solid_begins() {
-  std::string name = joined_fields(words_);
-  in_solid_ = true;
-  ++solids_;
-  if (name.empty() && solids_ > 1) name = "solid " + std::to_string(solids_);
-  object_ = no_index;
-  if (name.empty()) return;
-  object_ = static_cast<std::uint32_t>(objects_.names.size());
-  objects_.names.push_back(std::move(name));
-}
-
-Result<void> TextStl::vertex() {
-  if (!in_loop_) return bad("a vertex stands outside of a loop");
-  std::array<double, 3> place{};
-  for (double& coordinate : place) {
-    const std::string_view field = words_.field_on_any_line();
-    if (field.empty()) return bad("the file is cut off within a vertex");
-    const auto number = to_number_of_any_program(field);
-    if (!number || !is_usable(*number))
-      return bad(in_quotes(field) + std::string(not_usable(field)));
-    coordinate = *number;
-  }
-  faces_.add_vertex(place);
-  return {};
-}
-
-Result<void> TextStl::facet_ends() {
-  if (!in_loop_) return bad("endloop stands outside of a loop");
-  in_loop_ = false;
-  if (faces_.end_face()) objects_.of_face.push_back(object_);
-  return {};
-}
 
 /// The colours of facets in their last two bytes, of which each program has its own form.
 class FacetColours {
@@ -277,12 +264,66 @@ class BinaryStl {
 public:
   BinaryStl(std::string_view text, std::string_view name) : text_(text), name_(name) {}
 
-  Result<Mesh> parse(ReadNotes& notes);
+  Result<Mesh> parse(ReadNotes& notes) {
+    const auto count = count_facets(notes);
+    if (!count) return count.error();
+    faces_.vertices.reserve(9 * *count);
+    faces_.mesh.face_corners.reserve(3 * *count);
+    FacetColours colours(text_.substr(0, stl_header_bytes));
+    Appearance& look = faces_.mesh.look;
+    for (std::size_t number = 0; number < *count; ++number) {
+      const auto kept = facet(number);
+      if (!kept) return kept.error();
+      if (!*kept) continue;
+      const std::size_t attribute = facets_offset + facet_bytes * (number + 1) - 2;
+      colours.add_facet(little_endian(text_, attribute, 2), look);
+    }
+    if (look.materials.empty()) look.face_materials.clear();
+    faces_.note_left_out(notes);
+    if (colours.left_out() > 0)
+      notes.push_back("attributes of " + std::to_string(colours.left_out()) +
+                      " triangles, which are no colours, are left out");
+    return std::move(faces_).take();
+  }
 
 private:
-  Result<std::size_t> count_facets(ReadNotes& notes) const;
+  Result<std::size_t> count_facets(ReadNotes& notes) const {
+    if (text_.size() < facets_offset)
+      return bad("is an STL that is cut off within its header; get the whole file");
+    const std::size_t promised = little_endian(text_, stl_header_bytes, 4);
+    const std::size_t room = (text_.size() - facets_offset) / facet_bytes;
+    const bool is_unknown = promised == 0 || promised == std::numeric_limits<std::uint32_t>::max();
+    if (is_unknown && room > 0) {
+      notes.push_back("does not say how many triangles it has; all " + std::to_string(room) +
+                      " that are there are read");
+      return room;
+    }
+    if (promised > room)
+      return bad("says that it has " + std::to_string(promised) + " triangles, and has bytes for " +
+                 std::to_string(room) + "; it is cut off, or no STL: get the whole file");
+    if (promised == 0) return bad("is an STL without a triangle");
+    const std::size_t more = text_.size() - facets_offset - facet_bytes * promised;
+    if (more > 0)
+      notes.push_back(std::to_string(more) + " bytes after the last triangle are left out");
+    return promised;
+  }
   /// Returns false if the facet is left out.
-  Result<bool> facet(std::size_t number);
+  Result<bool> facet(std::size_t number) {
+    const std::size_t begin = facets_offset + facet_bytes * number;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      std::array<double, 3> place{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t at = begin + 12 + 12 * corner + 4 * axis; // the normal stands first
+        const auto value = std::bit_cast<float>(little_endian(text_, at, 4));
+        place[axis] = static_cast<double>(value);
+        if (!is_usable(place[axis]))
+          return bad("byte " + std::to_string(at + 1) + ": a coordinate of triangle " +
+                     std::to_string(number + 1) + " is not finite");
+      }
+      faces_.add_vertex(place);
+    }
+    return faces_.end_face();
+  }
 
   Error bad(const std::string& what) const {
     return {Errc::bad_input, std::string(name_) + ": " + what};
@@ -292,66 +333,6 @@ private:
   std::string_view name_;
   StlFaces faces_;
 };
-
-Result<std::size_t> BinaryStl::count_facets(ReadNotes& notes) const {
-  if (text_.size() < facets_offset)
-    return bad("is an STL that is cut off within its header; get the whole file");
-  const std::size_t promised = little_endian(text_, stl_header_bytes, 4);
-  const std::size_t room = (text_.size() - facets_offset) / facet_bytes;
-  const bool is_unknown = promised == 0 || promised == std::numeric_limits<std::uint32_t>::max();
-  if (is_unknown && room > 0) {
-    notes.push_back("does not say how many triangles it has; all " + std::to_string(room) +
-                    " that are there are read");
-    return room;
-  }
-  if (promised > room)
-    return bad("says that it has " + std::to_string(promised) + " triangles, and has bytes for " +
-               std::to_string(room) + "; it is cut off, or no STL: get the whole file");
-  if (promised == 0) return bad("is an STL without a triangle");
-  const std::size_t more = text_.size() - facets_offset - facet_bytes * promised;
-  if (more > 0)
-    notes.push_back(std::to_string(more) + " bytes after the last triangle are left out");
-  return promised;
-}
-
-Result<Mesh> BinaryStl::parse(ReadNotes& notes) {
-  const auto count = count_facets(notes);
-  if (!count) return count.error();
-  faces_.vertices.reserve(9 * *count);
-  faces_.mesh.face_corners.reserve(3 * *count);
-  FacetColours colours(text_.substr(0, stl_header_bytes));
-  Appearance& look = faces_.mesh.look;
-  for (std::size_t number = 0; number < *count; ++number) {
-    const auto kept = facet(number);
-    if (!kept) return kept.error();
-    if (!*kept) continue;
-    const std::size_t attribute = facets_offset + facet_bytes * (number + 1) - 2;
-    colours.add_facet(little_endian(text_, attribute, 2), look);
-  }
-  if (look.materials.empty()) look.face_materials.clear();
-  faces_.note_left_out(notes);
-  if (colours.left_out() > 0)
-    notes.push_back("attributes of " + std::to_string(colours.left_out()) +
-                    " triangles, which are no colours, are left out");
-  return std::move(faces_).take();
-}
-
-Result<bool> BinaryStl::facet(std::size_t number) {
-  const std::size_t begin = facets_offset + facet_bytes * number;
-  for (std::size_t corner = 0; corner < 3; ++corner) {
-    std::array<double, 3> place{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t at = begin + 12 + 12 * corner + 4 * axis; // the normal stands first
-      const auto value = std::bit_cast<float>(little_endian(text_, at, 4));
-      place[axis] = static_cast<double>(value);
-      if (!is_usable(place[axis]))
-        return bad("byte " + std::to_string(at + 1) + ": a coordinate of triangle " +
-                   std::to_string(number + 1) + " is not finite");
-    }
-    faces_.add_vertex(place);
-  }
-  return faces_.end_face();
-}
 
 void append_little_endian_word(std::string& text, std::uint32_t number, int bytes) {
   for (int byte = 0; byte < bytes; ++byte)

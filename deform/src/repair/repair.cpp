@@ -90,6 +90,17 @@ std::vector<std::uint32_t> near_places(const Points& points, std::span<const std
 constexpr double default_tolerance = 1e-5; // of the diagonal
 constexpr double largest_repairable = 1e60;
 
+double area_of(FaceTriangles& triangles, const Mesh& mesh, std::uint32_t face) {
+  double area = 0.0;
+  for (const Triangle& triangle : triangles.of(face)) {
+    const auto at = [&](std::size_t k) -> Eigen::Vector3d {
+      return mesh.vertices.col(mesh.face_corners[triangle[k]]);
+    };
+    area += 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
+  }
+  return area;
+}
+
 class Repairer {
 public:
   Repairer(const Mesh& mesh, double tolerance) : mesh_(result_.mesh) {
@@ -117,22 +128,221 @@ public:
   }
 
 private:
-  void drop_thin_faces();
+  /// Faces with fewer than three corners, and corners that repeat the one before.
+  void drop_thin_faces() {
+    std::vector<std::uint32_t> same(static_cast<std::size_t>(mesh_.vertices.cols()));
+    for (std::uint32_t at = 0; at < same.size(); ++at)
+      same[at] = at;
+    const DroppedCorners dropped = renumber_corners(mesh_, same);
+    result_.dropped += dropped.faces;
+    result_.repeated = dropped.corners;
+    place_of_ = mesh_.face_corners;
+  }
   void drop_doubles() { result_.dropped += drop_double_faces(mesh_, place_of_); }
-  void join_places();
-  void split_junctions();
-  void turn();
-  void separate();
-  void drop_strays();
-  Result<void> fill();
-  void leave_out_flat();
-  void drop_left_out_vertices();
-  std::vector<std::uint8_t> used_vertices() const;
-  Result<void> check_rest() const;
-  void leave_out_parts(const std::vector<UnfilledPart>& parts);
-  void leave_out(std::span<const std::uint32_t> faces, const UnfilledPart& how);
-  void drop_left_out_faces();
-  std::vector<std::uint8_t> open_vertices() const;
+  /// Corners keep their vertices for now: only places become one. Faces that get thinner than three
+  /// places by it go.
+  void join_places() {
+    const std::vector<std::uint32_t> place =
+        near_places(mesh_.vertices, open_vertices(), result_.tolerance);
+    const std::vector<std::uint8_t> used = used_vertices();
+    const Eigen::Matrix4Xf& colours = mesh_.look.vertex_colours;
+    bool differ = false;
+    for (std::uint32_t vertex = 0; vertex < place.size(); ++vertex)
+      if (used[vertex] != 0 && place[vertex] != vertex) {
+        ++result_.joined;
+        differ =
+            differ || (colours.cols() > 0 && colours.col(vertex) != colours.col(place[vertex]));
+      }
+    if (differ) move_colours_to_corners(mesh_);
+    result_.dropped += renumber_corners(mesh_, place).faces;
+    place_of_ = mesh_.face_corners;
+  }
+  void split_junctions() {
+    // What lies in an edge of a face that is split may be split by it in turn.
+    constexpr int rounds = 3;
+    for (int round = 0; round < rounds; ++round) {
+      const SplitJunctions split = split_at_junctions(mesh_, place_of_, result_.tolerance);
+      result_.split += split.count;
+      result_.skipped_junctions = result_.skipped_junctions || split.is_too_many;
+      if (split.count == 0) break;
+    }
+  }
+  /// Surfaces with one side only are left out, and then the others are turned.
+  void turn() {
+    TurnedAlike alike = turn_alike(mesh_, place_of_);
+    if (alike.one_sided) {
+      leave_out(alike.one_sided_faces,
+                {alike.one_sided->first,
+                 "has one side only, as a Möbius strip has, so it has no inside",
+                 "cut it open at the edge between " + where(alike.one_sided->first) + " and " +
+                     where(alike.one_sided->second) + " where it was made"});
+      drop_left_out_faces();
+      alike = turn_alike(mesh_, place_of_);
+    }
+    result_.turned = alike.turned;
+  }
+  /// Corners that no edge holds together get vertices of their own. The first ones keep the vertex.
+  void separate() {
+    const auto corners = static_cast<std::uint32_t>(place_of_.size());
+    std::vector<std::uint32_t> each(corners);
+    for (std::uint32_t at = 0; at < corners; ++at)
+      each[at] = at;
+    UnionFind sets(corners);
+    stitch(mesh_, place_of_, each, sets);
+    std::vector<std::uint32_t> owner(static_cast<std::size_t>(mesh_.vertices.cols()), no_index);
+    std::vector<std::uint32_t> vertex_of_set(corners, no_index), copied;
+    const auto before = static_cast<std::uint32_t>(mesh_.vertices.cols());
+    for (std::uint32_t at = 0; at < corners; ++at) {
+      std::uint32_t& vertex = vertex_of_set[sets.find(at)];
+      if (vertex == no_index) {
+        const std::uint32_t place = place_of_[at];
+        vertex = place;
+        if (owner[place] != no_index) {
+          vertex = before + static_cast<std::uint32_t>(copied.size());
+          copied.push_back(place);
+        }
+        owner[place] = at;
+      }
+      mesh_.face_corners[at] = vertex;
+    }
+    result_.separated = copied.size();
+    if (copied.empty()) return;
+    mesh_.detail.clear();
+    const bool coloured = mesh_.look.vertex_colours.cols() > 0;
+    const auto more = static_cast<Eigen::Index>(copied.size());
+    mesh_.vertices.conservativeResize(3, before + more);
+    if (coloured) mesh_.look.vertex_colours.conservativeResize(4, before + more);
+    for (Eigen::Index at = 0; at < more; ++at) {
+      const std::uint32_t from = copied[static_cast<std::size_t>(at)];
+      mesh_.vertices.col(before + at) = mesh_.vertices.col(from).eval();
+      if (coloured)
+        mesh_.look.vertex_colours.col(before + at) = mesh_.look.vertex_colours.col(from).eval();
+    }
+  }
+  /// Vertices that became one with another one, or whose faces were left out, also go, but are not
+  /// counted again.
+  void drop_strays() {
+    const std::vector<std::uint8_t> keeps = used_vertices();
+    const auto gone = static_cast<std::size_t>(std::count(keeps.begin(), keeps.end(), 0));
+    keep_vertices(mesh_, keeps);
+    result_.stray = gone - std::min(gone, result_.joined + left_out_vertices_);
+  }
+  Result<void> fill() {
+    const auto filled = fill_holes(mesh_);
+    if (!filled) return filled.error();
+    result_.filled = filled->count;
+    result_.filled_crossing = filled->crossing;
+    leave_out_parts(filled->unfilled);
+    return {};
+  }
+  /// What was filled must have got an inside.
+  void leave_out_flat() {
+    if (mesh_.face_count() == 0) return;
+    std::vector<std::uint32_t> part_of;
+    const std::uint32_t count = number_parts(mesh_, part_of);
+    std::vector<double> volume(count, 0.0), area(count, 0.0);
+    std::vector<std::uint32_t> first(count, no_index);
+    for (std::uint32_t vertex = 0; vertex < part_of.size(); ++vertex)
+      if (part_of[vertex] != no_index && first[part_of[vertex]] == no_index)
+        first[part_of[vertex]] = vertex;
+    for_each_triangle(mesh_, [&](const Triangle& triangle) {
+      const std::uint32_t part = part_of[triangle[0]];
+      const auto from_first = [&](std::size_t k) -> Eigen::Vector3d {
+        return mesh_.vertices.col(triangle[k]) - mesh_.vertices.col(first[part]);
+      };
+      const Eigen::Vector3d a = from_first(0), b = from_first(1), c = from_first(2);
+      volume[part] += a.dot(b.cross(c)) / 6.0;
+      area[part] += 0.5 * (b - a).cross(c - a).norm();
+    });
+    std::vector<UnfilledPart> flat;
+    for (std::uint32_t part = 0; part < count; ++part)
+      if (!(std::abs(volume[part]) > 1e-9 * std::pow(area[part], 1.5)))
+        flat.push_back({first[part], "has no inside: both of its sides lie in one place",
+                        "give it a thickness where it was made"});
+    leave_out_parts(flat);
+  }
+  /// What was separated from them was not, as far as anybody sees.
+  void drop_left_out_vertices() {
+    if (result_.left_out.empty()) return;
+    const std::vector<std::uint8_t> used = used_vertices();
+    const std::vector<std::uint32_t> place = exact_places(mesh_.vertices);
+    std::vector<std::uint8_t> stays(place.size(), 0);
+    for (std::size_t vertex = 0; vertex < used.size(); ++vertex)
+      if (used[vertex] != 0) stays[place[vertex]] = 1;
+    for (std::size_t vertex = 0; vertex < used.size(); ++vertex)
+      if (used[vertex] == 0 && stays[place[vertex]] != 0 && result_.separated > 0)
+        --result_.separated;
+    keep_vertices(mesh_, used);
+  }
+  std::vector<std::uint8_t> used_vertices() const {
+    std::vector<std::uint8_t> used(static_cast<std::size_t>(mesh_.vertices.cols()), 0);
+    for (const std::uint32_t corner : mesh_.face_corners)
+      used[corner] = 1;
+    return used;
+  }
+  /// A model of which only trifles would be left is none.
+  Result<void> check_rest() const {
+    if (result_.left_out.empty()) return {};
+    double rest = 0.0;
+    FaceTriangles triangles(mesh_);
+    for (std::uint32_t face = 0; face < mesh_.face_count(); ++face)
+      rest += area_of(triangles, mesh_, face);
+    if (rest > left_out_area_) return {};
+    const LeftOut& first = result_.left_out.front();
+    return Error{Errc::bad_input, "cannot be repaired: its part at " + first.where + " " +
+                                      first.why + "; " + first.remedy + ", or remove it"};
+  }
+  void leave_out_parts(const std::vector<UnfilledPart>& parts) {
+    if (parts.empty()) return;
+    std::vector<std::uint32_t> part_of;
+    std::vector<std::vector<std::uint32_t>> faces_of(number_parts(mesh_, part_of));
+    for (std::uint32_t face = 0; face < mesh_.face_count(); ++face)
+      faces_of[part_of[mesh_.face_corners[mesh_.face_starts[face]]]].push_back(face);
+    for (const UnfilledPart& part : parts)
+      leave_out(faces_of[part_of[part.vertex]], part);
+    drop_left_out_faces();
+  }
+  /// What is alike but for its place becomes one note.
+  void leave_out(std::span<const std::uint32_t> faces, const UnfilledPart& how) {
+    if (keeps_.empty()) keeps_.assign(mesh_.face_count(), 1);
+    FaceTriangles triangles(mesh_);
+    for (const std::uint32_t face : faces) {
+      keeps_[face] = 0;
+      left_out_area_ += area_of(triangles, mesh_, face);
+    }
+    auto known = std::find_if(result_.left_out.begin(), result_.left_out.end(),
+                              [&](const LeftOut& left) { return left.why == how.why; });
+    if (known == result_.left_out.end())
+      known = result_.left_out.insert(known, {0, 0, where(how.vertex), how.why, how.remedy});
+    ++known->parts;
+    known->faces += faces.size();
+  }
+  void drop_left_out_faces() {
+    if (place_of_.size() == mesh_.face_corners.size()) {
+      std::vector<std::uint32_t> places;
+      for (std::size_t face = 0; face < mesh_.face_count(); ++face)
+        if (keeps_[face] != 0)
+          places.insert(places.end(), place_of_.begin() + mesh_.face_starts[face],
+                        place_of_.begin() + mesh_.face_starts[face + 1]);
+      place_of_ = std::move(places);
+    }
+    const auto count_used = [&] {
+      const std::vector<std::uint8_t> used = used_vertices();
+      return static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
+    };
+    left_out_vertices_ += count_used();
+    keep_faces(mesh_, keeps_);
+    left_out_vertices_ -= count_used();
+    keeps_.clear();
+  }
+  /// Vertices of edges that have not just two faces.
+  std::vector<std::uint8_t> open_vertices() const {
+    std::vector<std::uint8_t> open(static_cast<std::size_t>(mesh_.vertices.cols()), 0);
+    for_each_edge(placed_edges(mesh_, mesh_.face_corners), [&](std::span<const PlacedEdge> sides) {
+      if (sides.size() != 2) open[sides[0].low] = open[sides[0].high] = 1;
+    });
+    return open;
+  }
   std::string where(std::uint32_t vertex) const {
     return place_text(mesh_.vertices.col(vertex), mesh_.offset);
   }
@@ -144,245 +354,6 @@ private:
   double left_out_area_ = 0.0;
   std::size_t left_out_vertices_ = 0; ///< that are in the mesh still
 };
-
-double area_of(FaceTriangles& triangles, const Mesh& mesh, std::uint32_t face) {
-  double area = 0.0;
-  for (const Triangle& triangle : triangles.of(face)) {
-    const auto at = [&](std::size_t k) -> Eigen::Vector3d {
-      return mesh.vertices.col(mesh.face_corners[triangle[k]]);
-    };
-    area += 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
-  }
-  return area;
-}
-
-/// Faces with fewer than three corners, and corners that repeat the one before.
-void Repairer::drop_thin_faces() {
-  std::vector<std::uint32_t> same(static_cast<std::size_t>(mesh_.vertices.cols()));
-  for (std::uint32_t at = 0; at < same.size(); ++at)
-    same[at] = at;
-  const DroppedCorners dropped = renumber_corners(mesh_, same);
-  result_.dropped += dropped.faces;
-  result_.repeated = dropped.corners;
-  place_of_ = mesh_.face_corners;
-}
-
-/// Vertices of edges that have not just two faces.
-std::vector<std::uint8_t> Repairer::open_vertices() const {
-  std::vector<std::uint8_t> open(static_cast<std::size_t>(mesh_.vertices.cols()), 0);
-  for_each_edge(placed_edges(mesh_, mesh_.face_corners), [&](std::span<const PlacedEdge> sides) {
-    if (sides.size() != 2) open[sides[0].low] = open[sides[0].high] = 1;
-  });
-  return open;
-}
-
-/// Corners keep their vertices for now: only places become one. Faces that get thinner than three
-/// places by it go.
-void Repairer::join_places() {
-  const std::vector<std::uint32_t> place =
-      near_places(mesh_.vertices, open_vertices(), result_.tolerance);
-  const std::vector<std::uint8_t> used = used_vertices();
-  const Eigen::Matrix4Xf& colours = mesh_.look.vertex_colours;
-  bool differ = false;
-  for (std::uint32_t vertex = 0; vertex < place.size(); ++vertex)
-    if (used[vertex] != 0 && place[vertex] != vertex) {
-      ++result_.joined;
-      differ = differ || (colours.cols() > 0 && colours.col(vertex) != colours.col(place[vertex]));
-    }
-  if (differ) move_colours_to_corners(mesh_);
-  result_.dropped += renumber_corners(mesh_, place).faces;
-  place_of_ = mesh_.face_corners;
-}
-
-void Repairer::split_junctions() {
-  // What lies in an edge of a face that is split may be split by it in turn.
-  constexpr int rounds = 3;
-  for (int round = 0; round < rounds; ++round) {
-    const SplitJunctions split = split_at_junctions(mesh_, place_of_, result_.tolerance);
-    result_.split += split.count;
-    result_.skipped_junctions = result_.skipped_junctions || split.is_too_many;
-    if (split.count == 0) break;
-  }
-}
-
-/// Surfaces with one side only are left out, and then the others are turned.
-void Repairer::turn() {
-  TurnedAlike alike = turn_alike(mesh_, place_of_);
-  if (alike.one_sided) {
-    leave_out(alike.one_sided_faces,
-              {alike.one_sided->first,
-               "has one side only, as a Möbius strip has, so it has no inside",
-               "cut it open at the edge between " + where(alike.one_sided->first) + " and " +
-                   where(alike.one_sided->second) + " where it was made"});
-    drop_left_out_faces();
-    alike = turn_alike(mesh_, place_of_);
-  }
-  result_.turned = alike.turned;
-}
-
-/// Corners that no edge holds together get vertices of their own. The first ones keep the vertex.
-void Repairer::separate() {
-  const auto corners = static_cast<std::uint32_t>(place_of_.size());
-  std::vector<std::uint32_t> each(corners);
-  for (std::uint32_t at = 0; at < corners; ++at)
-    each[at] = at;
-  UnionFind sets(corners);
-  stitch(mesh_, place_of_, each, sets);
-  std::vector<std::uint32_t> owner(static_cast<std::size_t>(mesh_.vertices.cols()), no_index);
-  std::vector<std::uint32_t> vertex_of_set(corners, no_index), copied;
-  const auto before = static_cast<std::uint32_t>(mesh_.vertices.cols());
-  for (std::uint32_t at = 0; at < corners; ++at) {
-    std::uint32_t& vertex = vertex_of_set[sets.find(at)];
-    if (vertex == no_index) {
-      const std::uint32_t place = place_of_[at];
-      vertex = place;
-      if (owner[place] != no_index) {
-        vertex = before + static_cast<std::uint32_t>(copied.size());
-        copied.push_back(place);
-      }
-      owner[place] = at;
-    }
-    mesh_.face_corners[at] = vertex;
-  }
-  result_.separated = copied.size();
-  if (copied.empty()) return;
-  mesh_.detail.clear();
-  const bool coloured = mesh_.look.vertex_colours.cols() > 0;
-  const auto more = static_cast<Eigen::Index>(copied.size());
-  mesh_.vertices.conservativeResize(3, before + more);
-  if (coloured) mesh_.look.vertex_colours.conservativeResize(4, before + more);
-  for (Eigen::Index at = 0; at < more; ++at) {
-    const std::uint32_t from = copied[static_cast<std::size_t>(at)];
-    mesh_.vertices.col(before + at) = mesh_.vertices.col(from).eval();
-    if (coloured)
-      mesh_.look.vertex_colours.col(before + at) = mesh_.look.vertex_colours.col(from).eval();
-  }
-}
-
-std::vector<std::uint8_t> Repairer::used_vertices() const {
-  std::vector<std::uint8_t> used(static_cast<std::size_t>(mesh_.vertices.cols()), 0);
-  for (const std::uint32_t corner : mesh_.face_corners)
-    used[corner] = 1;
-  return used;
-}
-
-/// Vertices that became one with another one, or whose faces were left out, also go, but are not
-/// counted again.
-void Repairer::drop_strays() {
-  const std::vector<std::uint8_t> keeps = used_vertices();
-  const auto gone = static_cast<std::size_t>(std::count(keeps.begin(), keeps.end(), 0));
-  keep_vertices(mesh_, keeps);
-  result_.stray = gone - std::min(gone, result_.joined + left_out_vertices_);
-}
-
-Result<void> Repairer::fill() {
-  const auto filled = fill_holes(mesh_);
-  if (!filled) return filled.error();
-  result_.filled = filled->count;
-  result_.filled_crossing = filled->crossing;
-  leave_out_parts(filled->unfilled);
-  return {};
-}
-
-/// What was filled must have got an inside.
-void Repairer::leave_out_flat() {
-  if (mesh_.face_count() == 0) return;
-  std::vector<std::uint32_t> part_of;
-  const std::uint32_t count = number_parts(mesh_, part_of);
-  std::vector<double> volume(count, 0.0), area(count, 0.0);
-  std::vector<std::uint32_t> first(count, no_index);
-  for (std::uint32_t vertex = 0; vertex < part_of.size(); ++vertex)
-    if (part_of[vertex] != no_index && first[part_of[vertex]] == no_index)
-      first[part_of[vertex]] = vertex;
-  for_each_triangle(mesh_, [&](const Triangle& triangle) {
-    const std::uint32_t part = part_of[triangle[0]];
-    const auto from_first = [&](std::size_t k) -> Eigen::Vector3d {
-      return mesh_.vertices.col(triangle[k]) - mesh_.vertices.col(first[part]);
-    };
-    const Eigen::Vector3d a = from_first(0), b = from_first(1), c = from_first(2);
-    volume[part] += a.dot(b.cross(c)) / 6.0;
-    area[part] += 0.5 * (b - a).cross(c - a).norm();
-  });
-  std::vector<UnfilledPart> flat;
-  for (std::uint32_t part = 0; part < count; ++part)
-    if (!(std::abs(volume[part]) > 1e-9 * std::pow(area[part], 1.5)))
-      flat.push_back({first[part], "has no inside: both of its sides lie in one place",
-                      "give it a thickness where it was made"});
-  leave_out_parts(flat);
-}
-
-void Repairer::leave_out_parts(const std::vector<UnfilledPart>& parts) {
-  if (parts.empty()) return;
-  std::vector<std::uint32_t> part_of;
-  std::vector<std::vector<std::uint32_t>> faces_of(number_parts(mesh_, part_of));
-  for (std::uint32_t face = 0; face < mesh_.face_count(); ++face)
-    faces_of[part_of[mesh_.face_corners[mesh_.face_starts[face]]]].push_back(face);
-  for (const UnfilledPart& part : parts)
-    leave_out(faces_of[part_of[part.vertex]], part);
-  drop_left_out_faces();
-}
-
-/// What is alike but for its place becomes one note.
-void Repairer::leave_out(std::span<const std::uint32_t> faces, const UnfilledPart& how) {
-  if (keeps_.empty()) keeps_.assign(mesh_.face_count(), 1);
-  FaceTriangles triangles(mesh_);
-  for (const std::uint32_t face : faces) {
-    keeps_[face] = 0;
-    left_out_area_ += area_of(triangles, mesh_, face);
-  }
-  auto known = std::find_if(result_.left_out.begin(), result_.left_out.end(),
-                            [&](const LeftOut& left) { return left.why == how.why; });
-  if (known == result_.left_out.end())
-    known = result_.left_out.insert(known, {0, 0, where(how.vertex), how.why, how.remedy});
-  ++known->parts;
-  known->faces += faces.size();
-}
-
-void Repairer::drop_left_out_faces() {
-  if (place_of_.size() == mesh_.face_corners.size()) {
-    std::vector<std::uint32_t> places;
-    for (std::size_t face = 0; face < mesh_.face_count(); ++face)
-      if (keeps_[face] != 0)
-        places.insert(places.end(), place_of_.begin() + mesh_.face_starts[face],
-                      place_of_.begin() + mesh_.face_starts[face + 1]);
-    place_of_ = std::move(places);
-  }
-  const auto count_used = [&] {
-    const std::vector<std::uint8_t> used = used_vertices();
-    return static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
-  };
-  left_out_vertices_ += count_used();
-  keep_faces(mesh_, keeps_);
-  left_out_vertices_ -= count_used();
-  keeps_.clear();
-}
-
-/// What was separated from them was not, as far as anybody sees.
-void Repairer::drop_left_out_vertices() {
-  if (result_.left_out.empty()) return;
-  const std::vector<std::uint8_t> used = used_vertices();
-  const std::vector<std::uint32_t> place = exact_places(mesh_.vertices);
-  std::vector<std::uint8_t> stays(place.size(), 0);
-  for (std::size_t vertex = 0; vertex < used.size(); ++vertex)
-    if (used[vertex] != 0) stays[place[vertex]] = 1;
-  for (std::size_t vertex = 0; vertex < used.size(); ++vertex)
-    if (used[vertex] == 0 && stays[place[vertex]] != 0 && result_.separated > 0)
-      --result_.separated;
-  keep_vertices(mesh_, used);
-}
-
-/// A model of which only trifles would be left is none.
-Result<void> Repairer::check_rest() const {
-  if (result_.left_out.empty()) return {};
-  double rest = 0.0;
-  FaceTriangles triangles(mesh_);
-  for (std::uint32_t face = 0; face < mesh_.face_count(); ++face)
-    rest += area_of(triangles, mesh_, face);
-  if (rest > left_out_area_) return {};
-  const LeftOut& first = result_.left_out.front();
-  return Error{Errc::bad_input, "cannot be repaired: its part at " + first.where + " " + first.why +
-                                    "; " + first.remedy + ", or remove it"};
-}
 
 } // namespace
 

@@ -77,8 +77,67 @@ private:
     return one.forward != other.forward &&
            dot(inwards(one, way), inwards(other, way)) > 1.0 - 1e-12;
   }
-  void pair(std::vector<PlacedEdge> sides);
-  std::vector<PlacedEdge> by_angle(const std::vector<PlacedEdge>& sides) const;
+  /// Going round counter-clockwise, a face that goes back is followed by inside, and one that goes
+  /// forward by outside. So they are paired like brackets.
+  void pair(std::vector<PlacedEdge> sides) {
+    for (std::size_t one = 0; one < sides.size(); ++one)
+      for (std::size_t other = one + 1; other < sides.size(); ++other)
+        if (are_joined(sides[one], sides[other])) {
+          sides.erase(sides.begin() + static_cast<std::ptrdiff_t>(other));
+          sides.erase(sides.begin() + static_cast<std::ptrdiff_t>(one));
+          --one;
+          break;
+        }
+    if (sides.size() < 2) return;
+    if (sides.size() == 2) return join(sides[0], sides[1]);
+    // Twice round, because the first bracket may close one that opens last.
+    const std::vector<PlacedEdge> sorted = by_angle(sides);
+    std::vector<std::size_t> open;
+    std::vector<std::uint8_t> paired(sorted.size(), 0);
+    for (std::size_t step = 0; step < 2 * sorted.size(); ++step) {
+      const std::size_t at = step % sorted.size();
+      if (paired[at] != 0) continue;
+      if (!sorted[at].forward) {
+        if (step < sorted.size()) open.push_back(at);
+        continue;
+      }
+      if (open.empty()) continue;
+      join(sorted[open.back()], sorted[at]);
+      paired[open.back()] = paired[at] = 1;
+      open.pop_back();
+    }
+  }
+  /// Counter-clockwise about the edge, seen against it, from the widest gap on. Where faces lie on
+  /// each other, those that go forward come first: nothing is between them and those that go back.
+  std::vector<PlacedEdge> by_angle(const std::vector<PlacedEdge>& sides) const {
+    constexpr double same_angle = 1e-7;
+    const SpacePoint axis = along(sides[0]);
+    const SpacePoint right = square_to(axis);
+    const SpacePoint up = cross(axis, right);
+    std::vector<std::pair<double, std::size_t>> angles;
+    for (std::size_t at = 0; at < sides.size(); ++at) {
+      const SpacePoint way = inwards(sides[at], axis);
+      angles.emplace_back(std::atan2(dot(way, up), dot(way, right)), at);
+    }
+    std::sort(angles.begin(), angles.end());
+    const auto gap_before = [&](std::size_t at) {
+      return at > 0 ? angles[at].first - angles[at - 1].first
+                    : angles[0].first - angles.back().first + 2.0 * std::numbers::pi;
+    };
+    std::size_t first = 0;
+    for (std::size_t at = 1; at < angles.size(); ++at)
+      if (gap_before(at) > gap_before(first)) first = at;
+    std::vector<PlacedEdge> sorted;
+    std::size_t run = 0; // where the faces of one angle begin
+    for (std::size_t step = 0; step < angles.size(); ++step) {
+      const std::size_t at = (first + step) % angles.size();
+      if (step > 0 && gap_before(at) > same_angle) run = sorted.size();
+      sorted.push_back(sides[angles[at].second]);
+      std::stable_partition(sorted.begin() + static_cast<std::ptrdiff_t>(run), sorted.end(),
+                            [](const PlacedEdge& side) { return side.forward; });
+    }
+    return sorted;
+  }
 
   const Mesh& mesh_;
   std::span<const std::uint32_t> element_of_;
@@ -86,69 +145,6 @@ private:
   std::vector<PlacedEdge> edges_;
   std::vector<SpacePoint> normals_; ///< of faces
 };
-
-/// Counter-clockwise about the edge, seen against it, from the widest gap on. Where faces lie on
-/// each other, those that go forward come first: nothing is between them and those that go back.
-std::vector<PlacedEdge> Stitcher::by_angle(const std::vector<PlacedEdge>& sides) const {
-  constexpr double same_angle = 1e-7;
-  const SpacePoint axis = along(sides[0]);
-  const SpacePoint right = square_to(axis);
-  const SpacePoint up = cross(axis, right);
-  std::vector<std::pair<double, std::size_t>> angles;
-  for (std::size_t at = 0; at < sides.size(); ++at) {
-    const SpacePoint way = inwards(sides[at], axis);
-    angles.emplace_back(std::atan2(dot(way, up), dot(way, right)), at);
-  }
-  std::sort(angles.begin(), angles.end());
-  const auto gap_before = [&](std::size_t at) {
-    return at > 0 ? angles[at].first - angles[at - 1].first
-                  : angles[0].first - angles.back().first + 2.0 * std::numbers::pi;
-  };
-  std::size_t first = 0;
-  for (std::size_t at = 1; at < angles.size(); ++at)
-    if (gap_before(at) > gap_before(first)) first = at;
-  std::vector<PlacedEdge> sorted;
-  std::size_t run = 0; // where the faces of one angle begin
-  for (std::size_t step = 0; step < angles.size(); ++step) {
-    const std::size_t at = (first + step) % angles.size();
-    if (step > 0 && gap_before(at) > same_angle) run = sorted.size();
-    sorted.push_back(sides[angles[at].second]);
-    std::stable_partition(sorted.begin() + static_cast<std::ptrdiff_t>(run), sorted.end(),
-                          [](const PlacedEdge& side) { return side.forward; });
-  }
-  return sorted;
-}
-
-/// Going round counter-clockwise, a face that goes back is followed by inside, and one that goes
-/// forward by outside. So they are paired like brackets.
-void Stitcher::pair(std::vector<PlacedEdge> sides) {
-  for (std::size_t one = 0; one < sides.size(); ++one)
-    for (std::size_t other = one + 1; other < sides.size(); ++other)
-      if (are_joined(sides[one], sides[other])) {
-        sides.erase(sides.begin() + static_cast<std::ptrdiff_t>(other));
-        sides.erase(sides.begin() + static_cast<std::ptrdiff_t>(one));
-        --one;
-        break;
-      }
-  if (sides.size() < 2) return;
-  if (sides.size() == 2) return join(sides[0], sides[1]);
-  // Twice round, because the first bracket may close one that opens last.
-  const std::vector<PlacedEdge> sorted = by_angle(sides);
-  std::vector<std::size_t> open;
-  std::vector<std::uint8_t> paired(sorted.size(), 0);
-  for (std::size_t step = 0; step < 2 * sorted.size(); ++step) {
-    const std::size_t at = step % sorted.size();
-    if (paired[at] != 0) continue;
-    if (!sorted[at].forward) {
-      if (step < sorted.size()) open.push_back(at);
-      continue;
-    }
-    if (open.empty()) continue;
-    join(sorted[open.back()], sorted[at]);
-    paired[open.back()] = paired[at] = 1;
-    open.pop_back();
-  }
-}
 
 } // namespace
 
