@@ -41,7 +41,7 @@ TEST_SUITE("foreign_colours") {
     const auto other = read(ply("", unsigned_list, six + "7 0 1 2 4294967295 2 1 3\n"));
     CHECK(other.mesh.face_corners == Indices{0, 1, 2, 2, 1, 3});
     const std::string beyond = ply("", list, six + "3 0 1 6\n");
-    CHECK_FALSE(parse_mesh(std::as_bytes(std::span(beyond)), "t"));
+    CHECK_FALSE(parse_model(std::as_bytes(std::span(beyond)), "t"));
   }
 
   TEST_CASE("colours are known by several names") {

@@ -28,7 +28,9 @@ using nendo::test::TemporaryFolder;
 using Json = nlohmann::json;
 
 static nendo::Result<Mesh> parse(const std::string& text) {
-  return parse_mesh(std::as_bytes(std::span(text)), "t");
+  auto model = parse_model(std::as_bytes(std::span(text)), "t");
+  if (!model) return model.error();
+  return std::move(model->mesh);
 }
 
 template <class Number>

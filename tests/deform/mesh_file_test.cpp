@@ -28,7 +28,9 @@ TEST_SUITE("mesh_file") {
   using Indices = std::vector<std::uint32_t>;
 
   static nendo::Result<Mesh> parse(std::string_view text) {
-    return parse_mesh(std::as_bytes(std::span(text)), "t");
+    auto model = parse_model(std::as_bytes(std::span(text)), "t");
+    if (!model) return model.error();
+    return std::move(model->mesh);
   }
 
   static std::string contents_of(const fs::path& path) {

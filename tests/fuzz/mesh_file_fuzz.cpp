@@ -1,4 +1,4 @@
-// Whatever the bytes are, parse_mesh gives an error or a mesh that can be used without another
+// Whatever the bytes are, parse_model gives an error or a mesh that can be used without another
 // check.
 
 #include <algorithm>

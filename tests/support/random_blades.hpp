@@ -77,14 +77,15 @@ public:
     const Eigen::Vector3d onward = edge.unitOrthogonal();
     const Eigen::Vector3d up = edge.cross(onward);
     const double bend = 0.2 * number(), offset = 0.3 * number(), wave = 0.05 * number();
-    std::vector<Eigen::Vector3d> tips;
+    deform::CutWire wire;
     for (int k = 0; k <= 24; ++k) {
       const double t = k / 12.0 - 1.0;
-      tips.push_back(middle() +
-                     size().norm() * (0.7 * t * onward - 0.7 * edge +
-                                      (offset + bend * t * t + wave * std::cos(5 * t)) * up));
+      const Eigen::Vector3d tip =
+          middle() + size().norm() * (0.7 * t * onward - 0.7 * edge +
+                                      (offset + bend * t * t + wave * std::cos(5 * t)) * up);
+      wire.places.push_back({tip, tip + 1.4 * size().norm() * edge});
     }
-    return deform::knife_cut(tips, 1.4 * size().norm() * edge);
+    return wire;
   }
 
 private:

@@ -354,13 +354,6 @@ private:
 
 } // namespace
 
-CutWire knife_cut(std::span<const Eigen::Vector3d> tips, const Eigen::Vector3d& edge) {
-  CutWire wire;
-  for (const Eigen::Vector3d& tip : tips)
-    wire.places.push_back({tip, tip + edge});
-  return wire;
-}
-
 Result<CutModel> cut_model(const Mesh& mesh, const CutPlane& plane, const CutOptions& options) {
   const double length = plane.normal.stableNorm();
   if (!is_fit(plane.point) || !is_fit(plane.normal) || !(length > 0.0))

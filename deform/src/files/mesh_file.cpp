@@ -283,11 +283,6 @@ Result<ReadModel> parse_text(Source source, const ReadOptions& options) {
   return model;
 }
 
-Result<Mesh> mesh_of(Result<ReadModel> model) {
-  if (!model) return model.error();
-  return std::move(model->mesh);
-}
-
 Eigen::Index first_unusable_vertex(const Points& vertices) noexcept {
   Eigen::Index at = 0;
   while (at < vertices.cols() && all_usable(vertices.col(at)))
@@ -332,10 +327,6 @@ Result<ReadModel> parse_model(std::span<const std::byte> bytes, std::string_view
   return parse_text({text, name, nullptr}, options);
 }
 
-Result<Mesh> parse_mesh(std::span<const std::byte> bytes, std::string_view name) {
-  return mesh_of(parse_model(bytes, name));
-}
-
 Result<ReadModel> read_model(const std::filesystem::path& path, const ReadOptions& options) {
   try {
     const auto text = read_file(path, max_file_bytes, "mesh");
@@ -349,7 +340,9 @@ Result<ReadModel> read_model(const std::filesystem::path& path, const ReadOption
 }
 
 Result<Mesh> read_mesh(const std::filesystem::path& path) {
-  return mesh_of(read_model(path));
+  auto model = read_model(path);
+  if (!model) return model.error();
+  return std::move(model->mesh);
 }
 
 std::vector<std::string> lost_in_file(const std::filesystem::path& path, const Mesh& mesh) {

@@ -3,7 +3,6 @@
 // drawn through. Both sides are closed by cut faces. CUTTING.md says how, and what is guaranteed.
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -27,9 +26,6 @@ struct WirePlace {
 struct CutWire {
   std::vector<WirePlace> places;
 };
-
-/// Returns the wire that a knife's edge is: it begins at the tip, and `edge` leads along it.
-NENDO_API CutWire knife_cut(std::span<const Eigen::Vector3d> tips, const Eigen::Vector3d& edge);
 
 struct CutOptions {
   double edge = 0.0; ///< length of the cut faces' edges; 0: the mean where the blade crosses

@@ -55,8 +55,6 @@ struct ReadModel {
 /// cut off.
 NENDO_API Result<ReadModel> parse_model(std::span<const std::byte> bytes, std::string_view name,
                                         const ReadOptions& options = {});
-/// The same, without the notes.
-NENDO_API Result<Mesh> parse_mesh(std::span<const std::byte> bytes, std::string_view name);
 
 /// Reads and parses a file, and the materials (MTL), textures and buffers that it names. Those are
 /// read from the file's own folder and below it, and from nowhere else; a model may lack materials
