@@ -130,7 +130,7 @@ bool has_bridge(const Mesh& mesh, std::size_t face, std::vector<std::uint32_t>& 
 } // namespace
 
 ManifoldCheck check_closed_manifold(const Mesh& mesh) {
-  const auto vertices = static_cast<std::size_t>(mesh.vertices.cols());
+  const auto vertices = mesh.vertex_count();
   ManifoldCheck check = check_closed_manifold(mesh.face_starts, mesh.face_corners, vertices);
   if (check.fault != ManifoldFault::repeated_corner) return check;
   std::vector<bool> is_bridged(mesh.face_count(), false);

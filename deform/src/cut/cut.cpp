@@ -33,8 +33,7 @@ class CutCheck {
 public:
   CutCheck(const CutAssembly& assembly, const CutSurface& surface, const Points& rest, double reach)
       : assembly_(assembly), mesh_(assembly.mesh), rest_(rest), surface_(surface), reach_(reach),
-        first_added_(static_cast<std::uint32_t>(static_cast<std::size_t>(mesh_.vertices.cols()) -
-                                                assembly.added.size())) {}
+        first_added_(static_cast<std::uint32_t>(mesh_.vertex_count() - assembly.added.size())) {}
   /// The cut faces of both sides lie in the same places, so they are compared among themselves only
   /// on the upper side.
   bool is_sound(bool up) const {
@@ -205,7 +204,7 @@ public:
         options_(options) {}
   Result<CutModel> run() {
     if (const auto fine = check(); !fine) return fine.error();
-    const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
+    const auto vertices = mesh_.vertex_count();
     sides_.resize(vertices);
     for (std::size_t vertex = 0; vertex < vertices; ++vertex)
       sides_[vertex] = blade_.side(space_point(mesh_.vertices, vertex));
@@ -234,7 +233,7 @@ private:
     diagonal_ = diagonal_of(mesh_.vertices);
     if (!(mesh_.vertices.array().abs() <= largest_size).all() || !(diagonal_ >= smallest_size))
       return Error{Errc::bad_input, "has coordinates that are too large, or no size"};
-    const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
+    const auto vertices = mesh_.vertex_count();
     edges_ = half_edges_of(mesh_.face_starts, mesh_.face_corners, vertices);
     ManifoldCheck closed = check_closed_manifold(mesh_.face_starts, mesh_.face_corners, edges_);
     if (closed.fault == ManifoldFault::repeated_corner) closed = check_closed_manifold(mesh_);
@@ -268,7 +267,7 @@ private:
       result_.added = std::move(assembly.added);
       result_.first_cut_face = assembly.first_cut_face;
       result_.loops = static_cast<std::uint32_t>(std::count(keeps_.begin(), keeps_.end(), 1));
-      result_.left_whole = static_cast<std::uint32_t>(keeps_.size()) - result_.loops;
+      result_.left_whole = to_index(keeps_.size()) - result_.loops;
       return Outcome::cut;
     }
     return Outcome::again;
@@ -298,8 +297,7 @@ private:
           loop.places.push_back(blade_.chart(surface.crossing_points()[crossing]));
       }
       if (loops.empty()) return refuse("is not cut: the blade does not go through");
-      cap_ = make_cap(loops, static_cast<std::uint32_t>(surface.crossings().size()),
-                      {edge_, blade_.bends()});
+      cap_ = make_cap(loops, to_index(surface.crossings().size()), {edge_, blade_.bends()});
       if (cap_.fault != PlaneFault::none) return Outcome::again;
       if (!drop_wrong_sides(cap_, numbers)) return Outcome::cut;
       if (!blade_.bends())

@@ -30,7 +30,7 @@ public:
         look.objects.of_face.empty() ? no_index : look.objects.of_face[face]);
   }
   void end(std::uint32_t material, std::uint32_t group, std::uint32_t object) {
-    to_.face_starts.push_back(static_cast<std::uint32_t>(to_.face_corners.size()));
+    to_.face_starts.push_back(to_index(to_.face_corners.size()));
     to_.look.face_materials.push_back(material);
     if (!from_.look.groups.of_face.empty()) to_.look.groups.of_face.push_back(group);
     if (!from_.look.objects.of_face.empty()) to_.look.objects.of_face.push_back(object);
@@ -50,7 +50,7 @@ class Assembler {
 public:
   Assembler(const ChosenCut& cut, CutSurface& surface)
       : cut_(cut), surface_(surface), faces_(cut.mesh, result_.mesh),
-        first_added_(static_cast<std::uint32_t>(cut.mesh.vertices.cols())) {}
+        first_added_(to_index(cut.mesh.vertex_count())) {}
 
   CutAssembly run() {
     number_vertices();
@@ -126,7 +126,7 @@ private:
     first_piece_.assign(cut_.mesh.face_count(), no_index);
     next_piece_.assign(pieces.size(), no_index);
     crossed_of_piece_.assign(pieces.size(), no_index);
-    for (auto piece = static_cast<std::uint32_t>(pieces.size()); piece-- > 0;) {
+    for (auto piece = to_index(pieces.size()); piece-- > 0;) {
       std::uint32_t& first = first_piece_[pieces[piece].face];
       next_piece_[piece] = first;
       first = piece;
@@ -184,7 +184,7 @@ private:
       return Corner{vertex_of(crossing, up), texcoord};
     };
     const auto write = [&](const Corner& a, const Corner& b, const Corner& c) {
-      result_.cut_pieces.push_back(static_cast<std::uint32_t>(result_.mesh.face_count()));
+      result_.cut_pieces.push_back(to_index(result_.mesh.face_count()));
       for (const Corner& corner : {a, b, c})
         faces_.corner(corner.vertex, corner.texcoord);
       faces_.end_part_of(piece.face);
@@ -208,7 +208,7 @@ private:
   }
   /// The upper side's cut faces, which face down, and then the same for the lower side.
   void write_cap() {
-    const auto material = static_cast<std::uint32_t>(cut_.mesh.look.materials.size());
+    const auto material = to_index(cut_.mesh.look.materials.size());
     const auto first_texcoord = static_cast<std::uint32_t>(
         static_cast<std::size_t>(cut_.mesh.texcoords.cols()) + surface_.new_texcoords().size());
     for (const bool up : {true, false})
@@ -261,7 +261,7 @@ private:
     return result_.crossing_vertices[crossing] + (up ? 0 : 1);
   }
   std::uint32_t cap_vertex(std::uint32_t corner, bool up) const noexcept {
-    const auto crossings = static_cast<std::uint32_t>(surface_.crossings().size());
+    const auto crossings = to_index(surface_.crossings().size());
     return corner < crossings ? vertex_of(corner, up)
                               : first_inner_ + 2 * (corner - crossings) + (up ? 0 : 1);
   }
@@ -285,7 +285,7 @@ CutAssembly assemble(const ChosenCut& cut, CutSurface& surface) {
 }
 
 std::uint32_t number_parts(const Mesh& mesh, std::vector<std::uint32_t>& part_of_vertex) {
-  const auto count = static_cast<std::size_t>(mesh.vertices.cols());
+  const auto count = mesh.vertex_count();
   UnionFind sets(count);
   std::vector<std::uint8_t> used(count, 0);
   for (std::size_t face = 0; face < mesh.face_count(); ++face)

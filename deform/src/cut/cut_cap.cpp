@@ -44,7 +44,7 @@ public:
     std::uint32_t& head =
         heads_[static_cast<std::size_t>(row(place[1]) * columns_ + column(place[0]))];
     places_.push_back({place, head});
-    head = static_cast<std::uint32_t>(places_.size() - 1);
+    head = to_index(places_.size() - 1);
   }
   bool has_nearer(const PlanePoint& to, double than) const noexcept {
     const std::ptrdiff_t low_column = column(to[0] - than), high_column = column(to[0] + than);
@@ -173,7 +173,7 @@ PlaneFault add_rims(std::span<const CapLoop> loops, ConstrainedTriangulation& pl
       if (const PlaneFault fault = plane.add(place); fault != PlaneFault::none) return fault;
   std::uint32_t first = 0;
   for (const CapLoop& loop : loops) {
-    const auto count = static_cast<std::uint32_t>(loop.places.size());
+    const auto count = to_index(loop.places.size());
     for (std::uint32_t k = 0; k < count; ++k)
       if (const PlaneFault fault = plane.constrain(first + k, first + (k + 1) % count);
           fault != PlaneFault::none)
@@ -191,7 +191,7 @@ std::vector<std::uint8_t> sides_of(std::span<const CapLoop> loops,
   };
   std::vector<Neighbour> after;
   for (std::uint32_t number = 0; number < loops.size(); ++number) {
-    const auto first = static_cast<std::uint32_t>(after.size());
+    const auto first = to_index(after.size());
     const auto count = static_cast<std::uint32_t>(loops[number].places.size());
     for (std::uint32_t k = 0; k < count; ++k)
       after.push_back({number, first + (k + 1) % count});
@@ -213,7 +213,7 @@ Cap make_cap(std::span<const CapLoop> loops, std::uint32_t crossings, const CapO
   ConstrainedTriangulation plane(box.low, box.high);
   cap.fault = add_rims(loops, plane);
   if (cap.fault != PlaneFault::none) return cap;
-  const auto rim = static_cast<std::uint32_t>(plane.point_count());
+  const auto rim = to_index(plane.point_count());
   if (options.bends) add_rows(loops, sides_of(loops, plane.triangles(PlaneFill::odd)), box, plane);
   if (options.edge > 0.0) add_lattice(loops, box, options.edge, plane);
   plane.improve();
@@ -227,7 +227,7 @@ Cap make_cap(std::span<const CapLoop> loops, std::uint32_t crossings, const CapO
   for (Corners& triangle : cap.triangles)
     for (std::uint32_t& corner : triangle) {
       if (corner >= rim && corner_of[corner] == no_index) {
-        corner_of[corner] = crossings + static_cast<std::uint32_t>(cap.inner.size());
+        corner_of[corner] = crossings + to_index(cap.inner.size());
         cap.inner.push_back(plane.point(corner));
       }
       corner = corner_of[corner];

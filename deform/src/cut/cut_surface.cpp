@@ -24,7 +24,7 @@ CutSurface::CutSurface(const Mesh& mesh, const Points& rest, const HalfEdges& ed
 }
 
 SpacePoint CutSurface::point(std::uint32_t vertex) const noexcept {
-  const auto old = static_cast<std::uint32_t>(mesh_.vertices.cols());
+  const auto old = to_index(mesh_.vertex_count());
   if (vertex >= old) return added_points_[vertex - old];
   return space_point(mesh_.vertices, vertex);
 }
@@ -40,7 +40,7 @@ void CutSurface::activate(std::uint32_t face) {
       piece.texcoords[k] = mesh_.corner_texcoords.empty() ? 0 : mesh_.corner_texcoords[corners[k]];
     }
     pieces_.push_back(piece);
-    if (blade_.bends()) index(static_cast<std::uint32_t>(pieces_.size() - 1));
+    if (blade_.bends()) index(to_index(pieces_.size() - 1));
   }
 }
 
@@ -180,7 +180,7 @@ void CutSurface::split(std::uint32_t from, std::uint32_t to, std::uint32_t middl
   pieces_.push_back({{middle, to, old.vertices[apex]},
                      {texcoord, old.texcoords[other], old.texcoords[apex]},
                      old.face});
-  const auto more = static_cast<std::uint32_t>(pieces_.size() - 1);
+  const auto more = to_index(pieces_.size() - 1);
   active_[old.face] = 2;
   index(number);
   index(more);
@@ -239,7 +239,7 @@ double CutSurface::crossing_part(std::uint32_t from, std::uint32_t to) const noe
 }
 
 std::uint32_t CutSurface::crossing(std::uint32_t one, std::uint32_t other) {
-  const auto number = static_cast<std::uint32_t>(crossings_.size());
+  const auto number = to_index(crossings_.size());
   const auto [from, to] = std::minmax(one, other);
   const auto [found, is_new] = crossing_of_edge_.try_emplace(edge_key(from, to), number);
   if (is_new) {
@@ -280,7 +280,7 @@ bool CutSurface::link_loops() {
   if (std::find(next_.begin(), next_.end(), no_index) != next_.end()) return false;
   for (std::uint32_t first = 0; first < crossings_.size(); ++first) {
     if (loop_of_[first] != no_index) continue;
-    const auto number = static_cast<std::uint32_t>(loops_.size());
+    const auto number = to_index(loops_.size());
     loops_.emplace_back();
     for (std::uint32_t at = first; loop_of_[at] == no_index; at = next_[at]) {
       loop_of_[at] = number;

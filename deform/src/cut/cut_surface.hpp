@@ -64,7 +64,7 @@ public:
   bool is_up(std::uint32_t vertex) const noexcept { return sides_[vertex] > give_; }
   double above(std::uint32_t vertex) const noexcept { return sides_[vertex] - give_; }
   SpacePoint point(std::uint32_t vertex) const noexcept;
-  std::uint32_t vertex_count() const noexcept { return static_cast<std::uint32_t>(sides_.size()); }
+  std::uint32_t vertex_count() const noexcept { return to_index(sides_.size()); }
   const std::vector<Piece>& pieces() const noexcept { return pieces_; }
   /// The vertices that refine() added, behind those of the mesh.
   const std::vector<EdgePoint>& added() const noexcept { return added_; }

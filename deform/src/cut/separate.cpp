@@ -14,7 +14,7 @@ public:
   explicit Renumbered(std::size_t count) : new_(count, no_index) {}
   std::uint32_t operator()(std::uint32_t old) {
     if (new_[old] == no_index) {
-      new_[old] = static_cast<std::uint32_t>(used_.size());
+      new_[old] = to_index(used_.size());
       used_.push_back(old);
     }
     return new_[old];
@@ -73,11 +73,11 @@ void copy_face(const Mesh& from, std::uint32_t face, Renumbered& vertices, Renum
 std::vector<Mesh> separated(const Mesh& mesh, const std::vector<std::uint32_t>& part_of_vertex,
                             std::uint32_t count) {
   const auto part_of = [&](std::uint32_t vertex) { return part_of_vertex[vertex]; };
-  const ByPart vertices = by_part(static_cast<std::size_t>(mesh.vertices.cols()), count, part_of);
+  const ByPart vertices = by_part(mesh.vertex_count(), count, part_of);
   const ByPart faces = by_part(mesh.face_count(), count, [&](std::uint32_t face) {
     return part_of(mesh.face_corners[mesh.face_starts[face]]);
   });
-  Renumbered vertex(static_cast<std::size_t>(mesh.vertices.cols()));
+  Renumbered vertex(mesh.vertex_count());
   Renumbered texcoord(static_cast<std::size_t>(mesh.texcoords.cols()));
   std::vector<Mesh> parts(count);
   for (std::uint32_t part = 0; part < count; ++part) {

@@ -187,7 +187,7 @@ private:
     if (primitives == nullptr || !primitives->is_array()) return;
     known_.clear();
     vertices_of_.clear();
-    const auto object = static_cast<std::uint32_t>(mesh_.look.objects.names.size());
+    const auto object = to_index(mesh_.look.objects.names.size());
     const std::size_t faces_before = mesh_.face_count();
     for (const Json& primitive : *primitives)
       add_primitive(primitive, placed);
@@ -284,7 +284,7 @@ private:
         mesh_.face_corners.push_back(vertices[corner]);
         mesh_.corner_texcoords.push_back(part.texcoords ? first_texcoord + corner : no_index);
       }
-      mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
+      mesh_.face_starts.push_back(to_index(mesh_.face_corners.size()));
       mesh_.look.face_materials.push_back(material);
     }
     if (mesh_.face_corners.size() > max_model_corners)
@@ -390,7 +390,7 @@ private:
       look.textures.clear();
     }
     if (!colours_.empty()) {
-      colours_.resize(4 * static_cast<std::size_t>(mesh_.vertices.cols()), 1.0F);
+      colours_.resize(4 * mesh_.vertex_count(), 1.0F);
       look.vertex_colours =
           Eigen::Map<const Eigen::Matrix4Xf>(colours_.data(), 4, mesh_.vertices.cols());
     }

@@ -24,7 +24,7 @@ public:
     const auto source = source_of(texture);
     if (!source) return no_index;
     const Json& image = document_.item("images", *source);
-    const auto next = static_cast<std::uint32_t>(look_.textures.size());
+    const auto next = to_index(look_.textures.size());
     const auto [place, is_new] = numbers_.emplace(*source, next);
     if (is_new) add(image, *source);
     return place->second;

@@ -198,7 +198,7 @@ void MtlReader::add_texture(Line& line) {
   if (statement.is_moved)
     notes_.add("texture", statement.file,
                ": its options -o, -s and -t are left out, so it is neither moved nor scaled");
-  const auto next = static_cast<std::uint32_t>(look_.textures.size());
+  const auto next = to_index(look_.textures.size());
   Named named{std::move(statement.file), std::string(line.file)};
   const auto [place, is_new] = textures_.emplace(named, next);
   if (is_new) {

@@ -130,7 +130,7 @@ public:
   void set(std::string name) {
     current_ = no_index;
     if (name.empty()) return;
-    const auto next = static_cast<std::uint32_t>(numbers_.size());
+    const auto next = to_index(numbers_.size());
     current_ = numbers_.emplace(std::move(name), next).first->second;
   }
   void ends_face() { names_.of_face.push_back(current_); }
@@ -143,7 +143,7 @@ public:
     for (std::uint32_t& number : names_.of_face) {
       if (number == no_index) continue;
       if (renumbered[number] == no_index) {
-        renumbered[number] = static_cast<std::uint32_t>(names_.names.size());
+        renumbered[number] = to_index(names_.names.size());
         names_.names.push_back(*by_number[number]);
       }
       number = renumbered[number];
@@ -242,7 +242,7 @@ private:
   Result<void> face() {
     for (auto field = scanner_.field(); !field.empty(); field = scanner_.field())
       if (auto done = corner(field); !done) return done;
-    mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
+    mesh_.face_starts.push_back(to_index(mesh_.face_corners.size()));
     for (CurrentName* name : {&material_, &group_, &object_})
       name->ends_face();
     return {};
@@ -320,7 +320,7 @@ private:
     if (colours_.empty() && !painted_.empty())
       look.vertex_colours = colours_of_polypaint(painted_, mesh_.vertices.cols());
     if (colours_.empty()) return;
-    colours_.resize(4 * static_cast<std::size_t>(mesh_.vertices.cols()), no_colour);
+    colours_.resize(4 * mesh_.vertex_count(), no_colour);
     for (float& channel : colours_)
       channel = linear_of(colour_range_.part_of(static_cast<double>(channel)));
     if (auto note = colour_range_.note(); !note.empty()) notes_.push_back(std::move(note));

@@ -248,7 +248,7 @@ public:
     for (const auto& element : header_.elements)
       if (const auto done = read_element(element); !done) return done.error();
     mesh_.vertices = columns_of<3>(coordinates_);
-    const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
+    const auto vertices = mesh_.vertex_count();
     if (highest_.is_beyond(vertices))
       return body_.error_at(highest_.place, "a face names vertex " +
                                                 std::to_string(highest_.index) +
@@ -341,8 +341,7 @@ private:
       add_corner(*index, use);
     }
     strip_.reset();
-    if (use == Use::corners)
-      mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
+    if (use == Use::corners) mesh_.face_starts.push_back(to_index(mesh_.face_corners.size()));
     return {};
   }
   /// Nothing where a strip ends: at a negative number, which unsigned types show as their greatest.
@@ -372,7 +371,7 @@ private:
     const auto triangle = strip_.add(*index);
     if (!triangle) return;
     mesh_.face_corners.insert(mesh_.face_corners.end(), triangle->begin(), triangle->end());
-    mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
+    mesh_.face_starts.push_back(to_index(mesh_.face_corners.size()));
   }
   void note_left_out(const PlyElement& element, const std::vector<Use>& uses) {
     if (element.count == 0) return;

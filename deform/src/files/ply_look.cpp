@@ -66,7 +66,7 @@ void PlyLook::finish_materials(const std::vector<std::string>& textures, Mesh& m
     const std::string file = name_in_folder(named).value_or("texture");
     Material material;
     material.name = std::filesystem::path(file).stem().string();
-    material.texture = static_cast<std::uint32_t>(mesh.look.textures.size());
+    material.texture = to_index(mesh.look.textures.size());
     mesh.look.materials.push_back(std::move(material));
     mesh.look.textures.push_back({file, nullptr});
   }

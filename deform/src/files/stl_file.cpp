@@ -81,7 +81,7 @@ struct StlFaces {
     ++facets;
     const std::size_t begin = mesh.face_starts.back();
     if (has_three_places(begin)) {
-      mesh.face_starts.push_back(static_cast<std::uint32_t>(mesh.face_corners.size()));
+      mesh.face_starts.push_back(to_index(mesh.face_corners.size()));
       return true;
     }
     if (left_out++ == 0) first_left_out = facets;
@@ -186,7 +186,7 @@ private:
     if (name.empty() && solids_ > 1) name = "solid " + std::to_string(solids_);
     object_ = no_index;
     if (name.empty()) return;
-    object_ = static_cast<std::uint32_t>(objects_.names.size());
+    object_ = to_index(objects_.names.size());
     objects_.names.push_back(std::move(name));
   }
   void note_all(ReadNotes& notes) const {
@@ -232,7 +232,7 @@ public:
       look.face_materials.push_back(no_index);
       return;
     }
-    const auto next = static_cast<std::uint32_t>(look.materials.size());
+    const auto next = to_index(look.materials.size());
     const auto [entry, is_new] = materials_.emplace(key, next);
     if (is_new) look.materials.push_back(material(key));
     look.face_materials.push_back(entry->second);

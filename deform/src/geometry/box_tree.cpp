@@ -57,7 +57,7 @@ void BoxTree::build(std::span<const SpacePoint> places, std::span<const Corners>
   order_ = std::move(sorted);
   nodes_.reserve(order_.size());
   nodes_.push_back({});
-  split(0, 0, static_cast<std::uint32_t>(order_.size()));
+  split(0, 0, to_index(order_.size()));
   for (std::size_t node = nodes_.size(); node-- > 0;) // children come behind
     nodes_[node].box = box_of(nodes_[node]);
 }
@@ -67,7 +67,7 @@ void BoxTree::split(std::uint32_t node, std::uint32_t begin, std::uint32_t count
     nodes_[node] = {{}, begin, count};
     return;
   }
-  const auto first = static_cast<std::uint32_t>(nodes_.size());
+  const auto first = to_index(nodes_.size());
   nodes_.resize(nodes_.size() + 2);
   nodes_[node] = {{}, first, 0};
   const std::uint32_t half = count / 2;

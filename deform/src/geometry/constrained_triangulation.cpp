@@ -117,7 +117,7 @@ PlaneFault ConstrainedTriangulation::add(const PlanePoint& point) {
   if (place.fault != PlaneFault::none) return place.fault;
   if (place.edge != no_index && fixed_[place.edge] != 0) return PlaneFault::on_segment;
   if (place.edge != no_index && twins_[place.edge] == no_index) return PlaneFault::outside;
-  const auto number = static_cast<std::uint32_t>(points_.size());
+  const auto number = to_index(points_.size());
   points_.push_back(point);
   edge_from_.push_back(no_index);
   if (place.edge == no_index)
@@ -137,7 +137,7 @@ void ConstrainedTriangulation::split_triangle(std::uint32_t triangle, std::uint3
                                            twins_[triangle + 2]};
   const std::array<bool, 3> fixed{fixed_[triangle] != 0, fixed_[triangle + 1] != 0,
                                   fixed_[triangle + 2] != 0};
-  const auto more = static_cast<std::uint32_t>(corners_.size());
+  const auto more = to_index(corners_.size());
   const std::array<std::uint32_t, 3> made{triangle, more, more + 3};
   corners_.resize(more + 6);
   twins_.resize(more + 6);
@@ -162,7 +162,7 @@ void ConstrainedTriangulation::split_edge(std::uint32_t edge, std::uint32_t poin
     twins[k] = twins_[around[k]];
     fixed[k] = fixed_[around[k]] != 0;
   }
-  const auto more = static_cast<std::uint32_t>(corners_.size());
+  const auto more = to_index(corners_.size());
   const std::array<std::uint32_t, 4> made{edge - edge % 3, more, twin - twin % 3, more + 3};
   corners_.resize(more + 6);
   twins_.resize(more + 6);

@@ -45,7 +45,7 @@ void EarClipper::run(std::span<const SpacePoint> places, const SpacePoint& norma
 }
 
 void EarClipper::start() {
-  const auto count = static_cast<std::uint32_t>(places_.size());
+  const auto count = to_index(places_.size());
   next_.resize(count);
   last_.resize(count);
   for (std::uint32_t corner = 0; corner < count; ++corner) {
@@ -270,7 +270,7 @@ void CornerTree::plant(std::vector<PlanePoint> places, std::vector<std::uint32_t
   order_ = std::move(corners);
   counts_.assign(order_.size(), 0);
   position_.assign(places_.size(), no_index);
-  halve(0, static_cast<std::uint32_t>(order_.size()), 0);
+  halve(0, to_index(order_.size()), 0);
   for (std::uint32_t at = 0; at < order_.size(); ++at)
     position_[order_[at]] = at;
 }
@@ -294,7 +294,7 @@ void CornerTree::remove(std::uint32_t corner) noexcept {
   if (position == no_index) return;
   position_[corner] = no_index;
   std::uint32_t begin = 0;
-  auto end = static_cast<std::uint32_t>(order_.size());
+  auto end = to_index(order_.size());
   for (;;) {
     const std::uint32_t middle = begin + (end - begin) / 2;
     --counts_[middle];

@@ -38,7 +38,7 @@ public:
   /// no_index.
   template <class IsWanted>
   std::uint32_t find(const CornerBox& box, const IsWanted& is_wanted) const {
-    return find(0, static_cast<std::uint32_t>(order_.size()), 0, box, is_wanted);
+    return find(0, to_index(order_.size()), 0, box, is_wanted);
   }
 
 private:

@@ -21,10 +21,10 @@ public:
     const Corners& texture = from_.face_texture[face];
     for (std::size_t k = 0; k < 3; ++k)
       if (corners[k] == number) return texture[k] + offset_;
-    const auto crossing = number - static_cast<std::uint32_t>(places_.points.size());
+    const auto crossing = number - to_index(places_.points.size());
     const Crossing& point = crossings_.points[crossing];
     const auto [found, is_new] =
-        made_.try_emplace(name_of(face, crossing), static_cast<std::uint32_t>(points_.size()));
+        made_.try_emplace(name_of(face, crossing), to_index(points_.size()));
     if (is_new) points_.push_back(point.part == part_ ? on_edge(face, point) : within(face, point));
     return found->second;
   }
@@ -116,8 +116,7 @@ private:
       if (overlay_.inside[part][at] != inside) continue;
       const Corners& own = pieces.faces[at];
       const std::uint32_t from = pieces.from[at];
-      if (at >= pieces.whole)
-        chosen_.made.push_back(static_cast<std::uint32_t>(chosen_.surface.faces.size()));
+      if (at >= pieces.whole) chosen_.made.push_back(to_index(chosen_.surface.faces.size()));
       chosen_.surface.faces.push_back(
           {origin_of(part, own[0]), origin_of(part, own[1]), origin_of(part, own[2])});
       chosen_.surface.looks.push_back(parts_[part]->looks[from]);
@@ -135,7 +134,7 @@ private:
         numbers[at] = 0;
     for (std::uint32_t at = 0; at < all; ++at) {
       if (numbers[at] == no_index) continue;
-      numbers[at] = static_cast<std::uint32_t>(chosen_.origins.size());
+      numbers[at] = to_index(chosen_.origins.size());
       chosen_.origins.push_back(at);
       add_point(at);
     }

@@ -95,8 +95,7 @@ private:
   }
 
   std::uint32_t numbered(const CrossingName& name) {
-    const auto [found, is_new] =
-        numbers_.try_emplace(name, static_cast<std::uint32_t>(crossings_.points.size()));
+    const auto [found, is_new] = numbers_.try_emplace(name, to_index(crossings_.points.size()));
     if (!is_new) return found->second;
     const Corners& other = parts_[1 - name.part].faces[name.face];
     const SpacePoint& a = point(1 - name.part, other[0]);

@@ -122,7 +122,7 @@ bool is_closed_solid(const TriangleSurface& surface) {
   std::vector<std::uint32_t> starts{0}, corners;
   for (const Corners& face : surface.faces) {
     corners.insert(corners.end(), face.begin(), face.end());
-    starts.push_back(static_cast<std::uint32_t>(corners.size()));
+    starts.push_back(to_index(corners.size()));
   }
   const bool is_finite =
       std::all_of(surface.points.begin(), surface.points.end(), [](const SpacePoint& point) {

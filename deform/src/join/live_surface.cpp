@@ -60,7 +60,7 @@ std::uint32_t LiveSurface::middle_texture(std::uint32_t edge) {
   for (std::size_t k = 0; k < middle.size(); ++k)
     middle[k] = 0.5 * (a[k] + b[k]);
   surface_.texture_points.push_back(middle);
-  return static_cast<std::uint32_t>(surface_.texture_points.size() - 1);
+  return to_index(surface_.texture_points.size() - 1);
 }
 
 /// Of a new point between two.

@@ -154,7 +154,7 @@ Mesh mesh_of(const TriangleSurface& surface, const Appearance& look) {
   mesh.face_starts.reserve(surface.faces.size() + 1);
   for (const Corners& corners : surface.faces) {
     mesh.face_corners.insert(mesh.face_corners.end(), corners.begin(), corners.end());
-    mesh.face_starts.push_back(static_cast<std::uint32_t>(mesh.face_corners.size()));
+    mesh.face_starts.push_back(to_index(mesh.face_corners.size()));
   }
   set_materials(surface, look, mesh.look);
   set_names(surface, look.groups, &FaceLook::group, mesh.look.groups);

@@ -74,7 +74,7 @@ public:
   }
 
 private:
-  std::uint32_t base() const { return static_cast<std::uint32_t>(part_.points.size()); }
+  std::uint32_t base() const { return to_index(part_.points.size()); }
   const SpacePoint& place_of(std::uint32_t number) const {
     return number < base() ? part_.points[number] : crossings_.points[number - base()].place;
   }
@@ -123,7 +123,7 @@ private:
     plane.reserve(numbers_.size());
     for (const std::uint32_t number : numbers_)
       if (plane.add(flat(number)) != PlaneFault::none) return false;
-    const auto rim_size = static_cast<std::uint32_t>(rim_.size());
+    const auto rim_size = to_index(rim_.size());
     for (std::uint32_t at = 0; at < rim_size; ++at)
       if (plane.constrain(at, (at + 1) % rim_size) != PlaneFault::none) return false;
     for (const auto& [face_again, at] : segments) {

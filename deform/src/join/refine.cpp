@@ -89,7 +89,7 @@ private:
       zone_.coarseness.push_back(a > 0.0f && b > 0.0f ? 0.5f * (a + b) : 0.0f);
       zone_.hold.push_back(0);
       if (!zone_.active.empty()) zone_.active.push_back(1);
-      changed_.push_back(static_cast<std::uint32_t>(surface_.point_count() - 1));
+      changed_.push_back(to_index(surface_.point_count() - 1));
       ++counts_.splits;
     }
   }

@@ -69,7 +69,7 @@ private:
   }
   std::uint32_t number(std::uint32_t point) {
     if (numbers_[point] == no_index) {
-      numbers_[point] = static_cast<std::uint32_t>(points_.size());
+      numbers_[point] = to_index(points_.size());
       points_.push_back(point);
     }
     return numbers_[point];

@@ -44,7 +44,7 @@ inline void append_corner(const Mesh& from, std::uint32_t corner, Mesh& to) {
 
 /// Ends the face whose corners were appended. It gets the entries of `face`.
 inline void end_face(const Mesh& from, std::size_t face, Mesh& to) {
-  to.face_starts.push_back(static_cast<std::uint32_t>(to.face_corners.size()));
+  to.face_starts.push_back(to_index(to.face_corners.size()));
   for (std::size_t k = 0; k < 3; ++k)
     if (const auto& column = *face_columns(from.look)[k]; !column.empty())
       face_columns(to.look)[k]->push_back(column[face]);

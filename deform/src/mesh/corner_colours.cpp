@@ -19,7 +19,7 @@ void move_colours_to_corners(Mesh& mesh) {
   for (std::size_t at = 0; at < mesh.face_corners.size(); ++at) {
     Pair pair{textured ? mesh.corner_texcoords[at] : 0, {}};
     std::copy_n(colours.col(mesh.face_corners[at]).data(), 4, pair.second.begin());
-    const auto [found, is_new] = known.emplace(pair, static_cast<std::uint32_t>(pairs.size()));
+    const auto [found, is_new] = known.emplace(pair, to_index(pairs.size()));
     if (is_new) pairs.push_back(pair);
     of_corner.push_back(found->second);
   }
@@ -55,7 +55,7 @@ Eigen::Matrix4Xf mean_vertex_colours(const Mesh& mesh) {
 
 std::size_t count_colour_seams(const Mesh& mesh) {
   if (mesh.look.texcoord_colours.cols() == 0) return 0;
-  const auto count = static_cast<std::size_t>(mesh.vertices.cols());
+  const auto count = mesh.vertex_count();
   std::vector<std::uint32_t> first(count, no_index);
   std::vector<bool> differs(count, false);
   for (std::size_t at = 0; at < mesh.face_corners.size(); ++at) {

@@ -9,7 +9,7 @@ namespace {
 
 /// 1 for each vertex that a face has.
 std::vector<std::uint8_t> vertices_of_faces(const Mesh& mesh) {
-  std::vector<std::uint8_t> has_face(static_cast<std::size_t>(mesh.vertices.cols()), 0);
+  std::vector<std::uint8_t> has_face(mesh.vertex_count(), 0);
   for (const std::uint32_t corner : mesh.face_corners)
     has_face[corner] = 1;
   return has_face;

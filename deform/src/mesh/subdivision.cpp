@@ -72,12 +72,10 @@ struct Middles {
       of_face[face] = first + count() - 1;
     }
   }
-  std::uint32_t count() const noexcept {
-    return static_cast<std::uint32_t>(parent_starts.size() - 1);
-  }
+  std::uint32_t count() const noexcept { return to_index(parent_starts.size() - 1); }
   void add(std::span<const std::uint32_t> of) {
     parents.insert(parents.end(), of.begin(), of.end());
-    parent_starts.push_back(static_cast<std::uint32_t>(parents.size()));
+    parent_starts.push_back(to_index(parents.size()));
   }
 };
 
@@ -187,11 +185,10 @@ Subdivision subdivided_faces(const Mesh& mesh) {
   Mesh& finer = result.mesh;
   finer.vertices = mesh.vertices;
   finer.offset = mesh.offset;
-  Middles middles(mesh, mesh.face_corners, static_cast<std::uint32_t>(mesh.vertices.cols()));
+  Middles middles(mesh, mesh.face_corners, to_index(mesh.vertex_count()));
   append_means(middles, finer.vertices);
-  append_faces(mesh, mesh.face_corners, middles, finer.face_corners, [&] {
-    finer.face_starts.push_back(static_cast<std::uint32_t>(finer.face_corners.size()));
-  });
+  append_faces(mesh, mesh.face_corners, middles, finer.face_corners,
+               [&] { finer.face_starts.push_back(to_index(finer.face_corners.size())); });
   inherit_look(mesh, finer);
   if (finer.look.vertex_colours.cols() > 0) append_means(middles, finer.look.vertex_colours);
   result.parent_starts = std::move(middles.parent_starts);

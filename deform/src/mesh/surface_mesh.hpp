@@ -53,8 +53,8 @@ public:
   std::uint32_t twin(std::uint32_t edge) const noexcept { return twins_[edge]; }
 
   // Counts include what is gone.
-  std::uint32_t point_count() const noexcept { return static_cast<std::uint32_t>(edge_at_.size()); }
-  std::uint32_t face_count() const noexcept { return static_cast<std::uint32_t>(faces_.size()); }
+  std::uint32_t point_count() const noexcept { return to_index(edge_at_.size()); }
+  std::uint32_t face_count() const noexcept { return to_index(faces_.size()); }
   /// Returns whether some face has the point.
   bool has_point(std::uint32_t point) const noexcept { return edge_at_[point] != no_index; }
   bool has_face(std::uint32_t face) const noexcept { return faces_[face][0] != no_index; }

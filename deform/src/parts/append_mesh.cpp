@@ -25,9 +25,9 @@ void append_numbers(std::span<const std::uint32_t> more, std::uint32_t first,
 } // namespace
 
 void append_mesh(const Mesh& more, Mesh& mesh) {
-  const auto vertices = static_cast<std::uint32_t>(mesh.vertices.cols());
+  const auto vertices = to_index(mesh.vertex_count());
   const auto texcoords = static_cast<std::uint32_t>(mesh.texcoords.cols());
-  const auto corners = static_cast<std::uint32_t>(mesh.face_corners.size());
+  const auto corners = to_index(mesh.face_corners.size());
   append_columns(more.vertices, mesh.vertices);
   append_columns(more.texcoords, mesh.texcoords);
   append_columns(more.look.texcoord_colours, mesh.look.texcoord_colours);

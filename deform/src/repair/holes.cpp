@@ -92,7 +92,7 @@ public:
     if (found->empty()) return FilledHoles{};
     number_all_parts();
     find_sheets(*found);
-    std::vector<std::uint8_t> at_rim(static_cast<std::size_t>(mesh_.vertices.cols()), 0);
+    std::vector<std::uint8_t> at_rim(mesh_.vertex_count(), 0);
     for (const Rim& rim : *found)
       for (const std::uint32_t corner : rim)
         at_rim[mesh_.face_corners[corner]] = 1;
@@ -112,8 +112,8 @@ private:
   /// Each open edge ends where the next one of the rim begins: it is found by turning about the
   /// vertex.
   Result<std::vector<Rim>> rims() const {
-    const HalfEdges edges = half_edges_of(mesh_.face_starts, mesh_.face_corners,
-                                          static_cast<std::size_t>(mesh_.vertices.cols()));
+    const HalfEdges edges =
+        half_edges_of(mesh_.face_starts, mesh_.face_corners, mesh_.vertex_count());
     std::vector<std::uint8_t> done(mesh_.face_corners.size(), 0);
     std::vector<Rim> rims;
     for (std::uint32_t first = 0; first < done.size(); ++first) {
@@ -195,7 +195,7 @@ private:
       loop.crossings.push_back(k);
       loop.places.push_back(plane.chart(points[k]));
     }
-    Cap cap = make_cap({&loop, 1}, static_cast<std::uint32_t>(rim.size()), {});
+    Cap cap = make_cap({&loop, 1}, to_index(rim.size()), {});
     if (cap.fault != PlaneFault::none) return {};
     // Rims of four corners and more need an edge inside that is not there yet.
     if (cap.triangles.size() + 2 != rim.size()) return {};
@@ -225,7 +225,7 @@ private:
     for_each_triangle(mesh_, [&](const Triangle& triangle) { triangles.push_back(triangle); });
     std::vector<std::uint32_t> changed;
     for (const Corners& triangle : lid) {
-      changed.push_back(static_cast<std::uint32_t>(triangles.size()));
+      changed.push_back(to_index(triangles.size()));
       triangles.push_back({mesh_.face_corners[rim[triangle[0]]],
                            mesh_.face_corners[rim[triangle[1]]],
                            mesh_.face_corners[rim[triangle[2]]]});
@@ -241,7 +241,7 @@ private:
       for (const std::uint32_t k : triangle)
         for (auto* column : {&mesh_.face_corners, &mesh_.corner_texcoords})
           if (!column->empty()) column->push_back(std::uint32_t{(*column)[rim[k]]});
-      mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
+      mesh_.face_starts.push_back(to_index(mesh_.face_corners.size()));
       for (auto* column : face_columns(mesh_.look))
         if (!column->empty()) column->push_back(std::uint32_t{(*column)[like]});
       for (std::size_t k = 0; k < 3; ++k)

@@ -130,7 +130,7 @@ public:
 private:
   /// Faces with fewer than three corners, and corners that repeat the one before.
   void drop_thin_faces() {
-    std::vector<std::uint32_t> same(static_cast<std::size_t>(mesh_.vertices.cols()));
+    std::vector<std::uint32_t> same(mesh_.vertex_count());
     for (std::uint32_t at = 0; at < same.size(); ++at)
       same[at] = at;
     const DroppedCorners dropped = renumber_corners(mesh_, same);
@@ -183,22 +183,22 @@ private:
   }
   /// Corners that no edge holds together get vertices of their own. The first ones keep the vertex.
   void separate() {
-    const auto corners = static_cast<std::uint32_t>(place_of_.size());
+    const auto corners = to_index(place_of_.size());
     std::vector<std::uint32_t> each(corners);
     for (std::uint32_t at = 0; at < corners; ++at)
       each[at] = at;
     UnionFind sets(corners);
     stitch(mesh_, place_of_, each, sets);
-    std::vector<std::uint32_t> owner(static_cast<std::size_t>(mesh_.vertices.cols()), no_index);
+    std::vector<std::uint32_t> owner(mesh_.vertex_count(), no_index);
     std::vector<std::uint32_t> vertex_of_set(corners, no_index), copied;
-    const auto before = static_cast<std::uint32_t>(mesh_.vertices.cols());
+    const auto before = to_index(mesh_.vertex_count());
     for (std::uint32_t at = 0; at < corners; ++at) {
       std::uint32_t& vertex = vertex_of_set[sets.find(at)];
       if (vertex == no_index) {
         const std::uint32_t place = place_of_[at];
         vertex = place;
         if (owner[place] != no_index) {
-          vertex = before + static_cast<std::uint32_t>(copied.size());
+          vertex = before + to_index(copied.size());
           copied.push_back(place);
         }
         owner[place] = at;
@@ -275,7 +275,7 @@ private:
     keep_vertices(mesh_, used);
   }
   std::vector<std::uint8_t> used_vertices() const {
-    std::vector<std::uint8_t> used(static_cast<std::size_t>(mesh_.vertices.cols()), 0);
+    std::vector<std::uint8_t> used(mesh_.vertex_count(), 0);
     for (const std::uint32_t corner : mesh_.face_corners)
       used[corner] = 1;
     return used;
@@ -337,7 +337,7 @@ private:
   }
   /// Vertices of edges that have not just two faces.
   std::vector<std::uint8_t> open_vertices() const {
-    std::vector<std::uint8_t> open(static_cast<std::size_t>(mesh_.vertices.cols()), 0);
+    std::vector<std::uint8_t> open(mesh_.vertex_count(), 0);
     for_each_edge(placed_edges(mesh_, mesh_.face_corners), [&](std::span<const PlacedEdge> sides) {
       if (sides.size() != 2) open[sides[0].low] = open[sides[0].high] = 1;
     });

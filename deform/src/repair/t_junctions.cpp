@@ -69,7 +69,7 @@ public:
   std::uint32_t between(std::uint32_t a, std::uint32_t b, double along) {
     if (a == b) return a;
     more_.push_back({a, b, along});
-    return static_cast<std::uint32_t>(before_) + static_cast<std::uint32_t>(more_.size()) - 1;
+    return static_cast<std::uint32_t>(before_) + to_index(more_.size()) - 1;
   }
   void finish() {
     append_to(mesh_.texcoords);
@@ -132,7 +132,7 @@ SplitJunctions split_at_junctions(Mesh& mesh, std::vector<std::uint32_t>& place_
             before.corner_texcoords[at], before.corner_texcoords[next], point.along));
       }
     }
-    mesh.face_starts[face + 1] = static_cast<std::uint32_t>(mesh.face_corners.size());
+    mesh.face_starts[face + 1] = to_index(mesh.face_corners.size());
   }
   texcoords.finish();
   return {.count = added};

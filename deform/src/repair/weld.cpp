@@ -146,7 +146,7 @@ DroppedCorners renumber_corners(Mesh& mesh, std::span<const std::uint32_t> verte
       else
         own.push_back(mesh.face_corners[at]);
     }
-    const auto left = static_cast<std::uint32_t>(own.size());
+    const auto left = to_index(own.size());
     std::sort(own.begin(), own.end());
     if (std::unique(own.begin(), own.end()) - own.begin() < 3) {
       std::fill(corners.begin() + begin, corners.begin() + end, std::uint8_t{0});
@@ -163,7 +163,7 @@ DroppedCorners renumber_corners(Mesh& mesh, std::span<const std::uint32_t> verte
 
 std::size_t weld_places(Mesh& mesh, std::span<const std::uint32_t> group_of_vertex) {
   std::size_t joined = 0;
-  const auto count = static_cast<std::size_t>(mesh.vertices.cols());
+  const auto count = mesh.vertex_count();
   const std::vector<std::uint32_t> exact = exact_places(mesh.vertices);
   if (has_no_doubles(exact)) return joined;
   const std::vector<std::uint32_t> place = places_in_groups(exact, group_of_vertex);
@@ -195,7 +195,7 @@ std::size_t weld_places(Mesh& mesh, std::span<const std::uint32_t> group_of_vert
 
 bool is_soup(const Mesh& mesh) {
   if (mesh.face_count() < 2) return false;
-  std::vector<std::uint32_t> face_of(static_cast<std::size_t>(mesh.vertices.cols()), no_index);
+  std::vector<std::uint32_t> face_of(mesh.vertex_count(), no_index);
   for (std::uint32_t face = 0; face < mesh.face_count(); ++face)
     for (std::uint32_t at = mesh.face_starts[face]; at < mesh.face_starts[face + 1]; ++at) {
       std::uint32_t& of = face_of[mesh.face_corners[at]];

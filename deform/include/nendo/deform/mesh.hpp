@@ -41,6 +41,7 @@ struct Mesh {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 
   std::size_t face_count() const noexcept { return face_starts.size() - 1; }
+  std::size_t vertex_count() const noexcept { return static_cast<std::size_t>(vertices.cols()); }
 };
 
 struct Box {
