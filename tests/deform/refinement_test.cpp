@@ -12,7 +12,7 @@
 #include <nendo/deform/mesh_file.hpp>
 
 #include "join/mesh_surface.hpp"
-#include "join/round_points.hpp"
+#include "join/triangle_surface.hpp"
 #include "reference/icosphere.hpp"
 #include "support/cut_laws.hpp"
 #include "support/nasty_meshes.hpp"

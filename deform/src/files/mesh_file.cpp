@@ -20,7 +20,6 @@
 #include "files/model_folder.hpp"
 #include "files/mtl_file.hpp"
 #include "files/text_scanner.hpp"
-#include "files/texture_files.hpp"
 #include "geometry/usable.hpp"
 #include "mesh/columns.hpp"
 #include "repair/weld.hpp"

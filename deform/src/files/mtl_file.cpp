@@ -11,7 +11,7 @@
 
 #include "files/number_text.hpp"
 #include "files/text_scanner.hpp"
-#include "files/texture_files.hpp"
+#include "files/model_folder.hpp"
 
 namespace nendo::deform {
 

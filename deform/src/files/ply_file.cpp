@@ -16,7 +16,6 @@
 #include "files/number_text.hpp"
 #include "files/ply_header.hpp"
 #include "files/ply_look.hpp"
-#include "files/srgb.hpp"
 #include "files/text_scanner.hpp"
 #include "geometry/usable.hpp"
 

@@ -9,7 +9,7 @@
 #include <nendo/deform/corner_colours.hpp>
 
 #include "files/mesh_formats.hpp"
-#include "files/srgb.hpp"
+#include "files/colour_range.hpp"
 
 namespace nendo::deform {
 

@@ -15,7 +15,7 @@
 
 #include "files/mesh_formats.hpp"
 #include "files/number_text.hpp"
-#include "files/srgb.hpp"
+#include "files/colour_range.hpp"
 #include "files/text_scanner.hpp"
 #include "geometry/usable.hpp"
 

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <nendo/deform/mesh.hpp>
 
 #include "geometry/space.hpp"
@@ -44,5 +46,8 @@ struct TriangleSurface {
 
 /// Returns the volume that closed surfaces enclose: positive if they face outwards.
 double volume_of(std::span<const SpacePoint> points, std::span<const Corners> faces);
+
+/// Rounds points to the nearest floats, and returns these.
+Eigen::Matrix3Xf round_points(std::span<SpacePoint> points);
 
 } // namespace nendo::deform

@@ -4,7 +4,7 @@
 
 #include <nendo/deform/corner_colours.hpp>
 
-#include "join/look_collector.hpp"
+#include "join/mesh_surface.hpp"
 #include "parts/append_mesh.hpp"
 
 namespace nendo::deform {

@@ -9,7 +9,7 @@
 #include "join/live_surface.hpp"
 #include "join/mesh_surface.hpp"
 #include "join/refine.hpp"
-#include "join/round_points.hpp"
+#include "join/triangle_surface.hpp"
 #include "join/self_intersections.hpp"
 
 namespace nendo::deform {
