@@ -142,7 +142,7 @@ void CalibrationGuide::skip() {
   }
 }
 
-void CalibrationGuide::begin_anew() {
+void CalibrationGuide::reset() {
   poses_ = planned_;
   kept_.assign(poses_.size(), std::nullopt);
   free_motion_ = hand::RangeCapture();

@@ -58,7 +58,7 @@ public:
   void go_back();    ///< forgets the pose before this one and asks for it again
   void take_again(); ///< asks for the pose before this one once more; both takes count
   void skip();       ///< continues without this pose; flat and fist are asked for again at the end
-  void begin_anew(); ///< forgets all poses and the free motion, and asks for the first pose
+  void reset();      ///< forgets all poses and the free motion, and asks for the first pose
   /// Restores what an earlier session kept. Poses that are not asked for here are left out, and so
   /// are takes of a pose beyond `max_takes`. The last pose restored counts as held last.
   void restore(std::span<const hand::PoseReading> readings, const hand::CountRanges& free_motion);

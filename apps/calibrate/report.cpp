@@ -59,16 +59,16 @@ void print_set_aside(std::ostream& out, const hand::CalibrationFit& fit,
     out << fmt::format("{}: {} contradicts the other poses and was not used\n",
                        hand::pose_of(readings[aside.reading].pose).name,
                        aside.sensor ? name_of(*aside.sensor) : "the touch");
-  if (fit.by_two_poses.bits == 0) return;
+  if (fit.uses_quick_fit.bits == 0) return;
   out << "two poses foretell the others better for:";
-  for_each_sensor(fit.by_two_poses,
+  for_each_sensor(fit.uses_quick_fit,
                   [&](Sensor sensor, std::size_t) { out << ' ' << name_of(sensor); });
   out << '\n';
 }
 
 void print_stiff(std::ostream& out, const hand::CalibrationFit& fit) {
   for (std::size_t finger = 0; finger < hand::finger_count; ++finger) {
-    if (!fit.went_less_far[finger]) continue;
+    if (!fit.limited_range[finger]) continue;
     const auto name = hand::name_of(static_cast<hand::Finger>(finger));
     out << fmt::format("{0}: it went less far than the poses ask; if it is stiff, use --stiff {0}, "
                        "and if not, take the poses again\n",

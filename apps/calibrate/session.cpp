@@ -30,9 +30,9 @@ struct Session {
   std::optional<GloveSample> latest{};
   SensorMask undetermined{};
   bool begun = false;
-  std::string notice{};   ///< why there is no calibration yet; stays until something is done
-  SensorMask announced{}; ///< the sensors left out that the wearer knows of
-  bool asks_anew = false; ///< the key that restarts was pressed once
+  std::string notice{};         ///< why there is no calibration yet; stays until something is done
+  SensorMask announced{};       ///< the sensors left out that the wearer knows of
+  bool asks_to_restart = false; ///< the key that restarts was pressed once
   struct Demonstration {
     hand::PoseId of;
     hand::HandPose pose;
@@ -97,13 +97,13 @@ struct Session {
     return std::nullopt;
   }
   /// Forgets what was taken, if asked to twice in a row.
-  void begin_anew(bool asked_before) {
+  void restart(bool asked_before) {
     if (!asked_before) {
-      asks_anew = true;
+      asks_to_restart = true;
       notice = "n once more forgets every pose and begins anew.";
       return;
     }
-    guide.begin_anew();
+    guide.reset();
     announced = {};
     seen.clear();
     begun = false;
@@ -128,11 +128,11 @@ struct Session {
     terminal.draw(calibration_lines(picture, terminal.size()));
   }
   std::optional<SessionEnd> handle(char key) {
-    const bool asked_anew = std::exchange(asks_anew, false);
+    const bool asked_again = std::exchange(asks_to_restart, false);
     notice.clear();
     if (key == 'q') return SessionEnd::quit;
     if (key == 'w') return finish(SessionEnd::written);
-    if (key == 'n') begin_anew(asked_anew);
+    if (key == 'n') restart(asked_again);
     if (key == ' ' && !std::exchange(begun, true)) guide.end_free_motion();
     if (key == 'x') leave_out_troubled();
     tell_left_out();

@@ -155,7 +155,7 @@ int show(const std::string& name, bool json) {
   ordered_json mixed_in = ordered_json::array();
   for (std::size_t k = 0; k < hand::couplings.size(); ++k) {
     const auto [of, by] = hand::couplings[k];
-    const double rad_per_rad = wearer.calibration.mixed_in[k];
+    const double rad_per_rad = wearer.calibration.coupling_gains[k];
     if (rad_per_rad == 0.0) continue;
     mixed_in.push_back({{"of", name_of(of)}, {"by", name_of(by)}, {"rad_per_rad", rad_per_rad}});
   }

@@ -73,7 +73,8 @@ SensorAngles Calibration::angles_rad(const GloveSample& sample) const noexcept {
   for (std::size_t k = 0; k < couplings.size(); ++k) {
     const auto [of, by] = couplings[k];
     if (sample.present.has(of))
-      angles[static_cast<std::size_t>(of)] += mixed_in[k] * lines[static_cast<std::size_t>(by)];
+      angles[static_cast<std::size_t>(of)] +=
+          coupling_gains[k] * lines[static_cast<std::size_t>(by)];
   }
   return angles;
 }

@@ -115,7 +115,7 @@ std::string complaint_about(const HandSize& size) {
   return {};
 }
 
-std::string complaint_about_mixing(double rad_per_rad) {
+std::string complaint_about_coupling(double rad_per_rad) {
   return lies_within(rad_per_rad, -10.0, 10.0) ? "" : "rad_per_rad must lie within -10 and 10";
 }
 
@@ -133,8 +133,8 @@ std::string complaint_about(const WearerCalibration& wearer) {
   if (complaint.empty()) complaint = complaint_about(wearer.size);
   if (complaint.empty()) complaint = complaint_about_sensors(wearer);
   if (complaint.empty()) complaint = complaint_about_bias(wearer.calibration.middle_bias);
-  for (const double mixed_in : wearer.calibration.mixed_in) {
-    if (complaint.empty()) complaint = complaint_about_mixing(mixed_in);
+  for (const double gain : wearer.calibration.coupling_gains) {
+    if (complaint.empty()) complaint = complaint_about_coupling(gain);
   }
   return complaint;
 }

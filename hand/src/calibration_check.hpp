@@ -29,7 +29,7 @@ std::string complaint_about_offset(double offset_counts);
 std::string complaint_about(Sensor sensor, const SensorCalibration& line, CountScale counts);
 std::string complaint_about(const SensorQuality& quality);
 std::string complaint_about(const HandSize& size);
-std::string complaint_about_mixing(double rad_per_rad);
+std::string complaint_about_coupling(double rad_per_rad);
 std::string complaint_about_bias(double middle_bias);
 /// Checks everything; a sensor of gain 0 is left out.
 std::string complaint_about(const WearerCalibration& wearer);

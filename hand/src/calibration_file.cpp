@@ -58,10 +58,10 @@ std::string sensor_line(Sensor sensor, const SensorCalibration& line,
 std::string mixed_in_lines(const Calibration& calibration) {
   std::string text;
   for (std::size_t k = 0; k < couplings.size(); ++k) {
-    if (is_plain_zero(calibration.mixed_in[k])) continue;
+    if (is_plain_zero(calibration.coupling_gains[k])) continue;
     text += "  { of = \"" + std::string(name_of(couplings[k].of)) + "\", by = \"" +
             std::string(name_of(couplings[k].by)) +
-            "\", rad_per_rad = " + decimal_text(calibration.mixed_in[k]) + " },\n";
+            "\", rad_per_rad = " + decimal_text(calibration.coupling_gains[k]) + " },\n";
   }
   return text.empty() ? "" : "mixed_in = [\n" + text + "]\n";
 }
@@ -294,7 +294,7 @@ Calibration calibration_for(const WearerCalibration& wearer, CountScale glove) n
     if (line.gain_rad_per_count == 0.0) continue;
     calibration.sensors[slot] = {line.gain_rad_per_count / scale, line.offset_counts * scale};
   }
-  calibration.mixed_in = wearer.calibration.mixed_in;
+  calibration.coupling_gains = wearer.calibration.coupling_gains;
   calibration.middle_bias = wearer.calibration.middle_bias;
   return calibration;
 }

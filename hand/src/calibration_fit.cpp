@@ -271,7 +271,7 @@ void mend_lines(CalibrationFit& fit, SensorMask sensors, const Calibration& star
 
 /// Compares the flexion gains of a finger, and the thumb's roll and abduction, with the default's,
 /// and with how those of all sensors compare, because a glove's electronics are common to them.
-void find_fingers_that_went_less_far(CalibrationFit& fit, SensorMask sensors,
+void find_fingers_with_limited_range(CalibrationFit& fit, SensorMask sensors,
                                      const Calibration& start) {
   constexpr double suspicious = 0.26; // of a logarithm; without stiff fingers it was 0.2 at most
   std::vector<double> all;
@@ -290,7 +290,7 @@ void find_fingers_that_went_less_far(CalibrationFit& fit, SensorMask sensors,
   const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
   std::nth_element(all.begin(), middle, all.end());
   for (std::size_t finger = 0; finger < finger_count; ++finger)
-    fit.went_less_far[finger] =
+    fit.limited_range[finger] =
         counted[finger] >= 2.0 && sum[finger] / counted[finger] - *middle > suspicious;
 }
 
@@ -351,7 +351,7 @@ Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Si
   if (options.mode == FitMode::full && options.hold_out)
     choose_by_held_out_poses(fit, readings, side, sensors, options, solution);
   mend_lines(fit, sensors, start);
-  if (options.mode == FitMode::full) find_fingers_that_went_less_far(fit, sensors, start);
+  if (options.mode == FitMode::full) find_fingers_with_limited_range(fit, sensors, start);
   return fit;
 }
 

@@ -80,7 +80,7 @@ void list_folder(const fs::path& folder, bool shared, CalibrationList& list) {
   }
 }
 
-std::optional<GloveMatch> match_of(const WearerCalibration& wearer, const GloveAtHand& glove) {
+std::optional<GloveMatch> match_of(const WearerCalibration& wearer, const GloveIdentity& glove) {
   if (wearer.side != glove.side) return std::nullopt;
   if (wearer.counts.whole_range != glove.counts.whole_range) return std::nullopt;
   if (!glove.user.empty() && wearer.user != glove.user) return std::nullopt;
@@ -128,7 +128,7 @@ CalibrationList list_calibrations(const CalibrationFolders& folders) {
 }
 
 std::optional<CalibrationChoice> choose_calibration(const std::vector<StoredCalibration>& files,
-                                                    const GloveAtHand& glove) {
+                                                    const GloveIdentity& glove) {
   std::optional<CalibrationChoice> best;
   const auto rank = [](const CalibrationChoice& choice) {
     return std::tuple(choice.match, !choice.file->shared, choice.file->wearer.made);

@@ -176,11 +176,11 @@ void read_coupling(Reader& reader, const toml::node& node, WearerCalibration& we
   const std::string of = reader.text(*table, "of");
   const std::string by = reader.text(*table, "by");
   const double rad_per_rad = reader.number(*table, "rad_per_rad");
-  reader.check(node, "mixed_in", complaint_about_mixing(rad_per_rad));
+  reader.check(node, "mixed_in", complaint_about_coupling(rad_per_rad));
   for (std::size_t k = 0; k < couplings.size(); ++k) {
     if (name_of(couplings[k].of) != of || name_of(couplings[k].by) != by) continue;
     if (std::exchange(seen[k], true)) break;
-    wearer.calibration.mixed_in[k] = rad_per_rad;
+    wearer.calibration.coupling_gains[k] = rad_per_rad;
     return;
   }
   reader.complain(node, "mixed_in: nothing of " + in_quotes(by) + " is mixed into " +

@@ -64,7 +64,7 @@ double angle_rad(const Calibration& calibration, const HeldPose& held, std::size
   double angle = own(slot);
   for (std::size_t k = 0; k < couplings.size(); ++k)
     if (couplings[k].of == static_cast<Sensor>(slot))
-      angle += calibration.mixed_in[k] * own(static_cast<std::size_t>(couplings[k].by));
+      angle += calibration.coupling_gains[k] * own(static_cast<std::size_t>(couplings[k].by));
   return angle;
 }
 
@@ -119,11 +119,11 @@ void choose_by_held_out_poses(CalibrationFit& fit, std::span<const PoseReading> 
     if (group == Alike::none || !sensors.has(static_cast<Sensor>(slot))) continue;
     const Cost& cost = costs[static_cast<std::size_t>(group)];
     if (cost.angles < min_held_out || cost.quick >= clearly_better * cost.full) continue;
-    fit.by_two_poses.add(static_cast<Sensor>(slot));
+    fit.uses_quick_fit.add(static_cast<Sensor>(slot));
     fit.calibration.sensors[slot] = quick->calibration.sensors[slot];
     for (std::size_t k = 0; k < couplings.size(); ++k)
       if (couplings[k].of == static_cast<Sensor>(slot))
-        fit.calibration.mixed_in[k] = quick->calibration.mixed_in[k];
+        fit.calibration.coupling_gains[k] = quick->calibration.coupling_gains[k];
   }
 }
 

@@ -172,7 +172,7 @@ Calibration FitProblem::calibration(const Unknowns& at) const {
     if (now.gain != 0.0) fitted.sensors[slot] = {now.gain, now.mean_counts - now.level / now.gain};
   }
   for (std::size_t k = 0; k < couplings.size(); ++k)
-    fitted.mixed_in[k] += mix_deviation(k) * at[static_cast<Eigen::Index>(mix_of(k))];
+    fitted.coupling_gains[k] += mix_deviation(k) * at[static_cast<Eigen::Index>(mix_of(k))];
   return fitted;
 }
 
@@ -198,7 +198,7 @@ SensorAngles FitProblem::angles_rad(const Unknowns& at, std::size_t reading,
     const auto [of, by] = couplings[k];
     if (!sensors_.has(of) || !sensors_.has(by)) continue;
     const auto column = static_cast<Eigen::Index>(mix_of(k));
-    const double mix = start_.mixed_in[k] + mix_deviation(k) * at[column];
+    const double mix = start_.coupling_gains[k] + mix_deviation(k) * at[column];
     angles[slot_of(of)] += mix * own[slot_of(by)];
     if (jacobian == nullptr) continue;
     const auto row = static_cast<Eigen::Index>(slot_of(of));

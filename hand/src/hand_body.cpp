@@ -221,7 +221,7 @@ private:
 
 } // namespace
 
-NearestOfBody nearest_of(const BodyPart& part, const Vector3d& place_m) noexcept {
+ClosestPoint nearest_of(const BodyPart& part, const Vector3d& place_m) noexcept {
   const BallNear near =
       part.corner_count == 3 ? ball_of_triangle(part, place_m) : ball_of_cone(part, 0, 1, place_m);
   const Vector3d away_m = place_m - near.centre_m;
@@ -239,10 +239,10 @@ void HandBody::follow(const HandPose& pose) noexcept {
   Builder(pose, scale_, parts_).add_all();
 }
 
-NearestOfBody HandBody::nearest(const Vector3d& place_m) const noexcept {
-  NearestOfBody best = nearest_of(parts_[0], place_m);
+ClosestPoint HandBody::nearest(const Vector3d& place_m) const noexcept {
+  ClosestPoint best = nearest_of(parts_[0], place_m);
   for (std::size_t at = 1; at < part_count; ++at) {
-    const NearestOfBody other = nearest_of(parts_[at], place_m);
+    const ClosestPoint other = nearest_of(parts_[at], place_m);
     if (other.distance_m >= best.distance_m) continue;
     best = other;
     best.part = at;

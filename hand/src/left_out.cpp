@@ -116,11 +116,11 @@ private:
       if (!is_measured(of)) continue;
       // The line of a coupled sensor is its angle without what is mixed into it.
       const double by_rad = missing_.has(by) && by == Sensor::thumb_roll
-                                ? opposed_at_rest - calibration_.mixed_in[0] * line(of)
+                                ? opposed_at_rest - calibration_.coupling_gains[0] * line(of)
                             : missing_.has(by) && by == Sensor::thumb_abduction
-                                ? opposed_at_rest - calibration_.mixed_in[1] * line(of)
+                                ? opposed_at_rest - calibration_.coupling_gains[1] * line(of)
                                 : line(by);
-      at(of) += calibration_.mixed_in[k] * by_rad;
+      at(of) += calibration_.coupling_gains[k] * by_rad;
     }
   }
   void fill_gaps() noexcept {

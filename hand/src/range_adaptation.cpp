@@ -149,7 +149,7 @@ void RangeAdaptation::push(const GloveSample& sample) noexcept {
     if (learner.usual_span == 0.0) continue;
     const std::uint16_t count = std::min(sample.raw[slot].value, counts_.most);
     if (!sample.present.has(static_cast<Sensor>(slot))) {
-      learner.swings.begin_anew();
+      learner.swings.reset();
     } else if (const auto end = learner.swings.push(count, min_swing * learner.usual_span)) {
       learner.learn(*end);
     }

@@ -54,8 +54,9 @@ Result<WrittenJoints> joints_for(const Calibration& calibration, CountScale coun
   if (!missing.empty())
     written.notes.push_back("not calibrated, so left out: " + missing +
                             "; a ROS driver that needs them stops");
-  const auto is_not_zero = [](double mixed_in) { return mixed_in != 0.0; };
-  if (std::any_of(calibration.mixed_in.begin(), calibration.mixed_in.end(), is_not_zero))
+  const auto is_not_zero = [](double gain) { return gain != 0.0; };
+  if (std::any_of(calibration.coupling_gains.begin(), calibration.coupling_gains.end(),
+                  is_not_zero))
     written.notes.emplace_back("the couplings (mixed_in) are lost: the ROS forms have none");
   if (calibration.middle_bias != 0.0)
     written.notes.emplace_back("the middle bias is lost: the ROS forms have none");

@@ -19,7 +19,7 @@ constexpr double min_span = 0.1; ///< of the glove's counts
 
 } // namespace
 
-SlipAdaptation::SlipAdaptation(const Calibration& made, const WornEnds& ends,
+SlipAdaptation::SlipAdaptation(const Calibration& made, const CalibratedRange& ends,
                                CountScale counts) noexcept
     : made_(made), calibration_(made), ends_(ends), counts_(counts) {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
@@ -35,8 +35,8 @@ SlipAdaptation::SlipAdaptation(const Calibration& made, const WornEnds& ends,
   }
 }
 
-SlipAdaptation::SlipAdaptation(const Calibration& made, const WornEnds& ends, CountScale counts,
-                               const LearnedRanges& learned) noexcept
+SlipAdaptation::SlipAdaptation(const Calibration& made, const CalibratedRange& ends,
+                               CountScale counts, const LearnedRanges& learned) noexcept
     : SlipAdaptation(made, ends, counts) {
   if (learned.side != ends.side) return;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
@@ -72,7 +72,7 @@ void SlipAdaptation::push(const GloveSample& sample) noexcept {
     if (!followed_.has(static_cast<Sensor>(slot))) continue;
     Learner& learner = learners_[slot];
     if (!own || !sample.present.has(static_cast<Sensor>(slot))) {
-      learner.swings.begin_anew();
+      learner.swings.reset();
       continue;
     }
     const double span = ends_.counts.high_counts[slot] - ends_.counts.low_counts[slot];

@@ -24,7 +24,7 @@ constexpr std::uint8_t samples_back = 5;
 StuckWatch::StuckWatch(CountScale scale, SensorMask stuck) noexcept
     : scale_(scale), first_stuck_(stuck) {}
 
-void StuckWatch::begin_anew(const GloveSample& sample) noexcept {
+void StuckWatch::reset(const GloveSample& sample) noexcept {
   watched_ = {};
   stuck_ = {std::exchange(first_stuck_, {}).bits & sample.present.bits};
   number_ = 0;
@@ -141,7 +141,7 @@ bool StuckWatch::is_shown(std::size_t slot, const GloveSample& sample) const noe
 }
 
 void StuckWatch::push(const GloveSample& sample) noexcept {
-  if (number_ == 0 || sample.side != side_ || sample.present != present_) begin_anew(sample);
+  if (number_ == 0 || sample.side != side_ || sample.present != present_) reset(sample);
   ++number_;
   const double min_swing = min_swing_counts * scale_.most / 255.0;
   bool any = false;

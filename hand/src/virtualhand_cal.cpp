@@ -187,8 +187,8 @@ Result<void> check_offsets(const std::array<SensorCalibration, sensor_slots>& li
 
 std::vector<std::string> losses(const Calibration& calibration, double scale) {
   std::vector<std::string> notes;
-  for (const double mixed_in : calibration.mixed_in) {
-    if (mixed_in == 0.0) continue;
+  for (const double gain : calibration.coupling_gains) {
+    if (gain == 0.0) continue;
     notes.emplace_back("the couplings (mixed_in) are lost: a .cal file has none");
     break;
   }

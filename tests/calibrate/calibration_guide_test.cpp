@@ -255,7 +255,7 @@ TEST_SUITE("calibration_guide") {
     REQUIRE(session.hold(flat, 2.0) == CalibrationGuide::Event::captured);
     REQUIRE(session.do_pose(PoseId::fist) == CalibrationGuide::Event::captured);
     session.guide.take_again();
-    session.guide.begin_anew();
+    session.guide.reset();
     CHECK(session.guide.pose_count() == hand::full_poses().size());
     CHECK(session.guide.readings().empty());
     CHECK_FALSE(session.guide.has_any());

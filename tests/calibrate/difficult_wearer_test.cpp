@@ -211,7 +211,7 @@ TEST_SUITE("difficult_wearer") {
       CHECK(errors.thumb.median < 5.0);
       CHECK(errors.thumb.p95 < 15.0);
       CHECK(fit->set_aside.size() <= 2);
-      CHECK(fit->went_less_far == std::array<bool, hand::finger_count>{});
+      CHECK(fit->limited_range == std::array<bool, hand::finger_count>{});
     }
   }
 
@@ -225,9 +225,9 @@ TEST_SUITE("difficult_wearer") {
       REQUIRE(unknowing.follow());
       const auto believed = unknowing.fitted();
       REQUIRE_MESSAGE(believed, believed.error().message);
-      noticed += believed->went_less_far[0] ? 1 : 0;
+      noticed += believed->limited_range[0] ? 1 : 0;
       for (std::size_t finger = 1; finger < hand::finger_count; ++finger)
-        CHECK_FALSE(believed->went_less_far[finger]);
+        CHECK_FALSE(believed->limited_range[finger]);
 
       Person told(seed, habits, hand::sensors_of(hand::Finger::thumb));
       REQUIRE(told.follow());
@@ -249,7 +249,7 @@ TEST_SUITE("difficult_wearer") {
       CAPTURE(seed);
       Person person(seed, {});
       REQUIRE(person.follow());
-      CHECK(person.fitted()->went_less_far == std::array<bool, hand::finger_count>{});
+      CHECK(person.fitted()->limited_range == std::array<bool, hand::finger_count>{});
     }
   }
 }

@@ -113,7 +113,7 @@ TEST_SUITE("practice_hand") {
     while (practice.time_s < round_s - 0.1)
       practice.next();
     CHECK(practice.hand.step() == poses);
-    practice.guide.begin_anew();
+    practice.guide.reset();
     while (practice.time_s < round_s)
       practice.next();
     practice.move_freely();

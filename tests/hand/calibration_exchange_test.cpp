@@ -268,7 +268,7 @@ TEST_SUITE("calibration exchange") {
 
   TEST_CASE("what a .cal file cannot hold is refused or told") {
     Calibration calibration = default_calibration();
-    calibration.mixed_in[0] = 0.1;
+    calibration.coupling_gains[0] = 0.1;
     calibration[Sensor::index_mcp].offset_counts = 60.4;
     const auto lossy = virtualhand_text(calibration, {});
     REQUIRE(lossy);
@@ -382,7 +382,7 @@ TEST_SUITE("calibration exchange") {
       auto wearer = nendo::test::random_calibration(random);
       Calibration calibration = default_calibration();
       if (wearer.counts.most <= 255) calibration = wearer.calibration;
-      calibration.mixed_in.fill(0.0);
+      calibration.coupling_gains.fill(0.0);
       calibration.middle_bias = 0.0;
       for (auto& line : calibration.sensors) {
         if (line.gain_rad_per_count == 0.0) continue;
@@ -399,7 +399,7 @@ TEST_SUITE("calibration exchange") {
       REQUIRE(nendo::test::same_bits(read->calibration, calibration));
     }
     Calibration lossy = default_calibration();
-    lossy.mixed_in[1] = 0.5;
+    lossy.coupling_gains[1] = 0.5;
     lossy.middle_bias = 0.5;
     CHECK(calibration_csv_text(lossy)->notes.size() == 2);
   }

@@ -116,8 +116,8 @@ TEST_SUITE("calibration file") {
     CHECK(wearer->size.length_m == 0.19);
     CHECK(wearer->size.breadth_m == 0.08);
     CHECK(wearer->calibration.middle_bias == 0.25);
-    CHECK(wearer->calibration.mixed_in[0] == -0.5);
-    CHECK(wearer->calibration.mixed_in[1] == 0.0);
+    CHECK(wearer->calibration.coupling_gains[0] == -0.5);
+    CHECK(wearer->calibration.coupling_gains[1] == 0.0);
     CHECK(wearer->calibration[Sensor::index_mcp].gain_rad_per_count == 0.0125);
     CHECK(wearer->calibration[Sensor::index_mcp].offset_counts == 60.0);
     CHECK(wearer->calibration[Sensor::wrist_yaw].offset_counts == 128.5);
@@ -229,7 +229,7 @@ TEST_SUITE("calibration file") {
     refused([](auto& w) { w.user = "\xED\xA0\x80"; }); // a surrogate
     refused([](auto& w) { w.glove_serial = std::string(201, 'x'); });
     refused([&](auto& w) { w.calibration.middle_bias = nan; });
-    refused([&](auto& w) { w.calibration.mixed_in[3] = nan; });
+    refused([&](auto& w) { w.calibration.coupling_gains[3] = nan; });
     refused([&](auto& w) { w.calibration.sensors[4].gain_rad_per_count = nan; });
     refused([&](auto& w) { w.calibration.sensors[4].offset_counts = nan; });
     refused([](auto& w) { w.calibration.sensors[4].gain_rad_per_count *= -1.0; });

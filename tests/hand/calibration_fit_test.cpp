@@ -47,7 +47,8 @@ TEST_SUITE("calibration_fit") {
         CHECK(fit->sensors[slot].deviation_rad < 7.0 * rad);
       }
       for (std::size_t k = 0; k < couplings.size(); ++k)
-        CHECK(fit->calibration.mixed_in[k] == doctest::Approx(truth.mixed_in[k]).epsilon(0.1));
+        CHECK(fit->calibration.coupling_gains[k] ==
+              doctest::Approx(truth.coupling_gains[k]).epsilon(0.1));
       CHECK(fit->undetermined.bits == 0);
       CHECK(fit->condition > 1.0);
       CHECK(fit->condition < 1000.0);
@@ -93,7 +94,7 @@ TEST_SUITE("calibration_fit") {
       CHECK(fit->calibration[sensor].offset_counts == doctest::Approx(flat).epsilon(0.02));
     }
     CHECK_FALSE(fit->undetermined.has(Sensor::index_mcp));
-    CHECK(fit->calibration.mixed_in == start.mixed_in);
+    CHECK(fit->calibration.coupling_gains == start.coupling_gains);
   }
 
   TEST_CASE("what no pose shows stays at the default to the last bit, and is said") {
@@ -347,7 +348,7 @@ TEST_SUITE("calibration_fit") {
         CHECK(std::isfinite(fit->sensors[slot].residual_rad));
         CHECK(std::isfinite(fit->sensors[slot].deviation_rad));
       }
-      for (const double mix : fit->calibration.mixed_in)
+      for (const double mix : fit->calibration.coupling_gains)
         CHECK(std::isfinite(mix));
     }
     CHECK(fits > 0);

@@ -53,14 +53,14 @@ struct Store {
     REQUIRE(written);
   }
   /// The file name of what is chosen, or "none".
-  std::string chosen(const GloveAtHand& glove) const {
+  std::string chosen(const GloveIdentity& glove) const {
     const auto list = list_calibrations(folders);
     const auto choice = choose_calibration(list.files, glove);
     return choice ? choice->file->path.stem().string() : "none";
   }
 };
 
-GloveAtHand glove(const std::string& user, const std::string& serial, Side side = Side::right) {
+GloveIdentity glove(const std::string& user, const std::string& serial, Side side = Side::right) {
   return {user, model, serial, side, {}};
 }
 
@@ -137,13 +137,13 @@ TEST_SUITE("calibration store") {
     CHECK(store.chosen(glove("anna", "A1", Side::left)) == "left");
     CHECK(store.chosen(glove("berta", "A1", Side::left)) == "none");
     CHECK(store.chosen(glove("", "A1", Side::left)) == "left"); // whoever
-    GloveAtHand other = glove("anna", "Z9", Side::left);
+    GloveIdentity other = glove("anna", "Z9", Side::left);
     CHECK(store.chosen(other) == "left");
     other.model = "CyberGlove, 18 sensors";
     CHECK(store.chosen(other) == "none");
     other.serial = "A1"; // two makers may give the same number
     CHECK(store.chosen(other) == "none");
-    GloveAtHand self_calibrating = glove("anna", "A1", Side::left);
+    GloveIdentity self_calibrating = glove("anna", "A1", Side::left);
     self_calibrating.counts.whole_range = true;
     CHECK(store.chosen(self_calibrating) == "none");
   }

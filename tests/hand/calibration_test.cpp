@@ -21,7 +21,7 @@ TEST_SUITE("calibration") {
   TEST_CASE("an angle is its own line and what is mixed in of others' lines, not of their angles") {
     Calibration calibration = default_calibration();
     for (std::size_t k = 0; k < couplings.size(); ++k)
-      calibration.mixed_in[k] = 0.1 * static_cast<double>(k + 1);
+      calibration.coupling_gains[k] = 0.1 * static_cast<double>(k + 1);
     GloveSample sample;
     sample.present = sensors_22;
     for (std::size_t slot = 0; slot < sensor_slots; ++slot)
@@ -42,7 +42,7 @@ TEST_SUITE("calibration") {
 
   TEST_CASE("a sensor that is absent is zero and mixes into no other") {
     Calibration calibration = default_calibration();
-    calibration.mixed_in.fill(1.0);
+    calibration.coupling_gains.fill(1.0);
     GloveSample sample;
     sample.raw.fill(RawCount{200});
     sample.present = sensors_22;

@@ -105,7 +105,7 @@ TEST_SUITE("hand_body") {
     double worst_gap = 0.0;
     for (int trial = 0; trial < 4000; ++trial) {
       const BodyPart part = random_part(random, trial % 2 == 0 ? 2 : 3);
-      const NearestOfBody near = nearest_of(part, random_vector(random, 1.6));
+      const ClosestPoint near = nearest_of(part, random_vector(random, 1.6));
       CHECK(std::abs(near.normal.norm() - 1.0) < 1e-12);
       worst_gap =
           std::max(worst_gap, std::abs(reach(part, near.normal) - near.normal.dot(near.place_m)));
@@ -119,7 +119,7 @@ TEST_SUITE("hand_body") {
     for (int trial = 0; trial < 2000; ++trial) {
       const BodyPart part = random_part(random, trial % 2 == 0 ? 2 : 3);
       const Vector3d place = random_vector(random, 1.6);
-      const NearestOfBody near = nearest_of(part, place);
+      const ClosestPoint near = nearest_of(part, place);
       CHECK((near.place_m + near.distance_m * near.normal - place).norm() < 1e-12);
       if (near.distance_m < 0.05) continue; // inside there are places with two nearest ones
       Vector3d gradient;
@@ -135,7 +135,7 @@ TEST_SUITE("hand_body") {
 
   TEST_CASE("places on axes and triangles, and parts without any extent, have normals") {
     BodyPart part{{Vector3d(0, 0, 0), Vector3d(1, 0, 0), Vector3d(0, 1, 0)}, {0.2, 0.2, 0.2}, 2};
-    NearestOfBody near = nearest_of(part, {0.5, 0, 0});
+    ClosestPoint near = nearest_of(part, {0.5, 0, 0});
     CHECK(near.distance_m == doctest::Approx(-0.2));
     CHECK(std::abs(near.normal.x()) < 1e-12);
     part.corner_count = 3;
@@ -172,8 +172,8 @@ TEST_SUITE("hand_body") {
       mirrored.follow(left.pose(angles, Isometry3d::Identity()));
       for (int at = 0; at < 50; ++at) {
         const Vector3d place = random_vector(random, 0.2);
-        const NearestOfBody near = body.nearest(place);
-        const NearestOfBody far = moved.nearest(way * place);
+        const ClosestPoint near = body.nearest(place);
+        const ClosestPoint far = moved.nearest(way * place);
         CHECK(far.distance_m == doctest::Approx(near.distance_m));
         CHECK((far.place_m - way * near.place_m).norm() < 1e-9);
         const Vector3d image(-place.x(), place.y(), place.z());
@@ -256,7 +256,7 @@ TEST_SUITE("hand_body") {
     HandBody body(skeleton);
     const test::Restraint restraint;
     body.follow(pose);
-    const NearestOfBody near = body.nearest(pose[Joint::palm].translation());
+    const ClosestPoint near = body.nearest(pose[Joint::palm].translation());
     CHECK(restraint.counts().allocations == 0);
     CHECK(near.distance_m < 0.0);
   }

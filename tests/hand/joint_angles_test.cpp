@@ -308,7 +308,7 @@ TEST_SUITE("joint_angles") {
         if (random() % 3 == 0) calibration.sensors[slot].gain_rad_per_count = strange[random() % 6];
         if (random() % 3 == 0) calibration.sensors[slot].offset_counts = strange[random() % 6];
       }
-      for (auto& part : calibration.mixed_in) {
+      for (auto& part : calibration.coupling_gains) {
         if (random() % 3 == 0) part = strange[random() % 6];
       }
       if (random() % 3 == 0) calibration.middle_bias = strange[random() % 6];

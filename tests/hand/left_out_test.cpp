@@ -41,7 +41,7 @@ SensorMask mask(std::initializer_list<Sensor> sensors) {
 
 Calibration some_calibration() {
   Calibration calibration = default_calibration();
-  calibration.mixed_in = {0.3, -0.2, -0.1, -0.2, -0.15, 0.05, -0.2, -0.1};
+  calibration.coupling_gains = {0.3, -0.2, -0.1, -0.2, -0.15, 0.05, -0.2, -0.1};
   return calibration;
 }
 
@@ -145,7 +145,8 @@ TEST_SUITE("left_out") {
 
   TEST_CASE("couplings use the estimate: a gap does not jump with a knuckle that is left out") {
     Calibration calibration = default_calibration();
-    calibration.mixed_in[3] = -0.3; // of the gap between index and middle finger, by the middle MCP
+    calibration.coupling_gains[3] =
+        -0.3; // of the gap between index and middle finger, by the middle MCP
     GloveSample sample;
     for (std::size_t slot = 0; slot < sensor_slots; ++slot)
       if (sensors_22.has(static_cast<Sensor>(slot)))

@@ -269,7 +269,7 @@ TEST_SUITE("ros_calibration") {
     std::mt19937 random(11);
     for (int round = 0; round < 50; ++round) {
       Calibration calibration = default_calibration();
-      calibration.mixed_in = {};
+      calibration.coupling_gains = {};
       for (auto& line : calibration.sensors)
         if (line.gain_rad_per_count != 0.0)
           line = {(round % 5 == 0 ? 8.0 : 1.0) * line.gain_rad_per_count *
@@ -301,7 +301,7 @@ TEST_SUITE("ros_calibration") {
 
   TEST_CASE("what the forms cannot hold is told or refused") {
     Calibration lossy = default_calibration();
-    lossy.mixed_in[1] = 0.5;
+    lossy.coupling_gains[1] = 0.5;
     lossy.middle_bias = 0.5;
     lossy[Sensor::index_dip] = {};
     const auto text = ros_yaml_text(lossy, {});

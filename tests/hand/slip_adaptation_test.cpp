@@ -25,8 +25,8 @@ constexpr auto pip = static_cast<std::size_t>(Sensor::index_pip);
 constexpr auto gap = static_cast<std::size_t>(Sensor::middle_ring_abduction);
 constexpr double low = 60.0, high = 200.0;
 
-WornEnds ends_of_all(double low_counts, double high_counts) {
-  WornEnds ends{Side::right, {}};
+CalibratedRange ends_of_all(double low_counts, double high_counts) {
+  CalibratedRange ends{Side::right, {}};
   ends.counts.present = sensors_22;
   ends.counts.low_counts.fill(low_counts);
   ends.counts.high_counts.fill(high_counts);
@@ -36,7 +36,7 @@ WornEnds ends_of_all(double low_counts, double high_counts) {
 /// A wearer whose sensors all read the same, calibrated while they went from `low` to `high`.
 struct Wearer {
   Calibration made = default_calibration();
-  WornEnds ends = ends_of_all(low, high);
+  CalibratedRange ends = ends_of_all(low, high);
   SlipAdaptation adaptation{made, ends, CountScale{}};
   HostTime now{1h};
 
@@ -78,7 +78,7 @@ TEST_SUITE("slip_adaptation") {
       CHECK(std::abs(wearer.slip()) <= std::abs(by));
       CHECK(wearer.adaptation.calibration().sensors[pip].gain_rad_per_count ==
             wearer.made.sensors[pip].gain_rad_per_count);
-      CHECK(wearer.adaptation.calibration().mixed_in == wearer.made.mixed_in);
+      CHECK(wearer.adaptation.calibration().coupling_gains == wearer.made.coupling_gains);
       wearer.swing(low, high, 2000); // and back
       CHECK(std::abs(wearer.slip()) < 1.0);
     }

@@ -67,8 +67,8 @@ void check_calibration(const json& told, const hand::Calibration& calibration) {
     CHECK(told["lines"][2 * slot] == calibration.sensors[slot].gain_rad_per_count);
     CHECK(told["lines"][2 * slot + 1] == calibration.sensors[slot].offset_counts);
   }
-  for (std::size_t at = 0; at < calibration.mixed_in.size(); ++at)
-    CHECK(told["couplings"][at] == calibration.mixed_in[at]);
+  for (std::size_t at = 0; at < calibration.coupling_gains.size(); ++at)
+    CHECK(told["couplings"][at] == calibration.coupling_gains[at]);
   CHECK(told["middle_bias"] == calibration.middle_bias);
 }
 
@@ -88,7 +88,7 @@ Setup unusual_setup() {
   left.left_out.add(Sensor::index_pip);
   right.left_out.add(Sensor::wrist_yaw);
   left.calibration[Sensor::ring_mcp] = {0.1, -17.25};
-  left.calibration.mixed_in[3] = 0.125;
+  left.calibration.coupling_gains[3] = 0.125;
   left.calibration.middle_bias = 0.7;
   left.size = {0.2, 0.09};
   right.calibration[Sensor::thumb_ip] = {-1.0 / 3.0, 1e-9};

@@ -66,14 +66,15 @@ SensorAngles lines_of(const SensorAngles& angles, const hand::Calibration& truth
   SensorAngles lines = angles;
   for (std::size_t k = 2; k < hand::couplings.size(); ++k) {
     const auto [of, by] = hand::couplings[k];
-    lines[slot_of(of)] -= truth.mixed_in[k] * angles[slot_of(by)];
+    lines[slot_of(of)] -= truth.coupling_gains[k] * angles[slot_of(by)];
   }
   // Roll and abduction are mixed into each other: two equations with two unknowns.
   const double roll = angles[slot_of(Sensor::thumb_roll)];
   const double abduction = angles[slot_of(Sensor::thumb_abduction)];
-  const double determinant = 1.0 - truth.mixed_in[0] * truth.mixed_in[1];
-  lines[slot_of(Sensor::thumb_roll)] = (roll - truth.mixed_in[0] * abduction) / determinant;
-  lines[slot_of(Sensor::thumb_abduction)] = (abduction - truth.mixed_in[1] * roll) / determinant;
+  const double determinant = 1.0 - truth.coupling_gains[0] * truth.coupling_gains[1];
+  lines[slot_of(Sensor::thumb_roll)] = (roll - truth.coupling_gains[0] * abduction) / determinant;
+  lines[slot_of(Sensor::thumb_abduction)] =
+      (abduction - truth.coupling_gains[1] * roll) / determinant;
   return lines;
 }
 
@@ -167,11 +168,11 @@ double Wearer::uniform(double low, double high) {
 }
 
 void Wearer::draw_sensors() {
-  truth_.mixed_in[0] = uniform(-0.15, 0.45);
-  truth_.mixed_in[1] = uniform(-0.40, 0.10);
+  truth_.coupling_gains[0] = uniform(-0.15, 0.45);
+  truth_.coupling_gains[1] = uniform(-0.40, 0.10);
   // A gap's sensor is stretched when its fingers bend, and that is to be taken off.
   for (std::size_t k = 2; k < hand::couplings.size(); ++k)
-    truth_.mixed_in[k] = uniform(-0.25, 0.05);
+    truth_.coupling_gains[k] = uniform(-0.25, 0.05);
   std::vector<SensorAngles> seen;
   const FreeMotion motion(random_(), ranges_);
   for (double time_s = 0.0; time_s < 60.0; time_s += 0.2)

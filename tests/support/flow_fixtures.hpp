@@ -41,8 +41,8 @@ inline GloveSample bent_sample(Side side, int counts, HostTime arrival) {
 }
 
 /// Ends to which a wearer of these sensors would go with some that have slipped.
-inline hand::WornEnds narrow_ends(Side side) {
-  hand::WornEnds ends{side, {}};
+inline hand::CalibratedRange narrow_ends(Side side) {
+  hand::CalibratedRange ends{side, {}};
   ends.counts.present = sensors_22;
   ends.counts.low_counts.fill(50.0);
   ends.counts.high_counts.fill(130.0);

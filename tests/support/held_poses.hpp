@@ -34,7 +34,7 @@ inline Calibration some_truth(std::uint32_t seed) {
     gain *= 1.1 + 0.15 * u(random);
     offset += 12.0 * u(random);
   }
-  truth.mixed_in = {0.3, -0.2, -0.1, -0.2, -0.15, 0.05, -0.2, -0.1};
+  truth.coupling_gains = {0.3, -0.2, -0.1, -0.2, -0.15, 0.05, -0.2, -0.1};
   return truth;
 }
 
@@ -43,8 +43,8 @@ inline std::array<double, sensor_slots> counts_at(const SensorAngles& angles,
                                                   const Calibration& truth) {
   SensorAngles lines = angles;
   for (std::size_t k = 2; k < couplings.size(); ++k)
-    lines[slot_of(couplings[k].of)] -= truth.mixed_in[k] * angles[slot_of(couplings[k].by)];
-  const double a = truth.mixed_in[0], b = truth.mixed_in[1];
+    lines[slot_of(couplings[k].of)] -= truth.coupling_gains[k] * angles[slot_of(couplings[k].by)];
+  const double a = truth.coupling_gains[0], b = truth.coupling_gains[1];
   lines[roll] = (angles[roll] - a * angles[web]) / (1.0 - a * b);
   lines[web] = (angles[web] - b * angles[roll]) / (1.0 - a * b);
   std::array<double, sensor_slots> counts{};

@@ -46,8 +46,8 @@ inline hand::WearerCalibration random_calibration(std::mt19937_64& random) {
     wearer.size.shape.terms[k] =
         random_number(random, hand::max_of(static_cast<hand::ShapeTerm>(k)));
   wearer.calibration.middle_bias = random_number(random, 10.0);
-  for (double& mixed_in : wearer.calibration.mixed_in)
-    mixed_in = random() % 4 == 0 ? -0.0 : random_number(random, 10.0);
+  for (double& gain : wearer.calibration.coupling_gains)
+    gain = random() % 4 == 0 ? -0.0 : random_number(random, 10.0);
   for (std::size_t slot = 0; slot + 1 < sensor_slots; ++slot) {
     const double gain = std::abs(random_number(random, 255.0 / wearer.counts.most));
     if (gain == 0.0 || random() % 8 == 0) {
@@ -70,8 +70,8 @@ inline bool same_bits(double a, double b) {
 
 inline bool same_bits(const hand::Calibration& a, const hand::Calibration& b) {
   bool same = same_bits(a.middle_bias, b.middle_bias);
-  for (std::size_t k = 0; k < a.mixed_in.size(); ++k)
-    same = same && same_bits(a.mixed_in[k], b.mixed_in[k]);
+  for (std::size_t k = 0; k < a.coupling_gains.size(); ++k)
+    same = same && same_bits(a.coupling_gains[k], b.coupling_gains[k]);
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto& x = a.sensors[slot];
     const auto& y = b.sensors[slot];

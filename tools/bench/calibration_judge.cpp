@@ -193,8 +193,8 @@ void set_best_thumb(hand::Calibration& best, const JudgedWearer& wearer) {
   best.sensors[roll_slot] = {roll[0], -level / roll[0]};
   best.sensors[abduction_slot] = {abduction[1],
                                   -(abduction[2] - mixed_abduction * level) / abduction[1]};
-  best.mixed_in[0] = mixed_roll;
-  best.mixed_in[1] = mixed_abduction;
+  best.coupling_gains[0] = mixed_roll;
+  best.coupling_gains[1] = mixed_abduction;
 }
 
 /// The lines and couplings that fit the motion itself best, by least squares of angles.
@@ -212,8 +212,8 @@ hand::Calibration best_lines(const JudgedWearer& wearer) {
     double level = weights[weights.size() - 1];
     for (std::size_t k = 0; k < mixed.size(); ++k) {
       const Eigen::VectorXd line = weights_for(of[k + 1], {of[k + 1]}, wearer);
-      best.mixed_in[mixed[k]] = weights[static_cast<Eigen::Index>(k + 1)] / line[0];
-      level -= best.mixed_in[mixed[k]] * line[1];
+      best.coupling_gains[mixed[k]] = weights[static_cast<Eigen::Index>(k + 1)] / line[0];
+      level -= best.coupling_gains[mixed[k]] * line[1];
     }
     best.sensors[slot] = {weights[0], -level / weights[0]};
   }

@@ -52,13 +52,13 @@ std::vector<Touch> touches(const deform::Points& vertices, std::span<const Conta
   std::map<std::array<long, 4>, Touch> cells;
   for (Eigen::Index vertex = 0; vertex < vertices.cols(); ++vertex) {
     const Vector3d place = vertices.col(vertex);
-    hand::NearestOfBody best;
+    hand::ClosestPoint best;
     best.distance_m = margin_mm;
     long which = -1;
     for (std::size_t part = 0; part < parts.size(); ++part) {
       if (!is_in_box(parts[part], place, margin_mm)) continue;
       ++distances;
-      const hand::NearestOfBody near = nearest_of(body_part(parts[part]), place);
+      const hand::ClosestPoint near = nearest_of(body_part(parts[part]), place);
       if (near.distance_m >= best.distance_m) continue;
       best = near;
       which = static_cast<long>(part);
@@ -157,7 +157,7 @@ deform::ClayReport PlainClay::press_to(std::span<const ContactPart> parts) {
   for (Eigen::Index vertex = 0; vertex < vertices_.cols(); ++vertex)
     for (const ContactPart& part : parts) {
       if (!is_in_box(part, vertices_.col(vertex), 0.0)) continue;
-      const hand::NearestOfBody near = nearest_of(body_part(part), vertices_.col(vertex));
+      const hand::ClosestPoint near = nearest_of(body_part(part), vertices_.col(vertex));
       if (near.distance_m < 0.0) vertices_.col(vertex) = near.place_m;
     }
   return report;

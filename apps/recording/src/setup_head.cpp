@@ -28,7 +28,7 @@ void read_line(CheckedReader& checked, hand::SensorCalibration& line) {
 void put_calibration(ByteWriter& writer, const hand::Calibration& calibration) {
   for (const auto& line : calibration.sensors)
     put_line(writer, line);
-  for (const double part : calibration.mixed_in)
+  for (const double part : calibration.coupling_gains)
     writer.f64_le(part);
   writer.f64_le(calibration.middle_bias);
 }
@@ -36,7 +36,7 @@ void put_calibration(ByteWriter& writer, const hand::Calibration& calibration) {
 void read_calibration(CheckedReader& checked, hand::Calibration& calibration) {
   for (auto& line : calibration.sensors)
     read_line(checked, line);
-  for (double& part : calibration.mixed_in)
+  for (double& part : calibration.coupling_gains)
     part = bounded_number(checked);
   calibration.middle_bias = bounded_number(checked);
 }
@@ -76,7 +76,7 @@ bool read_filter(CheckedReader& checked, hand::FilterOptions& filter) {
   return ends_follow;
 }
 
-void put_ends(ByteWriter& writer, const hand::WornEnds& ends) {
+void put_ends(ByteWriter& writer, const hand::CalibratedRange& ends) {
   writer.u8(static_cast<std::uint8_t>(ends.side));
   writer.u32_le(ends.counts.present.bits);
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
@@ -86,7 +86,7 @@ void put_ends(ByteWriter& writer, const hand::WornEnds& ends) {
 }
 
 /// SlipAdaptation judges whether sensors can have such ends.
-void read_ends(ByteReader& reader, CheckedReader& checked, hand::WornEnds& ends) {
+void read_ends(ByteReader& reader, CheckedReader& checked, hand::CalibratedRange& ends) {
   ends.side = checked.one_of(Side::right);
   ends.counts.present.bits = reader.u32_le();
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {

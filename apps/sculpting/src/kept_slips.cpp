@@ -9,13 +9,13 @@
 
 namespace nendo::sculpting {
 
-Result<hand::WornEnds> ends_of(const hand::StoredCalibration& file,
-                               const driver::GloveInfo& glove) {
+Result<hand::CalibratedRange> ends_of(const hand::StoredCalibration& file,
+                                      const driver::GloveInfo& glove) {
   const std::string path = printable(file.path.string());
   if (file.wearer.counts != glove.counts)
     return Error{Errc::bad_input, path + ": counts otherwise than " + printable(glove.source) +
                                       ", so that its slips cannot be learned; leave out --adapt"};
-  const hand::WornEnds ends{file.wearer.side, hand::reached_ends(file.wearer)};
+  const hand::CalibratedRange ends{file.wearer.side, hand::reached_ends(file.wearer)};
   if (ends.counts.present.bits == 0)
     return Error{Errc::bad_input, path + ": does not tell how far its sensors went, so that slips "
                                          "cannot be learned; leave out --adapt, or make one by "

@@ -44,7 +44,7 @@ struct NENDO_API Calibration {
   std::array<SensorCalibration, sensor_slots> sensors{};
   /// One factor for each of `couplings`: radians that are added to `of` for each radian that the
   /// line of `by` reads.
-  std::array<double, couplings.size()> mixed_in{};
+  std::array<double, couplings.size()> coupling_gains{};
   /// The middle finger's own abduction, which no sensor measures, as a part of how far the ring and
   /// index fingers lie on different sides of it; 0 keeps the finger straight. The vendor calls it
   /// "middle bias".

@@ -60,7 +60,7 @@ struct FitOptions {
   /// The ends that its sensors reached then (reached_ends()); empty where they are not known.
   CountRanges start_ends{};
   /// Compares the full fit with the quick one by poses that are held out (see
-  /// CalibrationFit::by_two_poses). It takes as long again as the fit.
+  /// CalibrationFit::uses_quick_fit). It takes as long again as the fit.
   bool hold_out = true;
   /// The ranges of a free motion in which every joint went from end to end; empty without one. A
   /// sensor that reached less there than in the poses is taken not to have been at its end.
@@ -98,14 +98,14 @@ struct CalibrationFit {
   /// Root mean square distance between the pads that touched, under the fit; 0 without touches.
   double touch_residual_m = 0.0;
   std::vector<SetAside> set_aside;
-  /// Sensors whose lines are those of the quick fit, because these predict poses that were held
-  /// out better than those of the full fit. They go by groups of like joints.
-  SensorMask by_two_poses;
+  /// Sensors whose lines are those of the quick fit, because these predict the held-out
+  /// poses better than those of the full fit. They are chosen by groups of like joints.
+  SensorMask uses_quick_fit;
   std::array<SensorFit, sensor_slots> sensors{};
   std::array<bool, couplings.size()> coupling_determined{};
-  /// Fingers, thumb to little finger, whose joints went so much less far than was asked that their
-  /// gains are no glove's: they may be stiff (FitOptions::stiff).
-  std::array<bool, finger_count> went_less_far{};
+  /// Fingers, thumb to little finger, whose joints moved so much less than the poses ask
+  /// that their gains are implausible for a glove: they may be stiff (FitOptions::stiff).
+  std::array<bool, finger_count> limited_range{};
   SensorMask undetermined; ///< sensors that are present, whose gain or offset is the default's
   std::vector<ReadingFit> readings; ///< in the order of those given
   /// Ratio of the largest singular value of the determined problem to its smallest, in units of

@@ -49,11 +49,11 @@ struct CalibrationList {
 /// empty. Blocks.
 NENDO_API CalibrationList list_calibrations(const CalibrationFolders& folders);
 
-/// What is known of a glove that needs a calibration.
-struct GloveAtHand {
+/// Identifies a glove.
+struct GloveIdentity {
   std::string user; ///< empty: any
   std::string model;
-  std::string serial; ///< empty: the glove does not tell it
+  std::string serial; ///< empty: the glove does not report it
   Side side = Side::right;
   CountScale counts;
 };
@@ -74,7 +74,7 @@ struct CalibrationChoice {
 /// another model or of the other kind of counts. Among equally good matches an own file goes before
 /// a shared one, then the newer file, then the one listed first. `files` must outlive the choice.
 NENDO_API std::optional<CalibrationChoice>
-choose_calibration(const std::vector<StoredCalibration>& files, const GloveAtHand& glove);
+choose_calibration(const std::vector<StoredCalibration>& files, const GloveIdentity& glove);
 
 /// Returns whether choose_calibration() returns this file for its own user, glove and hand.
 NENDO_API bool is_in_force(const StoredCalibration& file,

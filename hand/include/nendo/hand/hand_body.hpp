@@ -19,8 +19,8 @@ struct BodyPart {
   Joint carrier = Joint::wrist;             ///< the joint with which its surface turns and slides
 };
 
-/// The place of a surface that is nearest to another place.
-struct NearestOfBody {
+/// The closest point of a surface.
+struct ClosestPoint {
   double distance_m = 0.0; ///< negative inside
   Eigen::Vector3d normal;  ///< unit, outwards: the gradient of the distance
   Eigen::Vector3d place_m; ///< on the surface
@@ -30,7 +30,7 @@ struct NearestOfBody {
 /// Returns the nearest place of one part (its `part` is 0). It is exact, inside as well as outside,
 /// also where radii differ. On the medial axis or triangle, where several places are nearest, it
 /// is one of them. Wait-free.
-NENDO_API NearestOfBody nearest_of(const BodyPart& part, const Eigen::Vector3d& place_m) noexcept;
+NENDO_API ClosestPoint nearest_of(const BodyPart& part, const Eigen::Vector3d& place_m) noexcept;
 
 class NENDO_API HandBody {
 public:
@@ -51,7 +51,7 @@ public:
   /// Returns the nearest place of the surface of the whole: that of the part with the least
   /// distance. Outside it is exact. Inside, the depth is that in the one part, and never more than
   /// the way out of the whole.
-  NearestOfBody nearest(const Eigen::Vector3d& place_m) const noexcept;
+  ClosestPoint nearest(const Eigen::Vector3d& place_m) const noexcept;
 
 private:
   double scale_; ///< this hand's length, of the average hand's

@@ -27,8 +27,8 @@ NENDO_API AngleLimits default_angle_limits() noexcept;
 struct FingertipTarget {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
   /// How much this tip counts compared with the others when they pull at the wrist or the palm.
-  /// With 0 there is no target, nor with a weight or position that is not finite, a negative
-  /// weight, or a position farther than farthest_m from 0.
+  /// A zero, negative or non-finite weight disables the target, and so does a position that is not
+  /// finite or farther than farthest_m from 0.
   double weight = 0.0;
 
   static constexpr double farthest_m = 1e3;

@@ -1,7 +1,8 @@
 #pragma once
 // Closes pinches. Calibrated angles leave pads that touch some millimetres apart, and a person who
 // feels a pinch wants to see it. Where the pad of a finger is near that of the thumb, the joints of
-// both are turned so that the pads meet: by the least turn, weighed by how uncertain each joint is.
+// both are turned so that the pads meet: by the smallest rotation, weighted by each
+// joint's uncertainty.
 
 #include <nendo/hand/joint_angles.hpp>
 #include <nendo/hand/skeleton.hpp>

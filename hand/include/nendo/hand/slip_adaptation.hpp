@@ -17,12 +17,12 @@
 namespace nendo::hand {
 
 /// The ends that a hand's sensors reached when its calibration was made; counts.
-struct WornEnds {
+struct CalibratedRange {
   Side side = Side::right;
   CountRanges counts; ///< only the sensors in `present` are followed, and none of gaps
 };
 
-/// Returns the least slip that is worth telling: half a count of a glove that counts to 255.
+/// Returns the smallest slip worth reporting: half a count of a glove that counts to 255.
 constexpr double min_slip_counts(CountScale counts) noexcept {
   return 0.5 * counts.most / 255.0;
 }
@@ -35,10 +35,10 @@ public:
   static constexpr double max_slip = 0.2;
 
   /// Begins with the calibration as it was made for a glove of these counts.
-  SlipAdaptation(const Calibration& made, const WornEnds& ends, CountScale counts) noexcept;
+  SlipAdaptation(const Calibration& made, const CalibratedRange& ends, CountScale counts) noexcept;
   /// Continues from `learned`, as after a pause. A sensor whose values in `learned` cannot have
   /// been learned restarts.
-  SlipAdaptation(const Calibration& made, const WornEnds& ends, CountScale counts,
+  SlipAdaptation(const Calibration& made, const CalibratedRange& ends, CountScale counts,
                  const LearnedRanges& learned) noexcept;
 
   /// Takes the next sample in time. Samples of the other hand, which is another glove's, teach
@@ -64,7 +64,7 @@ private:
   double slip_counts(std::size_t slot) const noexcept;
 
   Calibration made_, calibration_;
-  WornEnds ends_;
+  CalibratedRange ends_;
   CountScale counts_;
   SensorMask followed_;
   std::array<Learner, sensor_slots> learners_{};

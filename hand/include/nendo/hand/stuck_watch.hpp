@@ -47,7 +47,7 @@ private:
     std::uint8_t away = 0; ///< samples in a row in which a stuck sensor has moved
   };
 
-  void begin_anew(const GloveSample& sample) noexcept;
+  void reset(const GloveSample& sample) noexcept;
   void watch(std::size_t slot, const GloveSample& sample) noexcept;
   bool has_swung(std::size_t slot, std::uint64_t since, std::size_t times) const noexcept;
   template <class Sensors>

@@ -24,7 +24,7 @@ public:
   /// Wait-free, no allocation.
   std::optional<End> push(std::uint16_t count, double min_swing) noexcept;
   /// Forgets what came before, as after a pause.
-  void begin_anew() noexcept { seen_ = 0; }
+  void reset() noexcept { seen_ = 0; }
 
 private:
   static constexpr std::size_t window = 5; ///< of the median that takes out spikes

@@ -32,7 +32,7 @@ struct Wearer {
   std::optional<LearnedRanges> learned{};
   /// If it is set, only slips from the calibration of that side are learned. The other side's
   /// stays as it is.
-  std::optional<WornEnds> ends{};
+  std::optional<CalibratedRange> ends{};
   /// If it is set, sensors of a glove with such counts that stand still while others move are left
   /// out as long as they do (stuck_watch.hpp).
   std::optional<CountScale> watched{};

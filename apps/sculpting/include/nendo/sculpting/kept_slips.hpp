@@ -14,8 +14,8 @@ namespace nendo::sculpting {
 
 /// Returns the ends that the sensors reached when this calibration was made for a glove with the
 /// counts of `glove`. Error: bad_input, if it does not tell them, or is of another kind of glove.
-NENDO_API Result<hand::WornEnds> ends_of(const hand::StoredCalibration& file,
-                                         const driver::GloveInfo& glove);
+NENDO_API Result<hand::CalibratedRange> ends_of(const hand::StoredCalibration& file,
+                                                const driver::GloveInfo& glove);
 
 /// What became of slips.
 struct KeptSlips {
