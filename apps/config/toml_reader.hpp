@@ -1,6 +1,6 @@
 #pragma once
-// Reads tables of a TOML file, with error messages that name the line. Only one source file
-// includes this header, because toml++ is slow to compile.
+// Reads tables of a TOML file, with error messages that name the line. In each module only one
+// source file includes this header, because toml++ is slow to compile.
 
 #include <algorithm>
 #include <array>
@@ -20,28 +20,27 @@
 
 namespace nendo::config {
 
-inline std::string one_line(std::string_view text) {
-  return printable(text.substr(0, 160));
-}
-
 /// Reads values and keeps the first error. After an error, all values are empty or zero.
 class TomlReader {
 public:
   explicit TomlReader(std::string_view name) : name_(name) {}
 
   const std::optional<Error>& error() const noexcept { return error_; }
-  void complain(const toml::node& where, const std::string& what) {
+  void complain(const toml::node& where, std::string_view what) {
     complain(where.source().begin.line, what);
   }
-  void complain(std::size_t line, const std::string& what) {
-    if (!error_)
-      error_ = Error{Errc::bad_input, name_ + ":" + std::to_string(line) + ": " + one_line(what)};
+  void complain(std::size_t line, std::string_view what) {
+    if (!error_) error_ = bad_line(name_, line, printable(what.substr(0, 250)));
   }
 
   void allow_only(const toml::table& table, const std::vector<std::string_view>& keys) {
-    for (const auto& [key, node] : table)
-      if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
-        complain(node, "unknown key '" + std::string(key.str()) + "'; leave it out");
+    for (const auto& [key, node] : table) {
+      if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
+      std::string message = "unknown key " + in_quotes(key.str()) + "; leave it out, or use one of";
+      for (const std::string_view known : keys)
+        message.append(known == keys.front() ? " " : ", ").append(known);
+      complain(node, message);
+    }
   }
   /// Returns null, with an error, if the key is missing.
   const toml::node* find(const toml::table& table, std::string_view key) {
@@ -51,7 +50,10 @@ public:
   }
   const toml::table* table(const toml::table& table, std::string_view key) {
     const toml::node* node = find(table, key);
-    return node == nullptr ? nullptr : as_table(*node, key);
+    if (node == nullptr) return nullptr;
+    if (!node->is_table())
+      complain(*node, std::string(key) + " must be a table, as [" + std::string(key) + "]");
+    return node->as_table();
   }
   const toml::table* as_table(const toml::node& node, std::string_view what) {
     if (!node.is_table()) complain(node, std::string(what) + " must be a table");
@@ -87,15 +89,16 @@ public:
     const toml::node* node = find(table, key);
     return node == nullptr ? 0.0 : number(*node, key);
   }
-  /// Reads a whole number from 0 to `most`.
-  std::uint64_t count(const toml::table& table, std::string_view key, std::uint64_t most) {
+  /// Reads a whole number from `min` to `max`. After an error it is 0.
+  std::uint64_t count(const toml::table& table, std::string_view key, std::uint64_t max,
+                      std::uint64_t min = 0) {
     const toml::node* node = find(table, key);
     if (node == nullptr) return 0;
     const auto value = node->value_exact<std::int64_t>();
-    if (value && *value >= 0 && static_cast<std::uint64_t>(*value) <= most)
-      return static_cast<std::uint64_t>(*value);
-    complain(*node,
-             std::string(key) + " must be a whole number within 0 and " + std::to_string(most));
+    const auto number = value && *value >= 0 ? static_cast<std::uint64_t>(*value) : max + 1;
+    if (number >= min && number <= max) return number;
+    complain(*node, std::string(key) + " must be a whole number within " + std::to_string(min) +
+                        " and " + std::to_string(max));
     return 0;
   }
   /// Reads a list of exactly `Size` numbers.
@@ -126,10 +129,12 @@ private:
   std::optional<Error> error_;
 };
 
-/// Parses a text of version 1 and has read(reader, root) take it apart. Returns the first error, of
-/// the text or of the reader, or nothing. `name` is what errors call the text.
+/// Parses a text of version 1 and calls read(reader, root). Returns the first error, of the text or
+/// of the reader, or nothing. `name` is what errors call the text, and `advice` ends the message
+/// about a text that is not TOML.
 template <class Read>
-std::optional<Error> read_toml(std::string_view text, std::string_view name, const Read& read) {
+std::optional<Error> read_toml(std::string_view text, std::string_view name, const Read& read,
+                               std::string_view advice = "fix it") {
   toml::table root;
   TomlReader reader(name);
   if (const auto fault = find_toml_fault(text)) {
@@ -139,7 +144,8 @@ std::optional<Error> read_toml(std::string_view text, std::string_view name, con
   try {
     root = toml::parse(text, name);
   } catch (const toml::parse_error& error) {
-    reader.complain(error.source().begin.line, std::string(error.description()) + "; mend it");
+    reader.complain(error.source().begin.line,
+                    std::string(error.description().substr(0, 160)) + "; " + std::string(advice));
     return reader.error();
   }
   const toml::node* const version = reader.find(root, "version");
