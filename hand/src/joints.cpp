@@ -54,28 +54,7 @@ std::string_view name_of(Finger finger) noexcept {
 std::optional<Joint> parent_of(Joint joint) noexcept {
   if (joint == Joint::wrist) return std::nullopt;
   if (joint == Joint::palm || is_metacarpal(joint)) return Joint::wrist;
-  return static_cast<Joint>(index_of(joint) - 1); // a finger's joints stand in order
-}
-
-std::optional<PaperNode> paper_node_of(Joint joint) noexcept {
-  if (joint == Joint::palm) return std::nullopt;
-  if (joint == Joint::wrist) return PaperNode{PaperNode::Kind::parent, 0};
-  // Each metacarpal that has been passed on the way to a joint took one place out of the count.
-  std::uint8_t metacarpals = 0;
-  std::uint8_t others = 0;
-  for (std::size_t at = index_of(Joint::thumb_metacarpal); at < index_of(joint); ++at) {
-    is_metacarpal(static_cast<Joint>(at)) ? ++metacarpals : ++others;
-  }
-  if (is_metacarpal(joint)) return PaperNode{PaperNode::Kind::palm_joint, metacarpals};
-  return PaperNode{PaperNode::Kind::joint, others};
-}
-
-std::optional<Joint> joint_of(PaperNode node) noexcept {
-  for (std::size_t at = 0; at < joint_count; ++at) {
-    const auto joint = static_cast<Joint>(at);
-    if (paper_node_of(joint) == node) return joint;
-  }
-  return std::nullopt;
+  return static_cast<Joint>(index_of(joint) - 1); // a finger's joints are in order
 }
 
 } // namespace nendo::hand

@@ -219,57 +219,6 @@ TEST_SUITE("inverse_kinematics") {
     CHECK(reached >= 299);
   }
 
-  TEST_CASE("a palm's pose alone turns the wrist, and fingertips and palm are both reached") {
-    std::mt19937 random(9);
-    for (int round = 0; round < 200; ++round) {
-      const HandSkeleton skeleton(round % 2 == 0 ? Side::left : Side::right);
-      const JointAngles made_of = random_angles_within_limits(random);
-      const Isometry3d base = random_place(random);
-      const HandPose made = skeleton.pose(made_of, base);
-      InverseOptions options;
-      options.palm = {made[Joint::palm], 1.0};
-      options.solve_wrist = round % 4 >= 2;
-      JointAngles start;
-      start.palm_arch_rad = made_of.palm_arch_rad;
-      const auto targets = targets_at(made.fingertip_positions());
-      const auto solved = inverse_kinematics(skeleton, base, targets, start, options);
-      const HandPose pose = skeleton.pose(solved.angles, base);
-      CAPTURE(round);
-      CHECK((pose[Joint::palm].matrix() - made[Joint::palm].matrix()).norm() < 5e-4);
-      CHECK(solved.palm_off_m < tenth_mm);
-      CHECK(most(distances(skeleton, base, targets, solved.angles)) < tenth_mm);
-      CHECK(std::abs(solved.angles.wrist_pitch_rad - made_of.wrist_pitch_rad) < 1e-3);
-      CHECK(std::abs(solved.angles.wrist_yaw_rad - made_of.wrist_yaw_rad) < 1e-3);
-    }
-  }
-
-  TEST_CASE("a palm that no wrist reaches is approached, and what is no pose is no target") {
-    const HandSkeleton skeleton(Side::left);
-    const Isometry3d base = Isometry3d::Identity();
-    JointAngles bent;
-    bent.wrist_pitch_rad = 3.0; // beyond the end of its range
-    InverseOptions options;
-    options.palm = {skeleton.pose(bent, base)[Joint::palm], 1.0};
-    const auto solved = inverse_kinematics(skeleton, base, {}, {}, options);
-    CHECK(solved.angles.wrist_pitch_rad ==
-          doctest::Approx(default_angle_limits().high.wrist_pitch_rad));
-    CHECK(solved.palm_off_m > 0.02);
-    JointAngles start;
-    start.wrist_pitch_rad = 0.3;
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const PalmTarget& none :
-         {PalmTarget{options.palm.T_world_palm, 0.0}, PalmTarget{options.palm.T_world_palm, -1.0},
-          PalmTarget{options.palm.T_world_palm, nan},
-          PalmTarget{Isometry3d(Eigen::Translation3d(nan, 0, 0)), 1.0},
-          PalmTarget{Isometry3d(Eigen::Matrix4d(Eigen::Matrix4d::Zero())), 1.0},
-          PalmTarget{Isometry3d(Eigen::Matrix4d(1e300 * Eigen::Matrix4d::Identity())), 1.0}}) {
-      options.palm = none;
-      const auto kept = inverse_kinematics(skeleton, base, {}, start, options);
-      CHECK(farthest_apart(kept.angles, start) == 0.0);
-      CHECK(kept.palm_off_m == 0.0);
-    }
-  }
-
   TEST_CASE("a heavier tip is nearer, when the wrist cannot please all") {
     const HandSkeleton skeleton(Side::right);
     InverseOptions options;

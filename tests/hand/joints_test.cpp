@@ -51,38 +51,6 @@ TEST_SUITE("joints") {
     CHECK(parent_of(Joint::thumb_metacarpal) == Joint::wrist);
     CHECK(parent_of(Joint::little_tip) == Joint::little_distal);
   }
-
-  TEST_CASE("the paper's numbers are thumb 0-2, index 3-6, middle 7-10, ring 11-14, little 15-18") {
-    using Kind = PaperNode::Kind;
-    const auto joint = [](int id) { return PaperNode{Kind::joint, static_cast<std::uint8_t>(id)}; };
-    CHECK(paper_node_of(Joint::wrist) == PaperNode{Kind::parent, 0});
-    CHECK(paper_node_of(Joint::thumb_metacarpal) == PaperNode{Kind::palm_joint, 0});
-    CHECK(paper_node_of(Joint::little_metacarpal) == PaperNode{Kind::palm_joint, 4});
-    CHECK(paper_node_of(Joint::thumb_proximal) == joint(0));
-    CHECK(paper_node_of(Joint::thumb_tip) == joint(2));
-    // The joints that turn in two degrees of freedom are the fingers' MCPs.
-    CHECK(paper_node_of(Joint::index_proximal) == joint(3));
-    CHECK(paper_node_of(Joint::middle_proximal) == joint(7));
-    CHECK(paper_node_of(Joint::ring_proximal) == joint(11));
-    CHECK(paper_node_of(Joint::little_proximal) == joint(15));
-    CHECK(paper_node_of(Joint::index_tip) == joint(6));
-    CHECK(paper_node_of(Joint::little_tip) == joint(18));
-    CHECK_FALSE(paper_node_of(Joint::palm).has_value());
-  }
-
-  TEST_CASE("the paper's nodes and the joints map one to one") {
-    std::size_t nodes = 0;
-    for (std::size_t at = 0; at < joint_count; ++at) {
-      const auto joint = static_cast<Joint>(at);
-      const auto node = paper_node_of(joint);
-      if (!node) continue;
-      ++nodes;
-      CHECK(joint_of(*node) == joint);
-    }
-    CHECK(nodes == paper_node_count);
-    CHECK_FALSE(joint_of({PaperNode::Kind::joint, 19}).has_value());
-    CHECK_FALSE(joint_of({PaperNode::Kind::palm_joint, 5}).has_value());
-  }
 }
 
 } // namespace joints_test

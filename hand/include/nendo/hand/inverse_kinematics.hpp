@@ -26,7 +26,7 @@ NENDO_API AngleLimits default_angle_limits() noexcept;
 
 struct FingertipTarget {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
-  /// How much this tip counts compared with the others when they pull at the wrist or the palm.
+  /// The weight of this tip beside the others when the wrist or the palm is solved.
   /// A zero, negative or non-finite weight disables the target, and so does a position that is not
   /// finite or farther than farthest_m from 0.
   double weight = 0.0;
@@ -37,32 +37,18 @@ struct FingertipTarget {
 /// The targets from the thumb to the little finger.
 using FingertipTargets = std::array<FingertipTarget, finger_count>;
 
-/// The wanted pose of the palm, as another device measures it (OpenXR's palm pose).
-struct PalmTarget {
-  Eigen::Isometry3d T_world_palm = Eigen::Isometry3d::Identity();
-  /// How much the palm counts compared with the fingertips when the wrist is solved for both. With
-  /// 0 there is no target, nor with values that are not finite or a matrix that is not a rotation.
-  double weight = 0.0;
-};
-
 struct InverseOptions {
   AngleLimits limits = default_angle_limits();
   bool solve_wrist = false;     ///< solves pitch and yaw; else they stay as in `start`
-  bool solve_palm_arch = false; ///< likewise for the arch
-  /// With this target, pitch and yaw are solved for the palm alone, or together with the fingertips
-  /// if solve_wrist is set.
-  PalmTarget palm{};
-  double tolerance_m = 1e-5; ///< how near counts as reached; at least 1e-9
+  bool solve_palm_arch = false; ///< solves the arch; else it stays as in `start`
+  double tolerance_m = 1e-5;    ///< how near counts as reached; at least 1e-9
 };
 
 struct InverseSolution {
   JointAngles angles;
   /// The distance from each target to its fingertip; 0 without a target.
   std::array<double, finger_count> residual_m{};
-  /// The distance of the palm from its target: the root mean square over four points, its origin
-  /// and one on each axis 0.1 m from it. 0 without a target.
-  double palm_off_m = 0.0;
-  unsigned iterations = 0; ///< of all fingers together
+  unsigned iterations = 0; ///< the sum over all fingers
   bool converged = false;  ///< every fingertip is within the tolerance of its target
 };
 

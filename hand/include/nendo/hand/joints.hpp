@@ -1,6 +1,5 @@
 #pragma once
-// The joints of a hand: names and order of OpenXR's XR_EXT_hand_tracking, and the node numbers that
-// the paper (Sato, Savchenko, Ohbuchi 2004, section 2.2) gives its VR Hand.
+// The joints of a hand: names and order of OpenXR's XR_EXT_hand_tracking.
 
 #include <array>
 #include <cstddef>
@@ -63,24 +62,5 @@ NENDO_API std::string_view name_of(Finger finger) noexcept;
 
 inline constexpr std::array<Joint, finger_count> fingertips{
     Joint::thumb_tip, Joint::index_tip, Joint::middle_tip, Joint::ring_tip, Joint::little_tip};
-
-/// A node of the paper's VR Hand: its Parent is the wrist, PalmJoints 0-4 are the metacarpals of
-/// thumb to little finger, and Joints 0-18 the rest: thumb 0-2, index 3-6, middle 7-10, ring 11-14,
-/// little 15-18, each ending in the tip. The thumb's PalmJoint and Joints 3, 7, 11 and 15 turn in
-/// two degrees of freedom.
-struct PaperNode {
-  enum class Kind : std::uint8_t { parent, palm_joint, joint };
-  Kind kind = Kind::parent;
-  std::uint8_t id = 0; ///< 0 for the Parent
-  friend constexpr bool operator==(PaperNode, PaperNode) = default;
-};
-
-inline constexpr std::size_t paper_node_count = 25;
-
-/// Returns the node of the paper for this joint, or nullopt for the palm, which the paper does not
-/// have.
-NENDO_API std::optional<PaperNode> paper_node_of(Joint joint) noexcept;
-/// Returns the joint for a node of the paper, or nullopt if the paper has no such node.
-NENDO_API std::optional<Joint> joint_of(PaperNode node) noexcept;
 
 } // namespace nendo::hand
