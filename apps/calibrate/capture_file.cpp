@@ -20,12 +20,6 @@ using nlohmann::ordered_json;
 
 constexpr std::uintmax_t max_bytes = 1U << 30U;
 
-std::optional<std::size_t> slot_named(const std::string& name) {
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
-    if (name_of(static_cast<Sensor>(slot)) == name) return slot;
-  return std::nullopt;
-}
-
 /// Returns the number of that key, or nothing if it is not within the range.
 std::optional<double> number(const json& object, const char* key, double least, double most) {
   const auto found = object.find(key);
@@ -41,11 +35,11 @@ bool for_each_count(const json& line, const char* key, double most, Take&& take)
   const auto counts = line.find(key);
   if (counts == line.end() || !counts->is_object() || counts->empty()) return false;
   for (const auto& [name, value] : counts->items()) {
-    const auto slot = slot_named(name);
-    if (!slot || !value.is_number()) return false;
+    const auto sensor = sensor_named(name);
+    if (!sensor || !value.is_number()) return false;
     const double count = value.template get<double>();
     if (!(count >= 0.0 && count <= most)) return false;
-    take(*slot, count);
+    take(index_of(*sensor), count);
   }
   return true;
 }
@@ -131,10 +125,8 @@ std::string take_line(const std::string& text, CaptureFile& file, bool first) {
 
 ordered_json counts_json(SensorMask present, const std::array<double, sensor_slots>& counts) {
   ordered_json object = ordered_json::object();
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (present.has(sensor)) object[std::string(name_of(sensor))] = counts[slot];
-  }
+  for (const Sensor sensor : present)
+    object[std::string(name_of(sensor))] = counts[index_of(sensor)];
   return object;
 }
 

@@ -20,9 +20,8 @@ JointAngles assumed_angles(const hand::CalibrationPose& pose) {
   hand::Calibration calibration;
   calibration.sensors.fill({gain, offset});
   GloveSample sample;
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (!sensors_22.has(sensor)) continue;
+  for (const Sensor sensor : sensors_22) {
+    const std::size_t slot = index_of(sensor);
     double angle_rad = pose.assumed[slot].known() ? pose.assumed[slot].angle_rad : 0.0;
     const bool opposes = sensor == Sensor::thumb_roll || sensor == Sensor::thumb_abduction;
     if (opposes && !pose.assumed[slot].known()) angle_rad = relaxed_thumb_rad;

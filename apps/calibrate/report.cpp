@@ -18,7 +18,7 @@ namespace {
 
 // The measures of the picture, in pixels.
 constexpr double picture_width = 840.0;
-constexpr double top = 66.0; ///< of the first row
+constexpr double top = 66.0; ///< top of the first row
 constexpr double row_height = 20.0;
 constexpr double range_left = 190.0;
 constexpr double range_width = 360.0;
@@ -30,12 +30,6 @@ std::string_view kept_text(const hand::SensorFit& sensor) {
   if (sensor.gain_determined && sensor.offset_determined) return "";
   if (sensor.gain_determined) return "offset is the default's";
   return sensor.offset_determined ? "gain is the default's" : "the default's";
-}
-
-template <class Visit>
-void for_each_sensor(SensorMask sensors, Visit&& visit) {
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
-    if (sensors.has(static_cast<Sensor>(slot))) visit(static_cast<Sensor>(slot), slot);
 }
 
 void print_readings(std::ostream& out, const hand::CalibrationFit& fit,
@@ -60,9 +54,9 @@ void print_set_aside(std::ostream& out, const hand::CalibrationFit& fit,
                        hand::pose_of(readings[aside.reading].pose).name,
                        aside.sensor ? name_of(*aside.sensor) : "the touch");
   if (fit.uses_quick_fit.bits == 0) return;
-  out << "two poses foretell the others better for:";
-  for_each_sensor(fit.uses_quick_fit,
-                  [&](Sensor sensor, std::size_t) { out << ' ' << name_of(sensor); });
+  out << "two poses predict the others better for:";
+  for (const Sensor sensor : fit.uses_quick_fit)
+    out << ' ' << name_of(sensor);
   out << '\n';
 }
 
@@ -121,19 +115,18 @@ void print_report(std::ostream& out, const hand::CalibrationFit& fit,
                   std::span<const hand::PoseReading> readings, SensorMask sensors,
                   SensorMask left_out) {
   out << "sensor                      counts  deg/count   residual    sure to\n";
-  for_each_sensor(sensors, [&](Sensor sensor, std::size_t slot) {
-    const hand::SensorFit& quality = fit.sensors[slot];
+  for (const Sensor sensor : sensors) {
+    const hand::SensorFit& quality = fit.sensors[index_of(sensor)];
     const std::string range =
         fmt::format("{:.0f} to {:.0f}", quality.low_counts, quality.high_counts);
     out << fmt::format("{:22} {:>11}  {:9.3f}  {:5.1f} deg  {:5.1f} deg  {}\n", name_of(sensor),
                        range, to_degrees(fit.calibration[sensor].gain_rad_per_count),
                        to_degrees(quality.residual_rad), to_degrees(quality.deviation_rad),
                        kept_text(quality));
-  });
-  for_each_sensor(left_out, [&](Sensor sensor, std::size_t) {
-    out << fmt::format("{:22} stands still: left out, and estimated from the sensors beside\n",
+  }
+  for (const Sensor sensor : left_out)
+    out << fmt::format("{:22} is stuck: left out, and estimated from the sensors beside\n",
                        name_of(sensor));
-  });
   print_readings(out, fit, readings);
   print_set_aside(out, fit, readings);
   print_stiff(out, fit);
@@ -160,10 +153,11 @@ Result<void> write_report_picture(const std::filesystem::path& path,
       heading);
   drawing.words(residual_left, 50.0, "residual of the poses", heading);
   double y = top;
-  for_each_sensor(sensors, [&](Sensor sensor, std::size_t slot) {
-    draw_row(drawing, sensor, fit.sensors[slot], fit.calibration[sensor], wearer.counts.most, y);
+  for (const Sensor sensor : sensors) {
+    draw_row(drawing, sensor, fit.sensors[index_of(sensor)], fit.calibration[sensor],
+             wearer.counts.most, y);
     y += row_height;
-  });
+  }
   return replace_file(path, std::move(drawing).finished());
 }
 

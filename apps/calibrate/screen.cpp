@@ -42,11 +42,8 @@ void add_wrapped(std::vector<std::string>& lines, const std::string& text, int w
 std::string state_text(const CalibrationPicture& picture) {
   const hand::PoseCapture& capture = picture.guide->capture();
   const auto troubled = [&] {
-    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-      const auto sensor = static_cast<Sensor>(slot);
-      if (capture.troubled().has(sensor)) return std::string(name_of(sensor));
-    }
-    return std::string("a sensor");
+    const SensorMask sensors = capture.troubled();
+    return std::string(sensors.bits == 0 ? "a sensor" : name_of(*sensors.begin()));
   };
   if (!picture.begun) return "Bend and stretch every joint fully, a few times. Then SPACE begins.";
   if (picture.sample == nullptr || picture.age_s > silent_after_s) return "The glove is silent.";
@@ -98,9 +95,8 @@ std::string undetermined_text(SensorMask undetermined) {
 std::vector<std::string> bars(const CalibrationPicture& picture, int width, int rows) {
   std::vector<std::string> lines;
   if (picture.sample == nullptr || width < name_width + min_bar) return lines;
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (!picture.sample->present.has(sensor) || static_cast<int>(lines.size()) >= rows) continue;
+  for (const Sensor sensor : picture.sample->present) {
+    if (static_cast<int>(lines.size()) >= rows) break;
     const bool left_out = picture.guide->left_out().has(sensor);
     lines.push_back(
         fitted((left_out ? "(" : "") + std::string(name_of(sensor)) + (left_out ? ")" : ""),

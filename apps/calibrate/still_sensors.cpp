@@ -41,9 +41,8 @@ void StillSensors::push(const GloveSample& sample) {
   const bool first = !begun_;
   if (first) begun_ = sample.time();
   last_ = sample.time();
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (!sample.present.has(sensor)) continue;
+  for (const Sensor sensor : sample.present) {
+    const std::size_t slot = index_of(sensor);
     Seen& seen = seen_[slot];
     const std::uint16_t count = sample.raw[slot].value;
     if (!present_.has(sensor)) {
@@ -90,9 +89,8 @@ SensorMask StillSensors::stuck() const {
   SensorMask found = watch_.stuck();
   if (!begun_) return found;
   const bool long_enough = seconds_between(*begun_, last_) >= patience_s;
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (!present_.has(sensor)) continue;
+  for (const Sensor sensor : present_) {
+    const std::size_t slot = index_of(sensor);
     const Seen& seen = seen_[slot];
     const bool at_end = hand::is_at_end(seen.low, scale_) && !seen.changed;
     const bool rests = hand::rests_at_end(seen.low, seen.high, scale_);

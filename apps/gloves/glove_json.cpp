@@ -23,8 +23,8 @@ ordered_json switch_json(WristSwitch position) {
 
 ordered_json sensors_json(SensorMask sensors) {
   ordered_json names = ordered_json::array();
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
-    if (sensors.has(static_cast<Sensor>(slot))) names.push_back(sensor_names[slot]);
+  for (const Sensor sensor : sensors)
+    names.push_back(name_of(sensor));
   return names;
 }
 
@@ -51,9 +51,8 @@ std::string sample_json(const GloveSample& sample, const hand::Calibration* cali
   const auto angles_rad = calibration != nullptr
                               ? hand::filled_angles_rad(sample, *calibration, left_out)
                               : hand::SensorAngles{};
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (!sample.present.has(sensor)) continue;
+  for (const Sensor sensor : sample.present) {
+    const std::size_t slot = index_of(sensor);
     const std::string name(name_of(sensor));
     raw[name] = sample[sensor].value;
     if (calibration != nullptr && (*calibration)[sensor].gain_rad_per_count != 0.0)

@@ -125,9 +125,7 @@ std::string stream_line(const MonitorPicture& picture, const std::string& keys, 
 /// Returns "index_pip stands still at 255 while the hand moves: ...".
 std::string stuck_text(const MonitorPicture& picture) {
   std::string text;
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (!picture.left_out.has(sensor)) continue;
+  for (const Sensor sensor : picture.left_out) {
     text.append(text.empty() ? "" : ", ").append(name_of(sensor));
     text += " stands still at " + std::to_string((*picture.sample)[sensor].value);
   }
@@ -162,10 +160,8 @@ std::string sensor_text(const MonitorPicture& picture, Sensor sensor, int width)
 void add_sensors(const MonitorPicture& picture, cli::ScreenSize size, int rows,
                  std::vector<std::string>& lines) {
   std::vector<Sensor> sensors;
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (picture.sample->present.has(sensor)) sensors.push_back(sensor);
-  }
+  for (const Sensor sensor : picture.sample->present)
+    sensors.push_back(sensor);
   const int count = static_cast<int>(sensors.size());
   const int half_width = (size.columns - column_gap) / 2;
   const bool in_two = count > rows && half_width >= name_width + count_width;

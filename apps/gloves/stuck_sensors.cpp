@@ -8,30 +8,19 @@
 #include "cli/cli.hpp"
 
 namespace nendo::gloves {
-namespace {
-
-template <class Visit>
-void for_each_of(SensorMask sensors, Visit&& visit) {
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
-    if (sensors.has(static_cast<Sensor>(slot))) visit(static_cast<Sensor>(slot));
-}
-
-} // namespace
-
 std::vector<std::string> StuckNotices::changes(SensorMask left_out, const GloveSample* sample) {
   const SensorMask before = known_.value_or(left_out);
   known_ = left_out;
   std::vector<std::string> sentences;
-  for_each_of({left_out.bits & ~before.bits}, [&](Sensor sensor) {
+  for (const Sensor sensor : SensorMask{left_out.bits & ~before.bits}) {
     const std::string place =
         sample != nullptr ? " at " + std::to_string((*sample)[sensor].value) : std::string();
     sentences.push_back(std::string(name_of(sensor)) + " stands still" + place +
                         " while the hand moves: it is left out, and estimated from the sensors "
                         "beside");
-  });
-  for_each_of({before.bits & ~left_out.bits}, [&](Sensor sensor) {
+  }
+  for (const Sensor sensor : SensorMask{before.bits & ~left_out.bits})
     sentences.push_back(std::string(name_of(sensor)) + " moves again: it is measured");
-  });
   return sentences;
 }
 
@@ -55,15 +44,15 @@ std::vector<SensorAtEnd> sensors_at_end(driver::Glove& glove) {
     }
     if (!first) first = HostClock::now();
     last = sample;
-    for_each_of(at_end, [&](Sensor sensor) {
+    for (const Sensor sensor : at_end)
       if (!sample.present.has(sensor) || !hand::is_at_end(sample[sensor].value, info.counts))
         at_end.bits &= ~(1U << static_cast<unsigned>(sensor));
-    });
   }
   glove.stop();
   std::vector<SensorAtEnd> found;
-  if (last)
-    for_each_of(at_end, [&](Sensor sensor) { found.push_back({sensor, (*last)[sensor].value}); });
+  if (!last) return found;
+  for (const Sensor sensor : at_end)
+    found.push_back({sensor, (*last)[sensor].value});
   return found;
 }
 

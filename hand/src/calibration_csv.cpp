@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <string>
 
@@ -133,10 +132,8 @@ Result<ExportedCalibration> calibration_csv_text(const Calibration& calibration)
     result.text += std::string(sensor_names[slot]) + "," + decimal_text(line.gain_rad_per_count) +
                    "," + decimal_text(line.offset_counts) + "\n";
   }
-  const bool couples =
-      std::any_of(calibration.coupling_gains.begin(), calibration.coupling_gains.end(),
-                  [](double gain) { return gain != 0.0; });
-  if (couples) result.notes.emplace_back("the couplings (mixed_in) are lost: a CSV file has none");
+  if (calibration.has_couplings())
+    result.notes.emplace_back("the couplings (mixed_in) are lost: a CSV file has none");
   if (calibration.middle_bias != 0.0)
     result.notes.emplace_back("the middle bias is lost: a CSV file has none");
   return result;

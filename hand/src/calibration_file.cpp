@@ -69,10 +69,8 @@ std::string mixed_in_lines(const Calibration& calibration) {
 /// Empty where no sensor was stuck.
 std::string left_out_line(SensorMask left_out) {
   std::string names;
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (left_out.has(sensor)) names.append(names.empty() ? "\"" : "\", \"").append(name_of(sensor));
-  }
+  for (const Sensor sensor : left_out)
+    names.append(names.empty() ? "\"" : "\", \"").append(name_of(sensor));
   return names.empty() ? "" : "# stuck when it was made\nleft_out = [" + names + "\"]\n";
 }
 

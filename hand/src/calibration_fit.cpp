@@ -42,9 +42,8 @@ Result<void> check_reading(const PoseReading& reading, SensorMask sensors, Count
   if (static_cast<std::size_t>(reading.pose) >= pose_count)
     return about("a reading of no known pose: use those of full_poses()");
   const std::string pose(pose_of(reading.pose).name);
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (!sensors.has(sensor)) continue;
+  for (const Sensor sensor : sensors) {
+    const std::size_t slot = index_of(sensor);
     const std::string where = pose + ", " + name_of_slot(slot) + ": ";
     if (!reading.held.present.has(sensor))
       return about(where + "no reading; hold the pose again with the whole glove connected");
@@ -257,9 +256,8 @@ Solution solve_without_contradictions(FitProblem& problem, std::size_t readings,
 /// No line that is flat to nothing, or not a number, leaves the fit: such a sensor keeps the
 /// default's.
 void mend_lines(CalibrationFit& fit, SensorMask sensors, const Calibration& start) {
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (!sensors.has(sensor)) continue;
+  for (const Sensor sensor : sensors) {
+    const std::size_t slot = index_of(sensor);
     const auto [gain, offset] = fit.calibration.sensors[slot];
     const double usual = start.sensors[slot].gain_rad_per_count;
     if (std::isfinite(gain) && std::isfinite(offset) && gain >= min_gain_ratio * usual) continue;
@@ -276,9 +274,9 @@ void find_fingers_with_limited_range(CalibrationFit& fit, SensorMask sensors,
   constexpr double suspicious = 0.26; // of a logarithm; without stiff fingers it was 0.2 at most
   std::vector<double> all;
   std::array<double, finger_count> sum{}, counted{};
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (!sensors.has(sensor) || !fit.sensors[slot].gain_determined || is_gap(sensor)) continue;
+  for (const Sensor sensor : sensors) {
+    const std::size_t slot = index_of(sensor);
+    if (!fit.sensors[slot].gain_determined || is_gap(sensor)) continue;
     const double beyond = std::log(fit.calibration.sensors[slot].gain_rad_per_count /
                                    start.sensors[slot].gain_rad_per_count);
     all.push_back(beyond);

@@ -96,7 +96,7 @@ void read_coupling(TomlReader& reader, const toml::node& node, WearerCalibration
   const double rad_per_rad = reader.number(*table, "rad_per_rad");
   complain_if(reader, node, "mixed_in", complaint_about_coupling(rad_per_rad));
   for (std::size_t k = 0; k < couplings.size(); ++k) {
-    if (name_of(couplings[k].of) != of || name_of(couplings[k].by) != by) continue;
+    if (sensor_named(of) != couplings[k].of || sensor_named(by) != couplings[k].by) continue;
     if (std::exchange(seen[k], true)) break;
     wearer.calibration.coupling_gains[k] = rad_per_rad;
     return;

@@ -16,14 +16,10 @@ double mix_deviation(std::size_t coupling) {
                                                                    : gap_mix_deviation;
 }
 
-std::size_t slot_of(Sensor sensor) {
-  return static_cast<std::size_t>(sensor);
-}
-
 /// The angle that comes out where this one is asked for.
 AssumedAngle as_it_comes_out(AssumedAngle assumed, std::size_t slot) {
   const bool is_pip =
-      slot >= slot_of(Sensor::index_pip) && slot % 4 == 1 && slot < slot_of(Sensor::palm_arch);
+      slot >= index_of(Sensor::index_pip) && slot % 4 == 1 && slot < index_of(Sensor::palm_arch);
   if (is_pip && assumed.angle_rad == 0.0) assumed.angle_rad = straight_pip_rad;
   return assumed;
 }
@@ -43,8 +39,8 @@ FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorM
       size_known_(options.size_known),
       start_(options.start.value_or(default_calibration(options.scale))),
       max_counts_(options.scale.most), touch_is_set_aside_(readings.size()) {
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    if (!sensors_.has(static_cast<Sensor>(slot))) continue;
+  for (const Sensor sensor : sensors_) {
+    const std::size_t slot = index_of(sensor);
     double mean = 0.0;
     for (const auto& reading : readings_)
       mean += reading.held.mean_counts[slot] / static_cast<double>(readings_.size());
@@ -79,11 +75,9 @@ FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorM
 /// than it did moves them against each other, and tells the slip the less surely. How far gaps
 /// between fingers go depends on how the fingers are bent.
 void FitProblem::compare_ends(CountRanges now, const CountRanges& then) {
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (!sensors_.has(sensor) || !now.present.has(sensor) || !then.present.has(sensor) ||
-        is_gap(sensor))
-      continue;
+  for (const Sensor sensor : sensors_) {
+    const std::size_t slot = index_of(sensor);
+    if (!now.present.has(sensor) || !then.present.has(sensor) || is_gap(sensor)) continue;
     const double moves = now.high_counts[slot] - now.low_counts[slot],
                  moved = then.high_counts[slot] - then.low_counts[slot];
     // Written so that a NaN is no motion.
@@ -181,8 +175,8 @@ SensorAngles FitProblem::angles_rad(const Unknowns& at, std::size_t reading,
   const auto& counts = readings_[reading].held.mean_counts;
   SensorAngles own{};
   if (jacobian != nullptr) jacobian->setZero();
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    if (!sensors_.has(static_cast<Sensor>(slot))) continue;
+  for (const Sensor sensor : sensors_) {
+    const std::size_t slot = index_of(sensor);
     const Line now = line(at, slot);
     own[slot] = now.angle_rad(counts[slot]);
     if (jacobian == nullptr) continue;
@@ -199,11 +193,11 @@ SensorAngles FitProblem::angles_rad(const Unknowns& at, std::size_t reading,
     if (!sensors_.has(of) || !sensors_.has(by)) continue;
     const auto column = static_cast<Eigen::Index>(mix_of(k));
     const double mix = start_.coupling_gains[k] + mix_deviation(k) * at[column];
-    angles[slot_of(of)] += mix * own[slot_of(by)];
+    angles[index_of(of)] += mix * own[index_of(by)];
     if (jacobian == nullptr) continue;
-    const auto row = static_cast<Eigen::Index>(slot_of(of));
-    mixed.row(row) += mix * jacobian->row(static_cast<Eigen::Index>(slot_of(by)));
-    mixed(row, column) += mix_deviation(k) * own[slot_of(by)];
+    const auto row = static_cast<Eigen::Index>(index_of(of));
+    mixed.row(row) += mix * jacobian->row(static_cast<Eigen::Index>(index_of(by)));
+    mixed(row, column) += mix_deviation(k) * own[index_of(by)];
   }
   if (jacobian != nullptr) *jacobian = mixed;
   return angles;

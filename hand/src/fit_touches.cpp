@@ -12,10 +12,6 @@ namespace {
 // Of an unknown of the hand, for derivatives by differences.
 constexpr double hand_step = 1e-4;
 
-std::size_t touch_slot(Sensor sensor) {
-  return static_cast<std::size_t>(sensor);
-}
-
 /// The joints that these angles make. What no sensor measures follows the rules, which is had by
 /// passing the angles through lines of gain 1; what is measured is taken without the soft stops,
 /// for a loop that a hand has closed is closed by the joints as they are.
@@ -27,7 +23,7 @@ JointAngles joints_of(const SensorAngles& angles, SensorMask sensors) {
   sample.present = sensors;
   JointAngles joints = joint_angles(sample, passing);
   const auto take = [&](double& joint_rad, Sensor sensor) {
-    if (sensors.has(sensor)) joint_rad = angles[touch_slot(sensor)];
+    if (sensors.has(sensor)) joint_rad = angles[index_of(sensor)];
   };
   take(joints.thumb_roll_rad, Sensor::thumb_roll);
   take(joints.thumb_mcp_flexion_rad, Sensor::thumb_mcp);
@@ -36,7 +32,7 @@ JointAngles joints_of(const SensorAngles& angles, SensorMask sensors) {
   take(joints.palm_arch_rad, Sensor::palm_arch);
   for (std::size_t f = 0; f < joints.fingers.size(); ++f) {
     const auto sensor = [&](Sensor of_index) {
-      return static_cast<Sensor>(touch_slot(of_index) + 4 * f);
+      return static_cast<Sensor>(index_of(of_index) + 4 * f);
     };
     take(joints.fingers[f].mcp_flexion_rad, sensor(Sensor::index_mcp));
     take(joints.fingers[f].pip_flexion_rad, sensor(Sensor::index_pip));
@@ -90,9 +86,9 @@ FitProblem::Hands FitProblem::hands(const Unknowns& at, bool with_moved) const {
 }
 
 void FitProblem::find_range_ends(const CountRanges& free_motion) {
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
-    if (!sensors_.has(sensor) || !free_motion.present.has(sensor) || stiff_.has(sensor)) continue;
+  for (const Sensor sensor : sensors_) {
+    const std::size_t slot = index_of(sensor);
+    if (!free_motion.present.has(sensor) || stiff_.has(sensor)) continue;
     double least = readings_.front().held.mean_counts[slot], most = least;
     for (const auto& reading : readings_) {
       least = std::min(least, reading.held.mean_counts[slot]);
@@ -176,8 +172,8 @@ void FitProblem::add_touch(std::size_t reading, const Unknowns& at, SensorAngles
   }
   if (jacobian == nullptr) return;
   constexpr double step_rad = 1e-5;
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    if (!sensors_.has(static_cast<Sensor>(slot))) continue;
+  for (const Sensor sensor : sensors_) {
+    const std::size_t slot = index_of(sensor);
     const double angle = angles[slot];
     angles[slot] = angle + step_rad;
     const Eigen::Vector3d above = gap_m(angles, touch, palm, hands.now);

@@ -39,9 +39,10 @@ public:
   Filling(const GloveSample& sample, const Calibration& calibration, SensorMask left_out) noexcept
       : calibration_(calibration), measured_{sample.present.bits & ~left_out.bits},
         missing_{sample.present.bits & left_out.bits} {
-    for (std::size_t slot = 0; slot < sensor_slots; ++slot)
-      if (measured_.has(static_cast<Sensor>(slot)))
-        angles_[slot] = calibration.sensors[slot].angle_rad(sample.raw[slot]);
+    for (const Sensor sensor : measured_) {
+      const std::size_t slot = index_of(sensor);
+      angles_[slot] = calibration.sensors[slot].angle_rad(sample.raw[slot]);
+    }
   }
 
   SensorAngles filled() noexcept {

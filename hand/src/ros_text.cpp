@@ -54,9 +54,7 @@ Result<WrittenJoints> joints_for(const Calibration& calibration, CountScale coun
   if (!missing.empty())
     written.notes.push_back("not calibrated, so left out: " + missing +
                             "; a ROS driver that needs them stops");
-  const auto is_not_zero = [](double gain) { return gain != 0.0; };
-  if (std::any_of(calibration.coupling_gains.begin(), calibration.coupling_gains.end(),
-                  is_not_zero))
+  if (calibration.has_couplings())
     written.notes.emplace_back("the couplings (mixed_in) are lost: the ROS forms have none");
   if (calibration.middle_bias != 0.0)
     written.notes.emplace_back("the middle bias is lost: the ROS forms have none");

@@ -68,10 +68,10 @@ double SlipAdaptation::slip_counts(std::size_t slot) const noexcept {
 void SlipAdaptation::push(const GloveSample& sample) noexcept {
   const bool own = sample.side == ends_.side;
   const double interval_s = interval_.push(sample);
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    if (!followed_.has(static_cast<Sensor>(slot))) continue;
+  for (const Sensor sensor : followed_) {
+    const std::size_t slot = index_of(sensor);
     Learner& learner = learners_[slot];
-    if (!own || !sample.present.has(static_cast<Sensor>(slot))) {
+    if (!own || !sample.present.has(sensor)) {
       learner.swings.reset();
       continue;
     }

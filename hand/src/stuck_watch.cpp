@@ -8,10 +8,6 @@
 namespace nendo::hand {
 namespace {
 
-constexpr std::size_t slot_number(Sensor sensor) noexcept {
-  return static_cast<std::size_t>(sensor);
-}
-
 constexpr std::array<Sensor, 4> thumb_sensors{Sensor::thumb_roll, Sensor::thumb_mcp,
                                               Sensor::thumb_ip, Sensor::thumb_abduction};
 
@@ -68,7 +64,7 @@ bool StuckWatch::has_swung(std::size_t slot, std::uint64_t since,
 template <class Sensors>
 int StuckWatch::swung(const Sensors& sensors, std::size_t of, std::size_t times) const noexcept {
   return static_cast<int>(std::count_if(sensors.begin(), sensors.end(), [&](Sensor sensor) {
-    return slot_number(sensor) != of && has_swung(slot_number(sensor), watched_[of].changed, times);
+    return index_of(sensor) != of && has_swung(index_of(sensor), watched_[of].changed, times);
   }));
 }
 
@@ -78,7 +74,7 @@ bool StuckWatch::shown_by_finger(std::size_t slot) const noexcept {
   const std::size_t finger = slot / 4 - 1, joint = slot % 4;
   int usable = 0;
   for (const Sensor sensor : finger_sensors[finger])
-    if (slot_number(sensor) != slot && present_.has(sensor) && !stuck_.has(sensor)) ++usable;
+    if (index_of(sensor) != slot && present_.has(sensor) && !stuck_.has(sensor)) ++usable;
   std::array<Sensor, 4> alike{};
   for (std::size_t f = 0; f < alike.size(); ++f)
     alike[f] = finger_sensors[f][joint];

@@ -187,11 +187,8 @@ Result<void> check_offsets(const std::array<SensorCalibration, sensor_slots>& li
 
 std::vector<std::string> losses(const Calibration& calibration, double scale) {
   std::vector<std::string> notes;
-  for (const double gain : calibration.coupling_gains) {
-    if (gain == 0.0) continue;
+  if (calibration.has_couplings())
     notes.emplace_back("the couplings (mixed_in) are lost: a .cal file has none");
-    break;
-  }
   for (const auto& line : calibration.sensors) {
     const double offset = line.offset_counts * scale;
     if (line.gain_rad_per_count == 0.0 || offset == std::round(offset)) continue;

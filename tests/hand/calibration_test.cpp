@@ -2,6 +2,8 @@
 
 #include <initializer_list>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -119,6 +121,26 @@ TEST_SUITE("calibration") {
       for (const auto& sensor : default_calibration({0, whole_range}).sensors)
         CHECK(sensor.angle_rad(RawCount{65535}) == 0.0);
     }
+  }
+
+  TEST_CASE("the little finger's sensors are also found by their older names") {
+    const std::string older = "pinky";
+    CHECK(sensor_named(older + "_mcp") == Sensor::pinky_mcp);
+    CHECK(sensor_named(older + "_pip") == Sensor::pinky_pip);
+    CHECK(sensor_named(older + "_dip") == Sensor::pinky_dip);
+    CHECK(sensor_named("ring_" + older + "_abduction") == Sensor::ring_pinky_abduction);
+    for (const char* const none : {"", "_", "_mc", "_mcp_", "_abduction"})
+      CHECK_FALSE(sensor_named(older + none));
+    CHECK_FALSE(sensor_named("index_" + older + "_abduction"));
+  }
+
+  TEST_CASE("a mask's sensors are visited in the order of their slots") {
+    std::vector<Sensor> seen;
+    for (const Sensor sensor : SensorMask{0xFF800081})
+      seen.push_back(sensor);
+    CHECK(seen == std::vector{Sensor::thumb_roll, Sensor::index_abduction, Sensor::unused});
+    for ([[maybe_unused]] const Sensor sensor : SensorMask{})
+      FAIL("empty");
   }
 }
 

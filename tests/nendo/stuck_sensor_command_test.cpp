@@ -214,7 +214,7 @@ TEST_SUITE("stuck_sensor_command") {
         CHECK(written->calibration[sensor].gain_rad_per_count == 0.0);
       }
       CHECK(written->left_out == expected);
-      CHECK(count_of(done.out, "stands still: left out") == made.stuck.size());
+      CHECK(count_of(done.out, "is stuck: left out") == made.stuck.size());
       const auto shown = nendo::test::nendo({"calibration", "show", out});
       CHECK(shown.out.find("left out, because stuck: ") != std::string::npos);
     }

@@ -130,12 +130,9 @@ JudgedWearer wearer_of(const Json& object) {
   wearer.side = side == "left" ? Side::left : Side::right;
   for (const Json& name : list(object, "sensors", sensor_slots)) {
     if (!name.is_string()) throw Wrong{"sensors: not names"};
-    const std::string text = name.get<std::string>();
-    std::size_t slot = 0;
-    while (slot < sensor_slots && text != sensor_names[slot])
-      ++slot;
-    if (slot == sensor_slots) throw Wrong{"no sensor is called " + name.dump()};
-    wearer.sensors.add(static_cast<Sensor>(slot));
+    const auto sensor = sensor_named(name.get<std::string>());
+    if (!sensor) throw Wrong{"no sensor is called " + name.dump()};
+    wearer.sensors.add(*sensor);
   }
   const Json& pads = list(object, "pads_mm", 5);
   if (pads.size() != 5) throw Wrong{"pads_mm: not five"};

@@ -3,6 +3,7 @@
 // Counts only; angles begin in `hand`. This is the one header of `driver` that `hand` may include.
 
 #include <array>
+#include <bit>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +19,8 @@ namespace nendo {
 
 /// The CyberGlove's 24 sensor slots, in the order of its mask bits (vendor library and manual
 /// agree). The abduction sensors beside the thumb's measure the angle between two neighbouring
-/// fingers. Sensors say pinky, as the glove's own documents do; joints say little, as OpenXR does.
+/// fingers. The glove's documents call the little finger pinky; here it has the name that OpenXR
+/// and anatomy give it.
 enum class Sensor : std::uint8_t {
   thumb_roll,
   thumb_mcp,
@@ -61,10 +63,22 @@ constexpr std::string_view name_of(Sensor sensor) noexcept {
   return sensor_names[static_cast<std::size_t>(sensor)];
 }
 
+/// Returns the sensor of that name. Also accepts older names, which have pinky in place of little.
 constexpr std::optional<Sensor> sensor_named(std::string_view name) noexcept {
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
-    if (sensor_names[slot] == name) return static_cast<Sensor>(slot);
+  constexpr std::string_view older = "pinky", newer = "little";
+  const std::size_t at = name.find(older);
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const std::string_view known = sensor_names[slot];
+    if (known == name) return static_cast<Sensor>(slot);
+    if (at != name.npos && known.find(newer) == at && known.substr(0, at) == name.substr(0, at) &&
+        known.substr(at + newer.size()) == name.substr(at + older.size()))
+      return static_cast<Sensor>(slot);
+  }
   return std::nullopt;
+}
+
+constexpr std::size_t index_of(Sensor sensor) noexcept {
+  return static_cast<std::size_t>(sensor);
 }
 
 /// Returns whether the sensor measures the gap between two neighbouring fingers.
@@ -82,6 +96,25 @@ struct SensorMask {
   }
   constexpr void add(Sensor sensor) noexcept { bits |= 1U << static_cast<unsigned>(sensor); }
   friend constexpr bool operator==(SensorMask, SensorMask) = default;
+
+  /// Visits the sensors in the order of their slots, as they were when the visit began.
+  class Iterator {
+  public:
+    constexpr explicit Iterator(std::uint32_t rest) noexcept : rest_(rest) {}
+    constexpr Sensor operator*() const noexcept {
+      return static_cast<Sensor>(std::countr_zero(rest_));
+    }
+    constexpr Iterator& operator++() noexcept {
+      rest_ &= rest_ - 1;
+      return *this;
+    }
+    friend constexpr bool operator==(Iterator, Iterator) = default;
+
+  private:
+    std::uint32_t rest_;
+  };
+  constexpr Iterator begin() const noexcept { return Iterator(bits & ((1U << sensor_slots) - 1U)); }
+  constexpr Iterator end() const noexcept { return Iterator(0); }
 };
 
 template <class Sensors>

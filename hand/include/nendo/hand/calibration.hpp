@@ -57,6 +57,9 @@ struct NENDO_API Calibration {
     return sensors[static_cast<std::size_t>(sensor)];
   }
 
+  constexpr bool has_couplings() const noexcept {
+    return coupling_gains != decltype(coupling_gains){};
+  }
   /// Returns the joint angle of every sensor that is present, and 0 for the others, which also add
   /// nothing by couplings. Wait-free.
   SensorAngles angles_rad(const GloveSample& sample) const noexcept;
