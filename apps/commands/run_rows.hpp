@@ -42,7 +42,7 @@ void choose(flow::WantedSettings& wanted, const flow::Frame&) {
 }
 
 inline bool draws(const Situation& now) {
-  return now.frame.wire.is_drawn();
+  return now.frame.wire.is_drawing();
 }
 inline bool has_parts(const Situation& now) {
   return now.frame.parts.count > 0; // in another mode no hand takes a part

@@ -17,7 +17,7 @@ void set_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& s
     scene_frame.contacts.push_back(
         {contact.place / frame.units_per_metre, flow::strength_of(contact)});
   scene_frame.wire.clear();
-  if (frame.wire.is_drawn())
+  if (frame.wire.is_drawing())
     for (const deform::WirePlace& place : frame.wire.places())
       scene_frame.wire.push_back(
           {place.from / frame.units_per_metre, place.to / frame.units_per_metre});

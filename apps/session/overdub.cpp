@@ -182,7 +182,7 @@ Result<void> play_over(const RunOptions& options, std::vector<flow::HandInput>& 
     hand.first = script.moved(hand.first);
   for (flow::HandInput& live : inputs) {
     live.layer->on = over.begins_on();
-    live.layer->part = live.layer->on ? 1.0 : 0.0;
+    live.layer->weight = live.layer->on ? 1.0 : 0.0;
     if (over.punch) punch(*over.punch, static_cast<std::uint8_t>(all.size()), script);
     all.push_back(std::move(live));
   }

@@ -19,7 +19,7 @@ void RunCommands::follow_frame(const flow::Frame& frame) {
     is_in_ = on;
   }
   const bool is_news = std::exchange(wires_, frame.wire.completed()) != frame.wire.completed();
-  if (is_news && !frame.wire.is_drawn()) models_.cut(frame.wire);
+  if (is_news && !frame.wire.is_drawing()) models_.cut(frame.wire);
 }
 
 // A run continues where there is no memory for what one command needs.

@@ -117,10 +117,10 @@ void RunModels::look() {
                                             was_refined = was_refined_] {
     constexpr flow::ChangeModel change{0, flow::ModelSource::topology};
     const auto changed = [&] {
-      return Made{flow::FinerModel::make(model, change), true, change.source};
+      return Made{flow::PendingModel::make(model, change), true, change.source};
     };
     if (changes_topology && was_refined && is_thin(model, shape)) return changed();
-    Made made{flow::FinerModel::make(model, how)};
+    Made made{flow::PendingModel::make(model, how)};
     if (!made.finer) return made;
     made.is_wanted = made.finer->count_unfit(shape) >= least;
     if (changes_topology && !was_refined && !made.is_wanted && is_thin(model, shape))
@@ -146,7 +146,7 @@ std::optional<std::string> RunModels::begin() {
     if (auto told = choose_part()) return told;
   const flow::ModelVersion& model = placed_.loop->changes().newest_model();
   making_ = std::async(std::launch::async, [&model, how = made_, wire = wire_] {
-    return Made{flow::FinerModel::make(model, how, wire.places())};
+    return Made{flow::PendingModel::make(model, how, wire.places())};
   });
   return std::nullopt;
 }
@@ -154,7 +154,7 @@ std::optional<std::string> RunModels::begin() {
 /// The loop holds still.
 std::optional<std::string> RunModels::hand_over() {
   flow::DeformLoop& loop = *placed_.loop;
-  std::optional<flow::FinerModel> finer = std::exchange(finer_, {});
+  std::optional<flow::PendingModel> finer = std::exchange(finer_, {});
   stage_ = Stage::handing_over;
   if (!finer->is_of(loop.changes().newest_model())) { // somebody has undone meanwhile
     loop.changes().keep_model();

@@ -47,7 +47,7 @@ private:
   enum class Stage { none, holding_still, handing_over };
   /// What another thread has made.
   struct Made {
-    Result<flow::FinerModel> finer;
+    Result<flow::PendingModel> finer;
     bool is_wanted = true; ///< enough edges are unfit, or something is thin, if nobody has asked
     flow::ModelSource source = flow::ModelSource::refined; ///< then
   };
@@ -68,9 +68,9 @@ private:
   bool was_refined_ = false;                   ///< by itself, the last time
   std::optional<flow::ChangeModel> asked_;     ///< without its number
   std::future<Made> making_;
-  flow::ChangeModel made_;                ///< what making_ and finer_ are
-  flow::WirePath wire_;                   ///< that cuts
-  std::optional<flow::FinerModel> finer_; ///< made, and not the loop's yet
+  flow::ChangeModel made_;                  ///< what making_ and finer_ are
+  flow::WirePath wire_;                     ///< that cuts
+  std::optional<flow::PendingModel> finer_; ///< made, and not the loop's yet
   Stage stage_ = Stage::none;
 };
 

@@ -73,7 +73,7 @@ Result<RecordedModel> find_recorded_model(const recording::LoopSetup& loop,
   auto model = model_of_file(loop, named);
   if (!model) return model;
   for (const auto& origin : loop.origins) {
-    auto made = flow::made_again(model->mesh, *origin);
+    auto made = flow::rebuild(model->mesh, *origin);
     if (!made)
       return Error{Errc::bad_input, printable(named.empty() ? loop.mesh : named) + ": " +
                                         made.error().message +

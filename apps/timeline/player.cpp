@@ -47,10 +47,10 @@ bool are_too_many(const std::vector<Event>& events, const deform::Mesh& model) {
   std::size_t corners = model.face_corners.size();
   for (const Event& event : events) {
     const bool divides = std::holds_alternative<flow::Subdivide>(event.command);
-    if (divides && corners > flow::FinerModel::max_corners) return true;
+    if (divides && corners > flow::PendingModel::max_corners) return true;
     const auto* const edit = std::get_if<flow::EditPart>(&event.command);
     if (divides || (edit != nullptr && !edit->removes)) corners *= divides ? 4 : 2;
-    if (corners > 4 * flow::FinerModel::max_corners) return true;
+    if (corners > 4 * flow::PendingModel::max_corners) return true;
   }
   return false;
 }
@@ -160,7 +160,7 @@ void Player::make_model(const flow::ChangeModel& change) {
   finish_change();
   std::span<const deform::WirePlace> wire;
   if (change.source == flow::ModelSource::cut) wire = timeline_.wires[change.number];
-  auto finer = flow::FinerModel::make(changes_.newest_model(), change, wire);
+  auto finer = flow::PendingModel::make(changes_.newest_model(), change, wire);
   if (!finer)
     changes_.keep_model();
   else if (!changes_.change_model(*finer))

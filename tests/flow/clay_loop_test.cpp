@@ -74,7 +74,7 @@ public:
   void refine(double part) {
     DeformLoop& loop = *test_.loop;
     auto finer =
-        FinerModel::make(loop.changes().newest_model(), {0, ModelSource::refined, 100'000});
+        PendingModel::make(loop.changes().newest_model(), {0, ModelSource::refined, 100'000});
     REQUIRE(finer);
     REQUIRE(loop.changes().hold_still());
     go(part, 1);

@@ -208,7 +208,7 @@ TEST_SUITE("mask change") {
     const auto held_at_first = held(loop.test.model.vertices);
     for (const Eigen::Index v : moved(loop.test.model.vertices, coarse))
       CHECK_FALSE(held_at_first[v]);
-    FinerModel finer(loop.test.loop->changes().newest_model());
+    PendingModel finer(loop.test.loop->changes().newest_model());
     REQUIRE(loop.test.loop->changes().hold_still());
     loop.tick();
     REQUIRE(loop.test.loop->changes().is_still());

@@ -27,7 +27,7 @@ struct Versioned : test::Clocked {
   }
   /// With hands that rest.
   deform::Points subdivide() {
-    FinerModel finer(loop().changes().newest_model());
+    PendingModel finer(loop().changes().newest_model());
     REQUIRE(loop().changes().hold_still());
     tick();
     REQUIRE(loop().changes().is_still());
@@ -74,7 +74,7 @@ TEST_SUITE("model_version") {
         reference.now = run.now;
         run.stroke(0, 10);
         reference.stroke(0, 10);
-        FinerModel finer(run.loop().changes().newest_model());
+        PendingModel finer(run.loop().changes().newest_model());
         REQUIRE(run.loop().changes().hold_still());
         const deform::Points still = run.bent(10);
         REQUIRE(reference.test.commands.try_push(Request::commit));
@@ -97,7 +97,7 @@ TEST_SUITE("model_version") {
   TEST_CASE("what is asked for while the loop holds still is done when it goes on") {
     Versioned run(Mode::type1);
     run.stroke(0, 10);
-    FinerModel finer(run.loop().changes().newest_model());
+    PendingModel finer(run.loop().changes().newest_model());
     REQUIRE(run.loop().changes().hold_still());
     CHECK_FALSE(run.loop().changes().hold_still());
     const deform::Points still = run.bent(10);
@@ -124,7 +124,7 @@ TEST_SUITE("model_version") {
     for (const bool refused : {false, true}) {
       Versioned run(Mode::type1);
       run.stroke(0, 10);
-      FinerModel finer(run.loop().changes().newest_model());
+      PendingModel finer(run.loop().changes().newest_model());
       REQUIRE(run.loop().changes().hold_still());
       const deform::Points still = run.bent(10);
       std::uint32_t seen = 0;

@@ -79,7 +79,7 @@ public:
         REQUIRE(test_.commands.try_push(WristMove::to(side, wrist)));
       }
       const Frame& frame = step == 0 ? ask(DrawWire{true}) : go();
-      CHECK(frame.wire.is_drawn());
+      CHECK(frame.wire.is_drawing());
       CHECK_FALSE(frame.held); // hands that draw hold nothing
     }
     return ask(DrawWire{false});
@@ -109,8 +109,8 @@ public:
   }
   /// Of the model, as who runs the loop does. Returns what cannot be.
   Result<void> change(const ChangeModel& change) {
-    auto finer = FinerModel::make(loop().changes().newest_model(), change,
-                                  loop().frames().front().wire.places());
+    auto finer = PendingModel::make(loop().changes().newest_model(), change,
+                                    loop().frames().front().wire.places());
     REQUIRE(finer);
     REQUIRE(loop().changes().hold_still());
     go();
@@ -146,7 +146,7 @@ TEST_SUITE("wire") {
     for (const int count : {2, 50, 127, 128, 129, 255, 256, 1000, 5000}) {
       CAPTURE(count);
       path.begin(0.06);
-      CHECK(path.is_drawn());
+      CHECK(path.is_drawing());
       const std::uint32_t before = path.completed();
       for (int at = 0; at < count; ++at) {
         path.draw_to(place_at(0.066 * at));
@@ -154,7 +154,7 @@ TEST_SUITE("wire") {
       }
       path.draw_to(place_at(std::numeric_limits<double>::quiet_NaN()));
       path.end();
-      CHECK_FALSE(path.is_drawn());
+      CHECK_FALSE(path.is_drawing());
       CHECK(path.completed() == before + 1);
       const auto places = path.places();
       REQUIRE(places.size() >= 2);
@@ -238,7 +238,7 @@ TEST_SUITE("wire") {
     CHECK(hands.go().parts.count == 2);
     const auto& steps = hands.go().steps;
     CHECK(steps.all()[steps.undoable - 1].kind == StepKind::cut);
-    const auto again = made_again(hands.test().model, *version.origin);
+    const auto again = rebuild(hands.test().model, *version.origin);
     REQUIRE(again);
     CHECK(again->vertices == version.mesh.vertices);
     CHECK(again->face_corners == version.mesh.face_corners);
@@ -302,7 +302,7 @@ TEST_SUITE("wire") {
           doctest::Approx(2.0 * deform::volume_of(ball) - common).epsilon(0.02));
     const auto& steps = hands.go().steps;
     CHECK(steps.all()[steps.undoable - 1].kind == StepKind::join);
-    const auto again = made_again(model, *version.origin);
+    const auto again = rebuild(model, *version.origin);
     REQUIRE(again);
     CHECK(again->vertices == version.mesh.vertices);
     hands.go_back(Request::undo);
@@ -325,7 +325,7 @@ TEST_SUITE("wire") {
     CHECK(version.mesh.detail.size() == static_cast<std::size_t>(version.mesh.vertices.cols()));
     const auto& steps = hands.go().steps;
     CHECK(steps.all()[steps.undoable - 1].kind == StepKind::topology);
-    const auto again = made_again(version.before->mesh, *version.origin);
+    const auto again = rebuild(version.before->mesh, *version.origin);
     REQUIRE(again);
     CHECK(again->vertices == version.mesh.vertices);
     hands.go_back(Request::undo);
@@ -355,7 +355,7 @@ TEST_SUITE("wire") {
     // New ones rest among the old: as far from the shape as these.
     const deform::Points ways = version.mesh.vertices - now;
     CHECK(ways.cwiseAbs().maxCoeff() <= ways.leftCols(rest.cols()).cwiseAbs().maxCoeff() + 1e-3);
-    const auto again = made_again(version.before->mesh, *version.origin);
+    const auto again = rebuild(version.before->mesh, *version.origin);
     REQUIRE(again);
     CHECK(again->vertices == version.mesh.vertices);
     hands.go_back(Request::undo);
@@ -407,7 +407,7 @@ TEST_SUITE("wire") {
       CHECK(deform::check_closed_manifold(version.mesh));
       const auto& steps = hands.go().steps;
       CHECK(steps.all()[steps.undoable - 1].kind == kind);
-      const auto again = made_again(version.before->mesh, *version.origin);
+      const auto again = rebuild(version.before->mesh, *version.origin);
       REQUIRE(again);
       CHECK(again->vertices == version.mesh.vertices);
       hands.go_back(Request::undo);

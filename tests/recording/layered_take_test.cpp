@@ -203,8 +203,8 @@ TEST_SUITE("layered_take") {
     const auto state = take.played.loop->changes().take_state();
     REQUIRE(state);
     REQUIRE(state->inputs[1].layer);
-    CHECK(state->inputs[1].layer->part > 0.0);
-    CHECK(state->inputs[1].layer->part < 1.0);
+    CHECK(state->inputs[1].layer->weight > 0.0);
+    CHECK(state->inputs[1].layer->weight < 1.0);
     take.end();
     check_replay(take);
     continue_from(*state, take.played.loop->changes().layout(), take.setup);

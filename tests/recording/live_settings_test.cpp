@@ -83,7 +83,7 @@ Replayed replayed(const std::filesystem::path& path, deform::Mesh model) {
   auto reader = TakeReader::open(path);
   REQUIRE(reader);
   for (const auto& origin : reader->setup().loop->origins) {
-    auto made = flow::made_again(model, *origin);
+    auto made = flow::rebuild(model, *origin);
     REQUIRE(made);
     model = *std::move(made);
   }

@@ -32,10 +32,10 @@ private:
   void begin(const flow::ModelVersion& model) {
     late_ = random_() % 8;
     if (random_() % 2 == 0) {
-      if (auto refined = flow::FinerModel::make(model, *flow::model_asked_by(flow::Refine{})))
-        finer_ = std::make_unique<flow::FinerModel>(*std::move(refined));
+      if (auto refined = flow::PendingModel::make(model, *flow::model_asked_by(flow::Refine{})))
+        finer_ = std::make_unique<flow::PendingModel>(*std::move(refined));
     } else if (model.layout().vertex_count() < max_vertices_) {
-      finer_ = std::make_unique<flow::FinerModel>(model);
+      finer_ = std::make_unique<flow::PendingModel>(model);
     }
   }
   void give(flow::DeformLoop& loop) {
@@ -50,7 +50,7 @@ private:
 
   std::mt19937 random_;
   std::size_t max_vertices_;
-  std::unique_ptr<flow::FinerModel> finer_;
+  std::unique_ptr<flow::PendingModel> finer_;
   bool asked_ = false;
   unsigned long late_ = 0; ///< turns until it continues
   int made_ = 0;

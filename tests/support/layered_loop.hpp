@@ -81,7 +81,7 @@ inline flow::HandInput scripted(flow::HandInput input) {
 inline flow::HandInput layer_of(flow::HandInput input, flow::AngleSet joints, bool on = true) {
   input.layer.emplace().joints = joints;
   input.layer->on = on;
-  input.layer->part = on ? 1.0 : 0.0;
+  input.layer->weight = on ? 1.0 : 0.0;
   return input;
 }
 

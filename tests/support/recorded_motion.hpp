@@ -39,7 +39,7 @@ struct RecordedMotion {
       flow::DeformLoop& loop = *played.test.loop;
       if (tick == motion.subdivide_at_tick) REQUIRE(loop.changes().hold_still());
       if (loop.changes().is_still()) {
-        flow::FinerModel finer(loop.changes().newest_model());
+        flow::PendingModel finer(loop.changes().newest_model());
         REQUIRE(loop.changes().change_model(finer));
       }
       loop.tick(tick, woke, woke);

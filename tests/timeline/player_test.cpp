@@ -183,7 +183,7 @@ TEST_SUITE("player") {
         if (frame.awaited) static_cast<void>(live.loop->changes().change_to(*frame.awaited));
       };
       const auto change_model = [&](const flow::ChangeModel& change, int bent) {
-        auto finer = flow::FinerModel::make(live.loop->changes().newest_model(), change);
+        auto finer = flow::PendingModel::make(live.loop->changes().newest_model(), change);
         REQUIRE(finer);
         REQUIRE(live.loop->changes().hold_still());
         next(bent);
@@ -236,14 +236,14 @@ TEST_SUITE("player") {
       const auto most = static_cast<std::uint32_t>(live.model.vertices.cols());
       for (int bent = 0; bent < 130; ++bent)
         next(bent);
-      auto finer = flow::FinerModel::make(live.loop->changes().newest_model(),
-                                          {0, flow::ModelSource::refined, most});
+      auto finer = flow::PendingModel::make(live.loop->changes().newest_model(),
+                                            {0, flow::ModelSource::refined, most});
       REQUIRE(finer);
       REQUIRE(live.loop->changes().hold_still());
       next(130);
       auto unbounded =
-          flow::FinerModel::make(live.loop->changes().newest_model(),
-                                 {0, flow::ModelSource::refined, flow::Refine{}.max_vertices});
+          flow::PendingModel::make(live.loop->changes().newest_model(),
+                                   {0, flow::ModelSource::refined, flow::Refine{}.max_vertices});
       REQUIRE(unbounded);
       CHECK((*unbounded->finish(9, {}))->layout().vertex_count() > most);
       REQUIRE(live.loop->changes().change_model(*finer));

@@ -138,7 +138,7 @@ Figures measure(const deform::Mesh& model, bool held, unsigned repetitions) {
     flow::DeformLoop& loop = timed.loop();
     timed.tick_us();
     const HostTime begin = HostClock::now();
-    flow::FinerModel finer(loop.changes().newest_model());
+    flow::PendingModel finer(loop.changes().newest_model());
     figures.make_us.push_back(us(HostClock::now() - begin));
     static_cast<void>(loop.changes().hold_still());
     timed.tick_us();

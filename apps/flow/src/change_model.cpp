@@ -41,7 +41,7 @@ bool ChangeBroker::is_still() {
 }
 
 Result<void>
-ChangeBroker::change_model(FinerModel& finer,
+ChangeBroker::change_model(PendingModel& finer,
                            const std::function<Result<void>(const ModelVersion&)>& accepts) {
   Parts& parts = *parts_;
   assert(is_still() && finer.is_of(*parts.asked_model));

@@ -45,7 +45,7 @@ void DrawnBlade::end() noexcept {
 }
 
 void DrawnBlade::follow(const Hands& hands, double knife_m) noexcept {
-  if (!path_.is_drawn()) return;
+  if (!path_.is_drawing()) return;
   const auto& [left, right] = hands;
   const puppet::HandState& one = left != nullptr ? *left : *right;
   const bool has_both = left != nullptr && right != nullptr;

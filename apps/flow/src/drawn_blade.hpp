@@ -22,7 +22,7 @@ public:
   /// knife is held by the hand that points more when its path begins.
   void follow(const Hands& hands, double knife_m) noexcept;
 
-  bool is_drawn() const noexcept { return path_.is_drawn(); }
+  bool is_drawing() const noexcept { return path_.is_drawing(); }
   const WirePath& path() const noexcept { return path_; } ///< of the present blade, or the last
   const WirePath& completed() const noexcept { return completed_; } ///< the last complete path
 

@@ -38,7 +38,7 @@ void HandInputs::advance_layers(HostTime scheduled) noexcept {
       last_due_ == HostTime{} ? HostClock::duration::zero() : scheduled - last_due_;
   last_due_ = scheduled;
   for (GloveHand& hand : hands_)
-    if (hand.input.layer) hand.input.layer->pass(time);
+    if (hand.input.layer) hand.input.layer->advance(time);
 }
 
 void HandInputs::change_filters(const LoopSettings& settings) noexcept {

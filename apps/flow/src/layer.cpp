@@ -58,19 +58,20 @@ std::string in_words(Side side, AngleSet angles) {
   return words;
 }
 
-void Layer::pass(HostClock::duration time) noexcept {
+void Layer::advance(HostClock::duration time) noexcept {
   time = std::clamp(time, HostClock::duration::zero(), longest_step);
   const double step = to_seconds(time) / to_seconds(blend_time);
-  part = std::clamp(part + (on ? step : -step), 0.0, 1.0);
+  weight = std::clamp(weight + (on ? step : -step), 0.0, 1.0);
 }
 
 void Layer::play_over(const hand::JointAngles& own, hand::JointAngles& angles) const noexcept {
-  if (!(part > 0.0)) return;
-  const double weight = part * part * (3.0 - 2.0 * part); // without a jump of the speed
+  if (!(weight > 0.0)) return;
+  const double eased = weight * weight * (3.0 - 2.0 * weight); // without a jump of the speed
   for (std::size_t at = 0; at < hand::angle_count; ++at) {
     const Angle angle = hand::angle_at(at);
     if (!joints.has(angle)) continue;
-    angles[angle] = part < 1.0 ? angles[angle] + weight * (own[angle] - angles[angle]) : own[angle];
+    angles[angle] =
+        weight < 1.0 ? angles[angle] + eased * (own[angle] - angles[angle]) : own[angle];
   }
 }
 

@@ -33,7 +33,7 @@ deform::DeformerOptions with_undo(std::size_t bytes, deform::UndoMemory* memory)
 }
 
 Result<void> check_subdividable(const deform::Mesh& mesh) {
-  if (mesh.face_corners.size() <= FinerModel::max_corners) return {};
+  if (mesh.face_corners.size() <= PendingModel::max_corners) return {};
   return Error{Errc::bad_input, "is too large to be subdivided"};
 }
 
@@ -85,7 +85,7 @@ deform::BlockShape room_for_shape(const ModelVersion& version) {
   return deform::BlockShape(std::vector<deform::VertexBlock>(version.layout().block_count()));
 }
 
-Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& origin) {
+Result<deform::Mesh> rebuild(const deform::Mesh& before, const ModelOrigin& origin) {
   if (origin.source == ModelSource::refined) return deform::refined(before, origin.refining);
   if (is_of_shape(origin.source)) {
     if (origin.shape.cols() != before.vertices.cols())
@@ -98,19 +98,19 @@ Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& o
   return deform::subdivide(before).mesh;
 }
 
-FinerModel::FinerModel(const ModelVersion& from)
+PendingModel::PendingModel(const ModelVersion& from)
     : from_(&from), making_([&] {
         deform::Subdivision subdivision = deform::subdivide(from.mesh);
         deform::BlockLayout layout(subdivision.mesh.vertices);
         return Subdividing{std::move(subdivision), std::move(layout)};
       }()) {}
 
-Result<FinerModel> FinerModel::make(const ModelVersion& from, const ChangeModel& change,
-                                    std::span<const deform::WirePlace> wire) {
+Result<PendingModel> PendingModel::make(const ModelVersion& from, const ChangeModel& change,
+                                        std::span<const deform::WirePlace> wire) {
   if (change.source == ModelSource::refined) {
     auto refiner = deform::Refiner::make(from.mesh);
     if (!refiner) return refiner.error();
-    return FinerModel(from, Refining{*std::move(refiner), {.max_vertices = change.max_vertices}});
+    return PendingModel(from, Refining{*std::move(refiner), {.max_vertices = change.max_vertices}});
   }
   if (flow::is_of_shape(change.source)) {
     ModelOrigin origin;
@@ -118,14 +118,14 @@ Result<FinerModel> FinerModel::make(const ModelVersion& from, const ChangeModel&
     origin.seam_width = change.seam_width;
     origin.part = change.part;
     origin.wire.assign(wire.begin(), wire.end());
-    return FinerModel(from, Remaking{std::move(origin)});
+    return PendingModel(from, Remaking{std::move(origin)});
   }
   if (auto fine = check_subdividable(from.mesh); !fine) return fine.error();
-  return FinerModel(from);
+  return PendingModel(from);
 }
 
-Result<std::unique_ptr<ModelVersion>> FinerModel::remade(Remaking& remaking, std::uint32_t number,
-                                                         const UndoRoom& undo, bool keeps_rest) {
+Result<std::unique_ptr<ModelVersion>> PendingModel::remade(Remaking& remaking, std::uint32_t number,
+                                                           const UndoRoom& undo, bool keeps_rest) {
   ModelOrigin& origin = remaking.origin;
   from_->layout().unpack(from_->shape.shape(), origin.shape);
   origin.keeps_rest = keeps_rest;
@@ -144,8 +144,8 @@ Result<std::unique_ptr<ModelVersion>> FinerModel::remade(Remaking& remaking, std
   return made;
 }
 
-Result<std::unique_ptr<ModelVersion>> FinerModel::finish(std::uint32_t number, const UndoRoom& undo,
-                                                         bool keeps_rest) {
+Result<std::unique_ptr<ModelVersion>> PendingModel::finish(std::uint32_t number,
+                                                           const UndoRoom& undo, bool keeps_rest) {
   if (auto* const remaking = std::get_if<Remaking>(&making_))
     return remade(*remaking, number, undo, keeps_rest);
   const deform::BlockShape& shape = from_->shape.shape();
@@ -171,14 +171,14 @@ Result<std::unique_ptr<ModelVersion>> FinerModel::finish(std::uint32_t number, c
   return made;
 }
 
-ChangeModel FinerModel::change_to(const ModelVersion& version) const noexcept {
+ChangeModel PendingModel::change_to(const ModelVersion& version) const noexcept {
   const auto* const refining = std::get_if<Refining>(&making_);
   return {version.number, version.origin->source,
           refining != nullptr ? static_cast<std::uint32_t>(refining->limits.max_vertices) : 0,
           version.origin->seam_width, version.origin->part};
 }
 
-std::size_t FinerModel::count_unfit(const deform::BlockShape& shape) const {
+std::size_t PendingModel::count_unfit(const deform::BlockShape& shape) const {
   const auto* const refining = std::get_if<Refining>(&making_);
   if (refining == nullptr) return 0;
   return refining->refiner.count_unfit(shape, from_->layout(), refining->limits);

@@ -74,7 +74,7 @@ void ShapingCore::draw(const DrawWire& draw) noexcept {
     if (std::exchange(holds_after_blade_, false)) shaping_.ask(Request::grab);
     return;
   }
-  if (!blade_->is_drawn()) holds_after_blade_ = shaping_.is_held();
+  if (!blade_->is_drawing()) holds_after_blade_ = shaping_.is_held();
   blade_->begin(draw.blade);
   shaping_.ask(Request::let_go);
 }

@@ -21,11 +21,11 @@ double way_between(const deform::WirePlace& a, const deform::WirePlace& b) noexc
 void WirePath::begin(double step) noexcept {
   clear();
   step_ = step;
-  is_drawn_ = true;
+  is_drawing_ = true;
 }
 
 void WirePath::draw_to(const deform::WirePlace& place) noexcept {
-  if (!is_drawn_ || !place.from.allFinite() || !place.to.allFinite()) return;
+  if (!is_drawing_ || !place.from.allFinite() || !place.to.allFinite()) return;
   ++version_;
   last_ = place;
   step_ = std::max(step_, min_turn * (place.to - place.from).norm());
@@ -74,9 +74,9 @@ void WirePath::thin_out() noexcept {
 }
 
 void WirePath::end() noexcept {
-  if (!is_drawn_) return;
+  if (!is_drawing_) return;
   ++version_;
-  is_drawn_ = false;
+  is_drawing_ = false;
   if (count_ == 0) return;
   if (count_ == max_places) thin_out();
   if (way_between(last_, places_[count_ - 1]) > 0.5 * step_) {
@@ -92,7 +92,7 @@ void WirePath::end() noexcept {
 void WirePath::clear() noexcept {
   ++version_;
   count_ = 0;
-  is_drawn_ = false;
+  is_drawing_ = false;
 }
 
 } // namespace nendo::flow

@@ -111,8 +111,8 @@ bool LoopReplay::follow(const flow::ChangeModel& change) {
     loop_->changes().keep_model();
     return true;
   }
-  auto finer =
-      flow::FinerModel::make(loop_->changes().newest_model(), change, loop_->drawn_wire().places());
+  auto finer = flow::PendingModel::make(loop_->changes().newest_model(), change,
+                                        loop_->drawn_wire().places());
   if (!finer) {
     loop_->changes().keep_model();
     return false;

@@ -153,7 +153,7 @@ void read_shape(CheckedReader& checked, std::size_t begin, std::size_t end,
 void put_layer(ByteWriter& writer, const flow::Layer& layer) {
   writer.u32_le(layer.joints.bits);
   writer.u8(static_cast<std::uint8_t>(layer.on));
-  writer.f64_le(layer.part);
+  writer.f64_le(layer.weight);
   writer.u8(static_cast<std::uint8_t>(layer.below.has_value()));
   if (!layer.below) return;
   for (std::size_t at = 0; at < hand::angle_count; ++at)
@@ -164,7 +164,7 @@ void read_layer(ByteReader& reader, CheckedReader& checked, flow::Layer& layer) 
   layer.joints.bits = reader.u32_le();
   checked.require((layer.joints.bits & ~flow::AngleSet::all().bits) == 0);
   layer.on = reader.u8() != 0;
-  layer.part = checked.number(0.0, 1.0);
+  layer.weight = checked.number(0.0, 1.0);
   if (reader.u8() == 0) return;
   hand::JointAngles& below = layer.below.emplace();
   constexpr double max_rad = 7.0; // a turn

@@ -90,8 +90,8 @@ public:
   const puppet::Rig* first_puppet() const noexcept;
 
   // Another model, in two changes, so that the hands continue while it is made and nothing is lost
-  // of what they do. Make a FinerModel of newest_model(); ask the loop to hold still; when it does,
-  // finish the model and hand it over. No log may begin or end meanwhile.
+  // of what they do. Make a PendingModel of newest_model(); ask the loop to hold still; when it
+  // does, finish the model and hand it over. No log may begin or end meanwhile.
 
   /// Lets the hands stop shaping at the end of the next tick (Shaping::hold_still()). Error:
   /// failed, if the loop has yet to take a change or holds still already; then nothing changes.
@@ -102,9 +102,9 @@ public:
   /// `accepts` is called with the new version before the loop has it. Settings that are asked for
   /// meanwhile come with it. Later, versions to which no undo or redo leads any more are freed.
   /// With an error the loop continues with the model that it has: the error of `accepts` or
-  /// FinerModel::finish(), or bad_input if a puppet plays the model and it would be cut or joined,
-  /// or a puppet's points cannot be solved for on that version. Allocates.
-  Result<void> change_model(FinerModel& finer,
+  /// PendingModel::finish(), or bad_input if a puppet plays the model and it would be cut or
+  /// joined, or a puppet's points cannot be solved for on that version. Allocates.
+  Result<void> change_model(PendingModel& finer,
                             const std::function<Result<void>(const ModelVersion&)>& accepts = {});
   /// Lets a loop that holds still continue with the model that it has.
   void keep_model();

@@ -43,20 +43,20 @@ NENDO_API std::string in_words(Side side, AngleSet angles);
 /// What makes a layer of an input. Where no input before it is of the same hand, it lies over that
 /// hand at rest, in the pose of its own first sample.
 struct NENDO_API Layer {
-  /// How long it takes to come in and to go out, so that nothing jumps.
+  /// The fade-in and fade-out time.
   static constexpr HostClock::duration blend_time = std::chrono::milliseconds(150);
-  /// No tick goes farther than this of that time, however late it is.
+  /// The maximum progress of a fade per tick, however late the tick is.
   static constexpr HostClock::duration longest_step = std::chrono::milliseconds(30);
 
   AngleSet joints = AngleSet::all();
-  bool on = true;    ///< it plays, or is coming in
-  double part = 1.0; ///< how far it has come in: 0 not at all, 1 wholly
+  bool on = true;      ///< it plays, or fades in
+  double weight = 1.0; ///< 0: faded out; 1: faded in
   /// The hand below, if no input before this one is of that hand. Nothing: the pose of its first
   /// sample.
   std::optional<hand::JointAngles> below{};
 
-  /// Lets time pass. Wait-free.
-  void pass(HostClock::duration time) noexcept;
+  /// Continues its fade. Wait-free.
+  void advance(HostClock::duration time) noexcept;
   /// Puts its angles `own` over those in `angles`. Those that are not its joints stay as they are,
   /// bit for bit, as all do while it is out; while it is wholly in, its joints are `own`, bit for
   /// bit. Wait-free.

@@ -39,7 +39,7 @@ struct ModelOrigin {
   bool keeps_rest = false; ///< a puppet's, whose shape does not become the rest (kept_rest())
 };
 /// Makes that version of a mesh again, as it rests. Error: bad_input, without the mesh's name.
-NENDO_API Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& origin);
+NENDO_API Result<deform::Mesh> rebuild(const deform::Mesh& before, const ModelOrigin& origin);
 
 /// A version does not move in memory. What is const is thread-safe.
 struct NENDO_API ModelVersion {
@@ -69,15 +69,15 @@ NENDO_API deform::BlockShape room_for_shape(const ModelVersion& version);
 
 /// Another version in the making. Making it takes longer than a tick; only finish() needs the
 /// shape.
-class NENDO_API FinerModel {
+class NENDO_API PendingModel {
 public:
   /// Subdivides. Thread-safe, also while the loop runs. Allocates.
-  explicit FinerModel(const ModelVersion& from);
+  explicit PendingModel(const ModelVersion& from);
   /// Subdivides, or makes ready to refine, to cut by that wire, to join, to edit a part,
   /// or to change the topology, likewise: what the change, which is_new(), says. Error: bad_input,
   /// without the model's name.
-  static Result<FinerModel> make(const ModelVersion& from, const ChangeModel& change,
-                                 std::span<const deform::WirePlace> wire = {});
+  static Result<PendingModel> make(const ModelVersion& from, const ChangeModel& change,
+                                   std::span<const deform::WirePlace> wire = {});
 
   bool is_of(const ModelVersion& version) const noexcept { return &version == from_; }
   /// Makes the version, with the shape that `from` has now: the loop must hold still. May be called
@@ -108,12 +108,13 @@ private:
     deform::Refiner refiner;
     deform::RefinementLimits limits;
   };
-  /// Another shape becomes the model, with its own faces: what made_again() makes of it.
+  /// Another shape becomes the model, with its own faces: what rebuild() makes of it.
   struct Remaking {
     ModelOrigin origin;
   };
   using Making = std::variant<Subdividing, Refining, Remaking>;
-  FinerModel(const ModelVersion& from, Making making) : from_(&from), making_(std::move(making)) {}
+  PendingModel(const ModelVersion& from, Making making)
+      : from_(&from), making_(std::move(making)) {}
   Result<std::unique_ptr<ModelVersion>> remade(Remaking& remaking, std::uint32_t number,
                                                const UndoRoom& undo, bool keeps_rest);
 

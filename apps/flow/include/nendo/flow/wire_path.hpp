@@ -24,7 +24,7 @@ public:
   void end() noexcept;   ///< the wire is drawn, if it has been anywhere; its way is smoothed
   void clear() noexcept; ///< there is no wire
 
-  bool is_drawn() const noexcept { return is_drawn_; } ///< just now
+  bool is_drawing() const noexcept { return is_drawing_; } ///< just now
   /// Returns how many wires have been drawn to their end. Their number tells a new one from one
   /// that has cut already.
   std::uint32_t completed() const noexcept { return completed_; }
@@ -44,7 +44,7 @@ private:
   std::uint64_t version_ = 0; ///< differs where anything does
   double step_ = 0.0;
   deform::WirePlace last_{}; ///< which may not be among the places
-  bool is_drawn_ = false;
+  bool is_drawing_ = false;
 };
 
 } // namespace nendo::flow

@@ -41,7 +41,7 @@ struct LoopSetup {
   flow::LoopOptions options;
   /// The vector instructions with which the field was evaluated. Others may round differently.
   std::string simd;
-  /// How the model came from the file's before the recording began (flow::made_again()).
+  /// How the model came from the file's before the recording began (flow::rebuild()).
   std::vector<std::shared_ptr<const flow::ModelOrigin>> origins{};
   /// The shape at first, in the blocks of the model's layout; empty: the model.
   std::vector<deform::VertexBlock> rest{};
