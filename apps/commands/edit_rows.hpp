@@ -64,8 +64,7 @@ inline constexpr std::array edit_rows{
         edit_row("slower", keys("Ctrl Down"), "Plays the timeline slower.", {EditCommand::slower})),
     repeating(
         edit_row("faster", keys("Ctrl Up"), "Plays the timeline faster.", {EditCommand::faster})),
-    edit_row("loop", keys("L"), "Plays the timeline again and again, or once.",
-             {EditCommand::loop}),
+    edit_row("loop", keys("L"), "Repeats the timeline, or plays it once.", {EditCommand::loop}),
     edit_row("add key", keys("I"),
              "Adds a key at the play head, to the selected key's hand or else to both hands.",
              {EditCommand::add_key}, Buttons::key, "Add at head"),
@@ -80,8 +79,8 @@ inline constexpr std::array edit_rows{
     repeating(edit_row("undo edit", keys("u", "Ctrl Z"), "Undoes the last edit.",
                        {EditCommand::undo, without_undo}, Buttons::file, "Undo")),
     repeating(edit_row("redo edit", keys("r", "Ctrl Y", "Ctrl Shift Z"),
-                       "Does the edit again that was undone last.",
-                       {EditCommand::redo, without_redo}, Buttons::file, "Redo")),
+                       "Redoes the edit that was undone last.", {EditCommand::redo, without_redo},
+                       Buttons::file, "Redo")),
     edit_row("save timeline", keys("s", "Ctrl S"), "Saves the timeline.", {EditCommand::save},
              Buttons::file, "Save"),
     edit_row("export", keys("Ctrl E"),
@@ -89,7 +88,7 @@ inline constexpr std::array edit_rows{
              {EditCommand::export_glb, while_exporting}, Buttons::file, "Export .glb"),
     Row{.name = "end edit",
         .keys = keys("q"),
-        .help = "Closes the window, and asks first if there are unsaved changes.",
+        .help = "Closes the window; asks first if there are unsaved changes.",
         .places = in_timeline},
 };
 

@@ -215,8 +215,9 @@ void add(cli::Command& program) {
   command.add_option("DEMO", options->what,
                      "face: ten fingers make it live; moai: hands shape it; clay: whole hands make "
                      "a cake, a bowl and ears, in some 30 s, whatever the other options say");
-  command.add_option("--mode", options->mode,
-                     "type1: the rest shape follows the fingertips; type2: strokes");
+  command.add_option(
+      "--mode", options->mode,
+      "type1 (from rest): the rest shape follows the fingertips; type2 (accumulating): strokes");
   command.add_duration("--duration", options->duration_s, "How long, e.g. 30s or 2m, up to 1h");
   command.add_option("--out", options->out, "Where the shape goes, .obj, .ply or .stl");
   command.add_option("--picture", options->picture, "Where the picture goes, .png");

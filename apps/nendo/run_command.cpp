@@ -104,7 +104,7 @@ void note_inside(const deform::Mesh& model, const session::RunOptions& options) 
                           options.mesh, inwards, model.face_count()));
 }
 
-/// Turns the guard against folds on, or says that a model of this size goes without.
+/// Turns fold prevention on, or warns that a model of this size has none.
 void choose_injective(const deform::Mesh& model, RunArguments& options) {
   if (options.not_injective || options.run.puppet || options.run.over) return;
   if (options.asked.injective || model.vertices.cols() <= max_injective_unasked) {

@@ -93,7 +93,7 @@ constexpr std::array exclusions{
               "volume, but distance = \"air\" in its file allows both",
               false},
     Exclusion{Party::mode, Party::brushes, in_another_type, "only type 2 has brushes"},
-    Exclusion{Party::mode, Party::hold, in_type2, "type 2 follows the ways of fingertips"},
+    Exclusion{Party::mode, Party::hold, in_type2, "type 2 needs fingertip paths"},
     Exclusion{Party::hold, Party::volume, always,
               "90 points with matrices take longer than a tick has"},
     Exclusion{Party::volume, Party::injective, always,

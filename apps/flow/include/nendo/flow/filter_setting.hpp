@@ -22,8 +22,9 @@ constexpr bool is_filtered(const LoopSettings& settings) noexcept {
 
 inline constexpr ChoiceSetting<hand::FilterKind> filter{
     {{"filter", "--filter", "smooth hands", "smooth hands",
-      "off, or one-euro: smooths the joints' angles, at rest more than in motion; the summary says "
-      "how late that makes them",
+      "off, or one-euro: smooths the joint angles, at rest more than in motion; the summary shows "
+      "the "
+      "delay",
       StepKind::filter},
      nullptr,
      &hand::FilterOptions::kind},
@@ -32,7 +33,8 @@ inline constexpr ChoiceSetting<hand::FilterKind> filter{
     hand::filter_named};
 inline constexpr NumberSetting min_cutoff{
     {{"min_cutoff_hz", "--filter-min-cutoff", "min cutoff", "cutoff at rest",
-      "The filter's cutoff for a joint at rest; lower is calmer, and later", StepKind::filter},
+      "The filter's cutoff for a joint at rest; a lower one is smoother, with more delay",
+      StepKind::filter},
      nullptr,
      &hand::FilterOptions::min_cutoff_hz},
     {0.01, 1000.0}, // wider than any use: below, a hand is minutes late; above, nothing is smoothed
@@ -41,7 +43,7 @@ inline constexpr NumberSetting min_cutoff{
     "--filter one-euro"};
 inline constexpr NumberSetting beta{
     {{"beta_hz_per_rad_s", "--filter-beta", "beta", "cutoff in motion",
-      "How much the cutoff rises with a joint's speed; higher is less late in motion",
+      "The increase of the cutoff with a joint's speed; a higher one has less delay in motion",
       StepKind::filter},
      nullptr,
      &hand::FilterOptions::beta_hz_per_rad_s},
@@ -59,7 +61,7 @@ inline constexpr NumberSetting derivative_cutoff{
 inline constexpr ChoiceSetting<bool> pinches{
     {{"pinches", "--pinches", "pinches", "closed pinches",
       "closed: pads of thumb and finger that are nearly together meet, but not in clay; or "
-      "measured: hands are as the gloves measure them, to the millimetre",
+      "measured: they keep the measured distance, to the millimetre",
       StepKind::filter},
      nullptr,
      &hand::FilterOptions::close_pinches},

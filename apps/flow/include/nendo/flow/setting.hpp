@@ -1,6 +1,6 @@
 #pragma once
-// The description of the settings, each once: its names, its range, its help. Options, timelines,
-// reports and widgets are made from it; for_each_setting() lets code for one kind serve all of it.
+// The one description of each setting: names, range, help. Options, timelines, reports and widgets
+// are made from it by for_each_setting().
 
 #include <string>
 #include <string_view>
@@ -18,16 +18,17 @@ inline bool has_brush(const LoopSettings& settings) noexcept {
   return !deform::are_all_pull(settings.brushes);
 }
 
-inline constexpr ChoiceSetting<Mode> mode{
-    {{"mode", "--mode", "mode", "mode",
-      "type1: the rest shape follows the fingertips; type2: strokes along their paths; clay: whole "
-      "hands press; parts: hands that close take parts of the model and move them; without it, "
-      "type1, or type2 with a brush",
-      StepKind::mode},
-     &LoopSettings::mode},
-    mode_names,
-    name_of,
-    mode_named};
+inline constexpr ChoiceSetting<Mode> mode{{{"mode", "--mode", "mode", "mode",
+                                            "type1 (from rest): the rest shape follows the "
+                                            "fingertips; type2 (accumulating): strokes along "
+                                            "their paths; clay: whole hands press; parts: closing "
+                                            "hands grab and move parts of the model; "
+                                            "default: type1, or type2 with a brush",
+                                            StepKind::mode},
+                                           &LoopSettings::mode},
+                                          mode_names,
+                                          name_of,
+                                          mode_named};
 inline constexpr ChoiceSetting<deform::Wendland> kernel{
     {{"kernel", "--kernel", "kernel", "kernel",
       "wendland-c0, wendland-c2, wendland-c4 or wendland-c6", StepKind::kernel},
@@ -37,7 +38,8 @@ inline constexpr ChoiceSetting<deform::Wendland> kernel{
     deform::wendland_named};
 inline constexpr SwitchSetting injective{
     {"injective", "--injective", "never folding", "never folds",
-     "Never fold: in links that each stay injective; points whose ways cross are held apart",
+     "Prevent folds: large moves are split so that the surface never folds; points whose paths "
+     "cross are kept apart",
      StepKind::folding},
     &LoopSettings::injective};
 inline constexpr FingersSetting radius{
@@ -50,19 +52,20 @@ inline constexpr FingersSetting radius{
     {1e-9, 1e9},
     "m",
     {0.01, 0.4}};
-/// In least radii.
+/// The unit is the minimum radius.
 inline constexpr NumberSetting piece_fraction{
     {{"piece_fraction", "", "length of a piece", "piece", ""}, &LoopSettings::piece_fraction},
     {1e-3, 1e3}};
 inline constexpr BrushesSetting brushes{
     {"brushes", "--brush", "brush", "brush",
-     "What a finger does along its way, in type 2: pull, none, push, inflate, smooth, flatten, "
+     "The effect of a fingertip along its path, in type 2: pull, none, push, inflate, smooth, "
+     "flatten, "
      "twist, scale or pinch; or five with commas between, thumb to little finger",
      StepKind::brush, true},
     &LoopSettings::brushes};
 inline constexpr NumberSetting brush_strength{
     {{"brush_strength", "--strength", "strength", "strength",
-      "How much a brush does; below 0 it does the opposite", StepKind::brush, true},
+      "The strength of brushes; below 0 their effect is reversed", StepKind::brush, true},
      &LoopSettings::brush_strength},
     {-1.0, 1.0},
     "",
@@ -70,12 +73,14 @@ inline constexpr NumberSetting brush_strength{
     "--brush inflate"};
 inline constexpr NumberSetting keep_volume{
     {{"keep_volume", "--keep-volume", "keeping the volume", "volume",
-      "0 is air, and 1 is clay: what is pressed in comes out nearby", StepKind::volume, true},
+      "0: compressible; 1: volume-preserving, so that pressed-in volume comes out nearby",
+      StepKind::volume, true},
      &LoopSettings::keep_volume},
     {0.0, 1.0}};
 inline constexpr ChoiceSetting<Hold> hold{
     {{"hold", "--hold", "whole hand", "whole hand",
-      "What of a hand holds the model in type 1: tips, or hand, 45 points all over it",
+      "The points of a hand that hold the model in type 1: tips, or hand, 45 points of the whole "
+      "hand",
       StepKind::hold, true},
      &LoopSettings::hold},
     "tips or hand",
@@ -106,7 +111,7 @@ constexpr void for_each_setting(const See& see) {
   for_each_filter_setting(see);
 }
 
-/// The same of what SculptorOptions have as it is (set_plain_settings()).
+/// Calls see(setting) with each setting that SculptorOptions have (set_plain_settings()).
 template <class See>
 constexpr void for_each_plain_setting(const See& see) {
   see(setting::mode);
@@ -122,7 +127,7 @@ NENDO_API std::string in_words(const Range& range, std::string_view unit);
 /// Checks that a loop takes all of these. Error: bad_input, naming the first that is out of its
 /// range, and the range: "keep_volume: use 0 to 1". Allocates.
 NENDO_API Result<void> check_ranges(const LoopSettings& settings);
-/// Returns what they are, as all messages tell it: "type1, wendland-c2, never folds, radius 13.2 cm
+/// Returns their description for messages: "type1, wendland-c2, never folds, radius 13.2 cm
 /// (0.248)".
 NENDO_API std::string in_words(const LoopSettings& settings, double units_per_metre);
 
