@@ -1,15 +1,14 @@
-#include "stress/conditions.hpp"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
 
+#include "stress/stress_options.hpp"
 #include "stress/tick_tally.hpp"
 
 namespace nendo::stress {
@@ -123,10 +122,8 @@ std::vector<std::string> fulfilled(const std::vector<Condition>& conditions,
     const bool beyond =
         condition.relation == '>' ? value > condition.threshold : value < condition.threshold;
     if (!beyond && !(condition.or_equal && value == condition.threshold)) continue;
-    char text[64];
-    std::snprintf(text, sizeof text, " (%.10g%s)", value,
-                  condition.path.back().ends_with("_us") || condition.path.size() > 1 ? " us" : "");
-    lines.push_back(condition.text + text);
+    const bool is_time = condition.path.back().ends_with("_us") || condition.path.size() > 1;
+    lines.push_back(fmt::format("{} ({:.10g}{})", condition.text, value, is_time ? " us" : ""));
   }
   return lines;
 }

@@ -1,5 +1,3 @@
-#include "stress/environment.hpp"
-
 #include <algorithm>
 #include <fstream>
 #include <sstream>
@@ -8,6 +6,8 @@
 
 #include <sys/utsname.h>
 #include <unistd.h>
+
+#include "stress/stress_session.hpp"
 
 namespace nendo::stress {
 namespace {

@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <spdlog/fmt/fmt.h>
 
 #include "cli/svg_drawing.hpp"
 #include "stress/report.hpp"
@@ -26,16 +27,9 @@ constexpr cli::SvgText at_right{12, faint, "end"};
 constexpr cli::SvgText below{12, faint, "middle"};
 
 std::string time_text(double us) {
-  char text[32];
-  if (us >= 1e6)
-    std::snprintf(text, sizeof text, "%.3g s", us / 1e6);
-  else if (us >= 1e3)
-    std::snprintf(text, sizeof text, "%.3g ms", us / 1e3);
-  else if (us >= 1.0)
-    std::snprintf(text, sizeof text, "%.3g \u00b5s", us);
-  else
-    std::snprintf(text, sizeof text, "%.3g ns", us * 1e3);
-  return text;
+  if (us >= 1e6) return fmt::format("{:.3g} s", us / 1e6);
+  if (us >= 1e3) return fmt::format("{:.3g} ms", us / 1e3);
+  return us >= 1.0 ? fmt::format("{:.3g} \u00b5s", us) : fmt::format("{:.3g} ns", us * 1e3);
 }
 
 /// A rectangle of the page, and the ranges of its axes. The y axis is logarithmic.
@@ -96,9 +90,8 @@ void draw_decades(cli::SvgDrawing& drawing, const Axes& axes, bool times_on_y) {
     const double value = std::pow(10.0, decade);
     const double y = axes.y(value);
     drawing.line(axes.left, y, axes.left + axes.width, y, grid_line);
-    char count[32];
-    std::snprintf(count, sizeof count, "%.0f", value);
-    drawing.words(axes.left - 8, y + 4, times_on_y ? time_text(value) : count, {11, faint, "end"});
+    drawing.words(axes.left - 8, y + 4,
+                  times_on_y ? time_text(value) : fmt::format("{:.0f}", value), {11, faint, "end"});
   }
   for (int decade = whole(axes.x_low); axes.log_x && decade <= whole(axes.x_high); ++decade) {
     const double x = axes.x(std::pow(10.0, decade));
@@ -188,9 +181,8 @@ void draw_trace(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
   drawing.path(means, ran, 1.8);
   for (int k = 0; k <= 5; ++k) {
     const double at_s = length_s * k / 5.0;
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g s", at_s);
-    drawing.words(axes.x(at_s), axes.bottom() + 18, text, {11, faint, "middle"});
+    drawing.words(axes.x(at_s), axes.bottom() + 18, fmt::format("{:.3g} s", at_s),
+                  {11, faint, "middle"});
   }
 }
 
@@ -207,14 +199,11 @@ void draw_key(cli::SvgDrawing& drawing, double y,
 }
 
 std::string summary(const StressOptions& options, const StressOutcome& outcome) {
-  char text[256];
-  std::snprintf(
-      text, sizeof text, "%llu ticks at %g Hz in %.0f s; %llu deadlines missed; policy %s%s%s",
-      static_cast<unsigned long long>(outcome.tally.ticks()), options.run.loop.rate_hz,
-      outcome.elapsed_s, static_cast<unsigned long long>(outcome.missed),
-      flow::describe_policy(options.run.loop).c_str(), options.load.empty() ? "" : "; under load",
-      outcome.broke ? "; ended by --break" : "");
-  return text;
+  return fmt::format("{} ticks at {:g} Hz in {:.0f} s; {} deadlines missed; policy {}{}{}",
+                     outcome.tally.ticks(), options.run.loop.rate_hz, outcome.elapsed_s,
+                     outcome.missed, flow::describe_policy(options.run.loop),
+                     options.load.empty() ? "" : "; under load",
+                     outcome.broke ? "; ended by --break" : "");
 }
 
 } // namespace

@@ -1,6 +1,6 @@
 #pragma once
-// The report of a stress test: a table for people, an object for programs, files for plotters, and
-// the figures of which they are made.
+// The report of a stress test: the verdict in one line, a table for people, an object for programs,
+// and files for plotters.
 
 #include <array>
 #include <cstdint>
@@ -15,6 +15,26 @@
 #include "stress/stress_session.hpp"
 
 namespace nendo::stress {
+
+struct Verdict {
+  /// The loop is on a grid, so that a tick can be late. A loop that samples pace has no rate to
+  /// keep.
+  bool judged = true;
+  bool punctual = false;  ///< every tick that was due began before the next one was
+  std::uint64_t due = 0;  ///< ticks that were due
+  std::uint64_t late = 0; ///< those that began after the next one was due, or never
+  double max_late_us = 0.0;
+  std::string reason; ///< why some were late; empty if none was
+  std::string remedy; ///< what to try; empty if none was
+};
+
+/// Judges a test. Pure.
+Verdict judge(const StressOptions& options, const StressOutcome& outcome);
+
+/// Returns the verdict as one line: "1 kHz: yes, with ..." or "1 kHz: no: 38 of 5,000
+/// ticks were late, by up to ..., because ...; try ...".
+std::string in_words(const Verdict& verdict, const StressOptions& options,
+                     const StressOutcome& outcome);
 
 /// How a histogram is reported. Times are in microseconds.
 struct Figures {
@@ -33,12 +53,12 @@ std::vector<std::string> stage_names(const flow::TickStages& stages);
 /// Returns a time of the run as ISO 8601 in UTC, with microseconds.
 std::string wall_time(const StressOutcome& outcome, HostTime time);
 
-/// Returns everything that was measured, with the environment. Times are in microseconds unless a
+/// Returns all measurements, with the environment. Times are in microseconds unless a
 /// key says otherwise. Keys are stable, because --compare reads earlier reports.
 nlohmann::ordered_json stress_json(const StressOptions& options, const StressOutcome& outcome);
 
-/// Returns what makes the figures of two reports those of different work, in one line: stages,
-/// load, rate, mode or model. Empty if nothing does.
+/// Returns the differences between the work of two reports, in one line: stages, load, rate, mode
+/// or model. Empty if nothing does.
 std::string different_work(const nlohmann::ordered_json& earlier,
                            const nlohmann::ordered_json& report);
 

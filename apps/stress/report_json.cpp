@@ -10,7 +10,6 @@
 
 #include "session/loop_options.hpp"
 #include "stress/report.hpp"
-#include "stress/verdict.hpp"
 
 namespace nendo::stress {
 namespace {
@@ -90,7 +89,7 @@ ordered_json gloves_json(const StressOutcome& outcome) {
     ordered_json line{{"source", outcome.gloves[at]}};
     for (const auto& [name, count] : driver::by_name(outcome.glove_records[at])) {
       ordered_json& value = line[std::string(name)];
-      if (count) value = *count; // otherwise null: nobody knows
+      if (count) value = *count; // otherwise null: not known
     }
     lines.push_back(std::move(line));
   }

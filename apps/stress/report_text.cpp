@@ -7,11 +7,11 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
 
 #include <nendo/driver/record_counts.hpp>
 
 #include "stress/report.hpp"
-#include "stress/verdict.hpp"
 
 namespace nendo::stress {
 namespace {
@@ -19,9 +19,7 @@ namespace {
 using nlohmann::ordered_json;
 
 std::string shown(double us) {
-  char text[32];
-  std::snprintf(text, sizeof text, us < 100.0 ? "%.2f" : us < 10'000.0 ? "%.1f" : "%.0f", us);
-  return text;
+  return fmt::format("{:.{}f}", us, us < 100.0 ? 2 : us < 10'000.0 ? 1 : 0);
 }
 
 std::string words(std::string_view name) {
@@ -30,7 +28,7 @@ std::string words(std::string_view name) {
   return text;
 }
 
-/// What each measure is, where its figures stand.
+/// The explanation of each measure, above its figures.
 constexpr std::array<std::string_view, measure_names.size()> meanings{
     "from a tick's deadline until it began", "what its length differs from the period by",
     "from its beginning until its frame was published", "how long a sample waited for the tick",
@@ -41,52 +39,52 @@ ordered_json part(const ordered_json& whole, const std::string& key) {
   return whole.is_object() && whole.contains(key) ? whole[key] : ordered_json(nullptr);
 }
 
-void print_row(std::FILE* out, const std::string& name, const flow::Histogram& histogram,
+void print_row(std::FILE* out, std::string_view name, const flow::Histogram& histogram,
                const ordered_json& earlier) {
   const auto figures = figures_of(histogram);
   if (!figures) return;
-  std::fprintf(out, "  %-26s", name.c_str());
+  fmt::print(out, "  {:<26}", name);
   for (const double us : figures->us)
-    std::fprintf(out, " %9s", shown(us).c_str());
-  std::fprintf(out, "\n");
+    fmt::print(out, " {:>9}", shown(us));
+  fmt::print(out, "\n");
   if (!earlier.is_object()) return;
-  std::fprintf(out, "  %-26s", "    earlier");
+  fmt::print(out, "  {:<26}", "    earlier");
   for (const auto column : Figures::names) {
     const ordered_json value = part(earlier, std::string(column));
-    std::fprintf(out, " %9s", value.is_number() ? shown(value.get<double>()).c_str() : "-");
+    fmt::print(out, " {:>9}", value.is_number() ? shown(value.get<double>()) : "-");
   }
-  std::fprintf(out, "\n");
+  fmt::print(out, "\n");
 }
 
 void print_table(std::FILE* out, const StressOutcome& outcome, const ordered_json& earlier) {
   const TickTally& tally = outcome.tally;
-  std::fprintf(out,
-               "\n  p50: half of the values are no greater; p99: 99 %% of them, and so on. The "
-               "first row counts the ticks\n  that ran, \"per scheduled tick\" each tick that "
-               "was due, so that a long stall counts for all it prevented.\n");
-  std::fprintf(out, "\n  %-26s", "microseconds");
+  fmt::print(out, "\n  p50: half of the values are no greater; p99: 99 % of them, and so on. The "
+                  "first row counts the ticks\n  that ran, \"per scheduled tick\" each tick that "
+                  "was due, so that a long stall counts for all it prevented.\n");
+  fmt::print(out, "\n  {:<26}", "microseconds");
   for (const auto column : Figures::names) {
     std::string heading(column);
     std::replace(heading.begin(), heading.end(), '_', '.');
-    std::fprintf(out, " %9s", heading.c_str());
+    fmt::print(out, " {:>9}", heading);
   }
-  std::fprintf(out, "\n");
+  fmt::print(out, "\n");
   for (std::size_t k = 0; k < measure_names.size(); ++k) {
     const Distribution& of = tally[static_cast<Measure>(k)];
     const std::string key = std::string(measure_names[k]) + "_us";
-    std::fprintf(out, "  %s: %s\n", words(measure_names[k]).c_str(), meanings[k].data());
-    print_row(out, words(measure_names[k]), of.raw, part(earlier, key));
+    const std::string name = words(measure_names[k]);
+    fmt::print(out, "  {}: {}\n", name, meanings[k]);
+    print_row(out, name, of.raw, part(earlier, key));
     print_row(out, "  per scheduled tick", of.corrected, part(part(earlier, "corrected"), key));
   }
-  std::fprintf(out, "  the work, by stage of the tick:\n");
+  fmt::print(out, "  the work, by stage of the tick:\n");
   for (std::size_t k = 1; k < phase_names.size(); ++k) {
     const std::string stage(phase_names[k]);
     print_row(out, "  " + stage, tally.stage(static_cast<Phase>(k)),
               part(part(earlier, "stages_us"), stage));
   }
   if (outcome.floor.spun_s <= 0.0) return;
-  std::fprintf(out, "  the machine's own gaps: those of a thread that does nothing but read the "
-                    "clock; no program can be better\n");
+  fmt::print(out, "  the machine's own gaps: those of a thread that only reads the clock; no "
+                  "program can be better\n");
   print_row(out, "the machine's own gaps", outcome.floor.gaps,
             part(part(earlier, "floor"), "gaps_us"));
 }
@@ -101,106 +99,91 @@ std::string joined(const std::vector<std::string>& words) {
 void print_environment(std::FILE* out, const StressOptions& options, const StressOutcome& outcome) {
   const Environment& machine = outcome.environment;
   const flow::LoopOptions& loop = options.run.loop;
-  std::fprintf(out, "nendo stress: %.1f s at %g Hz, policy %s%s%s\n", outcome.elapsed_s,
-               loop.rate_hz, flow::describe_policy(loop).c_str(),
-               outcome.spins ? ", spinning to each deadline" : "",
-               loop.sculptor.deformer.evaluation.threads == 2 ? ", two threads" : "");
-  std::fprintf(out, "  %-14s Linux %s%s%s, %u CPUs%s\n", "machine", machine.kernel.c_str(),
-               machine.preemption.empty() ? "" : " ", machine.preemption.c_str(), machine.cpus,
-               machine.hypervisor ? ", virtual: the host may stop it at any time" : "");
-  std::fprintf(out, "  %-14s %s, governor %s, clock %s\n", "", machine.processor.c_str(),
-               machine.governor.empty() ? "none" : machine.governor.c_str(),
-               machine.clock_source.c_str());
-  const std::string load = options.load.empty() ? "" : "; own load " + joined(options.load);
-  std::fprintf(out, "  %-14s %s; %td vertices, %s%s\n", "ticks",
-               joined(stage_names(loop.stages)).c_str(), outcome.vertices,
-               std::string(flow::name_of(loop.sculptor.mode)).c_str(), load.c_str());
+  fmt::print(out, "nendo stress: {:.1f} s at {:g} Hz, policy {}{}{}\n", outcome.elapsed_s,
+             loop.rate_hz, flow::describe_policy(loop),
+             outcome.spins ? ", spinning to each deadline" : "",
+             loop.sculptor.deformer.evaluation.threads == 2 ? ", two threads" : "");
+  fmt::print(out, "  {:<14} Linux {}{}{}, {} CPUs{}\n", "machine", machine.kernel,
+             machine.preemption.empty() ? "" : " ", machine.preemption, machine.cpus,
+             machine.hypervisor ? ", virtual: the host may stop it at any time" : "");
+  fmt::print(out, "  {:<14} {}, governor {}, clock {}\n", "", machine.processor,
+             machine.governor.empty() ? "none" : machine.governor, machine.clock_source);
+  fmt::print(out, "  {:<14} {}; {} vertices, {}{}{}\n", "ticks", joined(stage_names(loop.stages)),
+             outcome.vertices, flow::name_of(loop.sculptor.mode),
+             options.load.empty() ? "" : "; own load ", joined(options.load));
   if (outcome.pictures > 0)
-    std::fprintf(out, "  %-14s %llu pictures in the live window meanwhile\n", "looked on",
-                 static_cast<unsigned long long>(outcome.pictures));
+    fmt::print(out, "  {:<14} {} pictures in the live window\n", "observer", outcome.pictures);
   for (const auto& grant : outcome.grants) {
     const std::string how = " (" + grant.why + "); to have it, " + grant.remedy;
-    std::fprintf(out, "  %-14s %s%s\n", grant.granted ? "granted" : "REFUSED", grant.wanted.c_str(),
-                 grant.granted ? "" : how.c_str());
+    fmt::print(out, "  {:<14} {}{}\n", grant.granted ? "granted" : "REFUSED", grant.wanted,
+               grant.granted ? "" : how);
   }
 }
 
 void print_counts(std::FILE* out, const StressOutcome& outcome) {
   const TickTally& tally = outcome.tally;
-  const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
-  std::fprintf(out,
-               "\n  %llu ticks, %llu overruns (ticks after which a deadline had passed), %llu "
-               "deadlines missed\n  (at which no tick began); longest from tick to tick %s us\n",
-               number(tally.ticks()), number(outcome.overruns), number(outcome.missed),
-               shown(static_cast<double>(tally.longest_outage().count()) / 1e3).c_str());
+  fmt::print(out,
+             "\n  {} ticks, {} overruns (ticks after which a deadline had passed), {} deadlines "
+             "missed\n  (at which no tick began); longest from tick to tick {} us\n",
+             tally.ticks(), outcome.overruns, outcome.missed,
+             shown(to_microseconds(tally.longest_outage())));
   for (std::size_t at = 0; at < outcome.glove_records.size(); ++at)
-    std::fprintf(out, "  %s: %s\n", outcome.gloves[at].c_str(),
-                 driver::in_words(outcome.glove_records[at]).c_str());
-  std::fprintf(out,
-               "  %ld page faults: memory that had to be fetched (%ld from disk); %ld involuntary "
-               "switches: other\n  threads took the CPU; %.1f %% of a CPU used",
-               outcome.costs.minor_faults + outcome.costs.major_faults, outcome.costs.major_faults,
-               outcome.costs.involuntary_switches,
-               100.0 * outcome.costs.cpu_s / std::max(outcome.elapsed_s, 1e-9));
-  if (outcome.stolen_s) std::fprintf(out, ", %.2f s stolen by the host", *outcome.stolen_s);
-  std::fprintf(out, "\n");
-  if (outcome.floor.spun_s > 0.0) {
-    std::fprintf(
-        out,
-        "  this machine stopped a thread that did nothing but look at the clock for %.2f %% "
-        "of %.1f s\n",
+    fmt::print(out, "  {}: {}\n", outcome.gloves[at], driver::in_words(outcome.glove_records[at]));
+  fmt::print(out,
+             "  {} page faults: memory that had to be fetched ({} from disk); {} involuntary "
+             "switches: other\n  threads took the CPU; {:.1f} % of a CPU used",
+             outcome.costs.minor_faults + outcome.costs.major_faults, outcome.costs.major_faults,
+             outcome.costs.involuntary_switches,
+             100.0 * outcome.costs.cpu_s / std::max(outcome.elapsed_s, 1e-9));
+  if (outcome.stolen_s) fmt::print(out, ", {:.2f} s stolen by the host", *outcome.stolen_s);
+  fmt::print(out, "\n");
+  if (outcome.floor.spun_s > 0.0)
+    fmt::print(
+        out, "  this machine stopped a thread that only read the clock for {:.2f} % of {:.1f} s\n",
         100.0 * outcome.floor.stalled_s / outcome.floor.spun_s, outcome.floor.spun_s);
-  }
   if (outcome.records_refused > 0)
-    std::fprintf(out,
-                 "  %llu ticks are not in these figures: this program was too busy to take them\n",
-                 number(outcome.records_refused));
+    fmt::print(out, "  {} ticks are not in these figures: this program was too busy to read them\n",
+               outcome.records_refused);
 }
 
 void print_changes(std::FILE* out, const StressOptions& options, const StressOutcome& outcome) {
   if (!outcome.by_changes) return;
-  std::fprintf(out, "\n  %llu changes of the radius, %g a minute in every other second:\n",
-               static_cast<unsigned long long>(outcome.changes), options.changes_a_minute);
-  for (const bool with : {false, true}) {
-    const ChangeTally& tally = (*outcome.by_changes)[with ? 1 : 0];
-    const auto figure = [](const flow::Histogram& of, double fraction) {
+  fmt::print(out, "\n  {} changes of the radius, {:g} per minute in every other second:\n",
+             outcome.changes, options.changes_a_minute);
+  const auto figures = [](const flow::Histogram& of) {
+    const auto at = [&](double fraction) {
       return shown(to_microseconds(of.percentile(fraction)));
     };
-    std::fprintf(out,
-                 "  %-10s %llu ticks, %llu deadlines missed; late p50 %s, p99 %s, max %s us; work "
-                 "p50 %s, p99 %s, max %s us\n",
-                 with ? "with" : "without", static_cast<unsigned long long>(tally.ticks),
-                 static_cast<unsigned long long>(tally.missed), figure(tally.lateness, 0.5).c_str(),
-                 figure(tally.lateness, 0.99).c_str(),
-                 shown(to_microseconds(tally.lateness.max())).c_str(),
-                 figure(tally.work, 0.5).c_str(), figure(tally.work, 0.99).c_str(),
-                 shown(to_microseconds(tally.work.max())).c_str());
+    return fmt::format("p50 {}, p99 {}, max {} us", at(0.5), at(0.99), at(1.0));
+  };
+  for (const bool with : {false, true}) {
+    const ChangeTally& tally = (*outcome.by_changes)[with ? 1 : 0];
+    fmt::print(out, "  {:<10} {} ticks, {} deadlines missed; late {}; work {}\n",
+               with ? "with" : "without", tally.ticks, tally.missed, figures(tally.lateness),
+               figures(tally.work));
   }
 }
 
 void print_incidents(std::FILE* out, const StressOutcome& outcome) {
   const TickTally& tally = outcome.tally;
   std::string line;
-  for (std::size_t k = 0; k < cause_names.size(); ++k) {
-    const std::uint64_t incidents = tally.causes()[k].incidents;
-    if (incidents == 0) continue;
-    line +=
-        (line.empty() ? "" : ", ") + std::to_string(incidents) + " " + std::string(cause_names[k]);
-  }
-  if (!line.empty()) {
-    std::fprintf(out, "\n  later than 1 ms: %s; %.1f %% of that lateness is explained\n",
-                 line.c_str(), 100.0 * tally.explained());
-    std::fprintf(out, "  (host gap: nothing here ran; own work: the tick's; input: the gloves'; "
-                      "preemption: another thread ran)\n");
-  }
-  std::fprintf(out, "\n  the worst\n  %-28s %10s %7s  %-8s %-10s\n", "time (UTC)", "late us",
-               "missed", "phase", "cause");
-  for (const Incident& worst : tally.worst()) {
-    std::fprintf(out, "  %-28s %10s %7u  %-8s %-10s\n", wall_time(outcome, worst.due).c_str(),
-                 shown(to_microseconds(worst.lateness)).c_str(), worst.missed,
-                 phase_names[static_cast<std::size_t>(worst.phase)].data(),
-                 cause_names[static_cast<std::size_t>(worst.cause)].data());
-  }
+  for (std::size_t k = 0; k < cause_names.size(); ++k)
+    if (const std::uint64_t incidents = tally.causes()[k].incidents; incidents > 0)
+      line += fmt::format("{}{} {}", line.empty() ? "" : ", ", incidents, cause_names[k]);
+  if (!line.empty())
+    fmt::print(
+        out,
+        "\n  later than 1 ms: {}; {:.1f} % of that lateness is explained\n  (host gap: nothing "
+        "here ran; own work: the tick's; input: the gloves'; preemption: another thread "
+        "ran)\n",
+        line, 100.0 * tally.explained());
+  fmt::print(out, "\n  the worst\n  {:<28} {:>10} {:>7}  {:<8} {:<10}\n", "time (UTC)", "late us",
+             "missed", "phase", "cause");
+  for (const Incident& worst : tally.worst())
+    fmt::print(out, "  {:<28} {:>10} {:>7}  {:<8} {:<10}\n", wall_time(outcome, worst.due),
+               shown(to_microseconds(worst.lateness)), worst.missed,
+               phase_names[static_cast<std::size_t>(worst.phase)],
+               cause_names[static_cast<std::size_t>(worst.cause)]);
 }
 
 } // namespace
@@ -223,47 +206,35 @@ void print_histogram(const flow::Histogram& lateness, unsigned max_us) {
     const auto us = static_cast<std::uint64_t>(value.count()) / 1000;
     us < max_us ? counts[us] += count : beyond += count;
   });
-  std::printf("\n# Histogram\n");
+  fmt::print("\n# Histogram\n");
   for (std::size_t us = 0; us < counts.size(); ++us)
-    std::printf("%06zu %06llu\n", us, static_cast<unsigned long long>(counts[us]));
-  std::printf("# Histogram Overflows: %llu\n", static_cast<unsigned long long>(beyond));
+    fmt::print("{:06} {:06}\n", us, counts[us]);
+  fmt::print("# Histogram Overflows: {}\n", beyond);
 }
 
 std::string hgrm(const flow::Histogram& lateness) {
   std::string text = "       Value     Percentile TotalCount 1/(1-Percentile)\n\n";
-  char line[128];
   double sum_us = 0.0;
   double squares = 0.0;
   std::uint64_t seen = 0;
-  std::size_t classes = 0;
   lateness.for_each([&](std::chrono::nanoseconds value, std::uint64_t count) {
-    const double us = static_cast<double>(value.count()) / 1e3;
+    const double us = to_microseconds(value);
     seen += count;
-    ++classes;
     sum_us += us * static_cast<double>(count);
     squares += us * us * static_cast<double>(count);
     const double fraction = static_cast<double>(seen) / static_cast<double>(lateness.count());
-    std::snprintf(line, sizeof line, "%12.3f %14.12f %10llu", us, fraction,
-                  static_cast<unsigned long long>(seen));
-    text += line;
-    if (seen < lateness.count()) {
-      std::snprintf(line, sizeof line, " %14.2f", 1.0 / (1.0 - fraction));
-      text += line;
-    }
+    text += fmt::format("{:12.3f} {:14.12f} {:10}", us, fraction, seen);
+    if (seen < lateness.count()) text += fmt::format(" {:14.2f}", 1.0 / (1.0 - fraction));
     text += '\n';
   });
   const double n = std::max(1.0, static_cast<double>(lateness.count()));
   const double mean = sum_us / n;
   const double deviation = std::sqrt(std::max(0.0, squares / n - mean * mean));
-  std::snprintf(line, sizeof line, "#[Mean    = %12.3f, StdDeviation   = %12.3f]\n", mean,
-                deviation);
-  text += line;
-  std::snprintf(line, sizeof line, "#[Max     = %12.3f, Total count    = %12llu]\n",
-                static_cast<double>(lateness.max().count()) / 1e3,
-                static_cast<unsigned long long>(lateness.count()));
-  text += line;
-  std::snprintf(line, sizeof line, "#[Buckets = %12d, SubBuckets     = %12d]\n", 35, 64);
-  return text + line;
+  return text + fmt::format("#[Mean    = {:12.3f}, StdDeviation   = {:12.3f}]\n"
+                            "#[Max     = {:12.3f}, Total count    = {:12}]\n"
+                            "#[Buckets = {:12}, SubBuckets     = {:12}]\n",
+                            mean, deviation, to_microseconds(lateness.max()), lateness.count(), 35,
+                            64);
 }
 
 } // namespace nendo::stress

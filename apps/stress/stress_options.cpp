@@ -89,7 +89,7 @@ Result<StressOptions> parse(const StressArguments& arguments) {
   options.floor_s = arguments.floor_s;
   constexpr double max_changes = 6000.0; // at most one in each look of the main thread
   if (!(arguments.changes_a_minute >= 0.0 && arguments.changes_a_minute <= max_changes))
-    return usage("--changes: use 0 to 6000 a minute");
+    return usage("--changes: use 0 to 6000 per minute");
   if (arguments.changes_a_minute > 0.0 && !(run.loop.stages.input && run.loop.stages.deform))
     return usage("--changes: needs the stages input and deform, which they change");
   options.changes_a_minute = arguments.changes_a_minute;

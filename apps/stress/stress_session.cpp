@@ -1,5 +1,6 @@
 #include "stress/stress_session.hpp"
 
+#include <algorithm>
 #include <future>
 #include <thread>
 #include <utility>
@@ -21,7 +22,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Room for 65 s at 1 kHz. Under load the main thread may not run for long.
+/// Space for 65 s at 1 kHz. Under load the main thread may not run for long.
 constexpr std::size_t records_kept = 65'536;
 
 rusage usage_of_thread() {
@@ -47,6 +48,36 @@ struct Prepared {
   std::vector<flow::Grant> grants;
 };
 
+/// Returns whether the settings change in the second of that time of a run.
+bool changes_at(HostTime start, HostTime time) noexcept {
+  return static_cast<std::int64_t>(to_seconds(time - start)) % 2 != 0;
+}
+
+class SettingsChanger {
+public:
+  /// 0: no changes.
+  explicit SettingsChanger(double per_minute) noexcept : per_minute_(per_minute) {}
+  /// Requests the changes that are due. Call it some hundred times per second.
+  void update(flow::DeformLoop& loop, HostTime start) {
+    const HostTime now = HostClock::now();
+    if (per_minute_ <= 0.0 || now < next_ || !changes_at(start, now)) return;
+    constexpr double seconds_per_minute = 60.0;
+    next_ =
+        std::max(next_, now - milliseconds(100)) + from_seconds(seconds_per_minute / per_minute_);
+    // There and back, so that the hands shape the same all the time.
+    constexpr double larger = 1.25;
+    flow::LoopSettings settings = loop.changes().settings();
+    for (double& radius_m : settings.radius_m)
+      radius_m *= asked_ % 2 == 0 ? larger : 1.0 / larger;
+    if (loop.changes().change_settings(settings)) ++asked_;
+  }
+
+private:
+  double per_minute_;
+  std::uint64_t asked_ = 0;
+  HostTime next_{};
+};
+
 /// Takes the records of the loop's ticks, and samples how long its thread had to wait for a CPU.
 class Collector {
 public:
@@ -61,11 +92,19 @@ public:
     delay_.sample();
     for (const auto& record : batch_) {
       outcome_.tally.add(record, &delay_);
-      if (outcome_.by_changes) count(record, outcome_.start, *outcome_.by_changes);
+      if (outcome_.by_changes) count(record, *outcome_.by_changes);
     }
   }
 
 private:
+  void count(const flow::TickRecord& record, std::array<ChangeTally, 2>& tallies) noexcept {
+    ChangeTally& tally = tallies[changes_at(outcome_.start, record.scheduled) ? 1 : 0];
+    ++tally.ticks;
+    tally.missed += record.missed;
+    tally.lateness.record(record.woke - record.scheduled);
+    tally.work.record(record.published() - record.woke);
+  }
+
   flow::TickRing& ring_;
   RunDelay delay_;
   StressOutcome& outcome_;
@@ -78,7 +117,7 @@ struct Watch {
   session::GloveStatuses gloves{};
   session::Asks asks{};
   session::LoopCommands for_loop{64};
-  bool ends = false;                          ///< the observer has asked for the end
+  bool ends = false;                          ///< the observer has requested the end
   std::optional<flow::LoopSettings> wanted{}; ///< not passed on yet
 
   /// Waits some milliseconds, or as long as the observer takes.
@@ -95,7 +134,7 @@ struct Watch {
                       loop.changes().puppet(frame.puppet)},
                      asks);
     for (const session::Ask& ask : std::exchange(asks, {}))
-      obey(ask);
+      execute(ask);
     if (const auto dropped = for_loop.dropped()) observer->report(*dropped);
     if (!wanted && fresh && frame.awaited) wanted = frame.awaited->settings;
     if (!wanted) return;
@@ -104,7 +143,7 @@ struct Watch {
   }
 
 private:
-  void obey(const session::Ask& ask) {
+  void execute(const session::Ask& ask) {
     const auto* const command = std::get_if<flow::Command>(&ask);
     const auto refuse = [this](std::string_view name) {
       observer->report(std::string(name) + ": nendo stress measures one model; use nendo run");

@@ -1,5 +1,3 @@
-#include "stress/verdict.hpp"
-
 #include <algorithm>
 #include <cmath>
 

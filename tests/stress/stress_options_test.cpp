@@ -147,7 +147,7 @@ TEST_SUITE("stress options") {
     });
   }
 
-  TEST_CASE("the spin tail goes by itself at rates that leave it room") {
+  TEST_CASE("the spin tail goes by itself at rates that leave it time") {
     for (const auto& [interval_us, spins] :
          {std::pair{1000.0, true}, {501.0, true}, {500.0, false}}) {
       StressArguments arguments;

@@ -1,7 +1,6 @@
 // The text and the JSON of a stress report say the same figures.
 
 #include "stress/report.hpp"
-#include "stress/verdict.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -62,7 +61,7 @@ std::string text_of(const StressOptions& options, const StressOutcome& outcome,
   return result;
 }
 
-/// The numbers behind the last line that begins with `name`, after `nth` others.
+/// The numbers in the last line that begins with `name`, after `nth` others.
 std::vector<double> row(const std::string& text, const std::string& name, int nth = 0) {
   for (const std::string& line : test::lines_of(text)) {
     if (!line.starts_with("  " + name + "  ") || nth-- > 0) continue;
@@ -129,7 +128,7 @@ TEST_SUITE("stress report") {
     options.run.realtime.priority = 0;
     outcome.grants.clear();
     CHECK(judge(options, outcome).remedy == "-p 80");
-    // The usual work of a tick, 90 us and more, is what a rate of 12 kHz has no room for.
+    // The usual work of a tick, 90 us and more, is more than a rate of 12 kHz allows.
     options.run.loop.rate_hz = 12'000.0;
     outcome.environment.cpus = 1;
     const Verdict alone = judge(options, outcome);
@@ -159,7 +158,7 @@ TEST_SUITE("stress report") {
     CHECK(refused.error().message.find("--priority 0") != std::string::npos);
   }
 
-  TEST_CASE("a loop that kept its rate is told so, and one without a rate is not judged") {
+  TEST_CASE("a loop that kept its rate is reported as such, and one without a rate is not judged") {
     StressOptions options;
     options.run.loop.rate_hz = 90.0; // whose ticks have 11 ms
     StressOutcome outcome(options.run.loop);
@@ -179,7 +178,7 @@ TEST_SUITE("stress report") {
           std::string::npos);
   }
 
-  TEST_CASE("each figure of the text is that of the JSON, and an earlier report stands beside it") {
+  TEST_CASE("each figure of the text is that of the JSON, and an earlier report is beside it") {
     StressOptions options;
     options.run.loop.rate_hz = 1000.0;
     options.load = {"cpu", "mem"};
@@ -215,7 +214,7 @@ TEST_SUITE("stress report") {
                     "mem\n") != std::string::npos);
   }
 
-  TEST_CASE("what became of the gloves' records stands in both, by the same names") {
+  TEST_CASE("the counts of the gloves' records are in both, by the same names") {
     StressOptions options;
     StressOutcome outcome(options.run.loop);
     outcome.gloves = {"serial:/dev/a", "sim"};

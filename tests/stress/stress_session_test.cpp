@@ -1,4 +1,4 @@
-// What an observer asks of a loop that nendo stress measures: obeyed, or reported.
+// What an observer asks of a loop that nendo stress measures: executed, or reported.
 
 #include <string>
 #include <utility>
@@ -49,14 +49,14 @@ std::vector<std::string> reports_of(session::Asks asks) {
 } // namespace
 
 TEST_SUITE("stress_session") {
-  TEST_CASE("commands that find no room are named once") {
+  TEST_CASE("commands that do not fit are named once") {
     const session::Asks asks(100, flow::Command(flow::Request::commit));
     const auto reports = reports_of(asks);
     CHECK(reports ==
           std::vector<std::string>{"The loop does not answer, so this was dropped: commit."});
   }
 
-  TEST_CASE("commands that nendo stress does not obey are refused by name") {
+  TEST_CASE("commands that nendo stress does not execute are refused by name") {
     const auto reports = reports_of({flow::Command(flow::Subdivide{})});
     REQUIRE(reports.size() == 1);
     CHECK(reports[0].starts_with("subdivide: "));

@@ -1,4 +1,4 @@
-// How a stress test counts: percentiles of what was scheduled, and who was to blame.
+// How a stress test counts: percentiles of scheduled ticks, and the causes of lateness.
 
 #include <algorithm>
 #include <cmath>
@@ -148,8 +148,8 @@ TEST_SUITE("stress tally") {
     CHECK(incident.phase_time == 4'050us - 1ms);
   }
 
-  TEST_CASE(
-      "who waited was preempted, who worked as usual worked too long, and else it stood still") {
+  TEST_CASE("who waited was preempted, who worked as usual worked too long, and else the machine "
+            "stopped") {
     auto late = incident_of(record(4, 0us, 100'000), record(5, 3ms, 100'000), period);
     CHECK(cause_of(late, usually(1us), 2ms) == Cause::preemption);
     CHECK(cause_of(late, usually(1us), 1ms) == Cause::host_gap);
@@ -166,7 +166,7 @@ TEST_SUITE("stress tally") {
     CHECK(cause_of(late, usually(3ms), 0ms) == Cause::input);
   }
 
-  TEST_CASE("lateness whose cause nobody saw is not counted as explained") {
+  TEST_CASE("lateness without a known cause is not counted as explained") {
     TickTally tally(at_1khz());
     CHECK(tally.explained() == 1.0);
     tally.add(record(0, 0us, 1000), nullptr);

@@ -28,22 +28,18 @@ struct Column {
 constexpr std::array columns{Column{"p50", 0.50}, Column{"p90", 0.90}, Column{"p99", 0.99},
                              Column{"p99.9", 0.999}};
 
-double microseconds(std::chrono::nanoseconds time) {
-  return static_cast<double>(time.count()) / 1e3;
-}
-
 double ratio(const flow::Histogram& driver, const flow::Histogram& bare, double fraction) {
-  return microseconds(driver.percentile(fraction)) /
-         std::max(microseconds(bare.percentile(fraction)), 0.001);
+  return to_microseconds(driver.percentile(fraction)) /
+         std::max(to_microseconds(bare.percentile(fraction)), 0.001);
 }
 
 void print_json(const char* line, const flow::Histogram& driver, const flow::Histogram& bare) {
   const auto row = [](const flow::Histogram& histogram) {
     nlohmann::ordered_json values{{"records", histogram.count()},
-                                  {"min", microseconds(histogram.min())}};
+                                  {"min", to_microseconds(histogram.min())}};
     for (const Column& column : columns)
-      values[column.name] = microseconds(histogram.percentile(column.fraction));
-    values["max"] = microseconds(histogram.max());
+      values[column.name] = to_microseconds(histogram.percentile(column.fraction));
+    values["max"] = to_microseconds(histogram.max());
     return values;
   };
   const nlohmann::ordered_json object{
@@ -55,10 +51,10 @@ void print_json(const char* line, const flow::Histogram& driver, const flow::His
 }
 
 void print_row(const char* name, const flow::Histogram& histogram) {
-  std::printf("  %-22s %8.1f", name, microseconds(histogram.min()));
+  std::printf("  %-22s %8.1f", name, to_microseconds(histogram.min()));
   for (const Column& column : columns)
-    std::printf(" %8.1f", microseconds(histogram.percentile(column.fraction)));
-  std::printf(" %8.1f\n", microseconds(histogram.max()));
+    std::printf(" %8.1f", to_microseconds(histogram.percentile(column.fraction)));
+  std::printf(" %8.1f\n", to_microseconds(histogram.max()));
 }
 
 void print_text(const char* line, const flow::Histogram& driver, const flow::Histogram& bare) {

@@ -78,12 +78,12 @@ Result<std::unique_ptr<stress::StressOutcome>> measure(const stress::StressArgum
 }
 
 double us(const flow::Histogram& histogram, double fraction) {
-  return static_cast<double>(histogram.percentile(fraction).count()) / 1e3;
+  return to_microseconds(histogram.percentile(fraction));
 }
 
-/// A figure, what it ought to be at the most, and a line about it.
-void tell(const RtOptions& options, const std::string& part, const std::string& figure,
-          double value, double at_most) {
+/// Prints a figure beside its goal, which is a maximum.
+void report_figure(const RtOptions& options, const std::string& part, const std::string& figure,
+                   double value, double at_most) {
   const bool met = value <= at_most;
   if (options.json) {
     const nlohmann::ordered_json line{{"part", "loop"}, {"of", part},         {"figure", figure},
@@ -122,8 +122,8 @@ Result<void> beside_cyclictest(const RtOptions& options, const deform::Mesh& mod
                 "begun)\n",
                 us(ours, 0.5), us(ours, 0.99), us(theirs, 0.5), us(theirs, 0.99));
   }
-  tell(options, "loop / cyclictest", "p50 ratio", us(ours, 0.5) / us(theirs, 0.5), 1.2);
-  tell(options, "loop / cyclictest", "p99 ratio", us(ours, 0.99) / us(theirs, 0.99), 1.2);
+  report_figure(options, "loop / cyclictest", "p50 ratio", us(ours, 0.5) / us(theirs, 0.5), 1.2);
+  report_figure(options, "loop / cyclictest", "p99 ratio", us(ours, 0.99) / us(theirs, 0.99), 1.2);
   return {};
 }
 
@@ -133,9 +133,10 @@ Result<void> spinning(const RtOptions& options, const deform::Mesh& model) {
     const auto outcome = measure(arguments_for(options, "sleep", "on", load), model);
     if (!outcome) return outcome.error();
     const auto& lateness = (*outcome)->tally[stress::Measure::lateness].raw;
-    tell(options, name, "p50 us", us(lateness, 0.5), 0.1);
-    tell(options, name, "p99 us", us(lateness, 0.99), p99_us);
-    tell(options, name, "% of a CPU", 100.0 * (*outcome)->costs.cpu_s / (*outcome)->elapsed_s, 6.0);
+    report_figure(options, name, "p50 us", us(lateness, 0.5), 0.1);
+    report_figure(options, name, "p99 us", us(lateness, 0.99), p99_us);
+    report_figure(options, name, "% of a CPU",
+                  100.0 * (*outcome)->costs.cpu_s / (*outcome)->elapsed_s, 6.0);
   }
   return {};
 }
@@ -147,8 +148,9 @@ Result<void> whole_pipeline(const RtOptions& options, const deform::Mesh& model)
   if (!outcome) return outcome.error();
   const stress::TickTally& tally = (*outcome)->tally;
   const std::string part = std::to_string(model.vertices.cols()) + " vertices, two hands";
-  tell(options, part, "work p99 us", us(tally[stress::Measure::work].raw, 0.99), 300.0);
-  tell(options, part, "page faults", static_cast<double>((*outcome)->costs.minor_faults), 0.0);
+  report_figure(options, part, "work p99 us", us(tally[stress::Measure::work].raw, 0.99), 300.0);
+  report_figure(options, part, "page faults", static_cast<double>((*outcome)->costs.minor_faults),
+                0.0);
   return {};
 }
 
