@@ -7,7 +7,6 @@
 
 #include <nendo/hand/hand_body.hpp>
 
-#include "motions/carry_plan.hpp"
 #include "motions/plan_hands.hpp"
 
 namespace nendo::motions {
@@ -84,7 +83,7 @@ public:
 private:
   static constexpr double turn_s = 1.8;   ///< from one press to the same hand's next
   static constexpr double lift_m = 0.09;  ///< between presses
-  static constexpr double aside_m = 0.11; ///< then: there the other hand has room
+  static constexpr double aside_m = 0.11; ///< then, where it leaves space for the other hand
   static constexpr std::size_t presses = 5;
   static constexpr std::array<double, presses> turn_deg{25.0, 75.0, -5.0, 50.0, 10.0};
   /// Of the model's height, after each press of both hands.
@@ -96,19 +95,20 @@ private:
   double side_; ///< 1: right
 };
 
-/// The rounds of a bowl: presses outwards, one beside the other.
+/// The rounds of a bowl: presses outwards, side by side.
 struct BowlRounds {
   static constexpr double enter_s = 1.6, press_s = 0.42, leave_s = 1.0;
   static constexpr std::size_t presses = 10, rounds = 3;
   static constexpr double all_s = press_s * presses * rounds;
-  static constexpr std::array<double, rounds> out{0.25, 0.42, 0.56};     ///< of the radius
-  static constexpr std::array<double, rounds> wall{1.12, 1.17, 1.22};    ///< where it is held
-  static constexpr std::array<double, rounds> lean_rad{0.05, 0.1, 0.15}; ///< of the thumb
+  static constexpr std::array<double, rounds> out{0.25, 0.42, 0.56};  ///< relative to the radius
+  static constexpr std::array<double, rounds> wall{1.12, 1.17, 1.22}; ///< where it is held
+  static constexpr std::array<double, rounds> lean_rad{0.05, 0.1,
+                                                       0.15}; ///< how far the thumb leans
 
   std::size_t round = 0;
-  double angle_rad = 0.0; ///< of the press about the axis
+  double angle_rad = 0.0; ///< the press's angle about the axis
   double going_rad = 0.0; ///< the same, but on its way from one press to the next
-  double part = 0.0;      ///< of the press, from 0 to 1
+  double part = 0.0;      ///< the fraction of the press, from 0 to 1
   bool is_pressing = false;
 
   static BowlRounds at(double time_s) noexcept {
@@ -133,7 +133,7 @@ struct BowlRounds {
   static Vector3d along(double angle) noexcept { return {std::cos(angle), 0.0, -std::sin(angle)}; }
 
 private:
-  /// Each round begins half a step beside the one before.
+  /// Each round begins half a step beside the previous one.
   static double angle_of(double press) noexcept {
     const double round = std::max(0.0, std::floor(press / static_cast<double>(presses)));
     return 2.0 * std::numbers::pi * (press + 0.5 * round) / static_cast<double>(presses);
@@ -203,7 +203,8 @@ public:
   }
 
 private:
-  static constexpr double floor = 0.30; ///< of the height: the thumb's tip over the model's foot
+  static constexpr double floor =
+      0.30; ///< the thumb's tip over the model's foot, relative to the height
 
   KneadedModel model_;
   PointingThumb thumb_;
@@ -229,8 +230,9 @@ public:
   }
 
 private:
-  static constexpr double turn_s = 6.4;   ///< from one bore to the same hand's next
-  static constexpr double aside_m = 0.11; ///< between them: there the other hand has room
+  static constexpr double turn_s = 6.4; ///< from one bore to the same hand's next
+  static constexpr double aside_m =
+      0.11; ///< between them, where it leaves space for the other hand
   static constexpr double turns = 2.0;
 
   KneadedModel model_;
@@ -264,7 +266,7 @@ public:
   }
 
 private:
-  static constexpr double half_breadth_m = 0.046; ///< of a palm
+  static constexpr double half_breadth_m = 0.046; ///< half of a palm's breadth
   static constexpr double aside_m = 0.025;        ///< from the wall, between presses
 
   KneadedModel model_;
@@ -293,7 +295,7 @@ private:
   }
   double radius() const noexcept { return 0.5 * (model_.high.x() - model_.low.x()); }
 
-  static constexpr double clear_m = 0.010;     ///< of the fingertips, before they close
+  static constexpr double clear_m = 0.010;     ///< the fingertips' distance, before they close
   static constexpr double into_m = 0.016;      ///< the model, before they close
   static constexpr double max_chord_m = 0.027; ///< no hand opens wider
   static constexpr double pull_m = 0.032;
@@ -302,15 +304,126 @@ private:
   PinchingFingers fingers_;
 };
 
+enum class CutTool : std::uint8_t {
+  wire,  ///< between both index fingertips, which lead it past the model
+  knife, ///< at the tip of an index finger that points at the model
+};
+
+/// Takes the upper part by the side, lifts it, turns it half-way round, presses it on, and leaves.
+/// One of several models is lifted over to the side instead, and put down there.
+class Carry final : public KneadPlan {
+public:
+  Carry(const KneadedModel& model, const hand::HandSkeleton& skeleton)
+      : model_(model), fingers_(skeleton, open_gap_m, pinch_gap_m) {
+    taken_at_ = model.middle();
+    taken_at_.y() = model.low.y() + KneadedModel::upper * model.height();
+    const double side = fingers_.outwards().x() > 0.0 ? 1.0 : -1.0;
+    taken_at_.x() += side * std::max(0.0, model.upper_radius_m - into_m);
+    if (!model.taken_at) return;
+    const double breadth = model.high.x() - model.low.x();
+    taken_at_ = *model.taken_at - side * std::min(into_m, 0.15 * breadth) * Vector3d::UnitX();
+    aside_ = side * aside * breadth * Vector3d::UnitX();
+  }
+
+  double length_s() const noexcept override { return 8.6; }
+
+  Pose at(double time_s) const noexcept override {
+    const double closed = ease(time_s, 1.0, 1.6) - ease(time_s, 7.0, 7.4);
+    const double out = 2.0 * away_m * (1.0 - ease(time_s, 0.0, 0.9) + ease(time_s, 7.4, 8.6));
+    Pose pose = fingers_.at(taken_at_ + out * fingers_.outwards(), closed);
+    pose.T_stage_wrist = motion_at(time_s) * pose.T_stage_wrist;
+    return pose;
+  }
+
+private:
+  /// Of the part: about the vertical line through the neck's middle, where the faces of a cut then
+  /// lie on each other the best.
+  Isometry3d motion_at(double time_s) const noexcept {
+    if (model_.taken_at) {
+      const double up = lift * model_.height() * (ease(time_s, 1.8, 3.0) - ease(time_s, 5.4, 6.8));
+      return Isometry3d(
+          Eigen::Translation3d(ease(time_s, 2.4, 6.0) * aside_ + up * Vector3d::UnitY()));
+    }
+    const double turned = std::numbers::pi * ease(time_s, 2.8, 5.4);
+    const double lifted = lift * model_.height() * ease(time_s, 1.8, 3.0) -
+                          (lift + press) * model_.height() * ease(time_s, 5.4, 6.8);
+    Isometry3d motion = Isometry3d::Identity();
+    motion.linear() = Eigen::AngleAxisd(turned, Vector3d::UnitY()).matrix();
+    motion.translation() = model_.neck - motion.linear() * model_.neck + lifted * Vector3d::UnitY();
+    return motion;
+  }
+
+  static constexpr double open_gap_m = 0.055; ///< wide enough to have released
+  static constexpr double into_m = 0.012;     ///< the model, from its side
+  static constexpr double lift = 0.5;         ///< relative to the model's height
+  static constexpr double press = 0.02;       ///< deeper than it was, relative to the height
+  static constexpr double aside = 0.7;        ///< relative to its breadth
+
+  KneadedModel model_;
+  PinchingFingers fingers_;
+  Vector3d taken_at_;
+  Vector3d aside_ = Vector3d::Zero();
+};
+
+/// The index finger leads a wire's end, or a knife, through the model from the front. Then the
+/// upper part is carried.
+class CutAndCarry final : public KneadPlan {
+public:
+  CutAndCarry(CutTool tool, const KneadedModel& model, const hand::HandSkeleton& skeleton)
+      : model_(model), carry_(model, skeleton), angles_(fist()),
+        side_(skeleton.side() == Side::right ? 1.0 : -1.0) {
+    fingers_ =
+        tool == CutTool::wire ? Vector3d(-Vector3d::UnitZ()) : Vector3d(-side_ * Vector3d::UnitX());
+    angles_.fingers[0] = {};
+    tip_m_ = skeleton.pose(angles_, Isometry3d::Identity())[hand::Joint::index_tip].translation();
+  }
+
+  double length_s() const noexcept override { return carry_from_s + carry_.length_s(); }
+
+  Pose at(double time_s) const noexcept override {
+    if (time_s >= carry_from_s) return carry_.at(time_s - carry_from_s);
+    Pose cuts = cutting_at(time_s);
+    const double part = ease(time_s, 2.7, carry_from_s);
+    if (part <= 0.0) return cuts;
+    const Pose carries = carry_.at(0.0);
+    return {blended(cuts.angles, carries.angles, part),
+            flow::blended(cuts.T_stage_wrist, carries.T_stage_wrist, part)};
+  }
+
+private:
+  Pose cutting_at(double time_s) const noexcept {
+    Vector3d tip = model_.middle();
+    tip.x() += side_ * (0.5 * (model_.high.x() - model_.low.x()) + beside_m);
+    tip.y() = model_.neck.y();
+    tip.z() = model_.high.z() + away_m -
+              ease(time_s, 0.6, 2.6) * (model_.high.z() - model_.low.z() + 2.0 * away_m);
+    Pose pose{angles_, Isometry3d::Identity()};
+    pose.T_stage_wrist.linear() = axes_of(fingers_, Vector3d::UnitY());
+    pose.T_stage_wrist.translation() = tip - pose.T_stage_wrist.linear() * tip_m_;
+    return pose;
+  }
+
+  static constexpr double carry_from_s = 4.2;
+  static constexpr double beside_m = 0.030; ///< from the model's box
+
+  KneadedModel model_;
+  Carry carry_;
+  JointAngles angles_;
+  double side_;      ///< the sign of x
+  Vector3d fingers_; ///< where they point to while it cuts
+  Vector3d tip_m_;
+};
+
 } // namespace
 
 std::unique_ptr<KneadPlan> plan_of(KneadTask task, const KneadedModel& model,
                                    const hand::HandSkeleton& skeleton) {
   if (task == KneadTask::press) return std::make_unique<Flatten>(model, skeleton);
   if (task == KneadTask::grip) return std::make_unique<Pinch>(model, skeleton);
-  if (task == KneadTask::carry) return plan_to_carry(model, skeleton);
-  if (task == KneadTask::cut) return plan_to_cut(CutTool::wire, model, skeleton);
-  if (task == KneadTask::slice) return plan_to_cut(CutTool::knife, model, skeleton);
+  if (task == KneadTask::carry) return std::make_unique<Carry>(model, skeleton);
+  if (task == KneadTask::cut) return std::make_unique<CutAndCarry>(CutTool::wire, model, skeleton);
+  if (task == KneadTask::slice)
+    return std::make_unique<CutAndCarry>(CutTool::knife, model, skeleton);
   if (task == KneadTask::bore) return std::make_unique<Bore>(model, skeleton);
   if (skeleton.side() == Side::right) return std::make_unique<Thumb>(model, skeleton);
   return std::make_unique<Wall>(model, skeleton);

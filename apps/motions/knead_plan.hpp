@@ -1,5 +1,5 @@
 #pragma once
-// What a kneading hand does at each time: where its wrist is, and how its fingers are bent.
+// The motion of a kneading hand: its wrist's pose and its fingers' angles over time.
 
 #include <memory>
 #include <optional>
@@ -10,12 +10,12 @@ namespace nendo::motions {
 
 /// The model on the stage, in metres.
 struct KneadedModel {
-  static constexpr double upper = 0.85;   ///< of its height, where hands take its upper part
-  static constexpr double neck_at = 0.57; ///< likewise, where it is cut
+  static constexpr double upper = 0.85; ///< where hands take its upper part, relative to its height
+  static constexpr double neck_at = 0.57; ///< where it is cut, relative to its height
 
   Eigen::Vector3d low, high;   ///< corners of its box
   double upper_radius_m = 0.0; ///< how far it reaches to its sides there
-  Eigen::Vector3d neck;        ///< the middle of what is cut; there its upper part is turned
+  Eigen::Vector3d neck;        ///< the middle of the cut; there its upper part is turned
 
   /// Of one of several models side by side: where its upper part reaches the farthest to the hand's
   /// side. All else is that model's.

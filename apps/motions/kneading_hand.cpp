@@ -84,7 +84,7 @@ Eigen::Vector3d farthest_of_upper(const deform::Mesh& model, double side) {
 }
 
 /// Of models side by side, the one that is the farthest on the hand's side; nothing if no two parts
-/// stand beside each other, as a head does not stand beside its trunk.
+/// lie beside each other, as a head does not lie beside its trunk.
 std::optional<deform::Mesh> outermost(const deform::Mesh& model, double side) {
   std::vector<deform::Mesh> parts = deform::separate(model);
   const auto reach = [&](const deform::Mesh& part) {

@@ -1,6 +1,6 @@
 #pragma once
 // Simulated hands that work on clay or carry parts: their wrists move, and their fingers bend, by a
-// plan for the model that stands before them.
+// plan for the model before them.
 
 #include <array>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #pragma once
-// What the plans of kneading and of carrying hands have in common.
+// Common parts of the plans of kneading hands.
 
 #include <Eigen/Geometry>
 
@@ -15,13 +15,14 @@ inline constexpr double pinch_gap_m = 0.011; ///< between the tips of thumb and 
 
 /// From 0 at `begin_s` to 1 at `end_s`.
 double ease(double time_s, double begin_s, double end_s) noexcept;
-/// Axes of a wrist whose fingers point along `fingers`, with the back of the hand towards `back`.
+/// Returns a wrist's axes, with the fingers along `fingers` and the back of the hand towards
+/// `back`.
 Eigen::Matrix3d axes_of(const Eigen::Vector3d& fingers, const Eigen::Vector3d& back) noexcept;
 hand::JointAngles flat_hand() noexcept;
 /// Bent fingers that are out of the way of a thumb or of a pinch.
 hand::JointAngles fist() noexcept;
 
-/// What lies between two hands' angles: 0 is `from`, and 1 is `to`.
+/// Interpolates between two hands' angles: 0 is `from`, and 1 is `to`.
 hand::JointAngles blended(const hand::JointAngles& from, const hand::JointAngles& to,
                           double part) noexcept;
 

@@ -1,5 +1,5 @@
 #pragma once
-// The motions by which simulated gloves do something to the model that stands before them.
+// The motions by which simulated gloves do something to the model before them.
 
 #include <memory>
 #include <optional>

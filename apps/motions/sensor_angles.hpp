@@ -1,5 +1,5 @@
 #pragma once
-// What a glove measures of a hand in a given pose.
+// The measurements of a glove on a hand in a given pose.
 
 #include <nendo/hand/calibration.hpp>
 #include <nendo/hand/joint_angles.hpp>

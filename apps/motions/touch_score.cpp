@@ -52,7 +52,7 @@ TouchScore::TouchScore(Side side, std::uint32_t seed) {
     glides_.push_back({now_s, time_s, from, to});
     now_s += time_s + 0.2 * beat_s;
   };
-  // Far out, for so long that whoever stops after ten seconds has it in his picture.
+  // Far out, for so long that a run that ends after ten seconds shows it in its picture.
   const auto pull_far = [&](double begin_s) {
     now_s = std::max(now_s, begin_s);
     for (Strokes& strokes : strokes_)

@@ -1,6 +1,6 @@
 #pragma once
 // The time plan of a touching hand's fingers: strokes into the surface and out of it, and glides
-// along it between them. Depths and ways are fractions of what the hand can reach, not lengths.
+// along it between them. Depths and paths are fractions of the hand's reach, not lengths.
 
 #include <array>
 #include <cstdint>

@@ -18,7 +18,7 @@ namespace nendo::motions {
 
 /// The depths are upper bounds: a finger that cannot reach so far goes as far as it can.
 struct TouchOptions {
-  std::uint32_t seed = 1; ///< of the order of fingers, the tempo and the way of gliding
+  std::uint32_t seed = 1; ///< determines the order of fingers, the tempo and the glides
   double press_m = 0.020;
   double pull_m = 0.090;
   double glide_m = 0.012;
@@ -28,7 +28,7 @@ struct TouchOptions {
 /// The place on the stage that a fingertip is to reach.
 struct TouchTarget {
   Eigen::Vector3d contact_m = Eigen::Vector3d::Zero(); ///< on the surface, as it is undeformed
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< of the surface there, outwards
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< the surface's normal there, outwards
   double depth_m = 0.0; ///< > 0: pressed in along the normal, < 0: pulled out
 
   Eigen::Vector3d place_m() const { return contact_m - depth_m * normal; }

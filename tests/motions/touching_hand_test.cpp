@@ -42,7 +42,7 @@ deform::Mesh shipped(const std::string& name) {
   return *std::move(model);
 }
 
-/// As it stands on the stage, whose models are 80 cm on their longest side.
+/// As it is on the stage, whose models are 80 cm on their longest side.
 deform::Mesh on_stage(deform::Mesh model) {
   const Eigen::Vector3d extent =
       model.vertices.rowwise().maxCoeff() - model.vertices.rowwise().minCoeff();
@@ -125,7 +125,7 @@ void check_motion(const TouchingHand& hand, Side side) {
   }
   CHECK(beyond_rad < from_degrees(0.1));
   CHECK(fastest_rad_s > 0.5);
-  CHECK(fastest_rad_s < 6.0); // a quarter of what hand::SensorGate lets pass
+  CHECK(fastest_rad_s < 6.0); // a quarter of the limit of hand::SensorGate
   CHECK(off_m < TouchingHand::tolerance_m);
 }
 
