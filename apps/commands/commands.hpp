@@ -1,7 +1,7 @@
 #pragma once
-// The table of what a person may ask of a run, or of a timeline's editor, by a key or a button: in
-// the terminal, in windows and on the page. All of them, their lists of keys, the protocol and the
-// manual are made from it.
+// The table of the commands of a run and of a timeline's editor, with their keys and buttons in the
+// terminal, in windows and on the page. Lists of keys, the protocol and the manual are made from
+// it.
 
 #include <array>
 #include <cstdint>
@@ -25,7 +25,7 @@ struct RunFacts {
   bool keeps_last = false; ///< --keep-last
   bool has_layers = false; ///< gloves play some joints over a recording, or over other gloves
 };
-/// The state of a run in which something is asked for.
+/// The state of a run at the time of a command.
 struct Situation {
   const flow::Frame& frame; ///< the latest
   const RunFacts& facts;
@@ -38,7 +38,7 @@ inline constexpr std::uint8_t everywhere = in_terminal | in_window | on_page;
 /// Where a button is: `more` is among the settings, and those from `head` on are of a timeline.
 enum class Buttons : std::uint8_t { none, hands, model, more, head, key, whole, file };
 
-/// One command. It has `make`, `choose` or `edit`, or is obeyed by the window or the page itself.
+/// One command. It has `make`, `choose` or `edit`, or is executed by the window or the page itself.
 struct Row {
   std::string_view name; ///< the text that a client sends, too (PROTOCOL.md)
   /// The first is shown first. Capitals are typed with shift, and only those of one character, but
@@ -61,7 +61,7 @@ struct Row {
   /// Returns whether a window shows the button; null: it does.
   bool (*is_shown)(const Situation& now) = nullptr;
 
-  /// Returns whether the run obeys it, and not the window or the page.
+  /// Returns whether the run executes it, and not the window or the page.
   constexpr bool is_for_run() const noexcept { return make != nullptr || choose != nullptr; }
   bool is_on_in(const Situation& now) const { return is_on != nullptr && is_on(now); }
   /// Returns null if the command is possible.
@@ -88,25 +88,25 @@ const Row* with_key(std::string_view key, std::uint8_t places) noexcept;
 /// Returns the name of the row that makes the command, whatever its numbers are, such as "wire";
 /// "role", or "a command", if no row makes it.
 std::string_view name_of(const flow::Command& command) noexcept;
-/// Returns the row that asks for that; each one has a row.
+/// Returns the row of that command; each one has a row.
 const Row& row_of(EditCommand command) noexcept;
 
-/// What becomes of a key or a button.
+/// The effect of a key or a button.
 struct Answer {
   std::optional<flow::Command> command;
   /// Why it is not possible, as a sentence; or null. A flow::Request is a command even so, because
   /// the loop may be a few ticks ahead of the frame.
   const char* refusal = nullptr;
 };
-/// Returns the command of a row that is_for_run(). `wanted` belongs to whoever asks, and has
-/// followed the frame. Does not allocate.
+/// Returns the command of a row that is_for_run(). `wanted` belongs to the caller, and has followed
+/// the frame. Does not allocate.
 Answer press(const Row& row, const Situation& now, flow::WantedSettings& wanted);
 
-// Reasons, for code that is asked for the same without a table.
+// Reasons, for code that gets the same command without the table.
 inline constexpr const char* no_layers = "The gloves play whole hands here, and no layer; --layer "
                                          "and --over make one.";
 inline constexpr const char* no_puppet = "There is no puppet here, and fingertips touch the model; "
-                                         "l lets go of it.";
+                                         "l releases it.";
 inline constexpr const char* no_part =
     "No hand has taken a part of this model yet; take the one that "
     "is meant, in mode parts (m).";

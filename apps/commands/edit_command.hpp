@@ -1,5 +1,5 @@
 #pragma once
-// The part of the table of commands that a timeline's editor obeys.
+// The commands of a timeline's editor.
 
 #include <cstdint>
 
@@ -27,7 +27,7 @@ enum class EditCommand : std::uint8_t {
   export_glb, ///< the last one: the table has a row for each up to here
 };
 
-/// The state of an editor in which something is asked for.
+/// The state of an editor at the time of a command.
 struct EditFacts {
   bool playing = false;
   bool can_undo = false;
@@ -44,7 +44,7 @@ struct Edit {
   bool (*is_on)(const EditFacts& now) = nullptr;
 };
 
-/// A reason, for what the mouse does without a row of the table.
+/// A reason, for commands of the mouse without a row.
 inline constexpr const char* no_key = "No key is selected; click one on the strip.";
 
 } // namespace nendo::commands

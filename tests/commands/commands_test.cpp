@@ -64,7 +64,7 @@ const Row* sent(std::string_view name) {
 }
 
 #ifdef NENDO_WINDOW
-/// The row that obeys a key of a keyboard in a window: all that fit are one.
+/// The row of a key of a keyboard in a window: all that fit are one.
 const Row* struck(int key, bool control, bool shift, std::uint8_t place = commands::in_window) {
   std::set<const Row*> found;
   for (const Row& row : commands::table())
@@ -267,7 +267,7 @@ TEST_SUITE("commands") {
     }
   }
 
-  TEST_CASE("the page has each row, and obeys by itself what is not for the run") {
+  TEST_CASE("the page has each row, and executes itself what is not for the run") {
     const std::string list = web::page_commands();
     const std::string panel = content_of("apps/web/page/panel.js");
     for (const Row& row : commands::table()) {
@@ -286,7 +286,7 @@ TEST_SUITE("commands") {
   }
 
   TEST_CASE(
-      "the page's sliders and labels are of settings that are described, and in force there") {
+      "the page's sliders and labels are of settings that are described, and in effect there") {
     const std::string list = web::page_settings();
     flow::for_each_setting([&](const auto& setting) {
       CAPTURE(setting.name);
@@ -303,7 +303,7 @@ TEST_SUITE("commands") {
   }
 
   TEST_CASE(
-      "each value that an input of the page has is one of its setting, and no id stands twice") {
+      "each value that an input of the page has is one of its setting, and no id occurs twice") {
     const std::string html = content_of("apps/web/page/index.html");
     const auto ids = attributes_in(html, "id");
     CHECK(std::set<std::string>(ids.begin(), ids.end()).size() == ids.size());
