@@ -14,8 +14,7 @@
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/repair.hpp>
 #include <nendo/deform/supports.hpp>
-#include <nendo/sculpting/kept_ranges.hpp>
-#include <nendo/sculpting/kept_slips.hpp>
+#include <nendo/sculpting/kept_learning.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"

@@ -11,7 +11,7 @@
 namespace nendo::publish {
 namespace {
 
-// Numbers are copied as they stand in memory.
+// Numbers are copied as they are in memory.
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::size_t ring_bytes = std::size_t{8} << 20;
@@ -35,7 +35,8 @@ Result<void> DatagramPublisher::open() {
   };
   const int family = target_.address.any.sa_family;
   UniqueFd socket(::socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  // A socket that is connected would hear of ports that nobody listens at, and count losses there.
+  // A socket that is connected would get errors of ports without a listener, and count losses
+  // there.
   const UniqueFd probe(::socket(family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (!socket.is_open() || !probe.is_open())
     return failure("no socket", "a service needs RestrictAddressFamilies=AF_INET AF_INET6");

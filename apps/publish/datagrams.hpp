@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <nendo/base/unique_fd.hpp>
-#include <nendo/flow/frame_sink.hpp>
+#include <nendo/flow/frame.hpp>
 
 #include "publish/frame_record.hpp"
 #include "publish/record_ring.hpp"
@@ -21,12 +21,12 @@ namespace nendo::publish {
 
 /// After DatagramPublisher::end(), records = sent + lost.
 struct DatagramCounts {
-  std::uint64_t records = 0;   ///< frames shown
-  std::uint64_t sent = 0;      ///< of those, processed by the sending thread
-  std::uint64_t lost = 0;      ///< of those, overwritten before the sending thread read them
+  std::uint64_t records = 0; ///< frames shown
+  std::uint64_t sent = 0;    ///< records that the sending thread has processed
+  std::uint64_t lost = 0;    ///< records that were overwritten before the sending thread read them
   std::uint64_t datagrams = 0; ///< that the system accepted
   std::uint64_t refused = 0;   ///< that the system did not accept; those are lost
-  std::uint64_t bytes = 0;     ///< of the accepted datagrams
+  std::uint64_t bytes = 0;     ///< all bytes of the accepted datagrams
 };
 
 class DatagramPublisher final : public flow::FrameSink {

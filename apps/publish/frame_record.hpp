@@ -19,8 +19,8 @@ struct LoopOutline {
   flow::Mode mode = flow::Mode::type1;
   double rate_hz = 0.0;
   double units_per_metre = 1.0;
-  std::size_t max_fields = 0; ///< of a frame
-  std::size_t functions = 0;  ///< of a field
+  std::size_t max_fields = 0; ///< the maximum per frame
+  std::size_t functions = 0;  ///< the number per field
 };
 
 /// Returns the length, in words, of the longest record of such a loop. It includes the word of the
@@ -33,7 +33,7 @@ public:
   /// Allocates all that describe() needs.
   FrameRecord(const LoopOutline& outline, std::uint64_t generation);
 
-  /// Encodes a frame. Wait-free, without allocation. If there is no room for all fields, they are
+  /// Encodes a frame. Wait-free, without allocation. If there is no space for all fields, they are
   /// left out and the record is marked.
   void describe(const flow::Frame& frame, std::uint64_t number,
                 std::uint64_t shape_changes) noexcept;

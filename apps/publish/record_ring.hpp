@@ -18,8 +18,14 @@ static_assert(AtomicWord::is_always_lock_free && sizeof(AtomicWord) == 8);
 static_assert(sizeof(SeqLock<>) == 8);
 
 /// Copy words one by one, so that no single word is torn. Wait-free.
-void store_words(std::span<const std::uint64_t> words, AtomicWord* to) noexcept;
-void load_words(const AtomicWord* from, std::span<std::uint64_t> words) noexcept;
+inline void store_words(std::span<const std::uint64_t> words, AtomicWord* to) noexcept {
+  for (const std::uint64_t word : words)
+    (to++)->store(word, std::memory_order_relaxed);
+}
+inline void load_words(const AtomicWord* from, std::span<std::uint64_t> words) noexcept {
+  for (std::uint64_t& word : words)
+    word = (from++)->load(std::memory_order_relaxed);
+}
 
 class RecordRing {
 public:
@@ -49,7 +55,6 @@ public:
   }
 
   std::size_t slots() const noexcept { return slots_; }
-  std::size_t slot_words() const noexcept { return slot_words_; }
 
 private:
   AtomicWord* slot_of(std::uint64_t number) const noexcept {

@@ -2,17 +2,55 @@
 // The shared-memory segment of `--publish shm:NAME`. It has a header, the data of the loop, a ring
 // of records and a ring of shapes.
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include <nendo/flow/frame_sink.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
+#include <nendo/flow/frame.hpp>
 
 #include "publish/frame_record.hpp"
-#include "publish/shape_ring.hpp"
+#include "publish/record_ring.hpp"
 #include "publish/shared_memory.hpp"
 
 namespace nendo::publish {
+
+/// Returns the least length, in words, of a slot for this number of vertices: nendo_publish_shape
+/// and then the floats.
+std::size_t shape_slot_words(std::size_t vertices) noexcept;
+
+/// A ring of slots for deformed vertices. Each slot has all vertices in the order of the mesh. The
+/// writer rewrites only the blocks that changed since that slot was written last.
+class ShapeRing {
+public:
+  ShapeRing() = default;
+  /// `memory` must have slots * slot_words zeros and must outlive the ring. slot_words must be at
+  /// least shape_slot_words(). Allocates; the other functions do not.
+  ShapeRing(AtomicWord* memory, std::size_t slots, std::size_t slot_words, std::size_t vertices);
+
+  /// To be called before a loop's first frame. `layout` must have that number of vertices, and must
+  /// exist as long as shapes are written.
+  void begin(const deform::BlockLayout& layout) noexcept { layout_ = &layout; }
+  /// Writes the shape that belongs to record `number`. Numbers begin with 1 and rise by 1.
+  /// Wait-free, without allocation. The cost is a look at each block's stamp, and three stores for
+  /// each vertex of the changed blocks.
+  void write(std::uint64_t number, const deform::BlockShape& shape) noexcept;
+  /// Returns how often a shape differed from the previous one.
+  std::uint64_t changes() const noexcept { return changes_; }
+
+private:
+  using Stamps = std::vector<std::uint64_t>;
+  void write_block(const deform::BlockShape& shape, std::size_t block, AtomicWord* slot) noexcept;
+
+  AtomicWord* memory_ = nullptr;
+  std::size_t slot_words_ = 0;
+  std::size_t vertices_ = 0;
+  std::vector<Stamps> stamps_; ///< each slot's stamps of its blocks
+  const deform::BlockLayout* layout_ = nullptr;
+  std::uint64_t changes_ = 0;
+};
 
 /// Sizes and offsets in bytes, with the names of nendo_publish_header.
 struct SegmentPlan {
@@ -24,14 +62,14 @@ struct SegmentPlan {
 
   friend bool operator==(const SegmentPlan&, const SegmentPlan&) = default;
 };
-/// Returns the plan for such a loop. It has room for the records of one second, but at least 4, at
-/// most 1024 and, above 4, at most 16 MiB. It has room for four shapes.
+/// Returns the plan for such a loop. It has space for the records of one second, but at least 4, at
+/// most 1024 and, above 4, at most 16 MiB. It has space for four shapes.
 SegmentPlan plan_segment(const LoopOutline& outline) noexcept;
 
 struct SegmentCounts {
   std::uint64_t records = 0;       ///< frames shown
-  std::uint64_t shape_changes = 0; ///< of those, with a shape that differs from the previous one
-  std::uint64_t bytes = 0;         ///< of the segment
+  std::uint64_t shape_changes = 0; ///< frames with a shape that differs from the previous one
+  std::uint64_t bytes = 0;         ///< the size of the segment
   bool is_locked = false;          ///< in memory, so that it cannot be swapped out
 };
 
@@ -43,7 +81,7 @@ public:
   ~SegmentPublisher() override { end(); }
 
   /// To be called before each loop's first tick, while no loop runs. The segment stays the same if
-  /// it has room for this loop at the same offsets, as after a change of settings. Otherwise the
+  /// it has space for this loop at the same offsets, as after a change of settings. Otherwise the
   /// old segment is ended, and a new one takes its name. Errors: those of SharedMemory.
   Result<void> begin(const LoopOutline& outline);
   /// Does what begin() does for the first loop, but gives the segment no name yet.
@@ -52,7 +90,7 @@ public:
   Result<void> announce();
   /// Writes a frame. Wait-free: no allocation, lock or system call.
   void show(const flow::Frame& frame) noexcept override;
-  /// Tells the readers that the segment has ended, and removes its name. To be called while no loop
+  /// Marks the segment as ended, and removes its name. To be called while no loop
   /// runs.
   void end() noexcept;
 

@@ -1,8 +1,8 @@
-#include "publish/shape_ring.hpp"
-
 #include <bit>
 
 #include <nendo_publish.h>
+
+#include "publish/segment.hpp"
 
 namespace nendo::publish {
 namespace {

@@ -95,7 +95,7 @@ private:
   UniqueFd file_;
 };
 
-// Removes what a dead run left; anything else stays.
+// Removes a dead run's segment; anything else stays.
 Result<void> remove_stale(const std::string& path) {
   const UniqueFd old = look_at(path);
   if (!old.is_open()) {
@@ -133,7 +133,7 @@ Result<void> SharedMemory::lay_out(const std::optional<unsigned>& group) {
   // Otherwise a full /dev/shm would be found out by the first tick that writes there, by a signal.
   if (const int error = ::posix_fallocate(file_.get(), 0, static_cast<off_t>(bytes_)); error != 0) {
     errno = error;
-    return system_error(path_, "has no room for " + std::to_string((bytes_ >> 20U) + 1) + " MiB",
+    return system_error(path_, "has no space for " + std::to_string((bytes_ >> 20U) + 1) + " MiB",
                         "mount -o remount,size=... /dev/shm, or a smaller model");
   }
   memory_ = ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, file_.get(), 0);

@@ -15,8 +15,8 @@ namespace nendo::publish {
 class SharedMemory {
 public:
   /// Makes zeroed memory that has no name yet. All pages are present and, if allowed, locked, so
-  /// that writing never waits. This user can read it, and so can `group`, if given. Nobody who
-  /// opens it can write. Errors: failed (no room), no_permission (this user is not in the group).
+  /// that writing never waits. This user can read it, and so can `group`, if given. No reader can
+  /// write it. Errors: failed (no space), no_permission (this user is not in the group).
   static Result<SharedMemory> create(const std::string& name, std::size_t bytes,
                                      const std::optional<unsigned>& group);
   /// Gives the memory the name /dev/shm/nendo-`name`, with its present contents. Replaces a segment
@@ -24,7 +24,8 @@ public:
   /// Errors: failed (another run has the name, or the file is no segment), no_permission (it
   /// belongs to another user).
   Result<void> announce();
-  /// Removes the name, if it still belongs to this memory. Whoever has mapped the memory keeps it.
+  /// Removes the name, if it still belongs to this memory. Processes that have mapped the memory
+  /// keep it.
   ~SharedMemory();
   SharedMemory(SharedMemory&& other) noexcept;
   SharedMemory& operator=(SharedMemory&&) = delete;

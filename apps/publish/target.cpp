@@ -34,8 +34,8 @@ std::optional<unsigned> group_of(const std::string& name) {
   if (const auto number = number_of(name, 0xFFFFFFFEU)) return number;
   group entry{};
   group* found = nullptr;
-  std::array<char, 16384> texts{};
-  ::getgrnam_r(name.c_str(), &entry, texts.data(), texts.size(), &found);
+  std::array<char, 16384> buffer{};
+  ::getgrnam_r(name.c_str(), &entry, buffer.data(), buffer.size(), &found);
   return found != nullptr ? std::optional(found->gr_gid) : std::nullopt;
 }
 

@@ -14,7 +14,7 @@
 namespace nendo::publish {
 
 struct SegmentTarget {
-  std::string name;              ///< of /dev/shm/nendo-NAME
+  std::string name;              ///< the NAME of /dev/shm/nendo-NAME
   std::optional<unsigned> group; ///< that may also read it
 };
 

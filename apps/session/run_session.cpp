@@ -45,7 +45,7 @@ public:
     for (const auto& hand : hands_)
       feedback_.push_back({hand.side, gloves::GloveFeedback(*hand.glove)});
     options_.loop.commands = &commands_.ring();
-    sculpting::set_undo_room(model_, max_undo_bytes(options_), options_.loop);
+    sculpting::set_undo_space(model_, max_undo_bytes(options_), options_.loop);
     options_.loop.sinks.assign(participants_.sinks.begin(), participants_.sinks.end());
   }
 

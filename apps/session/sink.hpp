@@ -1,7 +1,7 @@
 #pragma once
 // A sink takes every frame of a run, for other programs, other machines or a browser.
 
-#include <nendo/flow/frame_sink.hpp>
+#include <nendo/flow/frame.hpp>
 
 #include "session/place_loop.hpp"
 

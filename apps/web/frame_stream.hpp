@@ -12,7 +12,7 @@
 
 #include <nendo/base/spsc_ring.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
-#include <nendo/flow/frame_sink.hpp>
+#include <nendo/flow/frame.hpp>
 
 namespace nendo::web {
 

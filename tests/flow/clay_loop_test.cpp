@@ -146,7 +146,7 @@ TEST_SUITE("clay_loop") {
     }
   }
 
-  TEST_CASE("a press moves the surface, keeps the volume, and is told where it is") {
+  TEST_CASE("a press moves the surface, keeps the volume, and the frame has its place") {
     Presses presses;
     std::uint32_t most = 0;
     for (int step = 1; step <= 20; ++step) {
@@ -220,7 +220,7 @@ TEST_SUITE("clay_loop") {
     CHECK(presses.shape() == first);
   }
 
-  TEST_CASE("hands that have let go go through the clay") {
+  TEST_CASE("hands that have released clay go through it") {
     Presses presses;
     presses.ask(Request::let_go);
     presses.press();

@@ -51,7 +51,7 @@ TEST_SUITE("deform_loop") {
     CHECK(frame.fields.fields().front().centres.cols() == 10);
   }
 
-  TEST_CASE("a frame shows both hands, touching the model where they took hold of it") {
+  TEST_CASE("a frame shows both hands, touching the model where they grabbed it") {
     LoopUnderTest test(Mode::type1);
     const Frame& frame = test.frame_after_tick(0);
     for (const auto& hand : frame.hands) {
@@ -135,12 +135,13 @@ TEST_SUITE("deform_loop") {
     LoopUnderTest test(Mode::type1);
     const HostTime begin = HostClock::now() - 10s;
     // 40 samples in the ring, the last 25 of them read from the port in one go, as where another
-    // glove took long to open; then 100 a second for 3 s, of which the left one loses every second.
+    // glove took long to open; then 100 per second for 3 s, of which the left one loses every
+    // second.
     for (int n = 0; n < 40; ++n)
       test.bend(0, n < 15 ? begin + n * 10ms : begin + 150ms);
     test.frame_after_tick(0);
     CHECK(test.loop->stats().samples[0] == 40);
-    CHECK(test.loop->stats().rates[0].per_s() == 0.0); // nobody knows yet
+    CHECK(test.loop->stats().rates[0].per_s() == 0.0); // not known yet
     for (int n = 1; n <= 300; ++n) {
       const HostTime arrival = begin + 150ms + n * 10ms;
       if (n % 2 == 0) test.rings[0]->try_push(test::bent_sample(Side::left, 0, arrival));

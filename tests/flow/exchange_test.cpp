@@ -103,7 +103,7 @@ TEST_SUITE("exchange") {
     }
   }
 
-  TEST_CASE("a commit or letting go is a commit, and a stroke that a change ends is none") {
+  TEST_CASE("a commit or a release is a commit, and a stroke that a change ends is none") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       CAPTURE(name_of(mode));
       Clocked loop(mode);
@@ -131,15 +131,15 @@ TEST_SUITE("exchange") {
     loop.stroke(0, 15);
     loop.change(with_radius(loop.test.loop->changes().settings(), 0.3));
     loop.bent(15);
-    const std::size_t room = loop.test.commands.capacity();
+    const std::size_t capacity = loop.test.commands.capacity();
     for (int round = 0; round < 2; ++round) {
-      for (std::size_t at = 0; at < room; ++at)
+      for (std::size_t at = 0; at < capacity; ++at)
         REQUIRE(loop.test.commands.try_push(Request::undo));
       loop.bent(15);
-      CHECK(loop.frame().awaited); // by the first, for which nobody makes the change
+      CHECK(loop.frame().awaited); // what the first awaits, whose change is not made
     }
-    CHECK(loop.frame().steps_due == room);
-    CHECK(loop.test.loop->stats().refused_steps == room);
+    CHECK(loop.frame().steps_due == capacity);
+    CHECK(loop.test.loop->stats().refused_steps == capacity);
   }
 
   TEST_CASE("undo leads back over changes to the beginning, and redo forth again") {
@@ -271,7 +271,7 @@ TEST_SUITE("exchange") {
     CHECK(loop.frame().shape_jumps == 1);
     CHECK(gap(loop.tick(), loop.test.model.vertices) == 0.0);
     CHECK(loop.frame().shape_jumps == 2);
-    // Somebody else's change while an undo waits is a step of its own, which the undo then means.
+    // Another change while an undo waits is a step of its own, which the undo then means.
     loop.now += 2s;
     loop.change(with_radius(first, 0.25));
     loop.tick();

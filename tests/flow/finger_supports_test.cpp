@@ -52,7 +52,7 @@ TEST_SUITE("finger_supports") {
     CHECK(parse_finger_supports("3km").error().message.starts_with("3km: use a length"));
   }
 
-  TEST_CASE("all radii are told on the stage, and in the model's units") {
+  TEST_CASE("all radii are printed on the stage, and in the model's units") {
     CHECK(radius_text({0.132, 0.132, 0.132, 0.132, 0.132}, 1.88) == "13.2 cm (0.248)");
     CHECK(radius_text({0.1, 0.2, 0.1, 0.1, 0.4}, 0.5) == "10 to 40 cm (0.05 to 0.2)");
   }

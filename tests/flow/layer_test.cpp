@@ -235,7 +235,7 @@ TEST_SUITE("layer") {
       }
   }
 
-  TEST_CASE("a take that repeats goes on in time, and departs from where it was") {
+  TEST_CASE("a take that repeats continues in time, from where it was") {
     LoopUnderTest like(Mode::type1, {.rings_of_ball = 12});
     LayeredLoop base(like, like.inputs);
     take_of(like, base, 1);
@@ -266,7 +266,7 @@ TEST_SUITE("layer") {
     });
   }
 
-  TEST_CASE("what a script leaves to others and finds no room is counted") {
+  TEST_CASE("what a script leaves to others, and the full ring refuses, is counted") {
     const std::vector<InputScript::Event> events(300, {{}, Command(Subdivide{})});
     InputScript script(events, begin, 1s);
     script.play({}, [](const InputLogEntry&) noexcept { CHECK(false); });

@@ -36,7 +36,7 @@ struct Versioned : test::Clocked {
   }
 };
 
-/// Of the vertices that a subdivided model has in common with the one before.
+/// Of the vertices that a subdivided model has in common with the previous one.
 double old_gap(const deform::Points& finer, const deform::Points& before) {
   return gap(finer.leftCols(before.cols()), before);
 }
@@ -44,7 +44,7 @@ double old_gap(const deform::Points& finer, const deform::Points& before) {
 } // namespace
 
 TEST_SUITE("model_version") {
-  TEST_CASE("subdividing moves nothing, and the hands go on with what they hold") {
+  TEST_CASE("subdividing moves nothing, and the hands continue with what they hold") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       CAPTURE(name_of(mode));
       Versioned run(mode);
@@ -64,7 +64,7 @@ TEST_SUITE("model_version") {
     }
   }
 
-  TEST_CASE("however late the model comes, nothing is lost of what the hands do meanwhile") {
+  TEST_CASE("however late the model comes, none of the hands' work meanwhile is lost") {
     for (const Mode mode : {Mode::type1, Mode::type2})
       for (const int late : {0, 1, 7, 40}) {
         CAPTURE(name_of(mode));
@@ -94,7 +94,7 @@ TEST_SUITE("model_version") {
       }
   }
 
-  TEST_CASE("what is asked for while the loop holds still is done when it goes on") {
+  TEST_CASE("requests while the loop holds still are done when it continues") {
     Versioned run(Mode::type1);
     run.stroke(0, 10);
     PendingModel finer(run.loop().changes().newest_model());
@@ -261,7 +261,7 @@ TEST_SUITE("model_version") {
     CHECK(gap(run.tick(), finer) == 0.0);
   }
 
-  TEST_CASE("what type 1 holds goes before an undo of a version, and the hands take hold there") {
+  TEST_CASE("what type 1 holds goes before an undo of a version, and the hands grab there") {
     Versioned run(Mode::type1);
     run.stroke(0, 10);
     const deform::Points before = run.commit();

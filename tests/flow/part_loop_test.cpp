@@ -113,7 +113,7 @@ TEST_SUITE("part_loop") {
     CHECK(touch[2] + touch[3] + touch[4] + touch[5] == 0.0F);
     const Frame& carried = hands.carry(any_motion());
     CHECK(hands.off(any_motion()) < rounding);
-    CHECK(carried.fields.fields().empty()); // nothing is told by fields
+    CHECK(carried.fields.fields().empty()); // fields describe nothing
     CHECK_FALSE(carried.clay.is_clay);
   }
 

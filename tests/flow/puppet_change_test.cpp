@@ -178,7 +178,7 @@ TEST_SUITE("puppet change") {
       CHECK(gap(settled(Request::redo), shapes[at + 1]) < 1e-6);
   }
 
-  TEST_CASE("an undo over an edit leaves the rest shape from which readers of fields go on") {
+  TEST_CASE("an undo over an edit leaves the rest shape from which readers of fields continue") {
     const std::string text = std::string("distance = \"air\"\n") + test::ball_puppet;
     Clocked loop(Mode::type1, {.rings_of_ball = 12, .puppet = text.c_str()});
     loop.stroke(0, 12);
@@ -201,9 +201,9 @@ TEST_SUITE("puppet change") {
     CHECK(loop.test.loop->stats().redos == 1);
   }
 
-  TEST_CASE("a function that an undo brings back goes on as if it had not been away") {
-    for (const bool takes_hold_anew : {false, true}) {
-      CAPTURE(takes_hold_anew);
+  TEST_CASE("a function that an undo brings back continues as if it had not been away") {
+    for (const bool grabs_again : {false, true}) {
+      CAPTURE(grabs_again);
       Clocked loop(Mode::type1, with_puppet);
       loop.stroke(0, 12);
       const deform::Points whole = loop.bent(12);
@@ -218,7 +218,7 @@ TEST_SUITE("puppet change") {
       const deform::Points without = loop.bent(12);
       CHECK(gap(without, whole) > 1e-2);
       const int edits = static_cast<int>(loop.test.loop->changes().newest_puppet());
-      if (takes_hold_anew) {
+      if (grabs_again) {
         REQUIRE(loop.test.commands.try_push(Request::take_hold));
         loop.bent(12);
       }
@@ -241,7 +241,7 @@ TEST_SUITE("puppet change") {
       }
       for (int edit = 0; edit < edits; ++edit)
         settled(Request::undo);
-      if (!takes_hold_anew) CHECK(gap(loop.bent(0), loop.test.model.vertices) < 1e-6);
+      if (!grabs_again) CHECK(gap(loop.bent(0), loop.test.model.vertices) < 1e-6);
     }
   }
 

@@ -24,13 +24,14 @@ const Grant* find(const std::vector<Grant>& grants, std::string_view name) {
   return found == grants.end() ? nullptr : &*found;
 }
 
-/// Runs `what` on a thread that has an ordinary user's rights, whoever runs the test: the system
-/// call, other than the function of its name, changes one thread alone.
+/// Runs `what` on a thread that has an ordinary user's rights, also if root runs the test: the
+/// system call, other than the function of its name, changes one thread alone.
 template <class What>
 void as_ordinary_user(What&& what) {
   std::thread([&] {
-    constexpr uid_t nobody = 65534;
-    if (::geteuid() == 0) REQUIRE(::syscall(SYS_setresuid, nobody, nobody, nobody) == 0);
+    constexpr uid_t ordinary_user = 65534;
+    if (::geteuid() == 0)
+      REQUIRE(::syscall(SYS_setresuid, ordinary_user, ordinary_user, ordinary_user) == 0);
     what();
   }).join();
 }
@@ -70,7 +71,7 @@ TEST_SUITE("realtime") {
       const auto grants = make_thread_realtime(options);
       REQUIRE(find(grants, "affinity"));
       REQUIRE(find(grants, "timer_slack"));
-      CHECK_FALSE(find(grants, "policy")); // nobody asked for it
+      CHECK_FALSE(find(grants, "policy")); // it was not requested
       if (find(grants, "timer_slack")->granted) CHECK(::prctl(PR_GET_TIMERSLACK) == 1);
       if (!find(grants, "affinity")->granted) return;
       cpu_set_t set;
@@ -121,7 +122,7 @@ TEST_SUITE("realtime") {
     });
   }
 
-  TEST_CASE("what nobody asked for is neither done nor reported") {
+  TEST_CASE("what was not requested is neither done nor reported") {
     const RealtimeProcess process(RealtimeOptions{});
     CHECK(process.grants().empty());
     CHECK_FALSE(InheritedPriority(0).grant());

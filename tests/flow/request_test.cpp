@@ -16,7 +16,7 @@ using deform::Points;
 
 namespace {
 
-/// Hands that bend as told, and a person who asks the loop for something.
+/// Hands that bend as the test says, and a user's requests to the loop.
 struct Person {
   test::LoopUnderTest test;
   HostTime now = HostClock::now();
@@ -58,16 +58,16 @@ TEST_SUITE("request") {
     CHECK_FALSE(request_named("undoing").has_value());
   }
 
-  TEST_CASE("in type 1, hands that take hold anew pull the same rest shape from where they are") {
+  TEST_CASE("in type 1, hands that grab again pull the same rest shape from where they are") {
     Person person(Mode::type1);
     person.move(0, 15);
     const Points pulled = person.shape();
-    const Frame anew = person.ask(Request::take_hold, 15);
-    CHECK(anew.held);
-    CHECK(anew.rest_changes == 0);
+    const Frame regrabbed = person.ask(Request::take_hold, 15);
+    CHECK(regrabbed.held);
+    CHECK(regrabbed.rest_changes == 0);
     CHECK((person.shape() - person.test.model.vertices).cwiseAbs().maxCoeff() <= test::float_gap);
-    CHECK(anew.redo_steps == 1);
-    CHECK(anew.undo_steps == 0);
+    CHECK(regrabbed.redo_steps == 1);
+    CHECK(regrabbed.undo_steps == 0);
     // As a person whose hands were there when they grabbed first.
     Person other(Mode::type1);
     other.ask(Request::let_go, 0);
@@ -84,7 +84,7 @@ TEST_SUITE("request") {
     CHECK((third.shape() - pulled).cwiseAbs().maxCoeff() <= test::float_gap);
   }
 
-  TEST_CASE("in type 2, hands that take hold anew leave the shape, and the step goes on") {
+  TEST_CASE("in type 2, hands that grab again leave the shape, and the step continues") {
     Person person(Mode::type2);
     person.move(0, 15);
     const Points before = person.shape();
@@ -96,7 +96,7 @@ TEST_SUITE("request") {
     CHECK((person.shape() - person.test.model.vertices).cwiseAbs().maxCoeff() <= test::float_gap);
   }
 
-  TEST_CASE("hands that have let go do not take hold anew") {
+  TEST_CASE("hands that have released the model do not grab again") {
     for (const Mode mode : modes) {
       Person person(mode);
       person.move(0, 15);
@@ -108,7 +108,7 @@ TEST_SUITE("request") {
     }
   }
 
-  TEST_CASE("hands that let go leave the model alone until they take hold of it again") {
+  TEST_CASE("hands that release the model leave it alone until they grab it again") {
     for (const Mode mode : modes) {
       Person person(mode);
       CHECK(person.move(0, 15).held);
@@ -168,7 +168,7 @@ TEST_SUITE("request") {
     }
   }
 
-  TEST_CASE("what hands have pulled since a commit is taken back first, as a step of its own") {
+  TEST_CASE("what hands have pulled since a commit is undone first, as a step of its own") {
     for (const Mode mode : modes) {
       CAPTURE(name_of(mode));
       Person person(mode);
@@ -193,7 +193,7 @@ TEST_SUITE("request") {
     }
   }
 
-  TEST_CASE("what a puppet has pulled along the surface is taken back in the same way") {
+  TEST_CASE("what a puppet has pulled along the surface is undone in the same way") {
     const auto puppet = puppet::parse_puppet("version = 1\nmodel = \"ball.obj\"\n"
                                              "[points]\nnose = { at = [0, 0, 1], radius = 1 }\n"
                                              "[functions.poke]\ninput = \"left.index_flexion\"\n"
@@ -223,7 +223,7 @@ TEST_SUITE("request") {
     CHECK(person.bend(25).redo_steps == 2);
   }
 
-  TEST_CASE("a pull is taken back before a change of settings that came before it") {
+  TEST_CASE("a pull is undone before a change of settings that came before it") {
     Person person(Mode::type1);
     person.move(0, 12);
     LoopSettings other = person.test.loop->changes().settings();
@@ -252,7 +252,7 @@ TEST_SUITE("request") {
     CHECK(person.bend(25).redo_steps == 1);
   }
 
-  TEST_CASE("a pull is taken back where there is no memory for undo, too") {
+  TEST_CASE("a pull is also undone where there is no memory for undo") {
     Person person(Mode::type1);
     person.test.options.sculptor.deformer.undo_bytes = 0;
     person.test.loop = std::make_unique<DeformLoop>(person.test.model, person.test.placement,
@@ -335,7 +335,7 @@ TEST_SUITE("request") {
   }
 
   TEST_CASE("undo goes back as far as one likes where memory is refilled, without allocation in a "
-            "tick, and no farther than there is room where it is not") {
+            "tick, and no farther than memory allows where it is not") {
     constexpr int commits = 400; // whole shapes, each more than the loop begins with
     for (const Mode mode : modes) {
       for (const bool refills : {true, false}) {
@@ -413,7 +413,7 @@ TEST_SUITE("request") {
     CHECK(person.shape() == end);
   }
 
-  TEST_CASE("a frame tells how often one can undo and redo, and at 0 neither changes anything") {
+  TEST_CASE("a frame shows how often one can undo and redo, and at 0 neither changes anything") {
     for (const Mode mode : modes) {
       CAPTURE(name_of(mode));
       Person person(mode);
@@ -449,7 +449,7 @@ TEST_SUITE("request") {
     }
   }
 
-  TEST_CASE("a commit that nobody holds is none") {
+  TEST_CASE("a commit without a hand that holds is none") {
     Person person(Mode::type1);
     person.ask(Request::let_go, 0);
     const std::uint64_t commits = person.test.loop->stats().commits;

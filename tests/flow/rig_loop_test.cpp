@@ -40,14 +40,14 @@ TEST_SUITE("rig_loop") {
     test.bend(25, now + 200ms);
     const Frame& bent = test.frame_after_tick(11);
     CHECK((test.vertices_of(bent) - test.model.vertices).cwiseAbs().maxCoeff() > 0.02);
-    CHECK(bent.fields.fields().empty()); // which tell nothing of ways along a surface
+    CHECK(bent.fields.fields().empty()); // which do not describe paths along a surface
     test.bend(0, now + 300ms);
     CHECK(
         (test.vertices_of(test.frame_after_tick(12)) - test.model.vertices).cwiseAbs().maxCoeff() <
         1e-6);
   }
 
-  TEST_CASE("hands that let go leave the shape, and take hold again wherever they are then") {
+  TEST_CASE("hands that release leave the shape, and grab again wherever they are then") {
     auto test = puppet_loop();
     HostTime now = HostClock::now();
     std::uint64_t tick = 0;
@@ -66,7 +66,7 @@ TEST_SUITE("rig_loop") {
     CHECK((after(0) - bent).cwiseAbs().maxCoeff() < 1e-6);
   }
 
-  TEST_CASE("a finger, or a hand, lets go of its functions while the others go on") {
+  TEST_CASE("a finger, or a hand, releases its functions while the others continue") {
     auto test = puppet_loop();
     HostTime now = HostClock::now();
     std::uint64_t tick = 0;
@@ -124,8 +124,7 @@ TEST_SUITE("rig_loop") {
     CHECK(test.loop->frames().front().functions[right] > 0.1F); // its own hand again
   }
 
-  TEST_CASE(
-      "hands that take hold anew leave a puppet as it is, and go on from their present pose") {
+  TEST_CASE("hands that grab again leave a puppet as it is, and continue from their present pose") {
     auto test = puppet_loop();
     HostTime now = HostClock::now();
     std::uint64_t tick = 0;
@@ -144,7 +143,7 @@ TEST_SUITE("rig_loop") {
       CHECK(back[at] != far[at]);
   }
 
-  TEST_CASE("a wrist switch that is a clutch lets its hand go, and take hold again, and no more") {
+  TEST_CASE("a wrist switch that is a clutch lets its hand release and grab again, and no more") {
     const std::string text =
         std::string(test::ball_puppet) + "[clutch]\nleft = \"fist\"\nright = \"switch\"\n";
     LoopUnderTest test(Mode::type1,

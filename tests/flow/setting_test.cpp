@@ -1,4 +1,4 @@
-// The description of the settings: each stands in it once, and what is made from it agrees.
+// The description of the settings: it has each once, and what is made from it agrees.
 
 #include <cstdint>
 #include <limits>
@@ -67,7 +67,7 @@ TEST_SUITE("setting") {
     CHECK(kind_of_change(usable(), all) == flow::StepKind::settings);
   }
 
-  TEST_CASE("all choices have names that are read back and stand in messages") {
+  TEST_CASE("all choices have names that are read back and are in messages") {
     flow::for_each_setting([](const auto& setting) {
       if constexpr (requires { setting.named; }) {
         for (std::uint8_t number = 0;; ++number) {
@@ -137,7 +137,7 @@ TEST_SUITE("setting") {
     CHECK(flow::check_ranges(settings).error().message == "radius_m: use 1e-09 to 1e+09 m");
   }
 
-  TEST_CASE("settings are told in one way, radii on the stage and in the model's units") {
+  TEST_CASE("settings are printed in one way, radii on the stage and in the model's units") {
     LoopSettings settings = usable();
     CHECK(in_words(settings, 2.5) == "type1, wendland-c2, may fold, radius 10 cm (0.25)");
     settings.mode = flow::Mode::type2;

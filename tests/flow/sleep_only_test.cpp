@@ -46,8 +46,8 @@ long faults_so_far() noexcept {
   return usage.ru_minflt + usage.ru_majflt;
 }
 
-/// As --mlockall does: a machine that is short of memory takes pages, also of code, from whoever
-/// leaves them alone for a while. Where that is not permitted, it may do so.
+/// As --mlockall does: a machine that is short of memory takes pages, also of code, from any
+/// process that leaves them alone for a while. Where that is not permitted, it may do so.
 struct LockedPages {
   LockedPages() { ::mlockall(MCL_CURRENT); }
   ~LockedPages() { ::munlockall(); }
@@ -166,18 +166,18 @@ private:
 TEST_SUITE("sleep_only" * doctest::skip(!nendo::test::restraint_is_counted)) {
   TEST_CASE("a system call, an allocation and a fresh page are each seen, or nothing is proved") {
     constexpr std::size_t page = 4096;
-    void* const room =
+    void* const memory =
         ::mmap(nullptr, page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    REQUIRE(room != MAP_FAILED);
+    REQUIRE(memory != MAP_FAILED);
     long answer = 0;
     const Watched seen = watch([] {},
                                [&] {
                                  answer = ::syscall(SYS_getppid);
                                  auto* volatile number = new std::uint64_t(7); // not optimised away
                                  delete number;
-                                 *static_cast<volatile char*>(room) = 1;
+                                 *static_cast<volatile char*>(memory) = 1;
                                });
-    ::munmap(room, page);
+    ::munmap(memory, page);
     REQUIRE(seen.filtered);
     CHECK(seen.calls.count == 1);
     CHECK(seen.calls.last == SYS_getppid);

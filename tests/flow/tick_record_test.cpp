@@ -68,7 +68,7 @@ TEST_SUITE("tick_record") {
     CHECK(samples == 1);
   }
 
-  TEST_CASE("a ring that nobody empties refuses records, and the loop goes on") {
+  TEST_CASE("a ring that is not emptied refuses records, and the loop continues") {
     OneHand hand;
     TickRing records(2);
     hand.options.records = &records;
@@ -79,7 +79,7 @@ TEST_SUITE("tick_record") {
     CHECK(records.counters().refused == loop.stats().ticks - records.capacity());
   }
 
-  TEST_CASE("a frame tells the real time since the tick before, and which deadlines are missing") {
+  TEST_CASE("a frame has the real time since the previous tick, and the missing deadlines") {
     OneHand hand;
     DeformLoop loop = hand.loop();
     HostTime before{};

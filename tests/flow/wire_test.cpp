@@ -42,10 +42,10 @@ public:
       wrist.translation().x() += side == Side::left ? -0.4 : 0.4;
       wrists_[Placement::index_of(side)] = wrist;
     }
-    begin_anew();
+    restart();
   }
   /// With the model as it is.
-  void begin_anew() {
+  void restart() {
     test_.loop =
         std::make_unique<DeformLoop>(test_.model, test_.placement, test_.inputs, test_.options);
     go();
@@ -141,7 +141,7 @@ constexpr ChangeModel cut{0, ModelSource::cut};
 TEST_SUITE("wire") {
   TEST_CASE("a path has places that are a step apart, its first and its last, and never too many") {
     WirePath path;
-    path.draw_to(place_at(0.0)); // nobody draws
+    path.draw_to(place_at(0.0)); // not drawing
     CHECK(path.places().empty());
     for (const int count : {2, 50, 127, 128, 129, 255, 256, 1000, 5000}) {
       CAPTURE(count);
@@ -184,7 +184,7 @@ TEST_SUITE("wire") {
     CHECK(path.completed() == before);
   }
 
-  TEST_CASE("hands that stand still and tremble draw no wire, and on their way a smooth one") {
+  TEST_CASE("hands that tremble at rest draw no wire, and on their way a smooth one") {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> tremor(-0.01, 0.01);
     const auto near = [&](double z) {
@@ -288,7 +288,7 @@ TEST_SUITE("wire") {
         model.face_corners.push_back(count + ball.face_corners[at]);
       model.face_starts.push_back(static_cast<std::uint32_t>(model.face_corners.size()));
     }
-    hands.begin_anew();
+    hands.restart();
     CHECK(hands.go().parts.count == 2);
     const deform::Points before = hands.test().vertices_of(hands.go());
     REQUIRE(hands.change({0, ModelSource::joined}));
@@ -316,7 +316,7 @@ TEST_SUITE("wire") {
     REQUIRE_FALSE(thick);
     CHECK(thick.error().message == "the model is nowhere thinner than its edges");
     hands.test().model = test::hourglass(0.2);
-    hands.begin_anew();
+    hands.restart();
     CHECK(hands.go().parts.count == 1);
     const deform::Points before = hands.test().vertices_of(hands.go());
     REQUIRE(hands.change({0, ModelSource::topology}));

@@ -90,7 +90,7 @@ TEST_SUITE("wrist_switch") {
     CHECK_FALSE(edge.is_on());
   }
 
-  TEST_CASE("a switch that stands on from the start was not turned on, and silence about it is no "
+  TEST_CASE("a switch that is on from the start was not turned on, and silence about it is no "
             "news") {
     WristSwitchEdge edge;
     HostTime now{1h};
@@ -164,7 +164,7 @@ TEST_SUITE("wrist_switch") {
     }
   }
 
-  TEST_CASE("toggle: the switch lets go of the model, and takes hold of it when used again") {
+  TEST_CASE("toggle: the switch releases the model, and grabs it when used again") {
     Sculptors hands(Mode::type1, SwitchAction::toggle);
     CHECK(hands.move(0, 10, off).held);
     CHECK_FALSE(hands.move(10, 10, on).held);
@@ -186,7 +186,7 @@ TEST_SUITE("wrist_switch") {
     CHECK_FALSE(hands.test.loop->frames().front().held);
   }
 
-  TEST_CASE("taking hold, committing and letting go allocate nothing and take no lock") {
+  TEST_CASE("grabbing, committing and releasing allocate nothing and take no lock") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       for (const auto action : {SwitchAction::grab, SwitchAction::commit, SwitchAction::toggle}) {
         Sculptors hands(mode, action);

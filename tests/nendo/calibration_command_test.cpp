@@ -342,7 +342,7 @@ TEST_SUITE("calibration command") {
     take_in("anna", "left", "0.03");
     const auto own = monitor({});
     CHECK(is_one_line_about(own.err, "anna, left hand"));
-    CHECK(own.err.find("does not tell with which glove it was made") != std::string::npos);
+    CHECK(own.err.find("does not name the glove with which it was made") != std::string::npos);
     CHECK(gain(own) == doctest::Approx(0.03));
     const json whose = json::parse(lines_of(own.out)[0])["calibration"];
     CHECK(whose["kind"] == "stored");
@@ -467,7 +467,7 @@ TEST_SUITE("calibration command") {
     const std::string model = info["model"];
     CHECK(is_one_line_about(said(model, "B2"), "made with another glove of this model"));
     CHECK(is_one_line_about(said(model, ""), "maybe another one"));
-    CHECK(is_one_line_about(said("", ""), "does not tell with which glove"));
+    CHECK(is_one_line_about(said("", ""), "does not name the glove"));
     CHECK(is_one_line_about(said("another model", ""), "not calibrated"));
     CHECK(is_one_line_about(said("another model", "B2"), "not calibrated"));
   }

@@ -94,7 +94,7 @@ TEST_SUITE("kept_ranges") {
     const std::string before = contents(home.file());
     const Finished refused = home.run({"--adapt", "--user", "vera"});
     CHECK(refused.exit_code == 5);
-    CHECK(refused.err.find("does not tell how far its sensors went") != std::string::npos);
+    CHECK(refused.err.find("does not have the ranges of its sensors") != std::string::npos);
     CHECK(contents(home.file()) == before);
     made.quality[4] = hand::SensorQuality{0.01, 40.0, 200.0, 1.0};
     REQUIRE(hand::write_calibration(home.file(), made));

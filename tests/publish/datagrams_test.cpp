@@ -27,8 +27,8 @@ public:
     is_bound_ = ::bind(socket_.get(), &any.address.any, any.length) == 0;
     target_ = any;
     ::getsockname(socket_.get(), &target_.address.any, &target_.length);
-    const int room = 4 << 20;
-    ::setsockopt(socket_.get(), SOL_SOCKET, SO_RCVBUF, &room, sizeof room);
+    const int bytes = 4 << 20;
+    ::setsockopt(socket_.get(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
   }
   bool is_bound() const { return is_bound_; }
   const DatagramTarget& target() const { return target_; }
@@ -58,7 +58,7 @@ std::uint64_t number_at(const std::vector<std::uint8_t>& bytes, std::size_t at, 
 
 /// Puts together what belongs together, by FORMAT.md.
 struct Assembled {
-  std::map<std::uint64_t, std::array<std::vector<std::uint8_t>, 2>> hands; ///< by number
+  std::map<std::uint64_t, std::array<std::vector<std::uint8_t>, 2>> hands; ///< each record's
   std::map<std::uint64_t, std::map<std::uint64_t, std::vector<std::uint8_t>>> parts;
   std::map<std::uint64_t, std::uint64_t> wanted; ///< parts of an update
   std::uint64_t datagrams = 0, bytes = 0, session = 0;
@@ -150,7 +150,7 @@ TEST_SUITE("datagrams") {
     }
   }
 
-  TEST_CASE("nobody who listens is no loss, and a loop made anew is another session") {
+  TEST_CASE("a missing listener is no loss, and a new loop is another session") {
     DatagramTarget target;
     {
       const Receiver gone; // its port is free again

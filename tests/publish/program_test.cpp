@@ -186,7 +186,7 @@ TEST_SUITE("publish_program") {
       CHECK(to[1]["records"] == summary["ticks"]);
       CHECK(to[1]["refused_datagrams"] == 0);
 
-      // One tick is one tick, whoever read it.
+      // One tick is one tick, in each reader.
       Tips tips;
       for (const auto& record : records) {
         tips[{record["number"], "left"}] =
@@ -230,7 +230,7 @@ TEST_SUITE("publish_program") {
     }
   }
 
-  TEST_CASE("readers that stand still, are killed, or would write, disturb nobody") {
+  TEST_CASE("readers that stop, are killed, or would write, disturb no other") {
     const TemporaryFolder folder;
     const std::string name = name_for("readers");
     Program run(run_of(folder, "0", {"--publish", "shm:" + name}));
@@ -279,17 +279,17 @@ TEST_SUITE("publish_program") {
     CHECK(coordinates_in(contents(shape.out())).size() ==
           coordinates_in(contents(NENDO_MODELS "/head.obj")).size());
     // With the setup of a loop made again, of which there is no tick yet, the same shape is none.
-    std::string anew = contents(segment_path(name));
-    const auto setup = number_at(anew, 48);
+    std::string reopened = contents(segment_path(name));
+    const auto setup = number_at(reopened, 48);
     for (const std::uint64_t at : {setup, setup + 8}) { // stage, 2 g + 2, and generation g
-      const std::uint64_t next = number_at(anew, at) + (at == setup ? 2 : 1);
-      std::memcpy(anew.data() + at, &next, sizeof next);
+      const std::uint64_t next = number_at(reopened, at) + (at == setup ? 2 : 1);
+      std::memcpy(reopened.data() + at, &next, sizeof next);
     }
-    write_file(segment_path(name + "-anew"), anew);
-    Reader of_anew(folder, "of_anew", "python3 " NENDO_READ_SHAPE " " + name + "-anew");
-    CHECK(of_anew.wait() == 1);
-    CHECK(contents(of_anew.out()) == "the run ended without a whole shape\n");
-    std::filesystem::remove(segment_path(name + "-anew"));
+    write_file(segment_path(name + "-reopened"), reopened);
+    Reader reader(folder, "reopened", "python3 " NENDO_READ_SHAPE " " + name + "-reopened");
+    CHECK(reader.wait() == 1);
+    CHECK(contents(reader.out()) == "the run ended without a whole shape\n");
+    std::filesystem::remove(segment_path(name + "-reopened"));
 
     CHECK(std::filesystem::exists(segment_path(name)));
     const Finished next = nendo::test::nendo(run_of(folder, "0.5", {"--publish", "shm:" + name}));

@@ -46,15 +46,15 @@ def main():
             whole = b"".join(waiting[at] for at in sorted(waiting))
             del updates[number]
             names = ("number", "generation", "tick", "ticks", "missed", "rest_changes", "shape_jumps")
-            told = dict(zip(names, struct.unpack_from("<7Q", whole)))
+            values = dict(zip(names, struct.unpack_from("<7Q", whole)))
             fields, fields_bytes = struct.unpack_from("<IQ", whole, 108)
             at = 120
             for _ in range(fields):
                 kernel, functions = struct.unpack_from("<2I", whole, at)
                 assert kernel < 4, "kernel"
                 at += 104 + 56 * functions
-            assert at == len(whole) and fields_bytes == at - 120 and told["number"] == number, "update"
-            print(json.dumps(dict(told, kind="update", fields=fields)))
+            assert at == len(whole) and fields_bytes == at - 120 and values["number"] == number, "update"
+            print(json.dumps(dict(values, kind="update", fields=fields)))
     print(json.dumps({"kind": "end", "datagrams": datagrams, "sessions": len(sessions)}))
 
 

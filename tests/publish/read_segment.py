@@ -30,12 +30,12 @@ def record(at, number, generation):
              "shape_changes")
     if take("Q", at) != 2 * number + 2:
         return None
-    told = dict(zip(names, take("7Q3qQ", at + 8)))
-    told.update(zip(("units_per_metre", "flags", "status", "mode", "fields", "fields_bytes"), take("d4IQ", at + 96)))
-    told["hands"] = [hand(at + 128), hand(at + 128 + 744)]
+    entry = dict(zip(names, take("7Q3qQ", at + 8)))
+    entry.update(zip(("units_per_metre", "flags", "status", "mode", "fields", "fields_bytes"), take("d4IQ", at + 96)))
+    entry["hands"] = [hand(at + 128), hand(at + 128 + 744)]
     begin = end = at + 1616
     functions = 0
-    for _ in range(told["fields"] if told["fields_bytes"] < 1 << 24 else 0):
+    for _ in range(entry["fields"] if entry["fields_bytes"] < 1 << 24 else 0):
         count = take("I", end + 4)
         functions += count
         end += 104 + 56 * count
@@ -43,11 +43,11 @@ def record(at, number, generation):
             break
     if take("Q", at) != 2 * number + 2:
         return None
-    assert told["number"] == number and end - begin == told["fields_bytes"], "record"
-    assert told["generation"] == generation, "generation"
-    assert all(side["turns"] for side in told["hands"] if side["present"]), "orientations"
-    told["functions"] = functions
-    return told
+    assert entry["number"] == number and end - begin == entry["fields_bytes"], "record"
+    assert entry["generation"] == generation, "generation"
+    assert all(side["turns"] for side in entry["hands"] if side["present"]), "orientations"
+    entry["functions"] = functions
+    return entry
 
 
 def main():
@@ -70,10 +70,10 @@ def main():
         ended = take("I", 128) == 2
         newest = take("Q", 136)
         for number in range(max(following, newest - slots + 2), newest + 1):
-            told = record(records + number % slots * stride, number, generation)
-            if told:
+            entry = record(records + number % slots * stride, number, generation)
+            if entry:
                 seen += 1
-                print(json.dumps(told))
+                print(json.dumps(entry))
         following = newest + 1
         if not ended and newest and time.clock_gettime_ns(time.CLOCK_MONOTONIC) - take("q", 144) > 60e9:
             sys.exit("no heartbeat for a minute")

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t slots = 4;
 constexpr std::size_t words = 50;
 
-/// Every word of a record tells its number, and none that of its neighbour.
+/// Every word of a record has its number, and none that of its neighbour.
 std::uint64_t word_of(std::uint64_t number, std::size_t at) noexcept {
   return number * 0x9E3779B97F4A7C15U + at;
 }
@@ -89,7 +89,7 @@ TEST_SUITE("record_ring") {
     CHECK(test.newest == 300'000);
   }
 
-  TEST_CASE("the writer goes on wherever a reader stands still") {
+  TEST_CASE("the writer continues wherever a reader stops") {
     Ring test;
     test.write_next();
     bool whole = true;

@@ -60,8 +60,8 @@ TEST_SUITE("segment") {
         const Points expected = test.vertices_of(frame);
         // unpack() gives untouched coordinates their original bits, which float does not hold.
         CHECK((segment.shape(number) - expected).cwiseAbs().maxCoeff() < test::float_gap);
-        const bool told = head.shape_changes != changes;
-        CHECK((told || expected == before));
+        const bool counted = head.shape_changes != changes;
+        CHECK((counted || expected == before));
         different += expected != before ? 1U : 0U;
         changes = head.shape_changes;
         before = expected;
@@ -96,12 +96,12 @@ TEST_SUITE("segment") {
     CHECK(std::abs(volume) == doctest::Approx(4.0 / 3.0 * 3.14159265).epsilon(0.1));
   }
 
-  TEST_CASE("a loop that is made anew keeps the segment, another model gets another one") {
+  TEST_CASE("a second loop keeps the segment, another model gets another one") {
     LoopUnderTest test(Mode::type1, {.rings_of_ball = 10});
-    SegmentPublisher publisher(segment_name("anew"), {});
+    SegmentPublisher publisher(segment_name("second"), {});
     test::attach(test, {&publisher});
     REQUIRE(publisher.begin(test::outline_of(test)));
-    const MappedSegment segment(segment_name("anew"));
+    const MappedSegment segment(segment_name("second"));
     Player player(test);
     for (int n = 0; n < 20; ++n)
       player.next();
@@ -111,8 +111,8 @@ TEST_SUITE("segment") {
     CHECK_FALSE(segment.has_ended());
     CHECK(segment.setup().generation == 2);
     CHECK((segment.rest() - test.model.vertices).cwiseAbs().maxCoeff() < 2 * test::float_gap);
-    Player anew(test);
-    const Points shape = test.vertices_of(anew.next());
+    Player second(test);
+    const Points shape = test.vertices_of(second.next());
     CHECK(segment.newest() == 21); // numbers continue
     CHECK(test::head_of(segment.record(21)).generation == 2);
     CHECK((segment.shape(21) - shape).cwiseAbs().maxCoeff() < 2 * test::float_gap);
@@ -121,7 +121,7 @@ TEST_SUITE("segment") {
     test::attach(larger, {&publisher});
     REQUIRE(publisher.begin(test::outline_of(larger)));
     CHECK(segment.has_ended());
-    const MappedSegment other(segment_name("anew"));
+    const MappedSegment other(segment_name("second"));
     CHECK(other.header().vertices == larger.model.vertices.cols());
     CHECK(other.newest() == 0);
   }
@@ -160,15 +160,15 @@ TEST_SUITE("segment") {
     CHECK(::access(path.c_str(), F_OK) != 0);
   }
 
-  TEST_CASE("fields that there is no room for are left out together, and marked") {
+  TEST_CASE("fields that do not fit are left out together, and marked") {
     LoopUnderTest test(Mode::type1, {.rings_of_ball = 8});
-    SegmentPublisher publisher(segment_name("room"), {});
+    SegmentPublisher publisher(segment_name("fields"), {});
     test::attach(test, {&publisher});
     auto outline = test::outline_of(test);
     outline.functions = 3;
     outline.max_fields = 1;
     REQUIRE(publisher.begin(outline));
-    const MappedSegment segment(segment_name("room"));
+    const MappedSegment segment(segment_name("fields"));
     Player player(test);
     for (int n = 0; n < 5; ++n)
       player.next();

@@ -77,7 +77,7 @@ TEST_SUITE("shared_memory") {
     CHECK_FALSE(std::filesystem::exists(path_of(name)));
   }
 
-  TEST_CASE("it is zeros, for this user to read and nobody to write, and goes with its owner") {
+  TEST_CASE("it is zeros, that this user may read and none may write, and goes with its owner") {
     const std::string name = name_for("fresh");
     {
       const auto memory = announced(name);
@@ -191,11 +191,11 @@ TEST_SUITE("shared_memory") {
   TEST_CASE("what is not Nendo's stays, and links are not followed") {
     const std::string name = name_for("strange");
     const Removed removed{path_of(name)};
-    write_file(path_of(name), "a file of somebody's");
+    write_file(path_of(name), "another user's file");
     const auto memory = announced(name);
     REQUIRE_FALSE(memory);
     CHECK(memory.error().message.find("not Nendo's") != std::string::npos);
-    CHECK(contents(path_of(name)) == "a file of somebody's");
+    CHECK(contents(path_of(name)) == "another user's file");
     std::filesystem::remove(path_of(name));
 
     const test::TemporaryFolder folder;
@@ -218,7 +218,7 @@ TEST_SUITE("shared_memory") {
     CHECK(contents(path_of(name)) == NENDO_PUBLISH_MAGIC "theirs");
   }
 
-  TEST_CASE("more than there is room for is an error, and leaves nothing") {
+  TEST_CASE("more than there is memory for is an error, and leaves nothing") {
     const std::string name = name_for("huge");
     const auto memory = SharedMemory::create(name, std::size_t{1} << 46, {});
     REQUIRE_FALSE(memory);

@@ -15,7 +15,7 @@ using namespace nendo::publish;
 namespace {
 
 /// Address and port as the system writes them.
-std::string told(const DatagramTarget& target) {
+std::string text_of(const DatagramTarget& target) {
   std::array<char, INET6_ADDRSTRLEN> text{};
   const bool v6 = target.address.any.sa_family == AF_INET6;
   const void* const address =
@@ -51,11 +51,11 @@ TEST_SUITE("target") {
                                          {"udp:[2001:db8::7]:9000", "2001:db8::7 9000"}}) {
       const auto target = parse_target(text);
       REQUIRE(target);
-      CHECK(told(std::get<DatagramTarget>(*target)) == expected);
+      CHECK(text_of(std::get<DatagramTarget>(*target)) == expected);
     }
   }
 
-  TEST_CASE("places are the same however they are written, and whoever else may read there") {
+  TEST_CASE("places are the same however they are written, with any other readers") {
     const std::vector<std::vector<std::string>> places{{"shm", "shm:run", "shm:run?group=0"},
                                                        {"shm:Run"},
                                                        {"udp:9000", "udp:127.0.0.1:9000"},

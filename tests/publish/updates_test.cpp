@@ -167,7 +167,7 @@ TEST_SUITE("updates") {
         test.bend(bent, begin + number * std::chrono::milliseconds(11));
         if (random() % 6 == 0) {
           auto settings = test::any_settings(test.loop->changes().settings(), random);
-          settings.brushes = {}; // whose work no field tells
+          settings.brushes = {}; // whose work no field describes
           static_cast<void>(test.loop->changes().change_settings(settings));
         }
         test.frame_after_tick(number - 1);

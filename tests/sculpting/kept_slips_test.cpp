@@ -1,4 +1,4 @@
-#include <nendo/sculpting/kept_slips.hpp>
+#include <nendo/sculpting/kept_learning.hpp>
 
 #include <cstdlib>
 #include <string_view>
@@ -80,7 +80,7 @@ TEST_SUITE("kept_slips") {
     CHECK_FALSE(visitor->ends);
   }
 
-  TEST_CASE("a calibration that does not tell its ends, or counts otherwise, is refused") {
+  TEST_CASE("a calibration without its ends, or that counts otherwise, is refused") {
     Home home;
     home.glove.counts = {4095, false};
     const auto other = home.wearer({"vera", "", true});
@@ -118,7 +118,7 @@ TEST_SUITE("kept_slips") {
     CHECK(now->quality[pip]->min_counts == 67.25);
     CHECK(now->quality[pip]->max_counts == 255.0); // no glove counts further
     CHECK(now->quality[pip]->residual_rad == home.made.quality[pip]->residual_rad);
-    std::size_t files = 0; // the one before, too
+    std::size_t files = 0; // also the previous one
     for ([[maybe_unused]] const auto& file :
          std::filesystem::directory_iterator(home.file().parent_path()))
       ++files;

@@ -30,11 +30,11 @@ TEST_SUITE("placing") {
     }
   }
 
-  TEST_CASE("undo begins with a part of its room, and never has more than it") {
+  TEST_CASE("undo begins with a part of its memory, and never has more than all") {
     const auto ball = test::sphere(12, 24, 1.0);
     for (const std::size_t most : {std::size_t{0}, std::size_t{1000}, std::size_t{1} << 30}) {
       flow::LoopOptions loop;
-      sculpting::set_undo_room(ball, most, loop);
+      sculpting::set_undo_space(ball, most, loop);
       CHECK(loop.sculptor.deformer.undo_bytes + loop.undo_max_bytes == most);
       CHECK(loop.sculptor.deformer.undo_bytes <= std::size_t{64} << 20);
     }

@@ -78,7 +78,7 @@ Result<void> ChangeBroker::Parts::change_settings(const LoopSettings& settings) 
     return wanted.error();
   }
   asked = *std::move(wanted);
-  // Settings that the loop has not taken are as if nobody had asked for them.
+  // Settings that the loop has not taken count as not requested.
   change->settings.reset();
   if (settings != change->before.settings) change->settings = settings;
   make_ready();
@@ -137,11 +137,12 @@ void ChangeBroker::change_log(InputLog* log, const deform::BlockShape& like) {
   begins.log = log;
   begins.state.placement.units_per_metre = parts.units_per_metre;
   begins.state.placement.table = parts.bodies->table();
-  // A frame may be of a version before.
+  // A frame may be of an earlier version.
   begins.state.shape = like.block_count() == parts.asked_model->layout().block_count()
                            ? like
-                           : room_for_shape(*parts.asked_model);
-  if (change.model) begins.of_other_model = room_for_shape(*parts.model_before); // if it is refused
+                           : space_for_shape(*parts.asked_model);
+  if (change.model)
+    begins.of_other_model = space_for_shape(*parts.model_before); // if it is refused
   begins.state.inputs.resize(parts.inputs);
   begins.state.puppet = parts.puppets[parts.asked_puppet];
   if (is_played(begins.state.puppet.get()))
@@ -192,10 +193,10 @@ bool ChangeBroker::Parts::take_back_done() {
 void ChangeBroker::Parts::end_log() {
   states.push_back(std::move(change->log->state));
   LoopState& state = states.back();
-  state.sculptor = asked; // nobody has asked for others since
+  state.sculptor = asked; // no others were requested since
   for (const ModelVersion* at = asked_model; at->before != nullptr; at = at->before)
     state.origins.insert(state.origins.begin(), at->origin);
-  puppets.begin_anew(asked, asked_puppet);
+  puppets.restart(asked, asked_puppet);
 }
 
 } // namespace nendo::flow

@@ -1,5 +1,6 @@
 // The part of the broker that prepares other versions of the model.
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -8,6 +9,41 @@
 #include "broker_parts.hpp"
 
 namespace nendo::flow {
+
+ModelVersions::ModelVersions(const deform::Mesh& model, const UndoSpace& undo,
+                             const deform::BlockShape* first)
+    : undo_(undo) {
+  all_.push_back(
+      std::make_shared<ModelVersion>(0, model, deform::BlockLayout(model.vertices), undo, first));
+}
+
+std::shared_ptr<ModelVersion> ModelVersions::find(std::uint32_t number) const noexcept {
+  for (const auto& version : all_)
+    if (version->number == number) return version;
+  return nullptr;
+}
+
+ModelVersion& ModelVersions::add(std::unique_ptr<ModelVersion> version) {
+  ++last_number_;
+  all_.push_back(std::move(version));
+  return *all_.back();
+}
+
+void ModelVersions::release_others(const ModelVersion& newest) {
+  std::erase_if(all_, [&newest](const auto& version) {
+    for (const ModelVersion* at = &newest; at != nullptr; at = at->before)
+      if (at == version.get()) return false;
+    return true;
+  });
+}
+
+UndoSpace ModelVersions::remaining_space() const noexcept {
+  if (undo_.max_bytes == 0) return {undo_.bytes, 0};
+  std::size_t used = 0;
+  for (const auto& version : all_)
+    if (version->undo_memory) used += version->undo_memory->bytes();
+  return {0, undo_.max_bytes - std::min(undo_.max_bytes, used)};
+}
 
 ModelVersion& ChangeBroker::first_model() noexcept {
   return parts_->versions.first();
@@ -45,7 +81,7 @@ ChangeBroker::change_model(PendingModel& finer,
                            const std::function<Result<void>(const ModelVersion&)>& accepts) {
   Parts& parts = *parts_;
   assert(is_still() && finer.is_of(*parts.asked_model));
-  auto made = finer.finish(parts.versions.next_number(), parts.versions.remaining_room(),
+  auto made = finer.finish(parts.versions.next_number(), parts.versions.remaining_space(),
                            is_played(parts.asked_rig()));
   SculptorOptions sculptor = parts.asked.options;
   const auto check = [&]() -> Result<void> {
@@ -94,10 +130,10 @@ void ChangeBroker::Parts::offer_model(ModelVersion& version, const ChangeModel& 
   Shaping::prepare(asked, version, control_points(), change->ready);
   change->ready.puppet = asked_puppet;
   change->ready.is_new_model = model.is_new();
-  if (change->log) change->log->of_other_model = room_for_shape(version);
+  if (change->log) change->log->of_other_model = space_for_shape(version);
   model_before = asked_model;
   if (&version != asked_model)
-    change->ready.shape_room.fill({version.number, version.shape.shape()});
+    change->ready.spare_shapes.fill({version.number, version.shape.shape()});
   asked_model = &version;
   offer();
   // Those that are not possible with this version are dropped.
@@ -112,7 +148,7 @@ Result<void> ChangeBroker::Parts::set_model(SculptorOptions& sculptor,
   return set_surface(sculptor, version);
 }
 
-/// The loop has refused what was asked for last.
+/// The loop has refused the last request.
 void ChangeBroker::Parts::go_back() {
   asked_model = model_before;
   if (change->settings) asked = change->before;

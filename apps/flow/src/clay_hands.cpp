@@ -25,7 +25,7 @@ deform::ClayOptions clay_options(const HandBodies& bodies, double radius_m,
   return options;
 }
 
-/// In the plane x = at. The frame's motion is that of the image, and no reflection.
+/// Returns the image in the plane x = at. The frame's motion is the image's, and no reflection.
 deform::ContactPart image_of(const deform::ContactPart& part, double at) noexcept {
   deform::ContactPart image = part;
   for (Eigen::Vector3d& corner : image.corners)

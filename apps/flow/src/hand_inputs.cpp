@@ -1,8 +1,8 @@
-#include "hand_inputs.hpp"
-
 #include <algorithm>
 #include <cassert>
 #include <utility>
+
+#include "ticker.hpp"
 
 namespace nendo::flow {
 
@@ -47,10 +47,10 @@ void HandInputs::change_filters(const LoopSettings& settings) noexcept {
     hand.change_filter(settings.filter, closes);
 }
 
-void HandInputs::begin_anew(LoopState& state) noexcept {
+void HandInputs::restart(LoopState& state) noexcept {
   for (std::size_t at = 0; at < hands_.size(); ++at) {
     GloveHand& hand = hands_[at];
-    hand.begin_anew();
+    hand.restart();
     state.inputs[at] = {hand.input.first, hand.input.wearer.learned, hand.input.layer,
                         hand.input.wearer.stuck};
     state.placement.T_stage_wrist[hand.slot] = hand.T_stage_wrist;

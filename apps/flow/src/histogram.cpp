@@ -10,7 +10,7 @@ std::size_t Histogram::bucket_of(std::uint64_t ns) noexcept {
   const auto width = static_cast<unsigned>(std::bit_width(ns));
   if (width <= sub_bits) return static_cast<std::size_t>(ns);
   const unsigned octave =
-      width - sub_bits; // how many low bits the bucket does not tell apart, plus one
+      width - sub_bits; // how many low bits the bucket does not distinguish, plus one
   const std::uint64_t mantissa = ns >> (octave - 1);
   const std::size_t bucket =
       (static_cast<std::size_t>(octave) << sub_bits) + static_cast<std::size_t>(mantissa & 63U);

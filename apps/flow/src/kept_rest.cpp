@@ -14,7 +14,8 @@ using deform::Points;
 using Eigen::Index;
 
 constexpr int max_sweeps = 500;
-constexpr double enough = 1e-7; ///< of the longest way: a sweep that changes less is the last
+constexpr double enough =
+    1e-7; ///< relative to the longest path: a sweep that changes less is the last
 
 /// For each vertex that was made, the shape's vertex that it was, or -1. Vertices keep their
 /// numbers as long as none is taken away; then they are known by their places.

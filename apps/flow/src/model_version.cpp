@@ -16,7 +16,7 @@ namespace {
 
 // Some whole shapes ahead, so that refills may be seldom.
 std::unique_ptr<deform::UndoMemory> undo_memory_for(const deform::BlockLayout& layout,
-                                                    const UndoRoom& undo) {
+                                                    const UndoSpace& undo) {
   constexpr std::size_t shapes_ahead = 4;
   if (undo.max_bytes == 0) return nullptr;
   auto memory = std::make_unique<deform::UndoMemory>(shapes_ahead * (layout.block_count() + 1),
@@ -77,11 +77,11 @@ Result<deform::Mesh> made_of_shape(const deform::Mesh& before, const ModelOrigin
 } // namespace
 
 ModelVersion::ModelVersion(std::uint32_t version, deform::Mesh model, deform::BlockLayout layout,
-                           const UndoRoom& undo, const deform::BlockShape* first)
+                           const UndoSpace& undo, const deform::BlockShape* first)
     : number(version), mesh(std::move(model)), undo_memory(undo_memory_for(layout, undo)),
       shape(std::move(layout), with_undo(undo.bytes, undo_memory.get()), first) {}
 
-deform::BlockShape room_for_shape(const ModelVersion& version) {
+deform::BlockShape space_for_shape(const ModelVersion& version) {
   return deform::BlockShape(std::vector<deform::VertexBlock>(version.layout().block_count()));
 }
 
@@ -125,7 +125,7 @@ Result<PendingModel> PendingModel::make(const ModelVersion& from, const ChangeMo
 }
 
 Result<std::unique_ptr<ModelVersion>> PendingModel::remade(Remaking& remaking, std::uint32_t number,
-                                                           const UndoRoom& undo, bool keeps_rest) {
+                                                           const UndoSpace& undo, bool keeps_rest) {
   ModelOrigin& origin = remaking.origin;
   from_->layout().unpack(from_->shape.shape(), origin.shape);
   origin.keeps_rest = keeps_rest;
@@ -145,7 +145,7 @@ Result<std::unique_ptr<ModelVersion>> PendingModel::remade(Remaking& remaking, s
 }
 
 Result<std::unique_ptr<ModelVersion>> PendingModel::finish(std::uint32_t number,
-                                                           const UndoRoom& undo, bool keeps_rest) {
+                                                           const UndoSpace& undo, bool keeps_rest) {
   if (auto* const remaking = std::get_if<Remaking>(&making_))
     return remade(*remaking, number, undo, keeps_rest);
   const deform::BlockShape& shape = from_->shape.shape();

@@ -3,19 +3,106 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cerrno>
 #include <charconv>
+#include <cmath>
+#include <ctime>
 #include <limits>
 #include <utility>
 
 #include <nendo/base/relax.hpp>
 
 namespace nendo::flow {
+
+using std::chrono::microseconds;
+using std::chrono::nanoseconds;
+
 namespace {
 
 constexpr std::array<std::string_view, 4> policy_names{"skip", "catch-up", "re-anchor", "sample"};
 constexpr unsigned max_burst = 1000;
 
 } // namespace
+
+TickGrid::TickGrid(HostTime start, double rate_hz) noexcept
+    : start_(start), rate_mhz_(static_cast<std::uint64_t>(std::llround(rate_hz * 1000.0))) {
+  assert(rate_hz >= min_rate_hz && rate_hz <= max_rate_hz);
+}
+
+HostTime TickGrid::deadline(std::uint64_t tick) const noexcept {
+  // tick * 10^12 / rate_mhz nanoseconds, split so that no product leaves 64 bits: the remainder is
+  // below 10^7.
+  constexpr std::uint64_t tera = 1'000'000'000'000;
+  const std::uint64_t whole = tick / rate_mhz_ * tera;
+  const std::uint64_t part = tick % rate_mhz_ * tera / rate_mhz_;
+  return start_ + nanoseconds(static_cast<nanoseconds::rep>(whole + part));
+}
+
+std::uint64_t TickGrid::first_after(HostTime now) const noexcept {
+  if (now < start_) return 0;
+  const double elapsed_s = to_seconds(now - start_);
+  auto tick = static_cast<std::uint64_t>(elapsed_s * static_cast<double>(rate_mhz_) / 1000.0);
+  // The estimate can be off by a tick through rounding; the deadlines decide.
+  while (tick > 0 && deadline(tick - 1) > now)
+    --tick;
+  while (deadline(tick) <= now)
+    ++tick;
+  return tick;
+}
+
+void sleep_until(HostTime deadline) noexcept {
+  const auto since_epoch = deadline.time_since_epoch();
+  const auto whole = std::chrono::floor<std::chrono::seconds>(since_epoch);
+  timespec at{};
+  at.tv_sec = static_cast<std::time_t>(whole.count());
+  at.tv_nsec = static_cast<long>(nanoseconds(since_epoch - whole).count());
+  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr) == EINTR) {
+  }
+}
+
+SpinMargin::SpinMargin(HostClock::duration period) noexcept
+    : period_(period), cap_(std::min<HostClock::duration>(most, period / 5)),
+      margin_(std::min(cap_, period / max_of_period)),
+      ticks_in_a_second_(static_cast<std::uint32_t>(
+          std::max<HostClock::rep>(1, std::chrono::seconds(1) / period))) {}
+
+void SpinMargin::observe(HostClock::duration lateness) noexcept {
+  const auto us = std::clamp<microseconds::rep>(
+      std::chrono::duration_cast<microseconds>(lateness).count(), 0, most.count());
+  ++counts_[static_cast<std::size_t>(us)];
+  if (++seen_ == ticks_in_a_second_) adapt();
+}
+
+microseconds SpinMargin::needed() const noexcept {
+  const std::uint32_t may_be_later = seen_ / 1000;
+  std::size_t at = counts_.size() - 1;
+  for (std::uint32_t later = counts_[at]; at > 0 && later <= may_be_later; later += counts_[at])
+    --at;
+  // A bucket begins at its whole microseconds and ends one further on.
+  return microseconds(static_cast<microseconds::rep>(at) + 1) + reserve;
+}
+
+// With a margin that is a microsecond longer, each wake-up that is no later than that spins for a
+// microsecond more.
+microseconds SpinMargin::affordable() const noexcept {
+  const auto budget_us = static_cast<std::uint64_t>(
+      std::chrono::duration_cast<microseconds>(seen_ * (period_ / max_of_period)).count());
+  std::uint64_t spun_us = 0;
+  std::uint64_t in_time = 0;
+  microseconds::rep margin_us = 0;
+  for (; margin_us < most.count(); ++margin_us) {
+    in_time += counts_[static_cast<std::size_t>(margin_us)];
+    spun_us += in_time;
+    if (spun_us > budget_us) break;
+  }
+  return microseconds(margin_us);
+}
+
+void SpinMargin::adapt() noexcept {
+  margin_ = std::min<HostClock::duration>(cap_, std::min(needed(), affordable()));
+  counts_.fill(0);
+  seen_ = 0;
+}
 
 std::string describe_policy(const PaceOptions& options) {
   std::string name(policy_names[static_cast<std::size_t>(options.policy)]);

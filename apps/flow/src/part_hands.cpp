@@ -65,7 +65,7 @@ deform::FieldStatus PartHands::follow(const deform::Points& tips, bool /*ends*/)
     find_places(at);
     if (held != deform::no_index) chosen_ = held;
   }
-  tell_contacts();
+  update_contacts();
   return status;
 }
 
@@ -102,8 +102,8 @@ void PartHands::find_places(std::size_t at) noexcept {
   });
 }
 
-/// Both fingers that hold are told of, however few places there are.
-void PartHands::tell_contacts() noexcept {
+/// Each finger that holds has a contact, however few places there are.
+void PartHands::update_contacts() noexcept {
   constexpr float held_load_mm = 0.2F;
   constexpr std::array<std::uint32_t, 2> holding_parts{2, 5}; // the ends of thumb and index finger
   contacts_.clear();

@@ -91,7 +91,7 @@ Vector3d first_contact(const Surface& surface, Side side, double height_fraction
 Isometry3d first_guess(const Surface& surface, Side side, const Fingertips& tips,
                        double height_fraction) {
   Isometry3d T = Isometry3d::Identity();
-  // Of the hands that hold like this, the one whose fingertips, taken together, face the model.
+  // Among the hands that hold like this, choose the one whose fingertips face the model.
   const Matrix3d held = holding_orientation(side);
   const Vector3d inwards = -outwards_of(side) * Vector3d::UnitX();
   const Fingertips spread = tips.colwise() - tips.rowwise().mean();

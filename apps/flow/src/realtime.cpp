@@ -76,13 +76,14 @@ int lock_memory() noexcept {
   return ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
 }
 
-// The deepest that the loop was seen to need is a tenth of it.
+// The maximum that the loop was seen to need is a tenth of it.
 void touch_stack() noexcept {
   constexpr std::size_t bytes = std::size_t{256} * 1024;
   constexpr std::size_t page = 4096;
-  std::array<char, bytes> room; // NOLINT(cppcoreguidelines-pro-type-member-init): that is the point
+  std::array<char, bytes>
+      stack; // NOLINT(cppcoreguidelines-pro-type-member-init): that is the point
   for (std::size_t at = 0; at < bytes; at += page)
-    static_cast<volatile char&>(room[at]) = 0;
+    static_cast<volatile char&>(stack[at]) = 0;
 }
 
 } // namespace

@@ -270,18 +270,18 @@ void Sculptor::write_move(deform::SurfaceMove& move) const noexcept {
   if (!is_written || (mode() == Mode::type2 && !moves_anything())) move.clear();
 }
 
-bool Sculptor::has_room(const deform::SurfaceMove& move) const noexcept {
+bool Sculptor::has_space(const deform::SurfaceMove& move) const noexcept {
   return along_surface(deformer_, true, [&](const auto& surface) {
     return move.vectors.cols() >= surface.vector_count();
   });
 }
 
-deform::SurfaceMove Sculptor::room_for_move() const {
-  deform::SurfaceMove room;
-  room.vectors.setZero(3, along_surface(deformer_, Eigen::Index{0}, [](const auto& surface) {
+deform::SurfaceMove Sculptor::space_for_move() const {
+  deform::SurfaceMove move;
+  move.vectors.setZero(3, along_surface(deformer_, Eigen::Index{0}, [](const auto& surface) {
                          return surface.vector_count();
                        }));
-  return room;
+  return move;
 }
 
 bool Sculptor::moves_anything() const noexcept {

@@ -28,6 +28,10 @@ std::string shortest_text(double number) {
   return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
+constexpr std::array<std::string_view, 21> step_names{
+    "stroke",   "reset",     "mode",  "kernel", "radius", "folding", "filter",
+    "settings", "subdivide", "brush", "puppet", "volume", "hold",    "mask",
+    "symmetry", "refine",    "cut",   "join",   "copy",   "remove",  "topology"};
 constexpr std::array<std::string_view, 2> pinches_names{"measured", "closed"};
 
 } // namespace
@@ -77,6 +81,10 @@ std::string in_words(const LoopSettings& settings, double units_per_metre) {
     add(settings.injective ? std::string(setting::injective.label) : "may fold");
   add("radius " + radius_text(settings.radius_m, units_per_metre));
   return words;
+}
+
+std::string_view name_of(StepKind kind) noexcept {
+  return step_names[static_cast<std::size_t>(kind)];
 }
 
 StepKind kind_of_change(const LoopSettings& before, const LoopSettings& after) noexcept {

@@ -67,7 +67,7 @@ void Shaping::ask(Request request) noexcept {
 
 FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats,
                            bool completes) noexcept {
-  make_room(frame);
+  make_space(frame);
   frame.puppet = puppet_;
   if (!is_still_) take_steps(tips, stats);
   if (!is_still_ && !awaited_ && std::exchange(regrab_due_, false) && held_) regrab(tips);
@@ -194,27 +194,27 @@ void Shaping::write_state(Frame& frame, LoopStats& stats) noexcept {
   frame.steps.in_hand = is_in_hand();
 }
 
-/// Gives the frame room for the sculptor's fields and for the version's shape, if it has none.
-void Shaping::make_room(Frame& frame) noexcept {
+/// Gives the frame space for the sculptor's fields and for the version's shape, if it has none.
+void Shaping::make_space(Frame& frame) noexcept {
   if (!frame.fields.has_room_of(sculptor_->fields())) {
-    for (auto& room : room_) {
-      if (!room.has_room_of(sculptor_->fields())) continue;
-      std::swap(room, frame.fields);
+    for (auto& spare : spare_fields_) {
+      if (!spare.has_room_of(sculptor_->fields())) continue;
+      std::swap(spare, frame.fields);
       break;
     }
   }
-  if (!sculptor_->has_room(frame.surface)) {
-    for (auto& room : surface_room_) {
-      if (!sculptor_->has_room(room)) continue;
-      std::swap(room, frame.surface);
+  if (!sculptor_->has_space(frame.surface)) {
+    for (auto& spare : spare_moves_) {
+      if (!sculptor_->has_space(spare)) continue;
+      std::swap(spare, frame.surface);
       break;
     }
   }
   if (frame.model == model_->number) return;
-  for (auto& room : shape_room_) {
-    if (room.model != model_->number) continue;
-    std::swap(room.shape, frame.shape);
-    std::swap(room.model, frame.model);
+  for (auto& spare : spare_shapes_) {
+    if (spare.model != model_->number) continue;
+    std::swap(spare.shape, frame.shape);
+    std::swap(spare.model, frame.model);
     return;
   }
 }
@@ -225,8 +225,8 @@ void Shaping::prepare(const SculptorSetup& setup, ModelVersion& model, Eigen::In
   ready.sculptor = sculptor_on(model, control_points, setup.options);
   ready.settings = setup.settings;
   ready.still_tips = ready.starts = ready.tips = Points::Zero(3, control_points);
-  ready.room.fill(ready.sculptor->fields());
-  ready.surface_room.fill(ready.sculptor->room_for_move());
+  ready.spare_fields.fill(ready.sculptor->fields());
+  ready.spare_moves.fill(ready.sculptor->space_for_move());
 }
 
 bool Shaping::holds_on(const ReadySculptor& ready) const noexcept {
@@ -264,7 +264,7 @@ bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
                           ready.model == model_ || model_->origin->source == ModelSource::refined);
   is_still_ = false;
   if (frame.model != model_->number) {
-    make_room(frame);
+    make_space(frame);
     show_rest(frame);
   }
   // Where the hands keep their grip, the rest shape stays, and readers of fields continue from it.
@@ -288,18 +288,18 @@ void Shaping::end_stroke(Exchange kind, bool holds_on) noexcept {
 /// Completes the first step that is due.
 void Shaping::make_awaited_step(ReadySculptor& ready, LoopStats& stats) noexcept {
   const Request step = steps_due_.front();
-  step_to(step, *ready.model, in_force());
+  step_to(step, *ready.model, in_effect());
   steps_due_.erase(steps_due_.begin());
   swap_in(ready);
   count(step, stats);
 }
 
 void Shaping::make_change(ReadySculptor& ready, Exchange kind) noexcept {
-  const Awaited before = in_force();
-  if (ready.is_new_model) note_model(*ready.model, before.settings);
+  const Awaited before = in_effect();
+  if (ready.is_new_model) record_model(*ready.model, before.settings);
   swap_in(ready);
-  if (puppet_ != before.puppet) note_puppet(before, ready.puppet_step);
-  if (settings_ != before.settings) note_settings(before.settings, kind == Exchange::new_step);
+  if (puppet_ != before.puppet) record_puppet(before, ready.puppet_step);
+  if (settings_ != before.settings) record_settings(before.settings, kind == Exchange::new_step);
 }
 
 /// Returns where the hands grab in exchange(), after it has swapped the sculptors.
@@ -314,16 +314,16 @@ const Points& Shaping::held_points(const ReadySculptor& ready, const Points& tip
 void Shaping::swap_in(ReadySculptor& ready) noexcept {
   std::swap(settings_, ready.settings);
   std::swap(sculptor_, ready.sculptor);
-  std::swap(room_, ready.room);
-  std::swap(surface_room_, ready.surface_room);
+  std::swap(spare_fields_, ready.spare_fields);
+  std::swap(spare_moves_, ready.spare_moves);
   std::swap(puppet_, ready.puppet);
   if (still_tips_.cols() != ready.still_tips.cols()) std::swap(still_tips_, ready.still_tips);
   if (ready.model == model_) return;
   std::swap(model_, ready.model);
-  std::swap(shape_room_, ready.shape_room);
+  std::swap(spare_shapes_, ready.spare_shapes);
 }
 
-void Shaping::begin_anew(const Points& tips, bool fences, Frame& frame, LoopStats& stats) noexcept {
+void Shaping::restart(const Points& tips, bool fences, Frame& frame, LoopStats& stats) noexcept {
   sculptor_->release(true);
   shaped_ = in_step_ = commit_due_ = regrab_due_ = false;
   exchanged_at_.reset();

@@ -3,16 +3,40 @@
 #include <algorithm>
 #include <utility>
 
+#include <nendo/flow/command.hpp>
 #include <nendo/flow/rig_setup.hpp>
-#include <nendo/flow/tips_of_hand.hpp>
-
-#include "drawn_blade.hpp"
+#include <nendo/flow/wire_path.hpp>
+#include <nendo/hand/held_points.hpp>
 
 namespace nendo::flow {
 
 using deform::Points;
 
 namespace {
+
+using Eigen::Vector3d;
+
+Vector3d place_of(const puppet::HandState& hand, hand::Joint joint) {
+  return hand.pose[joint].translation();
+}
+
+/// From the tip on, by that length, m.
+deform::WirePlace knife_of(const puppet::HandState& hand, double length_m) {
+  const Vector3d tip = place_of(hand, hand::Joint::index_tip);
+  const Vector3d way = tip - place_of(hand, hand::Joint::index_proximal);
+  return {tip, tip + length_m * way.normalized()};
+}
+
+/// 1: the index finger is straight.
+double straightness_of(const puppet::HandState& hand) {
+  using hand::Joint;
+  double length = 0.0;
+  for (const auto& [from, to] : {std::pair{Joint::index_proximal, Joint::index_intermediate},
+                                 {Joint::index_intermediate, Joint::index_distal},
+                                 {Joint::index_distal, Joint::index_tip}})
+    length += (place_of(hand, to) - place_of(hand, from)).norm();
+  return (place_of(hand, Joint::index_tip) - place_of(hand, Joint::index_proximal)).norm() / length;
+}
 
 /// Symmetry adds the images of all points.
 Eigen::Index points_at_first(const CoreOptions& options) {
@@ -23,6 +47,65 @@ Eigen::Index points_at_first(const CoreOptions& options) {
 }
 
 } // namespace
+
+/// The wire or knife that hands draw through the model. It does not allocate.
+class DrawnBlade {
+public:
+  using Hands = puppet::RigPlayer::Hands;
+
+  explicit DrawnBlade(double units_per_metre) noexcept : units_per_metre_(units_per_metre) {}
+
+  void begin(Blade blade) noexcept;
+  void end() noexcept;
+  void clear() noexcept { path_.clear(); }
+  /// Moves the blade with the hands, on the stage, while it is drawn. A knife is `knife_m` long. A
+  /// wire is between both index fingertips, or between thumb and index finger of the only hand. A
+  /// knife is held by the hand that points more when its path begins.
+  void follow(const Hands& hands, double knife_m) noexcept;
+
+  bool is_drawing() const noexcept { return path_.is_drawing(); }
+  const WirePath& path() const noexcept {
+    return path_;
+  } ///< the path of the current blade, or of the last one
+  const WirePath& completed() const noexcept { return completed_; } ///< the last complete path
+
+private:
+  double units_per_metre_;
+  WirePath path_;
+  WirePath completed_;
+  Blade blade_ = Blade::wire;
+  bool knife_in_right_ = true; ///< hand
+};
+
+void DrawnBlade::begin(Blade blade) noexcept {
+  constexpr double step_m = 0.002;
+  path_.begin(step_m * units_per_metre_);
+  blade_ = blade;
+}
+
+void DrawnBlade::end() noexcept {
+  const std::uint32_t before = path_.completed();
+  path_.end();
+  if (path_.completed() != before) completed_ = path_;
+}
+
+void DrawnBlade::follow(const Hands& hands, double knife_m) noexcept {
+  if (!path_.is_drawing()) return;
+  const auto& [left, right] = hands;
+  const puppet::HandState& one = left != nullptr ? *left : *right;
+  const bool has_both = left != nullptr && right != nullptr;
+  deform::WirePlace place{place_of(one, hand::Joint::thumb_tip),
+                          place_of(one, hand::Joint::index_tip)};
+  if (blade_ == Blade::knife) {
+    if (path_.places().empty())
+      knife_in_right_ =
+          left == nullptr || (has_both && straightness_of(*right) >= straightness_of(*left));
+    place = knife_of(knife_in_right_ ? *right : *left, knife_m);
+  } else if (has_both) {
+    place = {place_of(*left, hand::Joint::index_tip), place_of(*right, hand::Joint::index_tip)};
+  }
+  path_.draw_to({units_per_metre_ * place.from, units_per_metre_ * place.to});
+}
 
 ShapingCore::ShapingCore(ChangeBroker& changes, const CoreOptions& options)
     : units_per_metre_(options.units_per_metre), hands_(options.hands), bodies_(options.bodies),
@@ -99,7 +182,12 @@ void ShapingCore::place_tips(const Hands& hands, Points& tips) noexcept {
   const auto hand_count = static_cast<Eigen::Index>(hands_.size());
   const Eigen::Index points = tips.cols() / ((mirror_ ? 2 : 1) * hand_count);
   for (const Side side : hands_) {
-    write_tips(hands[Placement::index_of(side)]->pose, units_per_metre_, points, column, tips);
+    const hand::HandPose& pose = hands[Placement::index_of(side)]->pose;
+    if (points == 5)
+      tips.middleCols<5>(column) = units_per_metre_ * pose.fingertip_positions();
+    else
+      tips.middleCols<static_cast<int>(hand::held_point_count)>(column) =
+          units_per_metre_ * hand::held_places(pose);
     column += points;
   }
   if (mirror_) mirror_half(*mirror_, tips);
@@ -190,15 +278,15 @@ void ShapingCore::take_puppet(ReadyRig& rig, ReadySculptor& ready, const Hands& 
   if (!puppet_) place_again(hands);
 }
 
-void ShapingCore::begin_anew(LogChange& change, const Hands& hands, Frame& frame,
-                             LoopStats& stats) noexcept {
+void ShapingCore::restart(LogChange& change, const Hands& hands, Frame& frame,
+                          LoopStats& stats) noexcept {
   LoopState& state = change.state;
   if (puppet_) puppet_->reset_gestures();
   place_again(hands);
   blade_->clear();
   holds_after_blade_ = false;
-  if (puppet_) state.rig = puppet_->player().state(); // which has room for it
-  shaping_.begin_anew(tips_, change.log != nullptr, frame, stats);
+  if (puppet_) state.rig = puppet_->player().state(); // which has memory for it
+  shaping_.restart(tips_, change.log != nullptr, frame, stats);
   keep_held_values();
   state.held = shaping_.is_held();
   const deform::BlockShape& rest = shaping_.sculptor().rest();

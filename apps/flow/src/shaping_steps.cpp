@@ -6,7 +6,8 @@
 
 #include <algorithm>
 
-#include "noted_step.hpp"
+#include <nendo/deform/step_note.hpp>
+#include <nendo/flow/frame.hpp>
 
 namespace nendo::flow {
 
@@ -16,6 +17,19 @@ using deform::Points;
 using deform::StepNote;
 
 namespace {
+
+/// The content of a step's note in the history.
+struct NotedStep {
+  Step step;
+  Awaited other; ///< to which an undo of a change leads, or a redo once it is undone
+
+  static NotedStep of(const deform::StepNote& note) noexcept { return note.get<NotedStep>(); }
+  deform::StepNote note() const noexcept {
+    deform::StepNote note{};
+    note.set(*this);
+    return note;
+  }
+};
 
 HistoryMove history_move(Request step) noexcept {
   if (step == Request::undo) return HistoryMove::undo;
@@ -58,7 +72,7 @@ bool Shaping::take_step(Request step, const Points& tips, LoopStats& stats) noex
   return true;
 }
 
-/// Returns whether the step undoes or redoes a change. An undo of what the hands have shaped since
+/// Returns whether the step undoes or redoes a change. An undo of the hands' work since
 /// the last step comes first. By the old rule (LoopOptions::pull_is_step), a pull in type 1 is
 /// dropped together with the change.
 bool Shaping::is_change_next(Request step) const noexcept {
@@ -70,7 +84,7 @@ bool Shaping::is_change_next(Request step) const noexcept {
   return step != Request::undo || goes_on || !is_in_hand();
 }
 
-/// Returns what the next step goes to, if it is a change.
+/// Returns the target of the next step, if it is a change.
 std::optional<Awaited> Shaping::target_of(Request step) const noexcept {
   const StepNote* const note =
       step == Request::undo ? model_->shape.to_undo() : model_->shape.to_redo();
@@ -81,7 +95,7 @@ std::optional<Awaited> Shaping::target_of(Request step) const noexcept {
 /// Returns false if another thread must first make the other sculptor (Frame::awaited).
 bool Shaping::take_change(Request step, const Points& tips, LoopStats& stats) noexcept {
   const auto other = target_of(step);
-  if (other != in_force()) {
+  if (other != in_effect()) {
     awaited_ = other;
     return false;
   }
@@ -116,7 +130,7 @@ void Shaping::step_to(Request step, ModelVersion& next, const Awaited& before) n
 
 /// Adds a step from these settings to the present ones. Without `is_step`, it extends the last step
 /// instead if that was a change of settings.
-void Shaping::note_settings(const LoopSettings& before, bool is_step) noexcept {
+void Shaping::record_settings(const LoopSettings& before, bool is_step) noexcept {
   deform::SculptedShape& shape = model_->shape;
   const StepNote* const last = is_step ? nullptr : shape.to_undo();
   NotedStep noted{step_now(StepKind::settings), {before, model_->number, puppet_}};
@@ -141,7 +155,7 @@ static StepKind kind_of(ModelSource source) noexcept {
 }
 
 /// Adds the step to that new version, in both histories.
-void Shaping::note_model(ModelVersion& next, const LoopSettings& before) noexcept {
+void Shaping::record_model(ModelVersion& next, const LoopSettings& before) noexcept {
   const Step step = step_now(kind_of(next.origin->source));
   next.before = model_;
   model_->behind = nullptr; // as mark() forgets what was undone
@@ -149,7 +163,7 @@ void Shaping::note_model(ModelVersion& next, const LoopSettings& before) noexcep
   next.shape.mark(NotedStep{step, {before, model_->number, puppet_}}.note());
 }
 
-void Shaping::note_puppet(const Awaited& before, StepKind kind) noexcept {
+void Shaping::record_puppet(const Awaited& before, StepKind kind) noexcept {
   model_->shape.mark(
       NotedStep{step_now(kind), {before.settings, model_->number, before.puppet}}.note());
 }

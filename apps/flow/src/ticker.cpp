@@ -20,7 +20,7 @@ DeformLoop::Ticker::Ticker(ChangeBroker& changes, const LoopOptions& options,
 }
 
 void DeformLoop::Ticker::run(const std::atomic<bool>& stop, std::uint64_t max_ticks) noexcept {
-  // Without real-time priority the kernel may delay a wake-up by 50 microseconds unless it is told
+  // Without real-time priority the kernel may delay a wake-up by 50 microseconds unless it is set
   // not to.
   ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
   PaceOptions pace = options_;
@@ -80,7 +80,7 @@ void DeformLoop::Ticker::begin_change() noexcept {
   if (log != nullptr) {
     if (change_->holds_still) log->command(HoldStill{});
     if (change_->model) log->command(*change_->model);
-    // Whoever does the same in this order is refused neither: puppets are not for whole hands.
+    // In this order a replay is refused neither: puppets are not for whole hands.
     const bool is_by_hands = change_->settings && flow::is_by_hands(change_->settings->mode);
     if (change_->settings && !is_by_hands) log->command(ChangeSettings{*change_->settings});
     if (change_->rig) log->command(ChangePuppet{change_->rig->number});
@@ -99,8 +99,8 @@ void DeformLoop::Ticker::finish_change(Frame& frame) noexcept {
   core_.finish(*change_, inputs_.pose(), frame, stats_);
   if (!change_->log) return;
   switch_on_ = false;
-  inputs_.begin_anew(change_->log->state);
-  core_.begin_anew(*change_->log, inputs_.pose(), frame, stats_);
+  inputs_.restart(change_->log->state);
+  core_.restart(*change_->log, inputs_.pose(), frame, stats_);
 }
 
 void DeformLoop::Ticker::end_change() noexcept {

@@ -7,9 +7,9 @@
 
 namespace nendo::flow {
 
-bool WantedSettings::follow(const LoopSettings& in_force) noexcept {
-  if (in_force == now || HostClock::now() - asked_at_ < patience) return false;
-  now = asked_ = in_force;
+bool WantedSettings::follow(const LoopSettings& in_effect) noexcept {
+  if (in_effect == now || HostClock::now() - asked_at_ < patience) return false;
+  now = asked_ = in_effect;
   return true;
 }
 

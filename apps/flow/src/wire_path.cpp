@@ -40,7 +40,7 @@ bool WirePath::is_near_last(const deform::WirePlace& place) const noexcept {
   return count_ > 0 && way_between(place, places_[count_ - 1]) < step_;
 }
 
-/// A hand that stands still trembles, and a blade that goes back and forth passes through itself.
+/// A hand at rest trembles, and a blade that goes back and forth passes through itself.
 /// Where the wire comes back to a place by a short way, that way is forgotten.
 void WirePath::forget_detour(const deform::WirePlace& place) noexcept {
   double detour = count_ > 0 ? way_between(place, places_[count_ - 1]) : 0.0;

@@ -1,5 +1,5 @@
 /* What `nendo run --publish shm:NAME` shows in /dev/shm/nendo-NAME, for programs in C99 and C++.
- * /usr/share/doc/libnendo-dev/publish-format.md tells the same byte for byte. Map the file for
+ * /usr/share/doc/libnendo-dev/publish-format.md describes the same byte for byte. Map the file for
  * reading, judge it with nendo_publish_is_usable(), then copy what you want with the functions
  * below: the writer never waits for a reader, so a copy counts only if they return 1. They neither
  * block nor call the system. Needs GCC's or Clang's atomics. */
@@ -189,11 +189,11 @@ static inline int nendo_publish_still_holds(const uint64_t* stage, uint64_t numb
   return __atomic_load_n(stage, __ATOMIC_RELAXED) == 2 * number + 2;
 }
 
-/* Copies record `number`, and of its fields as many bytes as there are and `fields_room` takes (0:
- * none). 0: it is not there (any more). Both pointers aligned to 8. */
+/* Copies record `number`, and at most `max_fields_bytes` of its fields (0:
+ * none). 0: it is not there, or no longer. Both pointers aligned to 8. */
 static inline int nendo_publish_read(const void* base, uint64_t number,
                                      struct nendo_publish_record* record, void* fields,
-                                     uint64_t fields_room) {
+                                     uint64_t max_fields_bytes) {
   const struct nendo_publish_header* h = (const struct nendo_publish_header*)base;
   const char* slot =
       (const char*)base + h->records_offset + number % h->record_slots * h->record_stride;
@@ -201,7 +201,7 @@ static inline int nendo_publish_read(const void* base, uint64_t number,
   if (number == 0 || !nendo_publish_holds((const uint64_t*)slot, number)) return 0;
   nendo_publish_copy(record, slot, sizeof *record);
   if (bytes > record->fields_bytes) bytes = record->fields_bytes;
-  if (bytes > fields_room) bytes = fields_room;
+  if (bytes > max_fields_bytes) bytes = max_fields_bytes;
   nendo_publish_copy(fields, slot + sizeof *record, bytes);
   return nendo_publish_still_holds((const uint64_t*)slot, number);
 }

@@ -34,7 +34,7 @@ Result<StoredCalibration> named_calibration(const std::string& name, const Note&
   const auto list = stored_calibrations(note);
   std::vector<const StoredCalibration*> meant;
   for (const auto& file : list.files) {
-    if (stem_of(file) == name) return file; // an own one stands first
+    if (stem_of(file) == name) return file; // the user's own comes first
     if (file.wearer.user == name && is_in_force(file, list.files)) meant.push_back(&file);
   }
   if (meant.size() == 1) return *meant.front();

@@ -7,8 +7,7 @@
 #include <nendo/base/advised_command.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/recording/take_reader.hpp>
-#include <nendo/sculpting/kept_ranges.hpp>
-#include <nendo/sculpting/kept_slips.hpp>
+#include <nendo/sculpting/kept_learning.hpp>
 
 namespace nendo::sculpting {
 namespace {
@@ -21,7 +20,7 @@ void report_choice(const driver::GloveInfo& glove, const hand::StoredCalibration
     note(printable(glove.source) + ": " + sensors_in_words(file.wearer.left_out) +
          (is_one(file.wearer.left_out) ? " was" : " were") +
          " stuck when it was calibrated, so estimated from the sensors beside; once the glove "
-         "is mended, calibrate it again");
+         "is repaired, calibrate it again");
 }
 
 void report_none(const driver::GloveInfo& glove, Side side, const Note& note) {
@@ -53,12 +52,12 @@ Result<void> check_user(const hand::CalibrationList& stored, const std::string& 
   return Error{
       Errc::bad_input,
       option + " " + printable(user) + ": no calibration of " + printable(user) + " is stored; " +
-          (known.empty() ? "nobody has one yet" : "there are those of " + known) +
+          (known.empty() ? "there is none yet" : "there are those of " + known) +
           "; `nendo calibrate GLOVE --user " + shell_word(printable(user)) + "` makes one"};
 }
 
-/// Tells of the calibration that a glove of the other hand would get in place of `glove`, if it is
-/// another wearer's.
+/// Warns about the calibration that a glove of the other hand would get in place of `glove`, if it
+/// is another wearer's.
 void report_other(const driver::GloveInfo& glove, const hand::StoredCalibration& own,
                   const hand::StoredCalibration& other, const Note& note) {
   if (own.wearer.user == other.wearer.user) return;
@@ -67,14 +66,14 @@ void report_other(const driver::GloveInfo& glove, const hand::StoredCalibration&
        printable(other.path.string()) + ")");
 }
 
-/// Returns what the wearer should know of a choice that another glove may have been meant by. A
-/// CyberGlove tells no serial number, so that its calibrations are for any glove.
+/// Returns a note about a choice that may be meant for another glove. A
+/// CyberGlove has no serial number, so that its calibrations are for any glove.
 std::string doubt_about(const hand::CalibrationChoice& choice) {
   if (choice.match == hand::GloveMatch::this_glove) return "";
   if (choice.match == hand::GloveMatch::other_glove)
     return "; made with another glove of this model";
   return choice.file->wearer.glove_model.empty()
-             ? "; it does not tell with which glove it was made"
+             ? "; it does not name the glove with which it was made"
              : "; made with a glove of this model, maybe another one";
 }
 

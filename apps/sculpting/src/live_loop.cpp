@@ -15,7 +15,7 @@
 
 namespace nendo::sculpting {
 
-// In the order of need: what stands below uses what stands above.
+// In the order of construction: later members use earlier ones.
 struct LiveLoop::Parts {
   Parts(deform::Mesh mesh, const LiveOptions& wanted)
       : model(std::move(mesh)), options(wanted), process(wanted.realtime) {}
@@ -117,7 +117,7 @@ Result<void> LiveLoop::Parts::place_loop() {
   set_supports(options.radius_m ? deform::one_radius(*options.radius_m * placement.units_per_metre)
                                 : usual_supports(model, options.mode),
                made.sculptor);
-  set_undo_room(model, options.undo_bytes.value_or(deform::half_of_memory()), made);
+  set_undo_space(model, options.undo_bytes.value_or(deform::half_of_memory()), made);
   auto ready = make_loop(model, placement, inputs, made);
   if (!ready) return ready.error();
   loop = *std::move(ready);

@@ -14,7 +14,7 @@ using std::chrono::milliseconds;
 
 Result<void> wait_for_sample(OpenHand& hand, const std::function<bool()>& is_stopped) {
   const double rate_hz = hand.glove->info().rate_hz;
-  // A glove whose rate is not known may send one record a second.
+  // A glove whose rate is not known may send one record per second.
   const double patience_s = rate_hz > 0.0 ? std::clamp(3.0 / rate_hz, 2.0, 60.0) : 4.0;
   const HostTime end = HostClock::now() + from_seconds(patience_s);
   const auto stops = [&] { return is_stopped && is_stopped(); };
@@ -117,7 +117,7 @@ Result<void> wait_for_samples(std::span<OpenHand> hands, const std::function<boo
 Result<void> find_wearers(std::span<OpenHand> hands, const CalibrationOptions& options,
                           const Note& note) {
   for (OpenHand& hand : hands) {
-    // A sample tells the side of the glove that sent it, which need not be the identified one.
+    // A sample has the side of the glove that sent it, which need not be the identified one.
     auto wearer = find_wearer(hand.glove->info(), hand.first.side, options, note);
     if (!wearer) return wearer.error();
     hand.wearer = *std::move(wearer);

@@ -20,7 +20,7 @@ hand::JointAngles first_angles(const flow::HandInput& hand) {
 }
 
 /// Hands that press clay begin beside it, from where bent fingers or a moved hand reach it.
-void stand_beside(std::span<const flow::HandInput> hands, const deform::Mesh& model,
+void place_beside(std::span<const flow::HandInput> hands, const deform::Mesh& model,
                   flow::Placement& placement) {
   constexpr double clear_m = 0.010;
   for (const auto& hand : hands) {
@@ -48,7 +48,7 @@ double usual_size_m(flow::Mode mode) noexcept {
 
 deform::Supports usual_supports(const deform::Mesh& model, flow::Mode mode) {
   constexpr double fraction = 0.2;       // 16 cm on the stage
-  constexpr double clay_fraction = 0.32; // a ball of 7.5 cm gives way for 2.4 cm about a hand
+  constexpr double clay_fraction = 0.32; // a ball of 7.5 cm yields within 2.4 cm of a hand
   const double size = longest_side(model);
   return deform::one_radius((mode == flow::Mode::clay ? clay_fraction : fraction) *
                             (size > 0.0 ? size : 1.0));
@@ -62,8 +62,8 @@ void set_supports(deform::Supports supports, flow::SculptorOptions& sculptor) {
   sculptor.deformer.csrbf.merge_fraction = flow::fingertip_merge_fraction;
 }
 
-void set_undo_room(const deform::Mesh& model, std::size_t max_bytes, flow::LoopOptions& loop) {
-  // Room for some dozens of whole shapes, of which strokes mostly change parts.
+void set_undo_space(const deform::Mesh& model, std::size_t max_bytes, flow::LoopOptions& loop) {
+  // Memory for some dozens of whole shapes, of which strokes mostly change parts.
   constexpr std::size_t max_at_once = std::size_t{64} << 20;
   constexpr std::size_t shapes_of_a_vertex = std::size_t{64} * 3 * sizeof(float);
   const std::size_t at_once =
@@ -88,7 +88,7 @@ flow::Placement place(const deform::Mesh& whole, std::span<const flow::HandInput
       options.is_for_player
           ? flow::place_player(model)
           : flow::place_hands(model, tips, {.model_size_m = options.model_size_m});
-  if (options.mode == flow::Mode::clay) stand_beside(hands, model, placement);
+  if (options.mode == flow::Mode::clay) place_beside(hands, model, placement);
   return placement;
 }
 
@@ -102,7 +102,7 @@ Result<std::unique_ptr<flow::DeformLoop>> make_loop(const deform::Mesh& model,
   if (!fine) return fine.error();
   auto loop = std::make_unique<flow::DeformLoop>(model, placement, hands, options, first);
   if (!is_solved(loop->grab_status())) {
-    return Error{Errc::failed, "the hands cannot take hold of the model: " +
+    return Error{Errc::failed, "the hands cannot grab the model: " +
                                    std::string(deform::describe(loop->grab_status()))};
   }
   return loop;

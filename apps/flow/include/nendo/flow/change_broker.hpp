@@ -17,7 +17,7 @@ namespace nendo::flow {
 
 /// What a loop or a timeline begins with: for its ChangeBroker, and for its ShapingCore.
 struct CoreOptions {
-  SculptorSetup setup; ///< without what a puppet, masks or hands' bodies add to it
+  SculptorSetup setup; ///< without the additions of a puppet, masks or hands' bodies
   ShapingOptions shaping{};
   std::vector<Side> hands; ///< one or two, in the order of their control points
   std::size_t inputs = 1;  ///< hands and layers
@@ -28,7 +28,7 @@ struct CoreOptions {
   puppet::RigState rig_state{}; ///< the state of the puppet's player at first
   /// Further puppets, for change_puppet() by their numbers, from 1 on.
   std::vector<std::shared_ptr<const puppet::Rig>> more_rigs{};
-  std::size_t undo_max_bytes = 0; ///< UndoRoom::max_bytes, of all versions together
+  std::size_t undo_max_bytes = 0; ///< UndoSpace::max_bytes, of all versions together
 };
 
 /// Asking thread, which may be the loop's, but for the last two functions. Changes that the loop
@@ -46,10 +46,10 @@ public:
 
   /// Makes all that these settings need: the stroke in hand then ends, and the fingertips grab the
   /// same shape again. What is shaped between changes that are less than a second apart is one
-  /// step for undo. Settings that were asked for last change nothing. Allocates. Error, bad_input:
+  /// step for undo. The last requested settings change nothing. Allocates. Error, bad_input:
   /// why they are not possible (compatible()); nothing changes then.
   Result<void> change_settings(const LoopSettings& settings);
-  /// Returns the settings that were asked for last, and their sculptor's options.
+  /// Returns the last requested settings, and their sculptor's options.
   const LoopSettings& settings() const noexcept { return setup().settings; }
   const SculptorOptions& sculptor_options() const noexcept { return setup().options; }
   const SculptorSetup& setup() const noexcept;
@@ -59,7 +59,7 @@ public:
   /// change of models: ask again later).
   Result<void> change_to(const Awaited& awaited);
 
-  /// Lets the input go to `log` from a tick on, or nowhere. That tick keeps what the hands have
+  /// Logs the input to `log` from a tick on, or nowhere. That tick keeps what the hands have
   /// shaped, and they grab again; a log gets no undo that leads back before it. Ask take_state()
   /// when it has happened. Both logs must outlive that. `like` is a shape of the latest frames: the
   /// tick copies only the blocks that differ from it.
@@ -84,13 +84,13 @@ public:
   std::uint32_t next_puppet() const noexcept;
   /// Returns that puppet; null if it is none, and the hands touch the model.
   const std::shared_ptr<const puppet::Rig>& puppet(std::uint32_t number) const noexcept;
-  /// Returns the number of the one that was asked for last.
+  /// Returns the number of the last requested one.
   std::uint32_t newest_puppet() const noexcept;
   /// Returns the puppet with which the loop began; null if the hands touched the model.
   const puppet::Rig* first_puppet() const noexcept;
 
   // Another model, in two changes, so that the hands continue while it is made and nothing is lost
-  // of what they do. Make a PendingModel of newest_model(); ask the loop to hold still; when it
+  // of their work. Make a PendingModel of newest_model(); ask the loop to hold still; when it
   // does, finish the model and hand it over. No log may begin or end meanwhile.
 
   /// Lets the hands stop shaping at the end of the next tick (Shaping::hold_still()). Error:
@@ -99,7 +99,7 @@ public:
   /// Returns whether the loop has done so, and waits for a model.
   bool is_still();
   /// Finishes the model, which must be made of newest_model(), for the loop, which must be still.
-  /// `accepts` is called with the new version before the loop has it. Settings that are asked for
+  /// `accepts` is called with the new version before the loop has it. Settings that are requested
   /// meanwhile come with it. Later, versions to which no undo or redo leads any more are freed.
   /// With an error the loop continues with the model that it has: the error of `accepts` or
   /// PendingModel::finish(), or bad_input if a puppet plays the model and it would be cut or
@@ -117,8 +117,8 @@ public:
   const deform::BlockLayout& layout(std::uint32_t version = 0) const noexcept {
     return model(version)->layout();
   }
-  /// Makes room for more undos, up to the most bytes. Call it now and then. Returns false if there
-  /// is no more room, so that the oldest steps will be dropped.
+  /// Allocates memory for more undos, up to the maximum. Call it now and then. Returns false if the
+  /// maximum is reached, so that the oldest steps will be dropped.
   bool refill_undo();
 
   /// The loop takes changes out of this, and says when one is done. Loop's thread.

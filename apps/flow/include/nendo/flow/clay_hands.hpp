@@ -1,5 +1,5 @@
 #pragma once
-// Hands that press clay, in the form that a Sculptor has for its ways of deforming.
+// Hands that press clay, with the interface that a Sculptor needs.
 
 #include <array>
 #include <cstdint>
@@ -19,24 +19,24 @@ namespace nendo::flow {
 /// the model's own units.
 struct NENDO_API ClayModel {
   explicit ClayModel(const deform::Mesh& mesh);
-  /// Of a mesh that was refined: the clay is the same, and rest shapes of other triangles enclose a
-  /// little less.
+  /// For a mesh that was refined: the clay is the same, and its other triangles enclose a little
+  /// less.
   ClayModel(const deform::Mesh& mesh, double first_volume);
 
   std::vector<std::uint32_t> corners;
   double volume = 0.0; ///< >= 0
 };
 
-/// What the hands do to clay in a frame, and did before. `contacts` of Frame tell where.
+/// What the hands do to clay in a frame, and did before. Frame::contacts has the places.
 struct ClayState {
   bool is_clay = false;        ///< the mode is clay; otherwise all else is 0
   std::uint32_t touching = 0;  ///< places at which hands touch the surface
   double penetration_mm = 0.0; ///< how deep the surface was left in a hand, before it was set right
-  double behind_mm = 0.0;      ///< the way of a hand that waits for the next tick
+  double behind_mm = 0.0;      ///< the path of a hand that is left for the next tick
   double volume = 0.0;         ///< now, in cubic model units; 0 if the surface is not closed
-  double first_volume = 0.0;   ///< of the model before the hands
+  double first_volume = 0.0;   ///< the model's volume before the hands
 
-  /// Returns the volume, of what it was at first; 1 if there is none.
+  /// Returns the volume, relative to the first one; 1 if there is none.
   double volume_part() const noexcept { return first_volume > 0.0 ? volume / first_volume : 1.0; }
 };
 
@@ -46,18 +46,18 @@ NENDO_API float strength_of(const deform::ClayContact& contact) noexcept;
 
 /// How hard each finger, thumb to little finger, and the palm press, from 0 to 1.
 using HandTouch = std::array<float, hand::finger_count + 1>;
-/// Returns that of a body: HandBodies counts them.
+/// Returns the touch of a body, by its index in HandBodies.
 NENDO_API HandTouch touch_of(std::span<const deform::ClayContact> contacts,
                              std::size_t body) noexcept;
 
 /// Its functions do what those of deform::Type2Deformer do; the bodies, and not the fingertips,
-/// tell where the hands are. None but the constructors allocates.
+/// give the hands' positions. None but the constructors allocates.
 class NENDO_API ClayHands {
 public:
-  /// `radius_m` tells how far clay gives way about a hand, on the stage; less than min_radius_m
-  /// counts as that, because palms crease the surface otherwise. `shape` must outlive this.
-  /// With a `mirror`, the x of a plane in model units, the hands' mirror images press as well.
-  /// `scales_few_vertices`: see deform::ClayOptions.
+  /// `radius_m` is the distance from a hand within which clay yields, on the stage; less than
+  /// min_radius_m counts as that, because palms crease the surface otherwise. `shape` must outlive
+  /// this. With a `mirror`, the x of a plane in model units, the hands' mirror images press as
+  /// well. `scales_few_vertices`: see deform::ClayOptions.
   ClayHands(deform::SculptedShape& shape, std::shared_ptr<const ClayModel> model,
             std::shared_ptr<const HandBodies> bodies, double radius_m,
             const deform::DeformerOptions& options, std::optional<double> mirror,

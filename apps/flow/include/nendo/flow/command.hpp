@@ -1,5 +1,5 @@
 #pragma once
-// Everything that a person may ask of a run by keys, by the window's mouse and buttons, or by a
+// The commands that a user gives to a run by keys, by the window's mouse and buttons, or by a
 // browser. A command is a plain value of fixed size, so that it passes through rings without
 // allocation.
 
@@ -29,13 +29,13 @@ struct ChangeSettings {
 struct Subdivide {
   friend bool operator==(const Subdivide&, const Subdivide&) = default;
 };
-/// Makes a model of the present one whose triangles suit the present shape (deform::Refiner).
+/// Adapts the model's triangles to the current shape (deform::Refiner).
 struct Refine {
   /// No edge is split beyond it.
   std::uint32_t max_vertices = std::uint32_t{1} << 22;
   friend bool operator==(const Refine&, const Refine&) = default;
 };
-/// Lets what is thinner than its edges part, open, or fuse (deform::change_topology()).
+/// Separates, opens or fuses places thinner than the edges (deform::change_topology()).
 struct ChangeTopology {
   friend bool operator==(const ChangeTopology&, const ChangeTopology&) = default;
 };
@@ -60,8 +60,8 @@ struct SaveRecording {
 struct Mark {
   friend bool operator==(const Mark&, const Mark&) = default;
 };
-/// Lets a hand, or one of its fingers, release the functions of a puppet that it plays, or take
-/// hold of them again (puppet::RigPlayer::set_clutch()).
+/// Lets a hand, or one of its fingers, release the functions of a puppet that it plays, or grab
+/// them again (puppet::RigPlayer::set_clutch()).
 struct SetClutch {
   Side side = Side::left;
   std::uint8_t finger = puppet::RigPlayer::all_fingers;
@@ -71,7 +71,7 @@ struct SetClutch {
 /// Lets a function of a puppet listen to another signal. Those that a puppet has not are passed
 /// over.
 struct SetRole {
-  std::uint16_t function = 0; ///< of puppet::Puppet::functions
+  std::uint16_t function = 0; ///< the index in puppet::Puppet::functions
   puppet::HandSignal input;
   friend bool operator==(const SetRole&, const SetRole&) = default;
 };
@@ -81,20 +81,20 @@ struct SetSymmetry {
   bool on = false;
   friend bool operator==(const SetSymmetry&, const SetSymmetry&) = default;
 };
-/// What becomes of the masks, which hold parts of the model where they are.
+/// An edit of the masks, which protect parts of the model.
 enum class MaskEdit : std::uint8_t {
-  hold,   ///< a ball is held
-  free,   ///< balls whose middle is in that ball are no longer held
-  clear,  ///< everything moves
-  invert, ///< what was held moves, and the rest is held
+  hold,   ///< protects a ball
+  free,   ///< removes the balls whose middle is in that ball
+  clear,  ///< removes all protection
+  invert, ///< protects what was free, and frees what was protected
 };
 NENDO_API std::string_view name_of(MaskEdit edit) noexcept;
 NENDO_API std::optional<MaskEdit> mask_edit_named(std::string_view name) noexcept;
 /// Edits the masks of the fingertips, or of the puppet that is played.
 struct NENDO_API SetMask {
   MaskEdit edit = MaskEdit::clear;
-  std::array<double, 3> at{}; ///< of the model before anybody has shaped it, model units
-  double radius = 0.0;        ///< model units, > 0; what is in the ball is held half at least
+  std::array<double, 3> at{}; ///< a place of the undeformed model, model units
+  double radius = 0.0;        ///< model units, > 0; the ball is protected by half at least
   bool is_usable() const noexcept;
   friend bool operator==(const SetMask&, const SetMask&) = default;
 };
@@ -108,7 +108,7 @@ struct SetLayer {
 struct Punch {
   friend bool operator==(const Punch&, const Punch&) = default;
 };
-/// With what hands cut.
+/// The cutting tool.
 enum class Blade : std::uint8_t {
   wire,  ///< between both index fingertips, or, of one hand alone, between thumb and index finger
   knife, ///< from the tip of an index finger on, where it points to; as long as the model
@@ -125,7 +125,7 @@ struct JoinParts {
   double seam_width = 0.0; ///< model units, >= 0
   friend bool operator==(const JoinParts&, const JoinParts&) = default;
 };
-/// Puts a copy of a part beside it, or removes the part: of the one that a hand holds, or has held
+/// Puts a copy of a part beside it, or removes the part: the one that a hand holds, or has held
 /// last (PartsState::chosen).
 struct EditPart {
   bool removes = false;
@@ -137,23 +137,23 @@ struct EndRun {
   friend bool operator==(const EndRun&, const EndRun&) = default;
 };
 
-/// The hands stop shaping at the end of a tick. Nobody asks for it but who makes a model of that
+/// The hands stop shaping at the end of a tick. Requested only while a new model is built from the
 /// shape; the ChangeModel that follows lets them continue where they have stopped.
 struct HoldStill {
   friend bool operator==(const HoldStill&, const HoldStill&) = default;
 };
-/// From what a model comes. Recordings keep the numbers.
+/// The origin of a model. Recordings keep the numbers.
 enum class ModelSource : std::uint8_t {
-  kept,       ///< it was there before: an undo or a redo goes there
-  subdivided, ///< it is the model before, subdivided
-  refined,    ///< it is the model before, refined for the shape that it had
-  cut,        ///< it is the shape before, cut by the wire that was drawn last
-  joined,     ///< it is the shape before, with all its parts joined
-  copied,     ///< it is the shape before, with a copy of one of its parts
-  removed,    ///< it is the shape before, without one of its parts
-  topology,   ///< it is the shape before, changed where it was thin
+  kept,       ///< an earlier version, to which an undo or a redo leads
+  subdivided, ///< the previous model, subdivided
+  refined,    ///< the previous model, refined for its shape
+  cut,        ///< the previous shape, cut by the wire that was drawn last
+  joined,     ///< the previous shape, with all its parts joined
+  copied,     ///< the previous shape, with a copy of one of its parts
+  removed,    ///< the previous shape, without one of its parts
+  topology,   ///< the previous shape, changed where it was thin
 };
-/// Returns whether such a model is made of the shape before, which becomes its rest.
+/// Returns whether such a model is made of the previous shape, which becomes its rest.
 constexpr bool is_of_shape(ModelSource source) noexcept {
   return source >= ModelSource::cut;
 }
@@ -161,23 +161,23 @@ constexpr bool is_of_shape(ModelSource source) noexcept {
 struct ChangeModel {
   std::uint32_t number = 0;
   ModelSource source = ModelSource::kept;
-  std::uint32_t max_vertices = 0; ///< Refine::max_vertices of what is refined
-  double seam_width = 0.0;        ///< JoinParts::seam_width of what is joined
+  std::uint32_t max_vertices = 0; ///< Refine::max_vertices, if it is refined
+  double seam_width = 0.0;        ///< JoinParts::seam_width, if it is joined
   std::uint32_t part = 0;         ///< that is copied or removed (deform::ModelParts)
   bool is_new() const noexcept { return source != ModelSource::kept; }
   friend bool operator==(const ChangeModel&, const ChangeModel&) = default;
 };
 
-/// The loop continues with another puppet (DeformLoop::change_puppet()). It only tells a log, and
-/// who plays that log.
+/// The loop continues with another puppet (DeformLoop::change_puppet()). For the log and its replay
+/// only.
 struct ChangePuppet {
   std::uint32_t number = 0; ///< DeformLoop::puppet()
   friend bool operator==(const ChangePuppet&, const ChangePuppet&) = default;
 };
 
-/// A loop obeys Request, WristMove, SetLayer, DrawWire and what is for puppets at the beginning of
-/// its next tick, and logs a Mark. All others are obeyed by the code that runs the loop. HoldStill,
-/// ChangeModel and ChangePuppet only tell a log what the loop did.
+/// A loop executes Request, WristMove, SetLayer, DrawWire and commands of puppets at the beginning
+/// of its next tick, and logs a Mark. The code that runs the loop executes all others. HoldStill,
+/// ChangeModel and ChangePuppet are only for the log.
 using Command =
     std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape, SaveRecording, EndRun,
                  Subdivide, HoldStill, ChangeModel, Mark, SetClutch, SetRole, SetSymmetry, SetLayer,
@@ -185,7 +185,8 @@ using Command =
                  ChangeTopology>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
-/// Returns what the command asks to be made of the model, without a number; nothing if it does not.
+/// Returns the change of the model that the command requests, without a number; nothing if it
+/// requests none.
 constexpr std::optional<ChangeModel> model_asked_by(const Command& command) noexcept {
   if (std::holds_alternative<Subdivide>(command)) return ChangeModel{0, ModelSource::subdivided};
   if (const auto* refine = std::get_if<Refine>(&command))
@@ -218,7 +219,7 @@ constexpr bool is_for_puppet(const Command& command) noexcept {
          std::holds_alternative<SetSymmetry>(command);
 }
 
-/// Returns whether a running loop obeys the command by itself.
+/// Returns whether a running loop executes the command itself.
 constexpr bool is_for_loop(const Command& command) noexcept {
   return std::holds_alternative<Request>(command) || std::holds_alternative<WristMove>(command) ||
          std::holds_alternative<Mark>(command) || std::holds_alternative<SetLayer>(command) ||

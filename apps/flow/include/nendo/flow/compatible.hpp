@@ -24,8 +24,8 @@ enum class Naming : std::uint8_t { options, words };
 /// other, why, and what to do; usage where it names options, otherwise bad_input. Allocates.
 NENDO_API Result<void> compatible(const LoopSettings& settings, Played played,
                                   Naming naming = Naming::words);
-/// Tells the same, and whether each of them has an effect. A loop takes settings of which one has
-/// none, so that people choose them in any order; on the command line they are a mistake.
+/// Checks the same, and whether each setting has an effect. A loop takes settings of which one has
+/// none, so that users choose them in any order; on the command line they are an error.
 NENDO_API Result<void> all_effective(const LoopSettings& settings, Played played,
                                      Naming naming = Naming::words);
 

@@ -70,7 +70,7 @@ inline constexpr ChoiceSetting<bool> pinches{
     pinches_named};
 } // namespace setting
 
-/// Calls see(setting) with the numbers of the filter, in the order in which files have them.
+/// Calls see(setting) with the numbers of the filter, in the order of files.
 template <class See>
 constexpr void for_each_filter_number(const See& see) {
   see(setting::min_cutoff);

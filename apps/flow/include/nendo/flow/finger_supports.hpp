@@ -1,6 +1,6 @@
 #pragma once
-// The radii of fingertips: as a person gives them, for a hand's five or both hands' ten, and as the
-// loop's supports, for its own fingertips.
+// The radii of fingertips: as a user gives them, for five fingers or ten, and as the loop's
+// supports.
 
 #include <array>
 #include <string>
@@ -18,12 +18,12 @@ namespace nendo::flow {
 NENDO_API Result<deform::Supports> parse_finger_supports(std::string_view text,
                                                          double units_per_metre = 1.0);
 
-/// Returns the supports of a loop with that many hands, 1 or 2, from those of two hands. Error:
+/// Returns the supports of a loop with 1 or 2 hands from those of two hands. Error:
 /// usage, if there is one hand, and the two hands differ.
 NENDO_API Result<deform::Supports> supports_of_hands(const deform::Supports& of_two, int hands);
 
-/// The supports of so many fingertips and of their mirror images, which follow them, of those of
-/// the fingertips alone; and the other way round.
+/// Returns the supports of fingertips and, after them, of their mirror images, from those of the
+/// fingertips alone; and the reverse.
 NENDO_API deform::Supports of_both_sides(deform::Supports supports, Eigen::Index tips);
 NENDO_API deform::Supports of_one_side(deform::Supports supports, Eigen::Index tips);
 
@@ -36,7 +36,7 @@ NENDO_API deform::Supports supports_on_model(const std::array<double, 5>& radius
 NENDO_API std::array<double, 5> radii_on_stage(const deform::Supports& supports,
                                                double units_per_metre);
 
-/// Returns these radii as all messages tell them, on the stage, and in the model's units in
+/// Returns these radii for messages, on the stage, and in the model's units in
 /// brackets: "13.2 cm (0.248)", or "13.2 to 14 cm (0.248 to 0.263)".
 NENDO_API std::string radius_text(const std::array<double, 5>& radius_m, double units_per_metre);
 

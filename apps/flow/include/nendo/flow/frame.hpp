@@ -33,8 +33,8 @@ struct HandFrame {
   /// Where the hand is. The wrist's joints, where a glove measures them, turn the hand from there.
   Eigen::Isometry3d T_stage_wrist = Eigen::Isometry3d::Identity();
   std::uint64_t samples = 0;  ///< received since the loop began
-  hand::JointAngles angles{}; ///< of which the pose is made
-  SensorMask left_out{};      ///< of its glove: stuck, so that their angles are estimated
+  hand::JointAngles angles{}; ///< the angles of the pose
+  SensorMask left_out{};      ///< stuck sensors of its glove, whose angles are estimated
 };
 
 /// What an undo or a redo waits for. The loop's owner must request it (DeformLoop::change_to()). No
@@ -53,7 +53,7 @@ struct Contacts {
   std::array<deform::ClayContact, most> places{};
   std::uint32_t count = 0;
 
-  /// Takes the first of them that have room. Their `body` counts the hands that are present, left
+  /// Takes the first of them, up to `most`. Their `body` counts the hands that are present, left
   /// hand first.
   void take(std::span<const deform::ClayContact> contacts) noexcept {
     count = static_cast<std::uint32_t>(std::min(contacts.size(), most));
@@ -67,8 +67,8 @@ struct Frame {
   std::uint64_t ticks_run = 0; ///< how many ticks have run
   std::uint64_t missed = 0;    ///< how many deadlines were skipped
   LoopSettings settings;       ///< with which this frame was made
-  /// How often somebody made permanent what the hands had shaped, by a commit or by releasing, and
-  /// how often somebody undid a step: as LoopStats counts them.
+  /// How often a commit or a release made permanent what the hands had shaped, and how often a step
+  /// was undone: as LoopStats counts them.
   std::uint64_t commits = 0;
   std::uint64_t undos = 0;
   /// How often the shape became the rest shape: at a commit, and where a stroke ended without one,
@@ -91,18 +91,18 @@ struct Frame {
   bool held = true;            ///< the hands hold the model; otherwise it is at rest
   HostTime scheduled{};
   HostTime woke{};
-  /// The time between the wake-ups of the tick before and of this one; 0 at first. It differs from
-  /// a whole number of periods, which `tick` tells, by lateness.
+  /// The time between the wake-ups of the previous tick and of this one; 0 at first. It differs
+  /// from a whole number of periods by lateness.
   HostClock::duration since_last{};
   double units_per_metre = 1.0;   ///< from the stage to the model
-  std::array<HandFrame, 2> hands; ///< by Placement::index_of(side)
+  std::array<HandFrame, 2> hands; ///< in the order of Placement::index_of(side)
   deform::FieldStatus status = deform::FieldStatus::ok;
   /// The fields in model units. Those of Type-1 lead from the rest shape to this shape, those of
-  /// Type-2 from the shape of the frame before.
+  /// Type-2 from the shape of the previous frame.
   deform::FieldSequence fields;
   /// What led along the surface from the rest shape to this shape, in place of fields.
   deform::SurfaceMove surface;
-  deform::ChainReport chain; ///< how the shape stayed injective; all 0 if that is not asked for
+  deform::ChainReport chain; ///< how the shape stayed injective; all 0 if that is off
   ClayState clay{};
   PartsState parts{};
   WirePath wire{}; ///< that hands draw, or have drawn last
@@ -113,15 +113,25 @@ struct Frame {
   /// puppet.
   std::array<float, puppet::Puppet::max_functions> functions{};
   std::uint32_t function_count = 0;
-  std::array<bool, 2> let_go{}; ///< by side: that hand has released all that it plays
+  std::array<bool, 2> let_go{}; ///< in the order of Side: that hand has released all that it plays
   bool symmetric = false;       ///< one hand plays both sides
   /// Which inputs of the loop are layers that play, or are coming in; bit k is input k.
   std::uint32_t layers_on = 0;
-  /// The deformed vertices, which DeformLoop::layout(model) turns into points. The stamps tell
+  /// The deformed vertices, which DeformLoop::layout(model) turns into points. The stamps show
   /// which blocks differ from those of an earlier frame of the same version.
   deform::BlockShape shape;
 };
 
 using FrameExchange = TripleBuffer<Frame>;
+
+/// Takes every frame of a loop. A single reader that needs only the newest frame uses
+/// DeformLoop::frames() instead.
+class NENDO_API FrameSink {
+public:
+  virtual ~FrameSink() = default;
+  /// Takes a frame. Loop's thread: it is a part of the tick, so it must be wait-free, without
+  /// allocation, lock or system call.
+  virtual void show(const Frame& frame) noexcept = 0;
+};
 
 } // namespace nendo::flow

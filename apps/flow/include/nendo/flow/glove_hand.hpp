@@ -1,5 +1,5 @@
 #pragma once
-// The way of one glove's samples to joint angles: calibration, sensor gate, filter, pinches.
+// Turns one glove's samples into joint angles: calibration, sensor gate, filter, pinches.
 
 #include <array>
 
@@ -28,7 +28,7 @@ struct NENDO_API GloveHand {
   /// Changes the filter, where it differs, and whether pinches are closed.
   void change_filter(const hand::FilterOptions& options, bool closes) noexcept;
   /// Forgets all that came before `latest` but what adaptation has learned.
-  void begin_anew() noexcept;
+  void restart() noexcept;
 
   const hand::HandSkeleton& skeleton() const noexcept {
     return skeletons[Placement::index_of(latest.side)];
@@ -41,16 +41,16 @@ struct NENDO_API GloveHand {
   HandInput input;
   std::size_t slot; ///< in arrays by side
   Eigen::Isometry3d T_stage_wrist;
-  std::array<hand::HandSkeleton, 2> skeletons; ///< by the glove's side
+  std::array<hand::HandSkeleton, 2> skeletons; ///< in the order of the glove's side
   hand::ActiveCalibration calibration;
   hand::SensorGate gate{};
   hand::JointFilter filter;
   GloveSample latest{};
   bool closes_pinches;        ///< the filter's options say so, and nothing is between the pads
-  hand::JointAngles angles{}; ///< of `latest`, filtered, with pinches closed
+  hand::JointAngles angles{}; ///< those of `latest`, filtered, with pinches closed
   WristSwitchEdge wrist_switch{};
-  bool is_lowest = true;  ///< of its side: the hand, and not a layer over it
-  bool is_topmost = true; ///< of its side: whose samples are counted
+  bool is_lowest = true;  ///< the hand of its side, and not a layer over it
+  bool is_topmost = true; ///< the last layer of its side, whose samples are counted
   bool fresh = false;     ///< samples came out of its ring in this tick
   bool silent = false;
 

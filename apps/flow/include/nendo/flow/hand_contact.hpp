@@ -38,7 +38,7 @@ public:
   void follow(std::size_t hand, const hand::HandPose& pose) noexcept;
   /// Returns the parts of the first hand, then those of the next, and of the table; model units.
   std::span<const deform::ContactPart> parts() const noexcept { return parts_; }
-  std::size_t count() const noexcept { return bodies_.size(); } ///< of hands
+  std::size_t count() const noexcept { return bodies_.size(); } ///< the number of hands
   static constexpr std::size_t tables = 1;
   const Table& table() const noexcept { return table_; }
   double units_per_metre() const noexcept { return units_per_metre_; }

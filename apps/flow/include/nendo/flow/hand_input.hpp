@@ -1,6 +1,5 @@
 #pragma once
-// What drives a hand of the loop: a glove's ring, its wearer's calibration, and how its samples are
-// filtered.
+// An input of the loop: a glove's ring, its wearer's calibration, and the filter of its samples.
 
 #include <cstddef>
 #include <memory>
@@ -25,7 +24,7 @@ struct HandInput {
   hand::Wearer wearer;
   GloveSample first;            ///< the pose in which the hand grabs the model
   bool gated = true;            ///< hand::SensorGate keeps out counts that no hand can have caused
-  hand::FilterOptions filter{}; ///< for the joint angles, at the samples' own times
+  hand::FilterOptions filter{}; ///< filters the joint angles, at the samples' own times
   /// Measured bones (HandSkeleton::of_bones) for gloves of the first sample's side, in place of the
   /// wearer's size. A recording does not keep them.
   std::optional<hand::HandSkeleton> measured{};

@@ -11,12 +11,12 @@ class HoldWatch {
 public:
   /// Returns true if the fingertips grabbed in this frame.
   bool follow(const Frame& frame) noexcept {
-    const bool anew = frame.held && (!held_ || frame.rest_changes != rest_changes_ ||
-                                     frame.shape_jumps != jumps_);
+    const bool has_grabbed = frame.held && (!held_ || frame.rest_changes != rest_changes_ ||
+                                            frame.shape_jumps != jumps_);
     held_ = frame.held;
     rest_changes_ = frame.rest_changes;
     jumps_ = frame.shape_jumps;
-    return anew;
+    return has_grabbed;
   }
 
 private:

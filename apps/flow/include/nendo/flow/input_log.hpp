@@ -16,11 +16,11 @@
 namespace nendo::flow {
 
 struct TakenSample {
-  std::uint8_t hand = 0; ///< of the loop's hands, by their order
+  std::uint8_t hand = 0; ///< the index of the loop's input
   GloveSample sample;
 };
 
-/// A tick. The entries between the tick before and this one are the input of this tick.
+/// A tick. The entries between the previous tick and this one are the input of this tick.
 struct LoggedTick {
   std::uint64_t number = 0; ///< Pacer::Due::number
   HostTime scheduled{};
@@ -31,12 +31,12 @@ struct LoggedTick {
 using InputLogEntry = std::variant<TakenSample, Command, LoggedTick>;
 
 /// Hands the loop's input to a recorder through a ring. A full ring refuses entries, and the next
-/// tick that finds room tells how many. The loop's side is wait-free.
+/// tick that is logged has their number. The loop's side is wait-free.
 class InputLog {
 public:
   /// Allocates once, 128 bytes for each entry. Two gloves and a loop at 90 Hz make 270 entries a
   /// second.
-  explicit InputLog(std::size_t at_least = std::size_t{1} << 14) : ring_(at_least) {}
+  explicit InputLog(std::size_t min_entries = std::size_t{1} << 14) : ring_(min_entries) {}
 
   void sample(std::uint8_t hand, const GloveSample& sample) noexcept {
     ring_.try_push(TakenSample{hand, sample}); // the ring counts what it refuses: lost()

@@ -41,9 +41,9 @@ public:
   /// Adds an event before those of the same time.
   void add(HostClock::duration at, const Command& command);
   void repeat(const Round& round) { round_ = round; }
-  /// Lets all times of samples be those of a take whose first tick is due at `begin`.
+  /// Moves the times of all samples so that the first tick is due at `begin`.
   void begin_at(HostTime begin) noexcept { shift_ = begin - first_tick_; }
-  /// Returns the sample with its times moved likewise, for HandInput::first.
+  /// Returns the sample with its times moved the same way, for HandInput::first.
   GloveSample moved(GloveSample sample) const noexcept;
 
   HostClock::duration length() const noexcept { return length_; }
@@ -72,9 +72,9 @@ public:
 
   /// Returns whether all of it has been played. Never, if it repeats. Thread-safe.
   bool has_ended() const noexcept { return ended_.load(std::memory_order_acquire); }
-  /// What a loop does not obey by itself: changes of settings and puppets, and Subdivide. Whoever
-  /// runs the loop takes them from here, and reports how many its counters() say were refused.
-  /// Asking thread.
+  /// The commands that a loop does not execute itself: changes of settings and puppets, and
+  /// Subdivide. The code that runs the loop takes them from here, and reports how many were refused
+  /// (counters()). Asking thread.
   CommandRing& for_others() noexcept { return for_others_; }
 
 private:

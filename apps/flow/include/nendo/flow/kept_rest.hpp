@@ -1,7 +1,7 @@
 #pragma once
-// The rest of a model that was made of a shape. Hands leave their work in the shape, so that the
-// shape is the new model's rest. A puppet's shape is what it does at that moment, and its rest
-// stays.
+// The rest shape (undeformed geometry) of a model that was made of a deformed shape. Hands leave
+// their work in the shape, so that the shape is the new model's rest. A puppet's shape is what it
+// does at that moment, and its rest stays.
 
 #include <nendo/base/api.hpp>
 #include <nendo/deform/mesh.hpp>

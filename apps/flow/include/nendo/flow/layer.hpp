@@ -1,7 +1,7 @@
 #pragma once
-// Takes in layers: an input of the loop may play some joints of a hand over what the inputs before
-// it play, as an animator overdubs. Angles are what is merged, because each glove's counts mean
-// something else, and the hand that shapes is one skeleton.
+// Layers: an input of the loop may play some joints of a hand over the inputs before it, as an
+// animator overdubs. Angles are merged, because each glove's counts mean something else, and the
+// hand that shapes is one skeleton.
 
 #include <array>
 #include <chrono>

@@ -1,6 +1,5 @@
 #pragma once
-// What a DeformLoop is made of beside the model and the hands: its pace, its rings, and its first
-// settings.
+// The options of a DeformLoop: its pace, its rings, and its first settings.
 
 #include <cstddef>
 #include <memory>
@@ -9,7 +8,7 @@
 
 #include <nendo/base/event_count.hpp>
 #include <nendo/flow/command.hpp>
-#include <nendo/flow/frame_sink.hpp>
+#include <nendo/flow/frame.hpp>
 #include <nendo/flow/input_log.hpp>
 #include <nendo/flow/input_script.hpp>
 #include <nendo/flow/pacer.hpp>
@@ -38,7 +37,7 @@ struct LoopOptions : PaceOptions {
   CommandRing* commands = nullptr;
   /// The log to which the loop writes its input, for a recorder. It must outlive the loop.
   InputLog* input_log = nullptr;
-  /// Recorded input that the loop takes in its ticks, before what is live. It must outlive the
+  /// Recorded input that the loop takes in its ticks, before live input. It must outlive the
   /// loop.
   InputScript* script = nullptr;
   /// When a wire or knife is drawn (DrawWire) by itself, since the first tick was due.
@@ -47,7 +46,7 @@ struct LoopOptions : PaceOptions {
     Blade blade = Blade::wire;
   };
   std::optional<WireTime> wire_time{};
-  std::size_t undo_max_bytes = 0; ///< UndoRoom::max_bytes, of all versions together
+  std::size_t undo_max_bytes = 0; ///< UndoSpace::max_bytes, of all versions together
   /// The sinks that are shown every frame. They must outlive the loop.
   std::vector<FrameSink*> sinks;
   /// Is notified of each sample that comes; OverrunPolicy::sample needs it. It must outlive the
@@ -65,9 +64,8 @@ struct LoopOptions : PaceOptions {
   /// Where its distances are along the surface, sculptor.surface is surface_for() it, or null: the
   /// loop then makes that itself.
   std::shared_ptr<const puppet::Rig> rig{};
-  puppet::RigState rig_state{}; ///< of its player at first
-  /// The settings at first, if settings_of() the sculptor and the filter would tell them less
-  /// exactly.
+  puppet::RigState rig_state{}; ///< its player's first state
+  /// The settings at first, if settings_of() the sculptor and the filter would be less exact.
   std::optional<LoopSettings> settings{};
 
   /// Whether an undo undoes what the hands have pulled in type 1 since the last commit as a

@@ -1,5 +1,5 @@
 #pragma once
-// The settings that a person may change while a run continues, from one tick to the next.
+// The settings that can change during a run, from one tick to the next.
 
 #include <array>
 
@@ -13,13 +13,13 @@ struct NENDO_API LoopSettings {
   Mode mode = Mode::type1;
   deform::Wendland kernel = deform::Wendland::c2;
   bool injective = false;           ///< the surface never folds, unless it keeps its volume
-  std::array<double, 5> radius_m{}; ///< of each finger, on the stage, thumb to little finger
-  double piece_fraction = 0.05;     ///< the length of a piece of type 2, in least radii
-  hand::FilterOptions filter{};     ///< of both hands
-  /// Of each finger, thumb to little finger, in type 2 (SculptorOptions::brushes).
+  std::array<double, 5> radius_m{}; ///< each finger's radius on the stage, thumb to little finger
+  double piece_fraction = 0.05;     ///< the length of a piece of type 2, in minimum radii
+  hand::FilterOptions filter{};     ///< the filter of both hands
+  /// Each finger's brush, thumb to little finger, in type 2 (SculptorOptions::brushes).
   std::array<deform::Brush, 5> brushes{};
   double brush_strength = deform::usual_brush_strength; ///< -1 to 1
-  double keep_volume = 0.0; ///< 0, air, to 1, clay (deform::CsrbfOptions)
+  double keep_volume = 0.0; ///< 0: compressible ... 1: volume-preserving (deform::CsrbfOptions)
   Hold hold = Hold::fingertips;
 
   /// Returns whether all numbers are finite and within their ranges (setting.hpp). A loop takes no
@@ -29,7 +29,7 @@ struct NENDO_API LoopSettings {
   friend bool operator==(const LoopSettings&, const LoopSettings&) = default;
 };
 
-/// Returns what a program begins with that asks for nothing else: pinches are closed. A bare
+/// Returns the default settings of a program: pinches are closed. A bare
 /// LoopSettings leaves the hands as they are, for the poses of timelines, which are closed already.
 NENDO_API LoopSettings usual_settings() noexcept;
 
@@ -47,8 +47,7 @@ NENDO_API LoopSettings plain_settings_of(const SculptorOptions& sculptor) noexce
 /// Puts these into the options, but for `injective`.
 NENDO_API void set_plain_settings(SculptorOptions& sculptor, const LoopSettings& settings) noexcept;
 
-/// Returns by what the radii of these settings are larger than those of `first`: the ratio of their
-/// sums.
+/// Returns the ratio of the sums of the radii of these settings and of `first`.
 NENDO_API double scale_of_radii(const LoopSettings& settings, const LoopSettings& first) noexcept;
 
 /// The options of a sculptor, and the settings that they mean.
@@ -57,12 +56,12 @@ struct SculptorSetup {
   LoopSettings settings{};
 };
 
-/// Returns these supports with radii that many times as large.
+/// Returns these supports with all radii multiplied by `scale`.
 NENDO_API deform::Supports scaled(deform::Supports supports, double scale);
 
-/// Returns `now` with other settings. What settings do not tell stays. Radii that do not change
-/// stay as they are, with all their weights; these come back with the settings of `first`, with
-/// which it began. A puppet's points (`hands` is then 0) keep the ratios of their radii.
+/// Returns `now` with other settings. Options that settings do not have stay. Radii that do not
+/// change stay as they are, with all their weights; these come back with the settings of `first`,
+/// with which it began. A puppet's points (`hands` is then 0) keep the ratios of their radii.
 NENDO_API SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first,
                                       const LoopSettings& wanted, int hands,
                                       double units_per_metre);

@@ -39,7 +39,7 @@ struct LoopStats {
   std::array<hand::SensorRanges, 2> ranges{}; ///< learned; zeros if not adapting
   std::array<SensorMask, 2> left_out{};       ///< sensors that are left out, because they are stuck
   std::array<SensorMask, 2> was_left_out{};   ///< at any time
-  std::array<Side, 2> range_sides{};          ///< of the gloves that taught them
+  std::array<Side, 2> range_sides{};          ///< the sides of the gloves with these ranges
   /// By how many counts sensors have slipped; zeros if that is not learned.
   std::array<hand::SensorAngles, 2> slips_counts{};
   std::uint64_t grabs = 0;            ///< times the hands grabbed again
@@ -47,17 +47,17 @@ struct LoopStats {
   std::uint64_t undos = 0;            ///< times it became an earlier one
   std::uint64_t redos = 0;            ///< times it became what it had been before an undo
   std::uint64_t resets = 0;           ///< times it became what it was at first
-  std::uint64_t changes = 0;          ///< of settings
+  std::uint64_t changes = 0;          ///< changes of settings
   std::uint64_t undo_steps = 0;       ///< as many commits can be undone
   std::uint64_t forgotten_steps = 0;  ///< could not any more, for want of memory
   std::uint64_t refused_steps = 0;    ///< undos, redos and resets that found too many waiting
-  int max_links = 0;                  ///< of a tick; 0 unless the sculptor is injective
+  int max_links = 0;                  ///< the maximum per tick; 0 unless the sculptor is injective
   double max_bound = 0.0;             ///< Lipschitz bound of a tick, had it been one link
   double min_determinant = 1.0;       ///< ChainReport::min_determinant of any tick
-  std::uint64_t held_apart_ticks = 0; ///< in which fingertips were held apart
-  std::uint64_t touching_ticks = 0;   ///< in which hands touched clay
-  double max_penetration_mm = 0.0;    ///< of clay in a hand, before it was set right
-  ClayState clay{};                   ///< of the last tick in which hands shaped clay
+  std::uint64_t held_apart_ticks = 0; ///< ticks in which fingertips were kept apart
+  std::uint64_t touching_ticks = 0;   ///< ticks in which hands touched clay
+  double max_penetration_mm = 0.0;    ///< the depth of clay in a hand, before its correction
+  ClayState clay{};                   ///< the state at the last tick in which hands shaped clay
   Histogram wake_latency;             ///< from TickRecord::scheduled to the loop's running
   Histogram work;                     ///< from there to the published frame
   Histogram end_to_end; ///< from a sample's last byte to the published frame that shows it

@@ -1,7 +1,7 @@
 #pragma once
-// The versions of a model. What changes its vertices or faces makes a new version, beside the loop,
-// and the loop continues with it from one tick to the next. An undo goes back to the version
-// before.
+// The versions of a model. A change of its vertices or faces makes a new version, outside the loop,
+// and the loop continues with it from one tick to the next. An undo goes back to the previous
+// version.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,20 +23,20 @@ namespace nendo::flow {
 
 /// How much can be undone in a version: deform::DeformerOptions::undo_bytes, and by how many bytes
 /// more that memory may grow.
-struct UndoRoom {
+struct UndoSpace {
   std::size_t bytes = 0;
   std::size_t max_bytes = 0;
 };
 
-/// How a version came from the one before.
+/// How a version was made from the previous one.
 struct ModelOrigin {
   ModelSource source = ModelSource::kept;        ///< kept: the loop began with it
-  std::vector<deform::EdgeOperation> refining{}; ///< of a refined one
-  deform::Points shape{}; ///< of the one before, if it is_of_shape(); its model units
+  std::vector<deform::EdgeOperation> refining{}; ///< if it was refined
+  deform::Points shape{}; ///< the previous version's shape in its model units, if it is_of_shape()
   std::vector<deform::WirePlace> wire{}; ///< that cut it
-  double seam_width = 0.0;               ///< of a joined one
+  double seam_width = 0.0;               ///< if it was joined
   std::uint32_t part = 0;                ///< that was copied or removed
-  bool keeps_rest = false; ///< a puppet's, whose shape does not become the rest (kept_rest())
+  bool keeps_rest = false; ///< it is a puppet's, whose shape does not become the rest (kept_rest())
 };
 /// Makes that version of a mesh again, as it rests. Error: bad_input, without the mesh's name.
 NENDO_API Result<deform::Mesh> rebuild(const deform::Mesh& before, const ModelOrigin& origin);
@@ -45,16 +45,17 @@ NENDO_API Result<deform::Mesh> rebuild(const deform::Mesh& before, const ModelOr
 struct NENDO_API ModelVersion {
   /// Allocates. With `first`, the shape is at first that one, in blocks of the layout.
   ModelVersion(std::uint32_t number, deform::Mesh mesh, deform::BlockLayout layout,
-               const UndoRoom& undo, const deform::BlockShape* first);
+               const UndoSpace& undo, const deform::BlockShape* first);
 
   const deform::BlockLayout& layout() const noexcept { return shape.layout(); }
 
   const std::uint32_t number; ///< 0: the model with which the loop began
-  const deform::Mesh mesh;    ///< before the hands; a reset goes back to it
+  const deform::Mesh mesh;    ///< undeformed; a reset goes back to it
   /// Made when a brush first needs them. Asking thread; the loop never looks.
   std::shared_ptr<const deform::VertexRings> rings{};
-  std::shared_ptr<const ClayModel> clay{};           ///< likewise, when hands first press it
-  std::shared_ptr<const deform::ModelParts> parts{}; ///< likewise, when they first move parts of it
+  /// Made when hands first press it, or move its parts. Asking thread.
+  std::shared_ptr<const ClayModel> clay{};
+  std::shared_ptr<const deform::ModelParts> parts{};
   std::shared_ptr<const ModelOrigin> origin = std::make_shared<ModelOrigin>();
 
   // Loop's thread while the loop has this version, and asking thread otherwise:
@@ -65,7 +66,7 @@ struct NENDO_API ModelVersion {
 };
 
 /// Returns a shape of that version's size, without its content. Allocates.
-NENDO_API deform::BlockShape room_for_shape(const ModelVersion& version);
+NENDO_API deform::BlockShape space_for_shape(const ModelVersion& version);
 
 /// Another version in the making. Making it takes longer than a tick; only finish() needs the
 /// shape.
@@ -74,7 +75,7 @@ public:
   /// Subdivides. Thread-safe, also while the loop runs. Allocates.
   explicit PendingModel(const ModelVersion& from);
   /// Subdivides, or makes ready to refine, to cut by that wire, to join, to edit a part,
-  /// or to change the topology, likewise: what the change, which is_new(), says. Error: bad_input,
+  /// or to change the topology: what the change, which is_new(), says. Error: bad_input,
   /// without the model's name.
   static Result<PendingModel> make(const ModelVersion& from, const ChangeModel& change,
                                    std::span<const deform::WirePlace> wire = {});
@@ -85,7 +86,7 @@ public:
   /// `from`, and otherwise to the shape of now. Allocates. Errors, which go behind "the model":
   /// bad_input (nothing is left to refine, or thin: found_nothing()), and those of
   /// deform::cut_model(), join(), copied_part(), removed_part() and change_topology().
-  Result<std::unique_ptr<ModelVersion>> finish(std::uint32_t number, const UndoRoom& undo,
+  Result<std::unique_ptr<ModelVersion>> finish(std::uint32_t number, const UndoSpace& undo,
                                                bool keeps_rest = false);
   bool found_nothing() const noexcept { return found_nothing_; } ///< finish() did
   /// Returns whether it is made of the shape.
@@ -116,7 +117,7 @@ private:
   PendingModel(const ModelVersion& from, Making making)
       : from_(&from), making_(std::move(making)) {}
   Result<std::unique_ptr<ModelVersion>> remade(Remaking& remaking, std::uint32_t number,
-                                               const UndoRoom& undo, bool keeps_rest);
+                                               const UndoSpace& undo, bool keeps_rest);
 
   const ModelVersion* from_;
   Making making_;

@@ -14,7 +14,7 @@
 
 namespace nendo::flow {
 
-/// What happens after a tick that ended after the next deadline.
+/// The reaction to a tick that ended after the next deadline.
 enum class OverrunPolicy : std::uint8_t {
   skip,      ///< deadlines that passed are missed; the next tick is on the grid again
   catch_up,  ///< they are run at once, the newest `max_catch_up` of them; older ones are missed
@@ -44,7 +44,7 @@ NENDO_API Result<void> parse_policy(std::string_view text, PaceOptions& options)
 class NENDO_API Pacer {
 public:
   struct Due {
-    std::uint64_t number = 0; ///< of the deadline; with `sample`, of the tick
+    std::uint64_t number = 0; ///< the number of the deadline; with `sample`, of the tick
     HostTime scheduled{};     ///< with `sample`: when the wait began or, in vain, ended
     HostTime woke{};          ///< when the wait was over
     std::uint32_t missed = 0; ///< deadlines between the tick before and this one

@@ -1,6 +1,6 @@
 #pragma once
-// Hands that take parts of a model, move, turn and put them down, in the form that a Sculptor has
-// for its ways of deforming.
+// Hands that take parts of a model, move, turn and put them down, with the interface that a
+// Sculptor needs.
 
 #include <array>
 #include <cstdint>
@@ -16,9 +16,9 @@
 
 namespace nendo::flow {
 
-/// What hands hold in a frame.
+/// The parts that hands hold in a frame.
 struct PartsState {
-  std::uint32_t count = 0; ///< of parts; 0: the mode is another one
+  std::uint32_t count = 0; ///< the number of parts; 0: another mode is in effect
   /// The part that each hand holds, of the hands that are present, left hand first; none: no_index.
   std::array<std::uint32_t, 2> held{deform::no_index, deform::no_index};
   /// The part that a hand has taken last; no_index if none has taken any of this model's.
@@ -39,7 +39,7 @@ public:
   static constexpr double open_m = 0.040;
   static constexpr double reach_m = 0.040; ///< from between the tips to a vertex
 
-  /// `shape` must outlive this. Parts of which `mask` holds something stay.
+  /// `shape` must outlive this. Parts with a protected vertex in `mask` stay.
   PartHands(deform::SculptedShape& shape, std::shared_ptr<const deform::ModelParts> parts,
             std::shared_ptr<const HandBodies> bodies,
             std::shared_ptr<const deform::VertexMask> mask);
@@ -62,17 +62,17 @@ public:
   std::span<const deform::ClayContact> contacts() const noexcept { return contacts_; }
 
 private:
-  static constexpr std::size_t max_places = 24; ///< of a hand's contacts
+  static constexpr std::size_t max_places = 24; ///< the limit of a hand's contacts
 
   struct Hand {
     bool is_closed = false;
-    std::uint32_t held = deform::no_index; ///< whose places these are
+    std::uint32_t held = deform::no_index; ///< the part of these places
     std::vector<std::size_t> places{};     ///< in block order
   };
 
   std::span<const deform::PartGrip> grips(const deform::Points& tips) noexcept;
   void find_places(std::size_t hand) noexcept;
-  void tell_contacts() noexcept;
+  void update_contacts() noexcept;
 
   std::shared_ptr<const deform::ModelParts> parts_;
   std::shared_ptr<const HandBodies> bodies_;

@@ -18,7 +18,7 @@ using Fingertips = Eigen::Matrix<double, 3, 5>;
 
 struct PlacementOptions {
   double model_size_m = 0.8;    ///< the longest side of the model's bounding box, on the stage
-  double height_fraction = 0.7; ///< of the model's height, where the fingertips touch
+  double height_fraction = 0.7; ///< where the fingertips touch, relative to the model's height
 };
 
 /// The table on which clay lies: a square plate, in model units.
@@ -30,7 +30,7 @@ struct Table {
 /// The stage has the model's axes, in metres: x to the operator's right, y up, z towards the
 /// operator, and its origin is where vertices count from (deform::Mesh::offset). Models have y up.
 struct Placement {
-  double units_per_metre = 1.0; ///< model units on a metre of the stage
+  double units_per_metre = 1.0; ///< model units per metre of the stage
   std::array<Eigen::Isometry3d, 2> T_stage_wrist{Eigen::Isometry3d::Identity(),
                                                  Eigen::Isometry3d::Identity()};
   std::optional<Table> table; ///< nothing: table_under() the model with which a loop begins

@@ -1,6 +1,5 @@
 #pragma once
-// What another thread makes for a loop that runs, and hands to it ready. The loop's tick only swaps
-// pointers.
+// Changes that another thread prepares for a running loop, whose tick only swaps pointers.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,10 +17,10 @@
 
 namespace nendo::flow {
 
-/// Where a loop is between two ticks, without the hands' grip, which ends there. A loop that is
+/// A loop's state between two ticks. Grips are not included, because they end there. A loop that is
 /// made of this (LoopOptions::held, and a first shape) does the same as the one that continues.
 struct LoopState {
-  /// Of an input of the loop.
+  /// One input's state.
   struct Input {
     GloveSample latest{};
     std::optional<hand::LearnedRanges> learned{};
@@ -34,16 +33,16 @@ struct LoopState {
   SculptorSetup sculptor{};
   /// How the model came from the one with which the loop began, the first change first.
   std::vector<std::shared_ptr<const ModelOrigin>> origins{};
-  puppet::RigState rig{};                      ///< of a puppet's player
+  puppet::RigState rig{};                      ///< the state of a puppet's player
   std::shared_ptr<const puppet::Rig> puppet{}; ///< that is played; null: none
   deform::BlockShape shape;
 };
 
-/// Where the loop's input goes from a tick on.
+/// A change of the loop's log from a tick on.
 struct LogChange {
   InputLog* log = nullptr; ///< null: nowhere
-  LoopState state;         ///< with which the log begins, or that it led to
-  /// Room for the shape, if the change leads to another version of the model.
+  LoopState state;         ///< at the log's beginning, or at its end
+  /// Memory for the shape, if the change leads to another version of the model.
   deform::BlockShape of_other_model;
 };
 
@@ -56,16 +55,17 @@ struct ReadyRig {
   std::optional<PuppetPlayer> puppet{};
   std::optional<double> mirror{};  ///< fingertips shape both sides of this x, model units
   std::vector<std::size_t> from{}; ///< puppet::functions_before()
-  deform::Points tips{};           ///< room for the positions of its points
+  deform::Points tips{};           ///< memory for the positions of its points
 };
 
-/// What a loop continues with from a tick on. It swaps pointers, and gives back what it had before.
+/// The changes that a loop takes at a tick. It swaps pointers, and returns the previous ones here.
 struct PreparedChange {
   bool holds_still = false; ///< at the end of that tick, until the next change with a `model`
   std::optional<ChangeModel> model{};     ///< the version that `ready` works on
   std::optional<LoopSettings> settings{}; ///< the loop continues with them
   SculptorSetup before{};                 ///< which this change of settings replaces
-  bool is_refused = false;       ///< by the loop, which continues as it was (Shaping::exchange())
+  bool is_refused =
+      false; ///< the loop has refused it, and continues as it was (Shaping::exchange())
   std::optional<ReadyRig> rig{}; ///< the hands continue with that puppet
   ReadySculptor ready{};
   std::optional<LogChange> log{};

@@ -1,5 +1,5 @@
 #pragma once
-// Asks the system for what a thread needs to be on time, and tells what the system granted. A
+// Requests what a thread needs to be on time from the system, and reports what was granted. A
 // refusal is never fatal, and it is always reported.
 
 #include <optional>
@@ -27,7 +27,7 @@ constexpr unsigned reader_priority(unsigned of_loop) noexcept {
 NENDO_API Result<std::vector<unsigned>> parse_cpus(const std::string& text,
                                                    const std::string& option);
 
-/// A right that was asked for.
+/// A requested right.
 struct Grant {
   std::string name;   ///< stable: "policy", "affinity", "memory_lock", "dma_latency", "timer_slack"
   std::string wanted; ///< "SCHED_FIFO 80"
@@ -69,7 +69,7 @@ public:
   InheritedPriority(const InheritedPriority&) = delete;
   InheritedPriority& operator=(const InheritedPriority&) = delete;
 
-  /// Returns nothing if nothing was asked for.
+  /// Returns nothing if nothing was requested.
   const std::optional<Grant>& grant() const noexcept { return grant_; }
 
 private:

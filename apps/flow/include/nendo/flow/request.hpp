@@ -27,7 +27,7 @@ inline constexpr std::array requests{Request::grab,     Request::let_go, Request
                                      Request::undo,     Request::redo,   Request::reset,
                                      Request::take_hold};
 
-/// Returns whether a request goes back or forth: Shaping does these one after another.
+/// Returns whether a request undoes, redoes or resets: Shaping does these one after another.
 constexpr bool goes_through_history(Request request) noexcept {
   return request == Request::undo || request == Request::redo || request == Request::reset;
 }

@@ -16,14 +16,14 @@ namespace nendo::flow {
 
 /// Returns whether hands play that puppet, which may be null. Otherwise fingertips touch the model.
 NENDO_API bool is_played(const puppet::Rig* rig) noexcept;
-/// Returns how many control points that many hands move by that puppet; null: by none.
+/// Returns the number of control points that hands move with that puppet; null: without one.
 NENDO_API Eigen::Index control_points_of(const puppet::Rig* rig, const SculptorOptions& sculptor,
                                          Eigen::Index hands) noexcept;
 /// Returns how many points have radii of their own: the puppet's, or fingertips and their images,
 /// even if other points of the hands hold the model.
 NENDO_API Eigen::Index supported_points(const puppet::Rig* rig, Eigen::Index hands) noexcept;
-/// Returns the x of the plane, in model units, of whose both sides the fingertips shape; nothing:
-/// of none.
+/// Returns the x of the plane, in model units, on both sides of which the fingertips shape;
+/// nothing: of none.
 NENDO_API std::optional<double> mirror_of(const puppet::Rig* rig) noexcept;
 /// Returns whether hands with that puppet, which may be null, can press clay: it has no points.
 NENDO_API bool can_press(const puppet::Rig* rig) noexcept;
@@ -32,7 +32,7 @@ NENDO_API bool can_press(const puppet::Rig* rig) noexcept;
 /// number is good, because their field is solved for beforehand; type 2 of older recordings
 /// (SculptorOptions::type2_along_surface) has none.
 NENDO_API Result<void> check_points(const puppet::Rig* rig, const SculptorOptions& sculptor);
-/// Returns what the step from one of them to the other is: of a puppet, of masks, or of symmetry.
+/// Returns the kind of the step from one to the other: puppet, mask, or symmetry.
 NENDO_API StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept;
 /// Makes the second half of the points the mirror images of the first.
 NENDO_API void mirror_half(double at, deform::Points& points) noexcept;

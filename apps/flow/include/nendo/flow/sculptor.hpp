@@ -1,5 +1,5 @@
 #pragma once
-// One interface for the ways of deforming, so that the loop need not know which of them it runs.
+// One interface for all deformation modes, so that the loop does not depend on them.
 
 #include <array>
 #include <cstdint>
@@ -23,7 +23,8 @@ namespace nendo::flow {
 /// surface out of themselves. With parts, hands take parts of the model and move them.
 enum class Mode : std::uint8_t { type1, type2, clay, parts };
 inline constexpr std::uint8_t mode_count = 4;
-inline constexpr std::string_view mode_names = "type1, type2, clay or parts"; ///< for messages
+inline constexpr std::string_view mode_names =
+    "type1, type2, clay or parts"; ///< all modes, for messages
 
 /// Returns whether whole hands shape in this mode. Otherwise points do, and a puppet may play.
 constexpr bool is_by_hands(Mode mode) noexcept {
@@ -48,18 +49,18 @@ inline constexpr double fingertip_merge_fraction = 0.05;
 struct NENDO_API SculptorOptions {
   Mode mode = Mode::type1;
   Hold hold = Hold::fingertips;
-  /// Of a cut of type 2, in model units: sculpting::set_supports() chooses it by the radii, as the
-  /// default suits no model.
+  /// The length of a piece of type 2's path, in model units: sculpting::set_supports() chooses it
+  /// by the radii, as the default suits no model.
   double piece_length = 0.05;
   /// But for its brushes. Its radii are in model units: sculpting::usual_supports().
   deform::DeformerOptions deformer{.csrbf = {.merge_fraction = fingertip_merge_fraction}};
-  /// Of each finger of each hand, thumb to little finger, in type 2; a puppet's points pull.
+  /// The brushes of each hand's fingers, thumb to little finger, in type 2; a puppet's points pull.
   std::array<deform::Brush, 5> brushes{};
   double brush_strength = deform::usual_brush_strength;
   /// The x of a plane, in model units: the second half of the control points are the mirror images
   /// of the first, and so are hands that press clay.
   std::optional<double> mirror{};
-  /// Of the model; needed by some brushes (needs_rings()).
+  /// The model's rings, which some brushes need (needs_rings()).
   std::shared_ptr<const deform::VertexRings> rings{};
   /// If set, distances are measured along the surface at rest, in type 2 only if the next is true,
   /// which it was not in older recordings. Then nothing keeps the volume, and links need not be.
@@ -122,7 +123,7 @@ public:
   /// sculptor to grab. With `is_step`, undo can go back before the stroke; without, it
   /// becomes one step with the next. It does not allocate.
   void release(bool is_step) noexcept;
-  /// Does the same, but in type 1 what the fingertips have pulled since they grabbed is not kept.
+  /// Does the same, but in type 1 drops the pull since the fingertips grabbed.
   void drop(bool is_step) noexcept;
   /// Changes the rest shape, or the shape of the strokes. The fingertips then hold it at `tips`. If
   /// the equations have no solution, nothing changes. It does not allocate.
@@ -143,11 +144,11 @@ public:
   const deform::FieldSequence& fields() const noexcept;
   /// Writes what the last update() did along the surface: for type 1 from the rest shape to this
   /// shape, for type 2 from the previous shape. Clears `move` if no distances are measured there.
-  /// Allocates only if `move` has no room.
+  /// Allocates only if `move` is too small.
   void write_move(deform::SurfaceMove& move) const noexcept;
-  bool has_room(const deform::SurfaceMove& move) const noexcept; ///< for write_move()
-  /// Returns a move with room for write_move(). Allocates.
-  deform::SurfaceMove room_for_move() const;
+  bool has_space(const deform::SurfaceMove& move) const noexcept; ///< enough for write_move()
+  /// Returns a move that is large enough for write_move(). Allocates.
+  deform::SurfaceMove space_for_move() const;
   /// Returns whether the last update() moved anything.
   bool moves_anything() const noexcept;
   /// Returns what the last update() needed to stay injective; all 0 without `injective`.

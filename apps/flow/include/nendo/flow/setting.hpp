@@ -89,8 +89,7 @@ inline constexpr ChoiceSetting<Hold> hold{
 
 } // namespace setting
 
-/// Calls see(setting) with each description but those of the filter, in the order in which files
-/// have them.
+/// Calls see(setting) with each description but those of the filter, in the order of files.
 template <class See>
 constexpr void for_each_shape_setting(const See& see) {
   see(setting::mode);

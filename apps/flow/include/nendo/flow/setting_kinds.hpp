@@ -11,13 +11,13 @@
 
 namespace nendo::flow {
 
-/// What a message, a file or a widget needs to know of a setting.
+/// The strings about a setting for messages, files and widgets.
 struct SettingText {
   std::string_view name;              ///< in timelines and JSON
-  std::string_view option;            ///< of the command line; empty: none
-  std::string_view words;             ///< in messages about a run
+  std::string_view option;            ///< the option of the command line; empty: none
+  std::string_view words;             ///< its name in messages about a run
   std::string_view label;             ///< beside a widget
-  std::string_view help;              ///< of the option
+  std::string_view help;              ///< the option's help
   StepKind step = StepKind::settings; ///< a change of it alone
   bool is_newer = false;              ///< older timelines do not have it
 };
@@ -25,7 +25,8 @@ struct SettingText {
 template <class T>
 struct Setting : SettingText {
   T LoopSettings::* member = nullptr;
-  T hand::FilterOptions::* filter_member = nullptr; ///< of LoopSettings::filter, without `member`
+  T hand::FilterOptions::* filter_member =
+      nullptr; ///< a member of LoopSettings::filter, without `member`
 
   const T& of(const LoopSettings& settings) const noexcept {
     return member != nullptr ? settings.*member : settings.filter.*filter_member;
@@ -52,7 +53,7 @@ using SwitchSetting = Setting<bool>;
 /// A choice for each finger, thumb to little finger.
 using BrushesSetting = Setting<std::array<deform::Brush, 5>>;
 struct NumberSetting : Setting<double> {
-  Range range;             ///< of what a loop takes
+  Range range;             ///< the values that a loop accepts
   std::string_view unit{}; ///< empty: it has none
   /// Whether other settings give it an effect; null: it always has one.
   bool (*has_effect)(const LoopSettings& settings) noexcept = nullptr;
@@ -60,14 +61,14 @@ struct NumberSetting : Setting<double> {
 };
 /// A length for each finger, thumb to little finger, in metres on the stage.
 struct FingersSetting : Setting<std::array<double, 5>> {
-  Range range; ///< of what a loop takes
+  Range range; ///< the values that a loop accepts
   std::string_view unit{};
   Range handy; ///< that keys and widgets choose from
 };
 /// One of several, which have names.
 template <class T>
 struct ChoiceSetting : Setting<T> {
-  std::string_view choices; ///< for messages, in the order of their numbers
+  std::string_view choices; ///< all names for messages, in the order of their numbers
   std::string_view (*name_of)(T choice) noexcept = nullptr;
   std::optional<T> (*named)(std::string_view name) noexcept = nullptr;
 };

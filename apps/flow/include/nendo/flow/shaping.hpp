@@ -1,6 +1,6 @@
 #pragma once
-// Applies people's requests to a sculptor: the hands grab and release, shapes are committed,
-// undone and redone. The loop uses it, and so does code that shapes without a loop.
+// Applies requests to a sculptor: the hands grab and release, shapes are committed, undone and
+// redone. The loop uses it, and so does code that shapes without a loop.
 
 #include <array>
 #include <memory>
@@ -36,20 +36,20 @@ struct ReadySculptor {
   /// where they are. So the shape changes only by the edit.
   bool holds_on = false;
   deform::Points starts{};     ///< 3 by #control points
-  deform::Points still_tips{}; ///< room for as many points
+  deform::Points still_tips{}; ///< memory for this number of points
   /// The control points at the exchange, if their count changes (Hold). The caller of exchange()
   /// writes them.
   deform::Points tips{};
-  /// Room for the sculptor's fields in the three frames of a FrameExchange, which may lack it.
-  std::array<deform::FieldSequence, 3> room;
-  std::array<deform::SurfaceMove, 3> surface_room; ///< the same for moves along the surface
-  struct ShapeRoom {
+  /// Memory for the sculptor's fields in the three frames of a FrameExchange.
+  std::array<deform::FieldSequence, 3> spare_fields;
+  std::array<deform::SurfaceMove, 3> spare_moves; ///< the same for moves along the surface
+  struct SpareShape {
     static constexpr std::uint32_t none = 0xFFFFFFFF;
     std::uint32_t model = none;
     deform::BlockShape shape;
   };
-  /// Room for the shapes of another version of the model in these frames.
-  std::array<ShapeRoom, 3> shape_room;
+  /// Memory for the shapes of another version of the model in these frames.
+  std::array<SpareShape, 3> spare_shapes;
 };
 
 /// Loop's thread, or that of a player without a loop, but for prepare().
@@ -95,9 +95,9 @@ public:
   /// have shaped is a step, and requests wait. When another version comes, the hands grab it where
   /// they stopped, so that none of their path is lost. Wait-free, without allocation.
   void hold_still(const deform::Points& tips, Frame& frame, LoopStats& stats) noexcept;
-  /// Puts another sculptor with that many control points into `ready`, for that version of the
+  /// Puts another sculptor with this number of control points into `ready`, for that version of the
   /// model. Asking thread, at any time. For a version that is not in effect, the caller
-  /// makes `shape_room`. Allocates.
+  /// makes `spare_shapes`. Allocates.
   static void prepare(const SculptorSetup& setup, ModelVersion& model, Eigen::Index control_points,
                       ReadySculptor& ready);
   /// Returns whether the hands keep their grip in exchange() (ReadySculptor::holds_on).
@@ -117,17 +117,17 @@ public:
   /// begin(). Undo then goes back to here and no farther (`fences`), or as far as memory goes. The
   /// past influences the future only by the shape, and by whether it is held. Wait-free, without
   /// allocation.
-  void begin_anew(const deform::Points& tips, bool fences, Frame& frame, LoopStats& stats) noexcept;
+  void restart(const deform::Points& tips, bool fences, Frame& frame, LoopStats& stats) noexcept;
 
 private:
   enum class Exchange : std::uint8_t {
     awaited_step, ///< completes the undo or redo that waits for it (Frame::awaited)
     new_step,
     same_step, ///< joins the step of a change less than a second ago
-    refused    ///< of another version that no undo or redo waits for any more
+    refused    ///< another version, for which no undo or redo waits any more
   };
 
-  Awaited in_force() const noexcept { return {settings_, model_->number, puppet_}; }
+  Awaited in_effect() const noexcept { return {settings_, model_->number, puppet_}; }
   deform::FieldStatus shape_by_hands(const deform::Points& tips, Frame& frame, LoopStats& stats,
                                      bool completes) noexcept;
   deform::FieldStatus show_rest(Frame& frame) noexcept;
@@ -138,7 +138,7 @@ private:
   bool is_pulled() const noexcept;
   bool is_in_hand() const noexcept;
   void regrab(const deform::Points& tips) noexcept;
-  void make_room(Frame& frame) noexcept;
+  void make_space(Frame& frame) noexcept;
   Exchange decide(const ReadySculptor& ready) const noexcept;
   void end_stroke(Exchange kind, bool holds_on) noexcept;
   void make_awaited_step(ReadySculptor& ready, LoopStats& stats) noexcept;
@@ -156,9 +156,9 @@ private:
   void step_to(Request step, ModelVersion& next, const Awaited& before) noexcept;
   bool is_change_next(Request step) const noexcept;
   std::optional<Awaited> target_of(Request step) const noexcept;
-  void note_settings(const LoopSettings& before, bool is_step) noexcept;
-  void note_model(ModelVersion& next, const LoopSettings& before) noexcept;
-  void note_puppet(const Awaited& before, StepKind kind) noexcept;
+  void record_settings(const LoopSettings& before, bool is_step) noexcept;
+  void record_model(ModelVersion& next, const LoopSettings& before) noexcept;
+  void record_puppet(const Awaited& before, StepKind kind) noexcept;
   Step step_now(StepKind kind) const noexcept;
   const ModelVersion* previous_version(const ModelVersion& version) const noexcept;
   std::size_t steps_to_undo() const noexcept;
@@ -172,9 +172,9 @@ private:
   ModelVersion* model_;
   ModelVersion* fenced_ = nullptr; ///< undo goes back to the fence there and no farther
   std::unique_ptr<Sculptor> sculptor_;
-  std::array<deform::FieldSequence, 3> room_; ///< for frames that lack it
-  std::array<deform::SurfaceMove, 3> surface_room_;
-  std::array<ReadySculptor::ShapeRoom, 3> shape_room_;
+  std::array<deform::FieldSequence, 3> spare_fields_; ///< memory for frames that lack it
+  std::array<deform::SurfaceMove, 3> spare_moves_;
+  std::array<ReadySculptor::SpareShape, 3> spare_shapes_;
   deform::Points still_tips_; ///< where the hands stopped, if is_still_
   bool is_still_ = false;
   bool pull_is_step_;
@@ -191,7 +191,7 @@ private:
   bool in_step_ = false;            ///< something shaped before a change is no step yet
   LoopSettings settings_;           ///< in effect
   std::uint32_t puppet_ = 0;        ///< in effect
-  std::optional<Awaited> awaited_;  ///< by the first of steps_due_
+  std::optional<Awaited> awaited_;  ///< what the first of steps_due_ awaits
   HostClock::duration time_{};
   std::optional<HostClock::duration> exchanged_at_; ///< settings alone, last
   std::optional<HostClock::duration> touched_at_;   ///< clay, last

@@ -32,7 +32,7 @@ public:
   ShapingCore(ChangeBroker& changes, const CoreOptions& options);
   ~ShapingCore();
 
-  /// Returns a frame that has the room that a tick needs.
+  /// Returns a frame that has the memory that a tick needs.
   Frame first_frame() const;
   /// Lets the hands grab the model for the first time.
   deform::FieldStatus begin(const Hands& hands, Frame& frame) noexcept;
@@ -60,8 +60,8 @@ public:
   /// Holds still, or continues with another sculptor, version or puppet. `change` gets the previous
   /// ones. Hands whose poses jumped, as by another filter, grab where they are.
   void finish(PreparedChange& change, const Hands& hands, Frame& frame, LoopStats& stats) noexcept;
-  /// Ends all that came before (Shaping::begin_anew()), and writes the state.
-  void begin_anew(LogChange& change, const Hands& hands, Frame& frame, LoopStats& stats) noexcept;
+  /// Ends all that came before (Shaping::restart()), and writes the state.
+  void restart(LogChange& change, const Hands& hands, Frame& frame, LoopStats& stats) noexcept;
 
   const Shaping& shaping() const noexcept { return shaping_; }
   const PuppetPlayer* puppet() const noexcept { return puppet_ ? &*puppet_ : nullptr; }
@@ -84,8 +84,9 @@ private:
 
   double units_per_metre_;
   std::vector<Side> hands_;
-  std::shared_ptr<HandBodies> bodies_; ///< of hands that press clay; by side, if there are two
-  std::optional<double> mirror_;       ///< mirror_of() the puppet or masks
+  std::shared_ptr<HandBodies>
+      bodies_; ///< bodies of hands that press clay; in the order of Side, if there are two
+  std::optional<double> mirror_; ///< mirror_of() the puppet or masks
   deform::Points tips_; ///< control points: of hands, or of the puppet; 3 by #, model units
   Shaping shaping_;
   std::optional<PuppetPlayer> puppet_; ///< none: the hands touch the model

@@ -18,12 +18,12 @@ class NENDO_API SpinMargin {
 public:
   static constexpr std::chrono::microseconds most{100};
   static constexpr std::chrono::microseconds reserve{5};
-  static constexpr int max_of_period = 25; ///< a 25th of it is spun on the average, at the most
+  static constexpr int max_of_period = 25; ///< on average, at most a 25th of it is spun
 
   explicit SpinMargin(HostClock::duration period) noexcept;
 
   HostClock::duration get() const noexcept { return margin_; }
-  /// Takes note of how much later than asked for the kernel woke the thread.
+  /// Records how late the kernel woke the thread.
   void observe(HostClock::duration lateness) noexcept;
 
 private:

@@ -1,6 +1,5 @@
 #pragma once
-// The steps that can be undone and redone, in one list: what the hands have shaped, and what was
-// set meanwhile.
+// The list of steps that can be undone and redone: strokes of the hands, and changes of settings.
 
 #include <array>
 #include <cstdint>
@@ -15,16 +14,16 @@ struct LoopSettings;
 
 /// Clients of the browser's protocol know the numbers, so new values are added at the end.
 enum class StepKind : std::uint8_t {
-  stroke, ///< of the hands, up to a commit, to releasing, or to a change
+  stroke, ///< a stroke of the hands, up to a commit, a release, or a change
   reset,  ///< back to the model as it was loaded
   mode,   ///< these five, brush, volume and hold: a change of this setting alone
   kernel,
-  radius,  ///< of one finger or more
+  radius,  ///< the radius of one finger or more
   folding, ///< LoopSettings::injective
   filter,
   settings,  ///< a change of several settings at once, or within a second
   subdivide, ///< the model became finer
-  brush,     ///< of one finger or more, or their strength
+  brush,     ///< the brush of one finger or more, or their strength
   puppet,    ///< the puppet was edited
   volume,    ///< how much of it stays
   hold,      ///< LoopSettings::hold

@@ -1,6 +1,6 @@
 #pragma once
-// The record of a tick's times, one cache line that goes through a ring. It tells lateness, work
-// and the age of the input for every single tick.
+// The record of a tick's times, one cache line that goes through a ring. It has lateness, work and
+// the age of the input of every single tick.
 
 #include <algorithm>
 #include <cstdint>
@@ -25,7 +25,7 @@ struct alignas(cache_line_bytes) TickRecord {
   std::uint32_t published_ns = 0; ///< the frame is out
   std::uint32_t missed = 0;       ///< deadlines between the tick before and this one
   std::uint32_t samples = 0;      ///< taken from the rings
-  std::uint32_t spun_ns = 0;      ///< before the deadline
+  std::uint32_t spun_ns = 0;      ///< the time spun before the deadline
 
   HostTime published() const noexcept { return woke + std::chrono::nanoseconds(published_ns); }
 };

@@ -1,5 +1,5 @@
 #pragma once
-// The settings that a person is choosing, with keys or with widgets. The window and the terminal
+// The settings that a user is choosing, with keys or with widgets. The window and the terminal
 // share it; the browser's page does the same.
 
 #include <array>
@@ -10,19 +10,19 @@
 
 namespace nendo::flow {
 
-/// Shows what was asked for until a loop has had time to take it, and then what is in effect,
-/// whoever has asked for it. Asking thread; does not allocate.
+/// Shows the requested settings until a loop has had time to take them, and then those in effect,
+/// the caller has requested it. Asking thread; does not allocate.
 class NENDO_API WantedSettings {
 public:
   static constexpr std::array kernels{deform::Wendland::c0, deform::Wendland::c2,
                                       deform::Wendland::c4, deform::Wendland::c6};
   static constexpr HostClock::duration patience = std::chrono::seconds(1);
 
-  LoopSettings now; ///< what is chosen; widgets write here
+  LoopSettings now; ///< the chosen settings; widgets write here
 
   /// To be called with each frame's settings. Returns true if other settings are chosen by that.
-  bool follow(const LoopSettings& in_force) noexcept;
-  /// Returns the command that asks for what is chosen, if nobody has asked for it yet.
+  bool follow(const LoopSettings& in_effect) noexcept;
+  /// Returns the command for the chosen settings, if they were not requested yet.
   std::optional<Command> ask() noexcept;
 
   /// The points of a puppet do not press clay.
@@ -41,7 +41,7 @@ public:
   /// Make all radii larger, or smaller, by a tenth, within the range.
   void enlarge_radii() noexcept { scale_radii(1.1); }
   void reduce_radii() noexcept { scale_radii(1.0 / 1.1); }
-  bool has_one_radius() const noexcept; ///< for all fingers
+  bool has_one_radius() const noexcept; ///< all fingers have the same
   bool has_one_brush() const noexcept;
   /// Make the brushes stronger, or weaker and then their opposites, by a tenth of the most.
   void strengthen() noexcept { add_strength(0.1); }

@@ -9,7 +9,7 @@
 
 namespace nendo::flow {
 
-/// The places of a wire's ends one after another, in model units. It has a fixed size and does not
+/// The successive places of a wire's ends, in model units. It has a fixed size and does not
 /// allocate. Where a wire is drawn far, every second place is forgotten; and what a hand goes back
 /// and forth by a few steps is.
 class NENDO_API WirePath {
@@ -25,10 +25,10 @@ public:
   void clear() noexcept; ///< there is no wire
 
   bool is_drawing() const noexcept { return is_drawing_; } ///< just now
-  /// Returns how many wires have been drawn to their end. Their number tells a new one from one
-  /// that has cut already.
+  /// Returns how many wires have been drawn to their end. The number distinguishes a new one from
+  /// one that has cut already.
   std::uint32_t completed() const noexcept { return completed_; }
-  /// Returns the present wire's places, or those of the last one.
+  /// Returns the places of the current wire, or of the last one.
   std::span<const deform::WirePlace> places() const noexcept { return {places_.data(), count_}; }
   bool operator==(const WirePath& other) const noexcept { return version_ == other.version_; }
 

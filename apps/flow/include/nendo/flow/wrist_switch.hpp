@@ -1,5 +1,5 @@
 #pragma once
-// Debounces the switch at the wrist, and says what a loop does when it is turned on.
+// Debounces the switch at the wrist, and defines its effects on a loop.
 
 #include <cstdint>
 #include <optional>
@@ -22,8 +22,8 @@ enum class SwitchAction : std::uint8_t {
 NENDO_API std::string_view name_of(SwitchAction action) noexcept;
 NENDO_API std::optional<SwitchAction> switch_action_named(std::string_view name) noexcept;
 
-/// Takes the switch's position sample by sample and tells when it was really turned. It is pure: no
-/// clock, no I/O.
+/// Reads the switch's position sample by sample, and detects when it was really turned. It is pure:
+/// no clock, no I/O.
 class NENDO_API WristSwitchEdge {
 public:
   /// A position counts once it has lasted this long and for at least two samples, because contacts
@@ -31,7 +31,7 @@ public:
   static constexpr std::chrono::milliseconds settling_time{20};
 
   /// Returns true if the switch has just been turned on. The first known position is taken as the
-  /// position from the start on. A sample that does not tell the position is ignored.
+  /// position from the start on. A sample without a position is ignored.
   bool turned_on(WristSwitch position, HostTime time) noexcept;
   bool is_on() const noexcept { return settled_ == WristSwitch::on; }
 

@@ -12,12 +12,12 @@
 
 namespace nendo::sculpting {
 
-/// Receives, in one line, what a user should know though nothing failed. It is called on the thread
+/// Receives a notice for the user in one line. It is called on the thread
 /// of the function that it is given to.
 using Note = std::function<void(std::string_view)>;
 
-/// Returns what is stored on this machine, in the folders that the environment gives. Notes which
-/// files cannot be read. Blocks.
+/// Returns the calibrations in the folders that the environment gives. Notes which files cannot be
+/// read. Blocks.
 NENDO_API hand::CalibrationList stored_calibrations(const Note& note);
 
 /// Returns the calibration that `name` means. A text with a slash or the ending .toml is a path. A

@@ -1,6 +1,6 @@
 #pragma once
-// Chooses the wearer of a glove: the calibration that is asked for, the stored one, the default, or
-// what is learned while the glove is used.
+// Chooses the wearer of a glove: the requested calibration, the stored one, the default, or learned
+// ranges.
 
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace nendo::sculpting {
 
 struct NENDO_API CalibrationOptions {
   std::string user;         ///< empty: any
-  std::string calibration;  ///< as named_calibration() takes it, or "none"; empty: what is stored
+  std::string calibration;  ///< as named_calibration() takes it, or "none"; empty: the stored one
   bool adapt = false;       ///< learn the wearer's ranges, or the slips of such a calibration
   std::string left_user{};  ///< the left hand's, in place of `user`
   std::string right_user{}; ///< the right hand's, in place of `user`
@@ -33,12 +33,12 @@ struct NENDO_API CalibrationOptions {
 /// Whose hand a glove shows.
 struct FoundCalibration {
   enum class Kind : std::uint8_t {
-    average,  ///< nobody's
+    average,  ///< the calibration of an average hand
     stored,   ///< a file's
-    recorded, ///< that of the recording which is replayed
+    recorded, ///< the replayed recording's
     learned,  ///< what --adapt learns
   } kind = Kind::average;
-  std::string user;           ///< the wearer of the file, or of what is learned
+  std::string user;           ///< the wearer of the file, or of the learned ranges
   std::filesystem::path path; ///< the file's
 };
 
@@ -60,7 +60,7 @@ best_calibration(const hand::CalibrationList& stored, const driver::GloveInfo& g
 /// Finds the wearer of a glove that is sewn for `side`. For that side the wearer gets the hand that
 /// is asked for, stored, or recorded (if the glove replays); a note says which
 /// file it is, and whether it may be that of another glove, or that there is none. A simulated
-/// glove gets a stored hand only if it is asked for. For the other side the wearer gets the stored
+/// glove gets a stored hand only on request. For the other side the wearer gets the stored
 /// hand or an average one, and nothing is noted. A user who has calibrations, but none for this
 /// hand and glove, gets an average hand, and a note says so. `found`, if given, is set to what
 /// the wearer of `side` has. Blocks. Errors: bad_input (no such file, another hand's, not readable,

@@ -32,7 +32,7 @@ struct LiveOptions {
   /// GLOVE for each hand, as driver::open_glove() takes it. Empty: no such hand; both empty: the
   /// gloves that this machine has, or two simulated hands if it has none.
   std::string left, right;
-  CalibrationOptions calibration{}; ///< whose hands wear them
+  CalibrationOptions calibration{}; ///< the wearers
   flow::Mode mode = flow::Mode::type1;
   /// The longest side of the model on the stage, within model_size_range_m. Nothing:
   /// usual_size_m().
@@ -41,21 +41,21 @@ struct LiveOptions {
   /// usual_supports().
   std::optional<double> radius_m{};
   flow::PaceOptions pace{};                                   ///< 90 Hz
-  flow::RealtimeOptions realtime{};                           ///< of the loop's thread
+  flow::RealtimeOptions realtime{};                           ///< the rights of the loop's thread
   hand::FilterOptions filter = flow::usual_settings().filter; ///< off, but pinches are closed
   std::optional<std::size_t> undo_bytes{};                    ///< nothing: deform::half_of_memory()
-  driver::GloveContext context{};                             ///< of driver::open_glove()
+  driver::GloveContext context{}; ///< the context for driver::open_glove()
 };
 
 /// Owns the gloves, the loop and its thread. Asking thread: whichever uses it, one at a time.
-/// Whoever needs other rings, sinks or logs makes a flow::DeformLoop.
+/// For other rings, sinks or logs, make a flow::DeformLoop.
 class NENDO_API LiveLoop {
 public:
   /// Opens the gloves, waits for a sample from each, places the hands at the model, and starts the
   /// loop. Blocks for some seconds. Errors: usage (an option), those of open_glove(),
   /// find_wearer() and make_loop().
   static Result<LiveLoop> begin(deform::Mesh model, const LiveOptions& options = {});
-  /// Does the same with the model of a file. Error: bad_input, too (the file).
+  /// Does the same with the model of a file. Further error: bad_input (the file).
   static Result<LiveLoop> begin(const std::string& model_file, const LiveOptions& options = {});
   ~LiveLoop(); ///< stops the loop and the gloves
   LiveLoop(LiveLoop&& other) noexcept;
@@ -72,17 +72,17 @@ public:
   /// Returns the model as it was loaded, and its faces.
   const deform::Mesh& model() const noexcept;
 
-  /// Asks for something: a flow::Request such as undo, a flow::ChangeSettings, a flow::WristMove.
+  /// Sends a command: a flow::Request such as undo, a flow::ChangeSettings, a flow::WristMove.
   /// The loop takes it at the beginning of its next tick. Errors: bad_input (settings that cannot
-  /// be used), usage (a command that no loop obeys), failed (the loop is too far behind).
+  /// be used), usage (a command that no loop executes), failed (the loop is too far behind).
   Result<void> ask(const flow::Command& command);
-  /// Returns the settings that were asked for last, for flow::ChangeSettings.
+  /// Returns the last requested settings, for flow::ChangeSettings.
   const flow::LoopSettings& settings() const noexcept;
 
   /// Returns whether all gloves are recordings that have ended, and the loop has taken all of them.
   bool has_ended() const noexcept;
   std::span<const OpenHand> hands() const noexcept; ///< left first; their rings are the loop's
-  /// Returns what a user should know: which calibrations were found, and rights that were refused.
+  /// Returns notices for the user: found calibrations, and refused rights.
   const std::vector<std::string>& notes() const noexcept;
 
   /// Stops the loop and the gloves, and returns the model as the hands left it. Only stats(),

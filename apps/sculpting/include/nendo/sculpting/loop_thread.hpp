@@ -28,7 +28,7 @@ public:
   LoopThread(const LoopThread&) = delete;
   LoopThread& operator=(const LoopThread&) = delete;
 
-  /// Returns the rights that the thread has asked for. Blocks until it has asked. Call it once.
+  /// Returns the rights that the thread has requested. Blocks until then. Call it once.
   std::vector<flow::Grant> grants() { return prepared_.get_future().get(); }
   /// Ends the loop after its present tick, and joins the thread.
   void stop() {

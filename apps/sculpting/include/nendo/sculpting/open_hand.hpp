@@ -23,7 +23,7 @@ struct OpenHand {
   bool uncalibrated = false; ///< is_uncalibrated() of `wearer` and `first`
   /// The pose of the end of the forearm, if something other than the glove knows it.
   std::optional<Eigen::Isometry3d> T_stage_wrist{};
-  std::shared_ptr<const flow::WristPath> wrist_path{}; ///< likewise, of a wrist that moves
+  std::shared_ptr<const flow::WristPath> wrist_path{}; ///< the same for a wrist that moves
 };
 
 /// Makes a hand of an open glove. Without `side`, it is the hand for which the glove is sewn. Notes
@@ -47,9 +47,9 @@ NENDO_API Result<std::vector<OpenHand>> open_found(std::span<const Side> sides,
 NENDO_API Result<void> start(std::span<OpenHand> hands);
 
 /// Starts again the gloves whose time begins when they are started, which are simulated ones and
-/// recordings: so they do nothing while a run gets ready. What they sent before is dropped. Nobody
-/// else may read their rings meanwhile. Blocks as Glove::stop() does, and fails as Glove::start()
-/// does.
+/// recordings: so they do nothing while a run gets ready. What they sent before is dropped. No
+/// other thread may read their rings meanwhile. Blocks as Glove::stop() does, and fails as
+/// Glove::start() does.
 NENDO_API Result<void> begin_again(std::span<OpenHand> hands);
 
 /// Returns whether all gloves have sent all that they ever will (Glove::has_ended()), so that who

@@ -33,13 +33,13 @@ NENDO_API void set_supports(deform::Supports supports, flow::SculptorOptions& sc
 
 /// Sets how many bytes undo has at the beginning, and that it may have `max_bytes`. The
 /// asking thread calls ChangeBroker::refill_undo() now and then.
-NENDO_API void set_undo_room(const deform::Mesh& model, std::size_t max_bytes,
-                             flow::LoopOptions& loop);
+NENDO_API void set_undo_space(const deform::Mesh& model, std::size_t max_bytes,
+                              flow::LoopOptions& loop);
 
 struct PlacingOptions {
   flow::Mode mode = flow::Mode::type1;
   double model_size_m = 0.8;  ///< usual_size_m()
-  bool is_for_player = false; ///< the hands play a puppet, and stand before it
+  bool is_for_player = false; ///< the hands play a puppet, and are placed before it
 };
 
 /// Places the hands at the model, in the poses of their first samples. Stray vertices do not count.
