@@ -37,7 +37,7 @@ Result<void> check(Options& options) {
   std::error_code ignored;
   if (std::filesystem::exists(options.out, ignored)) {
     return Error{Errc::failed, "--out " + options.out +
-                                   ": is there already, and no recording is written over; name "
+                                   ": is there already, and recordings are never overwritten; name "
                                    "another file or move it away"};
   }
   return {};

@@ -32,7 +32,7 @@ Result<void> RecordingOptions::check(const std::string& out, flow::SwitchAction 
   std::error_code ignored;
   if (on && std::filesystem::exists(file, ignored)) {
     return Error{Errc::failed, "--record " + file +
-                                   ": is there already, and no recording is written over; name "
+                                   ": is there already, and recordings are never overwritten; name "
                                    "another file or move it away"};
   }
   return {};

@@ -61,23 +61,19 @@ Result<deform::ReadModel> read_alone(const std::string& file, const deform::Read
   return model;
 }
 
-/// Says what is to be said, and counts from the usual place.
-void finish(const std::string& name, deform::ReadModel& model) {
-  note_all(name, model.notes);
-  deform::count_from(deform::usual_offset(model.mesh), model.mesh);
-}
-
 } // namespace
 
 Result<deform::ReadModel> read_model(const std::string& file, const deform::ReadOptions& options) {
   auto model = read_alone(file, options);
-  if (model) finish(file, *model);
+  if (!model) return model;
+  note_all(file, model->notes);
+  deform::count_from(deform::usual_offset(model->mesh), model->mesh);
   return model;
 }
 
 Result<deform::ReadModel> read_models(const std::string& name, const deform::ReadOptions& options) {
-  auto model = read_models_from_zero(name, options);
-  if (model) finish(name, *model);
+  auto model = read_models_silently(name, options);
+  if (model) note_all(name, model->notes);
   return model;
 }
 
@@ -86,8 +82,8 @@ void note_all(const std::string& name, const std::vector<std::string>& notes) {
     cli::note_model(printable(name + ": " + what));
 }
 
-Result<deform::ReadModel> read_models_from_zero(const std::string& name,
-                                                const deform::ReadOptions& options) {
+Result<deform::ReadModel> read_models_silently(const std::string& name,
+                                               const deform::ReadOptions& options) {
   std::vector<deform::Mesh> models;
   deform::ReadModel all;
   const std::vector<std::string> files = cli::files_of_name(name);
@@ -100,12 +96,13 @@ Result<deform::ReadModel> read_models_from_zero(const std::string& name,
   }
   if (models.size() == 1) {
     all.mesh = std::move(models.front());
-    return all;
+  } else {
+    add_other_units(files, models, all.notes);
+    auto both = deform::side_by_side(models);
+    if (!both) return Error{both.error().code, name + ": " + both.error().message};
+    all.mesh = *std::move(both);
   }
-  add_other_units(files, models, all.notes);
-  auto both = deform::side_by_side(models);
-  if (!both) return Error{both.error().code, name + ": " + both.error().message};
-  all.mesh = *std::move(both);
+  deform::count_from(deform::usual_offset(all.mesh), all.mesh);
   return all;
 }
 

@@ -22,9 +22,9 @@ Result<deform::ReadModel> read_model(const std::string& file,
 /// bad_input (too large together).
 Result<deform::ReadModel> read_models(const std::string& name,
                                       const deform::ReadOptions& options = {});
-/// Does the same without a word, and its vertices count from zero, as those of old recordings did.
-Result<deform::ReadModel> read_models_from_zero(const std::string& name,
-                                                const deform::ReadOptions& options = {});
+/// Does the same, but prints nothing.
+Result<deform::ReadModel> read_models_silently(const std::string& name,
+                                               const deform::ReadOptions& options = {});
 
 /// Says on standard error what the notes say of the model of that name.
 void note_all(const std::string& name, const std::vector<std::string>& notes);

@@ -4,7 +4,6 @@
 #include <span>
 
 #include <nendo/base/text.hpp>
-#include <nendo/deform/offset.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
 #include "cli/cli.hpp"
@@ -20,24 +19,16 @@ constexpr std::array<deform::ReadOptions, 4> readings{{{deform::UpAxis::y, true}
                                                        {deform::UpAxis::y, false},
                                                        {deform::UpAxis::z, false}}};
 
-/// Whether the vertices are the recorded ones: from zero, as the loop of an old recording had them,
-/// or from the usual place, from where they count afterwards.
-bool has_recorded_vertices(const recording::ShapeSum& sum, deform::Mesh& mesh) {
-  if (recording::sum_of(mesh.vertices) == sum) return true;
-  deform::count_from(deform::usual_offset(mesh), mesh);
-  return recording::sum_of(mesh.vertices) == sum;
-}
-
 /// Returns the model as the first of these ways reads it, or as that which gives the recorded
 /// vertices.
 Result<deform::ReadModel> read_as_recorded(const std::string& name, const recording::ShapeSum& sum,
                                            RecordedModel& recorded) {
   recorded.reading = readings.front();
-  auto usual = read_models_from_zero(name, recorded.reading);
-  if (!usual || has_recorded_vertices(sum, usual->mesh)) return usual;
+  auto usual = read_models_silently(name, recorded.reading);
+  if (!usual || recording::sum_of(usual->mesh.vertices) == sum) return usual;
   for (const deform::ReadOptions& other : std::span(readings).subspan(1)) {
-    auto model = read_models_from_zero(name, other);
-    if (!model || !has_recorded_vertices(sum, model->mesh)) continue;
+    auto model = read_models_silently(name, other);
+    if (!model || recording::sum_of(model->mesh.vertices) != sum) continue;
     recorded.reading = other;
     return model;
   }

@@ -47,7 +47,6 @@ Timeline begin_timeline(const Setup& setup, const std::filesystem::path& take) {
   timeline.units_per_metre = loop.placement.units_per_metre;
   timeline.rate_hz = loop.options.rate_hz;
   timeline.held = loop.options.begins_held();
-  timeline.pull_is_step = loop.options.pull_is_step;
   timeline.sculptor = loop.options.sculptor;
   timeline.sculptor.deformer.undo_bytes = 0;
   for (const auto& hand : setup.hands) {

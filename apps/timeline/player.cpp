@@ -25,7 +25,6 @@ flow::CoreOptions core_options(const Timeline& timeline, const deform::Mesh& mod
                    flow::settings_of(timeline.sculptor, {}, timeline.units_per_metre)};
   options.shaping.max_requests = timeline.events.size() + 1;
   options.shaping.held = timeline.held;
-  options.shaping.pull_is_step = timeline.pull_is_step;
   options.shaping.changes_at_once = true;
   for (const HandTrack& track : timeline.hands)
     options.hands.push_back(track.side);

@@ -64,7 +64,6 @@ struct Timeline {
   double rate_hz = 90.0;        ///< of the frames that are made from the timeline
   double duration_s = 0.0;      ///< of the last frame
   bool held = true;             ///< the hands hold the model at first
-  bool pull_is_step = false;    ///< LoopOptions::pull_is_step; false in files that do not tell
   /// A field along the surface is not in files. Without it, a player makes it of the puppet.
   flow::SculptorOptions sculptor;
   /// The puppet that the hands play. Null: they touch the model with their fingertips.

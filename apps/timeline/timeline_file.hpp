@@ -16,6 +16,13 @@ namespace nendo::timeline {
 inline constexpr std::string_view file_ending = ".timeline.toml";
 inline constexpr std::uint64_t max_file_bytes = std::uint64_t{1} << 26;
 
+// Keys that are always true: a timeline without them was made by an unreleased program, whose rules
+// were others.
+inline constexpr std::string_view pull_rule = "pull_is_step";
+constexpr std::string_view rule_of_sculptor(bool is_puppet) noexcept {
+  return is_puppet ? "type2_along_surface" : "clay_scales_few_vertices";
+}
+
 /// Returns the timeline as text. The same timeline always gives the same text, and reading the text
 /// gives the same bits. Error: failed (complaint_about() has a complaint, a file name is not UTF-8,
 /// or there are too many keys for a file).

@@ -98,9 +98,7 @@ std::string sculptor_text(const flow::SculptorOptions& sculptor, bool is_puppet)
                      set(setting::keep_volume) + set(setting::hold) +
                      line("weight_bytes", std::to_string(options.evaluation.weight_bytes)) +
                      supports_text(options.supports, is_puppet ? "point" : "tip");
-  if (is_puppet && sculptor.type2_along_surface) text += line("type2_along_surface", "true");
-  if (!is_puppet && sculptor.clay_scales_few_vertices)
-    text += line("clay_scales_few_vertices", "true");
+  text += line(rule_of_sculptor(is_puppet), "true");
   if (options.injective)
     text +=
         line("injective", "{ most_bound = " + decimal_text(options.injective->max_bound) +
@@ -229,9 +227,8 @@ std::string head_text(const Timeline& timeline) {
          line("units_per_metre", decimal_text(timeline.units_per_metre)) +
          line("rate_hz", decimal_text(timeline.rate_hz)) +
          line("duration_s", decimal_text(timeline.duration_s)) + line("held", word(timeline.held)) +
-         (timeline.pull_is_step ? line("pull_is_step", "true") : "") + masks_text(timeline) +
-         wires_text(timeline) + "events = [\n" + events + "]\n" + "\n[model]\n" +
-         line("file", toml_string(timeline.mesh)) +
+         line(pull_rule, "true") + masks_text(timeline) + wires_text(timeline) + "events = [\n" +
+         events + "]\n" + "\n[model]\n" + line("file", toml_string(timeline.mesh)) +
          line("vertices", std::to_string(timeline.mesh_sum.vertices)) +
          line("crc32c", std::to_string(timeline.mesh_sum.crc));
 }

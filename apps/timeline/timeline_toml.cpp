@@ -56,7 +56,14 @@ void read_injective(TomlReader& reader, const toml::table& table,
   options.injective->min_gap = reader.number(*injective, "least_gap");
 }
 
-/// Reads a setting that a table has, or must have because all files do.
+void require_rule(TomlReader& reader, const toml::table& table, std::string_view rule) {
+  if (table[rule].value<bool>() != true)
+    reader.complain(table, "there is no '" + std::string(rule) +
+                               " = true': a nendo before 0.2.0 made this timeline; make it again "
+                               "from its recording with `nendo edit make`");
+}
+
+/// Reads a setting, which a table must have.
 class SettingReader {
 public:
   SettingReader(TomlReader& reader, const toml::table& table, flow::LoopSettings& settings)
@@ -64,7 +71,7 @@ public:
 
   template <class Setting>
   void operator()(const Setting& setting) const {
-    if (!setting.is_newer || table_->contains(setting.name)) read(setting);
+    read(setting);
   }
 
 private:
@@ -84,7 +91,9 @@ private:
   }
   void read(const flow::BrushesSetting& brushes) const {
     auto& of_fingers = brushes.of(*settings_);
-    const toml::node& node = *table_->get(brushes.name);
+    const toml::node* const found = reader_->find(*table_, brushes.name);
+    if (found == nullptr) return;
+    const toml::node& node = *found;
     const toml::array* const names = node.as_array();
     if (names == nullptr || names->size() != of_fingers.size())
       return reader_->complain(node, "brushes must be five names, thumb to little finger");
@@ -105,18 +114,9 @@ void read_sculptor(TomlReader& reader, const toml::table& root, bool is_puppet,
                    flow::SculptorOptions& sculptor) {
   const toml::table* const table = reader.table(root, "sculptor");
   if (table == nullptr) return;
-  // order and storage stand in older files; they are ignored.
-  std::vector<std::string_view> keys{"piece_length",
-                                     "polynomial",
-                                     "merge_fraction",
-                                     "order",
-                                     "storage",
-                                     "weight_bytes",
-                                     "shared",
-                                     "own",
-                                     "injective",
-                                     "type2_along_surface",
-                                     "clay_scales_few_vertices"};
+  const std::string_view rule = rule_of_sculptor(is_puppet);
+  std::vector<std::string_view> keys{"piece_length", "polynomial", "merge_fraction", "weight_bytes",
+                                     "shared",       "own",        "injective",      rule};
   flow::LoopSettings settings;
   flow::for_each_plain_setting([&](const auto& setting) {
     keys.push_back(setting.name);
@@ -126,11 +126,7 @@ void read_sculptor(TomlReader& reader, const toml::table& root, bool is_puppet,
   flow::set_plain_settings(sculptor, settings);
   auto& options = sculptor.deformer;
   sculptor.piece_length = reader.number(*table, "piece_length");
-  const auto has_rule = [&](const char* name) { // not in older files
-    return table->contains(name) && reader.truth(*table, name);
-  };
-  sculptor.type2_along_surface = has_rule("type2_along_surface");
-  sculptor.clay_scales_few_vertices = has_rule("clay_scales_few_vertices");
+  require_rule(reader, *table, rule);
   options.csrbf.polynomial = reader.named(*table, "polynomial", deform::polynomial_named);
   options.csrbf.merge_fraction = reader.number(*table, "merge_fraction");
   options.evaluation.weight_bytes =
@@ -169,8 +165,7 @@ std::optional<Side> side_named(std::string_view name) {
 void read_hand_shape(TomlReader& reader, const toml::table& table, hand::WearerShape& shape) {
   const toml::array* const terms = reader.array(table, "shape");
   if (terms == nullptr) return;
-  if (terms->size() != hand::shape_terms && terms->size() != hand::second_shape_terms &&
-      terms->size() != hand::first_shape_terms)
+  if (terms->size() != hand::shape_terms)
     return reader.complain(table, "shape must have " + std::to_string(hand::shape_terms) +
                                       " numbers; leave it out for an average hand");
   for (std::size_t k = 0; k < terms->size(); ++k)
@@ -394,15 +389,15 @@ void read_model(TomlReader& reader, const toml::table& root, Timeline& timeline)
 
 Timeline read_root(TomlReader& reader, const toml::table& root) {
   reader.allow_only(root, {"version", "take", "units_per_metre", "rate_hz", "duration_s", "held",
-                           "pull_is_step", "events", "model", "sculptor", "puppet", "masks",
-                           "wires", "hands"});
+                           pull_rule, "events", "model", "sculptor", "puppet", "masks", "wires",
+                           "hands"});
   Timeline timeline;
   timeline.take = reader.text(root, "take");
   timeline.units_per_metre = reader.number(root, "units_per_metre");
   timeline.rate_hz = reader.number(root, "rate_hz");
   timeline.duration_s = reader.number(root, "duration_s");
   timeline.held = reader.truth(root, "held");
-  timeline.pull_is_step = root.contains("pull_is_step") && reader.truth(root, "pull_is_step");
+  require_rule(reader, root, pull_rule);
   read_puppet(reader, root, timeline);
   if (root.contains("masks")) read_masks(reader, root, timeline);
   if (root.contains("wires")) read_wires(reader, root, timeline);

@@ -307,8 +307,6 @@ TEST_SUITE("puppet change") {
     };
     SculptorOptions type1, type2;
     type2.mode = Mode::type2;
-    SculptorOptions of_older = type2;
-    of_older.type2_along_surface = false;
     CHECK(check_points(nullptr, type2));
     CHECK(check_points(of("\"air\"", 100).get(), type2));
     const auto many = of("\"air\"", 101), along = of("\"surface\"", 101);
@@ -316,7 +314,7 @@ TEST_SUITE("puppet change") {
     CHECK_FALSE(check_points(many.get(), type2));
     CHECK(check_points(along.get(), type1));
     CHECK(check_points(along.get(), type2));
-    const auto refused = check_points(along.get(), of_older);
+    const auto refused = check_points(many.get(), type2);
     REQUIRE_FALSE(refused);
     CHECK(refused.error().message.find("101 points") != std::string::npos);
     Clocked loop(Mode::type1, with_puppet);

@@ -239,19 +239,6 @@ TEST_SUITE("request") {
     CHECK_FALSE(frame.awaited.has_value());
   }
 
-  TEST_CASE("by the rule before format 1.5, type 1 drops a pull together with the commit") {
-    Person person(Mode::type1);
-    person.test.options.pull_is_step = false;
-    person.test.loop = std::make_unique<DeformLoop>(person.test.model, person.test.placement,
-                                                    person.test.inputs, person.test.options);
-    person.move(0, 12);
-    person.ask(Request::commit, 12);
-    CHECK(person.move(12, 25).undo_steps == 1);
-    CHECK(person.ask(Request::undo, 25).undo_steps == 0);
-    CHECK(person.shape() == person.test.model.vertices);
-    CHECK(person.bend(25).redo_steps == 1);
-  }
-
   TEST_CASE("a pull is also undone where there is no memory for undo") {
     Person person(Mode::type1);
     person.test.options.sculptor.deformer.undo_bytes = 0;

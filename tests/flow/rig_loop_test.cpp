@@ -211,18 +211,14 @@ TEST_SUITE("rig_loop") {
     }
   }
 
-  TEST_CASE("type 2 plays it along the surface, or through the air as in older recordings") {
-    auto type1 = puppet_loop(), along = puppet_loop(Mode::type2), older = puppet_loop(Mode::type2);
-    older.options.sculptor.type2_along_surface = false;
-    older.loop =
-        std::make_unique<DeformLoop>(older.model, older.placement, older.inputs, older.options);
+  TEST_CASE("type 2 plays it along the surface") {
+    auto type1 = puppet_loop(), along = puppet_loop(Mode::type2);
     int moves_along = 0;
-    std::size_t fields_of_older = 0;
     HostTime now = HostClock::now();
     for (std::uint64_t tick = 0; tick < 40; ++tick) {
       now += 11ms;
       std::vector<deform::Points> shapes;
-      for (LoopUnderTest* const test : {&type1, &along, &older}) {
+      for (LoopUnderTest* const test : {&type1, &along}) {
         test->bend(static_cast<int>(tick), now);
         shapes.push_back(test->vertices_of(test->frame_after_tick(tick)));
       }
@@ -230,14 +226,10 @@ TEST_SUITE("rig_loop") {
       const Frame& frame = along.loop->frames().front();
       CHECK(frame.fields.fields().empty());
       moves_along += frame.surface.field != 0 ? 1 : 0;
-      fields_of_older += older.loop->frames().front().fields.fields().size();
       if (tick < 39) continue;
       CHECK((shapes[1] - type1.model.vertices).cwiseAbs().maxCoeff() > 0.02);
-      CHECK((shapes[2] - type1.model.vertices).cwiseAbs().maxCoeff() > 0.02);
-      CHECK((shapes[2] - shapes[1]).cwiseAbs().maxCoeff() > 0.01);
     }
     CHECK(moves_along > 10);
-    CHECK(fields_of_older > 10);
   }
 
   TEST_CASE("strokes of type 2 along the surface add up, and an undo goes back stroke by stroke") {

@@ -452,17 +452,17 @@ TEST_SUITE("bend watch") {
         watch.begin();
         CHECK_FALSE(follow());
         const std::size_t beside = finger == 4 ? 3 : finger + 1;
-        const double far = BendWatch::usual_rad(finger) * BendWatch::far_enough;
+        const double far = BendWatch::usual_rad(finger) * BendWatch::min_bend_fraction;
         angle(finger) += 0.9 * far;
         CHECK_FALSE(follow());
         angle(finger) += 0.2 * far;
-        angle(beside) += 0.4 * BendWatch::usual_rad(beside) * BendWatch::far_enough;
+        angle(beside) += 0.4 * BendWatch::usual_rad(beside) * BendWatch::min_bend_fraction;
         const auto bend = follow();
         REQUIRE(bend);
         CHECK(bend->input.side() == side);
         CHECK(bend->input.number() == finger);
         CHECK(bend->travel == BendWatch::usual_rad(finger));
-        angle(beside) += 0.7 * BendWatch::usual_rad(beside) * BendWatch::far_enough;
+        angle(beside) += 0.7 * BendWatch::usual_rad(beside) * BendWatch::min_bend_fraction;
         CHECK_FALSE(follow()); // two bend alike
         watch.begin();
         CHECK_FALSE(follow()); // from where they are now

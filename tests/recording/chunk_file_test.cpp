@@ -211,7 +211,7 @@ TEST_SUITE("chunk_file") {
     CHECK_FALSE(error_of(ChunkReader::open(folder.path() / "missing")).empty());
   }
 
-  TEST_CASE("a newer minor version is read, a newer major one refused, whatever else is in it") {
+  TEST_CASE("a newer minor version is read; a newer major one and older ones are refused") {
     Sample sample{"one"};
     const auto with_version = [&](unsigned major, unsigned minor) {
       std::vector<std::byte> file(sample.file.begin(), sample.file.begin() + 8);
@@ -222,7 +222,11 @@ TEST_SUITE("chunk_file") {
       file.insert(file.end(), sample.file.begin() + 16, sample.file.end());
       return file;
     };
-    CHECK(read_all(with_version(1, 7)).payloads == sample.payloads);
+    CHECK(read_all(with_version(1, 99)).payloads == sample.payloads);
+    for (const unsigned minor : {0U, 12U}) {
+      const auto older = with_version(1, minor);
+      CHECK(error_of(ChunkReader::of(older, "t")).find("record it again") != std::string::npos);
+    }
     const auto newer = with_version(2, 0);
     CHECK(error_of(ChunkReader::of(newer, "t")).find("newer nendo") != std::string::npos);
     const test::TemporaryFolder folder;

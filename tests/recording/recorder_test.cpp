@@ -147,7 +147,7 @@ TEST_SUITE("recorder") {
     CHECK(counts_of(live.path).ticks == 100);
   }
 
-  TEST_CASE("no recording is written over, and a folder that is missing is told at once") {
+  TEST_CASE("recordings are never overwritten, and a missing folder is reported at once") {
     RecordedLoop live(Mode::type1);
     test::write_bytes(live.path, "precious");
     CHECK_THROWS_WITH(live.record(), doctest::Contains("is there already"));

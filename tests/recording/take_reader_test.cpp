@@ -114,7 +114,6 @@ Setup unusual_setup() {
   setup.gloves[1].counts = {1023, true};
   setup.gloves[1].abilities.light = true;
   setup.loop->options.held = false;
-  setup.loop->options.pull_is_step = false;
   setup.loop->options.settings = flow::LoopSettings{
       .mode = flow::Mode::type2, .radius_m = {0.1, 0.2, 0.3, 0.4, 0.5}, .piece_fraction = 0.07};
   setup.loop->options.sculptor.brushes = {deform::Brush::push, deform::Brush::twist,
@@ -122,7 +121,6 @@ Setup unusual_setup() {
                                           deform::Brush::scale};
   setup.loop->options.sculptor.brush_strength = -0.25;
   setup.loop->options.sculptor.hold = flow::Hold::hand;
-  setup.loop->options.sculptor.type2_along_surface = false;
   setup.loop->options.sculptor.deformer.csrbf.keep_volume = 0.75;
   setup.loop->options.settings->keep_volume = 0.125;
   setup.loop->placement.table = flow::Table{{1.5, -2.5, 0.25}, 8.0};
@@ -235,12 +233,12 @@ TEST_SUITE("take_reader") {
     CHECK(lines[at]["merge"] == 0.07);
     CHECK(lines[at]["most_links"] == 33);
     CHECK(lines[at]["held"] == 0);
-    CHECK(lines[at]["pull_is_step"] == 0);
+    CHECK(lines[at]["pull_is_step"] == 1);
     CHECK(is_settings(lines[at]["settings"], *options.settings));
     CHECK(are_brushes(lines[at], options.sculptor));
     CHECK(is_hold(lines[at], 0.75, flow::Hold::hand));
     CHECK(lines[at]["table"] == json::parse("[1.5, -2.5, 0.25, 8.0]"));
-    CHECK(lines[at]["type2_along_surface"] == 0);
+    CHECK(lines[at]["type2_along_surface"] == 1);
     CHECK(lines[at]["clay_scales_few_vertices"] == 1);
     CHECK(lines[at++]["least_gap"] == 0.04);
     REQUIRE(lines[at]["chunk"] == "REST");

@@ -343,7 +343,7 @@ TEST_SUITE("take_tools") {
     CHECK(test::file_bytes(take.live.path) == whole);
   }
 
-  TEST_CASE("no file is written over") {
+  TEST_CASE("files are never overwritten") {
     Take take(10);
     test::write_bytes(take.made, "precious");
     CHECK(repair_take(take.live.path, take.made).error().code == Errc::failed);

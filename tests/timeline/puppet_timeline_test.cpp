@@ -115,33 +115,6 @@ TEST_SUITE("puppet_timeline") {
     }
   }
 
-  TEST_CASE("in files of before, which do not tell how type 2 measures, it is through the air") {
-    Played take(Mode::type2);
-    test::play(take.live, 100, 3, false, [&](const flow::Frame& frame) { take.see(frame); });
-    const Timeline made = take.made(none).timeline;
-    CHECK(made.sculptor.type2_along_surface);
-    std::string text = *timeline_text(made);
-    const std::string_view tells = "type2_along_surface = true\n";
-    const auto at = text.find(tells);
-    REQUIRE(at != std::string::npos);
-    text.erase(at, tells.size());
-    const auto older = parse_timeline(text, "older");
-    REQUIRE(older);
-    CHECK_FALSE(older->sculptor.type2_along_surface);
-    CHECK(*timeline_text(*older) == text);
-    const auto now = playing(made, take.live.test.model);
-    const auto then = playing(*older, take.live.test.model);
-    double max_apart = 0.0;
-    while (now->next() && then->next()) {
-      Points one, other;
-      now->layout().unpack(now->frame().shape, one);
-      then->layout().unpack(then->frame().shape, other);
-      max_apart = std::max(max_apart, (one - other).cwiseAbs().maxCoeff());
-      CHECK(now->frame().fields.fields().empty());
-    }
-    CHECK(max_apart > 0.01);
-  }
-
   TEST_CASE("a take whose puppet was edited on the way is a timeline with the last puppet") {
     for (const char* distance : {"", "distance = \"air\""}) {
       const std::string text = distance + std::string(test::ball_puppet);

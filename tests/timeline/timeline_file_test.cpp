@@ -68,7 +68,6 @@ TEST_SUITE("timeline_file") {
       CHECK(back->take == made.take);
       CHECK(back->mesh == made.mesh);
       CHECK(back->held == made.held);
-      CHECK(back->pull_is_step == made.pull_is_step);
       CHECK(back->mesh_sum.crc == made.mesh_sum.crc);
       CHECK(back->mesh_sum.vertices == made.mesh_sum.vertices);
       CHECK(back->sculptor.deformer.supports.shared == made.sculptor.deformer.supports.shared);
@@ -103,27 +102,31 @@ TEST_SUITE("timeline_file") {
     CHECK_FALSE(timeline_text(bad));
   }
 
-  TEST_CASE("shapes of hands that earlier programs wrote are read, with zeros for what they lack") {
+  TEST_CASE("a hand's shape is read back, and has all terms or is left out") {
     std::mt19937 random(3);
     Timeline made = test::random_timeline(random);
     auto& terms = made.hands[0].size.shape.terms;
     terms.fill(0.02);
-    terms[26] = 0.125;
-    terms[27] = 0.25;
     terms[28] = 0.00125;
     terms[29] = 0.0025;
     const std::string text = text_of(made);
-    const auto second = parse_timeline(without(text, ", 0.00125, 0.0025"), "second");
-    REQUIRE(second);
-    CHECK(second->hands[0].size.shape.terms[27] == 0.25);
-    CHECK(second->hands[0].size.shape.terms[28] == 0.0);
-    const auto first = parse_timeline(without(text, ", 0.125, 0.25, 0.00125, 0.0025"), "first");
-    REQUIRE(first);
-    const auto& read = first->hands[0].size.shape.terms;
-    CHECK(read[25] == 0.02);
-    CHECK(read[26] == 0.0);
-    CHECK(read[29] == 0.0);
-    CHECK_FALSE(parse_timeline(without(text, ", 0.0025"), "between"));
+    const auto back = parse_timeline(text, "back");
+    REQUIRE(back);
+    CHECK(back->hands[0].size.shape.terms == terms);
+    CHECK_FALSE(parse_timeline(without(text, ", 0.0025"), "short"));
+  }
+
+  TEST_CASE("timelines of unreleased programs are refused, with what to do") {
+    std::mt19937 random(3);
+    const std::string text = text_of(test::random_timeline(random));
+    for (const std::string line : {"pull_is_step = true\n", "clay_scales_few_vertices = true\n"}) {
+      for (const std::string& bad :
+           {without(text, line), instead(text, line, instead(line, "true", "false"))}) {
+        const auto parsed = parse_timeline(bad, "old");
+        REQUIRE_FALSE(parsed);
+        CHECK(parsed.error().message.find("nendo edit make") != std::string::npos);
+      }
+    }
   }
 
   TEST_CASE("what is wrong is said with its line") {

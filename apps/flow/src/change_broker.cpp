@@ -103,8 +103,7 @@ void ChangeBroker::Parts::make_ready() {
   change->ready.puppet_step = kind_of_edit(before, asked_rig());
 }
 
-/// A mode that the loop has already continues: in older recordings puppets are in any mode, and
-/// have any number of points.
+/// A mode that the loop has already continues, with any puppet and any number of points.
 Result<SculptorSetup> ChangeBroker::Parts::setup_for(const SculptorSetup& before,
                                                      const LoopSettings& settings) const {
   const puppet::Rig* const rig = asked_rig();
@@ -116,9 +115,9 @@ Result<SculptorSetup> ChangeBroker::Parts::setup_for(const SculptorSetup& before
   const bool is_other_mode = settings.mode != asked.settings.mode;
   LoopSettings judged = settings;
   if (!is_other_mode) judged.mode = Mode::type1;
-  const Played played = setup.options.is_along_surface() ? Played::along_surface
-                        : is_played(rig)                 ? Played::through_air
-                                                         : Played::nothing;
+  const Played played = setup.options.surface ? Played::along_surface
+                        : is_played(rig)      ? Played::through_air
+                                              : Played::nothing;
   if (auto fine = compatible(judged, played); !fine) return fine.error();
   if (is_other_mode)
     if (auto fine = check_points(rig, setup.options); !fine) return fine.error();

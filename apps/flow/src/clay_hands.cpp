@@ -13,15 +13,13 @@ namespace {
 constexpr double mm_a_metre = 1000.0;
 
 deform::ClayOptions clay_options(const HandBodies& bodies, double radius_m,
-                                 const deform::DeformerOptions& deformer,
-                                 bool scales_few_vertices) {
+                                 const deform::DeformerOptions& deformer) {
   deform::ClayOptions options;
   options.units_per_mm = bodies.units_per_metre() / mm_a_metre;
   options.radius_mm = mm_a_metre * std::max(radius_m, ClayHands::min_radius_m);
   options.still_bodies = HandBodies::tables;
   options.evaluation = deformer.evaluation;
   options.mask = deformer.mask;
-  options.scales_few_vertices = scales_few_vertices;
   return options;
 }
 
@@ -68,13 +66,11 @@ ClayModel::ClayModel(const deform::Mesh& mesh, double first_volume)
 
 ClayHands::ClayHands(deform::SculptedShape& shape, std::shared_ptr<const ClayModel> model,
                      std::shared_ptr<const HandBodies> bodies, double radius_m,
-                     const deform::DeformerOptions& options, std::optional<double> mirror,
-                     bool scales_few_vertices)
+                     const deform::DeformerOptions& options, std::optional<double> mirror)
     : model_(std::move(model)), bodies_(std::move(bodies)), mirror_(mirror),
       with_images_(mirror ? bodies_of(*bodies_, true) * hand::HandBody::part_count : 0),
       clay_(shape, model_->corners, bodies_of(*bodies_, mirror.has_value()),
-            hand::HandBody::part_count,
-            clay_options(*bodies_, radius_m, options, scales_few_vertices)) {}
+            hand::HandBody::part_count, clay_options(*bodies_, radius_m, options)) {}
 
 std::span<const deform::ContactPart> ClayHands::parts() noexcept {
   const auto own = bodies_->parts();

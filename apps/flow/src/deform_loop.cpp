@@ -36,7 +36,6 @@ CoreOptions core_options(const std::vector<HandInput>& inputs, const Placement& 
                                                     placement.units_per_metre)};
   if (options.commands != nullptr) core.shaping.max_requests = options.commands->capacity();
   core.shaping.held = options.begins_held();
-  core.shaping.pull_is_step = options.pull_is_step;
   for (const HandInput* hand : hands_of(inputs))
     core.hands.push_back(hand->side);
   core.inputs = inputs.size();

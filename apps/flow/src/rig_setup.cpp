@@ -36,8 +36,7 @@ bool can_press(const puppet::Rig* rig) noexcept {
 
 Result<void> check_points(const puppet::Rig* rig, const SculptorOptions& sculptor) {
   if (!is_played(rig) || rig->starts().cols() <= deform::CsrbfSolver::lean_size) return {};
-  const bool along_surface = sculptor.mode == Mode::type1 || sculptor.type2_along_surface;
-  if (along_surface && rig->puppet().distance == puppet::Distance::surface) return {};
+  if (rig->puppet().distance == puppet::Distance::surface) return {};
   return Error{Errc::bad_input, "the puppet has " + std::to_string(rig->starts().cols()) +
                                     " points; a tick solves for at most " +
                                     std::to_string(deform::CsrbfSolver::lean_size) +

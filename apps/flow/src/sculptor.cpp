@@ -68,12 +68,11 @@ Deformer make(SculptedShape& shape, Eigen::Index control_points, const SculptorO
     const auto radii = radii_on_stage(options.deformer.supports, options.bodies->units_per_metre());
     return ClayHands(shape, options.clay, options.bodies,
                      std::accumulate(radii.begin(), radii.end(), 0.0) / fingers, options.deformer,
-                     options.mirror, options.clay_scales_few_vertices);
+                     options.mirror);
   }
   if (options.mode == Mode::parts && options.bodies && options.parts)
     return PartHands(shape, options.parts, options.bodies, options.deformer.mask);
-  if (options.mode == Mode::type2 && options.is_along_surface())
-    return Type2Deformer(shape, options.surface);
+  if (options.mode == Mode::type2 && options.surface) return Type2Deformer(shape, options.surface);
   if (options.mode == Mode::type2)
     return Type2Deformer(shape, control_points, options.piece_length,
                          brushed(options, control_points));
@@ -156,10 +155,6 @@ std::string in_words(const std::array<deform::Brush, 5>& brushes) {
 
 bool SculptorOptions::needs_rings() const noexcept {
   return !deform::are_all_pull(brushes);
-}
-
-bool SculptorOptions::is_along_surface() const noexcept {
-  return surface != nullptr && (mode != Mode::type2 || type2_along_surface);
 }
 
 Eigen::Index SculptorOptions::points_of_hand() const noexcept {

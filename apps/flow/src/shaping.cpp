@@ -47,9 +47,8 @@ std::unique_ptr<Sculptor> sculptor_on(ModelVersion& model, Eigen::Index control_
 Shaping::Shaping(ModelVersion& model, const SculptorSetup& setup, Eigen::Index control_points,
                  const ShapingOptions& options)
     : model_(&model), sculptor_(sculptor_on(model, control_points, setup.options)),
-      still_tips_(Points::Zero(3, control_points)), pull_is_step_(options.pull_is_step),
-      changes_at_once_(options.changes_at_once), held_(options.held), hold_wanted_(held_),
-      settings_(setup.settings) {
+      still_tips_(Points::Zero(3, control_points)), changes_at_once_(options.changes_at_once),
+      held_(options.held), hold_wanted_(held_), settings_(setup.settings) {
   steps_due_.reserve(options.max_requests);
 }
 

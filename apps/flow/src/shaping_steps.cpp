@@ -73,8 +73,7 @@ bool Shaping::take_step(Request step, const Points& tips, LoopStats& stats) noex
 }
 
 /// Returns whether the step undoes or redoes a change. An undo of the hands' work since
-/// the last step comes first. By the old rule (LoopOptions::pull_is_step), a pull in type 1 is
-/// dropped together with the change.
+/// the last step comes first.
 bool Shaping::is_change_next(Request step) const noexcept {
   if (step == Request::reset) return false;
   const auto other = target_of(step);
@@ -168,8 +167,7 @@ void Shaping::record_puppet(const Awaited& before, StepKind kind) noexcept {
       NotedStep{step_now(kind), {before.settings, model_->number, before.puppet}}.note());
 }
 
-// Counts what was shaped since the last step as a step. By the old rule, type 1 drops it together
-// with the commit that it undoes.
+// Counts what was shaped since the last step as a step.
 std::size_t Shaping::undo_steps() const noexcept {
   const std::size_t steps = steps_to_undo();
   if (is_in_hand()) return steps + 1;
@@ -178,7 +176,7 @@ std::size_t Shaping::undo_steps() const noexcept {
 
 /// Returns whether the hands have pulled in type 1, which is a step of its own.
 bool Shaping::is_pulled() const noexcept {
-  return held_ && shaped_ && pull_is_step_ && sculptor_->mode() == Mode::type1;
+  return held_ && shaped_ && sculptor_->mode() == Mode::type1;
 }
 
 bool Shaping::is_in_hand() const noexcept {

@@ -36,7 +36,7 @@ std::optional<Bend> BendWatch::follow(const RigPlayer::Hands& hands) noexcept {
       best = Bend{*signal, std::copysign(usual_rad(finger), part)};
     }
   }
-  if (most < far_enough || most < clearly * second) return std::nullopt;
+  if (most < min_bend_fraction || most < dominance_ratio * second) return std::nullopt;
   return best;
 }
 

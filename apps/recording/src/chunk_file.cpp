@@ -118,9 +118,15 @@ Result<void> ChunkReader::check_file_header() {
     return bad("its header is damaged; `nendo recording repair` saves what follows");
   ByteReader versions(header.subspan(file_magic.size()));
   const unsigned major = versions.u16_le();
-  if (major > format_major)
-    return bad("has format " + std::to_string(major) + ", made by a newer nendo; this one reads " +
-               std::to_string(format_major) + ", so update it");
+  const unsigned minor = versions.u16_le();
+  const auto numbers = [](unsigned of_major, unsigned of_minor) {
+    return std::to_string(of_major) + "." + std::to_string(of_minor);
+  };
+  const std::string has = "has format " + numbers(major, minor) + ", made by ";
+  const std::string reads = " nendo; this one reads " + numbers(format_major, format_minor);
+  if (major > format_major) return bad(has + "a newer" + reads + ", so update it");
+  if (major < format_major || minor < format_minor)
+    return bad(has + "an unreleased" + reads + " and newer ones, so record it again");
   at_ = good_end_ = file_header_bytes;
   return {};
 }

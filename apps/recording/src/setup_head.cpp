@@ -64,8 +64,7 @@ void read_learned(ByteReader& reader, CheckedReader& checked, hand::LearnedRange
   }
 }
 
-/// Added to a hand's filter where its wearer's ends follow, so that readers of formats before 1.12
-/// refuse it.
+/// Added to the kind of a hand's filter if its wearer's ends follow.
 constexpr unsigned ends_bit = 64;
 
 /// Returns whether the wearer's ends follow.
@@ -129,11 +128,9 @@ void read_size(CheckedReader& checked, hand::HandSize& size) {
   size.breadth_m = checked.number(min_hand_m, max_hand_m);
 }
 
-/// The terms of the first formats, those that 1.9 brought, and those of 1.12: of both hands each.
+/// The terms that stand together, first those of the one hand and then those of the other.
 constexpr std::pair<std::size_t, std::size_t> shape_ranges[] = {
-    {0, hand::first_shape_terms},
-    {hand::first_shape_terms, hand::second_shape_terms},
-    {hand::second_shape_terms, hand::shape_terms}};
+    {0, 26}, {26, 28}, {28, hand::shape_terms}};
 
 void put_shapes(ByteWriter& writer, const hand::WearerShape& own, const hand::WearerShape& other) {
   for (const auto& [begin, end] : shape_ranges)
@@ -239,19 +236,16 @@ bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
   read_calibration(checked, own.calibration);
   read_calibration(checked, other.calibration);
   read_size(checked, other.size);
-  if (reader.remaining() > 0 && reader.u8() != 0) // format 1.0 ends before it
-    read_learned(reader, checked, hand.wearer.learned.emplace());
-  if (reader.remaining() > 0 && reader.u8() != 0) // formats before 1.6 end before it
-    read_layer(reader, checked, hand.layer.emplace());
-  if (reader.remaining() > 0 && reader.u8() != 0) { // formats before 1.7 end before it
+  if (reader.u8() != 0) read_learned(reader, checked, hand.wearer.learned.emplace());
+  if (reader.u8() != 0) read_layer(reader, checked, hand.layer.emplace());
+  if (reader.u8() != 0) {
     for (const auto& [begin, end] : shape_ranges) {
-      if (begin > 0 && reader.remaining() == 0) break; // in formats before 1.9, or before 1.12
       read_shape(checked, begin, end, own.size.shape);
       read_shape(checked, begin, end, other.size.shape);
     }
   }
   if (ends_follow) read_ends(reader, checked, hand.wearer.ends.emplace());
-  if (reader.remaining() > 0) read_stuck(reader, checked, hand.wearer); // since 1.12
+  if (reader.remaining() > 0) read_stuck(reader, checked, hand.wearer);
   if (!checked.fine()) return false;
   own.left_out = hand.wearer.of(hand.first.side).left_out;
   other.left_out = hand.wearer.of(opposite(hand.first.side)).left_out;

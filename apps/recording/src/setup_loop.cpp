@@ -17,6 +17,9 @@ constexpr std::uint32_t max_links = 1024;
 constexpr std::uint32_t max_catch_up = 1000;              // as parse_policy()
 constexpr double max_points = puppet::Puppet::max_points; // two hands' fingertips, or a puppet's
 constexpr double largest_number = 1e100;                  // as the solver takes
+// Rules of the loop, which unreleased programs did not have: an undo reverts a pull in type 1 as a
+// step of its own; type 2 measures along the surface, and clay of few vertices is scaled.
+constexpr std::uint8_t pull_rule = 1, sculptor_rules = 3;
 
 void read_number(CheckedReader& checked, const flow::NumberSetting& number,
                  flow::LoopSettings& settings) {
@@ -85,7 +88,7 @@ void put_deformer(ByteWriter& writer, const deform::DeformerOptions& options) {
   writer.u8(static_cast<std::uint8_t>(options.csrbf.kernel));
   writer.u8(static_cast<std::uint8_t>(options.csrbf.polynomial));
   writer.f64_le(options.csrbf.merge_fraction);
-  writer.u16_le(0); // two bytes that were the solver's order and storage
+  writer.u16_le(0); // reserved
   writer.u64_le(options.evaluation.weight_bytes);
   writer.u64_le(options.undo_bytes);
   writer.u8(static_cast<std::uint8_t>(options.injective.has_value()));
@@ -114,7 +117,7 @@ void read_deformer(ByteReader& reader, CheckedReader& checked, deform::DeformerO
   options.csrbf.kernel = checked.one_of(deform::Wendland::c6);
   options.csrbf.polynomial = checked.one_of(deform::Polynomial::linear);
   options.csrbf.merge_fraction = checked.number(0.0, 1.0);
-  reader.u16_le(); // two bytes that were the solver's order and storage; any are good
+  reader.u16_le(); // reserved
   options.evaluation.weight_bytes = checked.size(max_memory);
   options.undo_bytes = checked.size(max_memory);
   const bool injects = reader.u8() != 0;
@@ -154,14 +157,13 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
   writer.u8(static_cast<std::uint8_t>(options.settings.has_value()));
   if (options.settings) put_settings(writer, *options.settings);
   writer.u32_le(static_cast<std::uint32_t>(plain_origins(loop)));
-  writer.u8(static_cast<std::uint8_t>(options.pull_is_step));
+  writer.u8(pull_rule);
   const flow::LoopSettings settings = flow::plain_settings_of(options.sculptor);
   put_brushes(writer, settings);
   put_hold(writer, settings);
   if (options.settings) put_hold(writer, *options.settings);
   put_table(writer, loop.placement);
-  writer.u8(static_cast<std::uint8_t>((options.sculptor.type2_along_surface ? 1U : 0U) |
-                                      (options.sculptor.clay_scales_few_vertices ? 2U : 0U)));
+  writer.u8(sculptor_rules);
 }
 
 void put_brushes(ByteWriter& writer, const flow::LoopSettings& settings) {
@@ -342,9 +344,8 @@ bool read_puppet(ByteReader& reader, std::optional<LoopSetup>& loop) {
   if (!loop || !loop->puppet.text.empty() || !read_puppet_text(reader, read)) return false;
   puppet::RigState state = read_rig_state(reader, checked);
   read_puppet_starts(checked, read);
-  if (reader.remaining() > 0) // since 1.6
-    for (bool& holds : state.hand_holds)
-      holds = reader.u8() != 0;
+  for (bool& holds : state.hand_holds)
+    holds = reader.u8() != 0;
   if (!checked.fine()) return false;
   loop->puppet = std::move(read);
   loop->options.rig_state = std::move(state);
@@ -372,37 +373,28 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
   options.sculptor.piece_length = checked.number(min_piece, largest_number);
   read_deformer(reader, checked, options.sculptor.deformer);
   read.simd = reader.text();
-  if (reader.remaining() > 0) options.undo_max_bytes = reader.u64_le(); // 1.0 had none at first
-  if (reader.remaining() > 0) {                                         // since 1.3
-    options.held = reader.u8() != 0;
-    if (reader.u8() != 0) {
-      options.settings = read_settings(reader);
-      checked.require(options.settings.has_value());
-    }
+  options.undo_max_bytes = reader.u64_le();
+  options.held = reader.u8() != 0;
+  if (reader.u8() != 0) {
+    options.settings = read_settings(reader);
+    checked.require(options.settings.has_value());
   }
-  const std::uint32_t subdivisions = reader.remaining() > 0 ? reader.u32_le() : 0; // since 1.4
+  const std::uint32_t subdivisions = reader.u32_le();
   checked.require(subdivisions <= max_plain_origins);
   if (checked.fine())
     read.origins.assign(subdivisions, std::make_shared<const flow::ModelOrigin>(flow::ModelOrigin{
                                           .source = flow::ModelSource::subdivided}));
-  options.pull_is_step = reader.remaining() > 0 && reader.u8() != 0; // since 1.5
+  checked.require(reader.u8() == pull_rule);
   flow::LoopSettings settings = flow::plain_settings_of(options.sculptor);
-  if (reader.remaining() > 0) { // since 1.6
-    checked.require(read_brushes(reader, settings));
-    if (options.settings) {
-      options.settings->brushes = settings.brushes;
-      options.settings->brush_strength = settings.brush_strength;
-    }
-  }
-  if (reader.remaining() > 0) { // since 1.7
-    checked.require(read_hold(reader, settings));
-    if (options.settings) checked.require(read_hold(reader, *options.settings));
+  checked.require(read_brushes(reader, settings) && read_hold(reader, settings));
+  if (options.settings) {
+    options.settings->brushes = settings.brushes;
+    options.settings->brush_strength = settings.brush_strength;
+    checked.require(read_hold(reader, *options.settings));
   }
   flow::set_plain_settings(options.sculptor, settings);
-  if (reader.remaining() > 0) read.placement.table = read_table(reader, checked); // since 1.7
-  const unsigned rules = reader.remaining() > 0 ? reader.u8() : 0U;               // since 1.13
-  options.sculptor.type2_along_surface = (rules & 1U) != 0;
-  options.sculptor.clay_scales_few_vertices = (rules & 2U) != 0;
+  read.placement.table = read_table(reader, checked);
+  checked.require(reader.u8() == sculptor_rules);
   if (loop || !checked.fine()) return false;
   loop = std::move(read);
   return true;

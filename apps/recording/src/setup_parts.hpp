@@ -108,7 +108,7 @@ inline constexpr std::size_t max_vertices_of_chunk = std::size_t{1} << 19;
 /// Writes settings, as they stand in a loop's chunk and in entries.
 void put_settings(ByteWriter& writer, const flow::LoopSettings& settings);
 inline constexpr std::size_t settings_bytes = 76;
-/// Writes what stands behind them since format 1.6.
+/// Writes the brushes, which follow them.
 void put_brushes(ByteWriter& writer, const flow::LoopSettings& settings);
 inline constexpr std::size_t brushes_bytes = 5 + 8;
 bool read_brushes(ByteReader& reader, flow::LoopSettings& settings);

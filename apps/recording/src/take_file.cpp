@@ -23,8 +23,8 @@ Result<NewFile> NewFile::create(const std::filesystem::path& path) {
   UniqueFd file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666));
   if (file.is_open()) return NewFile(path, std::move(file));
   if (errno == EEXIST)
-    return Error{Errc::failed, path.string() + ": is there already, and no recording is written "
-                                               "over; name another file or move it away"};
+    return Error{Errc::failed, path.string() + ": is there already, and recordings are never "
+                                               "overwritten; name another file or move it away"};
   return Error{Errc::failed, path.string() + ": cannot be made: " + last_error() +
                                  "; choose a folder that is there and that you may write to"};
 }

@@ -132,11 +132,9 @@ std::optional<Entry> model_of(ByteReader& reader) {
   if (reader.overrun() || source > static_cast<std::uint8_t>(flow::ModelSource::topology))
     return std::nullopt;
   change.source = static_cast<flow::ModelSource>(source);
-  if (reader.remaining() > 0) change.max_vertices = reader.u32_le(); // since 1.8
-  if (reader.remaining() > 0) {                                      // since 1.11
-    change.seam_width = reader.f64_le();
-    change.part = reader.u32_le();
-  }
+  change.max_vertices = reader.u32_le();
+  change.seam_width = reader.f64_le();
+  change.part = reader.u32_le();
   if (reader.overrun() || !(change.seam_width >= 0.0) || !std::isfinite(change.seam_width))
     return std::nullopt;
   return change;
@@ -195,11 +193,9 @@ std::optional<std::vector<driver::RecordCounts>> sent_of(std::span<const std::by
     counts.refused = reader.u64_le();
     counts.bad = reader.u64_le();
   }
-  if (reader.remaining() > 0) { // earlier versions wrote no more
-    for (driver::RecordCounts& counts : gloves) {
-      counts.tells_missed = reader.u8() != 0;
-      counts.clamped = reader.u64_le();
-    }
+  for (driver::RecordCounts& counts : gloves) {
+    counts.tells_missed = reader.u8() != 0;
+    counts.clamped = reader.u64_le();
   }
   if (reader.overrun()) return std::nullopt;
   return gloves;
@@ -314,10 +310,8 @@ std::optional<Entry> TakeReader::entry_of(const LogEntry& record) {
     entry = wrist_of(reader);
   } else if (record.is(EntryKind::settings)) {
     auto settings = read_settings(reader);
-    bool fine = reader.remaining() == 0 || // before 1.6
-                (settings && read_brushes(reader, *settings));
-    fine = fine && (reader.remaining() == 0 || (settings && read_hold(reader, *settings)));
-    if (settings && fine) entry = *settings;
+    if (settings && read_brushes(reader, *settings) && read_hold(reader, *settings))
+      entry = *settings;
   } else if (record.is(EntryKind::hold_still)) {
     entry = flow::HoldStill{};
   } else if (record.is(EntryKind::model)) {

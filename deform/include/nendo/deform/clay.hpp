@@ -23,9 +23,6 @@ struct ClayOptions {
   double radius_mm = 25.0;   ///< of the functions, > 0: how soft the clay is. About 2.5 fingers'.
   double friction = 0.5;     ///< Coulomb's coefficient, >= 0
   bool keeps_volume = true;  ///< only of closed, oriented surfaces
-  /// A model of so few vertices that bodies touch nearly all is scaled to its volume. False in
-  /// older recordings, which then replay bit for bit.
-  bool scales_few_vertices = true;
   /// Otherwise bodies carry, turn and roll the model by what sticks to them and presses it.
   bool lies_on_table = true;
   /// Two parts of a body that press from sides that face each other grab what is under

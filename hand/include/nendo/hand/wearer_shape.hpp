@@ -45,8 +45,6 @@ enum class ShapeTerm : std::uint8_t {
 };
 
 inline constexpr std::size_t shape_terms = 30;
-/// Of the shapes that earlier programs wrote.
-inline constexpr std::size_t first_shape_terms = 26, second_shape_terms = 28;
 
 // Of an average hand. A pad is the middle of what touches another pad.
 inline constexpr double pad_depth_m = 0.006;

@@ -57,11 +57,10 @@ public:
   /// `radius_m` is the distance from a hand within which clay yields, on the stage; less than
   /// min_radius_m counts as that, because palms crease the surface otherwise. `shape` must outlive
   /// this. With a `mirror`, the x of a plane in model units, the hands' mirror images press as
-  /// well. `scales_few_vertices`: see deform::ClayOptions.
+  /// well.
   ClayHands(deform::SculptedShape& shape, std::shared_ptr<const ClayModel> model,
             std::shared_ptr<const HandBodies> bodies, double radius_m,
-            const deform::DeformerOptions& options, std::optional<double> mirror,
-            bool scales_few_vertices = true);
+            const deform::DeformerOptions& options, std::optional<double> mirror);
   static constexpr double min_radius_m = 0.020;
 
   deform::FieldStatus begin(const deform::Points&) { return clay_.begin(parts()); }

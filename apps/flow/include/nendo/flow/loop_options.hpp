@@ -68,11 +68,6 @@ struct LoopOptions : PaceOptions {
   /// The settings at first, if settings_of() the sculptor and the filter would be less exact.
   std::optional<LoopSettings> settings{};
 
-  /// Whether an undo undoes what the hands have pulled in type 1 since the last commit as a
-  /// step of its own. If not, it goes together with the step that is undone, as in recordings
-  /// before format 1.5.
-  bool pull_is_step = true;
-
   bool begins_held() const noexcept { return held.value_or(switch_action != SwitchAction::grab); }
 };
 

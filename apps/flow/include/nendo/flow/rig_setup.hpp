@@ -29,8 +29,7 @@ NENDO_API std::optional<double> mirror_of(const puppet::Rig* rig) noexcept;
 NENDO_API bool can_press(const puppet::Rig* rig) noexcept;
 /// Returns whether a tick can solve for that puppet's points without allocating. Error, bad_input:
 /// there are more than deform::CsrbfSolver::lean_size. Where distances go along the surface, any
-/// number is good, because their field is solved for beforehand; type 2 of older recordings
-/// (SculptorOptions::type2_along_surface) has none.
+/// number is good, because their field is solved for beforehand.
 NENDO_API Result<void> check_points(const puppet::Rig* rig, const SculptorOptions& sculptor);
 /// Returns the kind of the step from one to the other: puppet, mask, or symmetry.
 NENDO_API StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept;

@@ -62,11 +62,9 @@ struct NENDO_API SculptorOptions {
   std::optional<double> mirror{};
   /// The model's rings, which some brushes need (needs_rings()).
   std::shared_ptr<const deform::VertexRings> rings{};
-  /// If set, distances are measured along the surface at rest, in type 2 only if the next is true,
-  /// which it was not in older recordings. Then nothing keeps the volume, and links need not be.
+  /// If set, distances are measured along the surface at rest. Then nothing keeps the volume, and
+  /// links need not be.
   std::shared_ptr<const deform::SurfaceField> surface{};
-  bool type2_along_surface = true;
-  bool clay_scales_few_vertices = true; ///< deform::ClayOptions::scales_few_vertices
   /// The hands that press clay or move parts, and the model that is clay, or its parts. A loop sets
   /// them. Without hands, as with a puppet, both modes shape as type 1 does.
   std::shared_ptr<const HandBodies> bodies{};
@@ -75,8 +73,6 @@ struct NENDO_API SculptorOptions {
 
   /// Returns whether a brush does something that needs the triangles about each vertex.
   bool needs_rings() const noexcept;
-  /// Returns whether distances are measured along the surface.
-  bool is_along_surface() const noexcept;
   /// Returns how many points of a hand hold the model; not of a puppet.
   Eigen::Index points_of_hand() const noexcept;
 };

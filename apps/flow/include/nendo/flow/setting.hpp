@@ -61,11 +61,11 @@ inline constexpr BrushesSetting brushes{
      "The effect of a fingertip along its path, in type 2: pull, none, push, inflate, smooth, "
      "flatten, "
      "twist, scale or pinch; or five with commas between, thumb to little finger",
-     StepKind::brush, true},
+     StepKind::brush},
     &LoopSettings::brushes};
 inline constexpr NumberSetting brush_strength{
     {{"brush_strength", "--strength", "strength", "strength",
-      "The strength of brushes; below 0 their effect is reversed", StepKind::brush, true},
+      "The strength of brushes; below 0 their effect is reversed", StepKind::brush},
      &LoopSettings::brush_strength},
     {-1.0, 1.0},
     "",
@@ -74,14 +74,14 @@ inline constexpr NumberSetting brush_strength{
 inline constexpr NumberSetting keep_volume{
     {{"keep_volume", "--keep-volume", "keeping the volume", "volume",
       "0: compressible; 1: volume-preserving, so that pressed-in volume comes out nearby",
-      StepKind::volume, true},
+      StepKind::volume},
      &LoopSettings::keep_volume},
     {0.0, 1.0}};
 inline constexpr ChoiceSetting<Hold> hold{
     {{"hold", "--hold", "whole hand", "whole hand",
       "The points of a hand that hold the model in type 1: tips, or hand, 45 points of the whole "
       "hand",
-      StepKind::hold, true},
+      StepKind::hold},
      &LoopSettings::hold},
     "tips or hand",
     name_of,

@@ -19,7 +19,6 @@ struct SettingText {
   std::string_view label;             ///< beside a widget
   std::string_view help;              ///< the option's help
   StepKind step = StepKind::settings; ///< a change of it alone
-  bool is_newer = false;              ///< older timelines do not have it
 };
 
 template <class T>

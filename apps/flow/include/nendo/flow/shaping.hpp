@@ -18,7 +18,6 @@ namespace nendo::flow {
 struct ShapingOptions {
   std::size_t max_requests = 64; ///< undos, redos and resets that may wait; others are refused
   bool held = true;              ///< at first
-  bool pull_is_step = true;      ///< LoopOptions::pull_is_step
   /// The caller makes the change that an undo or a redo awaits (Frame::awaited) in the same tick,
   /// so shape() completes the stroke.
   bool changes_at_once = false;
@@ -177,7 +176,6 @@ private:
   std::array<ReadySculptor::SpareShape, 3> spare_shapes_;
   deform::Points still_tips_; ///< where the hands stopped, if is_still_
   bool is_still_ = false;
-  bool pull_is_step_;
   bool changes_at_once_;
   bool held_;        ///< the fingertips shape the model
   bool hold_wanted_; ///< held_ follows at the next tick that can

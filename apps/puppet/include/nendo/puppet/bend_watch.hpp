@@ -25,9 +25,9 @@ public:
   std::optional<Bend> follow(const RigPlayer::Hands& hands) noexcept;
 
   /// So much of a usual bend is far enough.
-  static constexpr double far_enough = 0.6;
+  static constexpr double min_bend_fraction = 0.6;
   /// So many times as far as any other finger.
-  static constexpr double clearly = 1.25;
+  static constexpr double dominance_ratio = 1.25;
   /// Returns how far that finger bends for a value of 1, in radians; 0 thumb to 4 little finger.
   static double usual_rad(std::size_t finger) noexcept;
 

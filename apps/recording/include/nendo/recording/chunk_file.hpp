@@ -26,8 +26,10 @@ constexpr ChunkType chunk_type(const char (&letters)[5]) noexcept {
   return type;
 }
 
-inline constexpr std::uint16_t format_major = 1;  ///< a newer one cannot be read
-inline constexpr std::uint16_t format_minor = 13; ///< newer ones add what may be passed over
+// The first released format. Older ones cannot be read, nor can newer major ones; newer minor ones
+// add what a reader may skip.
+inline constexpr std::uint16_t format_major = 1;
+inline constexpr std::uint16_t format_minor = 13;
 inline constexpr std::size_t file_header_bytes = 16;
 inline constexpr std::size_t chunk_header_bytes = 20;
 inline constexpr std::size_t chunk_checksum_bytes = 4; ///< after the payload
@@ -60,8 +62,7 @@ struct ChunkDamage {
 /// that the file's size bounds. Blocks for as long as the disk does.
 class NENDO_API ChunkReader {
 public:
-  /// Opens a recording. Error: bad_input (not a regular file, not a recording, made by a newer
-  /// nendo).
+  /// Opens a recording. Error: bad_input (not a regular file, not a recording, of another format).
   static Result<ChunkReader> open(const std::filesystem::path& path);
   /// Opens a file to save what can be saved from it: a wrong file header counts as damage. Error:
   /// bad_input (not a regular file).

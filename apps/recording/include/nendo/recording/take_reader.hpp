@@ -92,7 +92,7 @@ public:
   /// off.
   const std::optional<Ending>& ending() const noexcept { return ending_; }
   /// Returns the latest counts of what the gloves sent, by their numbers, as far as next() has
-  /// come. Empty if not recorded, as before format 1.2.
+  /// come. Empty if not recorded.
   const std::vector<driver::RecordCounts>& sent() const noexcept { return sent_; }
   const ChunkReader& chunks() const noexcept { return chunks_; }
   std::uint64_t shapes() const noexcept { return shapes_; } ///< so far
