@@ -1,16 +1,29 @@
 #include "cli/command.hpp"
 
+#include <array>
+#include <cerrno>
+#include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <iostream>
+#include <memory>
+#include <new>
 #include <optional>
 #include <sstream>
+#include <streambuf>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
+#include <poll.h>
+#include <spdlog/fmt/fmt.h>
+#include <sys/types.h>
+#include <unistd.h>
 
 #include <nendo/base/result.hpp>
 #include <nendo/base/text.hpp>
@@ -19,7 +32,6 @@
 #include "cli/cli.hpp"
 #include "cli/nearest_word.hpp"
 #include "cli/quantities.hpp"
-#include "cli/standard_output.hpp"
 
 namespace nendo::cli {
 namespace {
@@ -41,12 +53,6 @@ std::string not_negative(const std::string& text) {
   return text.find('-') == std::string::npos ? "" : text + ": use a whole number, 0 or above";
 }
 
-std::string short_text(double number) {
-  std::ostringstream text;
-  text << number;
-  return text.str();
-}
-
 std::optional<double> millimetres_of(std::string_view text) noexcept {
   if (const auto length_m = to_metres(text)) return 1e3 * *length_m;
   return number_of(text);
@@ -55,27 +61,16 @@ std::optional<double> millimetres_of(std::string_view text) noexcept {
 /// A number with a unit, or without: then it has the unit that --help shows.
 struct Quantity {
   std::optional<double> (*read)(std::string_view text) noexcept;
-  std::string_view words; ///< what may be typed
+  std::string_view words; ///< the texts that are allowed
   const char* type;
-  const char* unit; ///< of the default
+  const char* unit; ///< the unit of the default
 };
 
-template <class T>
-CLI::Option* add_quantity(CLI::App& app, const std::string& names, T& value,
-                          const std::string& summary, const Quantity& quantity) {
-  const auto take = [&value, read = quantity.read](const std::string& text) {
-    value = *read(text); // the check has passed
-  };
-  CLI::Option* option = app.add_option_function<std::string>(names, take, summary);
-  option->check([quantity](const std::string& text) {
-    return quantity.read(text) ? std::string() : text + ": use " + std::string(quantity.words);
-  });
-  option->type_name(quantity.type);
-  if constexpr (std::is_same_v<T, double>) {
-    if (!is_blank(value)) option->default_str(short_text(value) + quantity.unit);
-  }
-  return option;
-}
+// In the order of Command::Unit.
+constexpr std::array quantities{Quantity{seconds_of, duration_words, "TIME", "s"},
+                                Quantity{millimetres_of, millimetre_words, "LENGTH", "mm"},
+                                Quantity{microseconds_of, microsecond_words, "TIME", "us"},
+                                Quantity{hertz_of, rate_words, "RATE", "Hz"}};
 
 /// Returns the words in a type like "TEXT:{left,right}", as CLI11 writes the choices of one_of().
 std::vector<std::string> choices_in(const std::string& type) {
@@ -134,36 +129,34 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
-std::string names_of_commands(const CLI::App& app) {
-  std::string known;
-  for (const std::string& name : command_names(app))
-    known += (known.empty() ? "" : ", ") + name;
-  return known;
+std::string list_of_commands(const CLI::App& app) {
+  return fmt::format("the commands are {}", fmt::join(command_names(app), ", "));
 }
 
-const CLI::App& chosen_command(const CLI::App& program) {
-  const CLI::App* at = &program;
-  while (!at->get_subcommands().empty())
-    at = at->get_subcommands().front();
-  return *at;
+/// Returns the commands that the arguments chose, the program first.
+std::vector<const CLI::App*> chosen_commands(const CLI::App& program) {
+  std::vector<const CLI::App*> chosen{&program};
+  while (!chosen.back()->get_subcommands().empty())
+    chosen.push_back(chosen.back()->get_subcommands().front());
+  return chosen;
 }
 
 /// Says what is wrong with the first argument that no option of the chosen command takes.
 std::string unexpected(const CLI::App& program) {
-  const CLI::App& command = chosen_command(program);
   const std::vector<std::string> extras = program.remaining(true);
   if (extras.empty()) return "an argument was not expected";
   const std::string name = extras.front().substr(0, extras.front().find('='));
   if (!name.starts_with('-')) return name + ": not expected";
   std::vector<std::string> known;
-  for (const CLI::Option* option : command.get_options())
+  for (const CLI::Option* option : chosen_commands(program).back()->get_options())
     for (const std::string& each : option->get_lnames())
       known.push_back("--" + each);
   const std::string meant = nearest_word(name, known);
   return "no option " + name + (meant.empty() ? "" : "; did you mean " + meant + "?");
 }
 
-/// Tells a word in place of a command, which --help behind it would hide: help ends the parsing.
+/// Returns an error about a word that is no command. A --help after it would hide it, because help
+/// ends the parsing.
 std::optional<std::string> unknown_command(CLI::App& program, int argc, char** argv) {
   const CLI::App* at = &program;
   std::string path = "nendo";
@@ -175,9 +168,8 @@ std::optional<std::string> unknown_command(CLI::App& program, int argc, char** a
     if (named.empty()) {
       const std::string meant = nearest_word(name, command_names(*at));
       return "no command " + name + "; " +
-             (meant.empty() ? "there are " + names_of_commands(*at)
-                            : "did you mean " + meant + "?") +
-             " (see " + path + " --help)";
+             (meant.empty() ? list_of_commands(*at) : "did you mean " + meant + "?") + " (see " +
+             path + " --help)";
     }
     at = named.front();
     path += ' ' + name;
@@ -186,21 +178,117 @@ std::optional<std::string> unknown_command(CLI::App& program, int argc, char** a
 }
 
 int report_usage(const CLI::App& app, const std::string& first_word, const std::string& what) {
-  std::string chosen;
-  for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
-    at = at->get_subcommands().front();
-    chosen += at->get_name() + ' ';
-  }
-  if (!chosen.empty()) {
-    std::cerr << "nendo: " << what << " (see nendo " << chosen << "--help)\n";
-  } else if (first_word.starts_with('-')) {
-    std::cerr << "nendo: " << what << " (see nendo --help)\n";
-  } else {
-    std::cerr << "nendo: say what to do; there are " << names_of_commands(app)
-              << " (see nendo --help)\n";
-  }
-  return static_cast<int>(Errc::usage);
+  const auto chosen = chosen_commands(app);
+  std::string path;
+  for (std::size_t at = 1; at < chosen.size(); ++at)
+    path += chosen[at]->get_name() + ' ';
+  const bool is_about_option = !path.empty() || first_word.starts_with('-');
+  return report(
+      {Errc::usage, (is_about_option ? what : "give a command; " + list_of_commands(app)) +
+                        " (see nendo " + path + "--help)"});
 }
+
+/// Passes everything to a FILE, which has the buffer, so that std::cout and printf keep their
+/// order.
+class FileBuffer final : public std::streambuf {
+public:
+  explicit FileBuffer(std::FILE* file) noexcept : file_(file) {}
+
+private:
+  int_type overflow(int_type byte) override {
+    if (traits_type::eq_int_type(byte, traits_type::eof())) return traits_type::not_eof(byte);
+    return std::fputc(byte, file_) == EOF ? traits_type::eof() : byte;
+  }
+  std::streamsize xsputn(const char* bytes, std::streamsize size) override {
+    const auto wanted = static_cast<std::size_t>(size);
+    return static_cast<std::streamsize>(std::fwrite(bytes, 1, wanted, file_));
+  }
+  int sync() override { return std::fflush(file_) == 0 ? 0 : -1; }
+
+  std::FILE* file_;
+};
+
+// Where standard output was closed, the next file that is opened would get its number, and with it
+// whatever is printed. Its replacement cannot be written to.
+void fill_closed_descriptors() noexcept {
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(fd, F_GETFD) < 0)
+      static_cast<void>(::open("/dev/null", fd == STDOUT_FILENO ? O_RDONLY : O_RDWR));
+}
+
+/// Replaces std::cout and stdout while it lives, so that any lost output is noticed. The first
+/// write that fails ends all output, and sets stop_requested(), so that commands without an end
+/// stop. Interrupted writes continue, so that no line ends in its middle. Only one may live at a
+/// time.
+class StandardOutput {
+public:
+  StandardOutput() : stdout_before_(stdout) {
+    fill_closed_descriptors();
+    // glibc lets a program exchange stdout. Its own stdout would report that a write has failed,
+    // but not why, and not at once.
+    file_ = ::fopencookie(this, "w", {nullptr, &StandardOutput::write, nullptr, nullptr});
+    if (file_ == nullptr) throw std::bad_alloc();
+    std::setvbuf(file_, nullptr, ::isatty(STDOUT_FILENO) != 0 ? _IOLBF : _IOFBF, BUFSIZ);
+    std::fflush(stdout);
+    stdout = file_;
+    buffer_ = std::make_unique<FileBuffer>(file_);
+    buffer_before_ = std::cout.rdbuf(buffer_.get());
+  }
+  ~StandardOutput() {
+    std::cout.rdbuf(buffer_before_);
+    stdout = stdout_before_;
+    std::fclose(file_);
+  }
+  StandardOutput(const StandardOutput&) = delete;
+  StandardOutput& operator=(const StandardOutput&) = delete;
+
+  /// Flushes, and returns the program's exit code: `exit_code`, or, if that is 0, 1 if output was
+  /// lost, which is then reported. If the reader has gone, as in `| head`, it is 141 without a
+  /// message, as shells have for SIGPIPE; it stays 0 if a stop signal came first, because Ctrl-C
+  /// ends both sides of a pipe.
+  int finish(int exit_code) {
+    std::fflush(file_);
+    if (!failed_ || error_number_ == 0) return exit_code;
+    if (error_number_ == EPIPE) return exit_code != 0 ? exit_code : 128 + SIGPIPE;
+    const int lost = report({Errc::failed, "standard output cannot be written: " +
+                                               std::generic_category().message(error_number_)});
+    return exit_code != 0 ? exit_code : lost;
+  }
+
+private:
+  static ssize_t write(void* self, const char* bytes, std::size_t size) {
+    const bool written = static_cast<StandardOutput*>(self)->write_all(bytes, size);
+    return written ? static_cast<ssize_t>(size) : 0; // 0 is an error for fopencookie
+  }
+  bool write_all(const char* bytes, std::size_t size) {
+    while (size > 0 && !failed_) { // after a gap, nothing more would be of use
+      const ssize_t written = ::write(STDOUT_FILENO, bytes, size);
+      if (written >= 0) {
+        bytes += written;
+        size -= static_cast<std::size_t>(written);
+      } else if (errno == EAGAIN) { // another program has made it so, and still has it
+        pollfd output{STDOUT_FILENO, POLLOUT, 0};
+        ::poll(&output, 1, -1);
+      } else if (errno != EINTR) {
+        fail(errno);
+      }
+    }
+    return !failed_;
+  }
+  void fail(int error_number) noexcept {
+    failed_ = true;
+    const bool is_closed = error_number == EPIPE || error_number == EIO;
+    if (!is_closed || !stop_requested()) error_number_ = error_number;
+    request_stop();
+  }
+
+  std::FILE* file_; ///< passes all bytes to write()
+  std::FILE* stdout_before_;
+  std::unique_ptr<std::streambuf> buffer_; ///< passes what std::cout gets to `file_`
+  std::streambuf* buffer_before_;
+  bool failed_ = false;
+  int error_number_ = 0; ///< the first error; 0: none that must be reported
+};
 
 } // namespace
 
@@ -247,44 +335,26 @@ template Option Command::add_option(const std::string&, std::vector<std::string>
                                     const std::string&);
 
 template <class T>
-Option Command::add_duration(const std::string& names, T& seconds, const std::string& summary) {
-  return Option(
-      *add_quantity(*app_, names, seconds, summary, {seconds_of, duration_words, "TIME", "s"}));
+Option Command::add_quantity(const std::string& names, T& value, const std::string& summary,
+                             Unit unit) {
+  const Quantity quantity = quantities[static_cast<std::size_t>(unit)];
+  const auto take = [&value, read = quantity.read](const std::string& text) {
+    value = *read(text); // the check has passed
+  };
+  CLI::Option* option = app_->add_option_function<std::string>(names, take, summary);
+  option->check([quantity](const std::string& text) {
+    return quantity.read(text) ? std::string() : text + ": use " + std::string(quantity.words);
+  });
+  option->type_name(quantity.type);
+  if constexpr (std::is_same_v<T, double>) {
+    if (!is_blank(value)) option->default_str(fmt::format("{:g}{}", value, quantity.unit));
+  }
+  return Option(*option);
 }
 
-template Option Command::add_duration(const std::string&, double&, const std::string&);
-template Option Command::add_duration(const std::string&, std::optional<double>&,
-                                      const std::string&);
-
-template <class T>
-Option Command::add_millimetres(const std::string& names, T& length_mm,
-                                const std::string& summary) {
-  return Option(*add_quantity(*app_, names, length_mm, summary,
-                              {millimetres_of, millimetre_words, "LENGTH", "mm"}));
-}
-
-template Option Command::add_millimetres(const std::string&, double&, const std::string&);
-template Option Command::add_millimetres(const std::string&, std::optional<double>&,
-                                         const std::string&);
-
-template <class T>
-Option Command::add_microseconds(const std::string& names, T& time_us, const std::string& summary) {
-  return Option(*add_quantity(*app_, names, time_us, summary,
-                              {microseconds_of, microsecond_words, "TIME", "us"}));
-}
-
-template Option Command::add_microseconds(const std::string&, double&, const std::string&);
-template Option Command::add_microseconds(const std::string&, std::optional<double>&,
-                                          const std::string&);
-
-template <class T>
-Option Command::add_rate(const std::string& names, T& rate_hz, const std::string& summary) {
-  return Option(
-      *add_quantity(*app_, names, rate_hz, summary, {hertz_of, rate_words, "RATE", "Hz"}));
-}
-
-template Option Command::add_rate(const std::string&, double&, const std::string&);
-template Option Command::add_rate(const std::string&, std::optional<double>&, const std::string&);
+template Option Command::add_quantity(const std::string&, double&, const std::string&, Unit);
+template Option Command::add_quantity(const std::string&, std::optional<double>&,
+                                      const std::string&, Unit);
 
 Option Command::add_flag(const std::string& names, bool& value, const std::string& summary) {
   return Option(*app_->add_flag(names, value, summary));
@@ -308,6 +378,13 @@ void Command::set_footer(const std::string& text) {
 
 void Command::on_chosen(std::function<int()> command) {
   app_->callback([chosen = chosen_, command = std::move(command)] { *chosen = command; });
+}
+
+void Command::on_chosen(std::function<Result<void>()> command) {
+  on_chosen([command = std::move(command)] {
+    const auto done = command();
+    return done ? 0 : report(done.error());
+  });
 }
 
 void Command::require_command() {

@@ -2,10 +2,13 @@
 // A command of the program, with the arguments that may follow its name. Only one source file uses
 // CLI11 for it, because CLI11's headers take longer to compile than any command.
 
+#include <cstdint>
 #include <functional>
 #include <initializer_list>
 #include <string>
 #include <vector>
+
+#include <nendo/base/result.hpp>
 
 #include "cli/command_model.hpp"
 
@@ -45,27 +48,34 @@ public:
   /// double, a whole number, an optional, or a list of strings, as command.cpp instantiates.
   template <class T>
   Option add_option(const std::string& names, T& value, const std::string& summary);
-  /// Adds an option whose value is a duration, such as 90s (quantities.hpp), in seconds. T is
-  /// double or an optional of it.
+  /// Adds an option whose value is a number with a unit (quantities.hpp), or without: then it is in
+  /// seconds, such as 90s, in millimetres, such as 18.5cm, in microseconds, such as 1ms, or in
+  /// hertz, such as 90Hz. T is double or an optional of it.
   template <class T>
-  Option add_duration(const std::string& names, T& seconds, const std::string& summary);
-  /// Adds an option whose value is a length, such as 18.5cm, in millimetres. A bare number is
-  /// millimetres. T is as for add_duration().
+  Option add_duration(const std::string& names, T& seconds, const std::string& summary) {
+    return add_quantity(names, seconds, summary, Unit::s);
+  }
   template <class T>
-  Option add_millimetres(const std::string& names, T& length_mm, const std::string& summary);
-  /// Adds an option whose value is a short time, such as 1ms, in microseconds, or a rate, such as
-  /// 90Hz, in hertz. A bare number is that. T is as for add_duration().
+  Option add_millimetres(const std::string& names, T& length_mm, const std::string& summary) {
+    return add_quantity(names, length_mm, summary, Unit::mm);
+  }
   template <class T>
-  Option add_microseconds(const std::string& names, T& time_us, const std::string& summary);
+  Option add_microseconds(const std::string& names, T& time_us, const std::string& summary) {
+    return add_quantity(names, time_us, summary, Unit::us);
+  }
   template <class T>
-  Option add_rate(const std::string& names, T& rate_hz, const std::string& summary);
+  Option add_rate(const std::string& names, T& rate_hz, const std::string& summary) {
+    return add_quantity(names, rate_hz, summary, Unit::hz);
+  }
   Option add_flag(const std::string& names, bool& value, const std::string& summary);
   /// Lets another option have -h. --help stays.
   void free_short_help();
   /// Sets the text after the options in --help.
   void set_footer(const std::string& text);
-  /// Sets the function that runs when this command is chosen. Its result becomes the exit code.
+  /// Sets the function that runs when this command is chosen. It returns the exit code, or an
+  /// error, which is then reported.
   void on_chosen(std::function<int()> command);
+  void on_chosen(std::function<Result<void>()> command);
   /// Requires that one of its commands follows, since this one does nothing by itself.
   void require_command();
   /// Returns the first of these options, by one name of each, that the arguments have; empty: none.
@@ -73,6 +83,10 @@ public:
   std::string first_given(const std::vector<std::string>& names) const;
 
 private:
+  enum class Unit : std::uint8_t { s, mm, us, hz };
+  template <class T>
+  Option add_quantity(const std::string& names, T& value, const std::string& summary, Unit unit);
+
   CLI::App* app_;
   std::function<int()>* chosen_;
 };

@@ -1,14 +1,14 @@
-// nendo cut: models cut apart, without gloves or clock.
+// nendo cut: cuts models apart by a plane or a wire.
 
 #include <array>
-#include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include <spdlog/fmt/fmt.h>
 
 #include <nendo/base/advised_command.hpp>
 #include <nendo/base/files.hpp>
@@ -17,14 +17,12 @@
 #include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/cut.hpp>
 #include <nendo/deform/face_box.hpp>
-#include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/repair.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
-#include "takes/model_files.hpp"
+#include "nendo/model_output.hpp"
 
 namespace nendo::app::cut_command {
 namespace {
@@ -35,11 +33,9 @@ struct Options {
   std::vector<std::string> models;
   std::string plane;
   std::string wire;
-  std::string out;
-  std::string up; ///< empty: y
+  ModelOutput output;
   std::optional<double> edge;
   bool repair = false;
-  bool force = false;
 };
 
 using AnyBlade = std::variant<CutPlane, CutWire>;
@@ -85,7 +81,7 @@ Result<AnyBlade> wire_of(const std::string& file) {
     for (std::size_t at = 0; at < numbers.size(); ++at) {
       const auto number = table.number(at);
       if (!number)
-        return table.bad_cell(at, "is no finite number; a row has six, the wire's two ends: "
+        return table.bad_cell(at, "is not a finite number; a row has six, the wire's two ends: "
                                   "X,Y,Z,X,Y,Z");
       numbers[at] = *number;
     }
@@ -93,7 +89,7 @@ Result<AnyBlade> wire_of(const std::string& file) {
                            Eigen::Vector3d(numbers[3], numbers[4], numbers[5])});
   }
   if (wire.places.size() < 2)
-    return Error{Errc::bad_input, file + ": has fewer than two places of the wire"};
+    return Error{Errc::bad_input, file + ": has fewer than two positions of the wire"};
   return AnyBlade(std::move(wire));
 }
 
@@ -114,38 +110,36 @@ std::string part_name(const std::string& pattern, const std::string& model, std:
 
 Result<void> check(const Options& options) {
   const auto has = [&](std::string_view what) {
-    return options.out.find(what) != std::string::npos;
+    return options.output.out.find(what) != std::string::npos;
   };
   if (options.plane.empty() == options.wire.empty())
     return Error{Errc::usage, "--plane and --wire: give one of them"};
   if (options.models.size() > 1 && !has("%s"))
-    return Error{Errc::usage, "--out " + options.out +
-                                  ": of several models, use a name with %s, too, which becomes the "
+    return Error{Errc::usage, "--out " + options.output.out +
+                                  ": with several models, use a name with %s, which becomes the "
                                   "model's name"};
   if (options.edge && !(*options.edge > 0.0))
     return Error{Errc::usage, "--edge: use a length greater than 0, in the models' units"};
-  return cli::check_place("--out", part_name(options.out, options.models.front(), 1),
-                          deform::mesh_endings);
+  return options.output.check(part_name(options.output.out, options.models.front(), 1), {});
 }
 
 Result<Mesh> closed_model(const std::string& file, const Options& options) {
-  auto model = takes::read_model(file, takes::reading(options.up));
-  if (!model) return model.error();
-  Mesh& mesh = model->mesh;
-  const ManifoldCheck closed = check_closed_manifold(mesh);
+  auto mesh = options.output.read(file);
+  if (!mesh) return mesh;
+  const ManifoldCheck closed = check_closed_manifold(*mesh);
   if (closed) {
-    if (const std::size_t turned = turn_outwards(mesh); turned > 0)
+    if (const std::size_t turned = turn_outwards(*mesh); turned > 0)
       cli::note(file + ": " + std::to_string(turned) +
-                " of its faces look inwards, so they are turned round before it is cut, as `nendo "
-                "repair` does");
-    return std::move(mesh);
+                " of its faces look inwards; they are reversed before the cut, as by `nendo "
+                "repair`");
+    return mesh;
   }
   if (!options.repair)
     return Error{Errc::bad_input,
-                 file + ": " + describe(closed, mesh) +
+                 file + ": " + describe(closed, *mesh) +
                      "; only closed models can be cut, so try --repair, or `nendo repair " +
                      shell_word(file) + " --out OUT`"};
-  auto repaired = deform::repair(mesh);
+  auto repaired = deform::repair(*mesh);
   if (!repaired) return Error{repaired.error().code, file + ": " + repaired.error().message};
   for (const std::string& line : lines_of(*repaired))
     cli::note(file + ": " + line);
@@ -164,32 +158,20 @@ Result<CutModel> cut_by(const Mesh& mesh, const AnyBlade& blade, const Options& 
   return cut_model(mesh, wire, cut);
 }
 
-/// What of a cut model is written: each part, or all of them as one model.
-std::vector<Mesh> meshes_of(const CutModel& cut, const Options& options) {
-  if (options.out.find("%d") != std::string::npos) return separate(cut);
-  return {cut.mesh};
-}
-
 Result<void> write_parts(const std::string& file, const CutModel& cut, const Options& options) {
-  const std::vector<Mesh> meshes = meshes_of(cut, options);
-  for (std::size_t at = 0; at < meshes.size(); ++at)
-    for (const std::string& model : options.models)
-      if (const auto fine = cli::check_spares(model, "--out", part_name(options.out, file, at + 1),
-                                              options.force);
-          !fine)
-        return fine;
+  const ModelOutput& output = options.output;
+  const bool is_each_alone = output.out.find("%d") != std::string::npos;
+  const std::vector<Mesh> meshes = is_each_alone ? separate(cut) : std::vector<Mesh>{cut.mesh};
+  std::vector<std::string> names;
   for (std::size_t at = 0; at < meshes.size(); ++at) {
-    const std::string name = part_name(options.out, file, at + 1);
-    if (auto done =
-            takes::write_model(name, meshes[at], takes::axis_of(takes::reading(options.up)));
-        !done)
-      return done;
-    char sizes[128];
-    std::snprintf(sizes, sizeof sizes, ": %td vertices, %zu faces, volume %.9g",
-                  meshes[at].vertices.cols(), meshes[at].face_count(), volume_of(meshes[at]));
-    std::cout << printable(name) << sizes;
-    if (meshes.size() == 1) std::cout << ", in " << cut.parts << " parts";
-    std::cout << '\n';
+    names.push_back(part_name(output.out, file, at + 1));
+    if (auto fine = output.check(names.back(), options.models); !fine) return fine;
+  }
+  for (std::size_t at = 0; at < meshes.size(); ++at) {
+    if (auto done = output.write(names[at], meshes[at]); !done) return done;
+    report_model(names[at], meshes[at],
+                 volume_text(meshes[at]) +
+                     (meshes.size() == 1 ? fmt::format(", in {} parts", cut.parts) : ""));
   }
   return {};
 }
@@ -210,13 +192,13 @@ Result<void> cut_file(const std::string& file, const AnyBlade& blade, const Opti
     return Error{cut.error().code, file + ": " + cut.error().message + where};
   }
   if (cut->left_whole > 0)
-    cli::note(file + ": stays whole at " + std::to_string(cut->left_whole) +
+    cli::note(file + ": is not cut at " + std::to_string(cut->left_whole) +
               (cut->left_whole == 1 ? " place" : " places") +
-              " where the wire does not go through, or parts nothing");
+              " where the wire does not pass through, or separates nothing");
   return write_parts(file, *cut, options);
 }
 
-/// Cuts one model after another. One that cannot be cut does not keep the others from it.
+/// Cuts one model after another, also after an error. Returns the first error's code.
 int cut_files(const Options& options) {
   if (const auto fine = check(options); !fine) return cli::report(fine.error());
   const auto blade = options.wire.empty() ? plane_of(options.plane) : wire_of(options.wire);
@@ -236,27 +218,21 @@ int cut_files(const Options& options) {
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
-      "cut",
-      "Cuts closed models apart, by a plane or by what a wire sweeps; both sides are closed");
+      "cut", "Cuts closed models apart by a plane or a wire; the parts are closed again");
   command.add_option("MODEL", options->models, "OBJ, PLY, STL or glTF files").required();
-  takes::add_up_option(command, options->up);
   command.add_option("--plane", options->plane,
                      "X,Y,Z,NX,NY,NZ: a point of the plane and its normal, in the model's units");
   command.add_option("--wire", options->wire,
-                     "Text file with the places of a wire, one a line, in order: X,Y,Z,X,Y,Z of "
-                     "its two ends, in the model's units; lines that begin with # are skipped");
-  command
-      .add_option(
-          "--out", options->out,
-          "Where to write the parts, .obj, .ply or .stl: %d becomes the part's number, from 1, "
-          "and %s the model's name; without %d all parts become one file")
-      .required();
+                     "Text file with the positions of a wire, one per line, in order: X,Y,Z,X,Y,Z "
+                     "of its two ends, in the model's units; lines that begin with # are skipped");
+  options->output.add_to(
+      command, "Where to write the parts, .obj, .ply or .stl: %d becomes the part's number, from "
+               "1, and %s the model's name; without %d all parts are written into one file");
   command.add_option("--edge", options->edge,
                      "Length of the cut faces' edges; without it, about that of the faces which "
                      "the blade crosses");
   command.add_flag("--repair", options->repair,
-                   "Repair a model that is not closed before it is cut, as nendo repair does");
-  command.add_flag("--force", options->force, cli::force_summary);
+                   "Repair a model that is not closed before the cut, as `nendo repair` does");
   command.on_chosen([options] { return cut_files(*options); });
 }
 

@@ -1,26 +1,27 @@
-// nendo deform: the deformation alone, without gloves or clock.
+// nendo deform: deforms a model by control vectors of a file.
 
 #include <algorithm>
+#include <array>
+#include <iostream>
 #include <memory>
 #include <optional>
-#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include <spdlog/fmt/fmt.h>
+
 #include <nendo/deform/control_vectors.hpp>
 #include <nendo/deform/csrbf.hpp>
-#include <nendo/deform/face_box.hpp>
 #include <nendo/deform/injective_chain.hpp>
-#include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/midpoint_chain.hpp>
 #include <nendo/flow/compatible.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
+#include "nendo/model_output.hpp"
 #include "session/loop_options.hpp"
 #include "session/setting_options.hpp"
-#include "takes/model_files.hpp"
 
 namespace nendo::app::deform_command {
 namespace {
@@ -30,11 +31,9 @@ using namespace nendo::deform;
 struct Options {
   std::string mesh;
   std::string vectors;
-  std::string out;
-  std::string up; ///< empty: y
+  ModelOutput output;
   std::string radius;
   std::string common_radius;
-  bool force = false;
   session::SettingArguments settings;
   std::string polynomial = "none";
 };
@@ -47,8 +46,8 @@ Result<std::optional<Support>> common_radius(const Options& options, bool is_use
                                   ": use R or R:WEIGHT, both greater than 0"};
   }
   if (!is_used) {
-    return Error{Errc::usage, "--common-radius: stands beside a radius column, and " +
-                                  options.vectors + " has none; leave it out"};
+    return Error{Errc::usage, "--common-radius: needs a radius column, and " + options.vectors +
+                                  " has none; leave it out"};
   }
   return std::optional(common->front());
 }
@@ -86,7 +85,7 @@ Result<FieldStatus> deform_at_once(Points& vertices, const ControlVectors& vecto
   return status;
 }
 
-/// Of ways of 12 radii; longer ones take longer steps.
+/// The number for displacements of 12 radii; longer ones take longer steps.
 constexpr int max_volume_steps = 256;
 
 Result<FieldStatus> deform_keeping_volume(Points& vertices, const ControlVectors& vectors,
@@ -115,22 +114,22 @@ Result<FieldStatus> deform_keeping_volume(Points& vertices, const ControlVectors
 /// Ordinary strokes need ten; thousands mean displacements of thousands of radii.
 constexpr int max_links = 2000;
 
-/// Returns one line: links, bound, least determinant at the vertices, and the pairs held apart.
-std::string report_of(const InjectiveChain& chain, double min_determinant) {
+std::string count_text(std::size_t count, const char* one) {
+  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
+}
+
+/// Prints one line: links, bound, min determinant at the vertices, and the pairs held apart.
+void print_report(const InjectiveChain& chain, double min_determinant) {
   const ChainReport& report = chain.report();
-  std::ostringstream text;
-  text.precision(3);
-  text << report.links << (report.links == 1 ? " link" : " links") << ", bound " << report.bound;
-  if (report.links > 1) text << " (" << report.whole_bound << " in one step)";
-  text << ", least determinant " << min_determinant << ", " << report.held_pairs
-       << (report.held_pairs == 1 ? " pair held apart" : " pairs held apart");
-  const char* before = ": ";
-  for (const HeldPair& wall : chain.walls()) {
-    if (wall.push <= 0.0) continue;
-    text << before << wall.first + 1 << '-' << wall.second + 1;
-    before = ", ";
-  }
-  return text.str();
+  const std::string whole =
+      report.links > 1 ? fmt::format(" ({:.3g} in one step)", report.whole_bound) : std::string();
+  std::vector<std::string> pairs;
+  for (const HeldPair& wall : chain.walls())
+    if (wall.push > 0.0) pairs.push_back(fmt::format("{}-{}", wall.first + 1, wall.second + 1));
+  std::cout << fmt::format(
+      "injective: {}, bound {:.3g}{}, min determinant {:.3g}, {} held apart{}{}\n",
+      count_text(report.links, "link"), report.bound, whole, min_determinant,
+      count_text(report.held_pairs, "pair"), pairs.empty() ? "" : ": ", fmt::join(pairs, ", "));
 }
 
 Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vectors,
@@ -156,28 +155,8 @@ Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vect
   if (!chain.report().reached)
     return bad("--injective needs more than " + std::to_string(max_links) +
                " links; make the displacements shorter");
-  const double least = std::min(probe.least(), chain.report().min_determinant);
-  cli::note("injective: " + report_of(chain, least));
+  print_report(chain, std::min(probe.least(), chain.report().min_determinant));
   return status;
-}
-
-/// Returns what is hardly meant: radii in another unit than the model's.
-void note_oddities(const Mesh& mesh, const ControlVectors& vectors, const Supports& supports,
-                   const Options& options) {
-  const Box box = box_of_faces(mesh);
-  if (!reach_all_of(box, vectors.starts, supports)) return;
-  std::ostringstream size;
-  size.precision(3);
-  size << (box.highest - box.lowest).maxCoeff();
-  const bool has_own = !vectors.own.empty();
-  cli::note((has_own ? options.vectors : "--radius " + options.radius) +
-            ": reaches all of the model, whose longest side is " + size.str() +
-            ", so no part of it stays as it is; use a smaller radius to shape a part");
-}
-
-Result<void> check_out(const Options& options) {
-  if (auto fine = cli::check_place("--out", options.out, deform::mesh_endings); !fine) return fine;
-  return cli::check_spares(options.mesh, "--out", options.out, options.force);
 }
 
 Result<void> deform_file(const Options& options) {
@@ -188,10 +167,11 @@ Result<void> deform_file(const Options& options) {
   constexpr auto nothing = flow::Played::nothing;
   if (auto fine = flow::all_effective(*settings, nothing, flow::Naming::options); !fine)
     return fine;
-  if (const auto fine = check_out(options); !fine) return fine.error();
-  auto model = takes::read_model(options.mesh, takes::reading(options.up));
-  if (!model) return model.error();
-  Mesh& mesh = model->mesh;
+  if (auto fine = options.output.check(options.output.out, std::array{options.mesh}); !fine)
+    return fine;
+  auto read = options.output.read(options.mesh);
+  if (!read) return read.error();
+  Mesh& mesh = *read;
   auto vectors = read_control_vectors(options.vectors);
   if (!vectors) return vectors.error();
   vectors->starts.colwise() -= mesh.offset;
@@ -199,7 +179,8 @@ Result<void> deform_file(const Options& options) {
     cli::note(options.vectors + ": not read: " + vectors->columns_not_read);
   const auto supports = supports_for(*vectors, options);
   if (!supports) return supports.error();
-  note_oddities(mesh, *vectors, *supports, options);
+  warn_about_reach(vectors->own.empty() ? "--radius " + options.radius : options.vectors,
+                   box_of_faces(mesh), vectors->starts, *supports);
 
   const Points before = mesh.vertices;
   const auto by = csrbf->keeps_volume() ? deform_keeping_volume
@@ -216,41 +197,38 @@ Result<void> deform_file(const Options& options) {
                  options.vectors + ": " + std::string(describe(FieldStatus::not_finite))};
   }
   if (mesh.vertices == before)
-    cli::note(options.vectors + ": moves no vertex; all displacements are 0, or no start point is "
-                                "nearer to a vertex than its radius");
-  return takes::write_model(options.out, mesh, takes::axis_of(takes::reading(options.up)));
+    cli::note(options.vectors +
+              ": moves no vertex; all displacements are 0, or no vertex is within "
+              "the radius of a start point");
+  if (auto done = options.output.write(options.output.out, mesh); !done) return done;
+  report_model(options.output.out, mesh);
+  return {};
 }
 
 } // namespace
 
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
-  cli::Command command = program.add_command(
-      "deform", "Deforms a mesh by control vectors from a file, without gloves or clock");
+  cli::Command command =
+      program.add_command("deform", "Deforms a mesh by control vectors of a file");
   command.add_option("MESH", options->mesh, "OBJ, PLY, STL or glTF file").required();
-  takes::add_up_option(command, options->up);
   command
       .add_option("--vectors", options->vectors,
-                  "CSV file: x,y,z,dx,dy,dz[,radius], a control vector a line")
+                  "CSV file: x,y,z,dx,dy,dz[,radius], one control vector per line")
       .required();
   command.add_option("--radius", options->radius,
                      "Radius of the supports, in the mesh's units, or several with weights for a "
-                     "kernel that is their sum: 10+40:0.5; a radius column wins");
+                     "kernel that is their sum: 10+40:0.5; a radius column takes precedence");
   command.add_option(
       "--common-radius", options->common_radius,
-      "Radius beside those of a radius column that all control vectors share, so that "
-      "any choice has a solution; without it, the least of them with weight 0.01");
+      "Radius that all control vectors share, in addition to those of a radius column, so "
+      "that there is always a solution; without it, the smallest of them with weight 0.01");
   options->settings.add(command, flow::setting::kernel);
   session::add_polynomial_option(command, options->polynomial);
   options->settings.add(command, flow::setting::keep_volume);
   options->settings.add(command, flow::setting::injective);
-  command.add_option("--out", options->out, "Where to write the result, .obj, .ply or .stl")
-      .required();
-  command.add_flag("--force", options->force, cli::force_summary);
-  command.on_chosen([options] {
-    const auto done = deform_file(*options);
-    return done ? 0 : cli::report(done.error());
-  });
+  options->output.add_to(command, "Where to write the result, .obj, .ply or .stl");
+  command.on_chosen([options] { return deform_file(*options); });
 }
 
 } // namespace nendo::app::deform_command

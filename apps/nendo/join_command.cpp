@@ -1,19 +1,20 @@
 // nendo join: parts that overlap become one.
 
 #include <cmath>
-#include <cstdio>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include <spdlog/fmt/fmt.h>
+
+#include <nendo/base/text.hpp>
 #include <nendo/deform/cut.hpp>
 #include <nendo/deform/join.hpp>
-#include <nendo/deform/mesh_file.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
-#include "takes/model_files.hpp"
+#include "nendo/model_output.hpp"
 
 namespace nendo::app::join_command {
 namespace {
@@ -23,46 +24,34 @@ using namespace nendo::deform;
 struct Options {
   std::vector<std::string> parts;
   double seam = 0.0;
-  std::string out;
-  std::string up; ///< empty: y
-  bool force = false;
+  ModelOutput output;
 };
 
 Result<void> check(const Options& options) {
   if (!(options.seam >= 0.0) || !std::isfinite(options.seam))
     return Error{Errc::usage, "--seam: use a width in the models' units, 0 or more"};
-  if (auto fine = cli::check_place("--out", options.out, deform::mesh_endings); !fine) return fine;
-  for (const std::string& part : options.parts)
-    if (auto fine = cli::check_spares(part, "--out", options.out, options.force); !fine)
-      return fine;
-  return {};
-}
-
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+  return options.output.check(options.output.out, options.parts);
 }
 
 struct NamedMesh {
   Mesh mesh;
-  std::string name; ///< for messages
+  std::string name; ///< the name in messages
 };
 
-/// Of several files, each is a part. Of one, its parts are.
-Result<std::vector<NamedMesh>> read_parts(const std::vector<std::string>& files,
-                                          const deform::ReadOptions& reading) {
+/// Returns the models of several files, or the parts of one.
+Result<std::vector<NamedMesh>> read_parts(const Options& options) {
+  const std::vector<std::string>& files = options.parts;
   std::vector<NamedMesh> parts;
   for (const std::string& file : files) {
-    auto model = takes::read_model(file, reading);
+    auto model = options.output.read(file);
     if (!model) return model.error();
-    parts.push_back({std::move(model->mesh), file});
+    parts.push_back({*std::move(model), file});
   }
   if (parts.size() > 1) return parts;
   std::vector<Mesh> separated = separate(parts.front().mesh);
   if (separated.size() < 2)
-    return Error{Errc::usage, files.front() + ": is one part, which is whole; name a second file, "
-                                              "or a file of several parts"};
+    return Error{Errc::usage, files.front() + ": has only one part; name a second file, or a file "
+                                              "with several parts"};
   parts.clear();
   for (Mesh& part : separated)
     parts.push_back(
@@ -70,26 +59,26 @@ Result<std::vector<NamedMesh>> read_parts(const std::vector<std::string>& files,
   return parts;
 }
 
-/// Returns what was done, and what is hardly meant.
-void note_step(const std::string& name, const Options& options, const JoinStep& step) {
+void report_step(const std::string& name, const Options& options, const JoinStep& step) {
   if (step.swallowed) {
-    cli::note(name + ": it and what was joined before do not cross, one lies inside of the other; "
-                     "what is inside is gone");
+    cli::note(name + ": does not cross the parts before it; one lies inside the other, and the "
+                     "inner one was removed");
     return;
   }
-  std::string text = name + ": " + std::to_string(step.crossings) + " crossings, volume " +
-                     short_number(step.volume);
-  if (step.seam_width > 0.0) text += " (" + short_number(step.sharp_volume) + " with a sharp seam)";
-  cli::note(text);
+  std::cout << fmt::format("{}: {} crossings, volume {:.6g}", printable(name), step.crossings,
+                           step.volume);
+  if (step.seam_width > 0.0) std::cout << fmt::format(" ({:.6g} if sharp)", step.sharp_volume);
+  std::cout << '\n';
   if (step.seam_width < options.seam)
-    cli::note("--seam " + short_number(options.seam) + ": the surface would cut itself there, so " +
-              (step.seam_width > 0.0 ? "the seam is " + short_number(step.seam_width) + " wide"
-                                     : std::string("the seam is sharp")));
+    cli::note(
+        fmt::format("--seam {:.6g}: too wide: the surface would cross itself, so the seam is ",
+                    options.seam) +
+        (step.seam_width > 0.0 ? fmt::format("{:.6g} wide", step.seam_width) : "sharp"));
 }
 
 Result<void> join_files(const Options& options) {
-  if (const auto fine = check(options); !fine) return fine.error();
-  const auto named = read_parts(options.parts, takes::reading(options.up));
+  if (auto fine = check(options); !fine) return fine;
+  const auto named = read_parts(options);
   if (!named) return named.error();
   std::vector<JoinPart> parts;
   for (const NamedMesh& part : *named)
@@ -97,8 +86,10 @@ Result<void> join_files(const Options& options) {
   const auto joined = join(parts, {.seam_width = options.seam});
   if (!joined) return joined.error();
   for (std::size_t at = 0; at < joined->steps.size(); ++at)
-    note_step((*named)[at + 1].name, options, joined->steps[at]);
-  return takes::write_model(options.out, joined->mesh, takes::axis_of(takes::reading(options.up)));
+    report_step((*named)[at + 1].name, options, joined->steps[at]);
+  if (auto done = options.output.write(options.output.out, joined->mesh); !done) return done;
+  report_model(options.output.out, joined->mesh, volume_text(joined->mesh));
+  return {};
 }
 
 } // namespace
@@ -110,17 +101,11 @@ void add(cli::Command& program) {
       .add_option("PART", options->parts,
                   "OBJ, PLY, STL or glTF files of closed models; of one file, its parts are joined")
       .required();
-  takes::add_up_option(command, options->up);
   command.add_option("--seam", options->seam,
-                     "How far the seam is smeared to each side, in the models' units; 0 leaves it "
-                     "sharp");
-  command.add_option("--out", options->out, "Where to write the result, .obj, .ply or .stl")
-      .required();
-  command.add_flag("--force", options->force, cli::force_summary);
-  command.on_chosen([options] {
-    const auto done = join_files(*options);
-    return done ? 0 : cli::report(done.error());
-  });
+                     "Width of the blend on each side of the seam, in the models' units; 0 leaves "
+                     "the seam sharp");
+  options->output.add_to(command, "Where to write the result, .obj, .ply or .stl");
+  command.on_chosen([options] { return join_files(*options); });
 }
 
 } // namespace nendo::app::join_command

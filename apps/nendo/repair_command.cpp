@@ -1,7 +1,7 @@
-// nendo repair: a model made closed, without gloves or clock.
+// nendo repair: makes a model closed.
 
+#include <array>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -11,14 +11,11 @@
 
 #include <nendo/base/text.hpp>
 #include <nendo/deform/cut.hpp>
-#include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/repair.hpp>
 
-#include "cli/cli.hpp"
 #include "cli/json_line.hpp"
-#include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
-#include "takes/model_files.hpp"
+#include "nendo/model_output.hpp"
 
 namespace nendo::app::repair_command {
 namespace {
@@ -27,18 +24,15 @@ using namespace nendo::deform;
 
 struct Options {
   std::string model;
-  std::string out;
-  std::string up; ///< empty: y
+  ModelOutput output;
   std::optional<double> tolerance;
   bool json = false;
-  bool force = false;
 };
 
 Result<void> check(const Options& options) {
   if (options.tolerance && !(*options.tolerance >= 0.0 && std::isfinite(*options.tolerance)))
     return Error{Errc::usage, "--tolerance: use a length in the model's units, 0 or more"};
-  if (auto fine = cli::check_place("--out", options.out, mesh_endings); !fine) return fine;
-  return cli::check_spares(options.model, "--out", options.out, options.force);
+  return options.output.check(options.output.out, std::array{options.model});
 }
 
 std::size_t faces_left_out(const Repair& repaired) {
@@ -50,7 +44,7 @@ std::size_t faces_left_out(const Repair& repaired) {
 
 void print_json(const Options& options, const Repair& repaired) {
   cli::print_line({{"file", printable(options.model)},
-                   {"out", printable(options.out)},
+                   {"out", printable(options.output.out)},
                    {"tolerance", repaired.tolerance},
                    {"joined_vertices", repaired.joined},
                    {"dropped_faces", repaired.dropped},
@@ -73,27 +67,18 @@ void print_lines(const Options& options, const Repair& repaired) {
   for (const std::string& line : lines_of(repaired))
     std::cout << name << ": " << line << '\n';
   if (lines_of(repaired).empty()) std::cout << name << ": nothing to repair\n";
-  char sizes[128];
-  std::snprintf(sizes, sizeof sizes, ": %td vertices, %zu faces, volume %.9g\n",
-                repaired.mesh.vertices.cols(), repaired.mesh.face_count(),
-                volume_of(repaired.mesh));
-  std::cout << printable(options.out) << sizes;
+  report_model(options.output.out, repaired.mesh, volume_text(repaired.mesh));
 }
 
 Result<void> repair_file(const Options& options) {
   if (auto fine = check(options); !fine) return fine;
-  const ReadOptions reading = takes::reading(options.up);
-  const auto model = takes::read_model(options.model, reading);
-  if (!model) return model.error();
-  const auto repaired = deform::repair(model->mesh, {options.tolerance});
+  const auto mesh = options.output.read(options.model);
+  if (!mesh) return mesh.error();
+  const auto repaired = deform::repair(*mesh, {options.tolerance});
   if (!repaired)
     return Error{repaired.error().code, options.model + ": " + repaired.error().message};
-  if (auto done = takes::write_model(options.out, repaired->mesh, takes::axis_of(reading)); !done)
-    return done;
-  if (options.json)
-    print_json(options, *repaired);
-  else
-    print_lines(options, *repaired);
+  if (auto done = options.output.write(options.output.out, repaired->mesh); !done) return done;
+  options.json ? print_json(options, *repaired) : print_lines(options, *repaired);
   return {};
 }
 
@@ -102,21 +87,15 @@ Result<void> repair_file(const Options& options) {
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
-      "repair", "Makes a model closed: joins, drops, turns, separates and fills what keeps it from "
-                "being cut, joined or refined, and says what it did");
+      "repair", "Makes a model closed, so that it can be cut, joined and refined: joins, removes, "
+                "turns, separates and fills, and reports each change");
   command.add_option("MODEL", options->model, "OBJ, PLY, STL or glTF file").required();
-  command.add_option("--out", options->out, "Where to write the repaired model, .obj, .ply or .stl")
-      .required();
+  options->output.add_to(command, "Where to write the repaired model, .obj, .ply or .stl");
   command.add_option("--tolerance", options->tolerance,
-                     "How far apart vertices at open edges may be that become one, in the model's "
+                     "Max distance of vertices at open edges that become one, in the model's "
                      "units; without it, a hundred-thousandth of the model's diagonal");
-  takes::add_up_option(command, options->up);
-  command.add_flag("--json", options->json, "Print what was done as one JSON object");
-  command.add_flag("--force", options->force, cli::force_summary);
-  command.on_chosen([options] {
-    const auto done = repair_file(*options);
-    return done ? 0 : cli::report(done.error());
-  });
+  command.add_flag("--json", options->json, "Report as one JSON object");
+  command.on_chosen([options] { return repair_file(*options); });
 }
 
 } // namespace nendo::app::repair_command

@@ -10,7 +10,6 @@
 
 #include <nendo/base/text.hpp>
 #include <nendo/deform/closed_manifold.hpp>
-#include <nendo/deform/face_box.hpp>
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/repair.hpp>
 #include <nendo/deform/supports.hpp>
@@ -20,6 +19,7 @@
 #include "cli/output_place.hpp"
 #include "commands/commands.hpp"
 #include "nendo/commands.hpp"
+#include "nendo/model_output.hpp"
 #include "nendo/run_arguments.hpp"
 #include "service/service_notice.hpp"
 #include "session/browser_view.hpp"
@@ -55,8 +55,8 @@ Result<Views> open_views(const RunArguments& options) {
   return views;
 }
 
-/// Returns what is hardly meant: a radius in another unit than the model's.
-void note_oddities(const deform::Mesh& model, const RunArguments& options) {
+/// Warns if a fingertip that touches the model reaches all of it.
+void warn_about_radius(const deform::Mesh& model, const RunArguments& options) {
   const deform::Box box = deform::box_of_faces(model);
   const double size = (box.highest - box.lowest).maxCoeff();
   const auto parsed = session::parse_radius(options.run.radius, size / options.run.model_size_m);
@@ -69,12 +69,7 @@ void note_oddities(const deform::Mesh& model, const RunArguments& options) {
     reach = std::max(reach, shared.radius);
   deform::Points corners(3, 2); // no fingertip that touches the model is farther from all of it
   corners << box.lowest, box.highest;
-  if (!deform::reach_all_of(box, corners, deform::one_radius(reach))) return;
-  cli::note("--radius " + options.run.radius +
-            ": a fingertip reaches all of the model, whose longest "
-            "side is " +
-            fmt::format("{:.3g}", size) +
-            ", so no part of it stays as it is; use a smaller radius to shape a part");
+  warn_about_reach("--radius " + options.run.radius, box, corners, deform::one_radius(reach));
 }
 
 /// Whether repairing closes the model, in words that follow a semicolon. That is tried, so that
@@ -151,7 +146,7 @@ int run(RunArguments& options) {
   if (!published) return cli::report(published.error());
   auto model = read_model(options);
   if (!model) return cli::report(model.error());
-  note_oddities(*model, options);
+  warn_about_radius(*model, options);
   note_inside(*model, options.run);
   choose_injective(*model, options);
   cli::install_stop_signals();

@@ -36,10 +36,11 @@ TEST_SUITE("nendo join") {
       const std::string out = (folder.path() / (std::string(seam) + ".obj")).string();
       const auto done = nendo::test::nendo({"join", a, b, c, "--seam", seam, "--out", out});
       CHECK(done.exit_code == 0);
-      CHECK(done.out.empty());
-      CHECK(done.err.find(b + ": ") != std::string::npos);
-      CHECK(done.err.find(c + ": ") != std::string::npos);
-      CHECK(done.err.find("crossings, volume ") != std::string::npos);
+      CHECK(done.err.empty());
+      CHECK(done.out.find(b + ": ") != std::string::npos);
+      CHECK(done.out.find(c + ": ") != std::string::npos);
+      CHECK(done.out.find("crossings, volume ") != std::string::npos);
+      CHECK(done.out.find(out + ": ") != std::string::npos);
       const auto mesh = read_mesh(out);
       REQUIRE(mesh);
       CHECK(check_closed_manifold(*mesh));

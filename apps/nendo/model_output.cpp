@@ -1,0 +1,62 @@
+#include "nendo/model_output.hpp"
+
+#include <iostream>
+
+#include <spdlog/fmt/fmt.h>
+
+#include <nendo/base/text.hpp>
+#include <nendo/deform/cut.hpp>
+#include <nendo/deform/mesh_file.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/output_place.hpp"
+
+namespace nendo::app {
+
+void ModelOutput::add_to(cli::Command& command, const std::string& out_summary) {
+  takes::add_up_option(command, up);
+  command.add_option("--out", out, out_summary).required();
+  command.add_flag("--force", force, cli::force_summary);
+}
+
+Result<deform::Mesh> ModelOutput::read(const std::string& file) const {
+  auto model = takes::read_model(file, reading());
+  if (!model) return model.error();
+  return std::move(model->mesh);
+}
+
+Result<void> ModelOutput::check(const std::string& file,
+                                std::span<const std::string> models) const {
+  if (auto fine = cli::check_place("--out", file, deform::mesh_endings); !fine) return fine;
+  for (const std::string& model : models)
+    if (auto fine = cli::check_spares(model, "--out", file, force); !fine) return fine;
+  return {};
+}
+
+Result<void> ModelOutput::write(const std::string& file, const deform::Mesh& mesh) const {
+  return takes::write_model(file, mesh, takes::axis_of(reading()));
+}
+
+void report_model(const std::string& file, const deform::Mesh& mesh, const std::string& more) {
+  std::cout << fmt::format("{}: {} vertices, {} faces{}\n", printable(file), mesh.vertices.cols(),
+                           mesh.face_count(), more)
+            << std::flush;
+}
+
+std::string volume_text(const deform::Mesh& mesh) {
+  return fmt::format(", volume {:.9g}", deform::volume_of(mesh));
+}
+
+void warn_about_reach(const std::string& what, const deform::Box& box, const deform::Points& points,
+                      const deform::Supports& supports) {
+  if (!deform::reach_all_of(box, points, supports)) return;
+  cli::note(fmt::format("{}: reaches all of the model, whose longest side is {:.3g}; use a smaller "
+                        "radius to shape only a part of it",
+                        what, (box.highest - box.lowest).maxCoeff()));
+}
+
+void report_written(const std::string& file) {
+  if (!file.empty()) std::cout << "wrote " << printable(file) << std::endl;
+}
+
+} // namespace nendo::app
