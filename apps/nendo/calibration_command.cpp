@@ -1,14 +1,14 @@
-// nendo calibration: lists, shows, compares and removes the files of nendo calibrate. Import and
-// export are in calibration_exchange.cpp.
+// nendo calibration: lists, shows, compares and removes the files of nendo calibrate.
+// calibration_exchange.cpp has import and export.
 
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
 
 #include <nendo/base/text.hpp>
 #include <nendo/sculpting/calibration_names.hpp>
@@ -55,9 +55,7 @@ ordered_json sensors_json(const WearerCalibration& wearer) {
 }
 
 std::string fixed(double value, int decimals) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
+  return fmt::format("{:.{}f}", value, decimals);
 }
 
 void print_table(const std::vector<std::vector<std::string>>& rows) {
@@ -77,10 +75,10 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
   }
 }
 
-int list(bool json) {
+Result<void> list(bool json) {
   const auto stored = sculpting::stored_calibrations(cli::note);
   std::vector<std::vector<std::string>> rows{
-      {"user", "hand", "glove", "made", "method", "in force", "path"}};
+      {"user", "hand", "glove", "made", "method", "in use", "path"}};
   for (const auto& file : stored.files) {
     const bool in_force = is_in_force(file, stored.files);
     if (json) {
@@ -96,14 +94,14 @@ int list(bool json) {
                     hand::rfc3339(wearer.made), wearer.method, in_force ? "yes" : "no",
                     file.path.string()});
   }
-  if (json) return 0;
+  if (json) return {};
   if (rows.size() > 1) {
     print_table(rows);
   } else {
     cli::note("no calibration is stored; `nendo calibrate GLOVE --user NAME` makes one, and `nendo "
-              "calibration import` takes one from another program");
+              "calibration import` reads one of another program");
   }
-  return 0;
+  return {};
 }
 
 void show_text(const StoredCalibration& file) {
@@ -113,7 +111,7 @@ void show_text(const StoredCalibration& file) {
                          (wearer.glove_model.empty() ? "any model" : wearer.glove_model) + ", " +
                          file.path.string())
             << "\n\n";
-  const double most = wearer.counts.most;
+  const double max_count = wearer.counts.most;
   std::vector<std::vector<std::string>> rows{
       {"sensor", "gain rad/count", "offset counts", "deg at 0", "deg at full", "residual deg"}};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
@@ -124,21 +122,21 @@ void show_text(const StoredCalibration& file) {
     };
     const auto& quality = wearer.quality[slot];
     rows.push_back({std::string(sensor_names[slot]), fixed(line.gain_rad_per_count, 5),
-                    fixed(line.offset_counts, 1), fixed(at(0.0), 1), fixed(at(most), 1),
+                    fixed(line.offset_counts, 1), fixed(at(0.0), 1), fixed(at(max_count), 1),
                     quality ? fixed(to_degrees(quality->residual_rad), 1) : "-"});
   }
   print_table(rows);
   if (wearer.left_out.bits != 0)
-    std::cout << "left out, because stuck: " << sculpting::sensors_in_words(wearer.left_out)
+    std::cout << "left out because they are stuck: " << sculpting::sensors_in_words(wearer.left_out)
               << '\n';
 }
 
-int show(const std::string& name, bool json) {
+Result<void> show(const std::string& name, bool json) {
   const auto file = sculpting::named_calibration(name, cli::note);
-  if (!file) return cli::report(file.error());
+  if (!file) return file.error();
   if (!json) {
     show_text(*file);
-    return 0;
+    return {};
   }
   const WearerCalibration& wearer = file->wearer;
   ordered_json line = summary_json(*file);
@@ -162,7 +160,7 @@ int show(const std::string& name, bool json) {
   line["mixed_in"] = std::move(mixed_in);
   line["sensors"] = sensors_json(wearer);
   cli::print_line(line);
-  return 0;
+  return {};
 }
 
 // Returns six angles of a sensor in degrees: that of a, that of b, and how far b lies above a,
@@ -191,13 +189,13 @@ ordered_json change_json(const std::string& sensor, const std::vector<double>& d
           {"change_at_full_deg", deg[5]}};
 }
 
-int diff(const std::string& name_a, const std::string& name_b, bool json) {
+Result<void> diff(const std::string& name_a, const std::string& name_b, bool json) {
   const auto a = sculpting::named_calibration(name_a, cli::note);
-  if (!a) return cli::report(a.error());
+  if (!a) return a.error();
   const auto b = sculpting::named_calibration(name_b, cli::note);
-  if (!b) return cli::report(b.error());
+  if (!b) return b.error();
   if (a->wearer.side != b->wearer.side)
-    cli::note("these are calibrations of two hands: one left, one right");
+    cli::note("A is of one hand and B of the other: the left and the right");
   std::vector<std::vector<std::string>> rows{
       {"sensor", "a at 0", "b at 0", "change", "a at full", "b at full", "change"}};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
@@ -215,28 +213,28 @@ int diff(const std::string& name_a, const std::string& name_b, bool json) {
       rows.back().push_back(fixed(angle_deg, 1));
   }
   if (!json) print_table(rows);
-  return 0;
+  return {};
 }
 
-int path(const std::string& name) {
+Result<void> path(const std::string& name) {
   if (name.empty()) {
     std::cout << hand::calibration_folders().own.string() << '\n';
-    return 0;
+    return {};
   }
   const auto file = sculpting::named_calibration(name, cli::note);
-  if (!file) return cli::report(file.error());
+  if (!file) return file.error();
   std::cout << file->path.string() << '\n';
-  return 0;
+  return {};
 }
 
-int remove(const std::string& name) {
+Result<void> remove(const std::string& name) {
   const auto file = sculpting::named_calibration(name, cli::note);
-  if (!file) return cli::report(file.error());
+  if (!file) return file.error();
   const auto kept = hand::retire_calibration(file->path);
-  if (!kept) return cli::report(kept.error());
+  if (!kept) return kept.error();
   std::cout << "removed " << printable(file->path.string()) << "; it is kept as "
             << printable(kept->string()) << '\n';
-  return 0;
+  return {};
 }
 
 } // namespace
@@ -253,8 +251,9 @@ void add(cli::Command& program) {
   command.set_footer("A NAME is a path, a stored file's name without .toml, or a wearer.");
   command.require_command();
 
-  cli::Command listing = command.add_command("list", "What is stored, and what is in force");
-  listing.add_flag("--json", options->json, "One JSON object a line");
+  cli::Command listing =
+      command.add_command("list", "The stored calibrations, and which are in use");
+  listing.add_flag("--json", options->json, "One JSON object per line");
   listing.on_chosen([options] { return list(options->json); });
 
   cli::Command showing = command.add_command("show", "One calibration, sensor by sensor");
@@ -265,16 +264,17 @@ void add(cli::Command& program) {
   cli::Command comparing = command.add_command("diff", "Two calibrations' angles, in degrees");
   comparing.add_option("A", options->name, "Path, stored name or wearer").required();
   comparing.add_option("B", options->other, "Path, stored name or wearer").required();
-  comparing.add_flag("--json", options->json, "One JSON object a sensor");
+  comparing.add_flag("--json", options->json, "One JSON object per sensor");
   comparing.on_chosen([options] { return diff(options->name, options->other, options->json); });
 
   calibration_exchange::add(command);
 
-  cli::Command locating = command.add_command("path", "Where a calibration lies, or all of yours");
+  cli::Command locating =
+      command.add_command("path", "Prints the path of a calibration, or the folder of yours");
   locating.add_option("NAME", options->name, "Stored name or wearer");
   locating.on_chosen([options] { return path(options->name); });
 
-  cli::Command removing = command.add_command("remove", "Takes a calibration out of use");
+  cli::Command removing = command.add_command("remove", "Removes a calibration, and keeps a copy");
   removing.add_option("NAME", options->name, "Path, stored name or wearer").required();
   removing.on_chosen([options] { return remove(options->name); });
 }

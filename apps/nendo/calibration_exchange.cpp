@@ -14,6 +14,7 @@
 
 #include "cli/cli.hpp"
 #include "nendo/commands.hpp"
+#include "nendo/model_output.hpp"
 
 namespace nendo::app::calibration_exchange {
 namespace {
@@ -58,22 +59,22 @@ std::optional<Side> likely_side(const std::string& path) {
   return left ? Side::left : Side::right;
 }
 
-// The user's word and the file's must not disagree: a left hand's gains on a right hand shape
-// nonsense, and nobody would look for the reason there.
-Result<Side> side_of(const ImportOptions& options, std::optional<Side> told) {
+// The option and the file must not disagree, because a left hand's gains are wrong for a right
+// hand, which would be hard to notice.
+Result<Side> side_of(const ImportOptions& options, std::optional<Side> in_file) {
   if (options.hand.empty()) {
-    if (told) return *told;
+    if (in_file) return *in_file;
     // A name is no proof, so it is offered and not taken.
     const auto likely = likely_side(options.file);
     const std::string word(likely ? name_of(*likely) : "");
-    return Error{Errc::usage,
-                 options.file + ": does not tell its hand; " +
-                     (likely ? "its name says " + word + ": if that is so, add --hand " + word
-                             : "add --hand left or right")};
+    return Error{Errc::usage, options.file + ": does not name its hand; " +
+                                  (likely ? "its file name says " + word +
+                                                "; if that is right, add --hand " + word
+                                          : "add --hand left or right")};
   }
   const Side wanted = options.hand == "left" ? Side::left : Side::right;
-  if (told && *told != wanted) {
-    return Error{Errc::bad_input, options.file + ": is of a " + std::string(name_of(*told)) +
+  if (in_file && *in_file != wanted) {
+    return Error{Errc::bad_input, options.file + ": is of a " + std::string(name_of(*in_file)) +
                                       " hand; leave --hand out or choose another file"};
   }
   return wanted;
@@ -105,9 +106,9 @@ Result<WearerCalibration> converted(const ImportOptions& options, const std::str
   const auto side = side_of(options, read->side);
   if (!side) return side.error();
   if (options.user.empty())
-    return Error{Errc::usage, options.file + ": does not tell its wearer; add --user NAME"};
-  for (const auto& told : read->notes)
-    cli::note(options.file + ": " + told);
+    return Error{Errc::usage, options.file + ": does not name its wearer; add --user NAME"};
+  for (const auto& note : read->notes)
+    cli::note(options.file + ": " + note);
   WearerCalibration wearer;
   wearer.user = options.user;
   wearer.glove_model = options.model;
@@ -134,17 +135,17 @@ Result<WearerCalibration> read_foreign(const ImportOptions& options) {
   return wearer;
 }
 
-int import_calibration(const ImportOptions& options) {
+Result<void> import_calibration(const ImportOptions& options) {
   const auto wearer = read_foreign(options);
-  if (!wearer) return cli::report(wearer.error());
+  if (!wearer) return wearer.error();
   const auto path = hand::own_calibration_path(wearer->user, wearer->glove_serial, wearer->side);
-  if (!path) return cli::report(path.error());
+  if (!path) return path.error();
   const auto kept = hand::write_calibration(*path, *wearer);
-  if (!kept) return cli::report(kept.error());
+  if (!kept) return kept.error();
   if (!kept->empty()) cli::note("the earlier one is kept as " + printable(kept->string()));
   std::cout << "imported for " << sculpting::title_of(*wearer) << ": " << printable(path->string())
             << '\n';
-  return 0;
+  return {};
 }
 
 Result<hand::ExportedCalibration> exported(const WearerCalibration& wearer,
@@ -158,23 +159,22 @@ Result<hand::ExportedCalibration> exported(const WearerCalibration& wearer,
   return hand::ExportedCalibration{*std::move(text), {}};
 }
 
-int export_calibration(const ExportOptions& options) {
+Result<void> export_calibration(const ExportOptions& options) {
   const auto file = sculpting::named_calibration(options.name, cli::note);
-  if (!file) return cli::report(file.error());
+  if (!file) return file.error();
   const auto result = exported(file->wearer, options.format);
   if (!result) {
-    return cli::report(
-        {result.error().code, printable(options.name) + ": " + result.error().message});
+    return Error{result.error().code, printable(options.name) + ": " + result.error().message};
   }
   for (const auto& lost : result->notes)
     cli::note(lost);
   if (options.out.empty()) {
     std::cout << result->text;
-    return 0;
+    return {};
   }
-  if (const auto done = hand::write_calibration_text(options.out, result->text); !done)
-    return cli::report(done.error());
-  return 0;
+  if (auto done = hand::write_calibration_text(options.out, result->text); !done) return done;
+  report_written(options.out);
+  return {};
 }
 
 } // namespace
@@ -188,19 +188,21 @@ void add(cli::Command& calibration) {
       "of MotorControl), asr_cyberglove's two-point .cal, CSV, and the YAML and XML of ROS\n"
       "drivers (cyberglove_calibration).");
   importing.add_option("FILE", in->file, "The file to read").required();
-  importing.add_option("--user", in->user, "The wearer; TOML tells it");
-  importing.add_option("--hand", in->hand, "left or right; TOML tells it")
+  importing.add_option("--user", in->user, "The wearer; a TOML file names it");
+  importing.add_option("--hand", in->hand, "left or right; a TOML file names it")
       .one_of({"left", "right"});
   importing.add_option("--glove", in->glove,
                        "The glove's serial number; without it, for any glove");
-  importing.add_option("--model", in->model, "The glove's model as `nendo info` says it");
+  importing.add_option("--model", in->model, "The glove's model, as `nendo info` shows it");
   importing.on_chosen([in] { return import_calibration(*in); });
 
   auto out = std::make_shared<ExportOptions>();
-  cli::Command exporting = calibration.add_command("export", "Writes a calibration for others");
+  cli::Command exporting =
+      calibration.add_command("export", "Writes a calibration for other programs");
   exporting.add_option("NAME", out->name, "Path, stored name or wearer").required();
   exporting
-      .add_option("--format", out->format, "cal, csv, toml, or as ROS drivers keep them: yaml, xml")
+      .add_option("--format", out->format,
+                  "cal, csv, toml, or the formats of ROS drivers: yaml, xml")
       .one_of({"cal", "csv", "toml", "yaml", "xml"});
   exporting.add_option("--out", out->out, "Where to write it; without it, standard output");
   exporting.on_chosen([out] { return export_calibration(*out); });

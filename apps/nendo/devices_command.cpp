@@ -1,4 +1,5 @@
-// nendo devices: what may be a glove, why, who may open it and who holds it. Opens none of them.
+// nendo devices: lists possible gloves, why they are listed, who may open them, and which programs
+// use them. It opens none of them.
 
 #include <array>
 #include <chrono>
@@ -73,29 +74,30 @@ void print_text(const GloveCandidate& candidate) {
             << candidate.reason << "\n  use it as  "
             << (candidate.spec.empty() ? "nothing yet" : candidate.spec);
   if (candidate.node_missing) {
-    std::cout << "\n  may open   nobody: the kernel has it, but there is no node for it here";
+    std::cout << "\n  may open   no user: the kernel has it, but its device node is missing";
   } else {
-    const std::string who = candidate.access.empty() ? "nobody, it is gone" : candidate.access;
+    const std::string who =
+        candidate.access.empty() ? "no user: it was unplugged" : candidate.access;
     std::cout << "\n  may open   "
               << (candidate.may_open || candidate.access.empty() ? "" : "only ") << who;
   }
-  if (!candidate.remedy.empty()) std::cout << "\n  mend it    " << candidate.remedy;
+  if (!candidate.remedy.empty()) std::cout << "\n  fix        " << candidate.remedy;
   for (const auto& holder : candidate.holders) {
-    std::cout << "\n  held by    " << holder.name;
+    std::cout << "\n  used by    " << holder.name;
     if (holder.pid > 0) std::cout << " (pid " << holder.pid << ")";
     std::cout << "; close that program first";
   }
   std::cout << std::endl;
 }
 
-int list_devices(bool json) {
+Result<void> list_devices(bool json) {
   const auto candidates = driver::find_gloves();
   for (const auto& candidate : candidates)
     json ? cli::print_line(json_of(candidate)) : print_text(candidate);
   if (candidates.empty() && !json) {
-    std::cout << "No serial port or USB device here may be a glove. Plug one in, or try `sim`.\n";
+    std::cout << "No serial port or USB device can be a glove. Plug one in, or use `sim`.\n";
   }
-  return 0;
+  return {};
 }
 
 std::string time_of_day(std::chrono::system_clock::time_point time) {
@@ -125,24 +127,24 @@ void print_event(std::string_view event, const GloveCandidate& candidate, bool j
   std::cout << std::endl;
 }
 
-int watch_devices(bool json) {
+Result<void> watch_devices(bool json) {
   using std::chrono::milliseconds;
-  constexpr milliseconds longest_wait{500}; // should the signal arrive just before the wait
+  constexpr milliseconds max_wait{500}; // the signal may arrive just before the wait
   const auto watcher = driver::DeviceWatcher::open();
-  if (!watcher) return cli::report(watcher.error());
+  if (!watcher) return watcher.error();
   cli::install_stop_signals();
   for (const auto& candidate : (*watcher)->present())
     print_event("present", candidate, json);
   if (!(*watcher)->sees_usb()) {
-    cli::note("USB is not to be watched here, only the serial ports in /dev; "
-              "gloves without such a port go unnoticed");
+    cli::note("USB cannot be watched here, only the serial ports in /dev; gloves without a serial "
+              "port are not noticed");
   }
   while (!cli::stop_requested()) {
-    if (const auto event = (*watcher)->next(longest_wait)) {
+    if (const auto event = (*watcher)->next(max_wait)) {
       print_event(event->attached ? "attached" : "detached", event->candidate, json);
     }
   }
-  return 0;
+  return {};
 }
 
 } // namespace
@@ -154,10 +156,10 @@ void add(cli::Command& program) {
   };
   auto options = std::make_shared<Options>();
   cli::Command command =
-      program.add_command("devices", "Lists ports and USB devices that may be gloves, and why");
-  command.add_flag("--json", options->json, "One JSON object a line");
+      program.add_command("devices", "Lists ports and USB devices that can be gloves, and why");
+  command.add_flag("--json", options->json, "One JSON object per line");
   command.add_flag("--watch", options->watch,
-                   "Then a line whenever one is plugged in or pulled out; Ctrl-C ends");
+                   "Then print a line when a device is plugged in or unplugged, until Ctrl-C");
   command.on_chosen([options] {
     return options->watch ? watch_devices(options->json) : list_devices(options->json);
   });

@@ -1,4 +1,4 @@
-// nendo doctor: what keeps gloves from working on this machine, and the command that fixes it.
+// nendo doctor: finds problems with gloves on this machine, and the commands that fix them.
 
 #include <algorithm>
 #include <array>
@@ -25,30 +25,30 @@
 namespace nendo::app::doctor_command {
 namespace {
 
-/// Sensors that were stuck when somebody was calibrated.
+/// Finds sensors that were stuck during a calibration.
 doctor::Examination check_calibrations() {
   doctor::Examination examination{{}, {"stored calibrations"}};
   for (const auto& file : sculpting::stored_calibrations(cli::note).files) {
     if (file.wearer.left_out.bits == 0) continue;
     const bool one = sculpting::is_one(file.wearer.left_out);
-    examination.findings.push_back(
-        {doctor::Severity::warning, "stuck_sensor", file.path.string(),
-         sculpting::sensors_in_words(file.wearer.left_out) + (one ? " was" : " were") +
-             " stuck when " + sculpting::title_of(file.wearer) +
-             " was calibrated, so what they would measure is estimated",
-         "have the glove's sensor or its wire mended, then calibrate again"});
+    examination.findings.push_back({doctor::Severity::warning, "stuck_sensor", file.path.string(),
+                                    sculpting::sensors_in_words(file.wearer.left_out) +
+                                        (one ? " was" : " were") + " stuck when " +
+                                        sculpting::title_of(file.wearer) +
+                                        " was calibrated, so their values are estimated",
+                                    "repair the sensor or its wire, then calibrate again"});
   }
   return examination;
 }
 
-/// Sensors of an open glove that stand at an end now.
+/// Finds sensors of an open glove that are at an end of their range now.
 std::vector<doctor::Finding> sensors_of(driver::Glove& glove, const std::string& spec) {
   std::vector<doctor::Finding> findings;
   for (const gloves::SensorAtEnd& found : gloves::sensors_at_end(glove))
     findings.push_back({doctor::Severity::warning, "stuck_sensor", spec, gloves::in_words(found),
                         "bend that joint while `nendo monitor " + shell_word(spec) +
-                            "` shows it; if it is broken, calibrations and runs leave it out by "
-                            "themselves"});
+                            "` shows it; if it is broken, calibrations and runs leave it out "
+                            "automatically"});
   return findings;
 }
 
@@ -58,8 +58,8 @@ Result<doctor::Examination> check_glove(const std::string& spec) {
   return doctor::Examination{sensors_of(**glove, spec), {spec}};
 }
 
-/// Of gloves that are known as such, and that nobody uses. Why one cannot be opened, other checks
-/// say.
+/// Checks the identified gloves that no program uses. Other checks report why a glove cannot be
+/// opened.
 doctor::Examination check_known_gloves() {
   doctor::Examination examination;
   for (const driver::GloveCandidate& candidate : driver::find_gloves()) {
@@ -91,8 +91,8 @@ void print_json(const doctor::Finding& finding) {
 
 void print_text(const doctor::Finding& finding) {
   std::cout << name_of(finding.severity) << ": " << finding.subject
-            << (finding.subject.empty() ? "" : ": ") << finding.what
-            << ". Mend it: " << finding.remedy << '\n';
+            << (finding.subject.empty() ? "" : ": ") << finding.what << ". Fix: " << finding.remedy
+            << '\n';
 }
 
 int examine(const std::string& glove, bool json) {
@@ -120,8 +120,8 @@ int examine(const std::string& glove, bool json) {
       });
   for (const doctor::Finding& finding : findings)
     json ? print_json(finding) : print_text(finding);
-  if (findings.empty() && !json) std::cout << "Nothing here keeps gloves from working.\n";
-  if (!json) std::cout << "Looked at: " << looked_at << ".\n";
+  if (findings.empty() && !json) std::cout << "No problems found.\n";
+  if (!json) std::cout << "Checked: " << looked_at << ".\n";
   const bool well = findings.empty() || findings.front().severity == doctor::Severity::warning;
   return well ? 0 : static_cast<int>(Errc::failed);
 }
@@ -132,13 +132,13 @@ void add(cli::Command& program) {
   auto json = std::make_shared<bool>(false);
   auto glove = std::make_shared<std::string>();
   cli::Command command = program.add_command(
-      "doctor", "Says what keeps gloves from working on this machine, and what mends it");
+      "doctor", "Finds problems with gloves on this machine, and how to fix them");
   command.add_option(
       "GLOVE", *glove,
-      "Also look at the sensors of this glove: serial:/dev/ttyUSB0, auto, ...; without it, "
-      "at those of each glove that its name or a udev rule makes known");
-  command.add_flag("--json", *json, "One JSON object a finding");
-  command.set_footer("Exit code 1 if something will not work, 0 if there are warnings only.");
+      "Also check the sensors of this glove: serial:/dev/ttyUSB0, auto, ...; without it, those "
+      "of each identified glove");
+  command.add_flag("--json", *json, "One JSON object per finding");
+  command.set_footer("Exit code 1 if there is a failure, 0 if there are only warnings.");
   command.on_chosen([json, glove] { return examine(*glove, *json); });
 }
 

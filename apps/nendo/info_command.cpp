@@ -1,4 +1,4 @@
-// nendo info: asks a glove who it is.
+// nendo info: queries a glove.
 
 #include <algorithm>
 #include <cstdio>
@@ -62,7 +62,7 @@ void print_json(const driver::GloveInfo& info, const std::vector<gloves::SensorA
   cli::print_line(line);
 }
 
-// Returns the words with blanks between, in lines of at most `width` characters.
+// Returns the words, separated by blanks, in lines of at most `width` characters.
 std::vector<std::string> wrapped(const std::vector<std::string>& words, std::size_t width) {
   std::vector<std::string> lines{""};
   for (const std::string& word : words) {
@@ -85,7 +85,7 @@ std::string abilities_text(const driver::Abilities& can) {
   add(can.light, "light");
   add(can.vibration, "vibration");
   add(can.resistance, "resistance");
-  return text.empty() ? "measures only" : text;
+  return text.empty() ? "none" : text;
 }
 
 std::vector<std::string> angles_from(const hand::AngleSources& sources, hand::AngleSource source) {
@@ -133,7 +133,8 @@ void print_angles(const Columns& columns, SensorMask sensors) {
   const hand::AngleSources sources = hand::angle_sources(sensors);
   const auto measured = angles_from(sources, hand::AngleSource::measured).size();
   columns.print("angles", std::to_string(measured) + " of " + std::to_string(hand::angle_count) +
-                              " measured" + (measured < hand::angle_count ? "; the others" : ""));
+                              " measured" +
+                              (measured < hand::angle_count ? "; the others are" : ""));
   for (std::size_t n = 0; n < hand::angle_source_count; ++n) {
     const auto source = static_cast<hand::AngleSource>(n);
     const auto names = angles_from(sources, source);
@@ -160,18 +161,18 @@ void print_text(const driver::GloveInfo& info, const std::vector<gloves::SensorA
   columns.print_list("", sensors);
   print_angles(columns, info.sensors);
   for (const gloves::SensorAtEnd& found : at_end)
-    columns.print_sentence("look at", gloves::in_words(found));
-  if (!info.facts.empty()) std::cout << "\nin its own words\n";
+    columns.print_sentence("check", gloves::in_words(found));
+  if (!info.facts.empty()) std::cout << "\nreported by the glove\n";
   for (const auto& [name, value] : info.facts)
     columns.print(name, value);
 }
 
-int info(const std::string& spec, bool json) {
+Result<void> info(const std::string& spec, bool json) {
   const auto glove = gloves::open_glove(spec);
-  if (!glove) return cli::report(glove.error());
+  if (!glove) return glove.error();
   const auto at_end = gloves::sensors_at_end(**glove);
   json ? print_json((*glove)->info(), at_end) : print_text((*glove)->info(), at_end);
-  return 0;
+  return {};
 }
 
 } // namespace
@@ -182,7 +183,7 @@ void add(cli::Command& program) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  cli::Command command = program.add_command("info", "Asks a glove who it is and what it can do");
+  cli::Command command = program.add_command("info", "Queries a glove: model, sensors, abilities");
   command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
   command.add_flag("--json", options->json, "One JSON object");
   command.on_chosen([options] { return info(options->glove, options->json); });

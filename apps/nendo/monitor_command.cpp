@@ -1,4 +1,4 @@
-// nendo monitor: what a glove sends, as live bars in a terminal or as JSON lines.
+// nendo monitor: shows what a glove sends, as live bars in a terminal or as JSON lines.
 
 #include <cstdint>
 #include <iostream>
@@ -43,14 +43,14 @@ struct Monitored {
   const hand::Wearer* wearer;                ///< null: counts only
   hand::ActiveCalibration& calibrations;     ///< those of `wearer`, or an average hand's
   const sculpting::FoundCalibration& found;  ///< what was found for the glove's own hand
-  std::uint64_t most;                        ///< samples to show; 0: no end
-  const hand::Calibration* active = nullptr; ///< for the latest sample; null: none
+  std::uint64_t max_shown;                   ///< samples to show; 0: no end
+  const hand::Calibration* active = nullptr; ///< that of the latest sample; null: none
   SensorMask left_out{};                     ///< with the latest sample
   gloves::StuckNotices stuck{};
   std::vector<std::string> news{}; ///< what the latest sample shows of stuck sensors
   std::uint64_t shown = 0;
 
-  bool wanted() const { return !cli::stop_requested() && (most == 0 || shown < most); }
+  bool wanted() const { return !cli::stop_requested() && (max_shown == 0 || shown < max_shown); }
   bool next(GloveSample& sample) {
     if (!wanted() || !ring.try_pop(sample)) return false;
     const hand::Calibration& followed = calibrations.follow(sample);
@@ -60,7 +60,8 @@ struct Monitored {
     ++shown;
     return true;
   }
-  /// Whose hand a sample of that side shows; null: not known, for another glove was plugged in.
+  /// Returns the calibration of a sample of that side; null: unknown, because another glove was
+  /// plugged in.
   const sculpting::FoundCalibration* found_for(Side side) const {
     return side == glove.info().side ? &found : nullptr;
   }
@@ -70,7 +71,7 @@ struct Monitored {
     using Kind = sculpting::FoundCalibration::Kind;
     if (known->kind == Kind::recorded) return "the wearer who was recorded";
     if (known->kind == Kind::average)
-      return glove.info().kind == driver::GloveKind::recorded ? "nobody, an average one" : "";
+      return glove.info().kind == driver::GloveKind::recorded ? "an average hand" : "";
     return known->user;
   }
   bool is_uncalibrated(Side side) const {
@@ -98,7 +99,7 @@ void show_lines(Monitored& monitored) {
   }
 }
 
-/// The lines are samples and nothing else, so what never became one is told beside them.
+/// Reports losses on standard error, because standard output has only samples.
 void note_losses(const driver::Glove& glove) {
   const auto stats = glove.stats();
   const auto counts = driver::counts_of(stats);
@@ -116,16 +117,16 @@ bool handle(char key, gloves::SeenCounts& seen, gloves::GloveFeedback& light) {
 }
 
 void show_screen(Monitored& monitored) {
-  constexpr std::chrono::milliseconds frame_time{34}; // at most 30 pictures a second
+  constexpr std::chrono::milliseconds frame_time{34}; // at most 30 pictures per second
   cli::Terminal terminal;
   gloves::GloveFeedback light(monitored.glove);
   gloves::SeenCounts seen;
   GloveSample sample;
   bool any = false;
   std::vector<std::string> lines;
-  bool goes_on = true;
+  bool continues = true;
   bool ended = false;
-  while (goes_on && !ended && monitored.wanted() && !terminal.is_gone()) {
+  while (continues && !ended && monitored.wanted() && !terminal.is_gone()) {
     ended = monitored.glove.has_ended(); // then all that it sent is in the ring
     for (; monitored.next(sample); any = true)
       seen.add(sample);
@@ -142,16 +143,17 @@ void show_screen(Monitored& monitored) {
                                          any ? monitored.wearer_of(sample.side) : "",
                                          monitored.left_out};
     lines = gloves::monitor_lines(picture, terminal.size());
-    if (terminal.is_plain() && lines.size() > 2) { // the bars would be some twenty lines a second
+    if (terminal.is_plain() &&
+        lines.size() > 2) { // the bars would be about twenty lines per second
       terminal.draw({lines[0], lines[1]});
     } else {
       terminal.draw(lines);
     }
-    while (goes_on && !ended && !cli::stop_requested() && !terminal.is_gone() &&
+    while (continues && !ended && !cli::stop_requested() && !terminal.is_gone() &&
            HostClock::now() < now + frame_time) {
       const auto left =
           std::chrono::ceil<std::chrono::milliseconds>(now + frame_time - HostClock::now());
-      if (const auto key = terminal.key(left)) goes_on = handle(*key, seen, light);
+      if (const auto key = terminal.key(left)) continues = handle(*key, seen, light);
     }
   }
   terminal.leave();
@@ -161,16 +163,16 @@ void show_screen(Monitored& monitored) {
   light.put_out();
 }
 
-int monitor(const Options& options) {
-  if (const auto fine = gloves::check(options.calibration); !fine) return cli::report(fine.error());
+Result<void> monitor(const Options& options) {
+  if (auto fine = gloves::check(options.calibration); !fine) return fine;
   const auto glove = gloves::open_glove(options.glove);
-  if (!glove) return cli::report(glove.error());
+  if (!glove) return glove.error();
   std::optional<hand::Wearer> wearer;
   sculpting::FoundCalibration whose;
   if (!options.raw) {
     const auto found = sculpting::find_wearer((*glove)->info(), (*glove)->info().side,
                                               options.calibration, cli::note, &whose);
-    if (!found) return cli::report(found.error());
+    if (!found) return found.error();
     wearer = *found;
   }
   hand::Wearer counts_only;
@@ -178,7 +180,7 @@ int monitor(const Options& options) {
   hand::ActiveCalibration calibrations(wearer ? *wearer : counts_only);
   SampleRing ring(1024);
   cli::install_stop_signals();
-  if (const auto started = (*glove)->start(ring); !started) return cli::report(started.error());
+  if (const auto started = (*glove)->start(ring); !started) return started.error();
 
   Monitored monitored{**glove,      ring,  wearer ? &*wearer : nullptr,
                       calibrations, whose, options.count};
@@ -190,7 +192,7 @@ int monitor(const Options& options) {
   }
   (*glove)->stop();
   if (lines) note_losses(**glove);
-  return 0;
+  return {};
 }
 
 } // namespace
@@ -201,20 +203,20 @@ void add(cli::Command& program) {
       "monitor",
       "Shows what a glove sends: bars in a terminal, JSON lines when piped or asked for");
   command.set_footer(
-      "In a bar, # shows the count, and [ ] the least and the greatest seen so far.\n"
-      "A ~ before degrees: the glove is uncalibrated, and they are an average hand's.\n"
-      "An e before degrees: the sensor stands still while the hand moves, and its angle is "
-      "estimated\nfrom the sensors beside.\n"
-      "Keys: q quit, r forget the ranges seen, l light on and off.\n"
-      "It ends with Ctrl-C, with --count, and when a recording (replay:FILE) ends. Records that "
-      "got lost\non the line are missed; those that this program had no room for are refused. A "
-      "glove whose\nrecords do not let its losses be counted is shown with its rate, where that is "
-      "too low. Values\nout of range count as the nearer end of it.");
+      "In a bar, # shows the count, and [ ] the min and max so far.\n"
+      "A ~ before degrees: the glove is uncalibrated, and they are those of an average hand.\n"
+      "An e before degrees: the sensor is stuck, and its angle is estimated from its "
+      "neighbours.\n"
+      "Keys: q quit, r reset the ranges, l light on and off.\n"
+      "It ends with Ctrl-C, with --count, and when a recording (replay:FILE) ends. \"missed\" "
+      "records were\nlost on the line; \"refused\" ones did not fit into this program's buffer. If "
+      "the losses of a glove\ncannot be counted, its rate is shown if it is too low. Values out of "
+      "range are clamped.");
   command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
-  command.add_flag("--json", options->json, "One JSON object a line, also in a terminal");
+  command.add_flag("--json", options->json, "One JSON object per line, also in a terminal");
   command.add_flag("--raw", options->raw, "Raw counts only, no angles");
   gloves::add_calibration_options(command, options->calibration, false);
-  command.add_option("--count", options->count, "End after so many samples");
+  command.add_option("--count", options->count, "End after this number of samples");
   command.on_chosen([options] { return monitor(*options); });
 }
 

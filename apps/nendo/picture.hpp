@@ -1,5 +1,5 @@
 #pragma once
-// A PNG of a model, or of moments of a recording or a timeline, without a screen.
+// Draws a PNG of a model, or of times of a recording or a timeline, without a screen.
 
 #include <cstdint>
 #include <string>
@@ -21,7 +21,7 @@ struct PictureOptions {
   std::string size = "960x720";
   std::uint32_t turntable = 0;
   std::uint32_t strip = 0;
-  std::string times;          ///< with commas; empty: the first moment
+  std::string times;          ///< with commas; empty: the first one
   bool by_glove_time = false; ///< `times` count from the gloves' first samples
   std::uint32_t key_poses = 0;
   std::string captions;      ///< with commas; empty: none

@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
+
+#include <spdlog/fmt/fmt.h>
 
 #include <nendo/base/text.hpp>
 
@@ -17,6 +18,7 @@
 #include "cli/output_place.hpp"
 #include "cli/quantities.hpp"
 #include "nendo/commands.hpp"
+#include "nendo/model_output.hpp"
 #include "render/distance_paint.hpp"
 #include "render/picture.hpp"
 #include "takes/key_poses.hpp"
@@ -40,7 +42,7 @@ Error bad(const std::string& option, const std::string& what) {
   return {Errc::usage, option + ": " + what};
 }
 
-/// The parts between commas; none, if the text is empty.
+/// Returns the parts between commas; none if the text is empty.
 std::vector<std::string> parts_of(const std::string& text) {
   std::vector<std::string> parts;
   for (std::string_view rest = text; !rest.empty();)
@@ -80,13 +82,13 @@ Result<Wanted> check(const Options& options) {
   if (!counted) return counted.error();
   const std::uint32_t panels = *counted;
   if (!options.captions.empty() && parts_of(options.captions).size() != panels)
-    return bad("--captions", "use as many texts as there are pictures, with commas between them");
+    return bad("--captions", "use one text per picture, separated by commas");
   if (options.columns > panels)
     return bad("--columns " + std::to_string(options.columns),
                "use at most as many as there are pictures");
   if (options.numbered && panels == 1)
     return bad("--numbered",
-               "is for several pictures: --turntable, --strip, --key-poses or several times");
+               "needs several pictures: --turntable, --strip, --key-poses or several times");
   const double pixels = 1.0 * size->width * size->height * panels;
   if (!options.numbered && pixels > 6e7)
     return bad("--pixels " + options.size, "too large for " + std::to_string(panels) +
@@ -99,9 +101,7 @@ Result<Wanted> check(const Options& options) {
 }
 
 std::string seconds_text(double time_s) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f s", time_s);
-  return text;
+  return fmt::format("{:.2f} s", time_s);
 }
 
 Result<std::vector<double>> key_poses_of(const Options& options, const takes::Take& take) {
@@ -110,7 +110,7 @@ Result<std::vector<double>> key_poses_of(const Options& options, const takes::Ta
   auto times = takes::key_poses(**frames, options.key_poses);
   if (times.size() < options.key_poses)
     return bad("--key-poses " + std::to_string(options.key_poses),
-               "only " + std::to_string(times.size()) + " moments of " + options.file + " differ");
+               "only " + std::to_string(times.size()) + " poses of " + options.file + " differ");
   return times;
 }
 
@@ -123,7 +123,7 @@ Result<std::vector<double>> named_times_of(const Options& options, const takes::
     if (!(times.back() >= 0.0 && times.back() <= take.duration_s))
       return bad(
           "--time " + text,
-          "use a moment of " + options.file + ", which lasts from " +
+          "use a time of " + options.file + ", which lasts from " +
               seconds_text(options.by_glove_time ? -take.first_sample_s : 0.0) + " to " +
               seconds_text(take.duration_s - (options.by_glove_time ? take.first_sample_s : 0.0)));
   }
@@ -134,7 +134,8 @@ Result<std::vector<double>> named_times_of(const Options& options, const takes::
 Result<std::vector<double>> times_of(const Options& options, const takes::Take& take) {
   const bool has_times = !options.times.empty() || options.strip > 0 || options.key_poses > 0;
   if (has_times && !(take.duration_s > 0.0))
-    return bad(options.file, "a mesh has no times; leave --time, --strip and --key-poses out");
+    return bad(options.file,
+               "is a mesh, which has no times; leave out --time, --strip and --key-poses");
   if (options.key_poses > 0) return key_poses_of(options, take);
   if (!options.times.empty()) return named_times_of(options, take);
   if (options.strip == 0) return std::vector<double>{0.0};
@@ -191,22 +192,28 @@ std::vector<Panel> draw_turntable(const std::vector<Scene>& scenes, std::uint32_
   return panels;
 }
 
-Result<void> write_panels(const Options& options, const std::vector<Panel>& panels) {
-  if (panels.size() == 1) return write_png(options.out, panels.front().image);
-  if (!options.numbered)
-    return write_png(options.out, contact_sheet(panels, static_cast<int>(options.columns)));
-  const std::filesystem::path out(options.out);
-  for (std::size_t at = 0; at < panels.size(); ++at) {
-    char number[32];
-    std::snprintf(number, sizeof number, "-%02zu.png", at);
-    auto name = out.parent_path() / out.stem();
-    name += number;
-    if (auto done = write_png(name, panels[at].image); !done) return done;
+/// Writes one picture, one sheet or several numbered files, and returns their names.
+Result<std::vector<std::string>> write_panels(const Options& options,
+                                              const std::vector<Panel>& panels) {
+  std::vector<std::string> files{options.out};
+  if (panels.size() > 1 && options.numbered) {
+    const std::filesystem::path out(options.out);
+    const std::string stem = (out.parent_path() / out.stem()).string();
+    files.clear();
+    for (std::size_t at = 0; at < panels.size(); ++at)
+      files.push_back(fmt::format("{}-{:02}.png", stem, at));
   }
-  return {};
+  for (std::size_t at = 0; at < files.size(); ++at) {
+    const auto done =
+        write_png(files[at], files.size() == panels.size()
+                                 ? panels[at].image
+                                 : contact_sheet(panels, static_cast<int>(options.columns)));
+    if (!done) return done.error();
+  }
+  return files;
 }
 
-/// Paints the model of each scene by how far its places went, with one scale for all of them.
+/// Paints the model of each scene by the displacements of its vertices, on one scale.
 void colour_by_distance(const takes::Take& take, const std::vector<SceneFrame>& frames,
                         std::vector<Scene>& scenes) {
   const auto rest_of = [&](const SceneFrame& frame) -> const deform::Mesh& {
@@ -219,13 +226,12 @@ void colour_by_distance(const takes::Take& take, const std::vector<SceneFrame>& 
   for (std::size_t at = 0; at < frames.size(); ++at)
     scenes[at].model.paint = paint_by_distance(rest_of(frames[at]), frames[at].vertices, scale);
   const double part = farthest / std::max(deform::diagonal_of(take.rest.vertices), 1e-300);
-  char text[96];
-  std::snprintf(text, sizeof text, "dark red went %.4g, which is %.1f %% of the model's diagonal",
-                farthest, 100.0 * part);
-  cli::note(text);
+  cli::note(fmt::format("dark red: displaced by {:.4g}, which is {:.1f} % of the model's diagonal",
+                        farthest, 100.0 * part));
 }
 
-Result<void> draw_take(const Options& options, const Wanted& wanted, const takes::Take& take) {
+Result<std::vector<std::string>> draw_take(const Options& options, const Wanted& wanted,
+                                           const takes::Take& take) {
   const auto times = times_of(options, take);
   if (!times) return times.error();
   const SceneBuilder builder(take.rest, take.units_per_metre);
@@ -245,7 +251,8 @@ Result<void> draw_take(const Options& options, const Wanted& wanted, const takes
   }
   if (options.colour == "distance") {
     if (!(take.duration_s > 0.0))
-      return bad("--colour distance", "is for a recording or a timeline; a mesh went nowhere");
+      return bad("--colour distance",
+                 "needs a recording or a timeline; a mesh has no displacements");
     colour_by_distance(take, frames, scenes);
   }
   return write_panels(options,
@@ -259,7 +266,11 @@ Result<void> make_picture(const Options& options) {
   if (!wanted) return wanted.error();
   const auto take = takes::read_take(options.file, takes::reading(options.up), options.mesh);
   if (!take) return take.error();
-  return draw_take(options, *wanted, *take);
+  const auto files = draw_take(options, *wanted, *take);
+  if (!files) return files.error();
+  for (const std::string& file : *files)
+    report_written(file);
+  return {};
 }
 
 } // namespace
@@ -267,7 +278,9 @@ Result<void> make_picture(const Options& options) {
 Result<void> draw_picture(const PictureOptions& options, const takes::Take& take) {
   const auto wanted = check(options);
   if (!wanted) return wanted.error();
-  return draw_take(options, *wanted, take);
+  const auto files = draw_take(options, *wanted, take);
+  if (!files) return files.error();
+  return {};
 }
 
 void add(cli::Command& program) {
@@ -276,40 +289,38 @@ void add(cli::Command& program) {
       program.add_command("picture", "Draws a model or a recording as a PNG, without a screen");
   command
       .add_option("FILE", options->file,
-                  "OBJ, PLY, STL or glTF file, or what `nendo run --record` recorded")
+                  "OBJ, PLY, STL or glTF file, or a recording of `nendo run --record`")
       .required();
   command.add_option("--out", options->out, "Where to write the picture, .png").required();
   takes::add_up_option(command, options->up);
-  command.add_option("--mesh", options->mesh,
-                     "Of a recording: the model, if it is no longer where it was");
+  command.add_option("--mesh", options->mesh, "Recordings: the model, if it has been moved");
   command.add_option("--camera", options->view,
                      "front, back, left, right, side, top, or AZIMUTH,ELEVATION in degrees");
   command.add_option("--pixels", options->size, "WIDTHxHEIGHT in pixels, of each picture");
-  command.add_option("--turntable", options->turntable, "So many pictures all round, on one sheet");
+  command.add_option("--turntable", options->turntable,
+                     "Number of pictures from all sides, on one sheet");
   command.add_option("--time", options->times,
-                     "Of a recording: the moment, or moments T,T,..., in seconds, on one sheet");
+                     "Recordings: the time, or times T,T,..., in seconds, on one sheet");
   command.add_flag("--glove-time", options->by_glove_time,
-                   "--time counts from the first sample of the gloves, where their motion began, "
+                   "--time counts from the first sample of the gloves, when their motion began, "
                    "and not from the beginning of the recording");
   command.add_option("--key-poses", options->key_poses,
-                     "Of a recording: so many moments that differ the most, on one sheet");
+                     "Recordings: number of poses that differ the most, on one sheet");
   command.add_option("--captions", options->captions,
-                     "Texts below the pictures, with commas between them");
+                     "Captions of the pictures, separated by commas");
   command.add_option("--strip", options->strip,
-                     "Of a recording: so many moments from its begin to its end, on one sheet");
-  command.add_option("--columns", options->columns, "Pictures in a row of the sheet");
-  command.add_option("--colour", options->colour,
-                     "model: as it is; distance: of a recording, how far each place went from "
-                     "rest, from grey to dark red");
+                     "Recordings: number of pictures from beginning to end, on one sheet");
+  command.add_option("--columns", options->columns, "Pictures per row of the sheet");
+  command.add_option(
+      "--colour", options->colour,
+      "model: the model's colours; distance: recordings: the displacement from rest, "
+      "from grey to dark red");
   command.add_flag("--numbered", options->numbered,
-                   "In place of a sheet: files of their own, FILE-00.png and so on");
+                   "Write one file per picture in place of a sheet: FILE-00.png and so on");
   command.add_flag("--contact", options->parts.contacts,
-                   "Of a recording: draws where hands touch clay, and how hard");
-  command.add_flag("--no-hands", options->no_hands, "Of a recording: leaves the hands out");
-  command.on_chosen([options] {
-    const auto done = make_picture(*options);
-    return done ? 0 : cli::report(done.error());
-  });
+                   "Recordings: show where hands touch clay, and how hard");
+  command.add_flag("--no-hands", options->no_hands, "Recordings: do not draw the hands");
+  command.on_chosen([options] { return make_picture(*options); });
 }
 
 } // namespace nendo::app::picture_command

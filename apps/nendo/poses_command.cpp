@@ -1,4 +1,4 @@
-// nendo poses: the poses of one or two gloves' hands, as JSON lines or as a BVH file.
+// nendo poses: writes the poses of one or two hands as JSON lines or BVH files.
 
 #include <algorithm>
 #include <chrono>
@@ -50,10 +50,12 @@ Result<void> check(const Options& options) {
   const double rate_hz = options.rate_hz;
   if (rate_hz != 0.0 &&
       !(rate_hz >= flow::TickGrid::min_rate_hz && rate_hz <= flow::TickGrid::max_rate_hz)) {
-    return Error{Errc::usage, "--rate: use 1 to 10000 poses a second, or leave it out"};
+    return Error{Errc::usage, "--rate: use 1 to 10000 poses per second, or leave it out"};
   }
   if (auto fine = cli::check_duration(options.duration_s); !fine) return fine.error();
-  if (options.gloves.size() > 2) return Error{Errc::usage, "GLOVE: give one or two gloves"};
+  if (options.gloves.size() > 2)
+    return Error{Errc::usage,
+                 "GLOVE: takes 1 or 2 gloves, got " + std::to_string(options.gloves.size())};
   if (auto fine = options.length.check(); !fine) return fine;
   return gloves::check(options.calibration);
 }
@@ -78,11 +80,11 @@ public:
   bool advance() {
     const bool ended = hand_.glove->has_ended(); // then all that it sent is in the ring
     const HostTime now = HostClock::now();       // what came before it is in the ring
-    bool goes_on = is_first_taken_ || take(hand_.first);
+    bool continues = is_first_taken_ || take(hand_.first);
     is_first_taken_ = true;
-    for (GloveSample sample; goes_on && hand_.ring->try_pop(sample);)
-      goes_on = take(sample);
-    return goes_on && pass_time(now) && !ended;
+    for (GloveSample sample; continues && hand_.ring->try_pop(sample);)
+      continues = take(sample);
+    return continues && pass_time(now) && !ended;
   }
   const Result<void>& state() const noexcept { return state_; }
   gloves::PoseOutput& output() const noexcept { return output_; }
@@ -96,9 +98,9 @@ private:
         passed, [this](HostTime time, const GloveSample& newest) { return put(time, newest); });
   }
   bool pass_time(HostTime now) {
-    const bool goes_on = grid_.pass_time(
+    const bool continues = grid_.pass_time(
         now, [this](HostTime time, const GloveSample& newest) { return put(time, newest); });
-    return goes_on && !is_over(now);
+    return continues && !is_over(now);
   }
   bool is_over(HostTime time) const {
     return options_.duration_s > 0.0 && time - start_ >= from_seconds(options_.duration_s);
@@ -133,12 +135,12 @@ private:
 };
 
 Result<void> stream(std::span<PoseStream> streams) {
-  std::vector<bool> goes_on(streams.size(), true);
-  const auto any = [&] { return std::find(goes_on.begin(), goes_on.end(), true) != goes_on.end(); };
+  std::vector<bool> active(streams.size(), true);
+  const auto any = [&] { return std::find(active.begin(), active.end(), true) != active.end(); };
   while (any() && !cli::stop_requested()) {
     for (std::size_t at = 0; at < streams.size(); ++at) {
-      if (!goes_on[at]) continue;
-      goes_on[at] = streams[at].advance();
+      if (!active[at]) continue;
+      active[at] = streams[at].advance();
       if (!streams[at].state()) return streams[at].state();
       if (auto flushed = streams[at].output().flush(); !flushed) return flushed;
     }
@@ -180,20 +182,20 @@ void note_losses(const gloves::OpenHand& hand) {
   const auto counts = driver::counts_of(hand.glove->stats());
   if (counts.refused > 0)
     cli::note(std::to_string(counts.refused) +
-              " samples were refused: the poses were not taken fast enough");
+              " samples were refused, because the poses were not read fast enough");
   if (counts.missed > 0) cli::note(hand.glove->info().source + ": " + driver::in_words(counts));
 }
 
-int poses(const Options& options) {
-  if (const auto fine = check(options); !fine) return cli::report(fine.error());
+Result<void> poses(const Options& options) {
+  if (auto fine = check(options); !fine) return fine;
   auto hands = open_gloves(options);
-  if (!hands) return cli::report(hands.error());
+  if (!hands) return hands.error();
   cli::install_stop_signals();
-  if (const auto started = gloves::start(*hands); !started) return cli::report(started.error());
-  if (const auto done = gloves::calibrate(*hands, options.calibration, options.length); !done)
-    return cli::report(done.error());
+  if (auto started = gloves::start(*hands); !started) return started;
+  if (auto done = gloves::calibrate(*hands, options.calibration, options.length); !done)
+    return done;
   const auto outputs = open_outputs(options, *hands); // a BVH file begins with the wearer's bones
-  if (!outputs) return cli::report(outputs.error());
+  if (!outputs) return outputs.error();
 
   std::uint64_t written = 0;
   std::vector<PoseStream> streams;
@@ -205,10 +207,10 @@ int poses(const Options& options) {
     hand.glove->stop();
     note_losses(hand);
   }
-  if (!streamed) return cli::report(streamed.error());
+  if (!streamed) return streamed.error();
   for (const auto& output : *outputs)
-    if (const auto finished = output->finish(); !finished) return cli::report(finished.error());
-  return 0;
+    if (const auto finished = output->finish(); !finished) return finished.error();
+  return {};
 }
 
 } // namespace
@@ -218,23 +220,24 @@ void add(cli::Command& program) {
   cli::Command command = program.add_command(
       "poses", "Writes hands' poses: OpenXR's 26 joints as JSON lines, or a BVH file");
   command.set_footer(
-      "A glove measures no position: the forearm ends at the origin, -Z goes to the fingertips, "
+      "A glove measures no position: the forearm ends at the origin, -Z points to the fingertips, "
       "+Y\nout of the back of the hand. JSON is in metres, with quaternions x, y, z, w; BVH in "
-      "centimetres\nand degrees, FILE.part until it is complete. time_s is when the sample came, "
-      "with --rate "
-      "when\nthe pose was due.");
+      "centimetres\nand degrees, and named FILE.part until it is complete. time_s is the time of "
+      "the "
+      "sample or,\nwith --rate, of the pose.");
   command.add_option("GLOVE", options->gloves, "One or two: serial:/dev/ttyUSB0, sim, auto, ...")
       .required();
   command.add_option("--bvh", options->bvh,
-                     "Write this file instead of JSON lines; of two gloves, FILE-left.bvh and "
+                     "Write this file instead of JSON lines; with two gloves, FILE-left.bvh and "
                      "FILE-right.bvh");
   command.add_rate("--rate", options->rate_hz,
-                   "Poses a second, 1 to 10000, each of the newest sample; without it, one a "
-                   "sample, in a BVH file 90 a second");
+                   "Poses per second, 1 to 10000, each of the newest sample; without it, one per "
+                   "sample, and 90 per second in a BVH file");
   command.add_duration("--duration", options->duration_s,
                        "How long, e.g. 30s or 10m; 0: until Ctrl-C, or until a "
                        "recording (replay:FILE) ends");
-  command.add_option("--count", options->count, "End after so many poses, of both gloves together");
+  command.add_option("--count", options->count,
+                     "End after this number of poses, both gloves together");
   gloves::add_hand_length(command, options->length);
   gloves::add_calibration_options(command, options->calibration, true);
   command.on_chosen([options] { return poses(*options); });

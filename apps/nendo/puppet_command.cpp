@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
@@ -20,6 +19,7 @@
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
+#include "nendo/model_output.hpp"
 #include "nendo/puppet_file.hpp"
 #include "render/picture.hpp"
 #include "takes/model_files.hpp"
@@ -69,7 +69,7 @@ std::string vector_text(const Eigen::Vector3d& vector) {
   return fmt::format("{:9.4g} {:9.4g} {:9.4g}", vector.x(), vector.y(), vector.z());
 }
 
-/// In the file's coordinates. Far from zero the first digits say nothing.
+/// Returns the position in the file's coordinates, which need more digits far from zero.
 std::string place_text(const Eigen::Vector3d& place, const Eigen::Vector3d& offset) {
   if (offset.isZero(0.0)) return vector_text(place);
   const Eigen::Vector3d in_file = place + offset;
@@ -99,7 +99,7 @@ void print_function(const OpenRig& open, std::size_t at) {
   }
 }
 
-/// As --radius takes them.
+/// Returns the radii as --radius takes them.
 std::string radii_text(const puppet::PuppetPoint& point) {
   std::string text;
   for (const deform::Support& support : point.supports()) {
@@ -154,7 +154,7 @@ void print_clutches(const OpenRig& open) {
   for (const Side side : {Side::left, Side::right}) {
     const std::string words = gesture_text(clutch, clutch.means[static_cast<std::size_t>(side)]);
     if (!words.empty())
-      fmt::print("the {} hand lets go, and takes hold again, by {}\n",
+      fmt::print("the {} hand releases and grabs again by {}\n",
                  side == Side::left ? "left" : "right", words);
   }
 }
@@ -184,8 +184,8 @@ Sheet sheet_of(OpenRig& open) {
   return sheet;
 }
 
-/// Those that a function moves by more than what rounding does. The camera frames these: of a bust,
-/// the face.
+/// Returns the vertices that functions move by more than rounding errors. The camera frames only
+/// these, for example the face of a bust.
 std::vector<Eigen::Index> moving_vertices(const std::vector<Points>& shapes) {
   const Points& rest = shapes.front();
   const double least = 1e-3 * deform::diagonal_of(rest);
@@ -241,7 +241,10 @@ Result<void> show(const Options& options) {
   print_points(*open);
   print_clutches(*open);
   if (options.picture.empty()) return {};
-  return draw_sheet(sheet_of(*open), open->model, options, *view, *size);
+  if (auto drawn = draw_sheet(sheet_of(*open), open->model, options, *view, *size); !drawn)
+    return drawn;
+  report_written(options.picture);
+  return {};
 }
 
 std::string limit_text(const OpenRig& open, const puppet::AtLimit& limit) {
@@ -252,7 +255,7 @@ std::string turned_text(const puppet::LimitCheck& limit) {
   const double part = limit.moved == 0 ? 0.0
                                        : 100.0 * static_cast<double>(limit.turned) /
                                              static_cast<double>(limit.moved);
-  return fmt::format("{} of {} that move turn over ({:.2g} %)", limit.turned,
+  return fmt::format("{} of {} that move are reversed ({:.2g} %)", limit.turned,
                      count_text(limit.moved, "triangle"), part);
 }
 
@@ -268,9 +271,9 @@ void print_turned(const OpenRig& open, const puppet::RigCheck& check) {
     ++pairs;
     if (worst == nullptr || pair.turned > worst->turned) worst = &pair;
   }
-  fmt::print("{} of {} turn triangles over", pairs, count_text(check.pairs.size(), "pair"));
+  fmt::print("{} of {} reverse triangles", pairs, count_text(check.pairs.size(), "pair"));
   if (worst != nullptr)
-    fmt::print("; most of all {} with {}: {}", limit_text(open, worst->one),
+    fmt::print("; the worst is {} with {}: {}", limit_text(open, worst->one),
                limit_text(open, *worst->other), turned_text(*worst));
   fmt::print("\n");
 }
@@ -308,7 +311,7 @@ Result<void> check(const Options& options) {
   for (const puppet::LimitCheck& limit : check.alone)
     if (puppet::RigCheck::folds(limit))
       return Error{Errc::failed,
-                   fmt::format("{}: {}: {}; move its points less far, or make their radii larger",
+                   fmt::format("{}: {}: {}; move its points less, or make their radii larger",
                                open->file.path, limit_text(*open, limit.one), turned_text(limit))};
   return {};
 }
@@ -328,16 +331,16 @@ Result<void> make(const Options& options) {
     fmt::print("{}\n", line);
   if (options.up == "z")
     cli::note(options.out + ": play it with --up z, because z is up in its model");
-  if (model->mesh.offset.isZero(0.0)) return replace_file(options.out, made->text);
-  auto puppet = puppet::parse_puppet(made->text, options.out);
-  if (!puppet) return puppet.error();
-  puppet::count_from(-model->mesh.offset, *puppet);
-  return replace_file(options.out, puppet->text);
-}
-
-int done(const Result<void>& result) {
-  std::cout.flush();
-  return result ? 0 : cli::report(result.error());
+  std::string text = made->text;
+  if (!model->mesh.offset.isZero(0.0)) {
+    auto puppet = puppet::parse_puppet(text, options.out);
+    if (!puppet) return puppet.error();
+    puppet::count_from(-model->mesh.offset, *puppet);
+    text = puppet->text;
+  }
+  if (auto written = replace_file(options.out, text); !written) return written;
+  report_written(options.out);
+  return {};
 }
 
 } // namespace
@@ -353,21 +356,21 @@ void add(cli::Command& program) {
   showing.add_option("FILE", options->file, "Puppet file, or the name of a shipped one").required();
   takes::add_up_option(showing, options->up);
   showing.add_option("--picture", options->picture,
-                     "Where to draw the model at rest and each function at its most, .png");
+                     "Where to draw the model at rest and each function at its limits, .png");
   showing.add_option("--camera", options->view,
                      "front, back, left, right, side, top, or AZIMUTH,ELEVATION in degrees");
   showing.add_option("--pixels", options->size, "WIDTHxHEIGHT in pixels, of each picture");
-  showing.on_chosen([options] { return done(show(*options)); });
+  showing.on_chosen([options] { return show(*options); });
 
   cli::Command checking = command.add_command(
-      "check", "Whether triangles turn over at the functions' limits, and the sides are alike");
+      "check", "Checks for reversed triangles at the functions' limits, and for symmetry");
   checking.add_option("FILE", options->file, "Puppet file, or the name of a shipped one")
       .required();
   takes::add_up_option(checking, options->up);
-  checking.on_chosen([options] { return done(check(*options)); });
+  checking.on_chosen([options] { return check(*options); });
 
   cli::Command making =
-      command.add_command("make", "Writes a puppet for a face, by the shape of the model alone");
+      command.add_command("make", "Makes a puppet for a face from the shape of the model");
   making.set_footer("The face must look along +z, with y up (--up z lays a model with z up), and "
                     "be symmetric about x = 0.");
   making.add_option("MODEL", options->file, "OBJ, PLY, STL or glTF file").required();
@@ -375,7 +378,7 @@ void add(cli::Command& program) {
   making.add_option("--out", options->out, "Where to write the puppet, .toml, beside the model")
       .required();
   making.add_flag("--force", options->force, cli::force_summary);
-  making.on_chosen([options] { return done(make(*options)); });
+  making.on_chosen([options] { return make(*options); });
 }
 
 } // namespace nendo::app::puppet_command

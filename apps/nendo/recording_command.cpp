@@ -1,4 +1,4 @@
-// nendo recording: looks after recordings.
+// nendo recording: shows, checks, repairs and cuts recordings.
 
 #include <iostream>
 #include <memory>
@@ -25,51 +25,49 @@ struct Options {
   bool json = false;
 };
 
-int info(const Options& options) {
+Result<void> info(const Options& options) {
   const auto summary = recording::summarise(options.file);
-  if (!summary) return cli::report(summary.error());
+  if (!summary) return summary.error();
   if (options.json) {
     takes::print_take_json(options.file, *summary);
   } else {
     takes::print_take(options.file, *summary);
   }
-  return 0;
+  return {};
 }
 
-int joints(const Options& options) {
+Result<void> joints(const Options& options) {
   const auto studies = takes::study_joints(std::filesystem::path(options.file));
-  if (!studies) return cli::report(studies.error());
+  if (!studies) return studies.error();
   if (options.json) {
     takes::print_joints_json(options.file, *studies);
   } else {
     takes::print_joints(options.file, *studies);
   }
-  return 0;
+  return {};
 }
 
 /// Returns where the damage is, without a full stop.
 std::string extent_of(const recording::TakeSummary& summary) {
-  if (summary.damage_count == 0) return "each chunk is whole, but not what stands in them";
+  if (summary.damage_count == 0) return "each chunk is intact, but its contents are not valid";
   if (summary.good_end < summary.bytes)
-    return "nothing is whole behind byte " + std::to_string(summary.good_end) + " of " +
-           std::to_string(summary.bytes);
-  return "what follows the damage is whole to the end, which is byte " +
-         std::to_string(summary.bytes);
+    return fmt::format("nothing is intact after byte {} of {}", summary.good_end, summary.bytes);
+  return fmt::format("everything after the damage is intact, to the end at byte {}", summary.bytes);
 }
 
-int check(const Options& options) {
+Result<void> check(const Options& options) {
   const auto summary = recording::summarise(options.file);
-  if (!summary) return cli::report(summary.error());
+  if (!summary) return summary.error();
   if (summary->is_whole()) {
-    std::cout << fmt::format("{}: whole, {} bytes, {} ticks{}\n", options.file, summary->bytes,
-                             summary->ticks,
-                             summary->ending ? "" : "; it has no end, so the recorder was cut off");
-    return 0;
+    std::cout << fmt::format(
+        "{}: intact, {} bytes, {} ticks{}\n", options.file, summary->bytes, summary->ticks,
+        summary->ending ? "" : "; it has no end, because the recorder was cut off");
+    return {};
   }
   takes::print_damages(*summary);
-  return cli::report({Errc::failed, options.file + ": is damaged; " + extent_of(*summary) +
-                                        ", and `nendo recording repair` makes a new file of what "
-                                        "is whole"});
+  return Error{Errc::failed, options.file + ": is damaged; " + extent_of(*summary) +
+                                 ", and `nendo recording repair` makes a new file of the "
+                                 "intact chunks"};
 }
 
 void print_made(const Options& options, std::uint64_t count, const char* what,
@@ -77,92 +75,83 @@ void print_made(const Options& options, std::uint64_t count, const char* what,
   std::cout << fmt::format("{}: {} {}, {} bytes\n", options.out, count, what, bytes);
 }
 
-int repair(const Options& options) {
-  if (const auto fine = cli::check_place("--out", options.out); !fine)
-    return cli::report(fine.error());
+Result<void> repair(const Options& options) {
+  if (auto fine = cli::check_place("--out", options.out); !fine) return fine;
   const auto made = recording::repair_take(options.file, options.out);
-  if (!made) return cli::report(made.error());
-  print_made(options, made->chunks, "whole chunks", made->bytes);
-  if (made->damages == 0) cli::note(options.file + ": was whole already; the new file is a copy");
+  if (!made) return made.error();
+  print_made(options, made->chunks, "intact chunks", made->bytes);
+  if (made->damages == 0) cli::note(options.file + ": was intact; the new file is a copy");
   if (made->damages > 0)
-    cli::note("damaged places that are gaps now: " + std::to_string(made->damages) +
-              "; a replay from there on need not be the same");
-  return 0;
+    cli::note(fmt::format("{} damaged places became gaps; a replay may differ after the first of "
+                          "them",
+                          made->damages));
+  return {};
 }
 
-int cut(const Options& options) {
+Result<void> cut(const Options& options) {
   constexpr double max_s = 1e7;
   const double to_s = options.to_s.value_or(max_s);
   if (!(options.from_s >= 0.0 && options.from_s < to_s && to_s <= max_s))
-    return cli::report(
-        {Errc::usage, "--from, --to: use seconds from the beginning, --from before --to"});
-  if (const auto fine = cli::check_place("--out", options.out); !fine)
-    return cli::report(fine.error());
+    return Error{Errc::usage, "--from, --to: use seconds from the beginning, --from before --to"};
+  if (auto fine = cli::check_place("--out", options.out); !fine) return fine;
   const auto made = recording::cut_take(options.file, options.out, from_seconds(options.from_s),
                                         from_seconds(to_s));
-  if (!made) return cli::report(made.error());
+  if (!made) return made.error();
   print_made(options, made->entries, "entries", made->bytes);
-  return 0;
+  return {};
 }
 
-int shapes(const Options& options) {
+Result<void> shapes(const Options& options) {
   constexpr double max_hz = 10'000.0;
   if (!(options.rate_hz > 0.0 && options.rate_hz <= max_hz))
-    return cli::report({Errc::usage, "--rate: use more than 0 and at most 10000 shapes a second"});
-  if (const auto fine = cli::check_place("--out", options.out); !fine)
-    return cli::report(fine.error());
+    return Error{Errc::usage, "--rate: use more than 0 and at most 10000 shapes per second"};
+  if (auto fine = cli::check_place("--out", options.out); !fine) return fine;
   const auto reader = recording::TakeReader::open(options.file);
-  if (!reader) return cli::report(reader.error());
+  if (!reader) return reader.error();
   const auto model = takes::recorded_model(options.file, reader->setup(), options.mesh);
-  if (!model) return cli::report(model.error());
+  if (!model) return model.error();
   const auto made = recording::add_shapes(options.file, options.out, model->mesh, options.rate_hz);
-  if (!made) return cli::report(made.error());
+  if (!made) return made.error();
   print_made(options, made->shapes, "shapes", made->bytes);
-  return 0;
+  return {};
 }
 
 } // namespace
 
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
-  cli::Command command = program.add_command("recording", "Looks after recordings");
+  cli::Command command =
+      program.add_command("recording", "Shows, checks, repairs and cuts recordings");
   command.require_command();
+  const auto add = [&](const char* name, const char* summary, const char* file,
+                       Result<void> (*run)(const Options&)) {
+    cli::Command added = command.add_command(name, summary);
+    added.add_option("FILE", options->file, file).required();
+    added.on_chosen([options, run] { return run(*options); });
+    return added;
+  };
+  const char* const kept = "A recording, which is not changed";
+  add("info", "Shows wearer, times, duration, rates, losses and gaps", "A recording", info)
+      .add_flag("--json", options->json, "One JSON object");
+  add("joints", "Shows each joint's range, noise and coupled joints, compared with anatomy",
+      "A recording", joints)
+      .add_flag("--json", options->json, "One JSON object");
+  add("check", "Verifies all checksums and numbers; exit code 1 on damage", "A recording", check);
+  add("repair", "Makes a new file of the intact chunks",
+      "A damaged recording, which is not changed", repair)
+      .add_option("--out", options->out, "The new file")
+      .required();
 
-  cli::Command telling = command.add_command("info", "Who, when, how long, rates, losses, gaps");
-  telling.add_option("FILE", options->file, "A recording").required();
-  telling.add_flag("--json", options->json, "One JSON object");
-  telling.on_chosen([options] { return info(*options); });
-
-  cli::Command studying = command.add_command(
-      "joints", "How far each joint moved, how noisily, and with which others, beside anatomy");
-  studying.add_option("FILE", options->file, "A recording").required();
-  studying.add_flag("--json", options->json, "One JSON object");
-  studying.on_chosen([options] { return joints(*options); });
-
-  cli::Command checking =
-      command.add_command("check", "Verifies all checksums and numbers; exit code 1 on damage");
-  checking.add_option("FILE", options->file, "A recording").required();
-  checking.on_chosen([options] { return check(*options); });
-
-  cli::Command repairing = command.add_command("repair", "Makes a new file of what is whole");
-  repairing.add_option("FILE", options->file, "A damaged recording; it stays as it is").required();
-  repairing.add_option("--out", options->out, "The new file").required();
-  repairing.on_chosen([options] { return repair(*options); });
-
-  cli::Command cutting = command.add_command("cut", "Makes a new file of a part");
-  cutting.add_option("FILE", options->file, "A recording; it stays as it is").required();
+  cli::Command cutting = add("cut", "Makes a new file of a part", kept, cut);
   cutting.add_duration("--from", options->from_s, "Seconds from the beginning");
   cutting.add_duration("--to", options->to_s, "Seconds from the beginning; without it, the end");
   cutting.add_option("--out", options->out, "The new file").required();
-  cutting.on_chosen([options] { return cut(*options); });
 
-  cli::Command shaping = command.add_command(
-      "shapes", "Makes a new file with shapes in it, for programs that have no loop");
-  shaping.add_option("FILE", options->file, "A recording; it stays as it is").required();
-  shaping.add_rate("--rate", options->rate_hz, "Shapes a second, 12 bytes a vertex each");
-  shaping.add_option("--mesh", options->mesh, "The model, if it is no longer where it was");
+  cli::Command shaping = add(
+      "shapes", "Makes a new file that contains shapes, for programs without a loop", kept, shapes);
+  shaping.add_rate("--rate", options->rate_hz, "Shapes per second; each has 12 bytes per vertex");
+  shaping.add_option("--mesh", options->mesh, "The model, if it has been moved");
   shaping.add_option("--out", options->out, "The new file").required();
-  shaping.on_chosen([options] { return shapes(*options); });
 }
 
 } // namespace nendo::app::recording_command

@@ -1,4 +1,4 @@
-// nendo replay: a recorded run once more, at any speed or without a clock.
+// nendo replay: replays a recorded run, at any speed or as fast as possible.
 
 #include <algorithm>
 #include <iostream>
@@ -19,6 +19,7 @@
 #include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
+#include "nendo/model_output.hpp"
 #include "takes/model_files.hpp"
 #include "takes/recorded_model.hpp"
 
@@ -67,7 +68,7 @@ HostTime host_time(const recording::Setup& setup, double seconds) {
   return setup.begun_host + from_seconds(seconds);
 }
 
-/// Sleeps until this tick's turn has come, in small pieces, so that a signal ends it.
+/// Sleeps until a tick is due, in short intervals, so that a signal ends the wait.
 class Pace {
 public:
   Pace(const Options& options, HostTime first) : options_(options), first_(first) {}
@@ -88,7 +89,7 @@ private:
   std::optional<HostTime> begun_;
 };
 
-// Compares the loop's shape with that which is recorded behind the latest tick, if one is.
+// Compares the loop's shape with the one that was recorded after the latest tick, if any.
 void compare_shapes(recording::TakeReader& reader, flow::DeformLoop& loop, Replayed& done) {
   const auto recorded = reader.take_shape();
   if (!recorded) return;
@@ -149,21 +150,20 @@ void print(const Options& options, const Replayed& done) {
   }
   std::cout << fmt::format("replayed {} ticks in {:.2f} s; ", done.ticks, done.elapsed_s);
   if (done.same_shape) {
-    std::cout << (*done.same_shape ? "the shape is the live run's, bit for bit\n"
-                                   : "the shape is NOT the live run's\n");
+    std::cout << (*done.same_shape ? "the shape is that of the live run, bit for bit\n"
+                                   : "the shape is NOT that of the live run\n");
   } else {
-    std::cout << (done.exact
-                      ? "nothing is missing\n"
-                      : "something is missing in the recording, so the shape may be another\n");
+    std::cout << (done.exact ? "nothing is missing\n"
+                             : "something is missing in the recording, so the shape may differ\n");
   }
   if (done.shapes > 0)
     std::cout << fmt::format(
-        "{} recorded shapes; no vertex is farther than {:.3g} from where they have it\n",
-        done.shapes, done.farthest);
+        "{} recorded shapes were compared; the max distance of a vertex is {:.3g}\n", done.shapes,
+        done.farthest);
   std::cout << std::flush;
 }
 
-/// Tells that --from lies behind the end, where nothing could be replayed.
+/// Error: usage, if --from is after the end, where nothing could be replayed.
 Result<void> check_from(const Options& options) {
   if (options.from_s <= 0.0) return {};
   const auto summary = recording::summarise(options.file);
@@ -174,33 +174,39 @@ Result<void> check_from(const Options& options) {
                                         options.file, end_s)};
 }
 
-int replay(const Options& options) {
-  if (const auto fine = check(options); !fine) return cli::report(fine.error());
-  const auto reader = recording::TakeReader::open(options.file);
-  if (!reader) return cli::report(reader.error());
-  if (const auto fine = check_from(options); !fine) return cli::report(fine.error());
-  if (!reader->setup().loop)
-    return cli::report(
-        {Errc::bad_input, options.file + ": " + std::string(recording::without_loop)});
-  const auto model = takes::find_recorded_model(*reader->setup().loop, options.mesh);
-  if (!model) return cli::report(model.error());
-  const std::string simd(deform::simd_names().front());
-  if (reader->setup().loop->simd != simd) {
-    cli::note("recorded with the instructions " + printable(reader->setup().loop->simd) +
-              ", replayed with " + simd + ", which round another way");
-  }
-  cli::install_stop_signals();
+/// Replays until a signal comes, or once. The last shape is that of the last replay.
+Result<Replayed> replay_all(const Options& options, const takes::RecordedModel& model) {
   for (;;) {
-    auto done = replay_once(options, *model);
-    if (!done) return cli::report(done.error());
+    auto done = replay_once(options, model);
+    if (!done) return done;
     print(options, *done);
-    if (options.loops && !cli::stop_requested()) continue;
-    if (!options.out.empty()) {
-      if (const auto written = takes::write_model(options.out, done->shape, model->up()); !written)
-        return cli::report(written.error());
-    }
-    return done->same_shape.value_or(true) ? 0 : static_cast<int>(Errc::failed);
+    if (!options.loops || cli::stop_requested()) return done;
   }
+}
+
+Result<void> replay(const Options& options) {
+  if (auto fine = check(options); !fine) return fine;
+  const auto reader = recording::TakeReader::open(options.file);
+  if (!reader) return reader.error();
+  if (auto fine = check_from(options); !fine) return fine;
+  if (!reader->setup().loop)
+    return Error{Errc::bad_input, options.file + ": " + std::string(recording::without_loop)};
+  const auto model = takes::find_recorded_model(*reader->setup().loop, options.mesh);
+  if (!model) return model.error();
+  const std::string simd(deform::simd_names().front());
+  if (reader->setup().loop->simd != simd)
+    cli::note("recorded with the instructions " + printable(reader->setup().loop->simd) +
+              ", replayed with " + simd + ", which round differently");
+  cli::install_stop_signals();
+  const auto done = replay_all(options, *model);
+  if (!done) return done.error();
+  if (!options.out.empty()) {
+    if (auto written = takes::write_model(options.out, done->shape, model->up()); !written)
+      return written;
+    if (!options.json) report_model(options.out, done->shape);
+  }
+  if (done->same_shape.value_or(true)) return {};
+  return Error{Errc::failed, options.file + ": the shape is not the recorded one"};
 }
 
 } // namespace
@@ -209,14 +215,15 @@ void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command =
       program.add_command("replay", "Replays a recorded run: the same shape, bit for bit");
-  command.add_option("FILE", options->file, "What `nendo run --record` recorded").required();
-  command.add_option("--speed", options->speed, "0.01 to 100 times as fast");
-  command.add_flag("--no-clock", options->no_clock, "As fast as the machine can");
-  command.add_flag("--loop", options->loops, "Again and again, until Ctrl-C");
-  command.add_duration("--from", options->from_s,
-                       "Seconds from the beginning; what was before is made without a clock");
-  command.add_duration("--to", options->to_s, "Seconds from the beginning where it ends");
-  command.add_option("--mesh", options->mesh, "The model, if it is no longer where it was");
+  command.add_option("FILE", options->file, "A recording of `nendo run --record`").required();
+  command.add_option("--speed", options->speed, "Speed relative to real time, 0.01 to 100");
+  command.add_flag("--no-clock", options->no_clock, "As fast as possible");
+  command.add_flag("--loop", options->loops, "Repeat until Ctrl-C");
+  command.add_duration(
+      "--from", options->from_s,
+      "Seconds from the beginning; everything before is replayed as fast as possible");
+  command.add_duration("--to", options->to_s, "Seconds from the beginning at which it ends");
+  command.add_option("--mesh", options->mesh, "The model, if it has been moved");
   command.add_option("--out", options->out, "Where to write the shape, .obj, .ply or .stl");
   command.add_flag("--json", options->json, "A summary as JSON");
   command.on_chosen([options] { return replay(*options); });

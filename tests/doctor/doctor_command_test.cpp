@@ -158,14 +158,14 @@ TEST_SUITE("doctor") {
     const auto text = nendo::test::nendo({"doctor"});
     CHECK(text.exit_code == done.exit_code);
     // What was looked at is told, whatever was found.
-    const auto told = text.out.rfind("Looked at: ");
+    const auto told = text.out.rfind("Checked: ");
     REQUIRE(told != std::string::npos);
     for (const char* const subject :
          {"programs that take ports", "real-time priority", "governors", "timers", "udev rules"})
       CHECK(text.out.find(subject, told) != std::string::npos);
     for (const auto& candidate : nendo::driver::find_gloves())
       CHECK(text.out.find(candidate.device, told) != std::string::npos);
-    CHECK(done.out.find("Looked at") == std::string::npos);
+    CHECK(done.out.find("Checked: ") == std::string::npos);
   }
 }
 

@@ -140,8 +140,8 @@ TEST_SUITE("recording_command") {
     const std::string mended = run.path("mended.nendo");
     const auto repaired = test::nendo({"recording", "repair", bad, "--out", mended});
     CHECK(repaired.exit_code == 0);
-    CHECK(repaired.out.find("whole chunks") != std::string::npos);
-    CHECK(repaired.out.find(" 0 whole chunks") == std::string::npos);
+    CHECK(repaired.out.find("intact chunks") != std::string::npos);
+    CHECK(repaired.out.find(" 0 intact chunks") == std::string::npos);
     CHECK(is_one_line_about(repaired.err, "gap"));
     CHECK(test::nendo({"recording", "check", mended}).exit_code == 0);
     CHECK(checked.err.find("behind") == std::string::npos);
@@ -149,14 +149,14 @@ TEST_SUITE("recording_command") {
     test::write_file(bad, bytes.substr(0, bytes.size() - 1));
     const auto cut = test::nendo({"recording", "check", bad});
     CHECK(cut.exit_code == 1);
-    CHECK(cut.err.find("nothing is whole behind byte ") != std::string::npos);
+    CHECK(cut.err.find("nothing is intact after byte ") != std::string::npos);
     CHECK(cut.err.find(" of " + std::to_string(bytes.size() - 1)) != std::string::npos);
     test::write_file(bad, bytes);
     const auto copied =
         test::nendo({"recording", "repair", run.take, "--out", run.path("copy.nendo")});
     CHECK(copied.exit_code == 0);
-    CHECK(copied.out.find(" 0 whole chunks") == std::string::npos);
-    CHECK(is_one_line_about(copied.err, "whole already"));
+    CHECK(copied.out.find(" 0 intact chunks") == std::string::npos);
+    CHECK(is_one_line_about(copied.err, ": was intact"));
     CHECK(contents(run.path("copy.nendo")).size() == contents(run.take).size());
     CHECK(contents(bad) == bytes);
     const auto replayed = test::nendo({"replay", mended, "--no-clock", "--json"});
@@ -197,8 +197,8 @@ TEST_SUITE("recording_command") {
     const auto mended =
         test::nendo({"recording", "repair", take, "--out", (folder.path() / "m.nendo").string()});
     CHECK(mended.exit_code == 0);
-    CHECK(mended.out.find(" 0 whole chunks") == std::string::npos);
-    CHECK(is_one_line_about(mended.err, "whole already"));
+    CHECK(mended.out.find(" 0 intact chunks") == std::string::npos);
+    CHECK(is_one_line_about(mended.err, ": was intact"));
   }
 
   TEST_CASE("a recording cut off before its first chunk is no recording of 1970") {
