@@ -1,4 +1,4 @@
-// nendo calibrate: from a wearer's poses to a calibration that the other commands find.
+// nendo calibrate: makes a calibration from a wearer's poses.
 
 #include <algorithm>
 #include <array>
@@ -28,6 +28,7 @@
 #include "gloves/glove_calibration.hpp"
 #include "gloves/open_hand.hpp"
 #include "nendo/commands.hpp"
+#include "nendo/model_output.hpp"
 
 namespace nendo::app::calibrate_command {
 namespace {
@@ -53,7 +54,7 @@ struct Options {
 struct Wearer {
   hand::WearerCalibration about; ///< everything but the calibration itself, at first
   SensorMask sensors;
-  fs::path path;                                ///< of its file
+  fs::path path;                                ///< path of its file
   std::optional<hand::WearerCalibration> known; ///< what is touched up
 };
 
@@ -78,8 +79,7 @@ Result<SensorMask> sensors_of(const std::string& list) {
 
 Result<void> check(const Options& options) {
   if (options.quick && options.touch_up)
-    return Error{Errc::usage,
-                 "--quick makes a calibration, --touch-up mends one: give one of them"};
+    return Error{Errc::usage, "--quick and --touch-up cannot be combined; give one of them"};
   if (options.glove.empty() == options.from.empty())
     return Error{Errc::usage, "name a GLOVE, or a capture with --from FILE"};
   if (options.user.empty())
@@ -145,8 +145,9 @@ Result<void> begin_with_known(Wearer& wearer, const fs::path& stored) {
   auto known = hand::read_calibration(stored);
   if (!known) return known.error();
   if (known->counts != wearer.about.counts)
-    return Error{Errc::bad_input, printable(stored.string()) +
-                                      ": is of another kind of glove; calibrate this one anew"};
+    return Error{Errc::bad_input,
+                 printable(stored.string()) +
+                     ": is of another kind of glove; calibrate without --touch-up"};
   const auto made = wearer.about.made;
   wearer.known = *known;
   known->made = made;
@@ -196,9 +197,8 @@ void note_left_out(const std::string& source, SensorMask left_out) {
   if (left_out.bits == 0) return;
   const bool one = sculpting::is_one(left_out);
   cli::note(printable(source) + ": " + sculpting::sensors_in_words(left_out) +
-            (one ? " stands" : " stand") +
-            " still, whatever the hand does: the calibration is made without " +
-            (one ? "it" : "them") + ", and the joint is estimated from the sensors beside");
+            (one ? " is" : " are") + " stuck, so the calibration is made without " +
+            (one ? "it" : "them") + ", and the joint is estimated from neighbouring sensors");
 }
 
 int fit_and_write(const Options& options, Wearer& wearer,
@@ -225,13 +225,15 @@ int fit_and_write(const Options& options, Wearer& wearer,
   if (!earlier) return cli::report(earlier.error());
   std::error_code ignored;
   fs::remove(unfinished_path(wearer), ignored);
-  std::cout << "written to " << printable(wearer.path.string()) << '\n';
+  std::cout << "wrote " << printable(wearer.path.string()) << '\n';
   if (!earlier->empty())
-    std::cout << "the one before is kept as " << printable(earlier->string()) << '\n';
+    std::cout << "the previous one is kept as " << printable(earlier->string()) << '\n';
   if (options.picture.empty()) return 0;
   const auto drawn =
       calibrate::write_report_picture(options.picture, *fit, wearer.about, wearer.sensors);
-  return drawn ? 0 : cli::report(drawn.error());
+  if (!drawn) return cli::report(drawn.error());
+  report_written(options.picture);
+  return 0;
 }
 
 /// Returns the sensors that are found stuck anywhere in a capture.
@@ -274,20 +276,20 @@ int calibrate_from_capture(const Options& options) {
   if (!guide.is_done())
     cli::note(options.from + ": ends before the pose " +
               std::string(hand::pose_of(guide.asked()).name) + " was held" +
-              (guide.is_again() ? " once more" : ""));
+              (guide.is_again() ? " again" : ""));
   Wearer wearer = describe(options, capture->side, capture->counts, sensors);
   if (const auto fine = find_files(wearer, options); !fine) return cli::report(fine.error());
   if (wearer.known) guide.leave_out(wearer.known->left_out);
   return fit_and_write(options, wearer, guide);
 }
 
-/// Keeps what was taken, so that the same command continues from there. If the session `went_on`
-/// from kept poses and has none any more, they are removed, or they would come back.
-int keep_for_later(const Wearer& wearer, const calibrate::CalibrationGuide& guide, bool went_on) {
+/// Keeps the recorded poses, so that the same command continues from there. If the session
+/// `continued` from kept poses and has none any more, they are removed, or they would come back.
+int keep_for_later(const Wearer& wearer, const calibrate::CalibrationGuide& guide, bool continued) {
   const auto readings = guide.readings();
   std::error_code ignored;
   if (readings.empty()) {
-    if (went_on) fs::remove(unfinished_path(wearer), ignored);
+    if (continued) fs::remove(unfinished_path(wearer), ignored);
     return 0;
   }
   fs::create_directories(wearer.path.parent_path(), ignored);
@@ -296,7 +298,7 @@ int keep_for_later(const Wearer& wearer, const calibrate::CalibrationGuide& guid
                                 wearer.about.side, wearer.about.counts);
   if (!kept) return cli::report(kept.error());
   cli::note((readings.size() == 1 ? "1 pose is" : std::to_string(readings.size()) + " poses are") +
-            " kept; the same command goes on from there, with --fresh from the beginning");
+            " kept; the same command continues from there, or with --fresh from the beginning");
   return 0;
 }
 
@@ -310,28 +312,27 @@ int calibrate_glove(const Options& options) {
   if (const auto fine = find_files(wearer, options); !fine) return cli::report(fine.error());
   calibrate::CalibrationGuide guide(poses_for(options), info.counts, options.stiff_sensors);
   std::error_code error;
-  bool went_on = false;
+  bool continued = false;
   if (!options.fresh && fs::exists(unfinished_path(wearer), error)) {
     const auto before = calibrate::read_capture(unfinished_path(wearer));
     if (!before)
       return cli::report(
-          {before.error().code,
-           before.error().message + "; with --fresh it is not read, and written anew"});
-    went_on = before->counts == info.counts && before->side == info.side;
-    if (went_on) guide.restore(before->readings, before->free_motion);
+          {before.error().code, before.error().message + "; use --fresh to replace it"});
+    continued = before->counts == info.counts && before->side == info.side;
+    if (continued) guide.restore(before->readings, before->free_motion);
     // What was found stuck before is not in the poses.
     for (const auto& reading : before->readings)
-      if (went_on) guide.leave_out({info.sensors.bits & ~reading.held.present.bits});
+      if (continued) guide.leave_out({info.sensors.bits & ~reading.held.present.bits});
   }
   if (wearer.known) guide.leave_out(wearer.known->left_out);
   cli::install_stop_signals();
   const auto end = calibrate::run_calibration_session(
       **glove, options.user, fit_options(options, info.counts, wearer.known), guide);
   if (!end) return cli::report(end.error());
-  if (*end == calibrate::SessionEnd::quit) return keep_for_later(wearer, guide, went_on);
+  if (*end == calibrate::SessionEnd::quit) return keep_for_later(wearer, guide, continued);
   note_left_out(options.glove, guide.left_out());
   const int code = fit_and_write(options, wearer, guide);
-  return code == 0 ? 0 : (keep_for_later(wearer, guide, went_on), code);
+  return code == 0 ? 0 : (keep_for_later(wearer, guide, continued), code);
 }
 
 int calibrate(Options& options) {
@@ -346,36 +347,36 @@ int calibrate(Options& options) {
 
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
-  cli::Command command = program.add_command(
-      "calibrate", "Guides a wearer through poses, so that angles are those of this hand");
+  cli::Command command =
+      program.add_command("calibrate", "Calibrates a glove to a wearer's hand, by guided poses");
   command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, auto, ...");
   command.add_option("--user", options->user, "Whose hand it is");
   command.add_flag("--quick", options->quick, "Two poses only: the flat hand and the fist");
   command.add_flag("--touch-up", options->touch_up,
-                   "Mends the calibration that there is after the glove was put on anew: a free "
+                   "Adjust the existing calibration after the glove was put on again: a free "
                    "motion, flat hand, fist and pinches");
   command.add_option("--stiff", options->stiff,
-                     "Fingers that cannot go as far as the poses ask, e.g. thumb,index, or wrist: "
-                     "they do what they can, and of them only the flat hand is believed");
+                     "Fingers that cannot reach the poses, e.g. thumb,index, or wrist: they go as "
+                     "far as they can, and only their flat hand is used");
   command.add_option("--from", options->from,
-                     "A capture instead of a glove: what nendo monitor --json has printed while "
-                     "the poses were held one after another, three seconds each");
+                     "A capture instead of a glove: the output of `nendo monitor --json` while the "
+                     "poses are held one after another, three seconds each");
   command.add_millimetres("--hand-length", options->length_mm,
                           "Millimetres from the wrist's crease to the tip of the middle finger");
   command.add_millimetres("--hand-breadth", options->breadth_mm, "Millimetres across the knuckles");
   command.add_option("--out", options->out,
-                     "Where to write it; without it, where the other commands find it");
+                     "Where to write it; without it, where other commands find it");
   command.add_option("--picture", options->picture, "Also draw ranges and residuals, as FILE.svg");
-  command.add_flag("--fresh", options->fresh, "Do not go on from a session that was quit");
+  command.add_flag("--fresh", options->fresh, "Do not continue a session that was quit");
   std::string footer = "The poses, in their order:\n";
   for (const auto id : hand::full_poses())
     footer += "  " + std::string(hand::pose_of(id).name) + ": " +
               std::string(hand::pose_of(id).instruction) + "\n";
-  footer += "Then once more:";
+  footer += "Then again:";
   for (const auto id : hand::full_takes().subspan(hand::full_poses().size()))
     footer += " " + std::string(hand::pose_of(id).name);
-  command.set_footer(footer + ".\nThe other commands use the calibration by themselves; nendo "
-                              "calibration lists, compares and exports them.");
+  command.set_footer(footer + ".\nThe other commands use the calibration automatically; `nendo "
+                              "calibration` lists, compares and exports calibrations.");
   command.on_chosen([options] { return calibrate(*options); });
 }
 

@@ -1,22 +1,26 @@
-// nendo demo: two emulated CyberGloves and the real serial driver. They play a face, or shape a
-// Moai.
+// nendo demo: two emulated CyberGloves and the real serial driver play a face, or shape a Moai; or
+// simulated hands make a flat cake, a bowl and ears of clay.
 
 #include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include <nendo/deform/mesh_file.hpp>
 #include <nendo/emulator/served_emulator.hpp>
+#include <nendo/sculpting/placing.hpp>
 #include <nendo/version.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "cli/quantities.hpp"
 #include "export/gltf_export.hpp"
-#include "nendo/clay_demo.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/picture.hpp"
+#include "render/picture.hpp"
 #include "session/open_hands.hpp"
 #include "session/run_report.hpp"
 #include "session/run_session.hpp"
@@ -27,7 +31,7 @@ namespace nendo::app::demo_command {
 namespace {
 
 constexpr double rate_hz = 90.0;
-constexpr double longest_s = 3600.0;
+constexpr double max_s = 3600.0;
 
 struct Options {
   std::string what = "face";
@@ -83,12 +87,12 @@ Result<session::RunOptions> run_options(const Options& options) {
   const auto mode = flow::mode_named(options.mode);
   if (!mode || flow::is_by_hands(*mode))
     return Error{Errc::usage, "--mode " + options.mode +
-                                  ": use type1 or type2; `nendo demo clay` has a mode of its own"};
+                                  ": use type1 or type2; `nendo demo clay` has its own mode"};
   if (auto fine = cli::check_duration(options.duration_s, cli::End::needed); !fine)
     return fine.error();
-  if (options.duration_s > longest_s) return Error{Errc::usage, "--duration: use at most 1h"};
+  if (options.duration_s > max_s) return Error{Errc::usage, "--duration: use at most 1h"};
   if (options.what != "face" && options.what != "moai" && options.what != "clay")
-    return Error{Errc::usage, options.what + ": there is no such demo; use face, moai or clay"};
+    return Error{Errc::usage, options.what + ": no such demo; use face, moai or clay"};
   if (!options.record.empty())
     if (auto fine = cli::check_place("--record", options.record); !fine) return fine.error();
   if (auto fine = cli::check_place("--out", options.out, deform::mesh_endings); !fine)
@@ -104,7 +108,7 @@ Result<session::RunOptions> run_options(const Options& options) {
   run.loop.rate_hz = rate_hz;
   run.loop.sculptor.mode = *mode;
   run.recording.file = options.record;
-  if (options.record.empty() && options.what != "clay") { // of which nothing is recorded
+  if (options.record.empty() && options.what != "clay") { // which records nothing
     run.recording.file = beside(options.out, ".nendo");
     std::error_code ignored; // if it stays, the recording's own check says so
     std::filesystem::remove(run.recording.file, ignored);
@@ -162,25 +166,112 @@ Result<void> show(const Options& options, const session::RunOptions& run) {
     if (auto drawn = draw_strip(options, run.recording.file, *take); !drawn) return drawn;
   const std::string animation = beside(options.out, ".glb");
   if (auto done = animate(*take, animation); !done) return done;
-  std::cout << (makes_strip(options) ? "\nTen fingers, six faces: "
-                                     : "\nBefore and after, with the hands: ")
-            << options.picture << "\nThe animation, for Blender: " << animation
-            << "\nThe last shape, for any 3-D viewer: " << options.out
-            << "\nThe recording: " << run.recording.file << '\n';
+  std::cout << (makes_strip(options) ? "\nPicture of six expressions: "
+                                     : "\nPicture of the model before and after: ")
+            << options.picture << "\nAnimation, for Blender: " << animation
+            << "\nLast shape, for any 3-D viewer: " << options.out
+            << "\nRecording: " << run.recording.file << '\n';
   return {};
 }
 
-int demonstrate(const Options& options) {
+/// Opens the hands, runs the session, and prints its summary.
+Result<void> run_hands(session::RunOptions& run, deform::Mesh model) {
+  EventCount event_count;
+  auto opened = session::open_hands(run, model, event_count);
+  if (!opened) return opened.error();
+  for (auto& hand : opened->hands) // the default calibration is right for emulated hands
+    hand.uncalibrated = false;
+  session::RunParticipants participants;
+  participants.progress = session::progress_for(run, opened->hands);
+  const auto outcome =
+      session::run_session(run, opened->hands, std::move(model), participants, opened->grants);
+  if (!outcome) return outcome.error();
+  session::print_summary(run, opened->hands, *outcome);
+  return {};
+}
+
+struct Work {
+  const char* glove; ///< the glove on each hand
+  const char* name;  ///< the shape's name in the name of its file
+  const char* caption;
+  double duration_s;
+};
+constexpr std::array works{Work{"sim:press", "cake", "Pressed by two palms: a flat cake", 10.4},
+                           Work{"sim:knead", "bowl", "Thumbed: a bowl", 15.8},
+                           Work{"sim:grip", "ears", "Pinched and pulled: two ears", 5.4}};
+constexpr render::View view{-165.0, 24.0}; // both ears are seen from there
+constexpr render::Size panel_size{460, 400};
+
+std::string named(const std::string& out, const char* name) {
+  const std::filesystem::path path(out);
+  return (path.parent_path() / path.stem()).string() + "-" + name + path.extension().string();
+}
+
+session::RunOptions clay_options(const Work& work, const std::string& out) {
+  session::RunOptions run;
+  run.mesh = cli::shipped_model("clay.ply").string();
+  run.left = run.right = work.glove;
+  run.out = named(out, work.name);
+  run.duration_s = work.duration_s;
+  run.model_size_m = sculpting::usual_size_m(flow::Mode::clay);
+  run.calibration.calibration = "none"; // what is stored is a real hand's
+  run.loop.rate_hz = 90.0;
+  run.loop.sculptor.mode = flow::Mode::clay;
+  return run;
+}
+
+/// Runs one session and returns the final shape.
+Result<deform::Mesh> shape_of(const Work& work, const std::string& out) {
+  session::RunOptions run = clay_options(work, out);
+  if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine.error();
+  auto model = takes::read_model(run.mesh);
+  if (!model) return model.error();
+  std::cout << work.glove << " for " << work.duration_s << " s\n" << std::flush;
+  if (auto done = run_hands(run, std::move(model->mesh)); !done) return done.error();
+  return deform::read_mesh(run.out);
+}
+
+render::Panel panel_of(const deform::Mesh& shape, double units_per_metre, const char* caption) {
+  using namespace nendo::render;
+  SceneFrame frame;
+  frame.vertices = shape.vertices;
+  Scene scene;
+  SceneBuilder(shape, units_per_metre).build(frame, {}, scene);
+  const Camera camera = framing(scene.outline(), view, 1.0 * panel_size.width / panel_size.height);
+  return {draw(Lighting(scene, view.azimuth_deg), camera, panel_size), caption};
+}
+
+/// Runs the sessions one after another, and draws their shapes on one sheet. Each shape's file gets
+/// its name before the ending, e.g. NAME-bowl.ply.
+Result<void> demonstrate_clay(const std::string& out, const std::string& picture) {
+  cli::install_stop_signals();
+  std::vector<render::Panel> panels;
+  for (const Work& work : works) {
+    if (cli::stop_requested()) break;
+    const auto shape = shape_of(work, out);
+    if (!shape) return shape.error();
+    panels.push_back(panel_of(*shape, 1.0, work.caption)); // the ball's units are metres
+  }
+  const auto sheet = render::contact_sheet(panels, static_cast<int>(panels.size()));
+  if (auto drawn = render::write_png(picture, sheet); !drawn) return drawn;
+  std::cout << "\nPicture: " << picture << "\nShapes, for any 3-D viewer: ";
+  for (std::size_t at = 0; at < panels.size(); ++at)
+    std::cout << (at > 0 ? ", " : "") << named(out, works[at].name);
+  std::cout << '\n';
+  return {};
+}
+
+Result<void> demonstrate(const Options& options) {
   auto run = run_options(options);
-  if (!run) return cli::report(run.error());
-  if (options.what == "clay") return clay_demo::demonstrate(options.out, options.picture);
+  if (!run) return run.error();
+  if (options.what == "clay") return demonstrate_clay(options.out, options.picture);
   auto model = takes::read_model(run->mesh);
-  if (!model) return cli::report(model.error());
+  if (!model) return model.error();
   cli::install_stop_signals();
   const auto left = emulate(Side::left, options);
-  if (!left) return cli::report(left.error());
+  if (!left) return left.error();
   const auto right = emulate(Side::right, options);
-  if (!right) return cli::report(right.error());
+  if (!right) return right.error();
   run->left = "serial:" + left->unit->tty_path();
   run->right = "serial:" + right->unit->tty_path();
   std::cout << "Two emulated CyberGloves stream at " << left->unit->tty_path() << " and "
@@ -189,20 +280,8 @@ int demonstrate(const Options& options) {
                                   : "Both hands shape the Moai for ")
             << run->duration_s << " s.\n"
             << std::flush;
-  EventCount event_count;
-  auto opened = session::open_hands(*run, model->mesh, event_count);
-  if (!opened) return cli::report(opened.error());
-  // The emulated hands are those that the default calibration is for.
-  for (auto& hand : opened->hands)
-    hand.uncalibrated = false;
-  session::RunParticipants participants;
-  participants.progress = session::progress_for(*run, opened->hands);
-  auto outcome = session::run_session(*run, opened->hands, std::move(model->mesh), participants,
-                                      opened->grants);
-  if (!outcome) return cli::report(outcome.error());
-  session::print_summary(*run, opened->hands, *outcome);
-  if (const auto shown = show(options, *run); !shown) return cli::report(shown.error());
-  return 0;
+  if (auto done = run_hands(*run, std::move(model->mesh)); !done) return done;
+  return show(options, *run);
 }
 
 } // namespace
@@ -211,19 +290,19 @@ void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "demo", "Two emulated CyberGloves play a face, or shape a Moai, through the real driver, or "
-              "simulated hands knead clay; leaves a picture, a recording and an animation");
-  command.add_option("DEMO", options->what,
-                     "face: ten fingers make it live; moai: hands shape it; clay: whole hands make "
-                     "a cake, a bowl and ears, in some 30 s, whatever the other options say");
+              "simulated hands knead clay; writes a picture, a recording and an animation");
   command.add_option(
-      "--mode", options->mode,
-      "type1 (from rest): the rest shape follows the fingertips; type2 (accumulating): strokes");
+      "DEMO", options->what,
+      "face: ten fingers animate it; moai: hands shape it; clay: whole hands make a "
+      "cake, a bowl and ears, in about 30 s, for which only --out and --picture apply");
+  command.add_option("--mode", options->mode,
+                     "type1 (from rest): the rest shape follows the fingertips; type2 (accumulating): strokes");
   command.add_duration("--duration", options->duration_s, "How long, e.g. 30s or 2m, up to 1h");
   command.add_option("--out", options->out, "Where the shape goes, .obj, .ply or .stl");
   command.add_option("--picture", options->picture, "Where the picture goes, .png");
   command.add_option(
       "--record", options->record,
-      "Where the recording goes; without it, beside --out, in place of an earlier demo's");
+      "Where the recording goes; without it, beside --out, replacing that of an earlier demo");
   command.on_chosen([options] { return demonstrate(*options); });
 }
 

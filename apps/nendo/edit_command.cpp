@@ -1,4 +1,4 @@
-// nendo edit: a recorded run as key poses, which can be changed and played.
+// nendo edit: makes, changes and plays key poses of a recorded run.
 
 #include <cstdio>
 #include <functional>
@@ -30,7 +30,7 @@ struct Options {
   double value = 0.0;
   std::string place;
   std::string with;
-  std::string mesh; ///< for mirror
+  std::string mesh; ///< the model, for mirror
   std::uint32_t key = 0;
   std::optional<unsigned> blended_key;
   double time_s = 0.0;
@@ -67,12 +67,12 @@ int edit_hand(const Options& options,
   return edit(options, [&](Timeline& timeline) { return change(timeline, *side); });
 }
 
-/// Returns where a key goes that is wanted at --to or --at, and tells it if it is elsewhere.
+/// Returns the time of a key that is wanted at --to or --at, and reports it if it is another one.
 double time_for_key(const Timeline& timeline, Side side, double wanted_s,
                     std::optional<std::size_t> moved = {}) {
   const double time_s = timeline::time_near_end(timeline, side, wanted_s, moved);
   if (time_s != wanted_s)
-    cli::note(edit::fixed(wanted_s, 3) + " s is behind the end, which is at " +
+    cli::note(edit::fixed(wanted_s, 3) + " s is after the end, which is at " +
               edit::fixed(timeline.duration_s, 3) + " s; the key is at " + edit::fixed(time_s, 3) +
               " s");
   return time_s;
@@ -81,8 +81,8 @@ double time_for_key(const Timeline& timeline, Side side, double wanted_s,
 int blend(const Options& options) {
   if (options.with.empty() == !options.blended_key)
     return cli::report({Errc::usage,
-                        "--with, --key: give one of them: another timeline, or with --hand "
-                        "a key that is blended with its neighbours"});
+                        "--with, --key: give one of them: another timeline, or, with --hand, a "
+                        "key to blend with its neighbours"});
   if (options.blended_key)
     return edit_hand(options, [&](Timeline& timeline, Side side) {
       return timeline::blend_key(timeline, side, *options.blended_key, options.factor);
@@ -120,7 +120,8 @@ int set_tip(const Options& options) {
     return {};
   });
   if (code == 0)
-    std::printf("the %s's tip is %.3f mm off\n", options.finger.c_str(), 1e3 * done.off_m);
+    std::printf("the %s's tip is %.3f mm from its target\n", options.finger.c_str(),
+                1e3 * done.off_m);
   return code;
 }
 
@@ -144,7 +145,7 @@ cli::Command add_edit_of(cli::Command& edit, const char* name, const char* summa
   cli::Command command = edit.add_command(name, summary);
   command.add_option("FILE", options->file, "A timeline").required();
   command.add_option("--out", options->out,
-                     "Where the changed one goes, .timeline.toml; without it, into FILE");
+                     "Where to write the changed timeline, .timeline.toml; without it, FILE");
   return command;
 }
 
@@ -152,39 +153,41 @@ cli::Command add_edit_of_key(cli::Command& edit, const char* name, const char* s
                              const std::shared_ptr<Options>& options) {
   cli::Command command = add_edit_of(edit, name, summary, options);
   command.add_option("--hand", options->hand, "left or right").required();
-  command.add_option("--key", options->key, "Number of the key, as `nendo edit show` has it")
+  command.add_option("--key", options->key, "Number of the key, as in `nendo edit show`")
       .required();
   return command;
 }
 
 void add_reading(cli::Command& edit, const std::shared_ptr<Options>& options) {
   cli::Command making = edit.add_command("make", "Makes a timeline of key poses of a recorded run");
-  making.add_option("TAKE", options->make.take, "What `nendo run --record` recorded").required();
+  making.add_option("TAKE", options->make.take, "A recording of `nendo run --record`").required();
   making.add_option("--out", options->make.out, "The new file, .timeline.toml").required();
   making.add_option("--tolerance", options->make.tolerance,
-                    "How far the hands between the keys may be off: at the fingertips, as 1mm, or "
-                    "at the joints, as 0.02rad or 1deg; 0mm keeps every frame");
-  making.add_option("--mesh", options->make.mesh, "The model, if it is no longer where it was");
+                    "Max error of the hands between the keys: at the fingertips, as 1mm, or at the "
+                    "joints, as 0.02rad or 1deg; 0mm keeps every frame");
+  making.add_option("--mesh", options->make.mesh, "The model, if it has been moved");
   making.add_flag("--json", options->make.json, "A summary as JSON");
   making.on_chosen([options] { return edit::make_timeline(options->make); });
 
   cli::Command showing =
-      edit.add_command("show", "The keys as a table, and what is asked of the model");
+      edit.add_command("show", "Shows the keys as a table, and the commands for the model");
   showing.add_option("FILE", options->show.file, "A timeline").required();
-  showing.add_option("--finger", options->show.finger, "Shows where this finger's tip is, too");
+  showing.add_option("--finger", options->show.finger,
+                     "Also show the position of this finger's tip");
   showing.add_flag("--functions", options->show.functions,
-                   "In place of the hands, the values of the puppet's functions at the keys");
+                   "Show the values of the puppet's functions at the keys in place of the hands");
   showing.add_flag("--json", options->show.json, "All of every key, as one JSON object");
   showing.on_chosen([options] { return edit::show_timeline(options->show); });
 
-  cli::Command playing = edit.add_command("play", "Makes the shape of a timeline, without a clock");
+  cli::Command playing = edit.add_command("play", "Plays a timeline and writes its shape");
   playing.add_option("FILE", options->play.file, "A timeline").required();
-  playing.add_duration("--until", options->play.until_s, "Seconds at which it stops; else the end");
+  playing.add_duration("--until", options->play.until_s,
+                       "Seconds at which it stops; without it, the end");
   playing.add_option("--mesh", options->play.mesh, "Another model than the timeline's");
   playing.add_option("--out", options->play.out, "Where to write the shape, .obj, .ply or .stl");
   playing.add_flag("--json", options->play.json, "A summary as JSON");
   playing.add_option("--speed", options->play.speed,
-                     "Times real time; 0 or without it: as fast as it can");
+                     "Speed relative to real time; 0: as fast as possible");
   playing.on_chosen([options] { return edit::play_timeline(options->play); });
 }
 
@@ -211,7 +214,8 @@ void add_key_edits(cli::Command& edit, const std::shared_ptr<Options>& options) 
       return timeline::delete_key(timeline, side, options->key);
     });
   });
-  cli::Command adding = add_edit_of(edit, "add", "Adds a key where the hand is then", options);
+  cli::Command adding =
+      add_edit_of(edit, "add", "Adds a key with the hand's pose at that time", options);
   adding.add_option("--hand", options->hand, "left or right").required();
   adding.add_duration("--at", options->time_s, "Seconds").required();
   adding.on_chosen([options] {
@@ -220,31 +224,33 @@ void add_key_edits(cli::Command& edit, const std::shared_ptr<Options>& options) 
     });
   });
   cli::Command setting = add_edit_of_key(
-      edit, "set-tip", "Bends a finger so that its tip comes to a place (inverse kinematics)",
+      edit, "set-tip", "Bends a finger so that its tip reaches a position (inverse kinematics)",
       options);
   setting.add_option("--finger", options->finger, "thumb, index, middle, ring or little")
       .required();
   setting.add_option("--to", options->place, "X,Y,Z in the model's units").required();
-  setting.add_millimetres("--within", options->within_mm, "How far it may miss it, in millimetres");
+  setting.add_millimetres("--within", options->within_mm, "Max distance from it, in millimetres");
   setting.on_chosen([options] { return set_tip(*options); });
 }
 
 void add_value_edit(cli::Command& edit_command, const std::shared_ptr<Options>& options) {
   cli::Command setting = add_edit_of(
       edit_command, "set-value",
-      "Bends the finger that plays a function of the puppet so that it has a value", options);
+      "Bends the finger that plays a function of the puppet until it has a value", options);
   setting.add_option("--function", options->function, "Its name, such as jawOpen").required();
   setting.add_option("--key", options->key, "Number of the key of the hand that plays it")
       .required();
-  setting.add_option("--to", options->value, "The value that it has there").required();
+  setting.add_option("--to", options->value, "The value at that key").required();
   setting.on_chosen([options] { return set_value(*options); });
 }
 
 void add_whole_edits(cli::Command& edit_command, const std::shared_ptr<Options>& options) {
-  cli::Command retiming = add_edit_of(edit_command, "retime", "Slower or faster", options);
-  retiming.add_option("--scale", options->scale, "2: everything takes twice the time").required();
-  retiming.add_duration("--from", options->from_s, "Seconds where that begins");
-  retiming.add_duration("--to", options->to_s, "Seconds where it ends; what follows is moved");
+  cli::Command retiming =
+      add_edit_of(edit_command, "retime", "Makes a timeline slower or faster", options);
+  retiming.add_option("--scale", options->scale, "2: everything takes twice as long").required();
+  retiming.add_duration("--from", options->from_s, "Seconds at which that begins");
+  retiming.add_duration("--to", options->to_s,
+                        "Seconds at which it ends; everything after is moved");
   retiming.on_chosen([options] {
     return edit(*options, [&](Timeline& timeline) {
       return timeline::retime(timeline, options->scale, options->from_s,
@@ -256,14 +262,13 @@ void add_whole_edits(cli::Command& edit_command, const std::shared_ptr<Options>&
   blending.add_option("--with", options->with, "Another timeline");
   blending.add_option("--hand", options->hand, "left or right, for --key");
   blending.add_option("--key", options->blended_key, "Number of the key");
-  blending.add_option("--factor", options->factor, "0: as it is, to 1: as the others are");
+  blending.add_option("--factor", options->factor, "0: unchanged, to 1: as the others are");
   blending.on_chosen([options] { return blend(*options); });
-  cli::Command mirroring =
-      add_edit_of(edit_command, "mirror",
-                  "The left hand does what the right one did, and the other way round", options);
+  cli::Command mirroring = add_edit_of(
+      edit_command, "mirror", "Exchanges the motions of the left and right hands", options);
   mirroring.add_option("--plane", options->plane,
                        "The mirror's x in the model's units; without it, the model's middle");
-  mirroring.add_option("--mesh", options->mesh, "The model, if it is no longer where it was");
+  mirroring.add_option("--mesh", options->mesh, "The model, if it has been moved");
   mirroring.on_chosen([options] { return mirror(*options); });
 }
 

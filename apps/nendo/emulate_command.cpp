@@ -1,4 +1,4 @@
-// nendo emulate: a data glove's electronics on a pseudo-terminal, with chosen faults.
+// nendo emulate: emulates a data glove's electronics on a pseudo-terminal, with chosen faults.
 
 #include <algorithm>
 #include <charconv>
@@ -34,10 +34,10 @@ struct Options {
   double duration_s = 0.0;
   double hold_s = 0.0;                                 ///< 0: by keys
   std::shared_ptr<calibrate::PracticeHand> practice{}; ///< null: another motion
-  std::shared_ptr<cli::Keys> keys{};                   ///< that lead it
+  std::shared_ptr<cli::Keys> keys{};                   ///< the keys that control it
 };
 
-/// The motion that needs a hand, and so is none of driver::motion_names().
+/// The motion that is not in driver::motion_names(), because it needs a hand.
 constexpr std::string_view practice_name = "poses";
 
 std::string list_of(const std::vector<std::string_view>& names) {
@@ -48,7 +48,7 @@ std::string list_of(const std::vector<std::string_view>& names) {
 }
 
 std::string faults_explained() {
-  std::string text = "Faults (--fault, as often as you like; times in s or ms since the start):\n";
+  std::string text = "Faults (--fault, may be repeated; times in s or ms since the start):\n";
   for (const emulator::FaultForm& fault : emulator::fault_forms()) {
     std::string form(fault.form);
     form.resize(std::max<std::size_t>(form.size() + 1, 24), ' ');
@@ -84,14 +84,12 @@ Result<void> practise(Options& options) {
   const bool poses = emulator.motion == practice_name;
   if (!std::isfinite(options.hold_s) || options.hold_s < 0.0 || options.hold_s > 3600.0 ||
       (options.hold_s > 0.0 && options.hold_s < 3.0))
-    return Error{Errc::usage, "--hold: use 3s to an hour; it can take 2.6 s until the hand has "
-                              "gone to a pose and nendo calibrate has taken it"};
-  if (options.hold_s > 0.0 && !poses)
-    return Error{Errc::usage, "--hold goes with --motion poses only"};
+    return Error{Errc::usage, "--hold: use 3s to 1h; the hand needs up to 2.6 s to reach a pose, "
+                              "and nendo calibrate to record it"};
+  if (options.hold_s > 0.0 && !poses) return Error{Errc::usage, "--hold: needs --motion poses"};
   if (!poses) return {};
   if (emulator.glove != "cyberglove")
-    return Error{Errc::usage, "--motion poses: only an emulated cyberglove holds the poses of "
-                              "nendo calibrate"};
+    return Error{Errc::usage, "--motion poses: needs an emulated cyberglove"};
   constexpr double usual_hold_s = 4.0;
   std::optional<double> hold_s;
   if (options.hold_s > 0.0) hold_s = options.hold_s;
@@ -110,9 +108,9 @@ class PracticeLine {
 public:
   explicit PracticeLine(const Options& options) : practice_(options.practice), keys_(options.keys) {
     if (keys_ == nullptr || !keys_->are_available()) return;
-    std::cout << "SPACE: the next pose   b: the one before   q: quit" << std::endl;
+    std::cout << "SPACE: next pose   b: previous pose   q: quit" << std::endl;
   }
-  /// Waits for so long at most. Returns false if the person wants to end.
+  /// Waits at most this time. Returns false if the user quits.
   bool follow(std::chrono::milliseconds time) {
     if (practice_ == nullptr) {
       std::this_thread::sleep_for(time);
@@ -121,7 +119,7 @@ public:
     const auto key = keys_->next(time);
     if (key == ' ') practice_->go_on();
     if (key == 'b') practice_->go_back();
-    if (const int step = practice_->step(); std::exchange(told_, step) != step)
+    if (const int step = practice_->step(); std::exchange(shown_, step) != step)
       std::cout << practice_->in_words(step) << std::endl;
     return key != 'q';
   }
@@ -129,7 +127,7 @@ public:
 private:
   std::shared_ptr<calibrate::PracticeHand> practice_;
   std::shared_ptr<cli::Keys> keys_;
-  int told_ = -1;
+  int shown_ = -1;
 };
 
 Result<void> complete(Options& options) {
@@ -159,7 +157,7 @@ void print(const emulator::EmulatorStats& stats) {
   std::cout << stats.records_sent << " records sent, " << stats.bytes_received
             << " bytes received from the host\n";
   if (stats.bytes_refused > 0) {
-    std::cout << stats.bytes_refused << " bytes not sent, as no host read them\n";
+    std::cout << stats.bytes_refused << " bytes not sent, because no host read them\n";
   }
   if (stats.faults.empty()) return;
   std::cout << "faults:";
@@ -199,27 +197,30 @@ void add_glove_options(cli::Command& command, Options& options) {
       .add_option("--glove", emulator.glove,
                   "Its kind: " + list_of(emulator::emulated_glove_names()))
       .under(heading);
-  command.add_option("--firmware", emulator.firmware, "Which of its firmwares it has, see below")
-      .under(heading);
-  command.add_option("--connection", emulator.connection, "How it is connected, see below")
+  command.add_option("--firmware", emulator.firmware, "Its firmware, see below").under(heading);
+  command.add_option("--connection", emulator.connection, "Its connection, see below")
       .under(heading);
   command.add_option("--hand", options.hand, "left or right").under(heading);
-  command.add_option("--sensors", emulator.sensors, "How many; a CyberGlove has 22 (default) or 18")
+  command
+      .add_option("--sensors", emulator.sensors,
+                  "Number of sensors; a CyberGlove has 22 (default) or 18")
       .under(heading);
   command
       .add_option("--motion", emulator.motion,
                   "What the hand does: " + list_of(driver::motion_names()) +
-                      ", or poses: those that nendo calibrate asks for, in its order")
+                      ", or poses: those of nendo calibrate, in its order")
       .under(heading);
   command
-      .add_duration("--hold", options.hold_s,
-                    "With --motion poses: how long a pose is held, after a free motion of 8 s, "
-                    "again and again; without it, SPACE goes on to the next, or 4 s do where no "
-                    "keys can come")
+      .add_duration(
+          "--hold", options.hold_s,
+          "With --motion poses: how long each pose is held, after a free motion of 8 s, "
+          "repeatedly; without it, SPACE advances to the next pose, or without a keyboard "
+          "4 s")
       .under(heading);
-  command.add_rate("--rate", emulator.rate_hz, "Records a second until the host sets its own")
+  command
+      .add_rate("--rate", emulator.rate_hz, "Records per second until the host sets another rate")
       .under(heading);
-  command.add_option("--seed", emulator.seed, "Varies motion, noise and faults").under(heading);
+  command.add_option("--seed", emulator.seed, "Seed of motion, noise and faults").under(heading);
   command.add_option("--pace", options.pace, "clock: as a device; host: as fast as the host reads")
       .one_of({"clock", "host"})
       .under(heading);
@@ -234,16 +235,16 @@ void add_cyberglove_options(cli::Command& command, Options& options) {
   command.add_flag("--touch", glove.touch, "It has the vibrators of a CyberTouch").under(heading);
   command
       .add_option("--reply-bytes", glove.reply_bytes,
-                  "Of the reply to a setting in bytes: 2, or 3 as one library expects")
+                  "Bytes of the reply to a setting: 2, or 3 as one library expects")
       .under(heading);
   command
       .add_option("--period-order", options.period_order,
-                  "Bytes of the words of T: msb or lsb first")
+                  "Byte order of the words of T: msb or lsb first")
       .one_of({"msb", "lsb"})
       .under(heading);
   command
       .add_option("--stamp-bit7", options.stamp_bit7,
-                  "Bit 7 of a time stamp's first byte: on always, off if it may")
+                  "Bit 7 of a time stamp's first byte: on: always set; off: set only if needed")
       .one_of({"on", "off"})
       .under(heading);
   command
@@ -256,15 +257,16 @@ void add_cyberglove_options(cli::Command& command, Options& options) {
   command
       .add_duration(
           "--restart-time", glove.restart_s,
-          "How long a restart of its firmware takes: 0.2s, with which the maker's own library "
-          "works, or 1.75s as in the manual")
+          "Duration of a restart of its firmware: 0.2s, which the maker's library expects, or "
+          "1.75s as in the manual")
       .under(heading);
   command
       .add_flag("--overrun", glove.overrun,
-                "It begins with a period too short for it: es in each record of a stream")
+                "Its first period is too short: each record of a stream has es")
       .under(heading);
   command
-      .add_flag("--streaming", glove.streaming, "It streams at the start, as a dead host left it")
+      .add_flag("--streaming", glove.streaming,
+                "It streams at the start, as after a crash of the host")
       .under(heading);
   command
       .add_flag("--pattern", glove.pattern,
@@ -272,7 +274,7 @@ void add_cyberglove_options(cli::Command& command, Options& options) {
       .under(heading);
   command
       .add_option("--replay", glove.replay,
-                  "Send the records of this file of received bytes, again and again")
+                  "Send the records of this file of received bytes, repeatedly")
       .under(heading);
 }
 
@@ -281,17 +283,16 @@ void add_cyberglove_options(cli::Command& command, Options& options) {
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
-      "emulate", "Emulates a glove's electronics on a pseudo-terminal, to test with");
+      "emulate", "Emulates a glove's electronics on a pseudo-terminal, for tests");
   command
       .add_option("--link", options->emulator.link,
                   "Symbolic link to make to the pseudo-terminal, e.g. /tmp/glove")
       .required();
   command.add_duration("--duration", options->duration_s,
                        "How long, e.g. 30s or 10m; 0: until Ctrl-C");
-  command.add_option("--fault", options->emulator.faults, "What goes wrong, see below")
-      .once_each("FAULT");
+  command.add_option("--fault", options->emulator.faults, "A fault, see below").once_each("FAULT");
   command.add_option("--log", options->emulator.log,
-                     "Write all traffic to this file, a line a message");
+                     "Write all traffic to this file, one line per message");
   add_glove_options(command, *options);
   add_cyberglove_options(command, *options);
   command.set_footer(variants_explained() + faults_explained());

@@ -1,4 +1,4 @@
-// nendo export: a recorded run as files for animators and for plots.
+// nendo export: writes a recorded run as files for animators and for plots.
 
 #include <array>
 #include <filesystem>
@@ -72,26 +72,26 @@ Result<std::string> format_of(const Options& options) {
   return options.format;
 }
 
-/// Reads --tolerance: a length on the stage, or a part of the model's diagonal.
+/// Reads --tolerance: a length on the stage, or a fraction of the model's diagonal.
 Result<exporting::GltfOptions> parse_tolerance(const std::string& text) {
-  constexpr double most = 0.1; // metres, or diagonals
+  constexpr double max = 0.1; // metres, or diagonals
   exporting::GltfOptions gltf;
   const bool percent = text.ends_with('%');
   const auto number = cli::number_of(percent ? text.substr(0, text.size() - 1) : text);
   gltf.tolerance_m = to_metres(text);
   gltf.tolerance = number.value_or(0.0) / (percent ? 100.0 : 1.0);
   const double value = gltf.tolerance_m.value_or(gltf.tolerance);
-  if (value > 0.0 && value <= most) return gltf;
+  if (value > 0.0 && value <= max) return gltf;
   return Error{Errc::usage, "--tolerance " + text + ": use " + std::string(cli::length_words) +
-                                ", up to 0.1m, or a part of the model's diagonal like 0.01 or 1%, "
-                                "up to 10%"};
+                                ", up to 0.1m, or a fraction of the model's diagonal like 0.01 or "
+                                "1%, up to 10%"};
 }
 
 Result<void> check_rate(const Options& options, const std::string& format) {
   if (options.every_frame && options.rate_hz)
     return Error{Errc::usage, "--every-frame and --rate: give one of them"};
   if (options.every_frame && format != "glb" && format != "csv")
-    return Error{Errc::usage, "--every-frame: only .glb and .csv tell each frame's own time; use "
+    return Error{Errc::usage, "--every-frame: only .glb and .csv store the time of each frame; use "
                               "--rate"};
   return {};
 }
@@ -105,7 +105,7 @@ Result<std::string> check(const Options& options, const exporting::Choice& choic
   if (!format) return format;
   if (const auto fine = check_rate(options, *format); !fine) return fine.error();
   if (options.samples && *format != "csv")
-    return Error{Errc::usage, "--samples: is for a .csv of what the gloves sent"};
+    return Error{Errc::usage, "--samples: needs a .csv file"};
   if (!is_sequence(*format)) return format;
   if (const auto name = exporting::NumberedName::parse(options.out); !name) return name.error();
   return format;
@@ -115,11 +115,11 @@ Result<std::string> check(const Options& options, const exporting::Choice& choic
 struct Take {
   exporting::Skeletons skeletons;
   exporting::OpenFrames open;
-  bool has_samples = false;       ///< of gloves, for a table of them
+  bool has_samples = false;       ///< samples of gloves, for a table
   std::vector<std::string> notes; ///< to be said once the file is written
 };
 
-/// Says of which hands the angles are no more than guessed, a line for each.
+/// Returns one line for each hand whose angles are only estimated.
 std::vector<std::string> uncalibrated_notes(const Options& options, const recording::Setup& setup,
                                             const std::string& remedy) {
   std::vector<std::string> notes;
@@ -137,9 +137,9 @@ bool wants_samples(const Options& options, const std::string& format, bool has_l
 /// Gloves without a loop: their hands can be shown, and no model.
 Result<Take> read_gloves(const Options& options, const std::string& format, Take take) {
   if (!options.mesh.empty() || options.no_hands || !(format == "glb" || format == "bvh")) {
-    return Error{Errc::bad_input,
-                 options.file + ": only gloves were recorded, and .csv, .bvh and .glb have their "
-                                "hands; shape a model with `nendo run --right replay:FILE`"};
+    return Error{Errc::bad_input, options.file +
+                                      ": has only gloves, which .csv, .bvh and .glb can store; "
+                                      "shape a model with `nendo run --right replay:FILE`"};
   }
   take.open = [path = options.file]() -> Result<std::unique_ptr<takes::FrameSource>> {
     auto frames = takes::GloveFrames::open(path);
@@ -206,7 +206,7 @@ Result<exporting::Exported> export_take(const Take& take, const std::string& for
                                         const Options& options, exporting::Choice choice) {
   if (take.has_samples) {
     if (choice.rate_hz)
-      return Error{Errc::usage, "--rate: a table of samples has every one; leave it out"};
+      return Error{Errc::usage, "--rate: a table of samples has every sample; leave it out"};
     return exporting::export_samples_csv(options.file, choice, options.out);
   }
   const auto source = take.open();
@@ -242,7 +242,7 @@ Result<exporting::Exported> export_take(const Take& take, const std::string& for
   return done;
 }
 
-/// Of a model far from zero the places of the files are near zero, and this is what they lack.
+/// Reports the offset that the files of a model far from zero do not contain.
 void note_offset(const std::string& format, const exporting::Exported& done) {
   if (done.offset.isZero(0.0)) return;
   const std::string place =
@@ -278,7 +278,7 @@ void print_json(const std::string& format, const exporting::Exported& done) {
   cli::print_line(line);
 }
 
-/// Tells why the targets of a puppet's take have not the names of its functions.
+/// Explains why the targets are not named after the puppet's functions.
 void print_no_functions(const exporting::MorphReport& morphs) {
   if (morphs.has_puppet)
     std::cout << "the targets are not named after the puppet's functions, because the shapes are "
@@ -287,14 +287,13 @@ void print_no_functions(const exporting::MorphReport& morphs) {
 
 void print_morphs(const exporting::MorphReport& morphs) {
   if (morphs.models > 1)
-    std::cout << fmt::format("{} meshes, one after another: each is shown in its time, where the "
-                             "model, or its puppet, became another one\n",
+    std::cout << fmt::format("{} meshes, shown one after another, because the model or its puppet "
+                             "changed\n",
                              morphs.models);
   if (morphs.basis != exporting::MorphBasis::key_shapes) {
     const bool named = morphs.basis == exporting::MorphBasis::functions;
     std::cout << fmt::format(
-        "{} morph targets{}; no vertex of any frame is off by more than "
-        "{:.1e} of the model's diagonal\n",
+        "{} morph targets{}; the max error of a vertex is {:.1e} of the model's diagonal\n",
         morphs.targets, named ? ", named after the puppet's functions" : " of the control vectors",
         morphs.greatest_error);
     if (!named) print_no_functions(morphs);
@@ -302,7 +301,7 @@ void print_morphs(const exporting::MorphReport& morphs) {
   }
   std::cout << fmt::format(
       "{} morph targets of key shapes, within {:.3g} % of the model's diagonal, "
-      "{:.2g} mm on the stage (--tolerance); the worst vertex is off by {:.2g} %\n",
+      "{:.2g} mm on the stage (--tolerance); the max error is {:.2g} %\n",
       morphs.targets, 100.0 * morphs.tolerance, 1e3 * morphs.tolerance * morphs.diagonal_m,
       100.0 * morphs.greatest_error);
   print_no_functions(morphs);
@@ -311,30 +310,30 @@ void print_morphs(const exporting::MorphReport& morphs) {
 void print(const exporting::Exported& done, bool samples) {
   const std::string more = done.files.size() > 1 ? " to " + done.files.back() : std::string();
   const std::string rate =
-      done.rate_hz ? fmt::format(", {:.4g} a second (--rate)", *done.rate_hz) : "";
+      done.rate_hz ? fmt::format(", {:.4g} per second (--rate)", *done.rate_hz) : "";
   std::cout << fmt::format("{}{}: {} {}{}, {:.2f} s, {:.1f} MB\n", done.files.front(), more,
                            done.frames, samples ? "samples" : "frames", rate,
                            done.last_s - done.first_s, static_cast<double>(done.bytes) / 1e6);
   if (done.morphs) print_morphs(*done.morphs);
   for (std::size_t at = 1; at < done.begin_s.size(); ++at)
-    std::cout << fmt::format("the model becomes another one at {0:.2f} s, and {1} begins there; "
-                             "for its mesh, export --from {0:.2f} --to {2:.2f} as NAME-%d.obj\n",
-                             done.begin_s[at], done.files[at],
-                             done.begin_s[at] + 1.0 / done.rate_hz.value_or(1.0));
+    std::cout << fmt::format(
+        "the model changes at {0:.2f} s, where {1} begins; for its mesh, export "
+        "--from {0:.2f} --to {2:.2f} as NAME-%d.obj\n",
+        done.begin_s[at], done.files[at], done.begin_s[at] + 1.0 / done.rate_hz.value_or(1.0));
   std::cout << std::flush;
 }
 
-int export_command(const Options& options) {
+Result<void> export_command(const Options& options) {
   cli::install_stop_signals();
   const exporting::Choice choice{options.from_s, options.to_s, options.rate_hz,
                                  &cli::stop_requested()};
   const auto format = check(options, choice);
-  if (!format) return cli::report(format.error());
+  if (!format) return format.error();
   const auto take =
       timeline::is_timeline(options.file) ? read_edited(options) : read_recorded(options, *format);
-  if (!take) return cli::report(take.error());
+  if (!take) return take.error();
   const auto done = export_take(*take, *format, options, choice);
-  if (!done) return cli::report(done.error());
+  if (!done) return done.error();
   for (const std::string& note : take->notes)
     cli::note(note);
   if (!done->exact) takes::note_missing(options.file);
@@ -343,7 +342,7 @@ int export_command(const Options& options) {
     print_json(*format, *done);
   else
     print(*done, take->has_samples);
-  return 0;
+  return {};
 }
 
 } // namespace
@@ -353,36 +352,36 @@ void add(cli::Command& program) {
   cli::Command command = program.add_command(
       "export", "Writes a recording as animation or tables: glTF, point caches, meshes, BVH, CSV");
   command.set_footer(
-      "A recording of gloves alone, by `nendo record`, has hands and no model: .csv (every sample: "
-      "\ncounts, angles, both clocks), .bvh and .glb.");
+      "A recording of `nendo record` has hands and no model: .csv (every sample: counts, angles, "
+      "both\nclocks), .bvh and .glb.");
   command
-      .add_option(
-          "TAKE", options->file,
-          "What `nendo run --record` or `nendo record` recorded, or a timeline of `nendo edit`")
+      .add_option("TAKE", options->file,
+                  "A recording of `nendo run` or `nendo record`, or a timeline of `nendo edit`")
       .required();
   command
-      .add_option(
-          "--out", options->out,
-          "Where to write: .glb (model and hands), .pc2 or .mdd (the model's vertices), "
-          "NAME-%04d.obj, .ply or .stl (a mesh a frame), .bvh (a file a hand), .csv (angles and "
-          "fingertips)")
+      .add_option("--out", options->out,
+                  "Where to write: .glb (model and hands), .pc2 or .mdd (the model's vertices), "
+                  "NAME-%04d.obj, .ply or .stl (one mesh per frame), .bvh (one file per hand), "
+                  ".csv (angles and "
+                  "fingertips)")
       .required();
-  command.add_option("--format", options->format, "In place of the name's ending")
+  command.add_option("--format", options->format, "Format, if the name's ending does not say it")
       .one_of({"glb", "pc2", "mdd", "obj", "ply", "stl", "bvh", "csv"});
   command.add_rate("--rate", options->rate_hz,
-                   "Frames a second, each the nearest that was made; without it .csv has every "
-                   "frame at its own time, .bvh the take's rate, and the others have 24");
+                   "Frames per second, each the nearest of the take; without it, .csv has every "
+                   "frame at its own time, .bvh the take's rate, and other formats 24");
   command.add_flag("--every-frame", options->every_frame,
                    ".glb: every frame of the take, at its own time");
   command.add_flag("--samples", options->samples,
-                   ".csv: a row for each sample of the gloves in place of each frame");
+                   ".csv: one row per sample of the gloves in place of one per frame");
   command.add_duration("--from", options->from_s, "Seconds from the beginning");
-  command.add_duration("--to", options->to_s, "Seconds from the beginning where it ends");
-  command.add_option("--mesh", options->mesh, "The model, if it is no longer where it was");
-  command.add_option("--tolerance", options->tolerance,
-                     ".glb: how far vertices may be off where key shapes are needed: a length on "
-                     "the stage like 1mm, or a part of the model's diagonal like 0.01 or 1%");
-  command.add_flag("--no-hands", options->no_hands, ".glb: the model alone");
+  command.add_duration("--to", options->to_s, "Seconds from the beginning at which it ends");
+  command.add_option("--mesh", options->mesh, "The model, if it has been moved");
+  command.add_option(
+      "--tolerance", options->tolerance,
+      ".glb: max error of vertices where key shapes are needed: a length on the stage "
+      "like 1mm, or a fraction of the model's diagonal like 0.01 or 1%");
+  command.add_flag("--no-hands", options->no_hands, ".glb: only the model");
   command.add_flag("--json", options->json, "A summary as JSON");
   command.on_chosen([options] { return export_command(*options); });
 }

@@ -13,17 +13,17 @@ Result<PuppetFile> open_puppet(const std::string& name) {
   if (!std::filesystem::exists(name, ignored)) {
     const auto shipped = cli::shipped_model(name + ".puppet.toml");
     if (!std::filesystem::exists(shipped, ignored))
-      return Error{Errc::bad_input, name +
-                                        ": there is no such puppet; name a puppet file, or face, "
-                                        "moai or spot, which are shipped"};
+      return Error{Errc::bad_input, name + ": no such puppet; name a puppet file, or one of the "
+                                           "shipped face, moai and spot"};
     file.path = shipped.string();
   }
   auto puppet = puppet::read_puppet(file.path);
   if (!puppet) return puppet.error();
   if (!puppet->is_played())
     return Error{Errc::bad_input,
-                 file.path + ": has no points, and so nothing that hands play; add [points] and "
-                             "functions, or open it with --mask"};
+                 file.path +
+                     ": has no points, so hands cannot play it; add [points] and functions, or "
+                     "open it with --mask"};
   file.puppet = *std::move(puppet);
   file.model = (std::filesystem::path(file.path).parent_path() / file.puppet.model).string();
   return file;

@@ -1,5 +1,5 @@
 #pragma once
-// A puppet's file, as commands name it.
+// Opens a puppet's file by its path or name.
 
 #include <string>
 
@@ -9,7 +9,7 @@ namespace nendo::app {
 
 struct PuppetFile {
   std::string path;
-  std::string model; ///< path of the model that stands beside it
+  std::string model; ///< path of its model, which is beside it
   puppet::Puppet puppet;
 };
 

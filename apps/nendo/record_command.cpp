@@ -1,4 +1,4 @@
-// nendo record: what gloves send, as a recording.
+// nendo record: records what gloves send.
 
 #include <filesystem>
 #include <iostream>
@@ -30,15 +30,17 @@ struct Options {
 };
 
 Result<void> check(Options& options) {
-  if (options.gloves.size() > 2) return Error{Errc::usage, "name one glove, or one for each hand"};
+  if (options.gloves.size() > 2)
+    return Error{Errc::usage,
+                 "GLOVE: takes 1 or 2 gloves, got " + std::to_string(options.gloves.size())};
   if (auto fine = cli::check_duration(options.duration_s); !fine) return fine;
   if (auto fine = options.length.check(); !fine) return fine;
   if (auto fine = gloves::check(options.calibration); !fine) return fine;
   std::error_code ignored;
   if (std::filesystem::exists(options.out, ignored)) {
     return Error{Errc::failed, "--out " + options.out +
-                                   ": is there already, and recordings are never overwritten; name "
-                                   "another file or move it away"};
+                                   ": exists, and recordings are never overwritten; name another "
+                                   "file or move it away"};
   }
   return {};
 }
@@ -98,7 +100,7 @@ void print_summary(const Options& options, const std::vector<gloves::OpenHand>& 
       std::cout << fmt::format("  {:14} {}\n", fmt::format("{} hand", name_of(hands[at].side)),
                                driver::in_words(recorded.sent[at]));
     if (recorded.lost > 0)
-      std::cout << fmt::format("  {:14} {} of these samples, for the disk was too slow\n",
+      std::cout << fmt::format("  {:14} {} of these samples, because the disk was too slow\n",
                                "not recorded", recorded.lost);
     return;
   }
@@ -142,8 +144,9 @@ int record(Options& options) {
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command("record", "Records what gloves send");
-  command.set_footer("The recording is a glove itself: replay:FILE. `nendo run --record` records "
-                     "all of a run, so that it can be replayed to the same shape.");
+  command.set_footer(
+      "A recording can be used as a glove: replay:FILE. `nendo run --record` records "
+      "a whole run, so that it can be replayed to the same shape.");
   command
       .add_option("GLOVE", options->gloves, "One, or one for each hand: serial:/dev/ttyUSB0, sim")
       .required();

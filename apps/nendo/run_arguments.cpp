@@ -38,10 +38,10 @@ std::string dated_name() {
   return name;
 }
 
-/// One that is there is written over only if it is the one that was opened.
+/// An existing file is overwritten only if it is the one that was opened.
 Result<void> check_out_puppet(const RunArguments& options) {
   if (options.out_puppet.empty()) return {};
-  if (!options.view.window) return Error{Errc::usage, "--out-puppet is the window's; add --view"};
+  if (!options.view.window) return Error{Errc::usage, "--out-puppet: needs the window; add --view"};
   std::error_code ignored;
   const bool is_opened =
       std::filesystem::equivalent(options.out_puppet, options.run.puppet_file, ignored);
@@ -55,7 +55,7 @@ Result<void> check_outputs(RunArguments& options) {
   const session::RunOptions& run = options.run;
   const session::ViewOptions& view = options.view;
   if (!view.window && (view.frames > 0 || view.contact || !view.screenshot.empty()))
-    return Error{Errc::usage, "--frames, --screenshot and --contact are the window's; add --view"};
+    return Error{Errc::usage, "--frames, --screenshot and --contact: need the window; add --view"};
   if (auto fine = cli::check_place("--out", run.out, deform::mesh_endings); !fine) return fine;
   const std::string& model = run.over ? run.over->take.setup.loop->mesh : run.mesh;
   if (auto fine = cli::check_spares(model, "--out", run.out, options.force); !fine) return fine;
@@ -70,7 +70,7 @@ Result<void> check_outputs(RunArguments& options) {
                               {"--screenshot", view.screenshot}});
 }
 
-/// A file, or the name of a shipped puppet. Its model stands beside it.
+/// Reads the puppet's file, or a shipped puppet. Its model is beside it.
 Result<void> read_puppet(RunArguments& options) {
   session::RunOptions& run = options.run;
   std::error_code ignored;
@@ -82,7 +82,7 @@ Result<void> read_puppet(RunArguments& options) {
   const bool is_named =
       !run.puppet_file.empty() && std::filesystem::exists(run.puppet_file, ignored);
   if (options.view.window && !run.puppet_file.empty() && !run.mesh.empty() && !is_named &&
-      ends_in(run.puppet_file, ".toml")) { // one that is to be made
+      ends_in(run.puppet_file, ".toml")) { // a new one
     if (run.out_puppet.file.empty()) run.out_puppet.file = run.puppet_file;
     run.loop.held = false;
     return {};
@@ -103,16 +103,15 @@ Result<void> read_masks(RunArguments& options) {
   session::RunOptions& run = options.run;
   const char* const option = !run.mask_file.empty() ? "--mask" : "--symmetry";
   if ((!run.mask_file.empty() || run.symmetric) && !run.puppet_file.empty())
-    return Error{Errc::usage, std::string(option) + ": is of fingertips, and with --puppet hands "
-                                                    "play one; put [[masks]] and mirror into its "
-                                                    "file"};
+    return Error{Errc::usage, std::string(option) + ": cannot be combined with --puppet; put "
+                                                    "[[masks]] and mirror into the puppet's file"};
   if (run.mask_file.empty()) return {};
   auto masks = puppet::read_puppet(run.mask_file);
   if (!masks) return masks.error();
   if (masks->is_played())
     return Error{Errc::bad_input, run.mask_file +
                                       ": has points and functions, so it is a puppet; open it with "
-                                      "--puppet, or leave only its [[masks]]"};
+                                      "--puppet, or keep only its [[masks]]"};
   run.masks = *std::move(masks);
   return {};
 }
@@ -121,8 +120,8 @@ Result<void> read_masks(RunArguments& options) {
 Result<void> read_take(RunArguments& options) {
   session::RunOptions& run = options.run;
   if (!options.overdub.take.empty() && !options.decided_by_take.empty())
-    return Error{Errc::usage, options.decided_by_take + ": the recording of --over decides that; "
-                                                        "leave it out"};
+    return Error{Errc::usage, options.decided_by_take + ": cannot be combined with --over, whose "
+                                                        "recording sets it; leave it out"};
   auto over = session::read_overdub(options.overdub);
   if (!over) return over.error();
   run.over = *std::move(over);
@@ -132,12 +131,12 @@ Result<void> read_take(RunArguments& options) {
   return {};
 }
 
-/// Of the settings that were asked for, and not of those that a run has by default.
+/// Checks the requested settings, and not the defaults.
 Result<void> check_settings(RunArguments& options) {
   const session::RunOptions& run = options.run;
   const flow::LoopSettings& asked = options.asked;
   constexpr auto naming = flow::Naming::options;
-  if (!run.puppet && !run.puppet_file.empty()) // one that is to be made
+  if (!run.puppet && !run.puppet_file.empty()) // a new one
     if (auto fine = flow::compatible(asked, flow::Played::through_air, naming); !fine) return fine;
   const auto played = run.puppet ? flow::played_by(*run.puppet) : flow::Played::nothing;
   return flow::all_effective(asked, played, naming);
@@ -150,7 +149,7 @@ Result<void> set_size(RunArguments& options) {
   auto size_m = to_metres(options.size);
   if (const auto size_cm = cli::number_of(options.size)) {
     size_m = *size_cm / 100.0;
-    cli::note("--size " + options.size + ": is in centimetres, for it has no unit");
+    cli::note("--size " + options.size + ": has no unit, so it is in centimetres");
   }
   if (!size_m || !sculpting::model_size_range_m.has(*size_m))
     return Error{Errc::usage, "--size " + options.size + ": use " + std::string(cli::length_words) +
@@ -185,7 +184,7 @@ Result<void> check_refinable(const deform::Mesh& model, const RunArguments& opti
   return Error{
       Errc::bad_input,
       "--refine: " + options.run.mesh + ": " + fine.error().message +
-          "; only closed models can be refined, so mend it with `nendo repair IN --out OUT`"};
+          "; only closed models can be refined, so repair it: `nendo repair IN --out OUT`"};
 }
 
 Result<void> set_shaping(RunArguments& options) {
@@ -197,7 +196,7 @@ Result<void> set_shaping(RunArguments& options) {
   flow::set_plain_settings(options.run.loop.sculptor, *settings);
   options.run.loop.sculptor.deformer.csrbf = *csrbf;
   if (settings->injective && options.not_injective)
-    return Error{Errc::usage, "--injective and --no-injective: choose one of them"};
+    return Error{Errc::usage, "--injective and --no-injective: give one of them"};
   if (const auto supports = session::parse_radius(options.run.radius, 1.0); !supports)
     return supports.error();
   options.run.filter = settings->filter;
@@ -220,8 +219,7 @@ Result<void> set_refine(RunArguments& options) {
     return Error{Errc::usage, fmt::format("--refine {}: use 4 to {} vertices", run.refine_to,
                                           flow::Refine{}.max_vertices)};
   if (run.changes_topology && !options.refine_to)
-    return Error{Errc::usage, "--topology: triangles must follow what becomes thin; add --refine, "
-                              "as --refine 100000"};
+    return Error{Errc::usage, "--topology: needs --refine, as --refine 100000"};
   return {};
 }
 
@@ -229,7 +227,7 @@ Result<void> set_pace(RunArguments& options) {
   session::RunOptions& run = options.run;
   if (!(run.loop.rate_hz >= flow::TickGrid::min_rate_hz &&
         run.loop.rate_hz <= flow::TickGrid::max_rate_hz))
-    return Error{Errc::usage, "--rate: use 1 to 10000 ticks a second"};
+    return Error{Errc::usage, "--rate: use 1 to 10000 ticks per second"};
   if (auto fine = options.loop.parse(run.loop, run.realtime); !fine) return fine;
   if (auto fine = cli::check_duration(run.duration_s); !fine) return fine;
   if (!(run.undo_memory_mb.value_or(0.0) >= 0.0 && run.undo_memory_mb.value_or(0.0) <= 1e6))
@@ -251,12 +249,11 @@ Result<void> check_recording(RunArguments& options) {
 Result<void> check_topology(RunArguments& options) {
   if (options.run.changes_topology && options.run.puppet)
     return Error{Errc::usage,
-                 "--topology: with a puppet, key O does it when it is wanted; leave out this or "
-                 "--puppet"};
+                 "--topology: cannot be combined with --puppet, with which key O does the same"};
   return {};
 }
 
-/// Of what nobody has named.
+/// Chooses the files that have no option.
 Result<void> choose_files(RunArguments& options) {
   session::RunOptions& run = options.run;
   if (run.mesh.empty() && !run.over)
@@ -299,7 +296,7 @@ Result<deform::Mesh> read_model(RunArguments& options) {
   run.reading = model->reading;
   if (!model->is_recorded)
     return Error{Errc::bad_input, run.mesh + ": is not the model of " + run.over->file +
-                                      "; a layer is played over the model that was recorded"};
+                                      "; --over needs the recorded model"};
   if (run.mesh.empty()) run.mesh = loop.mesh;
   if (auto fine = session::take_over_settings(model->mesh, run); !fine) return fine.error();
   if (auto fine = check_refinable(model->mesh, options); !fine) return fine.error();

@@ -1,5 +1,5 @@
 #pragma once
-// What `nendo run` and `nendo view` are told by their arguments.
+// The arguments of `nendo run` and `nendo view`.
 
 #include <cstdint>
 #include <optional>
@@ -18,13 +18,13 @@ namespace nendo::app::run_command {
 
 struct RunArguments {
   session::RunOptions run;
-  std::vector<std::string> models; ///< files; several stand side by side
+  std::vector<std::string> models; ///< files, which are placed side by side
   std::string up;                  ///< empty: y
-  std::string wire, knife;         ///< FROM:TO, when it is drawn; empty: when asked for
-  std::string size;                ///< of the model on the stage; empty: as the mode has it
+  std::string wire, knife;         ///< FROM:TO, the time of drawing; empty: on request
+  std::string size;                ///< the model's size on the stage; empty: the mode's
   std::string switch_action = "none";
   session::SettingArguments settings;
-  flow::LoopSettings asked; ///< which check() makes of `settings`
+  flow::LoopSettings asked; ///< the values of `settings`, set by check()
   std::string polynomial = "none";
   session::LoopArguments loop;
   session::ViewOptions view;
@@ -35,7 +35,7 @@ struct RunArguments {
   bool not_injective = false;
   std::optional<std::uint32_t> refine_to;
   std::string out_puppet;
-  bool force = false; ///< --out may be the model, and --out-puppet may be there
+  bool force = false; ///< --out may be the model, and --out-puppet may exist
 };
 
 /// Checks them, completes `run`, and reads the puppet, the masks and the take that they name.

@@ -1,4 +1,4 @@
-// nendo run: the main job, from gloves to a deformed model.
+// nendo run: shapes a model with gloves.
 
 #include <algorithm>
 #include <memory>
@@ -31,7 +31,7 @@
 namespace nendo::app::run_command {
 namespace {
 
-/// Up to this size, a tick of 64 links takes less time than a tick at 90 Hz has.
+/// Up to this size, a tick of 64 links takes less than the period of 90 Hz.
 constexpr Eigen::Index max_injective_unasked = 100'000;
 
 /// The views that the options ask for.
@@ -72,8 +72,8 @@ void warn_about_radius(const deform::Mesh& model, const RunArguments& options) {
   warn_about_reach("--radius " + options.run.radius, box, corners, deform::one_radius(reach));
 }
 
-/// Whether repairing closes the model, in words that follow a semicolon. That is tried, so that
-/// the advice is true, unless it takes longer than people wait.
+/// Returns whether repairing closes the model, as advice. It is tried, so that the advice is true,
+/// unless that takes too long.
 std::string advice_to_close(const deform::Mesh& model) {
   constexpr Eigen::Index max_tried = 100'000;
   if (model.vertices.cols() > max_tried) return "`nendo repair IN --out OUT` may close it";
@@ -81,20 +81,19 @@ std::string advice_to_close(const deform::Mesh& model) {
   return repaired ? "`nendo repair IN --out OUT` closes it" : repaired.error().message;
 }
 
-/// Tells before the first tick what keeps hands from knowing the model's inside.
+/// Warns before the first tick if the model has no inside.
 void note_inside(const deform::Mesh& model, const session::RunOptions& options) {
   const deform::ManifoldCheck closed = deform::check_closed_manifold(model);
   // Clay also knows the volume of surfaces that touch in a point.
   if (!closed && closed.fault != deform::ManifoldFault::pinched_vertex) {
     if (options.loop.sculptor.mode == flow::Mode::clay)
       cli::note(options.mesh + ": " + deform::describe(closed, model) +
-                ", so it has no inside, and what hands press in does not come out elsewhere; " +
-                advice_to_close(model));
+                ", so it has no inside, and its volume is not kept; " + advice_to_close(model));
     return;
   }
   if (const std::size_t inwards = deform::count_inward_faces(model); inwards > 0)
-    cli::note(fmt::format("{}: {} of its {} faces look inwards, so hands take its inside for its "
-                          "outside there; `nendo repair IN --out OUT` turns them",
+    cli::note(fmt::format("{}: {} of its {} faces look inwards, where inside and outside are "
+                          "exchanged; `nendo repair IN --out OUT` reverses them",
                           options.mesh, inwards, model.face_count()));
 }
 
@@ -105,12 +104,12 @@ void choose_injective(const deform::Mesh& model, RunArguments& options) {
     options.run.loop.sculptor.deformer.injective.emplace();
     return;
   }
-  cli::note(fmt::format("{}: has more than {} vertices, so nothing keeps the surface from folding; "
-                        "--injective does, and may make ticks late",
+  cli::note(fmt::format("{}: has more than {} vertices, so the surface can fold; --injective "
+                        "prevents folds, but ticks may be late",
                         options.run.mesh, max_injective_unasked));
 }
 
-/// Of hands that --adapt has learned for a --user.
+/// Stores what --adapt has learned about the hands of a --user.
 Result<void> keep_learned(const session::RunOptions& options,
                           const std::vector<gloves::OpenHand>& hands,
                           const flow::LoopStats& stats) {
@@ -123,19 +122,20 @@ Result<void> keep_learned(const session::RunOptions& options,
                                                stats.slips_counts[slot]);
       if (!slips) return slips.error();
       cli::note(slips->is_changed
-                    ? "how far sensors have slipped is kept in " + printable(slips->path.string()) +
-                          "; the one before stays"
-                    : std::string(name_of(hand.side)) + " hand: no sensor has slipped, so that " +
-                          printable(slips->path.string()) + " stays as it is");
+                    ? "the slips of the sensors are stored in " + printable(slips->path.string()) +
+                          "; a copy of the previous file is kept"
+                    : std::string(name_of(hand.side)) + " hand: no sensor has slipped; " +
+                          printable(slips->path.string()) + " is unchanged");
       continue;
     }
     const auto kept = sculpting::keep_ranges(hand.glove->info(), stats.range_sides[slot], user,
                                              stats.ranges[slot]);
     if (!kept) return kept.error();
-    cli::note(kept->empty() ? std::string(name_of(hand.side)) + " hand: learned nothing, for no "
-                                                                "joint went to and fro"
-                            : "what was learned is kept in " + printable(kept->string()) +
-                                  "; --user " + printable(user) + " uses it");
+    cli::note(kept->empty()
+                  ? std::string(name_of(hand.side)) + " hand: learned nothing, because no "
+                                                      "joint moved enough"
+                  : "the learned ranges are stored in " + printable(kept->string()) + "; --user " +
+                        printable(user) + " uses them");
   }
   return {};
 }
@@ -195,49 +195,51 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
   command.set_footer(
       "A GLOVE is one of" + gloves +
       "\nWithout --left and --right every identified glove is used, or simulated hands.\nKeys "
-      "while "
-      "it runs, the same in the terminal, in the window and in a browser; some only there:" +
+      "during the run, in the terminal, the window and a browser; some only in the last two:" +
       commands::key_list(commands::everywhere, "\n  key ", "\n      "));
   command.add_option("--left", run_options.left, "GLOVE on the left hand");
   command.add_option("--right", run_options.right, "GLOVE on the right hand");
   command.add_option("MODEL,--mesh", options.models,
-                     "OBJ, PLY, STL or glTF file to shape, or several, which stand side by side; "
-                     "without it, the shipped Moai");
+                     "OBJ, PLY, STL or glTF files to shape, side by side; without it, the shipped "
+                     "Moai");
   takes::add_up_option(command, options.up);
   command.add_option(
       "--puppet", run_options.puppet_file,
-      "A puppet file, or face, moai or spot: what each finger does to the model, in place of "
-      "hands that touch it. In a window with a MODEL, also a file that is to be made");
+      "A puppet file, or face, moai or spot: each finger then plays an action of the model, and "
+      "does not touch it. In a window with a MODEL, the file may be new");
   namespace setting = flow::setting;
   session::SettingArguments& settings = options.settings;
   settings.add(command, setting::mode);
   command.add_option(
       "--size", options.size,
-      "The model's longest side on the stage, where the hands are, e.g. 20cm; without "
-      "it 80 cm, with --mode clay 7.5 cm, and with parts 25 cm; a bare number is centimetres");
+      "The model's longest side on the stage, e.g. 20cm; without it 80 cm, with --mode clay "
+      "7.5 cm, and with parts 25 cm; a bare number is centimetres");
   command.add_option(std::string(setting::radius.option), run_options.radius,
                      std::string(setting::radius.help));
   settings.add(command, setting::brushes);
   settings.add(command, setting::brush_strength);
-  command.add_option("--mask", run_options.mask_file,
-                     "A file of places that fingertips leave as they are: [[masks]] with at and "
-                     "radius, as in a puppet's file; the window paints and saves them");
+  command.add_option(
+      "--mask", run_options.mask_file,
+      "A file of protected areas for fingertips: [[masks]] with at and radius, as in "
+      "a puppet's file; the window paints and saves them");
   command.add_option(
       "--wire", options.wire,
-      "FROM:TO, times of the run: between them the index fingers draw a wire through "
-      "the model, and it then cuts, e.g. 0.8s:2.5s; C does it by hand");
-  command.add_option("--knife", options.knife,
-                     "FROM:TO, likewise: a knife, as long as the model, in the index finger that "
-                     "points more; K does it by hand");
-  command.add_option("--refine", options.refine_to,
-                     "While the hands shape it, the model gets more triangles where it is "
-                     "stretched, and fewer where it is crowded, up to so many vertices");
-  command.add_flag("--topology", run_options.changes_topology,
-                   "With --refine, thin necks part, thin walls get a hole, and what comes as near "
-                   "fuses: thinner than the triangles' edges; O does it by hand");
+      "FROM:TO, e.g. 0.8s:2.5s: the index fingers draw a wire through the model between these "
+      "times, which then cuts; key C does the same");
+  command.add_option(
+      "--knife", options.knife,
+      "FROM:TO: the same with a knife as long as the model, at the index finger that "
+      "points more; key K does the same");
+  command.add_option(
+      "--refine", options.refine_to,
+      "Max number of vertices: during the run, the model gets more triangles where it "
+      "is stretched, and fewer where they are crowded");
+  command.add_flag(
+      "--topology", run_options.changes_topology,
+      "With --refine: where the model is thinner than its edges, necks break and walls "
+      "open, and surfaces as close as that fuse; key O does the same");
   command.add_flag("--symmetry", run_options.symmetric,
-                   "Fingertips, or hands in clay, shape both sides of the model's plane of "
-                   "symmetry, or of x = 0");
+                   "Shape both sides of the model's plane of symmetry, or of x = 0, at once");
   gloves::add_calibration_options(command, run_options.calibration, true);
   gloves::add_hand_length(command, run_options.length);
   settings.add(command, setting::kernel);
@@ -246,8 +248,7 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
   settings.add(command, setting::hold);
   settings.add(command, setting::injective);
   command.add_flag("--no-injective", options.not_injective,
-                   "Whatever the fingertips ask for; without either, --injective with models of up "
-                   "to " +
+                   "Allow folds; without either option, --injective with models of up to " +
                        std::to_string(max_injective_unasked) + " vertices");
 }
 
@@ -265,44 +266,45 @@ std::vector<std::string> decided_by_take() {
 void add_run_options(cli::Command& command, const std::shared_ptr<RunArguments>& options) {
   session::RunOptions& run_options = options->run;
   add_shape_options(command, *options);
-  command.add_rate("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000");
+  command.add_rate("--rate", run_options.loop.rate_hz, "Ticks per second, 1 to 10000");
   options->loop.add_to(command);
   command.add_option("--switch", options->switch_action,
-                     "What the wrist switch does. grab: the hands hold the model while it is on; "
-                     "commit: keeps the shape so far; toggle: lets go, takes hold again; keep: "
-                     "keeps what was just "
-                     "done (--keep-last)");
+                     "Action of the wrist switch. grab: the hands hold the model while it is on; "
+                     "commit: keeps the shape so far; toggle: releases and grabs; keep: saves the "
+                     "last seconds (--keep-last)");
   session::add_recording_options(command, run_options.recording);
   session::add_overdub_options(command, options->overdub);
   options->settings.add_filter(command);
   session::add_publish_option(command, options->publish);
-  command.add_duration("--duration", run_options.duration_s,
-                       "How long, e.g. 30s or 10m; 0: until Ctrl-C, or until the "
-                       "gloves are recordings (replay:FILE) that have ended; a window stays open");
+  command.add_duration(
+      "--duration", run_options.duration_s,
+      "How long, e.g. 30s or 10m; 0: until Ctrl-C, or until the end of the gloves' "
+      "recordings (replay:FILE); a window stays open");
   command.add_option("--undo-memory", run_options.undo_memory_mb,
-                     "Megabytes that undo and redo may take at most; without it, half of what the "
-                     "program may use. Then the oldest steps go");
+                     "Max megabytes for undo and redo, after which the oldest steps are discarded; "
+                     "without it, half of the available memory");
   command.add_option(
       "--out", run_options.out,
       "Where to write the shape, .obj, .ply or .stl; without it, nendo-<date>-<time>.obj");
   command.add_flag("--force", options->force, cli::force_summary);
   command.add_option("--picture", run_options.picture,
                      "Where to draw the model and the hands before and after, .png");
-  command.add_flag("--json", run_options.json, "Progress and summary as JSON, an object a line");
-  command.add_flag("--verbose", run_options.verbose,
-                   "A longer summary: how the shape was kept from folding");
-  command.add_option("--web", options->web,
-                     "[ADDR:]PORT at which a browser shows the run, with buttons; without ADDR, a "
-                     "browser on this machine");
-  command.add_option("--out-puppet", options->out_puppet,
-                     "Where the window saves a puppet that was edited, .toml; without it, the file "
-                     "that was opened, or beside you, named after the model");
+  command.add_flag("--json", run_options.json, "Progress and summary as JSON, one object per line");
+  command.add_flag("--verbose", run_options.verbose, "A longer summary, with figures about folds");
+  command.add_option(
+      "--web", options->web,
+      "[ADDR:]PORT at which a browser shows and controls the run; without ADDR, only a "
+      "browser on this machine");
+  command.add_option(
+      "--out-puppet", options->out_puppet,
+      "Where the window saves an edited puppet, .toml; without it, the file that was "
+      "opened, or one in the current folder, named after the model");
   command.add_option("--screenshot", options->view.screenshot,
                      "Where the window's last picture goes, .png");
   command.add_flag("--contact", options->view.contact,
-                   "The window shows at first where hands touch clay, and how hard (0)");
+                   "The window shows where hands touch clay, and how hard; key 0 switches it");
   command.add_option("--frames", options->view.frames,
-                     "The window's pictures after which it ends; 0: when it is closed");
+                     "Number of the window's pictures after which the run ends; 0: no limit");
   command.on_chosen([options, command] {
     options->decided_by_take = command.first_given(decided_by_take());
     return run(*options);
@@ -314,7 +316,7 @@ void add_run_options(cli::Command& command, const std::shared_ptr<RunArguments>&
 void add(cli::Command& program) {
   auto options = std::make_shared<RunArguments>();
   cli::Command command = program.add_command("run", "Shapes a model with one or two gloves");
-  command.add_flag("--view", options->view.window, "Opens the live window, as `nendo view` does");
+  command.add_flag("--view", options->view.window, "Open the live window, as `nendo view` does");
   add_run_options(command, options);
 }
 
@@ -322,7 +324,7 @@ void add_view(cli::Command& program) {
   auto options = std::make_shared<RunArguments>();
   options->view.window = true;
   cli::Command command = program.add_command(
-      "view", "As `nendo run`, in a window with the model, the hands and a panel");
+      "view", "Runs as `nendo run`, in a window with the model, the hands and a panel");
   add_run_options(command, options);
 }
 

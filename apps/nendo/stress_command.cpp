@@ -1,4 +1,4 @@
-// nendo stress: how punctual the loop is on this machine, and why not.
+// nendo stress: measures jitter and missed deadlines of the loop on this machine.
 
 #include <iostream>
 #include <memory>
@@ -15,6 +15,7 @@
 #include "cli/output_place.hpp"
 #include "cli/terminal.hpp"
 #include "nendo/commands.hpp"
+#include "nendo/model_output.hpp"
 #include "session/live_view.hpp"
 #include "session/setting_options.hpp"
 #include "stress/report.hpp"
@@ -101,15 +102,19 @@ int run(const stress::StressArguments& arguments) {
                             *arguments.histogram_us);
   if (const auto done = write_files(arguments, *options, **outcome); !done)
     return cli::report(done.error());
+  if (!arguments.json) {
+    report_written(arguments.hgrm);
+    report_written(arguments.picture);
+  }
   const std::string difference =
       earlier->is_object() ? stress::different_work(*earlier, results) : std::string();
   if (!difference.empty())
     cli::note("--compare " + arguments.compare +
-              ": was measured with other work: " + printable(difference));
+              ": was measured with other options: " + printable(difference));
   const auto bad = stress::fulfilled(options->conditions, results);
   for (const auto& line : bad)
     cli::note("--fail-if " + line);
-  if ((*outcome)->broke) cli::note("--break: a tick was later than that");
+  if ((*outcome)->broke) cli::note("--break: a tick was later than this limit");
   return bad.empty() ? 0 : static_cast<int>(Errc::failed);
 }
 
@@ -117,17 +122,17 @@ void add_reports(cli::Command& command, stress::StressArguments& arguments) {
   command.add_flag("--json", arguments.json, "The report as one JSON object").under("Report");
   command
       .add_option("-h,--histogram", arguments.histogram_us,
-                  "Print the lateness, a line a microsecond, up to this many microseconds")
+                  "Print the lateness, one line per microsecond, up to this number of microseconds")
       .under("Report");
   command.add_option("--hgrm", arguments.hgrm, "Write an HdrHistogram percentile file")
       .under("Report");
-  command.add_option("--picture", arguments.picture, "Draw the lateness, as SVG").under("Report");
+  command.add_option("--picture", arguments.picture, "Draw the lateness as SVG").under("Report");
   command
       .add_option("--compare", arguments.compare, "Show an earlier report (--json) beside this one")
       .under("Report");
   command
       .add_option("--fail-if", arguments.fail_if,
-                  "Exit with 1 if a figure is so, like 'p99.9>200us,missed>0'")
+                  "Exit with 1 if one of these conditions is true, like 'p99.9>200us,missed>0'")
       .under("Report");
 }
 
@@ -136,36 +141,39 @@ void add_reports(cli::Command& command, stress::StressArguments& arguments) {
 void add(cli::Command& program) {
   auto arguments = std::make_shared<stress::StressArguments>();
   cli::Command command = program.add_command(
-      "stress", "Tests how punctual the loop is on this machine, and says what made it late");
+      "stress",
+      "Measures jitter and missed deadlines of the loop on this machine, and their causes");
   command.free_short_help();
-  command.set_footer("It asks for real-time rights and says which were refused; without any it "
-                     "measures what an ordinary thread gets.");
+  command.set_footer("It requests real-time rights and reports which were refused; without any, it "
+                     "measures an ordinary thread.");
   command.add_microseconds("-i,--interval", arguments->interval_us,
                            "From tick to tick, 100us to 1s; a bare number is microseconds");
   command.add_option("-D,--duration", arguments->duration,
                      "How long: seconds, or 90s, 10m, 2h, 1d");
   command.add_option("--stages", arguments->stages,
-                     "What a tick does: sleep, input, hands, deform, publish, with commas");
+                     "Stages of a tick: sleep, input, hands, deform, publish, separated by commas");
   command.add_option("--load", arguments->load,
-                     "Work beside it, by processes of its own: cpu, mem, io, with commas");
+                     "Load by other processes: cpu, mem, io, separated by commas");
   command.add_microseconds("-b,--break", arguments->break_us,
                            "End at a tick that is later than this, e.g. 200us; a bare number is "
                            "microseconds");
   command.add_duration("--floor", arguments->floor_s,
-                       "Seconds to look at the machine alone before; 0: do not");
-  command.add_option("--left", arguments->run.left, "GLOVE on the left hand; without any, two sim");
+                       "Seconds to measure the machine alone first; 0: none");
+  command.add_option("--left", arguments->run.left,
+                     "GLOVE on the left hand; without any, two simulated gloves");
   command.add_option("--right", arguments->run.right, "GLOVE on the right hand");
   command.add_option("MODEL,--mesh", arguments->run.mesh,
                      "OBJ, PLY, STL or glTF file; without it, the shipped Moai");
   takes::add_up_option(command, arguments->up);
   session::add_setting(command, flow::setting::mode, arguments->mode);
-  command.add_option("--changes", arguments->changes_a_minute,
-                     "Changes the radius so many times a minute, in every other second, and counts "
-                     "the seconds with and without apart");
+  command.add_option(
+      "--changes", arguments->changes_a_minute,
+      "Change the radius this number of times per minute, in every other second, and "
+      "report the seconds with and without changes separately");
   command.add_option(std::string(flow::setting::radius.option), arguments->radius,
                      std::string(flow::setting::radius.help));
   command.add_flag("--view", arguments->view,
-                   "Looks on with the live window, to see what that costs the loop");
+                   "Open the live window, to measure its effect on the loop");
   arguments->loop.add_to(command, true);
   add_reports(command, *arguments);
   command.on_chosen([arguments] { return run(*arguments); });

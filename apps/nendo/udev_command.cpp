@@ -1,4 +1,5 @@
-// nendo udev: the rules that make gloves usable without root, and gloves bound to their adapters.
+// nendo udev: installs the rules that make gloves usable without root, and binds gloves to
+// adapters.
 
 #include <filesystem>
 #include <iostream>
@@ -32,7 +33,7 @@ Side side_of(const Options& options) {
   return options.hand == name_of(Side::left) ? Side::left : Side::right;
 }
 
-/// Makes the changes and says what came of each. Returns the exit code.
+/// Makes the changes and reports each. Returns the exit code.
 int carry_out(const std::vector<udev::RuleChange>& changes, const Options& options) {
   for (const udev::RuleChange& change : changes) {
     const std::string path = change.path.string();
@@ -49,34 +50,34 @@ int carry_out(const std::vector<udev::RuleChange>& changes, const Options& optio
 }
 
 Error foreign(const udev::RuleFile& file) {
-  return {Errc::failed, file.path.string() + ": not made by nendo, so it is left alone; move it "
-                                             "away if you want nendo's"};
+  return {Errc::failed, file.path.string() + ": not made by nendo, so it is not changed; move it "
+                                             "away to install nendo's"};
 }
 
 int install(const Options& options) {
   std::vector<udev::RuleChange> changes;
-  const auto texts = udev::rule_texts();
-  const auto in_force = udev::rules_in_force(options.root);
-  for (std::size_t k = 0; k < texts.size(); ++k) {
-    const udev::RuleFile& file = in_force[k];
+  const auto rules = udev::rule_texts();
+  const auto current = udev::rules_in_force(options.root);
+  for (std::size_t k = 0; k < rules.size(); ++k) {
+    const udev::RuleFile& file = current[k];
     if (file.state == udev::RuleState::foreign) return cli::report(foreign(file));
     if (file.state == udev::RuleState::current) {
       std::cout << "unchanged " << file.path.string() << '\n';
     } else {
-      changes.push_back({udev::etc_rules(options.root) / file.name, texts[k].text});
+      changes.push_back({udev::etc_rules(options.root) / file.name, rules[k].text});
     }
   }
   return carry_out(changes, options);
 }
 
-/// Bindings stay, because they are the user's own, and harmless without the rest.
+/// Bindings stay, because they belong to the user, and are harmless without the rules.
 int uninstall(const Options& options) {
   std::vector<udev::RuleChange> changes;
   for (const udev::RuleFile& file : udev::rules_in_etc(options.root)) {
     if (file.state == udev::RuleState::foreign) {
       cli::note(foreign(file).message);
     } else if (file.state == udev::RuleState::missing) {
-      std::cout << "not there " << file.path.string() << '\n';
+      std::cout << "missing " << file.path.string() << '\n';
     } else {
       changes.push_back({file.path, std::nullopt});
     }
@@ -85,7 +86,7 @@ int uninstall(const Options& options) {
   for (const udev::RuleFile& file : udev::rules_in_force(options.root)) {
     if (file.state != udev::RuleState::missing &&
         !file.path.string().starts_with(udev::etc_rules(options.root).string()))
-      std::cout << "left " << file.path.string() << ", which belongs to a package\n";
+      std::cout << "kept " << file.path.string() << ", which belongs to a package\n";
   }
   return code;
 }
@@ -98,7 +99,7 @@ int show(const Options& options) {
   }
   if (!options.file.empty()) {
     return cli::report({Errc::usage, options.file +
-                                         ": no such file of rules; there are 60-nendo.rules "
+                                         ": no such file of rules; the files are 60-nendo.rules "
                                          "and 61-nendo-uaccess.rules"});
   }
   for (const udev::RuleFile& file : udev::rules_in_force(options.root)) {
@@ -141,7 +142,7 @@ int bind(const Options& options) {
   if (!bindings) return cli::report(bindings.error());
   std::cout << *rule << std::endl;
   if (!options.by_place && binding->adapter.serial == "0001") // the CP2102's default
-    cli::note("many adapters have the serial number 0001; --by-place tells them apart");
+    cli::note("many adapters have the serial number 0001; --by-place distinguishes them");
   const int code =
       change_bindings(*bindings, udev::with_binding(*bindings, side_of(options), *rule), options);
   for (const udev::RuleFile& file : udev::rules_in_force(options.root)) {
@@ -163,10 +164,9 @@ using Action = int (*)(const Options& options);
 cli::Command add(cli::Command& udev, const std::shared_ptr<Options>& options,
                  const std::string& name, const std::string& summary, Action action) {
   cli::Command command = udev.add_command(name, summary);
-  command.add_option("--root", options->root, "The folder that stands for /, e.g. of an image");
+  command.add_option("--root", options->root, "Folder to use in place of /, e.g. of an image");
   if (action != show)
-    command.add_flag("--dry-run", options->dry_run,
-                     "Says what would be changed, and changes nothing");
+    command.add_flag("--dry-run", options->dry_run, "Print the changes without making them");
   command.on_chosen([options, action] { return action(*options); });
   return command;
 }
@@ -175,24 +175,24 @@ cli::Command add(cli::Command& udev, const std::shared_ptr<Options>& options,
 
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
-  cli::Command udev = program.add_command(
-      "udev", "Makes gloves usable without root, and gives them names that stay");
+  cli::Command udev =
+      program.add_command("udev", "Makes gloves usable without root, and gives them stable names");
   udev.require_command();
   udev.set_footer("Rules go to /etc/udev/rules.d, for which changes need sudo.");
-  add(udev, options, "install", "Installs the rules that identify gloves and grant them", install);
-  add(udev, options, "uninstall", "Removes what install wrote; bindings stay", uninstall);
-  cli::Command shown =
-      add(udev, options, "show", "Says which rules and bindings are in force", show);
-  shown.add_option("FILE", options->file, "Prints this file of rules, as install would write it");
+  add(udev, options, "install", "Installs the rules that identify gloves and grant access to them",
+      install);
+  add(udev, options, "uninstall", "Removes the installed rules; bindings stay", uninstall);
+  cli::Command shown = add(udev, options, "show", "Shows the rules and bindings in effect", show);
+  shown.add_option("FILE", options->file, "Print this file of rules, as install writes it");
   cli::Command bound =
-      add(udev, options, "bind", "Calls an adapter a glove's, known by its serial number", bind);
+      add(udev, options, "bind", "Binds an adapter, known by its serial number, to a glove", bind);
   bound.add_option("PORT", options->port, "The glove's port, e.g. /dev/ttyUSB0").required();
-  bound.add_option("--as", options->hand, "Which hand's glove it is")
+  bound.add_option("--as", options->hand, "The hand that wears the glove")
       .required()
       .one_of({"left", "right"});
   bound.add_flag("--by-place", options->by_place,
-                 "Known by the socket that it is plugged into, for adapters without serial number");
-  cli::Command unbound = add(udev, options, "unbind", "Takes a hand's binding back", unbind);
+                 "Identify it by its USB socket, for adapters without a serial number");
+  cli::Command unbound = add(udev, options, "unbind", "Removes a hand's binding", unbind);
   unbound.add_option("HAND", options->hand, "left or right").required().one_of({"left", "right"});
 }
 

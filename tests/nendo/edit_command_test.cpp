@@ -158,7 +158,7 @@ TEST_SUITE("edit_command") {
     const auto near_end = EditedRun::edit({"copy", run.timeline, "--hand", "right", "--key", "1",
                                            "--to", late, "--out", run.path("late.timeline.toml")});
     CHECK(near_end.exit_code == 0);
-    CHECK(is_one_line_about(near_end.err, "behind the end"));
+    CHECK(is_one_line_about(near_end.err, "after the end"));
     CHECK(run.shown(other)["hands"]["right"].size() == keys.size() + 1);
     run.fine({"delete", other, "--hand", "right", "--key", "1"});
     run.fine({"move", other, "--hand", "right", "--key", "1", "--to", keys[1]["time_s"].dump()});

@@ -126,7 +126,7 @@ TEST_SUITE("export_command") {
     const RecordedRun run("type2");
     const auto plain = test::nendo({"export", run.path("take.nendo"), "--out", run.path("a.glb")});
     CAPTURE(plain.out);
-    CHECK(plain.out.find("24 a second (--rate)") != std::string::npos);
+    CHECK(plain.out.find("24 per second (--rate)") != std::string::npos);
     CHECK(plain.out.find("1 % of the model's diagonal") != std::string::npos);
     CHECK(plain.out.find("(--tolerance)") != std::string::npos);
     const json told = json::parse(run.export_to("b.glb").out);

@@ -107,7 +107,7 @@ TEST_SUITE("overdub_command") {
     const std::string take = takes.path("take.nendo");
     using Arguments = std::vector<std::string>;
     const std::vector<std::pair<Arguments, std::string>> wrong{
-        {{"--over", take, "--mode", "type1"}, "--mode: the recording of --over decides that"},
+        {{"--over", take, "--mode", "type1"}, "--mode: cannot be combined with --over"},
         {{"--over", take, "--rate", "90"}, "--rate: the recording"},
         {{"--over", take, "--pinches", "measured"}, "--pinches: the recording"},
         {{"--over", take, "--puppet", "face"}, "--puppet: the recording"},

@@ -145,7 +145,7 @@ TEST_SUITE("recording_command") {
     CHECK(is_one_line_about(repaired.err, "gap"));
     CHECK(test::nendo({"recording", "check", mended}).exit_code == 0);
     CHECK(checked.err.find("behind") == std::string::npos);
-    CHECK(checked.err.find("whole to the end") != std::string::npos);
+    CHECK(checked.err.find("intact, to the end") != std::string::npos);
     test::write_file(bad, bytes.substr(0, bytes.size() - 1));
     const auto cut = test::nendo({"recording", "check", bad});
     CHECK(cut.exit_code == 1);

@@ -200,7 +200,7 @@ TEST_SUITE("stress") {
     CHECK(second.out.find("per scheduled tick") != std::string::npos);
     CHECK(second.out.find("earlier") != std::string::npos);
     CHECK(second.out.find("\n000049 ") != std::string::npos);
-    CHECK(second.err.find("other work") == std::string::npos);
+    CHECK(second.err.find("other options") == std::string::npos);
     const auto other =
         nendo::test::nendo({"stress", "-D", "0.3", "--floor", "0", "-p", "0", "--stages",
                             "sleep,input", "--load", "cpu", "--compare", file("a.json")});

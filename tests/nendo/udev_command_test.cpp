@@ -83,7 +83,7 @@ TEST_SUITE("udev command") {
     CHECK(root.files() == 0);
     const auto again = root.udev({"uninstall"});
     CHECK(again.exit_code == 0);
-    CHECK(says(again, "not there"));
+    CHECK(says(again, "missing"));
   }
 
   TEST_CASE("a package's rules are enough, and are not touched") {
@@ -92,7 +92,7 @@ TEST_SUITE("udev command") {
       write_file(root.package(std::string(file.name)), file.text);
     CHECK(says(root.udev({"install"}), "unchanged"));
     CHECK(root.files() == 2);
-    CHECK(says(root.udev({"uninstall"}), "left"));
+    CHECK(says(root.udev({"uninstall"}), "kept"));
     CHECK(root.files() == 2);
     // An older package's are overridden from /etc.
     write_file(root.package("60-nendo.rules"), "# Made by nendo: long ago\n");
