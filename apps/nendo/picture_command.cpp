@@ -19,7 +19,6 @@
 #include "cli/quantities.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"
-#include "render/distance_paint.hpp"
 #include "render/picture.hpp"
 #include "takes/key_poses.hpp"
 #include "takes/model_files.hpp"

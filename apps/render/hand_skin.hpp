@@ -7,10 +7,15 @@
 
 #include <nendo/hand/skeleton.hpp>
 
-#include "render/skin_weights.hpp"
 #include "render/surface.hpp"
 
 namespace nendo::render {
+
+/// Up to four joints that carry a place, the strongest first.
+struct SkinInfluence {
+  std::array<hand::Joint, 4> joints{};
+  std::array<float, 4> weights{}; ///< none is negative, and the sum is 1; 0 means not used
+};
 
 class HandSkin {
 public:

@@ -6,7 +6,6 @@
 
 #include <nendo/base/units.hpp>
 
-#include "render/coarse_surface.hpp"
 #include "render/exact_trig.hpp"
 #include "render/parallel.hpp"
 #include "render/sky_light.hpp"

@@ -9,6 +9,7 @@
 
 namespace nendo::render {
 
+using Eigen::Index;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
@@ -49,13 +50,32 @@ Textures textures_of(const deform::Mesh& mesh) {
   return of_materials;
 }
 
+// Linear. From light to dark, so that it is read without seeing red from green.
+const std::array<Vector3f, 5> ramp{
+    Vector3f{0.400F, 0.400F, 0.390F}, Vector3f{0.991F, 0.694F, 0.181F},
+    Vector3f{0.982F, 0.266F, 0.045F}, Vector3f{0.768F, 0.010F, 0.012F},
+    Vector3f{0.216F, 0.000F, 0.019F}};
+
+/// part: 0 to 1.
+Vector3f ramp_at(double part) {
+  const double place = part * static_cast<double>(ramp.size() - 1);
+  const auto before = std::min(static_cast<std::size_t>(place), ramp.size() - 2);
+  const auto share = static_cast<float>(place - static_cast<double>(before));
+  return (1.0F - share) * ramp[before] + share * ramp[before + 1];
+}
+
+double way_of(const deform::Mesh& rest, const deform::Points& shape, Index vertex) {
+  const double way = (shape.col(vertex) - rest.vertices.col(vertex)).norm();
+  return std::isfinite(way) ? way : 0.0;
+}
+
 } // namespace
 
 Paint::Paint(const deform::Mesh& mesh, std::vector<std::uint32_t>& corners) {
   const deform::Appearance& look = mesh.look;
   const auto& colours = look.vertex_colours;
   if (colours.cols() == mesh.vertices.cols())
-    for (Eigen::Index vertex = 0; vertex < colours.cols(); ++vertex)
+    for (Index vertex = 0; vertex < colours.cols(); ++vertex)
       vertex_colours_.emplace_back(colours.col(vertex).head<3>());
   const bool coloured_corners = mesh.look.texcoord_colours.cols() > 0;
   const auto faces = deform::drawn_faces(mesh);
@@ -109,6 +129,29 @@ Vector3f Paint::colour_at(std::size_t triangle, const std::array<std::uint32_t, 
       std::sqrt(area * static_cast<float>(size.width) * static_cast<float>(size.height));
   return colour.cwiseProduct(
       coat.texture->colour_at(place, samples > 0.0F ? pixels / samples : 0.0F));
+}
+
+double farthest_way(const deform::Mesh& rest, const deform::Points& shape) {
+  double farthest = 0.0;
+  for (Index vertex = 0; vertex < shape.cols(); ++vertex)
+    farthest = std::max(farthest, way_of(rest, shape, vertex));
+  return farthest;
+}
+
+std::shared_ptr<const Paint> paint_by_distance(const deform::Mesh& rest,
+                                               const deform::Points& shape, double farthest) {
+  deform::Mesh painted = rest; // whose materials decide which triangles are drawn, in what order
+  for (deform::Material& material : painted.look.materials) {
+    material.colour = Eigen::Vector4f::Ones();
+    material.texture = deform::no_index;
+  }
+  painted.look.texcoord_colours.resize(4, 0);
+  painted.look.vertex_colours.setOnes(4, shape.cols());
+  for (Index vertex = 0; vertex < shape.cols(); ++vertex)
+    painted.look.vertex_colours.col(vertex).head<3>() =
+        ramp_at(std::min(1.0, way_of(rest, shape, vertex) / farthest));
+  std::vector<std::uint32_t> corners;
+  return std::make_shared<const Paint>(painted, corners);
 }
 
 } // namespace nendo::render

@@ -4,17 +4,71 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "render/parallel.hpp"
 #include "render/raster.hpp"
 #include "render/shading.hpp"
-#include "render/triangle_bands.hpp"
 
 namespace nendo::render {
 
 using Eigen::Vector3f;
 
 namespace {
+
+/// A grid of samples, in bands that each have `band_rows` rows; the last one may have fewer.
+struct BandedGrid {
+  int width = 0;
+  int height = 0;
+  int band_rows = 1;
+  int bands() const noexcept { return (height + band_rows - 1) / band_rows; }
+  Rows rows_of(int band) const noexcept {
+    return {band * band_rows, std::min(height, (band + 1) * band_rows)};
+  }
+};
+
+/// The triangles whose samples are in a band, for each band of a grid.
+class TriangleBands {
+public:
+  TriangleBands() = default;
+  /// `places` are those of the vertices on the grid, and `corners` has three for each triangle.
+  /// Triangles without a sample in their box are left out.
+  TriangleBands(std::span<const GridCorner> places, std::span<const std::uint32_t> corners,
+                const BandedGrid& grid)
+      : ends_(static_cast<std::size_t>(grid.bands())) {
+    const auto each = [&](const auto& visit) { // visit(band, triangle)
+      for (std::size_t at = 0; at + 2 < corners.size(); at += 3) {
+        const std::array<GridCorner, 3> on{places[corners[at]], places[corners[at + 1]],
+                                           places[corners[at + 2]]};
+        const SampleBox box = sample_box(on, grid.width, {0, grid.height});
+        if (box.is_empty()) continue;
+        for (int band = box.y0 / grid.band_rows; band <= box.y1 / grid.band_rows; ++band)
+          visit(static_cast<std::size_t>(band), static_cast<std::uint32_t>(at));
+      }
+    };
+    each([&](std::size_t band, std::uint32_t) { ++ends_[band]; });
+    std::size_t all = 0;
+    for (std::size_t& end : ends_) { // where it begins, until its triangles are put there
+      const std::size_t count = end;
+      end = all;
+      all += count;
+    }
+    triangles_.resize(all);
+    each([&](std::size_t band, std::uint32_t triangle) { triangles_[ends_[band]++] = triangle; });
+  }
+
+  /// Returns where the corners of the band's triangles begin, in the order of the triangles.
+  std::span<const std::uint32_t> of(int band) const noexcept {
+    const auto at = static_cast<std::size_t>(band);
+    if (at >= ends_.size()) return {};
+    const std::size_t begin = at == 0 ? 0 : ends_[at - 1];
+    return std::span(triangles_).subspan(begin, ends_[at] - begin);
+  }
+
+private:
+  std::vector<std::size_t> ends_;        ///< in triangles_, of each band
+  std::vector<std::uint32_t> triangles_; ///< band by band
+};
 
 constexpr int samples_across = 2; // of a pixel
 constexpr int band_pixels = 32;   // rows that one thread draws at a time
@@ -260,6 +314,39 @@ Image silhouette(const Scene& scene, const Camera& camera, Size size) {
               .inverse_depth > 0.0F)
         image.at(x, y) = {255, 255, 255};
   return image;
+}
+
+Image contact_sheet(const std::vector<Panel>& panels, int columns) {
+  constexpr Pixel paper{250, 250, 249};
+  constexpr Pixel ink{52, 52, 56};
+  constexpr int gap = 10;                   // pixels between panels and about them
+  constexpr double letter_fraction = 0.030; // of a panel's height
+  constexpr double min_letters = 9.0;
+  constexpr double max_letters = 20.0;
+  if (panels.empty()) return Image({16, 16}, paper);
+  const auto count = static_cast<int>(panels.size());
+  if (columns <= 0) columns = static_cast<int>(std::ceil(std::sqrt(double(count))));
+  columns = std::min(columns, count);
+  const int rows = (count + columns - 1) / columns;
+  const Size panel = panels.front().image.size();
+  const bool captions = std::any_of(panels.begin(), panels.end(),
+                                    [](const Panel& one) { return !one.caption.empty(); });
+  const double letters = std::clamp(letter_fraction * panel.height, min_letters, max_letters);
+  const int caption = captions ? static_cast<int>(2.4 * letters) : 0;
+  Image sheet({gap + columns * (panel.width + gap), gap + rows * (panel.height + caption + gap)},
+              paper);
+  for (int at = 0; at < count; ++at) {
+    const int x = gap + (at % columns) * (panel.width + gap);
+    const int y = gap + (at / columns) * (panel.height + caption + gap);
+    const Panel& one = panels[static_cast<std::size_t>(at)];
+    sheet.paste(one.image, x, y);
+    const double words = width_of_words(one.caption, letters);
+    const double room = panel.width - 4.0;
+    const double height = words > room ? letters * room / words : letters;
+    write_words(sheet, x + (panel.width - width_of_words(one.caption, height)) / 2,
+                y + panel.height + 1.65 * letters, height, one.caption, ink);
+  }
+  return sheet;
 }
 
 } // namespace nendo::render

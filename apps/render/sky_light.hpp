@@ -1,5 +1,6 @@
 #pragma once
-// How much of the sky the vertices of surfaces see.
+// How much of the sky the vertices of surfaces see, and coarser copies of dense surfaces, which
+// cast the shadows for it: its maps are coarser still.
 
 #include <span>
 #include <vector>
@@ -14,5 +15,14 @@ namespace nendo::render {
 std::vector<std::vector<float>> sky_parts(std::span<const Caster> casters,
                                           const std::vector<const Surface*>& surfaces,
                                           unsigned threads);
+
+/// Returns whether the sky's light sees a coarser stand-in of the surface.
+bool is_dense(const Surface& surface) noexcept;
+
+/// Returns the places and the triangles of a coarser surface: the places in each cube of a grid
+/// become their mean, and triangles with two corners in one cube are left out. A closed surface
+/// stays closed. There are `cubes` along the longest side of the surface's box. Places that are no
+/// numbers, or are far away, are left out with their triangles.
+Surface coarse_surface(const Surface& surface, int cubes = 160);
 
 } // namespace nendo::render

@@ -2,14 +2,183 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
-#include "viewer/dope_sheet_drawing.hpp"
+#include <imgui.h>
+
 #include "viewer/row_button.hpp"
 #include "viewer/row_keys.hpp"
 
 namespace nendo::viewer {
 namespace {
+
+struct StripLook {
+  ImVec2 corner; ///< top left, in the window
+  ImVec2 size;
+  std::optional<StripKey> pointed_at;
+  std::optional<Retiming> shaded; ///< highlighted times
+};
+
+constexpr ImU32 ground = IM_COL32(27, 29, 33, 255);
+constexpr ImU32 lane_ground = IM_COL32(38, 41, 47, 255);
+constexpr ImU32 line = IM_COL32(66, 70, 78, 255);
+constexpr ImU32 words = IM_COL32(200, 204, 210, 255);
+constexpr ImU32 computed = IM_COL32(70, 150, 140, 255);
+constexpr ImU32 not_computed = IM_COL32(58, 60, 66, 255);
+constexpr ImU32 key_colour = IM_COL32(150, 180, 215, 255);
+constexpr ImU32 key_edge = IM_COL32(20, 22, 26, 255);
+constexpr ImU32 pointed_colour = IM_COL32(205, 222, 242, 255);
+constexpr ImU32 selected_colour = IM_COL32(255, 160, 40, 255);
+constexpr ImU32 selected_edge = IM_COL32(255, 240, 215, 255);
+constexpr ImU32 mark_colour = IM_COL32(205, 190, 110, 255);
+constexpr ImU32 head_colour = IM_COL32(235, 95, 70, 255);
+constexpr ImU32 shade = IM_COL32(255, 160, 40, 38);
+
+class StripDrawing {
+public:
+  StripDrawing(const DopeSheet& strip, const TimelineView& view, const StripLook& look)
+      : strip_(strip), view_(view), look_(look), list_(*ImGui::GetWindowDrawList()) {}
+
+  void draw() {
+    grounds();
+    rule();
+    if (look_.shaded) shade_times(*look_.shaded);
+    for (std::size_t lane = 0; lane < view_.lanes.size(); ++lane)
+      keys_of(lane);
+    marks();
+    head();
+    numbers();
+  }
+
+private:
+  ImVec2 at(double x, double y) const {
+    return {look_.corner.x + static_cast<float>(x), look_.corner.y + static_cast<float>(y)};
+  }
+  double x_of(double time_s) const { // a little beyond the strip where it is beyond
+    return std::clamp(strip_.x_of(time_s), DopeSheet::left - 20.0, width() + 20.0);
+  }
+  double width() const { return static_cast<double>(look_.size.x); }
+  double height() const { return static_cast<double>(look_.size.y); }
+  void text(double x, double y, ImU32 colour, const char* what) const {
+    list_.AddText(at(x, y), colour, what);
+  }
+  void upright(double x, double from, double to, ImU32 colour) const {
+    list_.AddLine(at(x, from), at(x, to), colour);
+  }
+
+  void grounds() const {
+    list_.AddRectFilled(at(0.0, 0.0), at(width(), height()), ground);
+    const double begin = std::max(DopeSheet::left, x_of(0.0));
+    const double end = std::min(width(), x_of(view_.duration_s));
+    for (std::size_t lane = 0; lane <= view_.lanes.size(); ++lane) {
+      const double middle = DopeSheet::middle_of(lane);
+      constexpr double half = DopeSheet::lane / 2 - 1.0;
+      list_.AddRectFilled(at(begin, middle - half), at(end, middle + half), lane_ground);
+      const bool events = lane == view_.lanes.size();
+      text(6.0, middle - 7.0, words,
+           events ? "events" : std::string(name_of(view_.lanes[lane].side)).c_str());
+    }
+    constexpr double top = DopeSheet::ruler - 5.0;
+    constexpr double bottom = DopeSheet::ruler - 1.0;
+    list_.AddRectFilled(at(begin, top), at(end, bottom), not_computed);
+    const double so_far = std::clamp(x_of(view_.computed_s), begin, end);
+    list_.AddRectFilled(at(begin, top), at(so_far, bottom), computed);
+  }
+
+  // A line at each; the numbers come later, over the play head.
+  template <class Visit>
+  void each_step(Visit&& visit) const {
+    const double step_s = strip_.ruler_step_s();
+    for (double number = std::ceil(strip_.first_s() / step_s); number * step_s <= strip_.last_s();
+         number += 1.0)
+      visit(number * step_s);
+  }
+
+  void rule() const {
+    each_step([this](double time_s) { upright(strip_.x_of(time_s), 4.0, height(), line); });
+  }
+
+  void numbers() const {
+    const int decimals =
+        std::max(0, static_cast<int>(-std::floor(std::log10(strip_.ruler_step_s()) + 1e-9)));
+    each_step([&](double time_s) {
+      char label[32];
+      std::snprintf(label, sizeof label, "%.*f", decimals, time_s);
+      const double x = strip_.x_of(time_s) + 3.0;
+      const auto long_px = static_cast<double>(ImGui::CalcTextSize(label).x);
+      text(std::min(x, width() - long_px - 2.0), 3.0, words, label);
+    });
+  }
+
+  void shade_times(const Retiming& times) const {
+    const double begin = std::max(DopeSheet::left, x_of(times.from_s));
+    list_.AddRectFilled(at(begin, DopeSheet::ruler),
+                        at(std::max(begin, x_of(times.to_s)), height()), shade);
+  }
+
+  void keys_of(std::size_t lane) const {
+    const auto& keys_s = view_.lanes[lane].keys_s;
+    const auto at_time = [&](double time_s) {
+      return std::lower_bound(keys_s.begin(), keys_s.end(), time_s);
+    };
+    constexpr double min_gap = 1.0; // pixels; nearer ones are one to the eye
+    const double pixel_s = strip_.time_at(DopeSheet::left + 1.0) - strip_.first_s();
+    for (auto key = at_time(strip_.first_s() - 8.0 * pixel_s);
+         key != keys_s.end() && *key <= strip_.last_s() + 8.0 * pixel_s;) {
+      diamond(lane, static_cast<std::size_t>(key - keys_s.begin()), key_colour, key_edge);
+      key = std::max(key + 1, at_time(*key + min_gap * pixel_s));
+    }
+    for (const auto& [marked, colour, edge] :
+         {std::tuple{look_.pointed_at, pointed_colour, key_edge},
+          std::tuple{view_.selected, selected_colour, selected_edge}})
+      if (marked && marked->lane == lane && marked->key < keys_s.size())
+        diamond(lane, marked->key, colour, edge);
+  }
+
+  void diamond(std::size_t lane, std::size_t key, ImU32 colour, ImU32 edge) const {
+    constexpr double half = 7.0;
+    const double x = strip_.x_of(view_.lanes[lane].keys_s[key]);
+    if (x < DopeSheet::left - half || x > width() + half) return;
+    const double y = DopeSheet::middle_of(lane);
+    const ImVec2 top = at(x, y - half);
+    const ImVec2 side = at(x + half, y);
+    const ImVec2 bottom = at(x, y + half);
+    const ImVec2 other = at(x - half, y);
+    list_.AddQuadFilled(top, side, bottom, other, colour);
+    list_.AddQuad(top, side, bottom, other, edge, 1.5F);
+  }
+
+  // A name is written where it has room before the next.
+  void marks() const {
+    const double y = DopeSheet::middle_of(view_.lanes.size());
+    double free_from = 0.0;
+    for (std::size_t mark = 0; mark < view_.marks.size(); ++mark) {
+      const double x = strip_.x_of(view_.marks[mark].time_s);
+      if (x < DopeSheet::left || x > width()) continue;
+      list_.AddRectFilled(at(x - 1.0, y - 10.0), at(x + 1.0, y + 10.0), mark_colour);
+      const char* const name = view_.marks[mark].name.c_str();
+      const auto long_px = static_cast<double>(ImGui::CalcTextSize(name).x);
+      const bool last = mark + 1 == view_.marks.size();
+      const double next = last ? width() : strip_.x_of(view_.marks[mark + 1].time_s);
+      if (x < free_from || x + 4.0 + long_px > std::min(next - 2.0, width())) continue;
+      text(x + 4.0, y - 7.0, mark_colour, name);
+      free_from = x + 4.0 + long_px;
+    }
+  }
+
+  void head() const {
+    const double x = strip_.x_of(view_.head_s);
+    if (x < DopeSheet::left - 1.0 || x > width()) return;
+    list_.AddRectFilled(at(x - 1.0, 0.0), at(x + 1.0, height()), head_colour);
+    list_.AddTriangleFilled(at(x - 6.0, 0.0), at(x + 6.0, 0.0), at(x, 9.0), head_colour);
+  }
+
+  const DopeSheet& strip_;
+  const TimelineView& view_;
+  const StripLook& look_;
+  ImDrawList& list_;
+};
 
 constexpr float controls_height = 36.0F;
 constexpr float margin = 6.0F;
@@ -65,7 +234,7 @@ void DopeSheetWidget::draw(const TimelineView& view, const std::optional<Retimin
     look.pointed_at = strip_.key_at(view.lanes, x, y);
     if (!taken_) tell_what_is_at(view, strip_, x, y);
   }
-  draw_strip(strip_, view, look);
+  StripDrawing(strip_, view, look).draw();
   ImGui::End();
   ImGui::PopStyleVar(2);
 }

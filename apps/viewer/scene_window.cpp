@@ -1,7 +1,9 @@
 #include "viewer/scene_window.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
+#include <deque>
 #include <thread>
 #include <utility>
 
@@ -12,11 +14,74 @@
 #include <imgui.h>
 
 #include "commands/commands.hpp"
-#include "viewer/quick_input.hpp"
+#include "viewer/imgui_input.hpp"
 #include "viewer/row_keys.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
+
+/// Makes short key presses and clicks visible to ImGui, which reads keyboard and mouse once per
+/// picture. Where a picture takes long, as without a graphics card, a key can go down and up again
+/// between two pictures, and the pointer can have moved before the button is seen to be down. Here
+/// a short key press waits for the next picture, and a click keeps its place.
+class QuickInput {
+public:
+  /// Reports that a key went down. key: GLFW's number.
+  void press(int key, bool control, bool shift) {
+    constexpr std::size_t max_waiting = 64; // if the user leans on the keyboard
+    if (key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER) return; // come with the others
+    if (waiting_.size() < max_waiting) waiting_.push_back({key, control, shift});
+  }
+  /// Reports that the pointer has moved, in pixels from the window's top left corner.
+  void point(double x, double y) noexcept {
+    pointer_ = {static_cast<float>(x), static_cast<float>(y)};
+  }
+  /// Reports that a button went down at the place of the pointer.
+  void click() noexcept {
+    if (!clicked_) clicked_ = pointer_;
+  }
+
+  /// Passes the waiting input to ImGui. It must be called before ImGui begins a picture, after its
+  /// back end has reported the present state.
+  void put() {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (const auto place = std::exchange(clicked_, {})) put_pointer(place->x, place->y);
+    const int before = std::exchange(last_, 0);
+    while (!waiting_.empty()) {
+      const Tap tap = waiting_.front();
+      if (tap.key == before) return; // tapped twice: it is seen to go up in between
+      waiting_.pop_front();
+      if (is_key_down(tap.key)) continue; // it still is down, and ImGui sees that
+      beside_ = {tap.key, io.KeyCtrl, io.KeyShift};
+      put_key(tap.key, true);
+      put_modifiers(tap.control, tap.shift);
+      last_ = tap.key;
+      return;
+    }
+  }
+  /// Sets the keyboard back to the state that the back end reported. It must be called after the
+  /// picture. The back end reports the pointer for each picture, so the pointer needs no reset.
+  void reset_keyboard() {
+    if (!beside_) return;
+    put_key(beside_->key, false);
+    put_modifiers(beside_->control, beside_->shift);
+    beside_.reset();
+  }
+
+private:
+  struct Tap {
+    int key;
+    bool control;
+    bool shift;
+  };
+
+  std::deque<Tap> waiting_;
+  ImVec2 pointer_;
+  std::optional<ImVec2> clicked_; ///< since the last picture
+  int last_ = 0;                  ///< the key that was passed for the latest picture; 0 means none
+  std::optional<Tap> beside_;     ///< while a tap is passed: the real state of the modifiers
+};
+
 namespace {
 
 Error without_window(const std::string& why, const std::string& instead) {
@@ -253,7 +318,7 @@ void SceneWindow::follow_view_keys() {
 
 void SceneWindow::end_picture() {
   ImGui::Render();
-  quick_->take_back();
+  quick_->reset_keyboard();
   draw_all(!draws_itself_);
   glfwSwapBuffers(window_);
   std::this_thread::sleep_until(begun_ + min_period);

@@ -1,4 +1,3 @@
-#include "render/coarse_surface.hpp"
 
 #include <cmath>
 #include <limits>
