@@ -7,8 +7,7 @@
 
 #include <imgui.h>
 
-#include "viewer/row_button.hpp"
-#include "viewer/row_keys.hpp"
+#include "viewer/command_widgets.hpp"
 
 namespace nendo::viewer {
 namespace {

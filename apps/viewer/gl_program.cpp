@@ -1,6 +1,7 @@
 #include "viewer/gl_program.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <string>
 
 #define GL_GLEXT_PROTOTYPES
@@ -9,9 +10,145 @@
 namespace nendo::viewer {
 namespace {
 
-Result<GLuint> compiled(GLenum kind, const char* text) {
+// They use the same lights as light_maps.cpp, without the sky's shadows. Each kind of fragment has
+// a shader of its own: where there is no graphics card, all branches are computed.
+constexpr const char* vertex_shader = R"(#version 330
+invariant gl_Position; // the same in all programs, so that depths are equal
+uniform mat4 clip_of_world;
+uniform bool from_blocks;
+uniform samplerBuffer block_places;   // 64 x, 64 y, 64 z, and again
+uniform samplerBuffer block_normals;
+uniform samplerBuffer block_colours;
+uniform bool vertex_colours;
+uniform bool by_corners; // then vertices are counted by corners
+uniform bool textured;
+uniform usamplerBuffer corner_places;
+uniform samplerBuffer corner_texcoords;
+uniform bool corner_colours; // in place of the vertices'
+uniform samplerBuffer corner_tints;
+uniform float scale;
+uniform vec3 offset;
+layout(location = 0) in vec3 given_place;
+layout(location = 1) in vec3 given_normal;
+out vec3 place;
+// At an edge the middle of a pixel may lie outside of the triangle, and far away from it if the
+// triangle is seen edge on. These two are of where the triangle is.
+centroid out vec3 within;
+centroid out vec3 normal;
+centroid out vec3 tint;
+centroid out vec2 texcoord;
+vec3 of_block(samplerBuffer blocks) {
+  int vertex = by_corners ? int(texelFetch(corner_places, gl_VertexID).r) : gl_VertexID;
+  int at = vertex / 64 * 192 + vertex % 64;
+  return vec3(texelFetch(blocks, at).r, texelFetch(blocks, at + 64).r, texelFetch(blocks, at + 128).r);
+}
+vec3 of_corner(samplerBuffer floats) {
+  int at = 3 * gl_VertexID;
+  return vec3(texelFetch(floats, at).r, texelFetch(floats, at + 1).r, texelFetch(floats, at + 2).r);
+}
+void main() {
+  place = from_blocks ? scale * of_block(block_places) + offset : given_place;
+  normal = from_blocks ? of_block(block_normals) : given_normal;
+  texcoord = textured ? texelFetch(corner_texcoords, gl_VertexID).rg : vec2(0.0);
+  tint = corner_colours ? of_corner(corner_tints) : vertex_colours ? of_block(block_colours) : vec3(1.0);
+  within = place;
+  gl_Position = clip_of_world * vec4(place, 1.0);
+}
+)";
+
+/// Of depths and silhouettes.
+constexpr const char* white_shader = R"(#version 330
+out vec4 shown;
+void main() { shown = vec4(1.0); }
+)";
+
+/// What the shaders of grounds and of surfaces share.
+constexpr const char* light_shader = R"(#version 330
+uniform vec3 eye, colour, key, fill, rim;
+uniform float gloss, opacity, rim_opacity, grid, fade, height;
+uniform bool unlit, facets, shadowed;
+uniform mat4 map_of_world;
+uniform float slack;
+uniform sampler2DShadow shadows;
+in vec3 place;
+centroid in vec3 within;
+centroid in vec3 normal;
+centroid in vec3 tint;
+centroid in vec2 texcoord;
+uniform bool textured;
+uniform sampler2D picture;
+out vec4 shown;
+vec3 screen(vec3 linear) {
+  vec3 soft = mix(linear, 0.8 + (linear - 0.8) / (1.0 + (linear - 0.8) / 0.2), greaterThan(linear, vec3(0.8)));
+  return pow(max(soft, 0.0), vec3(1.0 / 2.2));
+}
+// How much of the key light reaches the place. Samples round about make the shadow's edge soft.
+float lit_part(vec3 n) {
+  if (!shadowed) return 1.0;
+  vec3 on = 0.5 + 0.5 * (map_of_world * vec4(within + slack * (n + key), 1.0)).xyz;
+  // Each of the four is smoothed between its four samples by the card. More would cost most of the
+  // picture's time where there is no card.
+  vec2 step = 1.0 / vec2(textureSize(shadows, 0));
+  float lit = 0.0;
+  for (int y = -1; y <= 1; y += 2)
+    for (int x = -1; x <= 1; x += 2)
+      lit += textureLod(shadows, vec3(on.xy + step * vec2(x, y), min(on.z, 1.0)), 0.0);
+  return lit / 4.0;
+}
+)";
+
+/// After light_shader.
+constexpr const char* ground_shader = R"(
+vec3 background() {
+  float t = smoothstep(0.0, 1.0, 1.0 - gl_FragCoord.y / height);
+  return mix(vec3(0.86, 0.885, 0.91), vec3(0.70, 0.70, 0.695), t);
+}
+float line(float coordinate) {
+  float width = max(0.0015, fwidth(coordinate));
+  float off = abs(fract(coordinate / grid + 0.5) - 0.5) * grid;
+  return clamp((width - off) / width + 0.5, 0.0, 1.0) * 0.0015 / width;
+}
+void main() {
+  float near = clamp(1.25 - 1.25 * length(place.xz) / fade, 0.0, 1.0);
+  float drawn = max(line(place.x), line(place.z));
+  float lit = lit_part(vec3(0.0, 1.0, 0.0));
+  float bright = 0.9 * (0.68 + 0.32 * lit) * (1.0 - 0.3 * drawn);
+  shown = vec4(screen(background() * mix(1.0, bright, near)), 1.0);
+}
+)";
+
+/// After light_shader.
+constexpr const char* surface_shader = R"(
+void main() {
+  vec3 sight = normalize(eye - within);
+  // A smooth normal may lean away from the eye at an outline. So the triangle's own side counts:
+  // turning that normal to the eye would light single pixels from behind.
+  vec3 side = cross(dFdx(place), dFdy(place));
+  if (dot(side, sight) < 0.0) side = -side;
+  vec3 n = length(normal) > 0.0 ? normalize(normal) : sight;
+  if (dot(n, side) < 0.0) n = -n;
+  if (facets) n = normalize(side);
+  float across = 1.0 - clamp(dot(n, sight), 0.0, 1.0);
+  float part = mix(opacity, rim_opacity, across * across * across);
+  vec3 own = colour * tint;
+  // Its rows begin at the top, and texture coordinates at the bottom.
+  vec3 seen = texture(picture, vec2(texcoord.x, 1.0 - texcoord.y)).rgb;
+  if (textured) own *= seen;
+  if (unlit) { shown = vec4(screen(colour), part); return; }
+  vec3 light = vec3(0.54 * (0.71 + 0.29 * n.y));
+  float lit = dot(n, key) > -0.12 ? lit_part(n) : 0.0;
+  light += lit * max(0.0, (dot(n, key) + 0.12) / 1.12) * vec3(1.42, 1.35, 1.25);
+  light += max(0.0, (dot(n, fill) + 0.3) / 1.3) * vec3(0.22, 0.27, 0.34);
+  light += across * across * max(0.0, (dot(n, rim) + 0.2) / 1.2) * vec3(0.62, 0.66, 0.72);
+  float highlight = pow(max(0.0, dot(n, normalize(key + sight))), 32.0);
+  shown = vec4(screen(own * light + gloss * lit * highlight * vec3(1.42, 1.35, 1.25)), part);
+}
+)";
+
+/// The shader's text consists of the given parts.
+Result<GLuint> compiled(GLenum kind, std::initializer_list<const char*> parts) {
   const GLuint shader = glCreateShader(kind);
-  glShaderSource(shader, 1, &text, nullptr);
+  glShaderSource(shader, static_cast<GLsizei>(parts.size()), parts.begin(), nullptr);
   glCompileShader(shader);
   GLint fine = 0;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &fine);
@@ -26,13 +163,17 @@ Result<GLuint> compiled(GLenum kind, const char* text) {
 
 } // namespace
 
-Result<unsigned> make_program(const char* vertex, const char* fragment) {
-  const auto vertex_shader = compiled(GL_VERTEX_SHADER, vertex);
-  if (!vertex_shader) return vertex_shader.error();
-  const auto fragment_shader = compiled(GL_FRAGMENT_SHADER, fragment);
-  if (!fragment_shader) return fragment_shader.error();
+Result<unsigned> make_program(Fragments kind) {
+  const auto vertices = compiled(GL_VERTEX_SHADER, {vertex_shader});
+  if (!vertices) return vertices.error();
+  const auto fragments =
+      kind == Fragments::white
+          ? compiled(GL_FRAGMENT_SHADER, {white_shader})
+          : compiled(GL_FRAGMENT_SHADER,
+                     {light_shader, kind == Fragments::ground ? ground_shader : surface_shader});
+  if (!fragments) return fragments.error();
   const GLuint program = glCreateProgram();
-  for (const GLuint shader : {*vertex_shader, *fragment_shader}) {
+  for (const GLuint shader : {*vertices, *fragments}) {
     glAttachShader(program, shader);
     glDeleteShader(shader);
   }

@@ -7,8 +7,6 @@
 #include <GL/glcorearb.h>
 
 #include "render/light_maps.hpp"
-#include "viewer/gl_program.hpp"
-#include "viewer/gl_shaders.hpp"
 
 namespace nendo::viewer {
 
@@ -63,13 +61,10 @@ Result<std::unique_ptr<GlRenderer>> GlRenderer::make() {
     return Error{Errc::failed, "OpenGL 3.3 is needed, and this is " + std::to_string(major) + "." +
                                    std::to_string(minor)};
   std::unique_ptr<GlRenderer> renderer(new GlRenderer);
-  const std::array<std::string, 3> fragment_shaders{white_shader,
-                                                    std::string(light_shader) + ground_shader,
-                                                    std::string(light_shader) + surface_shader};
-  for (std::size_t kind = 0; kind < fragment_shaders.size(); ++kind) {
-    const auto program = make_program(vertex_shader, fragment_shaders[kind].c_str());
+  for (const Fragments kind : {Fragments::white, Fragments::ground, Fragments::surface}) {
+    const auto program = make_program(kind);
     if (!program) return program.error();
-    renderer->programs_[kind] = *program;
+    renderer->programs_[static_cast<std::size_t>(kind)] = *program;
   }
   glGenVertexArrays(1, &renderer->vertex_array_);
   glGenBuffers(1, &renderer->model_indices_);

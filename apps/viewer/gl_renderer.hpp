@@ -13,8 +13,9 @@
 #include "render/camera.hpp"
 #include "render/image.hpp"
 #include "render/scene.hpp"
+#include "viewer/frame_buffers.hpp"
+#include "viewer/gl_program.hpp"
 #include "viewer/model_textures.hpp"
-#include "viewer/shadow_map.hpp"
 
 namespace nendo::viewer {
 
@@ -51,8 +52,6 @@ private:
   void draw_surface(const render::Surface& surface, bool model);
   void draw_parts(const render::Scene& beside, Look look, bool shadowed);
   bool cast_shadows(const render::Scene& beside, const Eigen::Vector3f& key);
-  /// Whose fragment shader a program has.
-  enum class Fragments : std::size_t { white, ground, surface };
   void use(Fragments fragments);
   template <class Sets>
   void for_each_program(const Sets& sets);

@@ -14,7 +14,7 @@
 #include <nendo/puppet/puppet_edit.hpp>
 #include <nendo/puppet/rig_shapes.hpp>
 
-#include "viewer/surface_pick.hpp"
+#include "viewer/pointing.hpp"
 
 namespace nendo::viewer {
 

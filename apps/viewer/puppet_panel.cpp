@@ -6,10 +6,10 @@
 
 #include <nendo/hand/skeleton.hpp>
 
+#include "viewer/command_widgets.hpp"
 #include "viewer/panel.hpp"
 #include "viewer/puppet_marks.hpp"
 #include "viewer/puppet_tool.hpp"
-#include "viewer/row_button.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {

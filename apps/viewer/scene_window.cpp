@@ -14,8 +14,9 @@
 #include <imgui.h>
 
 #include "commands/commands.hpp"
+#include "viewer/command_widgets.hpp"
+#include "viewer/frame_buffers.hpp"
 #include "viewer/imgui_input.hpp"
-#include "viewer/row_keys.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {

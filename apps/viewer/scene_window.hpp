@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "viewer/gl_renderer.hpp"
-#include "viewer/smooth_target.hpp"
 
 struct GLFWwindow;
 
 namespace nendo::viewer {
 
 class QuickInput;
+class SmoothTarget;
 
 /// Simulated input of a mouse and a keyboard, for tests.
 struct SimulatedInput {

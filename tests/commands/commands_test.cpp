@@ -14,11 +14,11 @@
 #include <nendo/flow/setting.hpp>
 
 #include "commands/commands.hpp"
+#include "viewer/command_widgets.hpp"
 #include "web/client_commands.hpp"
 #include "web/page_commands.hpp"
 #include "web/wire.hpp"
 #ifdef NENDO_WINDOW
-#include "viewer/row_keys.hpp"
 #endif
 
 namespace commands_test {

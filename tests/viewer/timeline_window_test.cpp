@@ -8,7 +8,7 @@
 #include "support/flow_fixtures.hpp"
 #include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
-#include "viewer/row_keys.hpp"
+#include "viewer/command_widgets.hpp"
 #include "viewer/timeline_window.hpp"
 
 namespace timeline_window_test {

@@ -1,8 +1,10 @@
 #pragma once
-// The shadow that a light casts, as OpenGL draws it: the depth of all that casts, seen from the
-// light. All calls belong to the thread that has the OpenGL context.
+// OpenGL's frame buffers: the shadow that a light casts, as the depth of all that casts, seen from
+// the light; and one with smooth edges. All calls belong to the thread that has the OpenGL context.
 
 #include <Eigen/Geometry>
+
+#include "render/image.hpp"
 
 namespace nendo::viewer {
 
@@ -38,6 +40,36 @@ private:
   bool is_there_ = false;
   Eigen::Matrix4f map_of_world_ = Eigen::Matrix4f::Identity();
   float slack_m_ = 0.0F;
+};
+
+/// A frame buffer that may have several samples per pixel, so that edges are smooth also where the
+/// window's own buffer has one.
+class SmoothTarget {
+public:
+  SmoothTarget() = default;
+  ~SmoothTarget();
+  SmoothTarget(const SmoothTarget&) = delete;
+  SmoothTarget& operator=(const SmoothTarget&) = delete;
+
+  /// Makes this the frame buffer, of that size; if `smooth`, with several samples for each pixel as
+  /// far as this OpenGL has them. If it has no such buffer, the window's own remains the frame
+  /// buffer.
+  void begin(render::Size size, bool smooth);
+  /// Makes the window's buffer the frame buffer again, and copies the picture into it, `below`
+  /// pixels above the bottom.
+  void end(int below) const;
+  /// Returns whether end() may be called again: the picture is still there.
+  bool keeps() const noexcept { return frame_buffer_ != 0; }
+
+private:
+  void make(render::Size size, bool smooth);
+  void drop() noexcept;
+
+  static constexpr int max_samples = 4;
+  unsigned frame_buffer_ = 0;
+  unsigned colours_ = 0, depths_ = 0;
+  render::Size size_;
+  bool smooth_ = false;
 };
 
 } // namespace nendo::viewer

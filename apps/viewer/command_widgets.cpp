@@ -1,0 +1,126 @@
+#include "viewer/command_widgets.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include "viewer/widgets.hpp"
+
+namespace nendo::viewer {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, int>, 12> named_keys{{
+    {"Tab", GLFW_KEY_TAB},
+    {"Esc", GLFW_KEY_ESCAPE},
+    {"Delete", GLFW_KEY_DELETE},
+    {"Backspace", GLFW_KEY_BACKSPACE},
+    {"Home", GLFW_KEY_HOME},
+    {"End", GLFW_KEY_END},
+    {"Space", GLFW_KEY_SPACE},
+    {"Left", GLFW_KEY_LEFT},
+    {"Right", GLFW_KEY_RIGHT},
+    {"Up", GLFW_KEY_UP},
+    {"Down", GLFW_KEY_DOWN},
+    {"?", GLFW_KEY_SLASH},
+}};
+
+bool take_prefix(std::string_view& name, std::string_view prefix) noexcept {
+  if (!name.starts_with(prefix)) return false;
+  name.remove_prefix(prefix.size());
+  return true;
+}
+
+bool is_letter(int key) noexcept {
+  return key >= GLFW_KEY_A && key <= GLFW_KEY_Z;
+}
+
+} // namespace
+
+bool KeyStroke::fits(bool with_control, bool with_shift) const noexcept {
+  return control == with_control && (shift == with_shift || !is_letter(key));
+}
+
+// GLFW's numbers of letters, digits and signs are ASCII's, of letters those of capitals.
+KeyStroke stroke_of(std::string_view name) noexcept {
+  KeyStroke stroke;
+  stroke.control = take_prefix(name, "Ctrl ");
+  stroke.shift = take_prefix(name, "Shift ");
+  const auto* const found = std::find_if(named_keys.begin(), named_keys.end(),
+                                         [&](const auto& one) { return one.first == name; });
+  if (found != named_keys.end()) {
+    stroke.key = found->second;
+  } else if (name.size() == 1) {
+    const char c = name.front();
+    const bool is_small = c >= 'a' && c <= 'z';
+    stroke.key = is_small ? c - 'a' + GLFW_KEY_A : c;
+    stroke.shift = stroke.shift || (is_letter(c) && !stroke.control);
+  }
+  return stroke;
+}
+
+bool is_struck(const commands::Row& row) {
+  const ImGuiIO& io = ImGui::GetIO();
+  return std::any_of(row.keys.begin(), row.keys.end(), [&](std::string_view name) {
+    const KeyStroke stroke = stroke_of(name);
+    return stroke.key != 0 && stroke.fits(io.KeyCtrl, io.KeyShift) &&
+           pressed(stroke.key, row.repeats);
+  });
+}
+
+template <class Now>
+bool row_button(const commands::Row& row, const Now& now, float width) {
+  const bool is_on = row.is_on_in(now) && !row.button_on.empty();
+  const std::string text(is_on ? row.button_on : row.button);
+  const bool possible = row.refusal_in(now) == nullptr;
+  ImGui::BeginDisabled(!possible);
+  const bool chosen = ImGui::Button(text.c_str(), ImVec2(width, 0.0F));
+  ImGui::EndDisabled();
+  show_help(row, now);
+  return chosen && possible;
+}
+template bool row_button(const commands::Row&, const commands::Situation&, float);
+
+template <class Now>
+void show_help(const commands::Row& row, const Now& now) {
+  const char* const refusal = row.refusal_in(now);
+  std::string text(row.help);
+  if (refusal != nullptr) text.append("\n").append(refusal);
+  show_help(row.name, text);
+}
+template void show_help(const commands::Row&, const commands::Situation&);
+
+void edit_buttons(commands::Buttons group, const commands::EditFacts& now, float width,
+                  std::vector<commands::EditCommand>& asked) {
+  bool is_first = true;
+  for (const commands::Row& row : commands::table()) {
+    if (row.group != group) continue;
+    if (!std::exchange(is_first, false)) ImGui::SameLine();
+    if (row_button(row, now, row.button_on.empty() ? width : 2.0F * width))
+      asked.push_back(row.edit->command);
+  }
+}
+
+void show_help(std::string_view name, std::string_view text) {
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  const commands::Row& row = *commands::named(name);
+  const std::string shown =
+      std::string(text.empty() ? row.help : text) + " (" + commands::keys_of(row) + ")";
+  ImGui::SetTooltip("%s", shown.c_str());
+}
+
+void draw_key_list(std::uint8_t places, const char* mouse, bool& shown) {
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos(ImVec2(all.x / 2.0F, all.y / 2.0F), ImGuiCond_Appearing,
+                          ImVec2(0.5F, 0.5F));
+  ImGui::Begin("Keys", &shown, ImGuiWindowFlags_AlwaysAutoResize);
+  for (const commands::Row& row : commands::table())
+    if ((row.places & places) != 0)
+      ImGui::Text("%-22s %s", commands::keys_of(row).c_str(), std::string(row.help).c_str());
+  ImGui::TextUnformatted("A capital is typed with shift.");
+  ImGui::TextUnformatted("mouse: drag turns, middle or shift drag shifts, wheel zooms;");
+  ImGui::TextUnformatted(mouse);
+  ImGui::End();
+}
+
+} // namespace nendo::viewer
