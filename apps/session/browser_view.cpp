@@ -5,7 +5,6 @@
 #include "cli/cli.hpp"
 #include "cli/model_files.hpp"
 #include "web/model_message.hpp"
-#include "web/weights_message.hpp"
 
 namespace nendo::session {
 

@@ -1,16 +1,38 @@
 #pragma once
-// A strict parser for the commands that a client may send (PROTOCOL.md).
+// A strict parser for the commands that a client may send, and the settings as text in both
+// directions (PROTOCOL.md). The latter are made from the description of the settings
+// (flow/setting.hpp).
 
+#include <cstdint>
+#include <string>
 #include <string_view>
 #include <variant>
 
 #include <nendo/base/result.hpp>
 #include <nendo/flow/command.hpp>
+#include <nendo/flow/loop_settings.hpp>
 
 #include "commands/commands.hpp"
-#include "web/named_settings.hpp"
 
 namespace nendo::web {
+
+/// The settings that a client names. It does not change the others.
+struct NamedSettings {
+  flow::LoopSettings values;
+  std::uint32_t named = 0; ///< bit k: the k-th setting of flow::for_each_setting()
+
+  /// Gives these settings the values of those that are named.
+  void apply_to(flow::LoopSettings& settings) const noexcept;
+
+  friend bool operator==(const NamedSettings&, const NamedSettings&) = default;
+};
+
+/// Reads a text such as "mode=type2 radius_m=0.1,0.1,0.1,0.1,0.05", with single spaces between.
+/// Allocates only for an error. Error: bad_input, naming the setting and what can be used.
+Result<NamedSettings> parse_named_settings(std::string_view text);
+
+/// Returns such a text, which has all settings. Allocates.
+std::string text_of(const flow::LoopSettings& settings);
 
 /// How far the length of a quaternion may be from 1. Six decimals for each part are precise enough.
 inline constexpr double max_norm_error = 0.01;

@@ -9,7 +9,6 @@
 
 #include <nendo/base/unique_fd.hpp>
 
-#include "web/feed.hpp"
 #include "web/server.hpp"
 #include "web/socket_frames.hpp"
 

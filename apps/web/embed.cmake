@@ -17,7 +17,8 @@ file(WRITE ${OUT}.html "${page}")
 file(READ ${OUT}.html hex HEX)
 string(REGEX REPLACE "(................................................................)" "\\1\n" hex "${hex}")
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," numbers "${hex}")
-file(WRITE ${OUT} "#include \"web/page.hpp\"\n\nnamespace nendo::web {\nnamespace {\n\n"
+file(WRITE ${OUT} "#include <string_view>\n\nnamespace nendo::web {\nnamespace {\n\n"
   "const unsigned char bytes[] = {\n${numbers}};\n\n} // namespace\n\n"
+  "std::string_view page() noexcept; // server_input.cpp\n"
   "std::string_view page() noexcept {\n  return {reinterpret_cast<const char*>(bytes), sizeof bytes};\n}\n\n"
   "} // namespace nendo::web\n")

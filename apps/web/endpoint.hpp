@@ -1,10 +1,14 @@
 #pragma once
-// The address and port at which a server listens, as --web takes them: [ADDR:]PORT.
+// The address and port at which a server listens, as --web takes them, [ADDR:]PORT, and its
+// sockets.
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include <nendo/base/unique_fd.hpp>
 #include <nendo/base/result.hpp>
 
 namespace nendo::web {
@@ -27,5 +31,12 @@ Result<Endpoint> parse_endpoint(std::string_view text);
 /// address or localhost. Another site can make its own name lead to this machine (DNS rebinding),
 /// but none of these.
 bool is_address_or_localhost(std::string_view authority);
+
+/// Opens a non-blocking socket that listens at `endpoint`, and writes the port to `endpoint`.
+/// Error: failed.
+Result<UniqueFd> listen_at(Endpoint& endpoint);
+/// Returns the next connection as a non-blocking socket, or nothing if there is none. buffer_bytes:
+/// the size of the socket's send buffer.
+std::optional<UniqueFd> accept_from(const UniqueFd& listener, std::size_t buffer_bytes);
 
 } // namespace nendo::web

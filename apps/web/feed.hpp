@@ -2,16 +2,26 @@
 // Decides what one client is sent: which steps it still needs, and when it needs the whole shape.
 // Nothing here knows of sockets.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include <nendo/driver/record_counts.hpp>
+
 #include "web/frame_stream.hpp"
-#include "web/glove_state.hpp"
 
 namespace nendo::web {
+
+/// What the page shows of a glove beside its samples.
+struct GloveState {
+  driver::RecordCounts counts;
+  bool uncalibrated = false; ///< its angles are an average hand's
+};
+/// By flow::Placement::index_of(side).
+using GloveStates = std::array<GloveState, 2>;
 
 /// What the server adds to an update message.
 struct FeedCounters {

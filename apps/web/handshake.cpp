@@ -4,6 +4,8 @@
 #include <bit>
 #include <vector>
 
+#include <sys/random.h>
+
 namespace nendo::web {
 namespace {
 
@@ -88,6 +90,19 @@ bool is_socket_key(std::string_view text) noexcept {
 std::string accept_of(std::string_view key) {
   const std::string text = std::string(key) + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11";
   return base64(sha1(std::as_bytes(std::span(text))));
+}
+
+std::string random_hex(std::size_t bytes) {
+  std::vector<unsigned char> random(bytes);
+  if (::getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size()))
+    return {};
+  constexpr std::string_view figures = "0123456789abcdef";
+  std::string text;
+  for (const unsigned char byte : random) {
+    text += figures[byte >> 4U];
+    text += figures[byte & 15U];
+  }
+  return text;
 }
 
 } // namespace nendo::web

@@ -20,4 +20,8 @@ bool is_socket_key(std::string_view text) noexcept;
 /// Returns the Sec-WebSocket-Accept that answers a Sec-WebSocket-Key.
 std::string accept_of(std::string_view key);
 
+/// Returns random bytes from the system in hexadecimal digits, or an empty string if the system has
+/// none. Tokens and nonces are made of them.
+std::string random_hex(std::size_t bytes);
+
 } // namespace nendo::web

@@ -1,6 +1,6 @@
 #pragma once
-// The message that a client needs before it can follow frames: the model and its numbers
-// (PROTOCOL.md).
+// The messages that a client needs before it can follow frames: the model and its numbers, and the
+// weights of a field along its surface (PROTOCOL.md).
 
 #include <cstddef>
 #include <span>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <nendo/deform/mesh.hpp>
+#include <nendo/deform/surface_field.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/flow/deform_loop.hpp>
 
@@ -27,5 +28,9 @@ inline constexpr std::size_t max_vertices = 4'000'000;
 std::vector<std::byte> model_message(const deform::BlockLayout& layout, const deform::Mesh& mesh,
                                      std::span<const flow::HandInput> hands,
                                      const ModelFacts& facts);
+
+/// Returns the message with the field's terms, in the order of the model message. They stay in
+/// float: the error of a smaller type would be more than clients may have. Allocates.
+std::vector<std::byte> weights_message(const deform::SurfaceField& field);
 
 } // namespace nendo::web

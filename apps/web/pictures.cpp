@@ -1,13 +1,11 @@
 #include "web/pictures.hpp"
 
+#include <charconv>
+
 #include "render/picture_kind.hpp"
 #include "render/texture_image.hpp"
 
 namespace nendo::web {
-
-bool is_png(std::string_view contents) noexcept {
-  return contents.starts_with("\x89PNG\r\n\x1A\n");
-}
 
 bool has_picture(const deform::Mesh& mesh, std::uint32_t texture) noexcept {
   const auto& textures = mesh.look.textures;
@@ -26,12 +24,10 @@ Pictures pictures_of(const deform::Mesh& mesh) {
 
 std::optional<std::size_t> picture_number(std::string_view text) noexcept {
   constexpr std::size_t max_digits = 6;
-  if (text.empty() || text.size() > max_digits) return std::nullopt;
   std::size_t number = 0;
-  for (const char digit : text) {
-    if (digit < '0' || digit > '9') return std::nullopt;
-    number = 10 * number + static_cast<std::size_t>(digit - '0');
-  }
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc{} || rest != end || text.size() > max_digits) return std::nullopt;
   return number;
 }
 

@@ -23,8 +23,6 @@ Pictures pictures_of(const deform::Mesh& mesh);
 /// Tells by its first bytes alone whether a texture is among pictures_of(); a damaged one is not.
 bool has_picture(const deform::Mesh& mesh, std::uint32_t texture) noexcept;
 
-bool is_png(std::string_view contents) noexcept;
-
 /// Parses the number of a picture: up to six decimal digits.
 std::optional<std::size_t> picture_number(std::string_view text) noexcept;
 

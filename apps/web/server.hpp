@@ -17,8 +17,7 @@
 
 #include "web/client_commands.hpp"
 #include "web/endpoint.hpp"
-#include "web/frame_stream.hpp"
-#include "web/glove_state.hpp"
+#include "web/feed.hpp"
 #include "web/pictures.hpp"
 
 namespace nendo::web {
@@ -117,6 +116,10 @@ public:
 
 private:
   class Work;
+  /// The same, but calls make() for the message only if the version differs from the last one.
+  template <class Make>
+  void set_fact(std::size_t fact, std::uint64_t version, const Make& make);
+  void set_fact(std::size_t fact, std::vector<std::byte> message);
   explicit Server(std::unique_ptr<Work> work) noexcept;
   std::unique_ptr<Work> work_;
 };

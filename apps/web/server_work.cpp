@@ -9,7 +9,6 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include "web/listener.hpp"
 #include "web/wire.hpp"
 
 namespace nendo::web {
@@ -21,7 +20,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds frame_period(8);
 /// How often deadlines are looked at.
 constexpr milliseconds deadline_period(250);
-constexpr std::size_t max_weights = 3;
 
 void write_loop(std::uint16_t loop, std::size_t at, std::vector<std::byte>& message) {
   std::memcpy(message.data() + at, &loop, sizeof loop);
@@ -45,55 +43,12 @@ void Server::Work::wake() noexcept {
   [[maybe_unused]] const ssize_t written = ::write(waker_.get(), &one, sizeof one);
 }
 
-void Server::Work::present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model,
-                           Pictures pictures) {
-  {
-    const std::scoped_lock lock(mutex_);
-    write_loop(++loops_, offsetof(ModelHead, loop), model);
-    next_ = Presented{std::move(stream),
-                      std::make_shared<const std::vector<std::byte>>(std::move(model)),
-                      std::move(pictures), loops_};
-  }
-  wake();
-}
-
-// What the loop was asked for last may be refused, so that it continues with older ones.
-void Server::Work::add_weights(std::uint64_t number, std::vector<std::byte> message) {
-  const std::scoped_lock lock(mutex_);
-  weights_.push_back({number, std::make_shared<const std::vector<std::byte>>(std::move(message))});
-  if (weights_.size() <= max_weights) return;
-  weights_.erase(std::find_if(weights_.begin(), weights_.end(), [this](const Weights& some) {
-    return some.number != weights_in_use_;
-  }));
-}
-
 void Server::Work::report(std::string message) {
   {
-    const std::scoped_lock lock(mutex_);
-    report_ = std::move(message);
+    const std::scoped_lock lock(inbox.mutex);
+    inbox.report = std::move(message);
   }
   wake();
-}
-
-void Server::Work::set_fact(Fact fact, std::vector<std::byte> message) {
-  {
-    const std::scoped_lock lock(mutex_);
-    if (facts_[fact] && message == *facts_[fact]) return;
-    facts_[fact] = std::make_shared<const std::vector<std::byte>>(std::move(message));
-  }
-  wake();
-}
-
-void Server::Work::set_clay(const flow::Frame& frame) {
-  constexpr milliseconds period(33);
-  {
-    const std::scoped_lock lock(mutex_);
-    const HostTime now = HostClock::now();
-    const bool is_told = frame.clay.is_clay || frame.parts.count > 0;
-    if ((!facts_[clay_fact] && !is_told) || now < next_clay_) return;
-    next_clay_ = now + period;
-  }
-  set_fact(clay_fact, clay_message(frame));
 }
 
 std::size_t Server::Work::clients() const noexcept {
@@ -156,8 +111,8 @@ void Server::Work::wait() {
 void Server::Work::take_presented() {
   std::optional<Presented> next;
   {
-    const std::scoped_lock lock(mutex_);
-    next = std::exchange(next_, std::nullopt);
+    const std::scoped_lock lock(inbox.mutex);
+    next = std::exchange(inbox.next, std::nullopt);
   }
   if (!next) return;
   if (presented_.stream) presented_.stream->set_active(false);
@@ -171,8 +126,8 @@ void Server::Work::take_presented() {
 void Server::Work::send_report(HostTime now) {
   std::string text;
   {
-    const std::scoped_lock lock(mutex_);
-    text.swap(report_);
+    const std::scoped_lock lock(inbox.mutex);
+    text.swap(inbox.report);
   }
   if (text.empty()) return;
   const SharedBytes message =
@@ -187,8 +142,8 @@ void Server::Work::send_report(HostTime now) {
 void Server::Work::send_facts(HostTime now) {
   Facts facts;
   {
-    const std::scoped_lock lock(mutex_);
-    facts = facts_;
+    const std::scoped_lock lock(inbox.mutex);
+    facts = inbox.facts;
   }
   for (Connection& client : connections_) {
     if (client.stage() != Connection::Stage::socket) continue;
@@ -234,8 +189,8 @@ void Server::Work::send_frames(HostTime now) {
       shape ? std::make_shared<const std::vector<std::byte>>(std::move(shape->message)) : nullptr;
   feed_counters_.lost = presented_.stream->lost();
   if (!records_.empty() && records_.back().weights != 0) {
-    const std::scoped_lock lock(mutex_);
-    weights_in_use_ = records_.back().weights;
+    const std::scoped_lock lock(inbox.mutex);
+    inbox.weights_in_use = records_.back().weights;
   }
   for (std::size_t slot = 0; slot < gloves.size(); ++slot) {
     const SharedGloveState& shared = gloves[slot];
@@ -259,8 +214,8 @@ void Server::Work::send_weights(Connection& client, HostTime now) {
   if (wanted == 0 || client.has_queued_shape()) return;
   SharedBytes message;
   {
-    const std::scoped_lock lock(mutex_);
-    for (const Weights& some : weights_)
+    const std::scoped_lock lock(inbox.mutex);
+    for (const Weights& some : inbox.weights)
       if (some.number == wanted) message = some.message;
   }
   if (!message) return; // it is not there yet

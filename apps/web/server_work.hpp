@@ -23,31 +23,16 @@ public:
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
-  void present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model,
-               Pictures pictures);
-  void add_weights(std::uint64_t number, std::vector<std::byte> message);
+  void wake() noexcept;
   void report(std::string message);
-  void set_fact(Fact fact, std::vector<std::byte> message);
-  /// The same, but calls make() for the message only if the version is another one than the last.
-  template <class Make>
-  void set_fact(Fact fact, std::uint64_t version, const Make& make) {
-    {
-      const std::scoped_lock lock(mutex_);
-      if (facts_[fact] && version == versions_[fact]) return;
-      versions_[fact] = version;
-      facts_[fact] = std::make_shared<const std::vector<std::byte>>(make());
-    }
-    wake();
-  }
-  void set_clay(const flow::Frame& frame);
 
   const Endpoint endpoint;
   const std::string token;
   // The following members are written by this thread, or shared with it.
-  /// Has room for what 16 clients may send in half a second. Commands that find no room are
-  /// dropped.
+  /// Space for what 16 clients may send in half a second. Further commands are dropped.
   SpscRing<ClientCommand> commands{1024};
-  /// For `missed` of a glove that does not tell: all bits are set, also of the 32 that are sent.
+  /// For `missed` of a glove that does not report it: all bits are set, also of the 32 that are
+  /// sent.
   static constexpr std::uint64_t unknown_count = ~std::uint64_t{0};
   /// Each number is right by itself; they need not be all of the same moment.
   struct SharedGloveState {
@@ -60,13 +45,12 @@ public:
         update_bytes{0}, shapes{0}, shape_bytes{0}, weights{0}, skipped{0};
   } counts;
 
-private:
   /// A loop that is served. Its model is shared with the connections to which it is sent.
   struct Presented {
     std::shared_ptr<FrameStream> stream;
     SharedBytes model;
     Pictures pictures;
-    std::uint16_t loop = 0; ///< its number within the run, which stands in the model and in shapes
+    std::uint16_t loop = 0; ///< its number within the run, which the model and shapes contain
   };
 
   /// A weights message, and its number.
@@ -75,9 +59,22 @@ private:
     SharedBytes message;
   };
 
+  /// What other threads pass to this thread.
+  struct Inbox {
+    std::mutex mutex;              ///< guards the other members
+    std::optional<Presented> next; ///< set by present() and not taken yet
+    std::uint16_t loops = 0;
+    std::string report;   ///< the newest one; empty if it has been sent
+    HostTime next_clay{}; ///< the earliest time of the next clay message
+    Facts facts;          ///< as messages; null before they are known
+    std::array<std::uint64_t, fact_count> versions{}; ///< the last versions of facts that have them
+    std::vector<Weights> weights;                     ///< the newest last
+    std::uint64_t weights_in_use = 0;
+  } inbox;
+
+private:
   void run();
   void wait();
-  void wake() noexcept;
   void take_presented();
   void send_report(HostTime now);
   void send_facts(HostTime now);
@@ -100,15 +97,6 @@ private:
 
   const ServerLimits limits_;
   UniqueFd listener_, waker_;
-  std::mutex mutex_;              ///< guards the next eight
-  std::optional<Presented> next_; ///< set by present() and not taken yet
-  std::uint16_t loops_ = 0;
-  std::string report_;                               ///< the newest one; empty if it has been sent
-  HostTime next_clay_{};                             ///< not before that
-  Facts facts_;                                      ///< as messages; null before they are known
-  std::array<std::uint64_t, fact_count> versions_{}; ///< the last versions of facts that have them
-  std::vector<Weights> weights_;                     ///< the newest last
-  std::uint64_t weights_in_use_ = 0;
   Presented presented_;
   std::list<Connection> connections_; ///< the oldest first
   std::vector<pollfd> polled_;

@@ -10,7 +10,7 @@
 #include "streamed_loop.hpp"
 #include "support/any_puppet.hpp"
 #include "web/feed.hpp"
-#include "web/weights_message.hpp"
+#include "web/model_message.hpp"
 
 namespace follow_test {
 

@@ -11,7 +11,7 @@
 #include "streamed_loop.hpp"
 #include "support/eventually.hpp"
 #include "support/restraint.hpp"
-#include "web/weights_message.hpp"
+#include "web/model_message.hpp"
 #include "web_client.hpp"
 
 namespace nendo::test {
