@@ -295,8 +295,9 @@ void add(cli::Command& program) {
       "DEMO", options->what,
       "face: ten fingers animate it; moai: hands shape it; clay: whole hands make a "
       "cake, a bowl and ears, in about 30 s, for which only --out and --picture apply");
-  command.add_option("--mode", options->mode,
-                     "type1 (from rest): the rest shape follows the fingertips; type2 (accumulating): strokes");
+  command.add_option(
+      "--mode", options->mode,
+      "type1 (from rest): the rest shape follows the fingertips; type2 (accumulating): strokes");
   command.add_duration("--duration", options->duration_s, "How long, e.g. 30s or 2m, up to 1h");
   command.add_option("--out", options->out, "Where the shape goes, .obj, .ply or .stl");
   command.add_option("--picture", options->picture, "Where the picture goes, .png");

@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include <nendo/base/unique_fd.hpp>
 #include <nendo/base/result.hpp>
+#include <nendo/base/unique_fd.hpp>
 
 namespace nendo::web {
 

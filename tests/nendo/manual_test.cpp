@@ -63,8 +63,7 @@ std::vector<Words> command_lines() {
 class Manual {
 public:
   Manual() {
-    const auto written =
-        shell("'" NENDO_MANUAL "' '" + folder_.path().string() + "' 2026-01-02");
+    const auto written = shell("'" NENDO_MANUAL "' '" + folder_.path().string() + "' 2026-01-02");
     REQUIRE_MESSAGE(written.exit_code == 0, written.out);
   }
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }

@@ -95,7 +95,7 @@ Result<std::filesystem::path> keep_ranges(const driver::GloveInfo& glove, Side s
 }
 
 Result<hand::CalibratedRange> ends_of(const hand::StoredCalibration& file,
-                               const driver::GloveInfo& glove) {
+                                      const driver::GloveInfo& glove) {
   const std::string path = printable(file.path.string());
   if (file.wearer.counts != glove.counts)
     return Error{Errc::bad_input, path + ": counts otherwise than " + printable(glove.source) +

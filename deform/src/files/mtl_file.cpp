@@ -9,9 +9,9 @@
 #include <nendo/base/text.hpp>
 #include <nendo/deform/drawn_faces.hpp>
 
+#include "files/model_folder.hpp"
 #include "files/number_text.hpp"
 #include "files/text_scanner.hpp"
-#include "files/model_folder.hpp"
 
 namespace nendo::deform {
 

@@ -8,8 +8,8 @@
 
 #include <nendo/deform/corner_colours.hpp>
 
-#include "files/mesh_formats.hpp"
 #include "files/colour_range.hpp"
+#include "files/mesh_formats.hpp"
 
 namespace nendo::deform {
 

@@ -13,9 +13,9 @@
 #include <nendo/base/text.hpp>
 #include <nendo/deform/triangles.hpp>
 
+#include "files/colour_range.hpp"
 #include "files/mesh_formats.hpp"
 #include "files/number_text.hpp"
-#include "files/colour_range.hpp"
 #include "files/text_scanner.hpp"
 #include "geometry/usable.hpp"
 

@@ -9,8 +9,8 @@
 #include "join/live_surface.hpp"
 #include "join/mesh_surface.hpp"
 #include "join/refine.hpp"
-#include "join/triangle_surface.hpp"
 #include "join/self_intersections.hpp"
+#include "join/triangle_surface.hpp"
 
 namespace nendo::deform {
 namespace {

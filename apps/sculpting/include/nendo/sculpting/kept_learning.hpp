@@ -33,7 +33,7 @@ NENDO_API Result<std::filesystem::path> keep_ranges(const driver::GloveInfo& glo
 /// Returns the ends that the sensors reached when this calibration was made for a glove with the
 /// counts of `glove`. Error: bad_input, if it does not have them, or is of another kind of glove.
 NENDO_API Result<hand::CalibratedRange> ends_of(const hand::StoredCalibration& file,
-                                         const driver::GloveInfo& glove);
+                                                const driver::GloveInfo& glove);
 
 /// The result of keep_slips().
 struct KeptSlips {
