@@ -26,10 +26,10 @@ struct Finding {
   std::string_view check; ///< a stable name, e.g. "permission"
   std::string subject;    ///< e.g. /dev/ttyUSB0; empty: the machine
   std::string what;       ///< what is wrong
-  std::string remedy;     ///< the command or deed that fixes it
+  std::string remedy;     ///< the command or action that fixes it
 };
 
-/// What a subject's checks found, and what they looked at, for whoever wonders what was left out.
+/// The findings of a subject's checks, and what they examined.
 struct Examination {
   std::vector<Finding> findings;
   std::vector<std::string> looked_at; ///< e.g. "/dev/ttyUSB0", "CPU frequency governors"
@@ -51,7 +51,7 @@ struct MachineFacts {
   std::optional<std::uint64_t> priority_limit; ///< RLIMIT_RTPRIO of this process
   std::optional<std::uint64_t> memory_limit;   ///< RLIMIT_MEMLOCK in bytes; the largest: unlimited
   bool has_priority = false;                   ///< CAP_SYS_NICE, for which the limit does not count
-  bool has_memory = false;                     ///< CAP_IPC_LOCK, likewise
+  bool has_memory = false;                     ///< CAP_IPC_LOCK: the same
   bool has_limits_file = false;                ///< /etc/security/limits.d/nendo.conf is there
   std::map<std::string, int> governors;        ///< each frequency governor, with its number of CPUs
   std::optional<bool> fine_timers;             ///< the kernel's timers are better than its tick

@@ -1,6 +1,6 @@
 #pragma once
-// Tells systemd the state of a service by sd_notify(3): it sends datagrams to the socket that the
-// environment names. Outside a service nothing is sent.
+// Reports the state of a service to systemd by sd_notify(3): it sends datagrams to the socket that
+// the environment names. Outside a service nothing is sent.
 
 #include <string>
 #include <string_view>
@@ -18,7 +18,7 @@ public:
   ServiceNotice& operator=(const ServiceNotice&) = delete;
 
   /// Reports that a frame came: sends WATCHDOG=1, and READY=1 the first time. It must be called
-  /// several times within the service's WatchdogSec. Never blocks: a notice that finds no room is
+  /// several times within the service's WatchdogSec. Never blocks: a notice that does not fit is
   /// dropped.
   void alive() noexcept;
 

@@ -17,12 +17,12 @@ RecordCounts since(const RecordCounts& earlier, const RecordCounts& now) noexcep
 
 std::array<std::pair<std::string_view, std::optional<std::uint64_t>>, 6>
 by_name(const RecordCounts& counts) noexcept {
-  const auto if_told = [&](std::uint64_t count) {
+  const auto if_known = [&](std::uint64_t count) {
     return counts.tells_missed ? std::optional(count) : std::nullopt;
   };
-  return {{{"sent", if_told(counts.sent())},
+  return {{{"sent", if_known(counts.sent())},
            {"delivered", counts.delivered},
-           {"missed", if_told(counts.missed)},
+           {"missed", if_known(counts.missed)},
            {"refused", counts.refused},
            {"bad_records", counts.bad},
            {"clamped_values", counts.clamped}}};
@@ -45,7 +45,7 @@ std::string rate_shortfall(const GloveInfo& info, const GloveStats& stats) {
   const bool known = !stats.tells_missed && info.rate_hz > 0.0 && stats.rate_hz > 0.0;
   if (!known || stats.rate_hz > (1.0 - tolerance) * info.rate_hz) return {};
   char text[96];
-  std::snprintf(text, sizeof text, "%.1f records a second of the %.1f that were asked for",
+  std::snprintf(text, sizeof text, "%.1f records per second of the %.1f that were asked for",
                 stats.rate_hz, info.rate_hz);
   return text;
 }

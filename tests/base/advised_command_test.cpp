@@ -1,4 +1,4 @@
-// Commands that messages tell somebody to type, as a shell reads them.
+// Commands in messages, as a shell reads them.
 
 #include <nendo/base/advised_command.hpp>
 

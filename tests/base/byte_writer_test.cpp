@@ -14,7 +14,7 @@ using nendo::ByteReader;
 using nendo::ByteWriter;
 
 TEST_SUITE("byte_writer") {
-  TEST_CASE("numbers stand least significant byte first") {
+  TEST_CASE("numbers are least significant byte first") {
     std::vector<std::byte> bytes;
     ByteWriter writer(bytes);
     writer.u8(0x01);
@@ -42,7 +42,7 @@ TEST_SUITE("byte_writer") {
     writer.f64_le(0.1);
     writer.f64_le(std::numeric_limits<double>::infinity());
     writer.text("");
-    writer.text(std::string(70000, 'x')); // longer than its length can tell
+    writer.text(std::string(70000, 'x')); // longer than its length can be
     ByteReader reader(bytes);
     CHECK(reader.u64_le() == UINT64_MAX - 5);
     CHECK(reader.i64_le() == std::numeric_limits<std::int64_t>::min());

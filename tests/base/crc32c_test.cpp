@@ -36,7 +36,7 @@ TEST_SUITE("crc32c") {
     CHECK(sum_of("") == 0);
   }
 
-  TEST_CASE("a sum goes on where another ended") {
+  TEST_CASE("a sum continues where another ended") {
     const std::string_view whole = "the quick brown fox";
     const auto bytes = std::as_bytes(std::span(whole));
     for (std::size_t cut = 0; cut <= bytes.size(); ++cut)

@@ -1,4 +1,4 @@
-// Lock-free means: whoever is stopped, and wherever, the other one continues. Here it is stopped
+// Lock-free means: if one thread is stopped anywhere, the other one continues. Here it is stopped
 // 300 times at instructions that chance picks. The control is a queue behind a mutex, which must
 // fail.
 
@@ -23,7 +23,7 @@ namespace {
 constexpr int parkings = 300;
 constexpr int operations = 100; ///< in each parking
 
-/// While the peer stands still, `operation` must say each time that it got on with its work.
+/// While the peer is stopped, `operation` must say each time that it got on with its work.
 /// Returns how often it did not.
 template <class Operation>
 int stalls(std::function<void()> peers_work, Operation operation) {
@@ -57,7 +57,7 @@ TEST_SUITE("parked") {
           }) > 0);
   }
 
-  TEST_CASE("a producer goes on beside a consumer that stands still, until the ring is full") {
+  TEST_CASE("a producer continues beside a stopped consumer, until the ring is full") {
     nendo::SpscRing<Block> ring(16);
     std::uint64_t offered = 0;
     std::uint64_t taken = 0;
@@ -73,7 +73,7 @@ TEST_SUITE("parked") {
     CHECK(offered == taken + ring.counters().refused);
   }
 
-  TEST_CASE("a consumer goes on beside a producer that stands still, until the ring is empty") {
+  TEST_CASE("a consumer continues beside a stopped producer, until the ring is empty") {
     nendo::SpscRing<Block> ring(16);
     std::uint64_t taken = 0;
     CHECK(stalls([&] { ring.try_push(Block{}); },
@@ -88,7 +88,7 @@ TEST_SUITE("parked") {
     CHECK(ring.counters().offered == taken + ring.counters().refused + ring.size());
   }
 
-  TEST_CASE("a writer publishes beside a reader that stands still, and the other way round") {
+  TEST_CASE("a writer publishes beside a stopped reader, and the other way round") {
     nendo::TripleBuffer<Block> value(Block{});
     std::uint64_t number = 0;
     std::uint64_t seen = 0;

@@ -72,7 +72,7 @@ TEST_SUITE("base/plain_toml") {
     CHECK(refuses("a\xC2\xA0= 1", 1, "expected = after a key"));
   }
 
-  TEST_CASE("texts must be UTF-8 on one line, without control characters") {
+  TEST_CASE("strings must be UTF-8 on one line, without control characters") {
     CHECK(refuses("a = 1\nb = \"x", 2, "no closing quote"));
     CHECK(refuses("a = \"x\\", 1, "no closing quote"));
     CHECK(refuses("a = \"x\ny\"", 1, "no closing quote"));

@@ -87,10 +87,10 @@ TEST_SUITE("spsc_ring") {
                      batch.begin() + static_cast<std::ptrdiff_t>(fitting));
         refused += 3 - fitting;
       } else if (action < 5) {
-        const bool room = model.size() < 8;
-        CHECK(ring.try_push(n) == room);
-        if (room) model.push_back(n);
-        refused += room ? 0 : 1;
+        const bool fits = model.size() < 8;
+        CHECK(ring.try_push(n) == fits);
+        if (fits) model.push_back(n);
+        refused += fits ? 0 : 1;
       } else if (action < 7) {
         std::uint32_t got = 0;
         CHECK(ring.try_pop(got) == !model.empty());

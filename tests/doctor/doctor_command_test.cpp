@@ -47,7 +47,7 @@ Finding only_finding(const GloveCandidate& candidate, std::vector<std::string> g
 TEST_SUITE("doctor") {
   TEST_CASE("of a machine on which all is well nothing is said") {
     CHECK(diagnose_ports({{good_adapter()}, {}}).empty());
-    CHECK(diagnose_ports({{good_adapter()}, {"ModemManager"}}).empty()); // it was told to keep off
+    CHECK(diagnose_ports({{good_adapter()}, {"ModemManager"}}).empty()); // a rule keeps it off
   }
 
   TEST_CASE("a machine without ports is a warning, for simulated gloves need none") {
@@ -73,16 +73,16 @@ TEST_SUITE("doctor") {
     CHECK(only_finding(port).severity == Severity::failure);
   }
 
-  TEST_CASE("a port without a node is a failure, with how to hand it in") {
+  TEST_CASE("a port without a node is a failure, with a remedy") {
     GloveCandidate candidate = good_adapter();
     candidate.may_open = false;
     candidate.access = "";
     candidate.node_missing = true;
-    candidate.remedy = "hand it in";
+    candidate.remedy = "pass it in";
     const Finding finding = only_finding(candidate);
     CHECK(finding.severity == Severity::failure);
     CHECK(finding.check == "node");
-    CHECK(finding.remedy == "hand it in");
+    CHECK(finding.remedy == "pass it in");
     candidate.usb.reset(); // one of the computer's own, which containers see as well
     CHECK(only_finding(candidate).severity == Severity::warning);
   }
@@ -105,7 +105,7 @@ TEST_SUITE("doctor") {
       CHECK(finding.what.starts_with(program));
       CHECK(finding.remedy.find(program) != std::string::npos);
     }
-    port.usb.reset(); // an on-board port does not arrive, so nobody jumps at it
+    port.usb.reset(); // an on-board port does not arrive, so no program takes it
     CHECK(diagnose_ports({{port}, {"ModemManager", "brltty"}}).empty());
   }
 
@@ -157,15 +157,15 @@ TEST_SUITE("doctor") {
     CHECK(done.exit_code == (fails ? 1 : 0));
     const auto text = nendo::test::nendo({"doctor"});
     CHECK(text.exit_code == done.exit_code);
-    // What was looked at is told, whatever was found.
-    const auto told = text.out.rfind("Checked: ");
-    REQUIRE(told != std::string::npos);
+    // The examined subjects are always listed.
+    const auto list = text.out.rfind("Checked: ");
+    REQUIRE(list != std::string::npos);
     for (const char* const subject :
          {"programs that take ports", "real-time priority", "governors", "timers", "udev rules"})
-      CHECK(text.out.find(subject, told) != std::string::npos);
+      CHECK(text.out.find(subject, list) != std::string::npos);
     for (const auto& candidate : nendo::driver::find_gloves())
-      CHECK(text.out.find(candidate.device, told) != std::string::npos);
-    CHECK(done.out.find("Checked: ") == std::string::npos);
+      CHECK(text.out.find(candidate.device, list) != std::string::npos);
+    CHECK(done.out.find("Looked at") == std::string::npos);
   }
 }
 

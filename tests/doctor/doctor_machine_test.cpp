@@ -76,7 +76,7 @@ TEST_SUITE("doctor") {
     CHECK(diagnose_machine({}).empty());
   }
 
-  TEST_CASE("a missing real-time limit is named, unless a capability stands above it") {
+  TEST_CASE("a missing real-time limit is named, unless a capability overrides it") {
     const Machine machine;
     machine.limits("0", "unlimited");
     CHECK(machine.finding("realtime").remedy.find("rtprio") != std::string::npos);
@@ -90,7 +90,7 @@ TEST_SUITE("doctor") {
     machine.finding("realtime");
   }
 
-  TEST_CASE("a limit of locked memory is named, unless a capability stands above it") {
+  TEST_CASE("a limit of locked memory is named, unless a capability overrides it") {
     const Machine machine;
     machine.limits("99", "8388608");
     CHECK(machine.finding("memlock").what.find("8192 KiB") != std::string::npos);
@@ -123,7 +123,7 @@ TEST_SUITE("doctor") {
     CHECK(machine.finding("rules").what.find("another version") != std::string::npos);
     machine.write("etc/udev/rules.d/61-nendo-uaccess.rules", "# mine\n"); // hides the package's
     CHECK(machine.finding("rules").subject.find("/etc/") != std::string::npos);
-    machine.remove("run/udev"); // nobody would read them
+    machine.remove("run/udev"); // no udev would read them
     CHECK(machine.examine().empty());
   }
 

@@ -184,7 +184,7 @@ TEST_SUITE("cyberglove_driver") {
     check_conservation(glove->stats());
   }
 
-  TEST_CASE("a glove that is swapped at its interface unit is asked anew") {
+  TEST_CASE("a glove that is swapped at its interface unit is asked again") {
     Script script;
     script.swap_after = 50;
     const ScriptedPort port(script);
@@ -409,7 +409,7 @@ TEST_SUITE("cyberglove_driver") {
     const std::uint64_t before = glove->stats().records;
     port.control.unplugged = false;
     CHECK(eventually([&] { return glove->stats().records > before + 3; }));
-    // Another one may have been plugged in: the unit was told to look.
+    // Another one may have been plugged in: the unit was set to look.
     CHECK(port.control.heard().find('\x09', heard.size()) != std::string::npos);
     glove->stop();
     CHECK(glove->stats().silences == 1);

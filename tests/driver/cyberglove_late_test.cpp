@@ -137,7 +137,7 @@ TEST_SUITE("cyberglove_late") {
     CHECK(HostClock::now() - start < 500ms);
   }
 
-  TEST_CASE("how late answers come is learnt, and told to the next dialogue") {
+  TEST_CASE("the delay of answers is learnt, and passed to the next dialogue") {
     LateTransport transport(Script(), "?", 300ms);
     std::byte data{};
     Dialogue first(transport, HostClock::now() + 4s);

@@ -167,14 +167,15 @@ TEST_SUITE("cyberglove_options") {
     const auto plan = plan_records(with_rate(1000), 22, 115200, 0.0);
     REQUIRE_FALSE(plan);
     CHECK(plan.error().code == Errc::usage);
-    CHECK(plan.error().message == "rate=1000: a record of 24 bytes at 115200 baud takes 2.1 ms; at "
-                                  "most 480 records a second; lower the rate or mask sensors off");
+    CHECK(plan.error().message ==
+          "rate=1000: a record of 24 bytes at 115200 baud takes 2.1 ms; at "
+          "most 480 records per second; lower the rate or mask sensors off");
     Options with_stamps = with_rate(400);
     with_stamps.stamps = true;
     const auto stamped = plan_records(with_stamps, 22, 115200, 0.0);
     REQUIRE_FALSE(stamped);
     CHECK(stamped.error().message ==
-          "rate=400: a record of 30 bytes at 115200 baud takes 2.6 ms; at most 384 records a "
+          "rate=400: a record of 30 bytes at 115200 baud takes 2.6 ms; at most 384 records per "
           "second; lower the rate or say stamps=off (at most 480)");
   }
 
@@ -186,7 +187,7 @@ TEST_SUITE("cyberglove_options") {
       CHECK(plan->stamps_dropped == (!plan->stamps && !options.stamps));
       return plan->stamps;
     };
-    // The ceilings of the reference: 22 sensors 480, 160, 80, 40 a second; with stamps 30 bytes.
+    // The ceilings of the reference: 22 sensors 480, 160, 80, 40 per second; with stamps 30 bytes.
     CHECK(stamps(22, 115200, with_rate(384), 0.0));
     CHECK_FALSE(stamps(22, 115200, with_rate(385), 0.0));
     CHECK_FALSE(stamps(22, 115200, with_rate(480), 0.0));
@@ -214,7 +215,7 @@ TEST_SUITE("cyberglove_options") {
     CHECK_FALSE(*plan_hires({}, 115200));
     for (const double wrong : {0.1, 45.0, 100.0, 150.0})
       CHECK(plan_hires(with_rate(wrong), 115200).error().code == Errc::usage);
-    // 61 bytes: 62 a second at 38400 baud.
+    // 61 bytes: 62 per second at 38400 baud.
     CHECK(plan_hires(with_rate(60), 38400));
     CHECK(plan_hires(with_rate(90), 38400).error().message.find("at most 62") != std::string::npos);
   }

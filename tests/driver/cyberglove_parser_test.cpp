@@ -61,7 +61,8 @@ TEST_SUITE("cyberglove_parser") {
     }
   }
 
-  TEST_CASE("streamed, polled and synchronised records are told by their header, others are none") {
+  TEST_CASE(
+      "streamed, polled and synchronised records are known by their header, others are none") {
     Bytes record = record_bytes(22, 1);
     for (int letter = 1; letter < 256; ++letter) {
       CAPTURE(letter);
@@ -204,7 +205,7 @@ TEST_SUITE("cyberglove_parser") {
     CHECK(parse(full_22, record_bytes(22, 9, "\x8A\x02\x01\x01\x01\x07")).records.empty());
   }
 
-  TEST_CASE("error pairs stand before the NUL: too fast is a good record, unplugged is none") {
+  TEST_CASE("error pairs come before the NUL: too fast is a good record, unplugged is none") {
     const auto too_fast = parse(plain_22, record_bytes(22, 9, "es"));
     REQUIRE(too_fast.records.size() == 1);
     CHECK(too_fast.records[0].sampled_too_fast);
@@ -270,7 +271,7 @@ TEST_SUITE("cyberglove_parser") {
                                 k % 2 == 0 ? "\x81\x01\x02\x03\x04\x87"
                                            : "\x82\x05\x01\x03\x04\x87"
                                              "es");
-      for (std::size_t value = 0; value < 22; ++value) // a value tells which sensor's it is
+      for (std::size_t value = 0; value < 22; ++value) // a value shows its sensor
         next[1 + value] = static_cast<std::byte>(10 * (value + 1) + static_cast<std::size_t>(k));
       stream.insert(stream.end(), next.begin(), next.end());
     }

@@ -24,8 +24,8 @@ double ms(HostClock::duration time) {
   return std::chrono::duration<double, std::milli>(time).count();
 }
 
-/// A device that sends 100 records a second, and a host that takes them late: exponentially, about
-/// a millisecond, and now and then not at all for a while, and then many at once.
+/// A device that sends 100 records per second, and a host that takes them late: exponentially,
+/// about a millisecond, and now and then not at all for a while, and then many at once.
 class Simulation {
 public:
   struct Event {
@@ -154,12 +154,12 @@ TEST_SUITE("device_clock") {
     CHECK(worst_ms < 0.5);
   }
 
-  TEST_CASE("a clock that began anew is followed at once, told or not") {
-    for (const bool told : {true, false}) {
+  TEST_CASE("a clock that restarted is followed at once, reset or not") {
+    for (const bool is_reset : {true, false}) {
       DeviceClock clock;
       Simulation before(50.0, 100ms);
       run(clock, before, 0s, 2min);
-      if (told) clock.reset();
+      if (is_reset) clock.reset();
       for (nanoseconds sent = 3min; sent < 4min; sent += 10ms) {
         const HostTime estimate = clock.to_host(sent - 179s, host(sent));
         CHECK(std::abs(ms(estimate - host(sent))) < 0.2);
@@ -183,7 +183,7 @@ TEST_SUITE("device_clock") {
     }
   }
 
-  TEST_CASE("a clock that began anew a few seconds back is noticed by its running back") {
+  TEST_CASE("a clock that restarted a few seconds back is noticed by its running back") {
     DeviceClock clock;
     for (nanoseconds sent{}; sent < 1min; sent += 10ms)
       clock.to_host(sent, host(sent));
@@ -230,7 +230,7 @@ TEST_SUITE("device_clock") {
     }
   }
 
-  TEST_CASE("after a silence of minutes it goes on") {
+  TEST_CASE("after a silence of minutes it continues") {
     DeviceClock clock;
     Simulation simulation(50.0, 100ms);
     run(clock, simulation, 0s, 2min);
@@ -239,7 +239,7 @@ TEST_SUITE("device_clock") {
     CHECK(run(clock, simulation, 10min + 10s, 11min).estimate_ms < 0.5);
   }
 
-  TEST_CASE("records that arrive together are told apart by when they were taken") {
+  TEST_CASE("records that arrive together are distinguished by when they were taken") {
     DeviceClock clock;
     for (nanoseconds sent = 0s; sent < 10s; sent += 10ms)
       clock.to_host(sent, host(sent));

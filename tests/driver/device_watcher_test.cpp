@@ -112,7 +112,7 @@ TEST_SUITE("device_watcher") {
     MockedMachine machine;
     std::filesystem::create_directories(machine.real("/dev"));
     const auto watcher = watch();
-    // As the kernel makes it, but without an event: only /dev tells, as in some containers.
+    // As the kernel makes it, but without an event: only /dev shows it, as in some containers.
     machine.write("/sys/devices/virtual/tty/rfcomm0/uevent",
                   "MAJOR=216\nMINOR=0\nDEVNAME=rfcomm0\n");
     machine.write("/sys/devices/virtual/tty/rfcomm0/dev", "216:0\n");

@@ -44,7 +44,7 @@ MockedUsb second_adapter() {
 } // namespace
 
 TEST_SUITE("discovery") {
-  TEST_CASE("two adapters of one kind are two entries, told apart by their serial numbers") {
+  TEST_CASE("two adapters of one kind are two entries, distinguished by their serial numbers") {
     MockedMachine machine;
     machine.plug({});
     machine.plug(second_adapter());
@@ -200,7 +200,7 @@ TEST_SUITE("discovery") {
     CHECK(found[0].usb->serial == "A1");
   }
 
-  TEST_CASE("an adapter without a port is told, and other USB devices are not") {
+  TEST_CASE("an adapter without a port is listed, and other USB devices are not") {
     MockedMachine machine;
     MockedUsb adapter;
     adapter.port = "";
@@ -217,7 +217,7 @@ TEST_SUITE("discovery") {
     CHECK(found[0].remedy.find("modprobe ftdi_sio") != std::string::npos);
   }
 
-  TEST_CASE("entries that lead nowhere are left out or told without details") {
+  TEST_CASE("entries that lead nowhere are left out or listed without details") {
     MockedMachine machine;
     machine.plug({});
     std::filesystem::remove(machine.real("/dev/ttyUSB0"));
@@ -232,7 +232,7 @@ TEST_SUITE("discovery") {
                        [](const auto& c) { return c.device == "/dev/ttyUSB7"; }));
   }
 
-  TEST_CASE("a port without a node is told so, with how to hand it into a container") {
+  TEST_CASE("a port without a node is reported, with how to pass it into a container") {
     MockedMachine machine;
     machine.plug({});
     CHECK_FALSE(at(find_gloves(), "/dev/ttyUSB0").node_missing);
@@ -252,7 +252,7 @@ TEST_SUITE("discovery") {
     CHECK(glove.error().message.find(port.remedy) != std::string::npos);
   }
 
-  TEST_CASE("which container it is, its maker's marks tell, and only its way is told then") {
+  TEST_CASE("its maker's marks show the container, and then only its remedy is named") {
     MockedMachine machine;
     machine.plug({});
     CHECK_FALSE(missing_node("/dev/ttyUSB0")); // it is there
@@ -278,7 +278,7 @@ TEST_SUITE("discovery") {
     CHECK(remedy().find("podman") == std::string::npos);
   }
 
-  TEST_CASE("a port is left alone if udev tells ModemManager so, by the port or the device") {
+  TEST_CASE("a port is left alone if a udev rule says so, by the port or the device") {
     MockedMachine machine;
     machine.plug({});
     const std::string file = MockedUsb().tty_path() + "/uevent";

@@ -52,7 +52,7 @@ Kind wireless() {
           [](const std::string& path) { return "5dt:" + path + "?baud=9600"; }, 9};
 }
 
-/// A port with one sample for ever, whose counts tell their place in it, and the glove's answer to
+/// A port with one sample for ever, whose counts are their index in it, and the glove's answer to
 /// G.
 class OneSample final : public EmulatedUnit {
 public:
@@ -126,13 +126,13 @@ TEST_SUITE("fivedt_driver") {
     }
   }
 
-  TEST_CASE("a glove that somebody left streaming is asked all the same") {
+  TEST_CASE("a glove that streams already is asked all the same") {
     const PtyUnit port(wired().make(Side::left));
     SampleRing ring(1U << 14U);
     {
       const int other = ::open(port.path().c_str(), O_RDWR | O_NOCTTY);
       REQUIRE(::write(other, "D", 1) == 1);
-      std::this_thread::sleep_for(100ms); // some samples stand in the line
+      std::this_thread::sleep_for(100ms); // some samples are in the line
       ::close(other);
     }
     auto glove = required(open_glove("5dt:" + port.path()));

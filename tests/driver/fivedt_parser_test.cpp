@@ -81,7 +81,7 @@ TEST_SUITE("fivedt_parser") {
       const Outcome outcome = parse(joined({garbage, sample_bytes_of(9), sample_bytes_of(50)}));
       CHECK(outcome.firsts() == Firsts{9, 50});
       CHECK(outcome.counters.discarded_bytes == garbage.size());
-      CHECK(outcome.counters.bad_records == 0); // nothing tells where a sample should have begun
+      CHECK(outcome.counters.bad_records == 0); // no mark shows where a sample should have begun
     }
   }
 

@@ -57,11 +57,11 @@ TEST_SUITE("fivedt_usb_driver") {
       GloveSample sample;
       REQUIRE(ring.try_pop(sample));
       auto sent = std::find_if(model.sent.begin(), model.sent.end(),
-                               [&](const SentCounts& counts) { return tells(sample, counts); });
+                               [&](const SentCounts& counts) { return shows(sample, counts); });
       REQUIRE(sent != model.sent.end());
       for (bool more = true; more; more = ring.try_pop(sample)) {
         REQUIRE(sent != model.sent.end());
-        CHECK(tells(sample, *sent++));
+        CHECK(shows(sample, *sent++));
         CHECK(sample.side == side);
         CHECK(sample.present == sensors);
       }

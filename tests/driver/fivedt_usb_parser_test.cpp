@@ -57,7 +57,7 @@ TEST_SUITE("fivedt_usb_parser") {
     CHECK(parser.counters().bad_records == 200);
   }
 
-  TEST_CASE("the product number tells hand, link and sensors, and strangers are told apart") {
+  TEST_CASE("the product number has hand, link and sensors, and other devices are refused") {
     struct Known {
       std::uint16_t product;
       Model model;

@@ -61,7 +61,7 @@ TEST_SUITE("forte_driver") {
     }
   }
 
-  TEST_CASE("a Forte glove at Bluetooth sends only if it is told so, and the error says how") {
+  TEST_CASE("a Forte glove at Bluetooth sends only by command, and the error says how") {
     const PtyUnit port(by_bluetooth().make(Side::left));
     const auto silent = open_glove("forte:" + port.path());
     REQUIRE_FALSE(silent);
@@ -87,7 +87,7 @@ TEST_SUITE("forte_driver") {
   }
 
   TEST_CASE("each sensor of a frame arrives in its own slot") {
-    // A stream of one frame for ever, whose counts tell their place in it.
+    // A stream of one frame for ever, whose counts are their index in it.
     const std::string_view frame("\xF0\x01\x0B\x0A\x0B\x0C\x0D\x0E\x0F\x10\x11\x12\x13\x64\xF7");
     const PtyUnit port(std::make_unique<Stranger>(frame));
     SampleRing ring(64);
@@ -127,7 +127,7 @@ TEST_SUITE("forte_driver") {
   TEST_CASE("a Forte glove stops promptly while it is silent or away") {
     stop_is_prompt_while_silent_or_away(by_usb());
   }
-  TEST_CASE("a Forte glove that vanishes is found again and told to send") {
+  TEST_CASE("a Forte glove that vanishes is found again and gets the command to send") {
     for (const Kind& kind : {by_usb(), by_bluetooth()})
       a_glove_that_vanishes_is_found_again(kind, false);
   }

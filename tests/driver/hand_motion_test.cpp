@@ -222,7 +222,7 @@ TEST_SUITE("hand_motion") {
     }
   }
 
-  TEST_CASE("a sculpting hand presses, pulls, and never stands still") {
+  TEST_CASE("a sculpting hand presses, pulls, and never stops") {
     for (const Side side : sides) {
       const HandMotion hand(Motion::sculpt, side, 1);
       double least = 90.0;

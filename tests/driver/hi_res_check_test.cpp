@@ -22,8 +22,8 @@ struct Line {
   unsigned first_sub_frame = 0;
   std::int64_t stride = 1;
   double loss = 0.2;
-  std::int64_t number = 7; ///< of the next record, since midnight
-  bool seconds_stand = false;
+  std::int64_t number = 7; ///< number of the next record, since midnight
+  bool seconds_stop = false;
   std::mt19937 random{5};
   HostTime now{1000s};
 
@@ -31,7 +31,7 @@ struct Line {
   Record record() const {
     Record record;
     const std::int64_t frame = number / sub_frames;
-    record.second = seconds_stand ? 7 : static_cast<std::uint32_t>(frame / 30 % 86'400);
+    record.second = seconds_stop ? 7 : static_cast<std::uint32_t>(frame / 30 % 86'400);
     record.frame = static_cast<std::uint8_t>(frame % 30 + 1);
     record.sub_frame = static_cast<std::uint8_t>(number % sub_frames + first_sub_frame);
     return record;
@@ -47,7 +47,7 @@ struct Line {
 struct Tally {
   std::uint64_t lost = 0; ///< between the first and the last but one that came
   std::uint64_t missed = 0;
-  bool tells = false;
+  bool counts = false;
 };
 
 /// `spoil(k, record)` may change the record k that comes.
@@ -70,7 +70,7 @@ Tally run(Line line, HiResCheck check, int records, Spoil&& spoil) {
     tally.lost += before_last;
     before_last = std::exchange(waiting, 0);
   }
-  tally.tells = check.counts_missed();
+  tally.counts = check.counts_missed();
   return tally;
 }
 
@@ -92,12 +92,12 @@ TEST_SUITE("hi_res_check") {
           line.sub_frames = sub_frames;
           line.first_sub_frame = first;
           line.loss = loss;
-          const Tally told = run(line, HiResCheck(line.rate_hz()));
-          CHECK(told.tells);
-          CHECK(told.missed == told.lost);
-          // Nobody has set the rate: the sub-frames tell it.
+          const Tally set = run(line, HiResCheck(line.rate_hz()));
+          CHECK(set.counts);
+          CHECK(set.missed == set.lost);
+          // The rate is not set: the sub-frames show it.
           const Tally learnt = run(line, HiResCheck());
-          CHECK(learnt.tells);
+          CHECK(learnt.counts);
           CHECK(learnt.missed == learnt.lost);
         }
       }
@@ -107,7 +107,7 @@ TEST_SUITE("hi_res_check") {
   TEST_CASE("before the numbering is known nothing is said") {
     Line line;
     const Tally few = run(line, HiResCheck(), 20);
-    CHECK_FALSE(few.tells);
+    CHECK_FALSE(few.counts);
     CHECK(few.missed == 0);
   }
 
@@ -118,21 +118,21 @@ TEST_SUITE("hi_res_check") {
     CHECK(tally.missed == tally.lost);
   }
 
-  TEST_CASE("a clock whose seconds stand is no harm: arrivals tell them") {
+  TEST_CASE("a clock whose seconds stop is no harm: arrivals show them") {
     Line line;
-    line.seconds_stand = true;
+    line.seconds_stop = true;
     const Tally tally = run(line, HiResCheck(90.0), 5000);
-    CHECK(tally.tells);
+    CHECK(tally.counts);
     CHECK(tally.missed == tally.lost);
   }
 
   TEST_CASE("a gap of many seconds is counted, whole seconds included") {
     for (const int gap : {1, 89, 90, 91, 900, 4500}) {
       CAPTURE(gap);
-      for (const bool seconds_stand : {false, true}) {
+      for (const bool seconds_stop : {false, true}) {
         Line line;
         line.loss = 0.0;
-        line.seconds_stand = seconds_stand;
+        line.seconds_stop = seconds_stop;
         HiResCheck check(90.0);
         std::uint64_t missed = 0;
         const auto take = [&](int records) {
@@ -171,14 +171,14 @@ TEST_SUITE("hi_res_check") {
           record.second += 1U + draw(40);
         }
       });
-      CHECK(tally.tells);
-      // A wrong number beside a gap cannot always be told from a right one.
+      CHECK(tally.counts);
+      // A wrong number beside a gap may look like a right one.
       const auto error = static_cast<double>(tally.missed) - static_cast<double>(tally.lost);
       CHECK(std::abs(error) <= 0.02 * static_cast<double>(tally.lost));
     }
   }
 
-  TEST_CASE("a glove that is told to leave out every second record loses none by that") {
+  TEST_CASE("a glove that is set to leave out every second record loses none by that") {
     Line line;
     line.sub_frames = 4;
     line.stride = 2;
@@ -189,7 +189,7 @@ TEST_SUITE("hi_res_check") {
     }
   }
 
-  TEST_CASE("a clock that is set counts on from there, without what nobody knows") {
+  TEST_CASE("a clock that is set counts on from there, without the unknown") {
     Line line;
     line.loss = 0.0;
     HiResCheck check(90.0);
@@ -203,7 +203,7 @@ TEST_SUITE("hi_res_check") {
     CHECK(check.counts_missed());
   }
 
-  TEST_CASE("numbers that make no sense are given up, and then nobody knows") {
+  TEST_CASE("numbers that make no sense are given up, and then losses are unknown") {
     HiResCheck check(90.0);
     std::mt19937 random(1);
     Line line;

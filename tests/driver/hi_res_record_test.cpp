@@ -79,7 +79,7 @@ TEST_SUITE("hi_res_record") {
     CHECK(outcome.counters.bad_records == 0);
   }
 
-  TEST_CASE("what stands before a record costs nothing, echoes and half a time included") {
+  TEST_CASE("bytes before a record cost nothing, echoes and half a time included") {
     for (const std::string_view garbage :
          {std::string_view("e1S"), std::string_view("1E4010111\0001S\0", 13),
           std::string_view("10:20"), std::string_view("1"), std::string_view("\0\0\0", 3),

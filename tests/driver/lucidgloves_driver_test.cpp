@@ -60,7 +60,7 @@ struct Wire {
   bool takes_nothing = false;
   bool takes_all_brakes = true; ///< false: of the next brake command only a part
 
-  void begin_anew() {
+  void restart() {
     const std::lock_guard lock(mutex);
     reads = 0;
     written.clear();
@@ -206,7 +206,7 @@ TEST_SUITE("lucidgloves_driver") {
     glove->stop();
   }
 
-  TEST_CASE("a glove that tells its hand late is that hand from then on") {
+  TEST_CASE("a glove that reports its hand late is that hand from then on") {
     Wire wire;
     const auto glove = glove_at(wire);
     CHECK(glove->info().side == Side::right); // assumed
@@ -223,8 +223,8 @@ TEST_SUITE("lucidgloves_driver") {
     glove->stop();
   }
 
-  TEST_CASE(
-      "a glove that told its hand is waited for when it comes back, however many lines it sends") {
+  TEST_CASE("a glove that reported its hand is waited for when it comes back, however many lines "
+            "it sends") {
     Wire wire;
     wire.chunks.insert(wire.chunks.begin(), "(ZH)0\n");
     const auto glove = glove_at(wire);
@@ -248,7 +248,7 @@ TEST_SUITE("lucidgloves_driver") {
     glove->stop();
   }
 
-  TEST_CASE("a glove that somebody stopped is started") {
+  TEST_CASE("a stopped glove is started") {
     const PtyUnit port(lucidgloves().make(Side::left));
     const int other = ::open(port.path().c_str(), O_RDWR | O_NOCTTY);
     REQUIRE(::write(other, "(ZZ)\n", 5) == 5);
@@ -293,7 +293,7 @@ TEST_SUITE("lucidgloves_driver") {
     CHECK(glove->stats().bad_records == 0);
   }
 
-  TEST_CASE("a glove that waits for an answer to a line that nobody read is woken") {
+  TEST_CASE("a glove that waits for an answer to an unread line is woken") {
     for (const auto firmware :
          {LucidGlovesFirmware::legacy_waiting, LucidGlovesFirmware::waiting}) {
       PtyUnit port(unit_with(firmware));
@@ -305,7 +305,7 @@ TEST_SUITE("lucidgloves_driver") {
     }
   }
 
-  TEST_CASE("a glove of one line a second is read, in both encodings") {
+  TEST_CASE("a glove of one line per second is read, in both encodings") {
     for (const auto firmware : {LucidGlovesFirmware::streaming, LucidGlovesFirmware::legacy}) {
       LucidGlovesUnitOptions options;
       options.firmware = firmware;
@@ -349,7 +349,7 @@ TEST_SUITE("lucidgloves_driver") {
     CHECK(joints->info().counts == CountScale{1023, true});
   }
 
-  TEST_CASE("numbers beyond the range count as the range, and the glove's facts tell of it") {
+  TEST_CASE("numbers beyond the range count as the range, and the glove's facts have that") {
     const PtyUnit port(std::make_unique<Listener>("A4095B2C1023D1024E5\n"));
     SampleRing ring(1U << 14U);
     auto glove = required(open_glove("lucidgloves:" + port.path() + "?range=1023"));
@@ -367,7 +367,7 @@ TEST_SUITE("lucidgloves_driver") {
     CHECK(fact(within->info(), "above_range").empty());
   }
 
-  TEST_CASE("negative numbers count as 0, and the glove's facts tell of them") {
+  TEST_CASE("negative numbers count as 0, and the glove's facts have that") {
     const auto below = required(open_one_line("A-5B2C3D4E5\n", ""));
     CHECK(fact(below->info(), "below_range").find("0") != std::string::npos);
     CHECK(fact(below->info(), "above_range").empty());
@@ -423,7 +423,7 @@ TEST_SUITE("lucidgloves_driver") {
     Wire wire;
     const auto glove = glove_at(wire);
     SampleRing ring(1U << 14U);
-    wire.begin_anew();
+    wire.restart();
     test::require_ok(glove->start(ring));
     for (std::uint16_t k = 1; wire.reads_so_far() < 50; ++k) {
       glove->set_feedback(resistance({k, k, k, k, k}));
@@ -438,7 +438,7 @@ TEST_SUITE("lucidgloves_driver") {
     Wire wire;
     const auto glove = glove_at(wire);
     SampleRing ring(1U << 14U);
-    wire.begin_anew();
+    wire.restart();
     test::require_ok(glove->start(ring));
     REQUIRE(eventually([&] { return wire.count_of("\n") > 5; }));
     glove->set_feedback(resistance({1, 2, 3, 4, 5}));
@@ -464,7 +464,7 @@ TEST_SUITE("lucidgloves_driver") {
       Wire wire;
       const auto glove = glove_at(wire);
       SampleRing ring(1U << 14U);
-      wire.begin_anew();
+      wire.restart();
       wire.chunks = c.chunks;
       test::require_ok(glove->start(ring));
       CHECK(eventually([&] { return wire.reads_so_far() > 80; }));
@@ -479,7 +479,7 @@ TEST_SUITE("lucidgloves_driver") {
     Wire wire;
     const auto glove = glove_at(wire);
     SampleRing ring(1U << 14U);
-    wire.begin_anew();
+    wire.restart();
     wire.chunks = {""};
     test::require_ok(glove->start(ring));
     CHECK(eventually([&] { return wire.count_of("\n") > 3; }));
@@ -491,7 +491,7 @@ TEST_SUITE("lucidgloves_driver") {
     Wire wire;
     const auto glove = glove_at(wire);
     SampleRing ring(1U << 14U);
-    wire.begin_anew();
+    wire.restart();
     wire.takes_nothing = true;
     test::require_ok(glove->start(ring));
     glove->set_feedback(resistance({1, 2, 3, 4, 5}));
@@ -508,7 +508,7 @@ TEST_SUITE("lucidgloves_driver") {
     Wire wire;
     const auto glove = glove_at(wire);
     SampleRing ring(1U << 14U);
-    wire.begin_anew();
+    wire.restart();
     wire.takes_all_brakes = false;
     test::require_ok(glove->start(ring));
     glove->set_feedback(resistance({1, 2, 3, 4, 5}));

@@ -137,7 +137,7 @@ TEST_SUITE("lucidgloves_parser") {
       CHECK(outcome.counters.discarded_bytes == 1 + length + 1);
     }
     const std::string longest = "A1" + std::string(253, 'Q') + "\n"; // 256 with its end
-    CHECK(parse(longest).counters.bad_records == 1);                 // Q is told twice
+    CHECK(parse(longest).counters.bad_records == 1);                 // Q occurs twice
     std::string numbered = "A1";
     while (numbered.size() < 250)
       numbered += "(QQ)12";
@@ -275,7 +275,7 @@ TEST_SUITE("lucidgloves_parser") {
     CHECK_FALSE(decode_line(std::string_view("A1\0B2", 5), 4095));
   }
 
-  TEST_CASE("a line that tells nothing of the hand is no record") {
+  TEST_CASE("a line without values of the hand is no record") {
     CHECK_FALSE(decode_line("F2048G2048P0H", 4095));
     CHECK_FALSE(decode_line("(QQ)1", 4095));
     const Outcome outcome = parse("(ZV)5(ZG)0(ZH)1\n");
@@ -305,7 +305,7 @@ TEST_SUITE("lucidgloves_parser") {
     }
   }
 
-  TEST_CASE("a whole finger's curl stands for its knuckle unless the line tells that itself") {
+  TEST_CASE("a whole finger's curl counts as its knuckle unless the line has a value for that") {
     CHECK(written(sample_of("A1B2C3D4E5")) ==
           "thumb_mcp=1 index_mcp=2 middle_mcp=3 ring_mcp=4 pinky_mcp=5");
     for (const char* text : {"B9(BAA)1(BAB)2(BAC)3(BAD)4", "(BAD)4(BAC)3(BAB)2(BAA)1B9"}) {

@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr SensorMask knuckles{1U << 1U | 1U << 4U | 1U << 8U | 1U << 12U | 1U << 16U};
 
-/// The samples are an unbroken run of what the glove sent.
+/// The samples are an unbroken run of the glove's reports.
 void check_in_order(SampleRing& ring, const UsbGlove& glove) {
   std::vector<GloveSample> samples;
   ring.drain([&](const GloveSample& sample) { samples.push_back(sample); });
@@ -33,7 +33,7 @@ void check_in_order(SampleRing& ring, const UsbGlove& glove) {
   std::size_t first = 0;
   const auto all_from = [&](std::size_t begin) {
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      if (!tells(samples[k], glove.sent[begin + k])) return false;
+      if (!shows(samples[k], glove.sent[begin + k])) return false;
     }
     return true;
   };
@@ -199,7 +199,7 @@ TEST_SUITE("p5_driver") {
     CHECK(MockedUsb::log_of(device).kernel_has_glove);
   }
 
-  TEST_CASE("a glove that falls silent is asked anew, and the mouse is given back all the same") {
+  TEST_CASE("a glove that falls silent is asked again, and the mouse is given back all the same") {
     StreamingP5 p5;
     REQUIRE(eventually([&] { return p5.ring.size() > 3; }));
     MockedUsb::with_model(p5.device, [&] { p5.model.silent = true; });

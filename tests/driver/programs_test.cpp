@@ -48,7 +48,7 @@ TEST_SUITE("programs") {
     CHECK_FALSE(holds(find_holders({port.path()}), port.path(), ::getpid()));
   }
 
-  TEST_CASE("a lock tells who holds a file under another name") {
+  TEST_CASE("a lock shows who holds a file under another name") {
     const TemporaryFolder folder;
     const std::string name = (folder.path() / "port").string();
     const std::string other_name = (folder.path() / "other").string();
@@ -56,9 +56,9 @@ TEST_SUITE("programs") {
     REQUIRE(::link(name.c_str(), other_name.c_str()) == 0);
     CHECK_FALSE(holds(find_holders({other_name}), other_name, ::getpid()));
     REQUIRE(::flock(file, LOCK_EX | LOCK_NB) == 0);
-    // A kernel that does not tell its locks is no fault of the program.
-    const bool told = !parse_locks(read_text("/proc/locks")).empty();
-    CHECK(holds(find_holders({other_name}), other_name, ::getpid()) == told);
+    // A kernel that does not list its locks is no fault of the program.
+    const bool listed = !parse_locks(read_text("/proc/locks")).empty();
+    CHECK(holds(find_holders({other_name}), other_name, ::getpid()) == listed);
     ::close(file);
   }
 
@@ -77,7 +77,7 @@ TEST_SUITE("programs") {
     CHECK(parse_locks("").empty());
   }
 
-  TEST_CASE("USB numbers tell gloves and adapters") {
+  TEST_CASE("USB numbers identify gloves and adapters") {
     CHECK(udev::usb_glove_name({0x0D7F, 0x0100}) == "Essential Reality P5");
     CHECK(udev::usb_glove_name({0x0D7F, 0x0101}).empty());
     // The table has the numbers that the driver can read a model from, and no others.
@@ -117,7 +117,7 @@ TEST_SUITE("programs") {
     CHECK(printable(std::string(1000, 'x')).size() == 128);
   }
 
-  TEST_CASE("who may open a node is told") {
+  TEST_CASE("who may open a node is reported") {
     const TemporaryFolder folder;
     const auto file = (folder.path() / "node").string();
     CHECK_FALSE(port_access(file).granted);

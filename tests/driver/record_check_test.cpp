@@ -18,7 +18,7 @@ using namespace nendo::driver::cyberglove;
 
 namespace {
 
-constexpr std::uint32_t period = 1152; ///< 100 records a second
+constexpr std::uint32_t period = 1152; ///< 100 records per second
 
 std::uint32_t below(std::mt19937& random, std::uint32_t bound) {
   return static_cast<std::uint32_t>(random() % bound);
@@ -48,7 +48,7 @@ struct Stream {
 
   RecordCheck check;
   std::uint64_t sent = 0, delivered = 0, missed = 0;
-  Stamp stamp = Stamp::none; ///< of the last record
+  Stamp stamp = Stamp::none; ///< the last record's stamp
 };
 
 /// A device whose stamps err evenly, by at most `part` of a period to either side.
@@ -266,7 +266,7 @@ TEST_SUITE("record_check") {
     }
   }
 
-  TEST_CASE("a clock that began anew, or another period, is believed at the third record") {
+  TEST_CASE("a clock that restarted, or another period, is believed at the third record") {
     for (const std::uint32_t next : {period, 768U, 11'520U}) {
       CAPTURE(next);
       Stream stream(period);
@@ -341,7 +341,7 @@ TEST_SUITE("record_check") {
     }
   }
 
-  TEST_CASE("stamps that stand still or make no sense are not believed, and the records pass") {
+  TEST_CASE("stamps that stop or make no sense are not believed, and the records pass") {
     std::mt19937 random(8);
     for (const bool still : {true, false}) {
       Stream stream(period);
@@ -364,7 +364,7 @@ TEST_SUITE("record_check") {
     bool late = false;
     for (std::uint32_t k = 1; k < 5000; ++k) {
       const bool was_late = std::exchange(late, random() % 5 == 0);
-      if (!(was_late && late) && random() % 5 == 0) { // between two late ones nobody could tell
+      if (!(was_late && late) && random() % 5 == 0) { // between two late ones it could not be seen
         stream.lose();
         ++k;
       }

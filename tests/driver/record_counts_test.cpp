@@ -55,7 +55,7 @@ TEST_SUITE("record_counts") {
     CHECK(in_words(counts_of(stats)).find("range") == std::string::npos);
   }
 
-  TEST_CASE("what nobody knows is not said: neither sent nor missed") {
+  TEST_CASE("unknown counts are left out: neither sent nor missed") {
     GloveStats stats;
     stats.records = 357;
     const RecordCounts counts = counts_of(stats);
@@ -68,20 +68,20 @@ TEST_SUITE("record_counts") {
     CHECK(words.find("missed") == std::string::npos);
   }
 
-  TEST_CASE("a rate below what was asked for is told where losses cannot be counted") {
+  TEST_CASE("a rate below the requested one is reported if losses cannot be counted") {
     GloveInfo info;
     info.rate_hz = 90.0;
     GloveStats stats;
     stats.rate_hz = 72.0;
-    CHECK(rate_shortfall(info, stats) == "72.0 records a second of the 90.0 that were asked for");
-    stats.tells_missed = true; // it has told already
+    CHECK(rate_shortfall(info, stats) == "72.0 records per second of the 90.0 that were asked for");
+    stats.tells_missed = true; // the counts show it already
     CHECK(rate_shortfall(info, stats).empty());
     stats.tells_missed = false;
     stats.rate_hz = 89.0;
     CHECK(rate_shortfall(info, stats).empty());
     stats.rate_hz = 0.0; // nothing was measured yet
     CHECK(rate_shortfall(info, stats).empty());
-    info.rate_hz = 0.0; // nobody asked for any
+    info.rate_hz = 0.0; // no rate was requested
     stats.rate_hz = 1.0;
     CHECK(rate_shortfall(info, stats).empty());
   }

@@ -238,7 +238,7 @@ TEST_SUITE("usb_transport") {
     CHECK(no_interface.error().message.find("interface") != std::string::npos);
   }
 
-  TEST_CASE("a device that this user may not open names its node and the rule that mends it") {
+  TEST_CASE("a device that this user may not open names its node and the rule that fixes it") {
     MockedUsb bus;
     P5Model glove;
     auto& device = bus.plug(glove, 3, 7);

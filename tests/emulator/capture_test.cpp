@@ -19,10 +19,10 @@ using namespace std::string_view_literals;
 TEST_SUITE("capture") {
   namespace {
   std::vector<std::string> cut(std::string_view bytes) {
-    std::vector<std::string> texts;
+    std::vector<std::string> strings;
     for (const auto& record : cut_records(std::as_bytes(std::span(bytes))))
-      texts.emplace_back(record.begin(), record.end());
-    return texts;
+      strings.emplace_back(record.begin(), record.end());
+    return strings;
   }
   } // namespace
 

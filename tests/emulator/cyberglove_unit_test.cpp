@@ -59,7 +59,7 @@ TEST_SUITE("cyberglove_unit") {
     }
     CHECK(bench.ask("?F")[2] == 1);
     CHECK(bench.ask("?J")[2] == 1);
-    // 90 records a second: 1280 ticks, once; high byte first.
+    // 90 records per second: 1280 ticks, once; high byte first.
     CHECK(bench.ask("?T") == Bytes{0x3F, 0x54, 0x05, 0x00, 0x00, 0x01, 0x00});
   }
 
@@ -97,7 +97,7 @@ TEST_SUITE("cyberglove_unit") {
     CHECK(bench.ask("?F")[2] == 1);
   }
 
-  TEST_CASE("the switch drives the light as long as it is told to") {
+  TEST_CASE("the switch drives the light as long as it is set to") {
     Bench bench;
     bench.ask("w 1\r");
     CHECK(bench.ask("?L")[2] == 1);
@@ -108,7 +108,7 @@ TEST_SUITE("cyberglove_unit") {
     CHECK(bench.ask("?L")[2] == 0);
   }
 
-  TEST_CASE("a sensor that is stuck stands still, and the others move on") {
+  TEST_CASE("a sensor that is stuck stays, and the others move on") {
     for (const bool with_count : {true, false}) {
       Bench bench;
       constexpr std::size_t slot = 5; // index_pip; before it no slot is missing
@@ -256,7 +256,7 @@ TEST_SUITE("cyberglove_unit") {
   }
 
   TEST_CASE(
-      "the time stamp, its zero bytes restored, counts 115200 a second and wraps after 2^32") {
+      "the time stamp, its zero bytes restored, counts 115200 per second and wraps after 2^32") {
     Bench bench;
     bench.now = 0s;
     bench.ask(Bytes{'D', 0x01});
@@ -326,7 +326,7 @@ TEST_SUITE("cyberglove_unit") {
   TEST_CASE(
       "a period too short for the device gives its best rate and the error pair in every record") {
     Bench bench;
-    bench.ask("t 576 1\r"); // 200 a second; with the filter it manages 112
+    bench.ask("t 576 1\r"); // 200 per second; with the filter it manages 112
     bench.ask("S");
     for (const Bytes& record : split(bench.after(100ms))) {
       REQUIRE(record.size() == 26);
@@ -341,7 +341,7 @@ TEST_SUITE("cyberglove_unit") {
     CHECK(bench.unit.counters().records == 22);
   }
 
-  TEST_CASE("nobody is told that a rate is too fast who has not set one") {
+  TEST_CASE("no host that has set no rate hears that it is too fast") {
     for (const unsigned model : {1U, 2U, 3U}) {
       for (const double rate_hz : {1.0, 90.0, 100.0, 480.0}) {
         UnitOptions options;
@@ -421,7 +421,7 @@ TEST_SUITE("cyberglove_unit") {
     CHECK(bench.after(10s).empty());
   }
 
-  TEST_CASE("a streaming unit obeys nothing but 0x03") {
+  TEST_CASE("a streaming unit handles only 0x03") {
     Bench bench;
     bench.ask("S");
     Bytes all;
@@ -473,7 +473,7 @@ TEST_SUITE("cyberglove_unit") {
     }
   }
 
-  TEST_CASE("a restart takes as long as it is told to") {
+  TEST_CASE("a restart takes as long as it is set to") {
     for (const auto time : {0ms, 250ms, 5000ms}) {
       UnitOptions options;
       options.restart_time = time;
@@ -506,7 +506,7 @@ TEST_SUITE("cyberglove_unit") {
     for (const Bytes& record : split(bench.receive()))
       CHECK(record.size() == 24);
     CHECK(split(bench.after(100ms)).size() == 9);
-    // However long nobody looked, there is no work to catch up with.
+    // After any pause, there is no work to catch up with.
     bench.after(24h * 365);
     CHECK(bench.unit.counters().records * 24 + bench.unit.counters().bytes_refused >
           60'000'000'000);
@@ -526,7 +526,7 @@ TEST_SUITE("cyberglove_unit") {
         REQUIRE(bench.unit.output().size() <= CyberGloveUnit::output_capacity);
         if (random() % 4 == 0) bench.unit.take(random() % 2000);
       }
-      // Whatever it was told, the usual way back works: stop, wait out records that were asked for,
+      // After all commands, the usual recovery works: stop, wait out records that were asked for,
       // a half command and a restart, ask.
       bench.send({0x03});
       bench.after(4s);

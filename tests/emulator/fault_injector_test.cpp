@@ -24,7 +24,7 @@ TEST_SUITE("fault_injector") {
     return {*parsed, seed};
   }
 
-  // Numbered, so that each can be told from all others: S, ten digits that are never 0, NUL.
+  // Numbered, so that each is distinct: S, ten digits that are never 0, NUL.
   constexpr std::size_t record_bytes = 12;
   Wire record(std::uint32_t number) {
     Wire bytes{std::byte{'S'}};

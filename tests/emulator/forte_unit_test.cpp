@@ -30,7 +30,7 @@ ForteUnitOptions at_100_hz(bool bluetooth = false) {
 } // namespace
 
 TEST_SUITE("forte_unit") {
-  TEST_CASE("it sends nothing until it was told both to send and where to") {
+  TEST_CASE("it sends nothing before the commands to send and where to") {
     for (const bool bluetooth : {false, true}) {
       CAPTURE(bluetooth);
       const Bytes& right = bluetooth ? to_bluetooth : to_usb;

@@ -34,7 +34,8 @@ std::size_t lines_in(const nendo::test::Bytes& bytes) {
 } // namespace
 
 TEST_SUITE("lucidgloves_unit") {
-  TEST_CASE("it sends so many lines a second by itself, with every key that the firmware sends") {
+  TEST_CASE(
+      "it sends its number of lines per second by itself, with every key that the firmware sends") {
     Bench bench;
     std::size_t lines = 0;
     for (int k = 0; k < 100; ++k) {
@@ -58,7 +59,7 @@ TEST_SUITE("lucidgloves_unit") {
     CHECK(bench.unit.counters().records == 100);
   }
 
-  TEST_CASE("it says who it is, and stops and starts when it is told to") {
+  TEST_CASE("it says who it is, and stops and starts by command") {
     LucidGlovesUnitOptions options;
     options.side = Side::left;
     Bench bench(options);
@@ -70,7 +71,7 @@ TEST_SUITE("lucidgloves_unit") {
     CHECK_FALSE(bench.after(20ms).empty());
   }
 
-  TEST_CASE("a firmware without force feedback streams on, whatever it is told") {
+  TEST_CASE("a firmware without force feedback streams on after any command") {
     Bench bench(with(LucidGlovesFirmware::streaming));
     for (const char* command : {"A900B900C900D900E900\n", "Z\n", "(ZZ)\n"})
       CHECK(bench.ask(command).empty());
@@ -78,7 +79,7 @@ TEST_SUITE("lucidgloves_unit") {
     CHECK(lines_in(bench.after(20ms)) == 2);
   }
 
-  TEST_CASE("a waiting firmware sends a line a second to a host that says nothing") {
+  TEST_CASE("a waiting firmware sends a line per second to a host that says nothing") {
     Bench bench(with(LucidGlovesFirmware::waiting));
     std::size_t lines = 0;
     for (int k = 0; k < 1000; ++k)

@@ -94,7 +94,7 @@ TEST_SUITE("pty_faults") {
     options.faults = {"eg@20s+10s", "restart@60s"};
     const test::ServedEmulator emulator(options);
     test::PtyHost host(emulator->tty_path());
-    // 90 records a second until the restart ends the stream.
+    // 90 records per second until the restart ends the stream.
     const std::string stream = host.receive_until(
         [&](const std::string&) { return done(emulator->stats(), "restart") == 1; });
     const std::string all = stream + host.drain(300ms);

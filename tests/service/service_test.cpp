@@ -1,4 +1,4 @@
-// nendo run as a service: what it tells systemd, and what systemd's own tools say of the unit.
+// nendo run as a service: its messages to systemd, and what systemd's own tools say of the unit.
 
 #include <array>
 #include <cstddef>
@@ -58,7 +58,8 @@ private:
 } // namespace
 
 TEST_SUITE("service") {
-  TEST_CASE("a run tells that it is ready with its first frame, that it lives, and that it stops") {
+  TEST_CASE(
+      "a run reports that it is ready with its first frame, that it lives, and that it stops") {
     const TemporaryFolder folder;
     const Supervisor supervisor;
     const auto done = nendo::test::nendo({"run", "--left", "sim", "--duration", "1.5", "--out",

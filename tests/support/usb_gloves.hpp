@@ -22,7 +22,7 @@ using SentCounts = std::array<int, sensor_slots>;
 
 /// Returns whether the sample has exactly these counts. (It makes a mask first: GCC 12.2
 /// miscompiles the comparison of a bit with the sign of a number.)
-inline bool tells(const GloveSample& sample, const SentCounts& sent) {
+inline bool shows(const GloveSample& sample, const SentCounts& sent) {
   SensorMask measured;
   SentCounts told{};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {

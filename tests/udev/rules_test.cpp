@@ -94,7 +94,7 @@ TEST_SUITE("udev rules") {
     CHECK(rule.find("INTERFACE") == std::string::npos);
   }
 
-  TEST_CASE("what does not tell an adapter from another one binds nothing") {
+  TEST_CASE("a property that two adapters share binds nothing") {
     auto no_usb = port_of("/dev/ttyS0", "", "");
     no_usb.usb.reset();
     const std::vector ports{port_of("/dev/ttyUSB0", "1-2", "0001"),

@@ -87,7 +87,7 @@ Result<Binding> make_binding(std::string_view device, std::span<const SerialPort
     const bool same_adapter = other.usb->place == usb.place;
     binding.by_interface |= same_adapter;
     if (same_adapter && other.usb->interface_number == usb.interface_number) {
-      return Error{Errc::usage, std::string(device) + ": nothing but its number tells it from " +
+      return Error{Errc::usage, std::string(device) + ": only its number distinguishes it from " +
                                     other.device + "; use an adapter with one port"};
     }
     const bool same_kind = id_of(*other.usb) == id_of(usb);

@@ -131,7 +131,8 @@ std::string refresh_udev() {
     if (done) return "udev has read its rules again and looked at what is plugged in";
     break;
   }
-  return "udev could not be told; run: sudo udevadm control --reload, then plug the glove in again";
+  return "udev could not be notified; run: sudo udevadm control --reload, then plug the glove in "
+         "again";
 }
 
 } // namespace nendo::udev

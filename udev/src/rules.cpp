@@ -77,7 +77,7 @@ std::string identification() {
           "SYMLINK+=\"nendo/$env{ID_NENDO_HAND}\"\n"
           "SUBSYSTEM==\"tty\", ENV{ID_NENDO_HAND}==\"\", ENV{.NENDO_SERIAL}==\"?*\", "
           "ENV{.NENDO_SERIAL}!=\"*/*\", SYMLINK+=\"nendo/glove-$env{.NENDO_SERIAL}\"\n\n"
-          "# FTDI adapters keep short replies back for 16 ms unless told otherwise.\n"
+          "# FTDI adapters delay short replies by 16 ms by default.\n"
           "SUBSYSTEM==\"usb-serial\", DRIVER==\"ftdi_sio\", ATTR{latency_timer}!=\"1\", "
           "ATTR{latency_timer}=\"1\"\n"
           "LABEL=\"nendo_end\"\n";
@@ -85,8 +85,8 @@ std::string identification() {
 }
 
 // The number is below 73, because there systemd turns the tag into the permission. The USB device
-// itself is granted only where the glove has no port, so that nobody can take a port's kernel
-// driver away.
+// itself is granted only where the glove has no port, so that no user can detach a port's
+// kernel driver.
 std::string grant() {
   const std::string rights =
       "TAG+=\"uaccess\", GROUP=\"" + std::string(glove_group) + "\", MODE=\"0660\"\n";

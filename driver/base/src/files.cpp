@@ -75,7 +75,7 @@ Result<OpenFile> open_file(const fs::path& path, std::string_view kind) {
   const auto bad = [&](const std::string& what) {
     return Error{Errc::bad_input, path.string() + ": " + what};
   };
-  // O_NONBLOCK: opening a pipe that nobody writes to would wait for ever.
+  // O_NONBLOCK: opening a pipe without a writer would wait for ever.
   UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file.is_open()) return bad("cannot be opened: " + why(errno));
   struct stat info{};
@@ -131,7 +131,7 @@ FileReplacement::~FileReplacement() {
 
 Error FileReplacement::failure(int error_number) const {
   return {Errc::failed, path_.string() + ": cannot be written: " + why(error_number) +
-                            "; make room or choose a folder that you may write to"};
+                            "; free some space or choose a folder that you may write to"};
 }
 
 Result<FileReplacement> FileReplacement::begin(const fs::path& path) {

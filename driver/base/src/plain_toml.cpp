@@ -86,7 +86,7 @@ private:
     return in_quotes(rest_.substr(0, 1));
   }
 
-  /// What stands on a line before its comment.
+  /// The part of a line before its comment.
   bool line() {
     skip_blanks();
     if (rest_.empty() || next() == '#' || next() == '\n' || next() == '\r') return true;
@@ -181,7 +181,7 @@ private:
     if (next() == '"' || next() == '\'') return quoted();
     if (next() != '[' && next() != '{') return word();
     if (depth == max_toml_depth)
-      return complain("lists and tables stand more than " + std::to_string(max_toml_depth) +
+      return complain("lists and tables are nested more than " + std::to_string(max_toml_depth) +
                       " deep within each other; this program knows none so deep");
     return skip('[') ? list(depth + 1) : skip('{') && table(depth + 1);
   }
@@ -200,7 +200,7 @@ private:
     rest_.remove_prefix(size);
     return true;
   }
-  /// Skips what may stand between the values of a list: blanks, line breaks and comments.
+  /// Skips blanks, line breaks and comments between the values of a list.
   bool gap() {
     do {
       skip_blanks();

@@ -28,7 +28,7 @@ std::size_t length_of_line_end(std::string_view text) noexcept {
   return text.starts_with("\r\n") ? 2 : text.empty() ? 0 : 1;
 }
 
-/// Returns whether `c` stands in the line outside of quotes. A tab beside a comma or a semicolon is
+/// Returns whether `c` occurs in the line outside of quotes. A tab beside a comma or a semicolon is
 /// a blank that follows it.
 bool separates(std::string_view line, char c) noexcept {
   bool is_quoted = false;
@@ -54,7 +54,7 @@ char separator_of(std::string_view line) noexcept {
 }
 
 /// Excel's own line about the separator.
-std::optional<char> told_separator(std::string_view line) noexcept {
+std::optional<char> stated_separator(std::string_view line) noexcept {
   line = trimmed(line);
   if (line.size() > 1 && line.front() == '"' && line.back() == '"')
     line = line.substr(1, line.size() - 2);
@@ -137,11 +137,11 @@ bool TableReader::skip_line() {
   const std::string_view line = first_line(rest_);
   const std::string_view content = trimmed(line);
   const bool is_comment = content.starts_with('#');
-  const auto told = separator_ == '\0' ? told_separator(content) : std::nullopt;
-  if (!content.empty() && !is_comment && !told) return false;
+  const auto stated = separator_ == '\0' ? stated_separator(content) : std::nullopt;
+  if (!content.empty() && !is_comment && !stated) return false;
   // A line of tabs or semicolons is a row of empty cells, which is nothing either.
   if (is_comment) comment_ = content.substr(1);
-  if (told) separator_ = *told;
+  if (stated) separator_ = *stated;
   rest_.remove_prefix(line.size());
   rest_.remove_prefix(length_of_line_end(rest_));
   ++next_line_;
@@ -224,8 +224,8 @@ Result<void> TableReader::read_head(std::string_view example) {
   if (std::all_of(cells_.begin(), cells_.end(), is_value) &&
       std::any_of(cells_.begin(), cells_.end(), is_number_cell)) {
     TableReader comment(comment_, name_);
-    const auto told = comment.read_line();
-    const bool is_head = told && *told && comment.cells_.size() == cells_.size() &&
+    const auto read = comment.read_line();
+    const bool is_head = read && *read && comment.cells_.size() == cells_.size() &&
                          std::none_of(comment.cells_.begin(), comment.cells_.end(), is_value);
     if (!is_head) return bad("has numbers where the names of the columns should be" + wanted);
     named = comment.cells_;

@@ -19,7 +19,7 @@ std::size_t limit_in(const std::filesystem::path& file) {
   return input >> bytes ? bytes : no_limit;
 }
 
-// Of version 2's line, "0::/system.slice/nendo.service", what stands behind the colons.
+// Of version 2's line, "0::/system.slice/nendo.service", the part after the colons.
 std::filesystem::path group_in(const std::filesystem::path& membership) {
   std::ifstream input(membership);
   for (std::string line; std::getline(input, line);)

@@ -20,7 +20,7 @@ constexpr auto needed_answer_quiet = 1000ms;
 /// The caller's deadline is for units that answer at once. One that has shown that it is there may
 /// take this number of its slowest answers more; there are some twenty queries.
 constexpr int max_answers = 30;
-constexpr int tries = 2; ///< for failures that noise on the line explains
+constexpr int tries = 2; ///< because noise on the line may explain a failure
 
 bool is_final(Answer answer) noexcept {
   return answer == Answer::good || answer == Answer::gone || answer == Answer::no_glove;

@@ -83,7 +83,7 @@ Error too_fast(double rate_hz, std::size_t record_bytes, int baud, const std::st
   const double limit_hz = line_limit_hz(baud, record_bytes);
   return {Errc::usage,
           fmt::format("rate={:g}: a record of {} bytes at {} baud takes {:.1f} ms; at "
-                      "most {} records a second; {}",
+                      "most {} records per second; {}",
                       rate_hz, record_bytes, baud, 1e3 / limit_hz, whole(limit_hz), remedy)};
 }
 
@@ -97,7 +97,7 @@ Result<Options> read_options(const GloveSpec& spec) {
     if (good) good = take(spec, key, known, option, read);
   };
   also("baud", "one of 115200, 57600, 38400, 19200, 9600", options.baud, read_baud);
-  also("rate", "a number of records a second from 0.1 to 1000", options.rate_hz, read_rate);
+  also("rate", "a number of records per second from 0.1 to 1000", options.rate_hz, read_rate);
   also("mask", "a sensor mask from 0x1 to 0xFFFFFF", options.mask, read_mask);
   also("stamps", "on or off", options.stamps, read_switch);
   also("filter", "on or off", options.filter, read_switch);
@@ -186,7 +186,7 @@ Result<RecordPlan> plan_records(const Options& options, std::size_t values, int 
 }
 
 Result<std::optional<std::uint8_t>> plan_hires(const Options& options, int baud) {
-  constexpr double max_steps = 4; // 120 records a second, what the maker states
+  constexpr double max_steps = 4; // 120 records per second, what the maker states
   if (!options.rate_hz) return std::optional<std::uint8_t>{};
   const double steps = *options.rate_hz / third_frame_step_hz;
   if (steps != std::floor(steps) || steps < 1 || steps > max_steps) {

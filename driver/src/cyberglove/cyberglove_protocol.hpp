@@ -126,6 +126,6 @@ constexpr WristSwitch wrist_switch_of(std::uint8_t status) noexcept {
   return (status & status_switch) != 0 ? WristSwitch::on : WristSwitch::off;
 }
 
-inline constexpr double clock_hz = 115'200.0; ///< of the period [p.47] and the time stamp [p.28]
+inline constexpr double clock_hz = 115'200.0; ///< the clock of period [p.47] and time stamp [p.28]
 
 } // namespace nendo::driver::cyberglove

@@ -38,7 +38,7 @@ constexpr std::uint32_t mean_steps = 16;
 /// No single deviation counts for more, so that stamps are only taken to wander if more than half
 /// of them do.
 constexpr std::uint32_t max_counted_part = 4;
-/// Beyond three eighths one cannot tell late from early. A mean of an eighth is a period that is
+/// Beyond three eighths late and early look the same. A mean of an eighth is a period that is
 /// not kept closely.
 constexpr std::uint32_t max_eighths = 3;
 constexpr std::uint32_t hidden_part = 8;

@@ -39,14 +39,14 @@ private:
 /// periods, and the status byte, most of which is constant.
 ///
 /// The effect of a flipped bit in a record of 22 sensors, time stamp and status (30 bytes, 240
-/// bits) at 100 records a second (1152 ticks), if none of its bytes is a power of two and the
+/// bits) at 100 records per second (1152 ticks), if none of its bytes is a power of two and the
 /// stamps are punctual:
 ///   caught    50: header 8, flags of the time stamp 4, ticks 24, status 6, NUL 8
 ///   harmless   4: the flags' upper half means nothing; what is delivered is right
 ///   delivered 186: sensors 176, the 8 ticks' bits below the tolerance, wrist switch and light 2
 /// So 78 % of the flips are not found. Nothing can check a sensor's bit, unless it was the only bit
 /// set in its byte, so that the flip makes a NUL. While no period is known, a stamp may be wrong by
-/// half a period. FAULTS.md has a table of what jitter of the stamps costs.
+/// half a period. FAULTS.md has a table of the losses by jitter of the stamps.
 class RecordCheck {
 public:
   /// `period_ticks` is the period to which the glove is set. It is 0 if the period is unknown or as

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the programs that hold a device, as far as /proc tells without opening the device.
+// Finds the programs that hold a device, as far as /proc shows them without opening the device.
 
 #include <cstdint>
 #include <map>
@@ -13,8 +13,8 @@
 namespace nendo::driver {
 
 struct Holders {
-  std::map<std::string, std::vector<DeviceHolder>> of; ///< by device
-  bool complete = true; ///< every program could be looked into, in the time given
+  std::map<std::string, std::vector<DeviceHolder>> of; ///< the holders by device
+  bool complete = true; ///< all processes could be inspected within the time
 };
 
 /// Returns the programs that hold these device nodes. It looks through all programs' open files,

@@ -20,14 +20,14 @@ constexpr auto write_timeout = 100ms;
 constexpr auto answer_time = 800ms; ///< twice for each of two questions: less than open_budget
 constexpr int tries = 2;
 constexpr auto quiet_time = 50ms; ///< longer than any gap within an answer
-constexpr auto longest_babble = 300ms;
+constexpr auto max_drain = 300ms;
 
 constexpr std::array<Sensor, fingers> slots{
     Sensor::thumb_mcp, Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp, Sensor::pinky_mcp};
 
 constexpr SensorMask sensors = mask_of(slots);
 
-/// What the user says of the glove.
+/// The user's options.
 struct Wishes {
   bool wireless = false;
   bool left_pinky_first = false;
@@ -90,7 +90,7 @@ private:
   /// Throws away what comes until nothing has come for quiet_time: timeout, as hoped. Done: it
   /// never stopped.
   IoStatus fall_quiet(Transport& transport, const ReplyDeadline& limit) noexcept {
-    const HostTime until = HostClock::now() + longest_babble;
+    const HostTime until = HostClock::now() + max_drain;
     IoStatus heard = IoStatus::done;
     while (heard == IoStatus::done && HostClock::now() < until)
       heard = hear(transport, limit, quiet_time);
@@ -141,7 +141,7 @@ private:
         heard == IoStatus::done ? decode_information(finder.answer()) : std::nullopt;
     if (!information) return stranger(source, parser_.counters().bytes - before);
     if (const auto note = hand_override(information->side, hands_);
-        !note.empty() && !std::exchange(told_of_hand_, true))
+        !note.empty() && !std::exchange(warned_of_hand_, true))
       spdlog::warn("device: {}: {}", source, note);
     GloveInfo info = describe(choose_hand(information->side, hands_));
     if (!information->name.empty()) info.model = information->name + ", 5 sensors";
@@ -151,7 +151,7 @@ private:
     return info;
   }
 
-  /// One sample may be noise; two of them, one right behind the other, are none by chance.
+  /// One sample may be noise; two of them, one right after the other, are no noise.
   Result<GloveInfo> recognise(Transport& transport, const std::string& source,
                               const ReplyDeadline& limit) {
     Parser parser;
@@ -195,7 +195,7 @@ private:
   const bool left_pinky_first_;
   const SideOptions hands_;
   Side side_ = Side::right;
-  bool told_of_hand_ = false;
+  bool warned_of_hand_ = false;
   Parser parser_;
 };
 

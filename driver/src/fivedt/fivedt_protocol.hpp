@@ -27,7 +27,7 @@ inline constexpr char stream_command = 'D';      ///< one sample after the other
 inline constexpr std::byte reset_answer{0x55};   ///< [V]
 
 // A sample. Any byte of it may be 0x80. Some units send an extra 0x55 before or after it [V].
-// Wireless ones send an extra byte that tells the hand; it is ignored, because [V] and [J] disagree
+// Wireless ones send an extra byte with the hand; it is ignored, because [V] and [J] disagree
 // on its bits.
 inline constexpr std::byte header{0x80};          ///< [V, J]
 inline constexpr std::size_t data_bytes = 7;      ///< five fingers, pitch, roll [V, J]

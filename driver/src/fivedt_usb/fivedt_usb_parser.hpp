@@ -20,7 +20,7 @@ struct Report {
   std::array<bool, value_sensors.size()> clamped{};
 };
 
-/// Returns nullopt if the report has another length. Damaged values cannot be told from good ones.
+/// Returns nullopt if the report has another length. Damaged values look like good ones.
 std::optional<Report> decode_report(std::span<const std::byte> report) noexcept;
 
 using Parser = ReportParser<Report, decode_report>;

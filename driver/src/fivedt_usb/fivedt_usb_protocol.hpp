@@ -14,7 +14,7 @@ namespace nendo::driver::fivedt_usb {
 inline constexpr std::uint16_t vendor_id = 0x5D70;
 inline constexpr int interface_number = 0;
 
-// The product number tells hand, link and sensors.
+// The product number has hand, link and sensors.
 inline constexpr unsigned left_bit = 0x01;
 inline constexpr unsigned link_bits = 0x06; ///< none: cable; 0x02: wireless port A; 0x06: port B
 inline constexpr unsigned port_a = 0x02;

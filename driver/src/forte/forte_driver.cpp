@@ -25,7 +25,8 @@ public:
   ForteProtocol(bool bluetooth, const SideOptions& hands) noexcept
       : bluetooth_(bluetooth), hand_(choose_hand(std::nullopt, hands)) {}
 
-  /// A glove that streams already is told again: another program may have chosen the other link.
+  /// A glove that streams already gets the commands again: another program may have chosen the
+  /// other link.
   Result<GloveInfo> identify(Transport& transport, const std::string& source,
                              IdentifyReason /*reason*/, const ReplyDeadline& limit) override {
     Parser parser;
@@ -36,7 +37,7 @@ public:
     };
     IoStatus heard = IoStatus::timeout;
     for (int k = 0; k < tries && heard == IoStatus::timeout; ++k) {
-      heard = tell_to_send(transport);
+      heard = command_to_send(transport);
       if (heard != IoStatus::gone) heard = listen(transport, limit, answer_time, take);
     }
     parser_.count_discarded(parser.counters().bytes);
@@ -53,7 +54,7 @@ public:
     return {};
   }
 
-  /// The stream continues: nobody knows what ends it.
+  /// The stream continues: no command is known that ends it.
   void end_stream(Transport& /*transport*/, const ReplyDeadline& /*limit*/) noexcept override {}
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
@@ -71,9 +72,9 @@ public:
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }
 
 private:
-  IoStatus tell_to_send(Transport& transport) const noexcept {
-    const IoStatus told = transport.write_all(std::as_bytes(std::span(data_on)), write_timeout);
-    if (told == IoStatus::gone) return told;
+  IoStatus command_to_send(Transport& transport) const noexcept {
+    const IoStatus sent = transport.write_all(std::as_bytes(std::span(data_on)), write_timeout);
+    if (sent == IoStatus::gone) return sent;
     const Command& link = bluetooth_ ? to_bluetooth : to_usb;
     return transport.write_all(std::as_bytes(std::span(link)), write_timeout);
   }

@@ -2,7 +2,7 @@
 // The serial protocol of the BeBop Forte Data Glove. Each fact names who states it:
 //   [S]  github.com/sofwerx/dataglove: scripts that bear the maker's name and ran over Bluetooth,
 //        and test_scripts/readme.md
-//   [?]  stated by nobody, chosen here
+//   [?]  stated by no source, chosen here
 //
 // Both directions look like MIDI. The host sends control changes of three bytes. The glove sends
 // frames that begin with F0 and end with F7 and hold neither between [S]: F0, the kind, the number

@@ -22,20 +22,20 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto write_timeout = 100ms;
-constexpr auto at_once = 0ms;          ///< for the reader, which must not wait
-constexpr auto slowest_lines = 3500ms; ///< for one line a second, the first of which is skipped
+constexpr auto at_once = 0ms;          ///< the reader must not wait
+constexpr auto slowest_lines = 3500ms; ///< one line per second, the first of which is skipped
 constexpr auto starting_time = 2500ms; ///< a board that restarts at opening, boot loader included
 constexpr auto waking_time = 300ms;    ///< from the end of a wait to the next line
-constexpr auto learning_time = 300ms;  ///< for an answer, and for lines with all slots
+constexpr auto learning_time = 300ms;  ///< time for an answer, and for lines with all slots
 
-std::optional<Side> hand_told_by(const Line& line) noexcept {
+std::optional<Side> hand_in(const Line& line) noexcept {
   if (line.hand == hand_left) return Side::left;
   if (line.hand == hand_right) return Side::right;
   return std::nullopt;
 }
 
-/// What the glove shows and says of itself at the beginning.
-struct Acquaintance {
+/// The properties of the glove in its first lines.
+struct FirstLines {
   SensorMask sensors;
   std::optional<Side> hand;
   std::optional<std::uint32_t> firmware;
@@ -53,7 +53,7 @@ struct Acquaintance {
     below_range = below_range || line.below_range > 0;
     if (line.firmware) firmware = line.firmware;
     if (line.device) device = line.device;
-    if (const auto told = hand_told_by(line)) hand = told;
+    if (const auto side = hand_in(line)) hand = side;
   }
 };
 
@@ -63,9 +63,9 @@ public:
       : range_(range), hands_(hands), parser_(range) {}
 
   Result<GloveInfo> identify(Transport& transport, const std::string& source,
-                             IdentifyReason /*occasion*/, const ReplyDeadline& patience) override {
+                             IdentifyReason /*reason*/, const ReplyDeadline& limit) override {
     Parser parser(range_, FirstPiece::take_if_whole);
-    Acquaintance glove;
+    FirstLines glove;
     const auto take = [&](std::span<const std::byte> chunk) {
       parser.push(chunk, [&](const Line& line) { glove.add(line, range_); });
       return glove.sensors.bits != 0;
@@ -74,38 +74,38 @@ public:
     const auto learn_hand = [&](std::span<const std::byte> chunk) {
       return take(chunk), glove.hand.has_value();
     };
-    IoStatus heard = listen(transport, patience, starting_time, take);
+    IoStatus heard = listen(transport, limit, starting_time, take);
     const auto is_mute = [&] { return heard == IoStatus::timeout && parser.counters().bytes == 0; };
-    if (is_mute()) { // it may wait for an answer to a line that nobody read
+    if (is_mute()) { // it may wait for an answer to an earlier line
       heard = send(transport, empty_line);
-      if (heard != IoStatus::gone) heard = listen(transport, patience, waking_time, take);
+      if (heard != IoStatus::gone) heard = listen(transport, limit, waking_time, take);
     }
-    if (is_mute() && !legacy_) heard = send(transport, start_streaming); // somebody stopped it
+    if (is_mute() && !legacy_) heard = send(transport, start_streaming); // a program stopped it
     if (heard != IoStatus::gone && glove.sensors.bits == 0)
-      heard = listen(transport, patience, open_budget, take);
+      heard = listen(transport, limit, open_budget, take);
     if (heard == IoStatus::done && !glove.legacy) {
       heard = send(transport, ask_information);
-      if (heard != IoStatus::gone) heard = listen(transport, patience, learning_time, learn);
+      if (heard != IoStatus::gone) heard = listen(transport, limit, learning_time, learn);
       // What answered before answers again, if late, and its first sample shall be the right
       // hand's.
-      if (heard != IoStatus::gone && tells_hand_ && !glove.hand)
-        heard = listen(transport, patience, starting_time, learn_hand);
+      if (heard != IoStatus::gone && reports_hand_ && !glove.hand)
+        heard = listen(transport, limit, starting_time, learn_hand);
     }
     parser_.count_discarded(parser.counters().bytes);
     if (heard == IoStatus::gone) return went_away(source);
     if (glove.sensors.bits == 0) return stranger(source, parser.counters());
     const ChosenHand hand = choose_hand(glove.hand, hands_);
     if (const auto note = hand_override(glove.hand, hands_);
-        !note.empty() && !std::exchange(told_of_hand_, true))
+        !note.empty() && !std::exchange(warned_of_hand_, true))
       spdlog::warn("device: {}: {}", source, note);
     side_ = hand.side;
-    tells_hand_ = glove.hand.has_value();
+    reports_hand_ = glove.hand.has_value();
     legacy_ = glove.legacy;
-    if (glove.above_range && !std::exchange(told_of_above_, true)) {
+    if (glove.above_range && !std::exchange(warned_of_above_, true)) {
       spdlog::warn("device: {} sends numbers above {}, which count as {}{}", source, range_, range_,
                    range_ < esp32_range ? "; the boards with larger ones have range=4095" : "");
     }
-    if (glove.below_range && !std::exchange(told_of_below_, true)) {
+    if (glove.below_range && !std::exchange(warned_of_below_, true)) {
       spdlog::warn("device: {} sends negative numbers, which count as 0; a firmware that was built "
                    "with CLAMP_ANALOG_MAP does not",
                    source);
@@ -115,15 +115,15 @@ public:
 
   /// It streams all the time; what it said before now is old.
   Result<void> start_stream(Transport& transport, const std::string& /*source*/,
-                            const ReplyDeadline& /*patience*/) override {
+                            const ReplyDeadline& /*limit*/) override {
     parser_.count_discarded(drop_waiting(transport));
     parser_.reset();
     return {};
   }
 
-  /// The stream continues, since a glove that somebody stopped looks dead to programs that know no
-  /// (ZA). But nobody's fingers are to stay locked.
-  void end_stream(Transport& transport, const ReplyDeadline& /*patience*/) noexcept override {
+  /// The stream continues, since a stopped glove looks dead to programs that do not know (ZA).
+  /// But no finger must stay locked.
+  void end_stream(Transport& transport, const ReplyDeadline& /*limit*/) noexcept override {
     brakes_ = {};
     if (std::exchange(has_braked_, false) && !legacy_) show_brakes(transport, write_timeout);
   }
@@ -132,7 +132,7 @@ public:
             SampleSink& sink) noexcept override {
     const auto take = [&](const Line& line) {
       if (!hands_.option) // an answer may be later than identify() waits
-        side_ = hand_told_by(line).value_or(side_);
+        side_ = hand_in(line).value_or(side_);
       if (!line.measures()) return;
       legacy_ = line.legacy; // another glove may have come to the same port
       GloveSample sample;
@@ -156,9 +156,9 @@ public:
     }
   }
 
-  /// The next answer tells them, and all later ones do: a lost line must not leave a finger locked.
+  /// The next answer has them, and all later ones do: a lost line must not leave a finger locked.
   void set_feedback(Transport& /*transport*/, const Feedback& feedback,
-                    const ReplyDeadline& /*patience*/) noexcept override {
+                    const ReplyDeadline& /*limit*/) noexcept override {
     if (legacy_) return;
     for (std::size_t k = 0; k < fingers; ++k)
       brakes_[k] = std::min(feedback.resistance[k], max_resistance);
@@ -167,7 +167,7 @@ public:
 
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }
 
-  HostClock::duration longest_pause() const noexcept override { return slowest_lines; }
+  HostClock::duration max_pause() const noexcept override { return slowest_lines; }
 
 private:
   static IoStatus send(Transport& transport, std::string_view command,
@@ -190,7 +190,7 @@ private:
     return {Errc::no_device, source + ": what comes from it are no lines of a LucidGlove; is this "
                                       "its port, and is baud right?"};
   }
-  GloveInfo describe(const Acquaintance& glove, const ChosenHand& hand) const {
+  GloveInfo describe(const FirstLines& glove, const ChosenHand& hand) const {
     GloveInfo info;
     info.model = "LucidGloves, " + std::to_string(std::popcount(glove.sensors.bits)) + " sensors";
     info.side = hand.side;
@@ -211,12 +211,12 @@ private:
   const SideOptions hands_;
   Side side_ = Side::right;
   bool legacy_ = false;
-  bool tells_hand_ = false; ///< the glove that was here last did
-  bool its_turn_ = false;   ///< the glove may be waiting for an answer
-  bool has_braked_ = false; ///< since it was started
-  bool told_of_hand_ = false;
-  bool told_of_above_ = false;
-  bool told_of_below_ = false;
+  bool reports_hand_ = false; ///< the last glove did
+  bool its_turn_ = false;     ///< the glove may be waiting for an answer
+  bool has_braked_ = false;   ///< since it was started
+  bool warned_of_hand_ = false;
+  bool warned_of_above_ = false;
+  bool warned_of_below_ = false;
   bool cut_off_ = false; ///< the glove took the last command only in part
   std::array<unsigned, fingers> brakes_{};
   Parser parser_;

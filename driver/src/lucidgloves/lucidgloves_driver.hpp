@@ -19,10 +19,10 @@ namespace nendo::driver::lucidgloves {
 /// Opens `lucidgloves:PATH?baud=N&range=4095|1023&hand=left|right`, as the table of drivers wants
 /// it. The glove streams by itself, so its lines prove that it is there. Boards that restart when
 /// their port is opened are waited for. The range of the numbers is an option (1023 for AVR
-/// boards), because the glove does not tell it. Larger numbers count as the range and negative ones
-/// as 0, with a warning and a fact if the first lines have some. The glove's slots are learnt from
-/// its first lines. `side` counts if neither the glove nor `hand` tells the hand. May block for 4
-/// s. Errors: usage, no_device, no_permission.
+/// boards), because the glove does not report it. Larger numbers count as the range and negative
+/// ones as 0, with a warning and a fact if the first lines have some. The glove's slots are learnt
+/// from its first lines. `side` counts if neither the glove nor `hand` names the hand. May block
+/// for 4 s. Errors: usage, no_device, no_permission.
 ///
 /// While the glove streams, each line is answered, because firmwares with force feedback wait for
 /// that: by the brakes, once they were set, or else by an empty line. At the end they are freed.

@@ -30,8 +30,8 @@ std::string_view take_while(std::string_view& text, Belongs&& belongs) noexcept 
   return part;
 }
 
-/// A letter, or letters in brackets, which are taken off: the brackets only tell one from the
-/// other. Empty: neither.
+/// A letter, or letters in brackets, which are taken off: the brackets only distinguish
+/// them. Empty: neither.
 struct Key {
   std::string_view letters;
   bool bracketed = false;
@@ -223,7 +223,7 @@ std::optional<Line> Parser::push_byte(std::byte byte) noexcept {
     return std::nullopt;
   }
   line_[held_++] = c;
-  if (held_ == line_.size()) { // there is no room for the LF
+  if (held_ == line_.size()) { // the LF does not fit
     discard_held();
     state_ = state_ == State::first_piece ? State::begin_unseen : State::overlong;
   }

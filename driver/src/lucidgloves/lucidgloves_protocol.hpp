@@ -4,12 +4,12 @@
 //   [F]  the LucidGloves firmware, up to commit 76472c7
 //   [O]  the OpenGloves driver, the host's side
 //   [S]  SenseShift's OpenGloves library, the only one with information replies
-//   [?]  stated by nobody, chosen here
+//   [?]  stated by no source, chosen here
 //
-// From the glove, one line a sample, ended by LF [F, O]:
+// From the glove, one line per sample, ended by LF [F, O]:
 //   A..E          curl of thumb, index, middle, ring, pinky: 0 straight .. `range` bent [F, O]
 //   (AB)..(EB)    splay of a finger; half the range is straight ahead, the ends are 20 degrees to
-//                 either side [O]; which side is which, nobody says
+//                 either side [O]; no source says which side is which
 //   (AAA)..(EAD)  curl of one joint: finger, A, joint. A is the metacarpal bone's, B the knuckle's
 //                 (the thumb's MCP), C the next (the thumb's IP), D the outermost [O]
 //   F G P         joystick and trigger, analog [F]
@@ -47,15 +47,14 @@ inline constexpr std::uint32_t hand_right = 1;     ///< (ZH) [S]
 //
 // With force feedback (USING_FORCE_FEEDBACK true, the default today) the firmware's loop sends a
 // line and then waits for one: for Arduino's 1 s, or for as long as its version sets [F]. [O]
-// writes a line for each one that it reads. A host that writes nothing gets one line a second, or
+// writes a line for each one that it reads. A host that writes nothing gets one line per second, or
 // one in all. So each line is answered: by the brakes, if anything has set them, or else by an
 // empty line. No serial firmware of LucidGloves, of any year and in either encoding, decodes an
 // empty line: it ends the wait and does nothing else [F, S].
 //
-// Nobody knows beforehand which firmware is there, so the glove has the first word, and its first
-// whole line tells: a legacy one begins with a number, any other with a letter or a bracket. One
-// that says nothing may be waiting: first an empty line ends that, and only if it does not help,
-// the glove is told to stream.
+// The firmware is unknown at first, so the glove's first whole line decides: a legacy one begins
+// with a number, any other with a letter or a bracket. One that says nothing may be waiting: first
+// an empty line ends that, and only if it does not help, the glove gets the command to stream.
 inline constexpr std::string_view ask_information = "\nZ\n"; ///< answered by (ZV) (ZG) (ZH) [S]; LF
                                                              ///< ends what another host left
 inline constexpr std::byte line_end{'\n'};

@@ -64,7 +64,7 @@ private:
   }
 
   const Side side_;
-  bool mouse_was_on_ = false; ///< before this driver switched it off
+  bool mouse_was_on_ = false; ///< and this driver switched it off
 };
 
 } // namespace

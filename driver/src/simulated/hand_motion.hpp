@@ -18,7 +18,7 @@ enum class Motion : std::uint8_t {
   pinch,  ///< the thumb meets each finger in turn
   grasp,  ///< the whole hand closes and opens
   sculpt, ///< pull far out by the wrist, press in, knead: cycles of about 8 s
-  faces,  ///< for hands that play a face: smile, frown, wonder, wink, pout, talk, laugh, 1.6 s each
+  faces,  ///< hands that play a face: smile, frown, wonder, wink, pout, talk, laugh, 1.6 s each
 };
 
 /// Returns the motion that one of motion_names() (simulated_glove.hpp) names. Error: usage, naming
@@ -56,8 +56,8 @@ public:
   struct Character {
     double tempo = 1.0;                ///< how fast it goes through a motion's cycle
     double phase = 0.0;                ///< where in the cycle it starts, in cycles
-    std::array<double, 4> amplitude{}; ///< of each finger, about 1
-    std::array<double, 4> lag{};       ///< of each finger, in cycles
+    std::array<double, 4> amplitude{}; ///< per finger, about 1
+    std::array<double, 4> lag{};       ///< per finger, in cycles
     /// Tremor is the sum of two sines a slot, which beat as real tremor does; in hertz and cycles.
     std::array<std::array<double, 2>, sensor_slots> tremor_hz{};
     std::array<std::array<double, 2>, sensor_slots> tremor_phase{};

@@ -17,7 +17,7 @@ struct NominalSensor {
   double gain_rad;      ///< radians a count
 };
 
-/// Returns round numbers in the middle of what calibrations of real gloves show, and zeros for
+/// Returns round numbers in the middle of real gloves' calibrations, and zeros for
 /// slots that no glove has.
 NENDO_API NominalSensor nominal_sensor(Sensor sensor) noexcept;
 

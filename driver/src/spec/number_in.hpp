@@ -9,7 +9,7 @@
 namespace nendo::driver {
 
 /// Returns the number that is all of the text, without a plus sign or blanks. `form` is as in
-/// std::from_chars(). "nan" and "inf" are numbers: compare with the bounds of what is wanted.
+/// std::from_chars(). "nan" and "inf" are numbers: compare with bounds.
 template <class Number, class... Form>
 std::optional<Number> number_in(std::string_view text, Form... form) noexcept {
   Number number{};

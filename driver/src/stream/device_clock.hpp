@@ -11,7 +11,7 @@
 
 namespace nendo::driver {
 
-/// Makes a clock of 115200 ticks a second, which wraps after 2^32 ticks (10.36 h), into one that
+/// Makes a clock of 115200 ticks per second, which wraps after 2^32 ticks (10.36 h), into one that
 /// does not wrap. A value smaller than the one before means a wrap, because records keep their
 /// order.
 class TickUnwrapper {
@@ -68,7 +68,7 @@ private:
   std::array<Point, max_blocks> blocks_{}; ///< a ring; the last one is not yet complete
   std::size_t oldest_ = 0;
   std::size_t count_ = 0;
-  Nanoseconds block_begin_ = 0; ///< of the last one, in device time
+  Nanoseconds block_begin_ = 0; ///< begin of the last block, in device time
   Nanoseconds last_device_ = 0;
   Nanoseconds last_result_ = 0;
   // offset = base_.offset + intercept_ + slope_ * (device - base_.device)

@@ -17,7 +17,7 @@
 
 namespace nendo::driver {
 
-/// How long a dialogue may take: it ends at `deadline`, and within 0.3 s after `cancelled` is
+/// The time limit of a dialogue: it ends at `deadline`, and within 0.3 s after `cancelled` is
 /// requested.
 struct ReplyDeadline {
   HostTime deadline;
@@ -29,9 +29,9 @@ inline Error went_away(const std::string& source) {
   return {Errc::no_device, source + " went away; is the cable loose?"};
 }
 
-/// Why a glove is asked who it is.
+/// Why a glove is identified.
 enum class IdentifyReason : std::uint8_t {
-  opening,  ///< for the first time
+  opening,  ///< the first time
   reviving, ///< it fell silent, or its port was opened again
   damaged,  ///< its records became unreadable: another glove may have been plugged in
 };
@@ -60,11 +60,11 @@ public:
   /// Ends whatever streams, asks the device who it is and sets it up. `source` begins the messages.
   /// Error: no_device; usage, if the device cannot do what an option asks for.
   virtual Result<GloveInfo> identify(Transport& transport, const std::string& source,
-                                     IdentifyReason occasion, const ReplyDeadline& patience) = 0;
+                                     IdentifyReason reason, const ReplyDeadline& limit) = 0;
   /// Starts the stream. All bytes that come from now on go to push(). Error: no_device.
   virtual Result<void> start_stream(Transport& transport, const std::string& source,
-                                    const ReplyDeadline& patience) = 0;
-  virtual void end_stream(Transport& transport, const ReplyDeadline& patience) noexcept = 0;
+                                    const ReplyDeadline& limit) = 0;
+  virtual void end_stream(Transport& transport, const ReplyDeadline& limit) noexcept = 0;
   /// Takes the next bytes of the stream, cut anywhere. The last of them arrived at `arrival`.
   virtual void push(std::span<const std::byte> chunk, HostTime arrival,
                     SampleSink& sink) noexcept = 0;
@@ -77,14 +77,14 @@ public:
   virtual bool is_doubtful() const noexcept { return false; }
   /// Shows `feedback` while the glove streams. If the device went away, the next read reports it.
   virtual void set_feedback(Transport& transport, const Feedback& feedback,
-                            const ReplyDeadline& patience) noexcept {
-    (void)transport, (void)feedback, (void)patience;
+                            const ReplyDeadline& limit) noexcept {
+    (void)transport, (void)feedback, (void)limit;
   }
   virtual const StreamCounters& counters() const noexcept = 0;
   /// Returns true while StreamCounters::missed is all that was lost of the stream.
   virtual bool tells_missed() const noexcept { return false; }
   /// Returns how long a working device may send no record, if it is one that takes its time.
-  virtual HostClock::duration longest_pause() const noexcept { return {}; }
+  virtual HostClock::duration max_pause() const noexcept { return {}; }
 };
 
 } // namespace nendo::driver

@@ -13,13 +13,13 @@ struct StreamCounters {
   std::uint64_t discarded_bytes = 0;
   std::uint64_t records = 0;     ///< delivered
   std::uint64_t bad_records = 0; ///< frames that were no good record
-  std::uint64_t implausible = 0; ///< of these: well formed, but contradicting what went before
-  std::uint64_t missed = 0;      ///< sent, as the device's clock tells, and not delivered
+  std::uint64_t implausible = 0; ///< bad ones that are well formed, but contradict earlier records
+  std::uint64_t missed = 0;      ///< sent, by the device's clock, and not delivered
   std::uint64_t too_fast = 0;    ///< delivered, but not sampled when they should have been
   std::uint64_t unplugged = 0;   ///< whole records that say that no glove is plugged in
   std::uint64_t clamped = 0;     ///< values of delivered records that were out of their range
 
-  /// Counts bytes that somebody else read from the same stream and that were no records.
+  /// Counts bytes that were read from the same stream elsewhere and that were no records.
   void count_discarded(std::uint64_t count) noexcept {
     bytes += count;
     discarded_bytes += count;

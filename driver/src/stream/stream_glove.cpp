@@ -22,15 +22,15 @@ constexpr auto start_budget = 1'900ms;
 constexpr auto stop_budget = 400ms;
 constexpr auto feedback_budget = 400ms;
 constexpr auto read_timeout = 100ms; ///< also how soon the reader notices that it is to stop
-constexpr auto shortest_silence = 1500ms;
+constexpr auto min_silence = 1500ms;
 constexpr auto retry_interval = 500ms;
 /// Single ones are damage; so many in a row are another glove, line rate or form of record.
 constexpr std::uint64_t bad_in_a_row = 16;
 constexpr auto rate_window = 1s;
 constexpr double rate_tolerance = 0.05;
 
-/// What the protocol counts, and where it stands in GloveStats. `bytes` is the first to be written
-/// and the last to be read: it is never seen to be less than its parts.
+/// The protocol's counters and their members of GloveStats. `bytes` is written first and read last:
+/// no reader sees it less than its parts.
 struct Count {
   std::uint64_t StreamCounters::* counter;
   std::uint64_t GloveStats::* stat;
@@ -98,7 +98,7 @@ private:
   void measure_rate(HostTime now);
   void revive(const std::stop_token& token);
   void reopen(const std::stop_token& token);
-  bool restart(const std::stop_token& token, IdentifyReason occasion);
+  bool restart(const std::stop_token& token, IdentifyReason reason);
   void wait(const std::stop_token& token, std::chrono::milliseconds time);
 
   const GloveInfo info_;
@@ -111,7 +111,7 @@ private:
   // Used by the reader thread only, while it runs.
   std::unique_ptr<Transport> transport_; ///< null while the device is away
   const std::unique_ptr<GloveProtocol> protocol_;
-  std::string complaint_; ///< why it does not come back, as told last
+  std::string complaint_; ///< the last reported reason why it does not come back
   StreamCounters at_start_;
   SampleRing* ring_ = nullptr;
   Side side_;
@@ -133,8 +133,8 @@ private:
 Result<void> StreamGlove::start(SampleRing& ring) {
   if (reader_.joinable()) return Error{Errc::failed, info_.source + " is streaming already"};
   if (!transport_) return Error{Errc::no_device, info_.source + " went away; open it again"};
-  const ReplyDeadline patience{HostClock::now() + start_budget, {}};
-  if (auto ready = protocol_->start_stream(*transport_, info_.source, patience); !ready)
+  const ReplyDeadline limit{HostClock::now() + start_budget, {}};
+  if (auto ready = protocol_->start_stream(*transport_, info_.source, limit); !ready)
     return ready.error();
   at_start_ = protocol_->counters();
   store_counts();
@@ -189,10 +189,10 @@ StreamGlove::StreamEnd StreamGlove::stream(const std::stop_token& token) {
                                                 ? from_seconds(std::min(3.0 / info_.rate_hz, 60.0))
                                                 : HostClock::duration{};
   // Who did not answer is asked again soon; meanwhile it may have begun to stream by itself.
-  const auto longest_silence = unanswered_
-                                   ? HostClock::duration(retry_interval)
-                                   : std::max<HostClock::duration>({shortest_silence, three_periods,
-                                                                    protocol_->longest_pause()});
+  const auto max_silence =
+      unanswered_
+          ? HostClock::duration(retry_interval)
+          : std::max<HostClock::duration>({min_silence, three_periods, protocol_->max_pause()});
   last_record_ = HostClock::now();
   while (!token.stop_requested()) {
     if (!transport_) return StreamEnd::gone;
@@ -206,7 +206,7 @@ StreamGlove::StreamEnd StreamGlove::stream(const std::stop_token& token) {
     if (!caught_up_) skip_backlog(arrival_ - asked);
     measure_rate(arrival_);
     if (protocol_->is_doubtful() || bad_since_record_ >= bad_in_a_row) return StreamEnd::doubtful;
-    if (arrival_ - last_record_ > longest_silence) return StreamEnd::silent;
+    if (arrival_ - last_record_ > max_silence) return StreamEnd::silent;
     if (feedback_changed_) show_feedback(token);
   }
   return StreamEnd::stopped;
@@ -240,13 +240,13 @@ void StreamGlove::show_feedback(const std::stop_token& token) noexcept {
 /// What had waited for start() comes at once, and says nothing of the glove's rate. So the first
 /// window begins where a read had to wait.
 void StreamGlove::skip_backlog(HostClock::duration waited) noexcept {
-  constexpr auto shortest_wait = 500us;
-  caught_up_ = waited >= shortest_wait;
+  constexpr auto min_wait = 500us;
+  caught_up_ = waited >= min_wait;
   window_begin_ = arrival_;
   window_begins_with_ = sequence_;
 }
 
-/// What the glove really delivers; a rate that is not the one it was set to is told once.
+/// Measures the delivered rate; one that differs from the set rate is reported once.
 void StreamGlove::measure_rate(HostTime now) {
   if (now - window_begin_ < rate_window) return;
   const double rate_hz =
@@ -255,7 +255,7 @@ void StreamGlove::measure_rate(HostTime now) {
   const bool wrong = std::abs(rate_hz - info_.rate_hz) > rate_tolerance * info_.rate_hz;
   if (info_.rate_hz > 0.0 && steady && wrong && rate_reported_hz_ == 0.0) {
     rate_reported_hz_ = rate_hz;
-    spdlog::warn("device: {} is set to {:.1f} records a second and delivers {:.1f}", info_.source,
+    spdlog::warn("device: {} is set to {:.1f} records per second and delivers {:.1f}", info_.source,
                  info_.rate_hz, rate_hz);
   }
   stats_.rate_hz = rate_hz;
@@ -297,9 +297,9 @@ void StreamGlove::reopen(const std::stop_token& token) {
 }
 
 /// Asks again who is there, sets it up as before and starts the stream.
-bool StreamGlove::restart(const std::stop_token& token, IdentifyReason occasion) {
-  const ReplyDeadline patience{HostClock::now() + open_budget, token};
-  const auto info = protocol_->identify(*transport_, info_.source, occasion, patience);
+bool StreamGlove::restart(const std::stop_token& token, IdentifyReason reason) {
+  const ReplyDeadline limit{HostClock::now() + open_budget, token};
+  const auto info = protocol_->identify(*transport_, info_.source, reason, limit);
   Result<void> streams = info ? Result<void>() : info.error();
   if (info) {
     if (!(info->sensors == sensors_) || info->side != side_) {
@@ -308,7 +308,7 @@ bool StreamGlove::restart(const std::stop_token& token, IdentifyReason occasion)
       side_ = info->side;
       sensors_ = info->sensors;
     }
-    streams = protocol_->start_stream(*transport_, info_.source, patience);
+    streams = protocol_->start_stream(*transport_, info_.source, limit);
     const std::lock_guard lock(feedback_mutex_);
     feedback_changed_ = !(feedback_ == Feedback{});
   }

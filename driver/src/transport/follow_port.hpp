@@ -18,7 +18,7 @@ namespace nendo::driver {
 /// has now; the error is no_device if there is none, also if another adapter has taken the name.
 /// Ports without an adapter (UARTs, Bluetooth, pseudo-terminals) are opened by the same path each
 /// time. An FTDI adapter's latency timer is shortened at each opening; if that is not permitted, a
-/// line of log tells the remedy. Calls may block for half a second, and must not overlap.
+/// line of log gives the remedy. Calls may block for half a second, and must not overlap.
 std::function<Result<std::unique_ptr<Transport>>()> follow_port(std::string path, int baud);
 
 } // namespace nendo::driver

@@ -110,7 +110,7 @@ int make_raw_and_lock(int fd) {
   if (::tcgetattr(fd, &settings) != 0) return errno;
   ::cfmakeraw(&settings);
   settings.c_cflag |= CREAD | CLOCAL;
-  settings.c_cc[VMIN] = 1; // so that read() tells "nothing yet" (EAGAIN) from "hung up" (0)
+  settings.c_cc[VMIN] = 1; // so that "nothing yet" (EAGAIN) differs from "hung up" (0)
   settings.c_cc[VTIME] = 0;
   // Not TIOCEXCL: a pseudo-terminal would keep it after close, for as long as its other end stays
   // open.

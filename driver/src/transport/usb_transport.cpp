@@ -65,7 +65,7 @@ unsigned to_timeout(std::chrono::milliseconds time) noexcept {
 struct Endpoints {
   std::uint8_t in = 0;
   std::optional<std::uint8_t> out;
-  std::size_t packet_bytes = 0; ///< of `in`
+  std::size_t packet_bytes = 0; ///< packet size of `in`
 };
 
 class LibusbTransport final : public UsbTransport {

@@ -27,7 +27,7 @@ struct UsbWanted {
 /// The part of the device that sends reports.
 struct UsbInterface {
   int number = 0;
-  std::size_t report_bytes = 0; ///< of its longest report
+  std::size_t report_bytes = 0; ///< length of its longest report
 };
 
 enum class ControlStatus : std::uint8_t {
@@ -49,7 +49,7 @@ public:
   /// Sets feature report number `report[0]`.
   virtual ControlStatus set_feature(std::span<const std::byte> report,
                                     std::chrono::milliseconds timeout) noexcept = 0;
-  // read_some() returns one whole report in one call; its buffer has room for 1024 bytes, the
+  // read_some() returns one whole report in one call; its buffer must have 1024 bytes, the
   // longest that an interrupt endpoint sends. write_all() sends one report to the interrupt output;
   // where there is none, it does nothing and says `timeout`.
 };

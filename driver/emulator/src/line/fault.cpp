@@ -52,7 +52,7 @@ constexpr std::array<Row, fault_kinds> rows{{
      {},
      {}},
     {"stick", "stick@5s[+2s]=SENSOR[:COUNT]",
-     "a sensor, by its name or slot, stands still (for 2 s) at a count, or where it is", false,
+     "a sensor, by its name or slot, stops (for 2 s) at a count, or at its own", false,
      Part::optional, Part::required},
     {"press",
      "press@5s+2s",
@@ -211,9 +211,9 @@ Result<Fault> parse_fault(std::string_view text) {
   return *fault;
 }
 
-Result<std::vector<Fault>> parse_faults(const std::vector<std::string>& texts) {
+Result<std::vector<Fault>> parse_faults(const std::vector<std::string>& strings) {
   std::vector<Fault> faults;
-  for (const std::string& text : texts) {
+  for (const std::string& text : strings) {
     auto fault = parse_fault(text);
     if (!fault) return fault.error();
     const bool twice = std::any_of(faults.begin(), faults.end(), [&](const Fault& other) {

@@ -30,14 +30,14 @@ enum class FaultKind : std::uint8_t {
   eg,      ///< the glove is pulled out of the unit
   swap,    ///< another glove is plugged in: `value` is 18, 22, left or right
   restart, ///< the unit's power fails for a moment
-  stick,   ///< a sensor stands still: `value` is its name or slot, and a count after a colon
-  press,   ///< no fault: somebody presses the switch at the wrist
+  stick,   ///< a sensor stops: `value` is its name or slot, and a count after a colon
+  press,   ///< no fault: the switch at the wrist is pressed at the wrist
 };
 inline constexpr std::size_t fault_kinds = 13;
 
 struct Fault {
   FaultKind kind = FaultKind::drop;
-  double rate = 0.0; ///< for faults by chance: more than 0, at most 1; otherwise 0
+  double rate = 0.0; ///< probability, for faults by chance: more than 0, at most 1; otherwise 0
   std::chrono::nanoseconds at{};
   std::chrono::nanoseconds lasting{};
   std::string value = {};
@@ -51,6 +51,6 @@ std::optional<Incident> incident_of(const Fault& fault, bool over);
 /// Parses a fault. Error: usage, with the form that the fault should have.
 Result<Fault> parse_fault(std::string_view text);
 /// Parses all faults. Error: usage, also for two rates of one kind.
-Result<std::vector<Fault>> parse_faults(const std::vector<std::string>& texts);
+Result<std::vector<Fault>> parse_faults(const std::vector<std::string>& strings);
 
 } // namespace nendo::emulator

@@ -1,7 +1,7 @@
 #pragma once
 // Causes the faults between a unit and the terminal: it takes messages and gives bytes. It is pure
 // and seeded, so the same messages and times give the same bytes. It causes the faults of the line
-// itself, and tells when those of the unit and the terminal are due.
+// itself, and reports when those of the unit and the terminal are due.
 
 #include <array>
 #include <chrono>

@@ -79,7 +79,7 @@ public:
   /// Returns the device's end, which is non-blocking. poll() reports POLLHUP as long as no host has
   /// the other end open.
   int fd() const noexcept { return device_.get(); }
-  const std::string& path() const noexcept { return path_; } ///< of the host's end
+  const std::string& path() const noexcept { return path_; } ///< path of the host's end
 
 private:
   explicit PseudoTerminal(int fd) noexcept : device_(fd) {}
@@ -138,7 +138,7 @@ Result<PseudoTerminal> PseudoTerminal::make(const std::string& link) {
   ::cfmakeraw(&raw);
   ::cfsetspeed(&raw, B115200);
   if (::tcsetattr(fd, TCSANOW, &raw) != 0) return failed();
-  // Only a terminal that was opened once tells poll() that nobody has it open.
+  // Only a terminal that was opened once makes poll() report that no host has it open.
   const int once = ::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   if (once < 0) return failed();
   ::close(once);
@@ -255,9 +255,9 @@ private:
     }
   }
 
-  // Moves the unit's output to the wire, through the faults. What the wire has no room for waits in
-  // the unit, which refuses whole messages when it is full. With nobody at the other end the bytes
-  // are lost, as on a cable that ends in the air.
+  // Moves the unit's output to the wire, through the faults. Bytes beyond the wire's capacity wait
+  // in the unit, which refuses whole messages when it is full. Without a host the bytes are lost,
+  // as on a cable that ends in the air.
   void collect() {
     auto output = unit_->output();
     if (!host_present()) {
@@ -302,7 +302,7 @@ private:
   }
 
   // Returns when the unit or a fault has something to do, or `stop` must be checked. A host that
-  // writes, or has room for what waits, ends the wait earlier.
+  // writes, or reads waiting bytes, ends the wait earlier.
   HostTime wake_up() const {
     const HostTime latest = HostClock::now() + max_wait;
     if (!terminal_) return std::min(latest, replugged_at_);
@@ -331,8 +331,8 @@ private:
       return receive();
     }
     host_present_ = (line.revents & POLLHUP) == 0;
-    // While nobody has the terminal open, poll() returns at once, and the loop would spin. It would
-    // also spin with a terminal that says it has room and takes nothing.
+    // While no host has the terminal open, poll() returns at once, and the loop would spin. It
+    // would also spin with a terminal that reports space and takes nothing.
     if (!host_present_) {
       std::this_thread::sleep_until(std::max(until, HostClock::now() + 1ms));
     } else if (stuck_ && (line.revents & POLLOUT) != 0) {
@@ -385,7 +385,7 @@ private:
   HostTime replugged_at_{};
   std::vector<FaultKind> asked_;
   FaultInjector::Wire wire_; ///< what the terminal has not taken yet
-  Time now_{};               ///< of the unit's clock
+  Time now_{};               ///< the unit's time
   HostTime last_turn_{};
   bool host_present_ = false;
   bool junk_waits_ = false;

@@ -19,8 +19,8 @@ constexpr std::array<std::string_view, 3> model_names{"CyberGlove", "CyberGlove 
                                                       "CyberGlove III"};
 
 // What the firmware of each model says is not published. Known is that a right glove's text begins
-// with CG, by which one host tells the hands apart, and that hosts look in it for the model's name;
-// those that look for the glove's port among others also look for who made it.
+// with CG, by which one host distinguishes the hands, and that hosts look in it for the model's
+// name; those that look for the glove's port among others also look for who made it.
 constexpr std::array<std::string_view, 3> makers{"Virtual Technologies, Inc.",
                                                  "Immersion Corporation, CyberGlove Systems",
                                                  "CyberGlove Systems LLC"};
@@ -99,9 +99,9 @@ void CyberGloveUnit::answer(Byte letter) {
 }
 
 // A small letter asks for the same numbers in text, as decimals. That there are so many of them for
-// each letter, a driver for the hardware tells, and that bytes of masks come lowest first. Another
-// one reads the number from the fourth byte of the answer on. The blank before each number, and the
-// end of the line, are those of records in text.
+// each letter, is known from a driver for the hardware, and that bytes of masks come lowest first.
+// Another one reads the number from the fourth byte of the answer on. The blank before each number,
+// and the end of the line, are those of records in text.
 std::optional<std::string> CyberGloveUnit::text(Byte letter) const {
   switch (letter) {
   case 'i':

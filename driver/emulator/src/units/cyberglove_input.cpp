@@ -17,14 +17,14 @@ using namespace std::chrono_literals;
 // A choice of ours, sources are silent: a command that stays incomplete is forgotten, so that a
 // host that died in its middle (or a modem probe: the T of "AT" takes four bytes) does not swallow
 // the next host's first bytes.
-constexpr auto patience = 1s;
+constexpr auto max_command_time = 1s;
 
 // The longest text form that makes sense, "ca" with two numbers a sensor, and some blanks.
 constexpr std::size_t longest_text = 255;
 
 } // namespace
 
-// While an external sync drives the records the unit still listens, or nobody could switch it off:
+// While an external sync drives the records the unit still listens, or no host could switch it off:
 // a choice of ours. In a stream it is deaf to all but 0x03.
 void CyberGloveUnit::handle(Byte byte, Time now) {
   if (restart_ends_) return; // the firmware is not up yet
@@ -33,7 +33,7 @@ void CyberGloveUnit::handle(Byte byte, Time now) {
     if (byte == stop_byte) stop();
     return;
   }
-  if (command_ != 0 && now - command_since_ > patience) command_ = 0;
+  if (command_ != 0 && now - command_since_ > max_command_time) command_ = 0;
   if (command_ == 0) {
     begin(byte, now);
   } else if (command_ == '?') {

@@ -40,7 +40,7 @@ Result<void> check(const EmulatorOptions& options) {
     return usage("restart-time: use 0s to 60s");
   }
   if (!(options.rate_hz >= 1.0 && options.rate_hz <= CyberGloveUnit::max_rate_hz)) {
-    return usage("rate: use 1 to 480 records a second (what 115200 baud can carry)");
+    return usage("rate: use 1 to 480 records per second (what 115200 baud can carry)");
   }
   return {};
 }

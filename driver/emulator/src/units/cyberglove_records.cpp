@@ -10,7 +10,7 @@
 namespace nendo::emulator::unit {
 namespace {
 
-// The count of a slot without a sensor. No source tells it; chosen: a floating input.
+// The count of a slot without a sensor. No source gives it; chosen: a floating input.
 constexpr Byte open_input = 255;
 
 void append_errors(Message& record, bool unplugged, bool too_fast) {

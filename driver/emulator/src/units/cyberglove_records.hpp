@@ -22,7 +22,7 @@ namespace nendo::emulator::unit {
 struct RecordFrame {
   Byte header = 'S'; ///< a small letter makes it a text
   EmulatedUnit::Time now{};
-  std::uint64_t ticks = 0; ///< of the unit's clock
+  std::uint64_t ticks = 0; ///< the unit's clock
   Byte status = 0;
   bool too_fast = false;       ///< the period is too short: `es`
   unsigned subframes = 1;      ///< 12-bit records: how many there are in a frame of 1/30 s
@@ -39,7 +39,7 @@ public:
   void wear(Side side);
   /// Lets it move like this, if it is something, and not by its own motion.
   void play(driver::SensorMotion motion) { played_ = std::move(motion); }
-  /// Lets a sensor stand still at a count of 255, or without one where it is.
+  /// Stops a sensor at a count of at most 255, or at its own count.
   void stick(Sensor sensor, std::optional<std::uint16_t> count) noexcept;
   void release(Sensor sensor) noexcept;
 
@@ -64,7 +64,7 @@ private:
   driver::TypicalWearer wearer_;
   bool stamp_bit7_;
   bool pattern_;
-  std::size_t record_number_ = 0; ///< of the pattern
+  std::size_t record_number_ = 0; ///< the record's number in the pattern
   std::vector<Message> capture_;
   std::size_t next_captured_ = 0;
   std::optional<EmulatedUnit::Time> motion_origin_;

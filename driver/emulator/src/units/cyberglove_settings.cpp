@@ -75,7 +75,7 @@ std::uint16_t word(Byte first, Byte second, WordOrder order) noexcept {
   return static_cast<std::uint16_t>(high << 8U | low);
 }
 
-// The glove is said to reach 120 records a second over USB.
+// The glove is said to reach 120 records per second over USB.
 constexpr unsigned max_frames = 4;
 constexpr std::uint64_t frame_ticks = 115200 / 30;
 
@@ -245,7 +245,7 @@ bool apply(ThreeSettings& settings, const Message& command) {
     settings.divider = command[1];
     return true;
   case 'E': {
-    // One program sends 1E4010111 for 120 records a second: the first digit is the base rate. The
+    // One program sends 1E4010111 for 120 records per second: the first digit is the base rate. The
     // others are believed to switch sinks; as USB works after them, they change nothing here.
     const auto is_digit = [](Byte byte) { return byte >= '0' && byte <= '9'; };
     if (!std::all_of(command.begin() + 1, command.end(), is_digit)) return false;

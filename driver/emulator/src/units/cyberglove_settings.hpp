@@ -44,7 +44,7 @@ struct Settings {
   std::uint16_t period_ticks = 0; ///< the period is their product, in 1/115200 s
   std::uint16_t period_repeats = 1;
   std::array<Byte, 6> vibration{};          ///< CyberTouch: thumb to pinky, palm
-  std::array<Byte, sensor_slots> offsets{}; ///< of the hardware calibration
+  std::array<Byte, sensor_slots> offsets{}; ///< offsets of the hardware calibration
   std::array<Byte, sensor_slots> gains{};   ///< the same, in 1/64
 
   /// Returns a converter's count after the hardware calibration, 1..255.
@@ -58,7 +58,7 @@ Settings power_up_settings(double rate_hz, const PluggedGlove& glove) noexcept;
 /// disagree on it.
 enum class WordOrder : std::uint8_t { high_first, low_first };
 
-/// Returns how many bytes the argument of a binary command has, as far as its first bytes tell.
+/// Returns how many bytes the argument of a binary command has, as far as its first bytes show.
 /// Returns 0 if there is no such command, and nothing if the argument is wrong. `letter` is a
 /// capital letter.
 std::optional<std::size_t> argument_bytes(Byte letter, const Message& argument,
@@ -90,7 +90,7 @@ enum class HiResForm : std::uint8_t {
 
 struct ThreeSettings {
   unsigned frames = 3;  ///< the base rate in units of 30 Hz
-  unsigned divider = 1; ///< of the base rate, for the USB sink
+  unsigned divider = 1; ///< divides the base rate, for the USB sink
   bool usb = true;      ///< the USB sink is on
 
   /// Returns the time between two 12-bit records, in 1/115200 s.
@@ -98,7 +98,7 @@ struct ThreeSettings {
 };
 
 /// Returns how many bytes the command has after its 1, as far as its first bytes (at least one)
-/// tell; nothing if there is no such command.
+/// show; nothing if there is no such command.
 std::optional<std::size_t> three_bytes(const Message& command);
 
 /// Handles a complete command. S, which starts the stream, is left to the caller. Returns false,

@@ -13,11 +13,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// No source tells how often a host may ask. A program that asks as fast as it can sees some 90
-// records a second.
+// No source says how often a host may ask. A program that asks as fast as it can sees some 90
+// records per second.
 constexpr std::uint64_t max_polls_hz = 90;
 // Nor how much the unit hears meanwhile.
-constexpr std::size_t waiting_room = 64;
+constexpr std::size_t max_waiting = 64;
 
 // 1 s = 115200 ticks = 1e9 ns, in lowest terms 9 ticks = 78125 ns.
 constexpr std::uint64_t to_ticks(std::chrono::nanoseconds time) noexcept {
@@ -54,7 +54,7 @@ void CyberGloveUnit::receive(std::span<const std::byte> bytes, Time now) {
 void CyberGloveUnit::hear(Byte byte, Time now) {
   if (!poll_) {
     handle(byte, now);
-  } else if (waiting_.size() < waiting_room) {
+  } else if (waiting_.size() < max_waiting) {
     waiting_.push_back(byte);
   }
 }
@@ -146,7 +146,7 @@ void CyberGloveUnit::start_three(Time now) {
   if (three_.usb) stream_ = {three_prefix, now, three_.period_ticks(), 1, false};
 }
 
-// External sync: each pulse gives a record. Sources tell no more; chosen: the pulses come at the
+// External sync: each pulse gives a record. Sources say no more; chosen: the pulses come at the
 // rate that the emulator was given, whatever T says. False: that is too fast.
 bool CyberGloveUnit::start_sync(Time now) {
   const Byte header = settings_.binary_sync ? Byte{'Y'} : settings_.text_sync ? Byte{'y'} : Byte{0};

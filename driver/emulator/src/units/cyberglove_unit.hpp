@@ -2,7 +2,7 @@
 // A CyberGlove's interface unit, from the device's side. It shares no code with the driver's
 // parser, so that each can test the other. The facts are those of the vendor library (VirtualHand
 // 2, 1993) and of drivers that cite the manual. Where these disagree or say nothing, a comment in
-// the .cpp files tells what was chosen.
+// the .cpp files gives the choice.
 
 #include <chrono>
 #include <cstddef>
@@ -36,7 +36,8 @@ struct UnitOptions {
   driver::Motion motion = driver::Motion::sculpt;
   double rate_hz = 90.0; ///< until the host sets a period: 1..max_rate_hz
   std::uint32_t seed = 1;
-  unsigned reply_bytes = 2; ///< of a set command: the letter and NUL, or 3 with a byte between
+  unsigned reply_bytes =
+      2; ///< reply to a set command: the letter and NUL, or 3 with a byte between
   unit::WordOrder period_order = unit::WordOrder::high_first;
   bool stamp_bit7 = true;
   unit::HiResForm hires_form = unit::HiResForm::hardware;

@@ -16,7 +16,7 @@ namespace {
 // enums.
 constexpr std::array variants{
     EmulatedVariant{"lucidgloves", "firmware", "senseshift",
-                    "answers questions, stops when it is told to, takes brakes"},
+                    "answers questions, stops by command, takes brakes"},
     EmulatedVariant{"lucidgloves", "firmware", "streaming",
                     "LucidGloves without force feedback: hears nothing"},
     EmulatedVariant{"lucidgloves", "firmware", "waiting",
@@ -32,10 +32,10 @@ constexpr std::array variants{
     EmulatedVariant{"5dt", "firmware", "thumb-first", "a sample begins with the thumb"},
     EmulatedVariant{"5dt", "firmware", "pinky-first",
                     "a left glove's sample begins with the pinky"},
-    EmulatedVariant{"5dt", "connection", "wired", "answers, and streams when it is told to"},
+    EmulatedVariant{"5dt", "connection", "wired", "answers, and streams by command"},
     EmulatedVariant{"5dt", "connection", "wireless", "streams by itself, and hears nothing"},
-    EmulatedVariant{"forte", "connection", "usb", "sends once it is told to use USB"},
-    EmulatedVariant{"forte", "connection", "bluetooth", "sends once it is told to use Bluetooth"},
+    EmulatedVariant{"forte", "connection", "usb", "sends after the command to use USB"},
+    EmulatedVariant{"forte", "connection", "bluetooth", "sends after the command to use Bluetooth"},
 };
 
 /// Returns the place of `chosen` among the variants of this option. An empty one is the first.
@@ -67,8 +67,8 @@ Result<Chosen> find_variants(const EmulatorOptions& options) {
   return Chosen{*firmware, *connection};
 }
 
-// Each sets up a unit as the chosen variants want it, and returns how many records a second it can
-// send.
+// Each sets up a unit as the chosen variants want it, and returns its max records per
+// second.
 double choose(const Chosen& chosen, LucidGlovesUnitOptions& unit) {
   unit.firmware = static_cast<LucidGlovesFirmware>(chosen.firmware);
   return LucidGlovesUnit::max_rate_hz;
@@ -95,7 +95,7 @@ Result<std::unique_ptr<EmulatedUnit>> make_unit(const EmulatorOptions& options) 
   if (!(options.rate_hz >= 1.0 && options.rate_hz <= max_rate_hz)) {
     return Error{Errc::usage, "rate: a " + options.glove + " glove sends 1 to " +
                                   std::to_string(static_cast<int>(max_rate_hz)) +
-                                  " records a second"};
+                                  " records per second"};
   }
   unit.side = options.side;
   unit.motion = *motion;

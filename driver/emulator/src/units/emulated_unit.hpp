@@ -31,7 +31,7 @@ struct Incident {
   unsigned sensors = 0; ///< glove_in: of another glove; 0: as before
   std::optional<Side> side = std::nullopt;
   Sensor sensor = Sensor::unused;                    ///< that is stuck, or free again
-  std::optional<std::uint16_t> count = std::nullopt; ///< of 255; nothing: the one that it shows
+  std::optional<std::uint16_t> count = std::nullopt; ///< at most 255; nothing: its own count
 };
 
 /// A whole record or reply in the output.
@@ -41,8 +41,9 @@ struct UnitMessage {
 };
 
 struct UnitCounters {
-  std::uint64_t records = 0;       ///< put into the output
-  std::uint64_t bytes_refused = 0; ///< of records and replies for which the output had no room
+  std::uint64_t records = 0; ///< put into the output
+  std::uint64_t bytes_refused =
+      0; ///< bytes of records and replies that did not fit into the output
 };
 
 class EmulatedUnit {

@@ -17,7 +17,7 @@
 namespace nendo::emulator {
 
 struct ForteUnitOptions {
-  Side side = Side::right; ///< of the motion; the glove itself does not tell it
+  Side side = Side::right; ///< the motion's hand; the glove does not report it
   driver::Motion motion = driver::Motion::sculpt;
   double rate_hz = 90.0; ///< 1..max_rate_hz
   std::uint32_t seed = 1;
@@ -47,7 +47,7 @@ private:
   driver::HandMotion motion_;
   std::array<Byte, 3> last_{}; ///< bytes from the host: a command, if it is one
   bool data_on_ = false;
-  bool linked_ = false;               ///< told to send where the host is
+  bool linked_ = false;               ///< set to send to the host's port
   std::optional<Time> motion_origin_; ///< empty until time was seen to pass
   Time next_record_{};
 };

@@ -8,10 +8,10 @@
 namespace nendo::emulator {
 namespace {
 
-constexpr int analog_max = 4095;          // an ESP32's converter, 12 bits
-constexpr std::size_t command_room = 100; // the firmware's buffer
-constexpr std::size_t min_command = 5;    // shorter lines are ignored
-constexpr std::size_t line_room = 256;    // an ESP32's buffer of what it has received
+constexpr int analog_max = 4095;              // an ESP32's converter, 12 bits
+constexpr std::size_t command_capacity = 100; // the firmware's buffer
+constexpr std::size_t min_command = 5;        // shorter lines are ignored
+constexpr std::size_t line_capacity = 256;    // an ESP32's receive buffer
 constexpr int max_brake = 1000;
 constexpr double splay_end_rad = from_degrees(20.0); // as OpenGloves shows it
 
@@ -19,7 +19,7 @@ constexpr double splay_end_rad = from_degrees(20.0); // as OpenGloves shows it
 constexpr double seen_from = 0.25;
 constexpr double seen_part = 0.35;
 
-// Returns the number behind a letter, as the firmware's atoi reads it, or nothing if the letter is
+// Returns the number after a letter, as the firmware's atoi reads it, or nothing if the letter is
 // missing.
 std::optional<int> argument(std::string_view command, char letter) {
   const std::size_t at = command.find(letter);
@@ -67,11 +67,11 @@ void LucidGlovesUnit::receive(std::span<const std::byte> bytes, Time now) {
   for (const std::byte byte : bytes) {
     const char c = std::to_integer<char>(byte);
     if (waits()) {
-      if (heard_.size() < line_room) heard_.push_back(c);
+      if (heard_.size() < line_capacity) heard_.push_back(c);
     } else if (c == '\n') {
       handle(heard_);
       heard_.clear();
-    } else if (heard_.size() < command_room) {
+    } else if (heard_.size() < command_capacity) {
       heard_.push_back(c);
     }
   }
@@ -145,18 +145,18 @@ void LucidGlovesUnit::advance_loop(Time now) {
 // takes, or what there is when the time is up. Nothing: the wait continues.
 std::optional<LucidGlovesUnit::Heard> LucidGlovesUnit::take_line(Time now) {
   const std::size_t end = heard_.find('\n');
-  const bool whole = end < command_room || heard_.size() >= command_room;
+  const bool whole = end < command_capacity || heard_.size() >= command_capacity;
   // A line that came while the last one was handled was there when the wait began.
   const Time since = std::max(*waits_since_, last_heard_);
-  if (!whole && now - since < patience()) return std::nullopt;
-  const std::size_t length = std::min({end, heard_.size(), command_room});
-  Heard heard{heard_.substr(0, length), whole ? since : since + patience()};
-  heard_.erase(0, length + (end == length && end < command_room ? 1 : 0));
+  if (!whole && now - since < max_wait()) return std::nullopt;
+  const std::size_t length = std::min({end, heard_.size(), command_capacity});
+  Heard heard{heard_.substr(0, length), whole ? since : since + max_wait()};
+  heard_.erase(0, length + (end == length && end < command_capacity ? 1 : 0));
   return heard;
 }
 
 std::optional<EmulatedUnit::Time> LucidGlovesUnit::next_due() const noexcept {
-  if (waits_since_) return std::max(*waits_since_, last_heard_) + patience();
+  if (waits_since_) return std::max(*waits_since_, last_heard_) + max_wait();
   if (!streaming_) return std::nullopt;
   return next_line_;
 }
@@ -188,7 +188,7 @@ std::string LucidGlovesUnit::line(Time now) const {
   return text + "\n";
 }
 
-// The curls, the joystick in the middle, and six buttons that nobody presses.
+// The curls, the joystick in the middle, and six buttons that are not pressed.
 std::string LucidGlovesUnit::legacy_line(const std::array<int, 5>& curls) const {
   std::string text;
   for (const int curl : curls)

@@ -69,7 +69,7 @@ private:
   bool is_legacy() const noexcept;
   bool is_unclamped() const noexcept;
   bool is_deaf() const noexcept;
-  Time patience() const noexcept { return is_legacy() ? longest_legacy_wait : longest_wait; }
+  Time max_wait() const noexcept { return is_legacy() ? longest_legacy_wait : longest_wait; }
   int number(double part) const;
   void advance_loop(Time now);
   std::optional<Heard> take_line(Time now);
@@ -84,9 +84,10 @@ private:
   bool streaming_ = true;
   std::optional<Time> motion_origin_; ///< empty until time was seen to pass
   Time next_line_{};
-  std::optional<Time> waits_since_; ///< for a line, since its own went out; empty: its own is due
-  Time last_heard_{};               ///< when the last byte arrived
-  std::string heard_;               ///< and not handled
+  std::optional<Time>
+      waits_since_;   ///< waits for a line since it sent its own; empty: its own is due
+  Time last_heard_{}; ///< when the last byte arrived
+  std::string heard_; ///< and not handled
   std::array<int, 5> brakes_{};
 };
 

@@ -19,7 +19,7 @@ using udev::UsbIdentity;
 /// A program that has a device open or locked.
 struct DeviceHolder {
   int pid = 0;
-  std::string name; ///< of the program; "another user's program" where it is not to be seen
+  std::string name; ///< the program's name; "another user's program" if it is not visible
 };
 
 enum class DeviceKind : std::uint8_t {
@@ -41,22 +41,22 @@ struct GloveCandidate {
   std::string stable_name;
   /// The text for open_glove(), with the stable name if there is one; empty if nothing can open it.
   std::string spec;
-  std::string description; ///< what the device says of itself
+  std::string description; ///< the device's own description
   std::string reason;      ///< why it may be a glove
   bool identified = false; ///< the device or a udev rule names it a glove; `auto` opens only these
   bool may_open = false;   ///< this user has the permission
-  std::string access;      ///< who has: "you", "group dialout", "user anna", "root"; or nobody
+  std::string access; ///< who may open it: "you", "group dialout", "user anna", "root"; or empty
   bool node_missing = false; ///< the kernel has it, and /dev has no node: as in a container
   std::string remedy;        ///< the command or action that makes it usable; empty if may_open
   std::optional<UsbIdentity> usb;
-  /// How long an FTDI adapter keeps short replies back: 16 ms unless somebody changed it.
+  /// The time by which an FTDI adapter delays short replies: 16 ms by default.
   std::optional<std::chrono::milliseconds> latency_timer;
-  bool left_alone = false; ///< udev tells ModemManager to leave it alone
+  bool left_alone = false; ///< a udev rule makes ModemManager ignore it
   std::vector<DeviceHolder> holders;
-  bool holders_complete = false; ///< false: not every program could be looked into
+  bool holders_complete = false; ///< false: some processes could not be inspected
 };
 
-/// Returns the serial ports and USB gloves, one entry a device, identified gloves first. A device
+/// Returns the serial ports and USB gloves, one entry per device, identified gloves first. A device
 /// that is pulled out meanwhile is left out. Blocks for less than a second.
 NENDO_API std::vector<GloveCandidate> find_gloves();
 

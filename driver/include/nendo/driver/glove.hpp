@@ -14,13 +14,13 @@ namespace nendo::driver {
 
 /// What a glove can do besides measuring.
 struct Abilities {
-  bool wrist_switch = false; ///< its samples tell the switch's position
+  bool wrist_switch = false; ///< its samples have the switch's position
   bool light = false;        ///< a light at the wrist
   bool vibration = false;    ///< six vibrators: thumb to pinky, palm (CyberTouch)
   bool resistance = false;   ///< brakes on the five fingers (LucidGloves)
 };
 
-/// What the wearer sees and feels. A glove ignores what it has not.
+/// Light and forces for the wearer. Fields that the glove does not support are ignored.
 struct Feedback {
   bool light = false;
   std::array<std::uint8_t, 6> vibration{};   ///< 0 to 255
@@ -37,7 +37,7 @@ struct GloveFact {
 
 /// Where a glove's samples come from.
 enum class GloveKind : std::uint8_t {
-  device,    ///< a glove on somebody's hand, or an emulated one at a port
+  device,    ///< a glove on a hand, or an emulated one at a port
   simulated, ///< made by this program
   recorded,  ///< read from a recording
 };
@@ -47,7 +47,7 @@ struct GloveInfo {
   std::string model;  ///< what the glove says it is, one line, e.g. "CyberGlove, 22 sensors"
   Side side = Side::right;
   SensorMask sensors;   ///< slots that its samples carry
-  double rate_hz = 0.0; ///< nominal records a second; 0 if unknown
+  double rate_hz = 0.0; ///< nominal records per second; 0 if unknown
   CountScale counts;
   Abilities abilities;
   std::vector<GloveFact> facts; ///< everything else that it says of itself
@@ -64,8 +64,9 @@ struct GloveStats {
   std::uint64_t discarded_bytes = 0; ///< that were not: noise, damaged records, replies
   std::uint64_t records = 0;         ///< whole, valid records
   std::uint64_t bad_records = 0;     ///< framed, but of wrong length, header, checksum or content
-  std::uint64_t implausible = 0;     ///< of these: well formed, but time stamp or status contradict
-  std::uint64_t missed = 0;    ///< sent, as the glove's own clock tells, and not delivered; the bad
+  std::uint64_t implausible =
+      0; ///< those that are well formed, but whose time stamp or status contradicts
+  std::uint64_t missed = 0;    ///< sent, by the glove's own clock, and not delivered; the bad
                                ///< ones among them
   std::uint64_t too_fast = 0;  ///< delivered, but sampled off the period, as the glove says (`es`)
   std::uint64_t unplugged = 0; ///< records without a glove (`eg`), not delivered
@@ -74,7 +75,7 @@ struct GloveStats {
   std::uint64_t ring_refused = 0; ///< samples that found the ring full
   std::uint64_t silences = 0;     ///< times the stream stopped and was started again
   std::uint64_t reopened = 0;     ///< times the device vanished and was opened again
-  double rate_hz = 0.0;           ///< records a second over the last second or two; 0 at first
+  double rate_hz = 0.0;           ///< records per second over the last second or two; 0 at first
   bool tells_missed = false;      ///< its records let `missed` be counted
 };
 
@@ -86,8 +87,8 @@ public:
   Glove& operator=(const Glove&) = delete;
   virtual ~Glove() = default; ///< stops the stream if it runs; may block for a second
 
-  /// What was learnt when it was opened. Constant, also where another glove was plugged in
-  /// meanwhile: samples tell their hand and sensors themselves. Thread-safe.
+  /// The glove's properties when it was opened. Constant, even if another glove is plugged in
+  /// later: each sample has its hand and sensors. Thread-safe.
   virtual const GloveInfo& info() const noexcept = 0;
   /// Starts the reader thread, which is the only producer of `ring`; the ring must outlive stop().
   /// After stop() it may be started again. May block for two seconds. Errors: no_device (it no
@@ -97,14 +98,13 @@ public:
   virtual void stop() noexcept = 0;
   /// Thread-safe, wait-free.
   virtual GloveStats stats() const noexcept = 0;
-  /// Returns whether the glove has sent all that it ever will since start(), as a recording has at
-  /// its end; all of it that found room is in the ring then. A device may always come back, and so
-  /// never ends. Thread-safe, wait-free.
+  /// Returns whether the glove has sent its last sample since start(), as a recording at its end;
+  /// all that fit is in the ring then. A device may always come back, and so never ends.
+  /// Thread-safe, wait-free.
   virtual bool has_ended() const noexcept { return false; }
-  /// What the glove is to show from now on; the latest counts, and it is shown again after a
-  /// reconnect. The reader thread sends it: within 0.2 s, without losing a record of gloves that
-  /// take commands while they stream; a CyberGlove's stream pauses for it. Thread-safe, does
-  /// not block.
+  /// Sets the feedback to show. The latest call wins, also after a reconnect. The reader thread
+  /// sends it: within 0.2 s, without losing a record of gloves that take commands while they
+  /// stream; a CyberGlove's stream pauses for it. Thread-safe, does not block.
   virtual void set_feedback(const Feedback& feedback) noexcept = 0;
 };
 

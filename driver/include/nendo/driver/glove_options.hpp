@@ -1,6 +1,6 @@
 #pragma once
-// For drivers, in this library and in programs: the options of a specification. By these a user
-// tells what a glove itself may not tell: its hand, and numbers and words out of a short list.
+// For drivers, in this library and in programs: the options of a specification, for facts that a
+// glove may not report: its hand, and numbers and words out of a short list.
 
 #include <initializer_list>
 #include <optional>

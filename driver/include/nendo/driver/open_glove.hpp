@@ -35,7 +35,7 @@ NENDO_API Result<GloveSpec> parse_glove_spec(std::string_view text);
 /// calls it; it must not throw.
 using SensorMotion = std::function<std::array<double, sensor_slots>(double time_s)>;
 
-/// What a `sim:` specification asks for.
+/// The options of a `sim:` specification.
 struct SimulatedGloveOptions {
   std::string source;            ///< the specification
   std::string motion = "sculpt"; ///< its name, not yet validated
@@ -56,15 +56,15 @@ struct GloveContext;
 
 /// A kind of glove: how it is named and opened.
 struct GloveDriver {
-  std::string_view kind;    ///< what stands before the colon
-  std::string_view grammar; ///< for `--help`
-  std::string_view summary; ///< what it is, likewise
+  std::string_view kind;    ///< the part before the colon
+  std::string_view grammar; ///< the grammar in `--help`
+  std::string_view summary; ///< the description in `--help`
   /// Opens and identifies it as open_glove() does.
   Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, std::optional<Side> side,
                                          const GloveContext& context);
 };
 
-/// What a program adds to the kinds and motions of this library. Names of the library come first.
+/// Kinds and motions that a program adds to this library's. Names of the library come first.
 struct GloveContext {
   std::vector<GloveDriver> drivers{};
   std::vector<NamedMotion> motions{};
@@ -73,7 +73,7 @@ struct GloveContext {
 /// Opens and identifies the glove; may block, 5 seconds at most. `side` is the hand that the user
 /// wants it for: `auto` opens no other, and a simulated hand is that one (right if any will do).
 /// Errors: usage (kind, option), no_device (missing, or does not answer like a glove),
-/// no_permission; those of what `context` adds.
+/// no_permission; those of drivers in `context`.
 NENDO_API Result<std::unique_ptr<Glove>> open_glove(std::string_view spec,
                                                     std::optional<Side> side = std::nullopt,
                                                     const GloveContext& context = {});

@@ -46,7 +46,7 @@ public:
   }
 
 private:
-  std::mutex mutex_; ///< nobody else takes it: the wait wants one
+  std::mutex mutex_; ///< used by no other thread; the wait needs one
   std::condition_variable_any wake_;
   std::jthread thread_; // last: joined before what it uses is gone
 };

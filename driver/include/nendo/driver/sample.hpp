@@ -138,13 +138,13 @@ struct CountScale {
   friend constexpr bool operator==(CountScale, CountScale) = default;
 };
 
-/// The switch at a CyberGlove's wrist, as far as the glove tells.
+/// The switch at a CyberGlove's wrist, as far as the glove reports it.
 enum class WristSwitch : std::uint8_t { unknown, off, on };
 
 struct GloveSample {
   HostTime arrival{}; ///< when the record's last byte reached the host
-  /// When the glove took it: its own time stamp on the host's clock, freed of the host's jitter by
-  /// an estimate of offset and drift. Equals `arrival` unless has_device_time.
+  /// When the glove took it: its own time stamp on the host's clock, with the host's jitter removed
+  /// by an estimate of offset and drift. Equals `arrival` unless has_device_time.
   HostTime measured{};
   /// The glove's own clock since its own zero, unwrapped; if has_device_time.
   std::chrono::nanoseconds device_time{};

@@ -31,7 +31,7 @@ struct Binding {
 
 /// Returns the binding of the port `device` to a hand. `ports` are all ports that are plugged in;
 /// they show whether the serial number is this adapter's alone. Errors: no_device (`device` is not
-/// among them), usage (it has no adapter, or nothing tells its adapter from another one; the
+/// among them), usage (it has no adapter, or its adapter is not distinct from another one; the
 /// message says what to do).
 NENDO_API Result<Binding> make_binding(std::string_view device, std::span<const SerialPort> ports,
                                        Side side, bool by_place);

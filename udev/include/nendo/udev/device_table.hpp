@@ -1,5 +1,5 @@
 #pragma once
-// The table of devices: everything that USB numbers and names tell about gloves. The driver looks
+// The table of devices: all that USB numbers and names say about gloves. The driver looks
 // devices up in it, and the udev rules are made from it, so the two cannot disagree.
 
 #include <span>

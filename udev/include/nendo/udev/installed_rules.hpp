@@ -1,6 +1,6 @@
 #pragma once
 // The udev rules on this machine: which are in effect, and how to change those in /etc. `root` is
-// the folder that stands for /, so that images and tests can be treated likewise.
+// the folder that stands for /, so that images and tests can be treated alike.
 
 #include <cstdint>
 #include <filesystem>
@@ -16,12 +16,12 @@ enum class RuleState : std::uint8_t {
   missing,
   current,  ///< what this version of nendo would install
   outdated, ///< made by another version of nendo
-  foreign,  ///< not made by nendo: a file or a link of somebody else, perhaps to switch it off
+  foreign,  ///< not made by nendo: another file or link, perhaps to switch it off
 };
 
 struct RuleFile {
   std::string name;
-  std::filesystem::path path; ///< of the file in effect; where install would write if it is missing
+  std::filesystem::path path; ///< the file in effect; the target of install if it is missing
   RuleState state = RuleState::missing;
 };
 

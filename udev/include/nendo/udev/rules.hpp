@@ -21,7 +21,7 @@ struct RuleText {
 /// anything may be connected to them.
 NENDO_API std::vector<RuleText> rule_texts();
 
-/// The first line of these files begins with this mark; files without it belong to somebody else.
+/// The first line of these files begins with this mark; files without it are not nendo's.
 inline constexpr std::string_view rule_mark = "# Made by nendo: ";
 
 } // namespace nendo::udev

@@ -1,5 +1,5 @@
 #pragma once
-// How a USB device is told from others: by the numbers of its model, and by what it says of itself.
+// The identity of a USB device: the numbers of its model, and its own strings.
 
 #include <compare>
 #include <cstdint>
@@ -29,8 +29,8 @@ struct UsbIdentity {
   std::string place;         ///< bus and hub ports, e.g. "1-2.4": where it is plugged in
   unsigned bus = 0;          ///< as in /dev/bus/usb/BUS/ADDRESS
   unsigned address = 0;      ///< changes whenever it is plugged in
-  int interface_number = -1; ///< of the port, at adapters that have several; -1 if unknown
-  int port_number = 0;       ///< of the port, at interfaces that have several
+  int interface_number = -1; ///< the port's interface, at adapters that have several; -1 if unknown
+  int port_number = 0;       ///< the port's number, at interfaces that have several
   friend bool operator==(const UsbIdentity&, const UsbIdentity&) = default;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Commands that a message tells somebody to type.
+// Commands in messages, for the user to type.
 
 #include <filesystem>
 #include <string>

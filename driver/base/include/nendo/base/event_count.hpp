@@ -32,7 +32,7 @@ private:
 
   std::atomic<std::uint32_t> word_{0};
   static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
-  std::uint32_t heard_ = 0; ///< the waiter's own: what it has seen of the count
+  std::uint32_t heard_ = 0; ///< the last count seen by the waiter; waiter's thread only
 };
 
 } // namespace nendo

@@ -30,8 +30,8 @@ NENDO_API Result<std::string> read_file(const std::filesystem::path& path, std::
 
 /// Replaces the file that `path` or its link leads to; it must be a regular file, if it exists.
 /// Writes a temporary file beside it, syncs that and renames it, so that the file always is the old
-/// one or the whole new one; the mode stays. The temporary file (`.nendo.*.tmp`) is removed on
-/// failure, and stays only if the process is killed. Error: failed.
+/// one or the whole new one; its permissions are preserved. The temporary file (`.nendo.*.tmp`) is
+/// removed on failure, and stays only if the process is killed. Error: failed.
 NENDO_API Result<void> replace_file(const std::filesystem::path& path, std::string_view contents);
 
 /// Writes all of `bytes`, in as many calls as it takes. Returns false, with errno set, if the

@@ -1,6 +1,6 @@
 #pragma once
 // A job that one thread offers to another. If the other thread runs, it takes the job; if not, the
-// first thread withdraws it. So nobody waits for a thread that has no processor.
+// first thread withdraws it. So no thread waits for one without a processor.
 
 #include <atomic>
 #include <cstdint>
@@ -23,7 +23,7 @@ public:
   /// Offering thread only, at most once for each job. Takes the job back. Returns false if the
   /// other thread has taken it.
   bool withdraw() noexcept { return open_.exchange(0, std::memory_order_relaxed) == 1; }
-  /// Offering thread only. Tells whether a job that could not be withdrawn is done.
+  /// Offering thread only. Returns whether a job that could not be withdrawn is done.
   bool is_done() const noexcept { return done_.load(std::memory_order_acquire) == 1; }
 
   /// Other thread only. Takes the job, which belongs to this thread until done(). Returns false if

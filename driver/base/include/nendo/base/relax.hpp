@@ -3,8 +3,8 @@
 
 namespace nendo {
 
-/// Tells the processor that this thread spins, so that the core's other hardware thread may run and
-/// less power is drawn. Takes some 10 to 60 ns. Wait-free.
+/// Marks this thread as spinning for the processor, so that the core's other hardware thread may
+/// run and less power is drawn. Takes some 10 to 60 ns. Wait-free.
 inline void relax() noexcept {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();

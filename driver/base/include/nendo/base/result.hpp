@@ -12,7 +12,7 @@
 
 namespace nendo {
 
-/// The kinds of errors that a caller can tell apart. The values are the program's exit codes.
+/// The kinds of errors that a caller can distinguish. The values are the program's exit codes.
 enum class Errc {
   failed = 1,        ///< the job failed
   usage = 2,         ///< an argument is wrong

@@ -1,6 +1,6 @@
 #pragma once
 // SeqLock is the word of a sequence lock, for one writer and any number of readers, also in other
-// processes. Its value tells which content, by number, stands beside it: 2 n + 1 while content n is
+// processes. Its value gives the number of the content beside it: 2 n + 1 while content n is
 // being written, and 2 n + 2 when it is whole. Readers cannot delay the writer. The content itself
 // must be read and written by relaxed atomic accesses (H.-J. Boehm, "Can seqlocks get along with
 // programming language memory models?", MSPC 2012). Proof: RINGS.md.
@@ -18,21 +18,22 @@ public:
   /// Numbers only grow.
   void open(std::uint64_t number) noexcept {
     word_.store(2 * number + 1, std::memory_order_relaxed);
-    Atomics::fence(std::memory_order_release); // who sees a word of the content sees this, too
+    Atomics::fence(
+        std::memory_order_release); // a reader of any word of the content sees this store
   }
   /// Writer only, wait-free. Must be called after the last word of the content is written.
   void close(std::uint64_t number) noexcept {
     word_.store(2 * number + 2, std::memory_order_release);
   }
 
-  /// Reader, wait-free. Tells whether content `number` is whole. Call it before reading.
+  /// Reader, wait-free. Returns whether content `number` is whole. Call it before reading.
   bool holds(std::uint64_t number) const noexcept {
     return word_.load(std::memory_order_acquire) == 2 * number + 2;
   }
-  /// Reader, wait-free. Tells whether everything that was read since holds() belongs to that
+  /// Reader, wait-free. Returns whether all that was read since holds() belongs to that
   /// content.
   bool still_holds(std::uint64_t number) const noexcept {
-    Atomics::fence(std::memory_order_acquire); // who read a later content sees its mark
+    Atomics::fence(std::memory_order_acquire); // a reader of later content sees its mark
     return word_.load(std::memory_order_relaxed) == 2 * number + 2;
   }
 

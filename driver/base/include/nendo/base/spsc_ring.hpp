@@ -1,6 +1,6 @@
 #pragma once
 // SpscRing is a lock-free ring of fixed capacity for one producer and one consumer thread. When it
-// is full, the newest element is refused and counted; nobody waits. Each side caches the other's
+// is full, the newest element is refused and counted; no thread waits. Each side caches the other's
 // index and reads it again only when it must. Proof, bounds and figures: RINGS.md.
 
 #include <algorithm>

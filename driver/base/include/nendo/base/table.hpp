@@ -3,8 +3,8 @@
 // forms, and what numpy.savetxt() writes. All readers of tables in Nendo use these rules.
 //
 // * Cells are separated by tabs, semicolons or commas, in that order of preference, else by blanks.
-//   The first line decides. A line `sep=;` before it, as Excel writes it, is obeyed.
-// * A cell may stand in double quotes; "" in it is a quote, and it may contain line ends.
+//   The first line decides. A line `sep=;` before it, as Excel writes it, sets the separator.
+// * A cell may be in double quotes; "" in it is a quote, and it may contain line ends.
 // * A cell that is a number may have a decimal comma, if commas do not separate the cells.
 // * Skipped: a byte-order mark, blank lines, lines that begin with #, and empty cells at a line's
 //   end that are more than there are columns. A line ends with \n, \r\n or \r.
@@ -37,7 +37,7 @@ public:
   /// read_head(), but for an empty text.
   Result<void> begin_without_head(std::size_t columns);
 
-  /// Returns the place of a column, or nullopt, and marks it as read. `name` is as plain() gives
+  /// Returns the index of a column, or nullopt, and marks it as read. `name` is as plain() gives
   /// it.
   std::optional<std::size_t> find(std::string_view name);
   /// Returns whether there are two columns of that name.
@@ -45,7 +45,8 @@ public:
   /// The names, as plain() gives them, in the order of the columns; empty where a cell is.
   const std::vector<std::string>& names() const noexcept { return names_; }
   void mark_as_read(std::size_t column) { is_read_[column] = true; }
-  /// Returns the columns that nobody has found, such as "note, weight and 3 more"; empty: none.
+  /// Returns the columns that find() was not called for, such as "note, weight and 3 more"; empty:
+  /// none.
   std::string columns_not_read() const;
 
   /// Reads the next row; false at the end. Error: the row has another number of cells than there

@@ -1,5 +1,5 @@
 #pragma once
-// Tells how much memory this program may use.
+// The memory that this program may use.
 
 #include <cstddef>
 #include <filesystem>

@@ -38,8 +38,8 @@ struct FaultForm {
 std::vector<FaultForm> fault_forms();
 
 enum class EmulatorPace : std::uint8_t {
-  clock, ///< as a device: a record a period, lost if nobody reads it
-  host,  ///< a record whenever the host has room; each advances the device's clock by a period
+  clock, ///< as a device: one record per period, lost if no host reads it
+  host,  ///< a record whenever the host can take it; each advances the device's clock by a period
 };
 
 /// Options for CyberGloves only.
@@ -47,8 +47,8 @@ struct EmulatedCyberGlove {
   unsigned model = 1;              ///< CyberGlove I, II or III
   std::uint32_t hardware_mask = 0; ///< the sensors that the glove has; 0: the usual ones
   bool touch = false;              ///< it has the vibrators of a CyberTouch
-  unsigned reply_bytes = 2;        ///< of a set command's reply: 2, or 3 as one library expects
-  bool period_low_first = false;   ///< the order of the bytes in the words of T and ?T
+  unsigned reply_bytes = 2; ///< length of a set command's reply: 2, or 3 as one library expects
+  bool period_low_first = false; ///< the order of the bytes in the words of T and ?T
   bool stamp_bit7 =
       true; ///< bit 7 of a time stamp's first byte is always set; false: only if it must
   /// 12-bit streams of a CyberGlove III: 1S is echoed with a NUL, so is the 0x03 that ends them,
@@ -58,7 +58,7 @@ struct EmulatedCyberGlove {
   /// Until it answers 0x12, or hears again after a power cut: 0 to 60. The maker's own library
   /// reads the answer after 0.25 s; the manual says 1.75 s.
   double restart_s = 0.2;
-  /// When it is switched on its period is half of what it manages, so that the records of a stream
+  /// When it is switched on its period is half its shortest one, so that the records of a stream
   /// end in es until the host sets another.
   bool overrun = false;
   bool streaming = false; ///< it streams from the start, as after a host that died
@@ -79,7 +79,7 @@ struct EmulatorOptions {
   Side side = Side::right;
   unsigned sensors = 0;          ///< 0: as many as this kind of glove usually has
   std::string motion = "sculpt"; ///< one of driver::motion_names()
-  double rate_hz = 90.0;         ///< records a second until the host sets a period
+  double rate_hz = 90.0;         ///< records per second until the host sets a period
   std::uint32_t seed = 1;
   EmulatorPace pace = EmulatorPace::clock;
   std::vector<std::string> faults = {}; ///< each in one of the forms of fault_forms()

@@ -20,7 +20,7 @@ public:
   ServedEmulator& operator=(const ServedEmulator&) = delete;
   ~ServedEmulator() { stop(); }
 
-  /// Returns whether serving was told to end, or failed.
+  /// Returns whether serving was ended, or failed.
   bool is_over() const noexcept { return over_; }
   /// Ends serving when all sent bytes have gone out. Returns the result of serving. Blocks briefly.
   Result<void> finish() {
