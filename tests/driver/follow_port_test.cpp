@@ -9,7 +9,7 @@
 #include "support/mocked_machine.hpp"
 #include "support/required.hpp"
 #include "support/scripted_port.hpp"
-#include "transport/follow_port.hpp"
+#include "transport/open_transport.hpp"
 #include "transport/serial_ports.hpp"
 
 namespace follow_port_test {

@@ -11,7 +11,7 @@
 
 #include <doctest/doctest.h>
 
-#include "stream/stream_counters.hpp"
+#include "stream/stream_parser.hpp"
 
 namespace nendo::test {
 

@@ -13,7 +13,7 @@
 #include "cyberglove/cyberglove_protocol.hpp"
 #include "cyberglove/record_check.hpp"
 #include "stream/device_clock.hpp"
-#include "transport/follow_port.hpp"
+#include "transport/open_transport.hpp"
 
 namespace nendo::driver::cyberglove {
 namespace {

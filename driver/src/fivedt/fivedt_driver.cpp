@@ -9,7 +9,7 @@
 #include "drivers.hpp"
 #include "fivedt/fivedt_parser.hpp"
 #include "stream/stream_glove.hpp"
-#include "transport/follow_port.hpp"
+#include "transport/open_transport.hpp"
 
 namespace nendo::driver::fivedt {
 namespace {

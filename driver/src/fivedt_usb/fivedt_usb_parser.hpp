@@ -9,7 +9,7 @@
 #include <span>
 
 #include "fivedt_usb/fivedt_usb_protocol.hpp"
-#include "stream/report_parser.hpp"
+#include "stream/stream_parser.hpp"
 
 namespace nendo::driver::fivedt_usb {
 

@@ -7,7 +7,7 @@
 #include "drivers.hpp"
 #include "forte/forte_parser.hpp"
 #include "stream/stream_glove.hpp"
-#include "transport/follow_port.hpp"
+#include "transport/open_transport.hpp"
 
 namespace nendo::driver::forte {
 namespace {
@@ -46,16 +46,13 @@ public:
     return describe(*record);
   }
 
-  /// It streams already; what it sent before now is old.
+  /// It streams already, and no command is known that ends the stream. Earlier bytes are old.
   Result<void> start_stream(Transport& transport, const std::string& /*source*/,
                             const ReplyDeadline& /*limit*/) override {
     parser_.count_discarded(drop_waiting(transport));
     parser_.reset();
     return {};
   }
-
-  /// The stream continues: no command is known that ends it.
-  void end_stream(Transport& /*transport*/, const ReplyDeadline& /*limit*/) noexcept override {}
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
             SampleSink& sink) noexcept override {

@@ -14,7 +14,7 @@
 
 #include "lucidgloves/lucidgloves_parser.hpp"
 #include "stream/stream_glove.hpp"
-#include "transport/follow_port.hpp"
+#include "transport/open_transport.hpp"
 
 namespace nendo::driver::lucidgloves {
 namespace {

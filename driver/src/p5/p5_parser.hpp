@@ -9,7 +9,7 @@
 #include <span>
 
 #include "p5/p5_protocol.hpp"
-#include "stream/report_parser.hpp"
+#include "stream/stream_parser.hpp"
 
 namespace nendo::driver::p5 {
 

@@ -12,7 +12,7 @@
 #include <nendo/base/units.hpp>
 #include <nendo/driver/glove.hpp>
 
-#include "stream/stream_counters.hpp"
+#include "stream/stream_parser.hpp"
 #include "transport/transport.hpp"
 
 namespace nendo::driver {
@@ -63,8 +63,13 @@ public:
                                      IdentifyReason reason, const ReplyDeadline& limit) = 0;
   /// Starts the stream. All bytes that come from now on go to push(). Error: no_device.
   virtual Result<void> start_stream(Transport& transport, const std::string& source,
-                                    const ReplyDeadline& limit) = 0;
-  virtual void end_stream(Transport& transport, const ReplyDeadline& limit) noexcept = 0;
+                                    const ReplyDeadline& limit) {
+    (void)transport, (void)source, (void)limit; // a glove that streams whenever it is read
+    return {};
+  }
+  virtual void end_stream(Transport& transport, const ReplyDeadline& limit) noexcept {
+    (void)transport, (void)limit;
+  }
   /// Takes the next bytes of the stream, cut anywhere. The last of them arrived at `arrival`.
   virtual void push(std::span<const std::byte> chunk, HostTime arrival,
                     SampleSink& sink) noexcept = 0;

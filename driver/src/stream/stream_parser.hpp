@@ -1,16 +1,36 @@
 #pragma once
-// What parsers of byte streams share: counts, and what they find besides records. push() passes
-// each finding to its sink in the order of the stream, if the sink takes findings of this kind.
+// What parsers share: counts, and findings besides records. push() passes each finding to its sink
+// in the order of the stream, if the sink takes findings of this kind.
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
 
-#include "stream/stream_counters.hpp"
-
 namespace nendo::driver {
+
+/// All counts only grow. bytes = record_bytes + discarded_bytes + what the parser still holds,
+/// which is less than one longest record.
+struct StreamCounters {
+  std::uint64_t bytes = 0;
+  std::uint64_t record_bytes = 0;
+  std::uint64_t discarded_bytes = 0;
+  std::uint64_t records = 0;     ///< delivered
+  std::uint64_t bad_records = 0; ///< frames that were no good record
+  std::uint64_t implausible = 0; ///< bad ones that are well formed, but contradict earlier records
+  std::uint64_t missed = 0;      ///< sent, by the device's clock, and not delivered
+  std::uint64_t too_fast = 0;    ///< delivered, but not sampled when they should have been
+  std::uint64_t unplugged = 0;   ///< whole records that say that no glove is plugged in
+  std::uint64_t clamped = 0;     ///< values of delivered records that were out of their range
+
+  /// Counts bytes that were read from the same stream elsewhere and that were no records.
+  void count_discarded(std::uint64_t count) noexcept {
+    bytes += count;
+    discarded_bytes += count;
+  }
+};
 
 /// A frame that was no good record, or one that a check refused.
 struct BadRecord {};
@@ -75,6 +95,34 @@ protected:
 
 private:
   unsigned bad_ = 0; ///< bad records found by the last byte, not yet reported
+};
+
+/// A parser for devices that send whole reports, which the bus separates: a report is a record, or it
+/// is dropped and counted. `decode` is pure, takes one report of any length, and returns nothing if it is no record.
+template <class Report, std::optional<Report> (*decode)(std::span<const std::byte>) noexcept>
+class ReportParser {
+public:
+  std::optional<Report> push(std::span<const std::byte> report) noexcept {
+    counters_.bytes += report.size();
+    const auto record = decode(report);
+    ++(record ? counters_.records : counters_.bad_records);
+    (record ? counters_.record_bytes : counters_.discarded_bytes) += report.size();
+    return record;
+  }
+  /// Returns whether the report is a record.
+  static bool decodes(std::span<const std::byte> report) noexcept {
+    return decode(report).has_value();
+  }
+  /// Counts bytes that were read before the stream.
+  void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
+  /// Counts values of the last record outside their range.
+  void count_clamped(int values) noexcept {
+    counters_.clamped += static_cast<std::uint64_t>(values);
+  }
+  const StreamCounters& counters() const noexcept { return counters_; }
+
+private:
+  StreamCounters counters_;
 };
 
 } // namespace nendo::driver

@@ -1,8 +1,10 @@
 #pragma once
 // Opens a Transport by its path, with libserialport for real ports and termios for
 // pseudo-terminals, since Debian 12's libserialport 0.1.1 opens neither pseudo-terminals (they have
-// no modem lines) nor symbolic links.
+// no modem lines) nor symbolic links. Finds a port again when it comes back under another name: a
+// glove that was plugged in as ttyUSB0 may return as ttyUSB1, and another adapter may have its name.
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -29,5 +31,14 @@ Result<std::unique_ptr<Transport>> open_termios(const std::string& path);
 NENDO_API std::unique_ptr<Transport> transport_of(int fd);
 /// Returns what a failed attempt to open or lock `path` means to the user.
 Error open_error(const std::string& path, int error_number);
+
+/// Returns a function that opens `path`, as open_transport() does and with its errors. The first
+/// call that succeeds remembers the adapter: vendor, product, serial number and port, or where it
+/// is plugged in if it has no serial number of its own. Later calls open the port that this adapter
+/// has now; the error is no_device if there is none, also if another adapter has taken the name.
+/// Ports without an adapter (UARTs, Bluetooth, pseudo-terminals) are opened by the same path each
+/// time. An FTDI adapter's latency timer is shortened at each opening; if that is not permitted, a
+/// line of log gives the remedy. Calls may block for half a second, and must not overlap.
+std::function<Result<std::unique_ptr<Transport>>()> follow_port(std::string path, int baud);
 
 } // namespace nendo::driver

@@ -9,7 +9,7 @@
 #include <nendo/driver/glove.hpp>
 #include <nendo/driver/glove_options.hpp>
 
-#include "stream/report_parser.hpp"
+#include "stream/stream_parser.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/usb_transport.hpp"
 
@@ -26,11 +26,6 @@ std::vector<GloveFact> facts_of(const UsbIdentity& identity);
 template <class Parser>
 class UsbGloveProtocol : public GloveProtocol {
 public:
-  Result<void> start_stream(Transport& /*transport*/, const std::string& /*source*/,
-                            const ReplyDeadline& /*limit*/) override {
-    return {};
-  }
-  void end_stream(Transport& /*transport*/, const ReplyDeadline& /*limit*/) noexcept override {}
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }
 
 protected:

@@ -1,10 +1,11 @@
-#include "units/emulated_kinds.hpp"
+// The table of the gloves that can be emulated, and of their variants.
 
 #include <array>
 #include <cstddef>
 #include <string>
 
 #include "units/cyberglove_unit.hpp"
+#include "units/emulated_unit.hpp"
 #include "units/fivedt_unit.hpp"
 #include "units/forte_unit.hpp"
 #include "units/lucidgloves_unit.hpp"

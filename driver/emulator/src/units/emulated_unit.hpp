@@ -8,11 +8,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include <nendo/base/result.hpp>
 #include <nendo/driver/sample.hpp>
+#include <nendo/emulator/emulator.hpp>
 
 namespace nendo::emulator {
 
@@ -126,5 +130,15 @@ private:
   std::size_t output_size_ = 0;
   std::vector<UnitMessage> messages_;
 };
+
+/// A kind of glove that can be emulated: a line in the table of emulated_kinds.cpp.
+struct EmulatedKind {
+  std::string_view name;
+  Result<std::unique_ptr<EmulatedUnit>> (*make)(const EmulatorOptions& options);
+  bool takes_incidents; ///< its glove can be pulled and swapped
+};
+
+/// Returns the kind of that name. Error: usage, naming those there are.
+Result<EmulatedKind> find_emulated_kind(std::string_view name);
 
 } // namespace nendo::emulator
