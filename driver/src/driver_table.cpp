@@ -32,7 +32,7 @@ constexpr std::array own_drivers{
                 "a BeBop Forte Data Glove at a serial port, by USB or Bluetooth",
                 alone<forte::open_forte>},
     GloveDriver{"usb", "usb:VID:PID[?serial=TEXT&hand=left|right]",
-                "a P5 (0d7f:0100) or 5DT Ultra (5d70:....) at USB", alone<open_usb>},
+                "a P5 (0d7f:0100) or 5DT Ultra (5d70:....) at USB", alone<open_usb_glove>},
     GloveDriver{"auto", "auto[:left|right]", "the glove that its name or a udev rule identifies",
                 alone<open_auto>},
     GloveDriver{"sim", "sim[:MOTION][?seed=N&rate=HZ&hand=left|right&sensors=18|22]",

@@ -26,9 +26,9 @@ Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::option
 
 /// Opens `usb:VID:PID[?serial=TEXT&hand=left|right]`, a glove that is a USB device of its own.
 /// `side` is not used: the glove, or the option, determines the hand.
-Result<std::unique_ptr<Glove>> open_usb(const GloveSpec& spec, std::optional<Side> side);
+Result<std::unique_ptr<Glove>> open_usb_glove(const GloveSpec& spec, std::optional<Side> side);
 /// Does the same, and gives up at `deadline`.
-Result<std::unique_ptr<Glove>> open_usb_by(const GloveSpec& spec, HostTime deadline);
+Result<std::unique_ptr<Glove>> open_usb_glove_by(const GloveSpec& spec, HostTime deadline);
 
 namespace p5 {
 

@@ -35,7 +35,7 @@ Result<std::unique_ptr<Glove>> open_auto(const GloveSpec& spec, std::optional<Si
     if (!parsed || HostClock::now() >= deadline) continue;
     auto glove = candidate.kind == DeviceKind::serial_port
                      ? cyberglove::open_serial_by(*parsed, deadline)
-                     : open_usb_by(*parsed, deadline);
+                     : open_usb_glove_by(*parsed, deadline);
     if (glove && (!*wanted || (*glove)->info().side == **wanted)) return glove;
     if (!glove && glove.error().code == Errc::no_permission) code = Errc::no_permission;
     why += glove ? candidate.spec + " is a " + std::string(name_of((*glove)->info().side)) + " hand"

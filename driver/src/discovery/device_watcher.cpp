@@ -29,7 +29,7 @@ using namespace std::chrono_literals;
 
 /// A port's node appears a little after its adapter, and udev's links later still. A device that
 /// leaves is announced before the kernel has taken its entry out of /sys.
-constexpr auto longest_settling = 2s;
+constexpr auto max_settling = 2s;
 constexpr auto settling_look = 100ms;
 
 /// Returns what makes it this device and no other: if another device takes over the name, it is a
@@ -107,7 +107,7 @@ std::optional<DeviceEvent> EventWatcher::next(std::chrono::milliseconds timeout)
     const bool settling = now < look_until_ || !arriving_.empty();
     const Woken woken = wait(settling ? std::min(deadline, now + settling_look) : deadline);
     if (woken == Woken::by_signal) return std::nullopt;
-    if (woken == Woken::by_change) look_until_ = HostClock::now() + longest_settling;
+    if (woken == Woken::by_change) look_until_ = HostClock::now() + max_settling;
     if (woken == Woken::by_change || settling) look();
     if (timeout <= 0ms && events_.empty()) return std::nullopt;
   }
@@ -146,7 +146,7 @@ void EventWatcher::look() {
   for (auto& [key, candidate] : there) {
     if (known_.contains(key)) continue;
     const HostTime since = arriving_.try_emplace(key, now).first->second;
-    if (!is_settled(candidate) && now - since < longest_settling) continue;
+    if (!is_settled(candidate) && now - since < max_settling) continue;
     arriving_.erase(key);
     known_.emplace(key, candidate);
     events_.push_back({true, std::move(candidate)});

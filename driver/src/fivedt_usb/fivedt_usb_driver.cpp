@@ -27,7 +27,8 @@ std::string_view name_of_link(Link link) noexcept {
 class FivedtUsbProtocol final : public UsbGloveProtocol<Parser> {
 public:
   FivedtUsbProtocol(const Model& model, std::optional<Side> hand) noexcept
-      : model_(model), hand_{hand, std::nullopt}, step_(model.five_sensors ? values_a_finger : 1) {}
+      : model_(model), hand_{hand, std::nullopt},
+        step_(model.five_sensors ? values_per_finger : 1) {}
 
   Result<GloveInfo> identify(Transport& transport, const std::string& source, IdentifyReason reason,
                              const ReplyDeadline& limit) override {
@@ -81,7 +82,7 @@ Result<std::unique_ptr<Glove>> open_fivedt_usb(const GloveSpec& spec, const UsbW
                                                HostTime deadline) {
   const auto model = model_of(wanted.id.product);
   assert(model);
-  return open_usb_glove(
+  return open_report_glove(
       spec, wanted, {interface_number, report_bytes}, deadline,
       [&](std::optional<Side> hand) { return std::make_unique<FivedtUsbProtocol>(*model, hand); });
 }

@@ -55,6 +55,6 @@ inline constexpr std::array value_sensors{
     Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_ring_abduction,
     Sensor::ring_mcp,   Sensor::ring_pip,   Sensor::ring_pinky_abduction,
     Sensor::pinky_mcp,  Sensor::pinky_pip};
-inline constexpr std::size_t values_a_finger = 3;
+inline constexpr std::size_t values_per_finger = 3;
 
 } // namespace nendo::driver::fivedt_usb

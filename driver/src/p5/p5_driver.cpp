@@ -71,10 +71,10 @@ private:
 
 Result<std::unique_ptr<Glove>> open_p5(const GloveSpec& spec, const UsbWanted& wanted,
                                        HostTime deadline) {
-  return open_usb_glove(spec, wanted, {interface_number, report_bytes}, deadline,
-                        [](std::optional<Side> hand) {
-                          return std::make_unique<P5Protocol>(hand.value_or(Side::right));
-                        });
+  return open_report_glove(spec, wanted, {interface_number, report_bytes}, deadline,
+                           [](std::optional<Side> hand) {
+                             return std::make_unique<P5Protocol>(hand.value_or(Side::right));
+                           });
 }
 
 } // namespace nendo::driver::p5

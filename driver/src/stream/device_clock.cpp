@@ -14,7 +14,7 @@ constexpr std::int64_t block_length = second;
 constexpr std::int64_t window = 64 * second;
 constexpr std::int64_t new_clock = 10 * second; ///< longer than any stall that buffers survive
 /// Below it, what is left of the delay in the minima would pass for drift.
-constexpr std::int64_t shortest_baseline = 4 * second;
+constexpr std::int64_t min_baseline = 4 * second;
 constexpr double max_slope = 500e-6; ///< no quartz or resonator is as wrong
 constexpr std::int64_t absurd = std::int64_t{1} << 61U;
 
@@ -85,7 +85,7 @@ void DeviceClock::add(const Point& point) noexcept {
 void DeviceClock::fit() noexcept {
   const Nanoseconds baseline = block(count_ - 1).device - block(0).device;
   base_ = block(count_ - 1);
-  if (baseline >= shortest_baseline) {
+  if (baseline >= min_baseline) {
     const double slope = hull_slope();
     // Beyond it the clock jumped, or the older records were all late: the slope learnt before
     // holds.

@@ -97,8 +97,9 @@ private:
   unsigned bad_ = 0; ///< bad records found by the last byte, not yet reported
 };
 
-/// A parser for devices that send whole reports, which the bus separates: a report is a record, or it
-/// is dropped and counted. `decode` is pure, takes one report of any length, and returns nothing if it is no record.
+/// A parser for devices that send whole reports, which the bus separates: a report is a record, or
+/// it is dropped and counted. `decode` is pure, takes one report of any length, and returns nothing
+/// if it is no record.
 template <class Report, std::optional<Report> (*decode)(std::span<const std::byte>) noexcept>
 class ReportParser {
 public:

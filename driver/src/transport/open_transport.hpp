@@ -2,7 +2,8 @@
 // Opens a Transport by its path, with libserialport for real ports and termios for
 // pseudo-terminals, since Debian 12's libserialport 0.1.1 opens neither pseudo-terminals (they have
 // no modem lines) nor symbolic links. Finds a port again when it comes back under another name: a
-// glove that was plugged in as ttyUSB0 may return as ttyUSB1, and another adapter may have its name.
+// glove that was plugged in as ttyUSB0 may return as ttyUSB1, and another adapter may have its
+// name.
 
 #include <functional>
 #include <memory>

@@ -9,8 +9,8 @@
 #include <nendo/driver/glove.hpp>
 #include <nendo/driver/glove_options.hpp>
 
-#include "stream/stream_parser.hpp"
 #include "stream/stream_glove.hpp"
+#include "stream/stream_parser.hpp"
 #include "transport/usb_transport.hpp"
 
 namespace nendo::driver {
@@ -29,7 +29,7 @@ public:
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }
 
 protected:
-  /// open_usb_glove() passes no other transport.
+  /// open_report_glove() passes no other transport.
   static UsbTransport& usb(Transport& transport) noexcept {
     return static_cast<UsbTransport&>(transport);
   }
@@ -60,9 +60,9 @@ protected:
 /// Opens a glove with the options `serial` and `hand`, by `deadline`; `make(hand)` returns its
 /// protocol. Errors: usage (option), those of open_usb(), no_device (it sends nothing).
 template <class Make>
-Result<std::unique_ptr<Glove>> open_usb_glove(const GloveSpec& spec, const UsbWanted& wanted,
-                                              const UsbInterface& interface, HostTime deadline,
-                                              Make&& make) {
+Result<std::unique_ptr<Glove>> open_report_glove(const GloveSpec& spec, const UsbWanted& wanted,
+                                                 const UsbInterface& interface, HostTime deadline,
+                                                 Make&& make) {
   if (auto allowed = allow_options(spec, {"serial", "hand"}); !allowed) return allowed.error();
   const auto hand = hand_option(spec);
   if (!hand) return hand.error();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uintmax_t max_bytes = 64U << 20U;
 // A text record of 24 values with time stamp, status and errors has 130.
-constexpr std::ptrdiff_t longest_record = 160;
+constexpr std::ptrdiff_t max_record_bytes = 160;
 
 } // namespace
 
@@ -23,7 +23,7 @@ std::vector<unit::Message> cut_records(std::span<const std::byte> bytes) {
     if (end == bytes.end()) return records;
     const bool record = letters.find(static_cast<char>(*begin)) != std::string_view::npos;
     // Two bytes are the reply to a setting.
-    if (record && end - begin >= 2 && end - begin < longest_record) {
+    if (record && end - begin >= 2 && end - begin < max_record_bytes) {
       auto& bytes_of = records.emplace_back();
       std::for_each(begin, end + 1,
                     [&](std::byte byte) { bytes_of.push_back(std::to_integer<unit::Byte>(byte)); });

@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 constexpr auto max_command_time = 1s;
 
 // The longest text form that makes sense, "ca" with two numbers a sensor, and some blanks.
-constexpr std::size_t longest_text = 255;
+constexpr std::size_t max_text = 255;
 
 } // namespace
 
@@ -116,7 +116,7 @@ void CyberGloveUnit::collect_text(Byte byte, Time now) {
     return;
   }
   if (byte != '\r') {
-    if (argument_.size() <= longest_text) argument_.push_back(byte);
+    if (argument_.size() <= max_text) argument_.push_back(byte);
     return;
   }
   const Byte letter = to_upper(command_);
@@ -127,7 +127,7 @@ void CyberGloveUnit::collect_text(Byte byte, Time now) {
     text.remove_prefix(1);
   }
   const Message numbers =
-      argument_.size() > longest_text ? Message{} : read_numbers(text, number_width(letter));
+      argument_.size() > max_text ? Message{} : read_numbers(text, number_width(letter));
   argument.insert(argument.end(), numbers.begin(), numbers.end());
   const auto wanted = argument_bytes(letter, argument, known_.sensors());
   // Text numbers are read high byte first, whatever the order of the binary form.

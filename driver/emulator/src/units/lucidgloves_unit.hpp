@@ -43,9 +43,9 @@ public:
   /// What a waiting firmware does between hearing a line and sending its next one.
   static constexpr Time loop_time = std::chrono::milliseconds(1);
   /// Arduino's time limit for a line, from its beginning and from each of its bytes on.
-  static constexpr Time longest_wait = std::chrono::seconds(1);
+  static constexpr Time max_line_wait = std::chrono::seconds(1);
   /// Old versions set a longer one, up to 1000 s; chosen here.
-  static constexpr Time longest_legacy_wait = std::chrono::seconds(5);
+  static constexpr Time max_legacy_wait = std::chrono::seconds(5);
 
   explicit LucidGlovesUnit(const LucidGlovesUnitOptions& options);
 
@@ -69,7 +69,7 @@ private:
   bool is_legacy() const noexcept;
   bool is_unclamped() const noexcept;
   bool is_deaf() const noexcept;
-  Time max_wait() const noexcept { return is_legacy() ? longest_legacy_wait : longest_wait; }
+  Time max_wait() const noexcept { return is_legacy() ? max_legacy_wait : max_line_wait; }
   int number(double part) const;
   void advance_loop(Time now);
   std::optional<Heard> take_line(Time now);

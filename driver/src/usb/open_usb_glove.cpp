@@ -66,7 +66,7 @@ Error unknown(const GloveSpec& spec) {
 
 } // namespace
 
-Result<std::unique_ptr<Glove>> open_usb_by(const GloveSpec& spec, HostTime deadline) {
+Result<std::unique_ptr<Glove>> open_usb_glove_by(const GloveSpec& spec, HostTime deadline) {
   const auto id = id_of(spec);
   if (!id) return id.error();
   const UsbDriver* const driver = find_driver(*id);
@@ -77,8 +77,8 @@ Result<std::unique_ptr<Glove>> open_usb_by(const GloveSpec& spec, HostTime deadl
   return driver->open(spec, wanted, deadline);
 }
 
-Result<std::unique_ptr<Glove>> open_usb(const GloveSpec& spec, std::optional<Side> /*side*/) {
-  return open_usb_by(spec, HostClock::now() + open_budget);
+Result<std::unique_ptr<Glove>> open_usb_glove(const GloveSpec& spec, std::optional<Side> /*side*/) {
+  return open_usb_glove_by(spec, HostClock::now() + open_budget);
 }
 
 } // namespace nendo::driver
