@@ -9,6 +9,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "dense.hpp"
+
 namespace nendo::hand {
 
 template <int N>
@@ -58,7 +60,12 @@ bounded_step(const Eigen::Matrix<double, N, N>& matrix, const Eigen::Matrix<doub
       system(k, k) = 1.0;
       right[k] = held_step[k];
     }
-    step = system.llt().solve(right);
+    if constexpr (N > 4) {
+      step = right;
+      solve_positive_definite(system, step);
+    } else {
+      step = system.llt().solve(right);
+    }
     bool inside = true;
     for (int k = 0; k < N; ++k) {
       const double to = at[k] + step[k];
@@ -93,8 +100,8 @@ int minimise(const Model& model, const Box<N>& box, const Effort& effort,
     if (next.cost < here.cost) {
       // The more exactly the model predicted the descent, the farther it may be trusted (H. B.
       // Nielsen, "Damping parameter in Marquardt's method", 1999).
-      const double foretold = -step.dot(here.gradient) - 0.5 * step.dot(here.matrix * step);
-      const double quality = foretold > 0.0 ? (here.cost - next.cost) / foretold : 1.0;
+      const double predicted = -step.dot(here.gradient) - 0.5 * step.dot(here.matrix * step);
+      const double quality = predicted > 0.0 ? (here.cost - next.cost) / predicted : 1.0;
       const double cubed = (2.0 * quality - 1.0) * (2.0 * quality - 1.0) * (2.0 * quality - 1.0);
       damping = std::max(damping * std::max(1.0 / 3.0, 1.0 - cubed), 1e-12);
       growth = 2.0;

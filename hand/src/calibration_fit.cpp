@@ -7,10 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-
 #include <nendo/base/units.hpp>
 
+#include "dense.hpp"
 #include "fit_choice.hpp"
 #include "fit_priors.hpp"
 #include "fit_problem.hpp"
@@ -97,9 +96,7 @@ FreeUnknowns first_unknowns(SensorMask sensors, const FitOptions& options) {
 /// Of the calibration, whatever the wearer's own unknowns are.
 double condition_of(const Eigen::MatrixXd& covariance) {
   if (covariance.rows() == 0) return 1.0;
-  const Eigen::VectorXd open =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(covariance, Eigen::EigenvaluesOnly)
-          .eigenvalues();
+  const Eigen::VectorXd open = eigenvalues_of_symmetric(covariance);
   // What the poses say is what is beyond the prior's 1; rounding may leave that a little below 0.
   const Eigen::ArrayXd said = (open.array().cwiseMax(1e-15).inverse() - 1.0).cwiseMax(0.0);
   return std::sqrt(said.maxCoeff() / std::max(said.minCoeff(), 1e-12 * said.maxCoeff()));
@@ -153,7 +150,7 @@ void describe_readings(CalibrationFit& fit, std::span<const PoseReading> reading
   }
 }
 
-/// A finger's first two joints are bent by whoever makes a fist. Where their counts do not follow,
+/// A fist bends a finger's first two joints. Where their counts do not follow,
 /// the glove is broken, or the poses were others than those named.
 Result<void> check_fingers(std::span<const PoseReading> readings, SensorMask sensors,
                            const FitOptions& options) {
@@ -255,7 +252,7 @@ Solution solve_without_contradictions(FitProblem& problem, std::size_t readings,
 
 /// No line that is flat to nothing, or not a number, leaves the fit: such a sensor keeps the
 /// default's.
-void mend_lines(CalibrationFit& fit, SensorMask sensors, const Calibration& start) {
+void replace_bad_lines(CalibrationFit& fit, SensorMask sensors, const Calibration& start) {
   for (const Sensor sensor : sensors) {
     const std::size_t slot = index_of(sensor);
     const auto [gain, offset] = fit.calibration.sensors[slot];
@@ -341,14 +338,12 @@ Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Si
     if (sensors.has(sensor) && !(of.gain_determined && of.offset_determined))
       fit.undetermined.add(sensor);
   }
-  for (std::size_t k = 0; k < couplings.size(); ++k)
-    fit.coupling_determined[k] = determined(mix_of(k));
   describe_sensors(fit, readings, sensors, problem, solution);
   describe_readings(fit, readings, problem, solution);
   fit.touch_residual_m = touch_residual_m(fit);
   if (options.mode == FitMode::full && options.hold_out)
     choose_by_held_out_poses(fit, readings, side, sensors, options, solution);
-  mend_lines(fit, sensors, start);
+  replace_bad_lines(fit, sensors, start);
   if (options.mode == FitMode::full) find_fingers_with_limited_range(fit, sensors, start);
   return fit;
 }

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
+#include "dense.hpp"
 #include "fit_priors.hpp"
 
 namespace nendo::hand {
@@ -50,13 +49,14 @@ void minimise(const FitProblem& problem, const FreeUnknowns& free, double in_cou
       Eigen::MatrixXd damped = information;
       damped.diagonal() += damping * information.diagonal();
       damped.diagonal().array() += 1.0;
-      const Eigen::VectorXd step = damped.llt().solve(downhill);
+      Eigen::VectorXd step = downhill;
+      solve_positive_definite(damped, step);
       Unknowns next = at;
       for (std::size_t n = 0; n < free.size(); ++n)
         next[free[n]] += step[static_cast<Eigen::Index>(n)];
       problem.evaluate(next, residuals, nullptr);
       problem.weigh_as(at, next, in_counts, residuals);
-      // false, of what is not a number
+      // false for NaN
       better = residuals.squaredNorm() + next.squaredNorm() <= cost;
       if (!better) continue;
       at = next;
@@ -87,8 +87,7 @@ void minimise_safely(const FitProblem& problem, const FreeUnknowns& free, Unknow
 Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information) {
   Eigen::MatrixXd with_default = information;
   with_default.diagonal().array() += 1.0;
-  return with_default.llt().solve(
-      Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  return inverse_of_positive_definite(with_default);
 }
 
 /// Takes out the unknown that is determined least, if any is not determined; those of which the

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include <nendo/hand/angle_deviations.hpp>
 #include <nendo/hand/joint_limits.hpp>
 
+#include "dense.hpp"
 #include "fingertip.hpp"
 
 namespace nendo::hand {
@@ -90,7 +89,8 @@ public:
       covariance.block<3, 3>(row, row) += spread(pad, variances[fingers_[n]]);
       covariance.diagonal().segment<3>(row).array() += slack_m2_[n] + min_slack_m2;
     }
-    const GapVector pulls = covariance.llt().solve(gaps);
+    GapVector pulls = gaps;
+    solve_positive_definite(covariance, pulls);
     turns_[0].setZero();
     for (std::size_t n = 0; n < count_; ++n) {
       const std::size_t finger = fingers_[n];

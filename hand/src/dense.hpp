@@ -1,0 +1,19 @@
+#pragma once
+// Decompositions of dense matrices. Each is compiled once, here, because Eigen's templates of them
+// take seconds to compile.
+
+#include <Eigen/Core>
+
+namespace nendo::hand {
+
+/// Solves `matrix` x = `right` for a symmetric positive definite matrix, of which the lower half is
+/// used. `right` becomes x, and `matrix` its Cholesky factor. No allocation.
+void solve_positive_definite(Eigen::Ref<Eigen::MatrixXd> matrix, Eigen::Ref<Eigen::VectorXd> right);
+
+/// Returns the inverse of a symmetric positive definite matrix.
+Eigen::MatrixXd inverse_of_positive_definite(const Eigen::MatrixXd& matrix);
+
+/// Returns the eigenvalues of a symmetric matrix, which is not empty, in ascending order.
+Eigen::VectorXd eigenvalues_of_symmetric(const Eigen::MatrixXd& matrix);
+
+} // namespace nendo::hand
