@@ -1,5 +1,5 @@
 #pragma once
-// The poses of a calibration as somebody would take them.
+// The poses of a calibration as a wearer takes them.
 
 #include <nendo/hand/calibration_poses.hpp>
 #include <nendo/hand/joint_angles.hpp>

@@ -46,7 +46,7 @@ public:
   bool is_done() const noexcept { return at_ == poses_.size(); }
   /// Returns the pose asked for. Must not be called once is_done().
   hand::PoseId asked() const noexcept { return poses_[at_]; }
-  std::size_t number() const noexcept { return at_; } ///< of the pose asked for, from 0
+  std::size_t number() const noexcept { return at_; } ///< index of the pose asked for
   std::size_t pose_count() const noexcept { return poses_.size(); }
   const hand::PoseCapture& capture() const noexcept { return capture_; }
   /// Returns the sensor that makes the last held pose implausible, or nullopt.
@@ -70,7 +70,7 @@ public:
   bool has_any() const noexcept;
 
 private:
-  /// But for those of stiff joints, which may well stand still.
+  /// Except sensors of stiff joints, which may not move.
   void leave_out_stuck(SensorMask stuck) noexcept { leave_out({stuck.bits & ~stiff_.bits}); }
   void advance();
   void ask_again() noexcept;
@@ -83,7 +83,7 @@ private:
   SensorMask stiff_;
   std::vector<hand::PoseId> planned_;               ///< as they were given
   std::vector<hand::PoseId> poses_;                 ///< those, and what is taken once more
-  std::vector<std::optional<hand::HeldPose>> kept_; ///< by number
+  std::vector<std::optional<hand::HeldPose>> kept_; ///< indexed as poses_
   std::size_t at_ = 0;
   hand::PoseCapture capture_;
   bool same_may_come_ = false; ///< the last pose counts again once the hand has moved

@@ -57,7 +57,7 @@ std::string state_text(const CalibrationPicture& picture) {
            " jumps to and fro. Does the glove sit well? If it goes "
            "on, x leaves the sensor out.";
   case CaptureState::saturated:
-    return "At an end of what it can measure: " + troubled() +
+    return "At an end of its range: " + troubled() +
            ". Bend that joint less. If it stays there whatever you do, x leaves the sensor out.";
   case CaptureState::unchanged:
     if (picture.guide->implausible_sensor())
@@ -146,10 +146,10 @@ std::vector<std::string> calibration_lines(const CalibrationPicture& picture,
   add_wrapped(below, undetermined_text(picture.undetermined), size.columns);
   if (below.empty()) below.emplace_back(); // what is below stays where it is
   add_wrapped(below,
-              "SPACE begin  b redo  t take more  s skip  x leave out  n anew  w write  q quit",
+              "SPACE begin  b redo  t take more  s skip  x leave out  n restart  w write  q quit",
               size.columns);
-  const int room = size.rows - static_cast<int>(lines.size() + below.size());
-  const auto between = middle(picture, size.columns, room);
+  const int free_rows = size.rows - static_cast<int>(lines.size() + below.size());
+  const auto between = middle(picture, size.columns, free_rows);
   lines.insert(lines.end(), between.begin(), between.end());
   lines.insert(lines.end(), below.begin(), below.end());
   for (auto& line : lines)

@@ -21,10 +21,10 @@ struct CalibrationPicture {
   const CalibrationGuide* guide = nullptr;       ///< must not be done
   const GloveSample* sample = nullptr;           ///< the latest; null: none came yet
   const gloves::SeenCounts* seen = nullptr;      ///< includes `sample`
-  double age_s = 0.0;                            ///< of `sample`
-  const hand::HandPose* demonstration = nullptr; ///< of the pose that the guide asks for
+  double age_s = 0.0;                            ///< age of `sample`
+  const hand::HandPose* demonstration = nullptr; ///< the pose that the guide asks for
   bool begun = false;                            ///< false: the guide sees no samples yet
-  SensorMask undetermined;                       ///< by the poses so far
+  SensorMask undetermined;                       ///< sensors that the poses so far leave open
   std::string notice{};                          ///< what the wearer must know; empty: nothing
 };
 

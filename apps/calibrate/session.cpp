@@ -47,16 +47,16 @@ struct Session {
       if (!begun) guide.push_free_motion(sample);
       const bool captured = begun && guide.push(sample) == CalibrationGuide::Event::captured;
       if (captured) notice.clear();
-      const bool left_out = tell_left_out();
+      const bool left_out = report_left_out();
       if (captured || left_out) update_undetermined();
     }
   }
   /// Says which sensors are left out, if there are more than before.
-  bool tell_left_out() {
+  bool report_left_out() {
     const SensorMask now = guide.left_out();
     if (std::exchange(announced, now) == now) return false;
-    notice = sculpting::sensors_in_words(now) + (sculpting::is_one(now) ? " stands" : " stand") +
-             " still, whatever the hand does: left out, and estimated from the sensors beside. n "
+    notice = sculpting::sensors_in_words(now) + (sculpting::is_one(now) ? " is" : " are") +
+             " stuck, whatever the hand does: left out, and estimated from the sensors beside. n "
              "begins again with all sensors.";
     return true;
   }
@@ -78,7 +78,7 @@ struct Session {
     const auto readings = guide.readings();
     hand::FitOptions options = fit;
     options.free_motion = guide.free_motion();
-    options.hold_out = false; // between two poses nobody waits for that
+    options.hold_out = false; // between two poses the wearer would wait for that
     return hand::fit_calibration(readings, glove.info().side, sensors(), options);
   }
   void update_undetermined() {
@@ -91,7 +91,7 @@ struct Session {
     const auto found = fitted();
     if (found) return end;
     notice = "No calibration yet: " + found.error().message +
-             ". b goes back a pose; n begins anew, and so does --fresh.";
+             ". b goes back a pose; n restarts, and so does --fresh.";
     if (guide.is_done()) guide.go_back();
     update_undetermined();
     return std::nullopt;
@@ -100,7 +100,7 @@ struct Session {
   void restart(bool asked_before) {
     if (!asked_before) {
       asks_to_restart = true;
-      notice = "n once more forgets every pose and begins anew.";
+      notice = "n once more forgets every pose and restarts.";
       return;
     }
     guide.reset();
@@ -135,7 +135,7 @@ struct Session {
     if (key == 'n') restart(asked_again);
     if (key == ' ' && !std::exchange(begun, true)) guide.end_free_motion();
     if (key == 'x') leave_out_troubled();
-    tell_left_out();
+    report_left_out();
     if (key == 'b') guide.go_back();
     if (key == 't') guide.take_again();
     if (key == 's') guide.skip();
@@ -150,7 +150,7 @@ Result<SessionEnd> run_calibration_session(driver::Glove& glove, const std::stri
                                            const hand::FitOptions& fit, CalibrationGuide& guide) {
   Session session{glove, user, fit, guide};
   if (const auto started = glove.start(session.ring); !started) return started.error();
-  session.tell_left_out();
+  session.report_left_out();
   session.update_undetermined();
   std::optional<SessionEnd> ended;
   while (!ended) {

@@ -12,7 +12,7 @@ namespace nendo::calibrate {
 enum class SessionEnd : std::uint8_t {
   complete, ///< every pose was taken or skipped, and a calibration fits them
   written,  ///< the wearer asked to write the poses taken so far, and a calibration fits them
-  quit,     ///< by a key, a signal, or because the terminal is gone
+  quit,     ///< ended by a key, a signal, or because the terminal is gone
 };
 
 /// Runs the calibration until one of these ends; `guide` then holds what was taken. If no

@@ -12,7 +12,7 @@ using hand::PoseId;
 constexpr std::size_t min_poses = 3;
 /// After so many poses a sensor has moved, whatever they ask of its joint.
 constexpr std::size_t enough_poses = 12;
-constexpr double min_span_rad = from_degrees(40.0); ///< for joints that poses bend far
+constexpr double min_span_rad = from_degrees(40.0); ///< span of joints that poses bend far
 constexpr double min_small_span_rad = from_degrees(14.0);
 
 bool bends_far(Sensor sensor) noexcept {

@@ -7,14 +7,14 @@ void add_calibration_options(cli::Command& command, CalibrationOptions& options,
   if (two_gloves) {
     command.add_option("--left-user", options.left_user,
                        "The wearer of the left glove, if it is another one");
-    command.add_option("--right-user", options.right_user, "Likewise, of the right glove");
+    command.add_option("--right-user", options.right_user, "The same for the right glove");
   }
   command.add_option("--calibration", options.calibration,
                      "A file or stored name to use instead (see nendo calibration), or none");
   command.add_flag("--adapt", options.adapt,
                    "Learn while the glove is used: the wearer's ranges, or, with the --user or the "
                    "--calibration of a hand that was calibrated by poses, how far the glove slips; "
-                   "with --user, nendo run keeps what was learned, and goes on from it");
+                   "with --user, nendo run keeps what was learned, and continues from it");
 }
 
 Result<void> check(const CalibrationOptions& options) {

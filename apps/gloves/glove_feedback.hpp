@@ -1,5 +1,5 @@
 #pragma once
-// What a glove shows its wearer: the light at the wrist, vibrators that tell of a touch, and brakes
+// What a glove shows its wearer: the light at the wrist, vibrators that report a touch, and brakes
 // that hold fingers back. All of it is switched off at the end.
 
 #include <nendo/driver/glove.hpp>

@@ -39,7 +39,7 @@ ordered_json angle_sources_json(SensorMask sensors, SensorMask left_out) {
 void add_counts(ordered_json& object, const driver::RecordCounts& counts) {
   for (const auto& [name, count] : driver::by_name(counts)) {
     ordered_json& value = object[std::string(name)];
-    if (count) value = *count; // otherwise null: nobody knows
+    if (count) value = *count; // otherwise null: not known
   }
 }
 

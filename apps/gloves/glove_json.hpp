@@ -43,7 +43,7 @@ private:
 
 /// Returns one object without a line end. Its keys are time_s and measured_s (host clock; of a
 /// replayed sample those with which it was recorded, and replayed_s is the moment of replay),
-/// sequence, hand, switch ("on", "off", or null if the glove does not tell), raw (counts by
+/// sequence, hand, switch ("on", "off", or null if the glove does not report it), raw (counts by
 /// sensor), device_time_s if the glove has a clock, and angle_rad (by sensor) unless `calibration`
 /// is null. It contains only sensors that the sample has, and only angles that the calibration
 /// knows. With `with_sources`, unless `calibration` is null, there is also the key angles, with

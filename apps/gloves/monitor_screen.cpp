@@ -40,10 +40,10 @@ std::string cut(std::string text, int width) {
 // Puts `right` at the end of the line, and cuts `left` for it, unless hardly anything would be
 // left.
 std::string both_ends(const std::string& left, const std::string& right, int width) {
-  const int room = width - static_cast<int>(right.size()) - 2;
-  if (right.empty() || room < 20) return cut(left, width);
-  std::string line = cut(left, room);
-  line.resize(static_cast<std::size_t>(room) + 2, ' ');
+  const int space = width - static_cast<int>(right.size()) - 2;
+  if (right.empty() || space < 20) return cut(left, width);
+  std::string line = cut(left, space);
+  line.resize(static_cast<std::size_t>(space) + 2, ' ');
   return line + right;
 }
 
@@ -117,7 +117,7 @@ std::string stream_line(const MonitorPicture& picture, const std::string& keys, 
     text += fixed(1000.0 * std::max(picture.age_s, 0.0), 0) + " ms old";
   }
   text += ", " + losses(*picture.info, picture.stats);
-  // --help tells the keys, but nothing else tells what was lost.
+  // --help lists the keys; losses are shown only here.
   const bool keys_fit = text.size() + 2 + keys.size() <= static_cast<std::size_t>(width);
   return both_ends(text, keys_fit ? keys : "", width);
 }
@@ -147,11 +147,11 @@ std::string sensor_text(const MonitorPicture& picture, Sensor sensor, int width)
   std::string text(name_of(sensor));
   text.resize(name_width, ' ');
   text += right_aligned(std::to_string(count.value), count_width);
-  int room = width - name_width - count_width - 1;
-  const bool with_angle = picture.calibration != nullptr && room - angle_width >= min_bar;
-  if (with_angle) room -= angle_width;
-  if (room >= min_bar) {
-    text += " " + count_bar(room, count.value, (*picture.seen)[sensor], picture.info->counts.most);
+  int space = width - name_width - count_width - 1;
+  const bool with_angle = picture.calibration != nullptr && space - angle_width >= min_bar;
+  if (with_angle) space -= angle_width;
+  if (space >= min_bar) {
+    text += " " + count_bar(space, count.value, (*picture.seen)[sensor], picture.info->counts.most);
   }
   if (with_angle) text += angle_text(picture, sensor);
   return cut(text, width);

@@ -41,7 +41,7 @@ struct MonitorPicture {
   const GloveSample* sample = nullptr;            ///< the latest; null: none came yet
   const SeenCounts* seen = nullptr;               ///< includes `sample`
   const hand::Calibration* calibration = nullptr; ///< null: counts only
-  double age_s = 0.0;                             ///< of `sample`
+  double age_s = 0.0;                             ///< age of `sample`
   bool light = false;
   bool keys = false; ///< the user can press keys
   /// The angles are an average hand's: the first line says so, and each has a '~' before it.
@@ -57,7 +57,7 @@ struct MonitorPicture {
 std::string count_bar(int width, std::uint16_t count, SeenCounts::Range seen, std::uint16_t most);
 
 /// Returns lines of printable ASCII, at most as many and as long as the screen. If there are few
-/// rows, the sensors are in two columns, and the last line tells how many still do not fit. If
+/// rows, the sensors are in two columns, and the last line says how many still do not fit. If
 /// there are few columns, first the angle is left out, then the bar.
 std::vector<std::string> monitor_lines(const MonitorPicture& picture, cli::ScreenSize size);
 

@@ -57,7 +57,8 @@ std::vector<SensorAtEnd> sensors_at_end(driver::Glove& glove) {
 }
 
 std::string in_words(const SensorAtEnd& found) {
-  return std::string(name_of(found.sensor)) + " stands at its end (" + std::to_string(found.count) +
+  return std::string(name_of(found.sensor)) + " is at the end of its range (" +
+         std::to_string(found.count) +
          "): if it stays there whatever the hand does, the sensor or its wire is broken";
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Tells people of sensors that are stuck.
+// Messages about stuck sensors.
 
 #include <cstdint>
 #include <optional>
@@ -23,17 +23,17 @@ private:
   std::optional<SensorMask> known_;
 };
 
-/// A sensor that stood at an end of its counts for as long as it was looked at.
+/// A sensor that was at an end of its counts all the time.
 struct SensorAtEnd {
   Sensor sensor;
   std::uint16_t count;
 };
 
-/// Looks at a worn glove's samples for a moment, and returns the sensors that stand at an end. At
+/// Looks at a worn glove's samples for a moment, and returns the sensors at an end. At
 /// rest no more can be known. Without samples, and of gloves that calibrate themselves, there are
 /// none. Starts the glove and stops it. Blocks for 2 s at most.
 std::vector<SensorAtEnd> sensors_at_end(driver::Glove& glove);
-/// Returns "index_pip stands at its end (255): ...", with what that means.
+/// Returns "index_pip is at the end of its range (255): ...", with what that means.
 std::string in_words(const SensorAtEnd& found);
 
 } // namespace nendo::gloves

@@ -89,8 +89,8 @@ std::string BvhFormat::hierarchy() const {
 }
 
 std::string BvhFormat::count_text(std::uint64_t frames) {
-  // Blanks behind it: a leading zero would be octal to some readers, and others take what stands
-  // after one blank.
+  // Blanks behind it: a leading zero would be octal to some readers, and others take what
+  // follows one blank.
   std::string text = std::to_string(frames);
   text.resize(std::max(text.size(), count_width), ' ');
   return text;

@@ -5,7 +5,7 @@ namespace {
 
 // A glove's 24 slots, in their order; all zero where no glove has a sensor.
 struct TypicalSensor {
-  double offset_counts; ///< of 255, in a CyberGlove
+  double offset_counts; ///< counts of 255, in a CyberGlove
   double gain_rad;      ///< a count of 255, in a CyberGlove
   double low_deg;       ///< where a whole range begins
   double high_deg;      ///< where a whole range ends

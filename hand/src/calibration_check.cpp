@@ -15,7 +15,7 @@ bool lies_within(double value, double least, double most) noexcept {
 constexpr double max_offset_counts = 65535.0 * 100.0;
 constexpr std::size_t max_text_bytes = 200;
 
-std::string complaint_about_texts(const WearerCalibration& wearer) {
+std::string complaint_about_strings(const WearerCalibration& wearer) {
   struct Named {
     const char* name;
     const std::string* text;
@@ -129,7 +129,7 @@ std::string complaint_about(const WearerCalibration& wearer) {
   if (wearer.counts.most == 0) return "counts_most must lie within 1 and 65535";
   if (wearer.made < sys_days{1970y / 1 / 1} || wearer.made >= sys_days{10000y / 1 / 1})
     return "made must lie within the years 1970 and 9999";
-  std::string complaint = complaint_about_texts(wearer);
+  std::string complaint = complaint_about_strings(wearer);
   if (complaint.empty()) complaint = complaint_about(wearer.size);
   if (complaint.empty()) complaint = complaint_about_sensors(wearer);
   if (complaint.empty()) complaint = complaint_about_bias(wearer.calibration.middle_bias);

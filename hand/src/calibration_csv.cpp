@@ -40,7 +40,7 @@ public:
       if (!*any) break;
       if (auto fine = read_row(); !fine) return fine.error();
     }
-    if (sensors == 0) return table_.bad("has a header but no sensors; add a row a sensor");
+    if (sensors == 0) return table_.bad("has a header but no sensors; add a row for each sensor");
     auto result = imported(lines_, name_, false);
     if (const std::string others = table_.columns_not_read(); result && !others.empty())
       result->notes.push_back("not read: " + others);
@@ -77,11 +77,9 @@ private:
     const auto gain = table_.number(gain_);
     const auto offset = table_.number(offset_);
     if (!gain || !offset)
-      return table_.bad_cell(gain ? offset_ : gain_,
-                             "of " + name + " is no finite number; mend it");
+      return table_.bad_cell(gain ? offset_ : gain_, "of " + name + " is no finite number; fix it");
     const auto slot = static_cast<std::size_t>(*found);
-    if (lines_.line[slot] != 0)
-      return table_.bad("'" + name + "' stands here twice; leave one out");
+    if (lines_.line[slot] != 0) return table_.bad("'" + name + "' is here twice; leave one out");
     if (*gain == 0.0) return table_.bad("'" + name + "' has a gain of 0; leave it out");
     lines_.sensors[slot] = {*gain * unit_rad_, *offset};
     lines_.line[slot] = table_.line();

@@ -140,7 +140,7 @@ Versions versions_of(const fs::path& target) {
   return versions;
 }
 
-/// Gives a file a second name, which must be free. 0, or the error number.
+/// Adds another name, which must be free, to a file. Returns 0 or the error number.
 int add_name(const fs::path& path, const fs::path& second) noexcept {
   return ::link(path.c_str(), second.c_str()) == 0 ? 0 : errno;
 }

@@ -9,7 +9,7 @@ namespace {
 
 // Degrees, and how far wearers are off. The angles of bent joints are means of active ranges of
 // motion (American Academy of Orthopaedic Surgeons: MCP 90, PIP 100, DIP 80 to 90, thumb MCP 50,
-// IP 80, wrist 70 to 80, 20 and 30), a little below, since calibration asks nobody to strain.
+// IP 80, wrist 70 to 80, 20 and 30), a little below, since calibration must not strain the wearer.
 struct Asked {
   double angle_deg;
   double deviation_deg;

@@ -39,10 +39,10 @@ private:
 
   bool is_thumb_;
   double arch_share_;
-  Eigen::Vector3d base_m_; ///< of the metacarpal
+  Eigen::Vector3d base_m_; ///< base of the metacarpal
   Eigen::Vector3d head_m_; ///< from there to the MCP joint; fingers only
   std::array<double, 3> bones_m_;
-  double last_turn_rad_ = 0.0; ///< by which the last of them is bent at zero angles
+  double last_turn_rad_ = 0.0; ///< bend of the last one at zero angles
   // Of the thumb: the axes in which it rolls, and its angles at zero. Of a finger: the tilt of its
   // knuckle's axis, as sine and cosine.
   Eigen::Matrix3d thumb_axes_;

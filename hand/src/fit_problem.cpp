@@ -72,7 +72,7 @@ FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorM
 }
 
 /// A slip moves both ends of a sensor's range by the same. A hand that goes less far, or farther,
-/// than it did moves them against each other, and tells the slip the less surely. How far gaps
+/// than it did moves them against each other, and shows the slip the less surely. How far gaps
 /// between fingers go depends on how the fingers are bent.
 void FitProblem::compare_ends(CountRanges now, const CountRanges& then) {
   for (const Sensor sensor : sensors_) {
@@ -100,7 +100,7 @@ void FitProblem::compare_ends(CountRanges now, const CountRanges& then) {
 /// slip.
 void FitProblem::find_slips() {
   struct Said {
-    double off = 0.0, weight = 0.0; ///< the weighted sum of what is said, and of the weights
+    double off = 0.0, weight = 0.0; ///< the weighted sum of offsets, and of weights
     void add(double off_rad, double deviation_rad) {
       weight += 1.0 / (deviation_rad * deviation_rad);
       off += off_rad / (deviation_rad * deviation_rad);
@@ -208,7 +208,7 @@ void FitProblem::add_assumptions(std::size_t reading, const Unknowns& at,
                                  Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) const {
   Eigen::Index row = rows_[reading].begin;
   for (const auto& [slot, assumed, is_set_aside] : assumptions_[reading]) {
-    // Two poses cannot tell a habit.
+    // Two poses cannot show a habit.
     const double habit_rad = full_ && assumed.by_feel ? habit_part * assumed.deviation_rad : 0.0;
     const double deviation_rad =
         std::sqrt(assumed.deviation_rad * assumed.deviation_rad - habit_rad * habit_rad);

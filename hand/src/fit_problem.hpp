@@ -122,7 +122,7 @@ private:
   void for_each_line(Visit&& visit) const;
 
   struct Line {
-    double gain, level; ///< of the default, in radians
+    double gain, level; ///< the default's, in radians
     double level_unit;
     double mean_counts;
 
@@ -142,7 +142,7 @@ private:
   FitMode mode_;
   bool full_; ///< not quick
   SensorMask sensors_;
-  SensorMask stiff_; ///< of these only the flat hand speaks
+  SensorMask stiff_; ///< used in the flat hand only
   Side side_;
   HandSize start_size_;
   bool size_known_;

@@ -16,7 +16,7 @@ struct Solution {
   Unknowns at = Unknowns::Zero();
   FreeUnknowns free;
   Eigen::MatrixXd information;
-  Eigen::MatrixXd covariance; ///< of those free unknowns that are the calibration's
+  Eigen::MatrixXd covariance; ///< the free unknowns of the calibration only
 };
 
 /// Returns how many of these are the calibration's.

@@ -18,7 +18,7 @@ inline constexpr double thumb_rest_abduction_rad = from_degrees(15);
 // M. J. Lucca, E. Y. S. Chao, R. L. Linscheid, "The kinesiology of the thumb trapeziometacarpal
 // joint", J. Bone Joint Surg. 63-A, 1981, 1371-1381), where the first axis is fixed in the
 // trapezium and the second in the metacarpal (A. Hollister et al., "The axes of rotation of the
-// thumb carpometacarpal joint", J. Orthop. Res. 10, 1992, 454-460). A glove's angles tell where
+// thumb carpometacarpal joint", J. Orthop. Res. 10, 1992, 454-460). A glove's angles say where
 // such a thumb points: roll carries it round the index metacarpal, abduction away from that. The
 // saddle determines how far the thumb is then turned about its own axis; it adds the 17 degrees of
 // pronation that Cooney found over 53 of flexion. The line below approximates that to 5 degrees

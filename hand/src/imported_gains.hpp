@@ -19,7 +19,7 @@ struct ReadLines {
   bool gaps_may_fall = false;
 };
 
-/// Turns the signs of what is written in the other frame (calibration_exchange.hpp) and checks
+/// Inverts the signs of gains in the other frame (calibration_exchange.hpp) and checks
 /// every line. If `complete`, the sensors that every CyberGlove has must be calibrated. Error:
 /// bad_input.
 Result<ImportedCalibration> imported(ReadLines lines, std::string_view name, bool complete);

@@ -67,14 +67,14 @@ void JointFilter::step(Joint& joint, double angle_rad, double interval_s) const 
 JointAngles JointFilter::pass(const JointAngles& angles, HostTime time) noexcept {
   if (options_.kind == FilterKind::off) return angles;
   const double interval_s = seconds_between(last_time_, time);
-  const bool anew = !begun_ || !(std::abs(interval_s) <= longest_interval_s);
+  const bool restarts = !begun_ || !(std::abs(interval_s) <= longest_interval_s);
   JointAngles filtered;
   for (std::size_t n = 0; n < angle_count; ++n) {
     Joint& joint = joints_[n];
     const double angle_rad = angles[angle_at(n)];
     if (!is_possible(angle_rad)) {
-      joint.speed_rad_s = anew ? 0.0 : joint.speed_rad_s;
-    } else if (anew) {
+      joint.speed_rad_s = restarts ? 0.0 : joint.speed_rad_s;
+    } else if (restarts) {
       joint = {angle_rad, angle_rad, 0.0};
     } else {
       step(joint, angle_rad, std::max(interval_s, 0.0));

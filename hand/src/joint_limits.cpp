@@ -7,7 +7,7 @@ namespace {
 
 // How far into a stop of this width an angle goes that is `excess` beyond its beginning: w e / (w +
 // e), of slope 1 at the beginning, 1/4 where e = w, and the inverse square of e far out, so that
-// more than with an exponential is left of what a badly calibrated joint does. Written so that each
+// more than with an exponential is left of a badly calibrated joint's motion. Written so that each
 // step is monotone, rounding included, and that infinity gives w.
 double into_stop(double excess, double width) noexcept {
   return width * (1.0 - width / (width + excess));

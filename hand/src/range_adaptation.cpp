@@ -30,7 +30,7 @@ double drawn(double bound, double end, double outwards, double amplitude, double
         usual_span * decline(ends, RangeAdaptation::max_first_step, RangeAdaptation::max_step);
     return bound + outwards * std::min(out_share * beyond, most);
   }
-  // A swing in the middle of the range tells little of its ends.
+  // A swing in the middle of the range says little about its ends.
   const double part = std::min(amplitude / span, 1.0);
   return bound + outwards * decline(ends, first_in_share, last_in_share) * part * part * beyond;
 }

@@ -39,7 +39,7 @@ public:
     if (wrong_) return *wrong_;
     if (state != XML_STATUS_OK)
       return bad(std::string("is no XML: ") + XML_ErrorString(XML_GetErrorCode(parser)) +
-                 "; mend it");
+                 "; fix it");
     return std::move(joints_);
   }
 
@@ -95,7 +95,7 @@ private:
   }
 
   void take_point(const XML_Char** attributes) {
-    if (joints_.empty() || depth_ != 3) return stop("<calib> stands outside of a <Joint>");
+    if (joints_.empty() || depth_ != 3) return stop("<calib> is outside of a <Joint>");
     const auto number = [&](const char* name) -> std::optional<double> {
       const XML_Char* value = attribute(attributes, name);
       return value == nullptr ? std::nullopt : to_finite_number(trimmed(value));

@@ -74,7 +74,7 @@ private:
   Error broken() const {
     const char* problem = parser_->problem == nullptr ? "cannot be read" : parser_->problem;
     const std::size_t line = parser_->problem_mark.line + 1;
-    return bad_line(name_, line, "is no YAML: " + printable(problem) + "; mend it");
+    return bad_line(name_, line, "is no YAML: " + printable(problem) + "; fix it");
   }
 
   Result<void> take(const yaml_event_t& event) {
@@ -98,7 +98,7 @@ private:
       open_.pop_back();
       return {};
     case YAML_ALIAS_EVENT:
-      return bad_line(name_, line, "an alias (*) stands here; write its list out");
+      return bad_line(name_, line, "an alias (*) is here; write its list out");
     default:
       return {};
     }
@@ -140,7 +140,7 @@ Result<RosJoint> joint_of(const YamlNode& name, const YamlNode& points, std::str
   const auto bad = [&](const YamlNode& at, const std::string& what) {
     return bad_line(file, at.line, what + "; " + std::string(yaml_shape));
   };
-  if (name.kind != YamlNode::Kind::scalar) return bad(name, "a joint's name should stand here");
+  if (name.kind != YamlNode::Kind::scalar) return bad(name, "a joint's name should be here");
   RosJoint joint{name.text, name.line, {}};
   const std::string who = in_quotes(joint.name) + ": ";
   if (points.kind != YamlNode::Kind::list) return bad(points, who + "its points are no list");

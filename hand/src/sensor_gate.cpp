@@ -12,7 +12,7 @@ int distance(RawCount a, RawCount b) noexcept {
 }
 
 bool is_movement(double jump_rad, double elapsed_s) noexcept {
-  // A gain that is not a number tells nothing of the joint: let it pass.
+  // A gain that is not a number says nothing about the joint: let it pass.
   return !(jump_rad > SensorGate::noise_rad + SensorGate::max_speed_rad_s * elapsed_s);
 }
 

@@ -22,7 +22,7 @@ struct FingerProportions {
   Joint metacarpal;
   double mcp_axial;    ///< wrist crease to MCP, of length
   double mcp_across;   ///< from the third metacarpal's axis towards the little finger, of breadth
-  double mcp_dorsal;   ///< of length: the heads lie on a shallow arch
+  double mcp_dorsal;   ///< fraction of length: the heads lie on a shallow arch
   double phalanges[3]; ///< proximal, middle, distal, of length
 };
 constexpr FingerProportions fingers[4] = {
@@ -37,7 +37,7 @@ constexpr double thumb_cmc_dorsal = -0.030;
 constexpr double thumb_bones[3] = {0.251, 0.196, 0.158};
 
 // The second row of the carpus ends about where the thumb's CMC joint lies; there the metacarpals
-// stand at half the distance that their heads have from one another.
+// are half as far from one another as their heads.
 constexpr double metacarpal_base_axial = 0.118;
 constexpr double metacarpal_base_across = 0.5;
 

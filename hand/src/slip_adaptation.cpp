@@ -15,7 +15,7 @@ constexpr double slip_in_share = 0.004;
 constexpr double slip_max_step = 0.02;
 
 // A sensor that moved less when the calibration was made is not one whose ends are known.
-constexpr double min_span = 0.1; ///< of the glove's counts
+constexpr double min_span = 0.1; ///< fraction of the glove's counts
 
 } // namespace
 
@@ -25,7 +25,7 @@ SlipAdaptation::SlipAdaptation(const Calibration& made, const CalibratedRange& e
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
     const double low = ends.counts.low_counts[slot], high = ends.counts.high_counts[slot];
-    // How far gaps between fingers go depends on how the fingers are bent, so they tell nothing.
+    // How far gaps between fingers go depends on how the fingers are bent, so they show no slip.
     // Written so that a NaN is not followed; ends may come from a file.
     if (ends.counts.present.has(sensor) && !is_gap(sensor) && low >= 0.0 && high <= counts.most &&
         high - low >= min_span * counts.most && made.sensors[slot].gain_rad_per_count != 0.0)

@@ -11,7 +11,7 @@ namespace {
 
 struct Place {
   Sensor sensor;
-  double sign; ///< of our angle, against that of the hand model which the file is for
+  double sign; ///< sign of our angle relative to the file's hand model
 };
 
 // The places of the hand model of asr_cyberglove_lib. It turns fingers about one axis, so that the

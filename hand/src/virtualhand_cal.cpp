@@ -56,7 +56,7 @@ Result<void> CalParser::read_heading(std::string_view line) {
     return {};
   }
   if (row_ % rows_per_group != 0)
-    return bad(in_quotes(line) + " stands where row " + std::to_string(row_ % rows_per_group + 1) +
+    return bad(in_quotes(line) + " is where row " + std::to_string(row_ % rows_per_group + 1) +
                " of 4 of a finger should; export the calibration once more");
   const auto fields = fields_of(line);
   if (fields.size() < 2 || fields[0] != "FINGER") return {};
@@ -74,7 +74,7 @@ Result<void> CalParser::read_row(const std::vector<std::string_view>& fields) {
   std::array<double, 3> numbers{};
   for (std::size_t k = 0; k < 3; ++k) {
     const auto number = to_finite_number(fields[k]);
-    if (!number) return bad(place + in_quotes(fields[k]) + " is not a number; mend the row");
+    if (!number) return bad(place + in_quotes(fields[k]) + " is not a number; fix the row");
     numbers[k] = *number;
   }
   const auto [joint, offset, gain] = numbers;
@@ -82,7 +82,7 @@ Result<void> CalParser::read_row(const std::vector<std::string_view>& fields) {
     return bad(place + "joint " + in_quotes(fields[0]) + " is out of order; joint " +
                std::to_string(row_ % rows_per_group) + " should come here");
   if (offset < 0.0 || offset > 255.0)
-    return bad(place + "offset " + in_quotes(fields[1]) + " is no count of 0 to 255; mend the row");
+    return bad(place + "offset " + in_quotes(fields[1]) + " is no count of 0 to 255; fix the row");
   rows_.sensors[row_] = {gain, offset};
   rows_.line[row_] = lines_.line();
   ++row_;

@@ -111,7 +111,7 @@ TEST_SUITE("calibration_guide") {
     CHECK(asked.contains(PoseId::fist));
   }
 
-  TEST_CASE("a session goes on where another one stopped") {
+  TEST_CASE("a session continues where another one stopped") {
     Session before(3005);
     for (std::size_t k = 0; k < 4; ++k)
       REQUIRE(before.do_pose(hand::full_poses()[k]) == CalibrationGuide::Event::captured);
@@ -184,7 +184,7 @@ TEST_SUITE("calibration_guide") {
           }) == CalibrationGuide::max_takes);
   }
 
-  TEST_CASE("a pose that is taken anew replaces its take, even if nothing differs") {
+  TEST_CASE("a pose that is taken again replaces its take, even if nothing differs") {
     Session session(3009);
     const auto flat = session.wearer.perform(PoseId::flat);
     REQUIRE(session.hold(flat, 2.0) == CalibrationGuide::Event::captured);
@@ -247,7 +247,7 @@ TEST_SUITE("calibration_guide") {
     }
   }
 
-  TEST_CASE("one that begins anew has no pose and no free motion, and takes any pose first") {
+  TEST_CASE("one that restarts has no pose and no free motion, and takes any pose first") {
     Session session(3013);
     const auto flat = session.wearer.perform(PoseId::flat);
     for (int n = 0; n < 3; ++n)
@@ -327,7 +327,7 @@ TEST_SUITE("calibration_guide") {
     info.sensors = sensors_22;
     const std::string user = "anna";
     const std::string notice = "No calibration yet: index_middle_abduction: the poses contradict "
-                               "each other; hold them again. b goes back a pose; n begins anew.";
+                               "each other; hold them again. b goes back a pose; n restarts.";
     Session session(3014);
     const GloveSample sample = session.wearer.read(session.wearer.perform(PoseId::flat));
     SeenCounts seen;

@@ -215,7 +215,7 @@ TEST_SUITE("difficult_wearer") {
     }
   }
 
-  TEST_CASE("a stiff thumb is noticed, and told, and then only the flat hand is believed of it") {
+  TEST_CASE("a stiff thumb is noticed; with --stiff, only its flat hand is used") {
     int noticed = 0;
     for (std::uint64_t seed = 4001; seed <= 4008; ++seed) {
       CAPTURE(seed);
@@ -229,12 +229,12 @@ TEST_SUITE("difficult_wearer") {
       for (std::size_t finger = 1; finger < hand::finger_count; ++finger)
         CHECK_FALSE(believed->limited_range[finger]);
 
-      Person told(seed, habits, hand::sensors_of(hand::Finger::thumb));
-      REQUIRE(told.follow());
-      const auto fit = told.fitted();
+      Person stated(seed, habits, hand::sensors_of(hand::Finger::thumb));
+      REQUIRE(stated.follow());
+      const auto fit = stated.fitted();
       REQUIRE_MESSAGE(fit, fit.error().message);
       const Errors before = unknowing.errors(believed->calibration);
-      const Errors errors = told.errors(fit->calibration);
+      const Errors errors = stated.errors(fit->calibration);
       CHECK(errors.thumb.p95 < 0.6 * before.thumb.p95);
       CHECK(errors.thumb.median < 7.0);
       CHECK(errors.fingers.median < 3.0);

@@ -199,7 +199,7 @@ TEST_SUITE("stuck_sensor") {
     CHECK(guided.fit());
   }
 
-  TEST_CASE("sensors that work are never left out, whoever is guided") {
+  TEST_CASE("sensors that work are never left out, whichever wearer is guided") {
     for (const std::uint64_t seed : {2011U, 2012U, 2013U, 2014U, 2015U}) {
       Guided guided(seed, {});
       if (seed % 2 == 0) guided.move_freely(14.0);

@@ -37,7 +37,7 @@ private:
 } // namespace
 
 TEST_SUITE("glove_feedback") {
-  TEST_CASE("the glove is told of changes only, and left dark") {
+  TEST_CASE("the glove is notified of changes only, and left dark") {
     GloveWithDiary glove(true);
     GloveFeedback light(glove);
     for (const bool lit : {false, true, true, false, true})

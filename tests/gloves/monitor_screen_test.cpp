@@ -79,7 +79,7 @@ TEST_SUITE("monitor_screen") {
     }
   }
 
-  TEST_CASE("the head tells the hand, rate, age, losses, switch and light") {
+  TEST_CASE("the head shows the hand, rate, age, losses, switch and light") {
     Glove glove;
     CHECK(glove.lines()[0].find("serial:/dev/ttyUSB0: CyberGlove, 22 sensors") == 0);
     CHECK(glove.lines()[0].ends_with("right hand"));
@@ -106,7 +106,7 @@ TEST_SUITE("monitor_screen") {
     CHECK(glove.lines(130)[1].find("90.0/s, 11 ms old, 363 sent, 359 delivered, 4 missed, 5 "
                                    "refused, 3 bad, 6 silences, 7 reopened") == 0);
     CHECK(glove.lines(130)[1].ends_with("q quit, r ranges, l light"));
-    // Where both have no room, what was lost matters more than the keys.
+    // Where both do not fit, what was lost matters more than the keys.
     CHECK(glove.lines()[1].find("363 sent, 359 delivered, 4 missed, 5 refused, 3 bad") !=
           std::string::npos);
     glove.picture.light = true;
@@ -148,7 +148,7 @@ TEST_SUITE("monitor_screen") {
     CHECK(glove.lines()[0].find("?[2J???Cyber?Glove") != std::string::npos);
   }
 
-  TEST_CASE("a bar has its length, and its marks stand where the counts are") {
+  TEST_CASE("a bar has its length, and its marks are where the counts are") {
     CHECK(count_bar(11, 50, {20, 80}, 100) == "##[###--]..");
     CHECK(count_bar(11, 0, {0, 100}, 100) == "[---------]");
     CHECK(count_bar(11, 100, {100, 100}, 100) == "##########|");

@@ -67,7 +67,7 @@ TEST_SUITE("angle_sources") {
   TEST_CASE("what is said of an angle is what joint_angles does, whatever sensors a glove has") {
     std::mt19937 random(17);
     Calibration calibration = default_calibration();
-    calibration.middle_bias = 0.4; // so that nothing that can move stands still
+    calibration.middle_bias = 0.4; // so that everything that can move does
     for (int round = 0; round < 150; ++round) {
       SensorMask present{static_cast<std::uint32_t>(random())};
       if (round % 2 == 0) present.bits &= static_cast<std::uint32_t>(random()); // fewer

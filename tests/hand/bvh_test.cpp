@@ -141,7 +141,7 @@ TEST_SUITE("bvh") {
     CHECK(rad("middle_proximal_R", "Xrotation") == 0.0);
   }
 
-  TEST_CASE("the frame time is the rate's to a picosecond, and the count has room to grow") {
+  TEST_CASE("the frame time is the rate's to a picosecond, and the count has space to grow") {
     const BvhRecording recording = written(HandSkeleton(Side::left), {}, 90.0);
     CHECK(std::abs(recording.frame_time_s - 1.0 / 90.0) < 1e-12);
     const auto head = [](std::uint64_t frames) { return BvhFormat::motion_head(frames, 90.0); };

@@ -255,7 +255,7 @@ TEST_SUITE("calibration exchange") {
     }
   }
 
-  TEST_CASE("rows of an exported .cal stand in the vendor's columns") {
+  TEST_CASE("rows of an exported .cal are in the vendor's columns") {
     Calibration calibration = default_calibration();
     calibration[Sensor::thumb_roll] = {0.0105, 90.0};
     const auto written = virtualhand_text(calibration, {});
@@ -266,7 +266,7 @@ TEST_SUITE("calibration exchange") {
     CHECK(written->notes.empty());
   }
 
-  TEST_CASE("what a .cal file cannot hold is refused or told") {
+  TEST_CASE("what a .cal file cannot hold is refused or reported") {
     Calibration calibration = default_calibration();
     calibration.coupling_gains[0] = 0.1;
     calibration[Sensor::index_mcp].offset_counts = 60.4;
@@ -284,7 +284,7 @@ TEST_SUITE("calibration exchange") {
     calibration[Sensor::index_mcp] = {std::nan(""), 60.0};
     CHECK_FALSE(virtualhand_text(calibration, {}));
     CHECK_FALSE(virtualhand_text(default_calibration({1000, true}), {1000, true}));
-    // A finer converter's counts are told in 8 bits.
+    // A finer converter's counts are written in 8 bits.
     const auto fine = virtualhand_text(default_calibration({4080, false}), {4080, false});
     REQUIRE(fine);
     CHECK(fine->text == virtualhand_text(default_calibration(), {})->text);
@@ -435,7 +435,7 @@ TEST_SUITE("calibration exchange") {
     is_refused(read(head + "index_mcp,0.01,60\nindex_mcp,0.01,60\n"), "x.csv:4:", "twice");
   }
 
-  TEST_CASE("texts are told apart by what they look like") {
+  TEST_CASE("formats are distinguished by their content") {
     CHECK(format_of("") == CalibrationFormat::virtualhand);
     CHECK(format_of("# x\n\nversion = 1\n") == CalibrationFormat::toml);
     CHECK(format_of("user = \"a\"\nversion = 1\n") == CalibrationFormat::toml);

@@ -207,7 +207,7 @@ TEST_SUITE("calibration file") {
   TEST_CASE("every beginning of a file is refused or whole") {
     for (std::size_t size = 0; size + 2 < written_by_hand.size(); ++size) {
       const auto wearer = parse_calibration(written_by_hand.substr(0, size), "cut");
-      // Only the sensors stand last and may be fewer: at a line's end.
+      // Only the sensors are last and may be fewer: at a line's end.
       if (wearer) CHECK(size + 1 >= written_by_hand.find("[sensors]") + 9);
     }
   }
@@ -268,7 +268,7 @@ TEST_SUITE("calibration file") {
     }
   }
 
-  TEST_CASE("what went out of use last is the newest version, wherever the clock stood") {
+  TEST_CASE("what went out of use last is the newest version, whatever the clock showed") {
     const TemporaryFolder folder;
     const fs::path path = folder.path() / "anna.toml";
     REQUIRE(write_calibration(path, wearer_named("first")));

@@ -88,7 +88,7 @@ TEST_SUITE("calibration_poses") {
     }
   }
 
-  TEST_CASE("nobody is asked for what a joint cannot do, or said to do it exactly") {
+  TEST_CASE("no pose asks for what a joint cannot do, or for exact angles") {
     for (const PoseId id : full_poses()) {
       for (const AssumedAngle& assumed : pose_of(id).assumed) {
         CHECK(std::abs(assumed.angle_rad) <= 100.0 * rad);

@@ -42,14 +42,14 @@ TEST_SUITE("calibration_scatter") {
     for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
       CAPTURE(std::string(name_of(static_cast<Sensor>(slot))));
       CAPTURE(logs[slot]);
-      // By residuals in radians gaps, of which one pose in fifteen tells, came out at 0.65 of
+      // By residuals in radians gaps, which one pose in fifteen shows, came out at 0.65 of
       // theirs.
       CHECK(logs[slot] > -0.33);
       CHECK(logs[slot] < 0.15);
     }
   }
 
-  TEST_CASE("fingers that are never spread tell no gap's gain, however they scatter") {
+  TEST_CASE("fingers that are never spread show no gap's gain, however they scatter") {
     const Calibration truth = some_truth(23);
     std::mt19937 random(24);
     std::normal_distribution<double> off(0.0, 2.0 * rad);

@@ -52,7 +52,7 @@ struct Store {
         write_calibration((shared ? folders.shared : folders.own) / name, wearer_of(about));
     REQUIRE(written);
   }
-  /// The file name of what is chosen, or "none".
+  /// The chosen file's name, or "none".
   std::string chosen(const GloveIdentity& glove) const {
     const auto list = list_calibrations(folders);
     const auto choice = choose_calibration(list.files, glove);
@@ -67,8 +67,8 @@ GloveIdentity glove(const std::string& user, const std::string& serial, Side sid
 } // namespace
 
 TEST_SUITE("calibration store") {
-  TEST_CASE("names are told apart, stay in their folder and fit a file system") {
-    const std::string texts[] = {"anna",
+  TEST_CASE("names are distinct, stay in their folder and fit a file system") {
+    const std::string inputs[] = {"anna",
                                  "Anna",
                                  "an na",
                                  "an_na",
@@ -93,8 +93,8 @@ TEST_SUITE("calibration store") {
                                  std::string(301, '/'),
                                  "x.20261121T192705Z"};
     std::set<std::string> names;
-    for (const auto& user : texts) {
-      for (const auto& serial : texts) {
+    for (const auto& user : inputs) {
+      for (const auto& serial : inputs) {
         for (const Side side : {Side::left, Side::right}) {
           const std::string name = calibration_file_name(user, serial, side);
           CAPTURE(name);
@@ -121,7 +121,7 @@ TEST_SUITE("calibration store") {
     CHECK(store.chosen(glove("anna", "A1")) == "any");
     store.add("this.toml", {"anna", "A1", Side::right, model, 1000});
     CHECK(store.chosen(glove("anna", "A1")) == "this");
-    // A glove that does not tell its number is any glove.
+    // A glove without a serial number is any glove.
     CHECK(store.chosen(glove("anna", "")) == "any");
     const auto list = list_calibrations(store.folders);
     CHECK(choose_calibration(list.files, glove("anna", "A1"))->match == GloveMatch::this_glove);
@@ -136,7 +136,7 @@ TEST_SUITE("calibration store") {
     CHECK(store.chosen(glove("anna", "A1", Side::right)) == "none");
     CHECK(store.chosen(glove("anna", "A1", Side::left)) == "left");
     CHECK(store.chosen(glove("berta", "A1", Side::left)) == "none");
-    CHECK(store.chosen(glove("", "A1", Side::left)) == "left"); // whoever
+    CHECK(store.chosen(glove("", "A1", Side::left)) == "left"); // any user
     GloveIdentity other = glove("anna", "Z9", Side::left);
     CHECK(store.chosen(other) == "left");
     other.model = "CyberGlove, 18 sensors";
@@ -166,7 +166,7 @@ TEST_SUITE("calibration store") {
     }
   }
 
-  TEST_CASE("a file that cannot be read is told, and the others are used") {
+  TEST_CASE("a file that cannot be read is reported, and the others are used") {
     const Store store;
     store.add("good.toml", {});
     std::ofstream(store.folders.own / "bad.toml") << "version = 7\n";

@@ -179,7 +179,7 @@ TEST_SUITE("joint_filter") {
     }
   }
 
-  TEST_CASE("after a pause, or with a clock that went far back, it begins anew") {
+  TEST_CASE("after a pause, or with a clock that went far back, it restarts") {
     for (const double pause_s : {0.501, 3.0, 1e6, -0.501, -100.0}) {
       Filtered filtered{JointFilter(by_default)};
       for (int n = 0; n < 30; ++n)
@@ -195,7 +195,7 @@ TEST_SUITE("joint_filter") {
     CHECK(filtered.pass(1.0, 0.499) < 1.0); // that was no pause
   }
 
-  TEST_CASE("a time that stands still or goes back a little moves nothing, and time goes on") {
+  TEST_CASE("a time that stops or goes back a little moves nothing, and time continues") {
     for (const double interval_s : {0.0, -0.004, -0.3}) {
       Filtered filtered{JointFilter(by_default)};
       filtered.pass(0.0, 0.0);
@@ -243,7 +243,7 @@ TEST_SUITE("joint_filter") {
     CHECK(worst_s == doctest::Approx(1.0 / (tau * by_default.min_cutoff_hz))); // the one at rest
   }
 
-  TEST_CASE("the latency of what moves counts each joint by its speed") {
+  TEST_CASE("the latency of moving joints counts each joint by its speed") {
     JointFilter filter(by_default);
     CHECK(filter.latency().moving_s == 0.0);
     filter.pass({}, HostTime(1h));

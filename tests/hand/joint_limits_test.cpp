@@ -39,7 +39,7 @@ void sweep(const JointLimit& limit, const Law& law) {
 } // namespace
 
 TEST_SUITE("joint_limits") {
-  TEST_CASE("each joint's ends stand in order about zero, and its soft stops have a width") {
+  TEST_CASE("each joint's ends are in order about zero, and its soft stops have a width") {
     for_each_limit([](const JointLimit& limit) {
       CHECK(limit.min_rad < limit.soft_min_rad);
       CHECK(limit.soft_min_rad < 0.0);

@@ -134,7 +134,7 @@ TEST_SUITE("left_out") {
         sample.raw[slot].value = 255;
         const auto angles = filled_angles_rad(sample, calibration, mask({sensor}));
         CHECK(std::abs(angles[slot] - truth[slot]) < from_degrees(20.0));
-        // Two of one finger, likewise.
+        // Also two of one finger.
         const Sensor other =
             slot % 4 == 0 ? static_cast<Sensor>(slot + 1) : static_cast<Sensor>(slot - 1);
         const auto both = filled_angles_rad(sample, calibration, mask({sensor, other}));

@@ -166,7 +166,7 @@ TEST_SUITE("pose_capture") {
     CHECK(stream.rest(0.2, 100.0) == CaptureState::held);
   }
 
-  TEST_CASE("a glove without sensors is waited for, and one that changes begins anew") {
+  TEST_CASE("a glove without sensors is waited for, and one that changes restarts it") {
     Stream stream;
     GloveSample bare = stream.sample(100.0);
     bare.present = {};

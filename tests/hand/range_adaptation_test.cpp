@@ -262,7 +262,7 @@ TEST_SUITE("range_adaptation") {
     CHECK(visitor.range().high_counts == before.high_counts);
   }
 
-  TEST_CASE("a glove of the other hand begins anew") {
+  TEST_CASE("a glove of the other hand restarts") {
     Visitor visitor;
     visitor.swing(80.0, 180.0, 60);
     REQUIRE_FALSE(same_lines(visitor.adaptation.calibration(), default_calibration()));
@@ -275,7 +275,7 @@ TEST_SUITE("range_adaptation") {
     CHECK(visitor.range().turns == 0); // not even the first one's
   }
 
-  TEST_CASE("another one goes on from what was learned, without a jump, and learns on") {
+  TEST_CASE("another one continues from what was learned, without a jump, and learns on") {
     CHECK_FALSE(RangeAdaptation().learned().has_value());
     Visitor visitor;
     visitor.swing(80.0, 180.0, 4); // the lines are still on their way
@@ -303,24 +303,24 @@ TEST_SUITE("range_adaptation") {
     CHECK(of_other_hand.ranges()[pip].turns == 0);
   }
 
-  TEST_CASE("a sensor of which is told what cannot have been learned begins anew, no other does") {
+  TEST_CASE("a sensor with values that cannot have been learned restarts, no other does") {
     Visitor visitor;
     visitor.swing(80.0, 180.0, 20);
     const auto learned = visitor.adaptation.learned();
     REQUIRE(learned);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const auto good = learned->sensors[pip];
-    using Told = LearnedRanges::Sensor;
-    for (const Told& bad :
-         {Told{}, Told{nan, 200.0, 1, 1, good.line}, Told{60.0, nan, 1, 1, good.line},
-          Told{200.0, 60.0, 1, 1, good.line}, Told{100.0, 101.0, 1, 1, good.line},
-          Told{-5.0, 200.0, 1, 1, good.line}, Told{60.0, 300.0, 1, 1, good.line},
-          Told{60.0, 200.0, 1, 1, {0.0, 60.0}}, Told{60.0, 200.0, 1, 1, {-0.01, 60.0}},
-          Told{60.0, 200.0, 1, 1, {nan, 60.0}}, Told{60.0, 200.0, 1, 1, {0.01, nan}},
-          Told{60.0, 200.0, 1, 1, {1e300, 60.0}}, Told{60.0, 200.0, 1, 1, {0.01, -1e300}}}) {
-      LearnedRanges told = *learned;
-      told.sensors[pip] = bad;
-      const RangeAdaptation adaptation({}, told);
+    using Learned = LearnedRanges::Sensor;
+    for (const Learned& bad :
+         {Learned{}, Learned{nan, 200.0, 1, 1, good.line}, Learned{60.0, nan, 1, 1, good.line},
+          Learned{200.0, 60.0, 1, 1, good.line}, Learned{100.0, 101.0, 1, 1, good.line},
+          Learned{-5.0, 200.0, 1, 1, good.line}, Learned{60.0, 300.0, 1, 1, good.line},
+          Learned{60.0, 200.0, 1, 1, {0.0, 60.0}}, Learned{60.0, 200.0, 1, 1, {-0.01, 60.0}},
+          Learned{60.0, 200.0, 1, 1, {nan, 60.0}}, Learned{60.0, 200.0, 1, 1, {0.01, nan}},
+          Learned{60.0, 200.0, 1, 1, {1e300, 60.0}}, Learned{60.0, 200.0, 1, 1, {0.01, -1e300}}}) {
+      LearnedRanges given = *learned;
+      given.sensors[pip] = bad;
+      const RangeAdaptation adaptation({}, given);
       const RangeAdaptation fresh;
       CHECK(adaptation.ranges()[pip].low_counts == fresh.ranges()[pip].low_counts);
       CHECK(adaptation.ranges()[pip].turns == 0);

@@ -36,7 +36,7 @@ TEST_SUITE("range_capture") {
     CHECK(capture.seen().present.bits == 1U << slot);
   }
 
-  TEST_CASE("single samples that jump widen no range, wherever they stand") {
+  TEST_CASE("single samples that jump widen no range, wherever they are") {
     std::mt19937 random(1);
     RangeCapture capture;
     for (int n = 0; n < 5000; ++n) {
@@ -49,7 +49,7 @@ TEST_SUITE("range_capture") {
     CHECK(capture.seen().high_counts[slot] <= 101.0);
   }
 
-  TEST_CASE("a capture that goes on from an earlier one keeps its ends, and widens them") {
+  TEST_CASE("a capture that continues an earlier one keeps its ends, and widens them") {
     RangeCapture before;
     for (const int counts : {60, 60, 60, 180, 180})
       before.push(sample_of(static_cast<std::uint16_t>(counts)));

@@ -191,7 +191,7 @@ TEST_SUITE("ros_calibration") {
       CHECK(index_deg(text) == doctest::Approx(90.0));
   }
 
-  TEST_CASE("joints that measure nothing or that nobody knows are named and left out") {
+  TEST_CASE("joints that measure nothing or that are not known are named and left out") {
     // A glove of 18 sensors has no DIP sensors; its drivers write such points for them.
     auto joints = hand_of_two_points;
     joints.push_back({"G_IndexDIJ", {{-0.001, 0.0}, {0.0, 90.0}}});
@@ -299,7 +299,7 @@ TEST_SUITE("ros_calibration") {
     }
   }
 
-  TEST_CASE("what the forms cannot hold is told or refused") {
+  TEST_CASE("what the forms cannot hold is reported or refused") {
     Calibration lossy = default_calibration();
     lossy.coupling_gains[1] = 0.5;
     lossy.middle_bias = 0.5;

@@ -176,7 +176,7 @@ TEST_SUITE("sensor_gate") {
     }
   }
 
-  TEST_CASE("time that runs backwards or stands still, and broken gains, do no harm") {
+  TEST_CASE("time that runs backwards or stops, and broken gains, do no harm") {
     Stream stream;
     stream.pass(100);
     CHECK(stream.pass(102, -1h).raw[pip].value == 102);

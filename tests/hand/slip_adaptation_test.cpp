@@ -62,7 +62,7 @@ TEST_SUITE("slip_adaptation") {
     Wearer wearer;
     CHECK(wearer.adaptation.calibration() == wearer.made);
     wearer.swing(low, high, 300);
-    wearer.swing(90.0, 160.0, 300); // whoever moves less teaches nothing
+    wearer.swing(90.0, 160.0, 300); // a smaller motion teaches nothing
     wearer.swing(low, 120.0, 300);  // nor who moves in a part of the range
     wearer.swing(120.0, high, 300);
     CHECK(wearer.adaptation.calibration() == wearer.made);
@@ -139,7 +139,7 @@ TEST_SUITE("slip_adaptation") {
     CHECK(other.adaptation.calibration() == other.made);
   }
 
-  TEST_CASE("another learner goes on from what was learned") {
+  TEST_CASE("another learner continues from what was learned") {
     Wearer wearer;
     wearer.swing(low + 9.0, high + 9.0, 500);
     Wearer next;

@@ -68,12 +68,12 @@ TEST_SUITE("touch_up") {
     FitOptions options = touch_up_of(truth);
     const Calibration slipped = slipped_from(truth);
     const auto far = touch_up_readings(slipped, 0.0, random);
-    const Calibration mended = fitted(far, options);
+    const Calibration corrected = fitted(far, options);
     for (std::size_t slot = 4; slot < sensor_slots; ++slot) {
       if (truth.sensors[slot].gain_rad_per_count == 0.0) continue;
-      CHECK(mended.sensors[slot].gain_rad_per_count == truth.sensors[slot].gain_rad_per_count);
+      CHECK(corrected.sensors[slot].gain_rad_per_count == truth.sensors[slot].gain_rad_per_count);
       if (slot % 4 == 3 || slot >= 20) continue; // what these poses do not ask for
-      CHECK(std::abs(mended.sensors[slot].offset_counts - slipped.sensors[slot].offset_counts) <
+      CHECK(std::abs(corrected.sensors[slot].offset_counts - slipped.sensors[slot].offset_counts) <
             4.5);
     }
     const auto scattered = touch_up_readings(truth, 4.0 * rad, random);
@@ -86,18 +86,18 @@ TEST_SUITE("touch_up") {
     const Calibration slipped = slipped_from(truth);
     const auto readings = touch_up_readings(slipped, 4.0 * rad, random);
     FitOptions options = touch_up_of(truth);
-    const auto largest_slip_left = [&](const Calibration& mended) {
+    const auto largest_slip_left = [&](const Calibration& corrected) {
       double largest = 0.0;
       for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
         if (truth.sensors[slot].gain_rad_per_count == 0.0 || is_gap(static_cast<Sensor>(slot)))
           continue;
-        largest = std::max(largest, std::abs(mended.sensors[slot].offset_counts -
+        largest = std::max(largest, std::abs(corrected.sensors[slot].offset_counts -
                                              slipped.sensors[slot].offset_counts));
       }
       return largest;
     };
     const Calibration by_poses = fitted(readings, options);
-    CHECK(largest_slip_left(by_poses) > 4.0); // which no pose of these tells, as of a wrist
+    CHECK(largest_slip_left(by_poses) > 4.0); // which no pose of these shows, as of a wrist
     options.start_ends = ends_of(truth, 0.0);
     CHECK(fitted(readings, options).sensors == by_poses.sensors);
     options.free_motion = ends_of(slipped, 0.0);

@@ -129,7 +129,7 @@ TEST_SUITE("wearer_shape") {
 
   TEST_CASE("touches of another hand teach its shape, and pull angles less than a hand taken for "
             "granted would") {
-    // A longer thumb, that stands elsewhere: its pinches do not fit an average hand.
+    // A longer thumb, with another base: its pinches do not fit an average hand.
     HandSize other;
     other.shape[ShapeTerm::thumb_proximal] = 0.10;
     other.shape[ShapeTerm::thumb_base_x] = 0.004;
@@ -149,7 +149,7 @@ TEST_SUITE("wearer_shape") {
     CHECK(fit->size.shape[ShapeTerm::thumb_proximal] + fit->size.shape[ShapeTerm::thumb_distal] +
               fit->size.shape[ShapeTerm::thumb_metacarpal] >
           0.0);
-    // Poses held exactly tell the angles; the touches must not take them away.
+    // Poses held exactly determine the angles; the touches must not take them away.
     CHECK(largest_difference_rad(fit->calibration, truth, without_touches) < 7.0 * rad);
   }
 

@@ -369,8 +369,7 @@ TEST_SUITE("calibrate") {
     const std::vector<std::string> again{"calibrate", "sim:wave", "--user", "fay", "--quick"};
     {
       TerminalProgram program(again, 200, 26);
-      for (const char* word :
-           {"Pose 2 of 2", "No calibration yet", "contradict", "n begins anew"}) {
+      for (const char* word : {"Pose 2 of 2", "No calibration yet", "contradict", "n restarts"}) {
         CAPTURE(word);
         REQUIRE(program.sees(word));
       }

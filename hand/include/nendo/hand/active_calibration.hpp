@@ -71,7 +71,7 @@ public:
 private:
   Calibration left_;
   Calibration right_;
-  std::array<SensorMask, 2> left_out_; ///< of the calibrations: left, right
+  std::array<SensorMask, 2> left_out_; ///< left and right calibration's
   std::optional<StuckWatch> stuck_;
   std::optional<RangeAdaptation> ranges_;
   std::optional<SlipAdaptation> slips_;

@@ -1,6 +1,6 @@
 #pragma once
-// How far off the angles of a calibrated glove are likely to be, so that whoever uses a pose knows
-// what it is worth. What is measured is off by a few degrees, always alike. What is estimated can
+// How far off the angles of a calibrated glove are likely to be, so that users of a pose know
+// how accurate it is. What is measured is off by a few degrees, always alike. What is estimated can
 // be far off: an estimate of a DIP joint knows how far the PIP joint bends, and not whether the
 // finger makes a hook.
 

@@ -1,7 +1,7 @@
 #pragma once
-// Tells where each angle of joint_angles() comes from: a sensor, a rule, or nothing at all. The
-// angles themselves do not show it, and whoever records, calibrates or judges poses must be able to
-// tell these apart.
+// Names where each angle of joint_angles() comes from: a sensor, a rule, or nothing at all. The
+// angles themselves do not show it, and programs that record, calibrate or judge poses must be able
+// to distinguish these.
 
 #include <array>
 #include <cstdint>

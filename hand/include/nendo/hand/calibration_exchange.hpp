@@ -23,7 +23,7 @@ namespace nendo::hand {
 
 struct ImportedCalibration {
   Calibration calibration;        ///< in counts of 0 to 255
-  std::optional<Side> side;       ///< nullopt: the text does not tell
+  std::optional<Side> side;       ///< nullopt: the text does not say
   std::vector<std::string> notes; ///< what was not read as written, one line each
 };
 

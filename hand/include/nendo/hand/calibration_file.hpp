@@ -1,5 +1,5 @@
 #pragma once
-// A wearer's calibration as a file. It tells whose calibration it is, for which glove and hand, how
+// A wearer's calibration as a file. It says whose calibration it is, for which glove and hand, how
 // it was made, and the numbers. The format is TOML, because people read it and correct it by hand.
 // No exception leaves these functions. Those that take a path block for as long as the disk does.
 
@@ -40,11 +40,11 @@ struct WearerCalibration {
   std::string method;              ///< "quick", "full", "imported", ...
   HandSize size;
   Calibration calibration;
-  std::array<std::optional<SensorQuality>, sensor_slots> quality{}; ///< of calibrated sensors
+  std::array<std::optional<SensorQuality>, sensor_slots> quality{}; ///< calibrated sensors only
   SensorMask left_out{}; ///< stuck when it was made, so not calibrated and not used
 };
 
-/// Returns the counts that the wearer reached, of the sensors of which the calibration tells them.
+/// Returns the counts that the wearer reached, of the sensors for which the calibration has them.
 NENDO_API CountRanges reached_ends(const WearerCalibration& wearer) noexcept;
 
 /// Reads the text of a calibration file. The reader is strict: every key must be known, of the

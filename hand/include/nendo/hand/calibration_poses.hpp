@@ -62,7 +62,8 @@ struct AssumedAngle {
 /// axes of the finger's metacarpal.
 struct Touch {
   Joint with = Joint::index_tip;
-  double deviation_m = 0.002; ///< of each coordinate, between touches of one wearer
+  double deviation_m =
+      0.002; ///< standard deviation of each coordinate, between touches of one wearer
 };
 inline constexpr double palm_depth_m = 0.012;
 
@@ -83,11 +84,11 @@ NENDO_API std::optional<PoseId> pose_named(std::string_view name) noexcept;
 NENDO_API std::span<const PoseId> quick_poses() noexcept;
 /// Returns all poses, in an order that is easy on the hand.
 NENDO_API std::span<const PoseId> full_poses() noexcept;
-/// Returns the poses that tell how far sensors have slipped, in some twenty seconds: flat, fist and
+/// Returns the poses that show how far sensors have slipped, in some twenty seconds: flat, fist and
 /// the four pinches.
 NENDO_API std::span<const PoseId> touch_up_poses() noexcept;
 /// Returns the poses that a full calibration asks for: all of them, then some once or twice more,
-/// because they tell most, or alone, about a joint. No take asks for the same pose as the take
+/// because they say most, or alone, about a joint. No take asks for the same pose as the take
 /// before it.
 NENDO_API std::span<const PoseId> full_takes() noexcept;
 

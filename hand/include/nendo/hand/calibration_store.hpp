@@ -14,8 +14,8 @@
 namespace nendo::hand {
 
 struct CalibrationFolders {
-  std::filesystem::path own;    ///< of this user; empty: none
-  std::filesystem::path shared; ///< of all users; empty: none
+  std::filesystem::path own;    ///< this user's; empty: none
+  std::filesystem::path shared; ///< all users'; empty: none
 };
 
 /// Returns $XDG_CONFIG_HOME/nendo/calibrations (without that variable in ~/.config, where the home

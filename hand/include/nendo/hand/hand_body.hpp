@@ -14,7 +14,7 @@ namespace nendo::hand {
 /// contain the others.
 struct BodyPart {
   std::array<Eigen::Vector3d, 3> corners_m; ///< the centres; the third is unused in a cone
-  std::array<double, 3> radii_m;            ///< of the balls, >= 0
+  std::array<double, 3> radii_m;            ///< the balls' radii, >= 0
   std::size_t corner_count = 2;             ///< 2 or 3
   Joint carrier = Joint::wrist;             ///< the joint with which its surface turns and slides
 };
@@ -24,7 +24,7 @@ struct ClosestPoint {
   double distance_m = 0.0; ///< negative inside
   Eigen::Vector3d normal;  ///< unit, outwards: the gradient of the distance
   Eigen::Vector3d place_m; ///< on the surface
-  std::size_t part = 0;    ///< of HandBody::parts()
+  std::size_t part = 0;    ///< index in HandBody::parts()
 };
 
 /// Returns the nearest place of one part (its `part` is 0). It is exact, inside as well as outside,

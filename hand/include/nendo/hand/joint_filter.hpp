@@ -3,7 +3,7 @@
 // D. Vogel ("1 Euro Filter: A Simple Speed-based Low-pass Filter for Noisy Input in Interactive
 // Systems", CHI 2012), one for each angle. Slow joints are smoothed strongly and fast joints
 // little, because jitter is seen at rest and lag in motion. Smoothing delays the angles; latency()
-// tells by how much.
+// returns by how much.
 
 #include <array>
 #include <cstdint>
@@ -28,9 +28,9 @@ struct FilterOptions {
   FilterKind kind = FilterKind::off;
   double min_cutoff_hz = 2.0;
   double beta_hz_per_rad_s = 4.0;
-  double derivative_cutoff_hz = 1.0; ///< of the filter of the speed; the authors' value
-  /// Whoever filters closes pinches afterwards (pinch_closing.hpp). JointFilter does not: it knows
-  /// no bones.
+  double derivative_cutoff_hz = 1.0; ///< cutoff of the filter of the speed; the authors' value
+  /// Pinches are closed after the filter (pinch_closing.hpp), not by JointFilter: it knows no
+  /// bones.
   bool close_pinches = false;
 
   friend bool operator==(const FilterOptions&, const FilterOptions&) = default;
@@ -38,9 +38,9 @@ struct FilterOptions {
 
 /// The filter's present delay over all angles, in seconds.
 struct FilterLatency {
-  double worst_s = 0.0; ///< of the slowest joint: 1 / (2 pi min_cutoff) if any rests
+  double worst_s = 0.0; ///< the slowest joint's: 1 / (2 pi min_cutoff) if any rests
   double mean_s = 0.0;
-  /// The mean with each joint weighted by its speed, that is the delay of what moves. It is the
+  /// The mean with each joint weighted by its speed, that is the delay of moving joints. It is the
   /// plain mean if nothing moves.
   double moving_s = 0.0;
 };

@@ -1,6 +1,6 @@
 #pragma once
 // Captures a held pose from a stream of samples: waits until the hand has been still for a second,
-// and tells what it waits for.
+// and reports what it waits for.
 
 #include <array>
 #include <cstdint>
@@ -18,7 +18,7 @@ struct HeldPose {
 
 enum class CaptureState : std::uint8_t {
   waiting,   ///< no sample yet, or none of a sensor
-  moving,    ///< some sensor changes; troubled() tells which
+  moving,    ///< some sensor changes; troubled() says which
   noisy,     ///< some sensor jumps to and fro faster than a joint could
   saturated, ///< still, but some sensor is at an end of its counts half the time
   unchanged, ///< still, but in the pose that was held last
@@ -60,11 +60,12 @@ private:
   struct Watched {
     double before_counts = 0.0; ///< one sample ago
     double earlier_counts = 0.0;
-    double noise_variance = 0.0; ///< by second differences, which steady movement does not touch
-    double low_counts = 0.0;     ///< since the window's beginning, as all that follow
+    double noise_variance =
+        0.0; ///< estimate from second differences, which steady movement does not touch
+    double low_counts = 0.0; ///< since the window's beginning, as all that follow
     double high_counts = 0.0;
     double mean_counts = 0.0;
-    double squares = 0.0; ///< of deviations from the mean
+    double squares = 0.0; ///< sum of squared deviations from the mean
     std::uint32_t at_end = 0;
   };
   void begin_window(const GloveSample& sample, HostTime now) noexcept;

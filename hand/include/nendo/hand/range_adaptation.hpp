@@ -1,7 +1,7 @@
 #pragma once
 // Calibration by use, for visitors who will not calibrate: each sensor's range is learned from how
 // the hand moves, and spread over its joint's usual range of motion. It begins as the default
-// calibration and changes so slowly that nobody sees the hand drift.
+// calibration and changes so slowly that the drift is not visible.
 //
 // The learner learns from a joint's turns: a turn is the end of a swing, from which the joint comes
 // back. So a hand at rest teaches nothing, however long it rests. One excursion counts once,
@@ -37,7 +37,7 @@ struct LearnedRanges {
     std::uint32_t bottoms = 0, tops = 0;        ///< turns that taught low and high
     SensorCalibration line; ///< drifts towards them; gain 0: nothing can be learned
   };
-  Side side = Side::right; ///< of the hand from which they were learned
+  Side side = Side::right; ///< the hand from which they were learned
   std::array<Sensor, sensor_slots> sensors{};
 };
 
@@ -103,7 +103,7 @@ private:
   Calibration calibration_;
   std::array<Learner, sensor_slots> learners_{};
   SampleInterval interval_;
-  std::optional<Side> side_; ///< of the samples so far
+  std::optional<Side> side_; ///< side of the samples so far
 };
 
 } // namespace nendo::hand

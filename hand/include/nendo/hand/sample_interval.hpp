@@ -12,7 +12,7 @@ public:
   /// A pause is no time in which anything moves: it would jump.
   static constexpr double longest_s = 0.1;
 
-  /// Takes the next sample in time, and returns the seconds since the one before, at most
+  /// Takes the next sample in time, and returns the seconds since the previous one, at most
   /// `longest_s`; 0 of the first. Wait-free, no allocation.
   double push(const GloveSample& sample) noexcept {
     const HostTime time = sample.time();

@@ -19,13 +19,13 @@ public:
   /// How far noise and the converter's steps may change an angle in addition: four counts of a
   /// CyberGlove.
   static constexpr double noise_rad = 0.05;
-  /// Without a glove's own clock, times of arrival tell little about when a sample was taken,
+  /// Without a glove's own clock, times of arrival say little about when a sample was taken,
   /// because serial adapters hand over bytes every 16 ms. An interval then counts as at least that
   /// long.
   static constexpr double min_arrival_interval_s = 0.016;
 
   /// Takes the next sample in time and returns the sample to use instead of it. The gains of
-  /// `calibration` tell how far a count turns a joint; it must be that of the glove that sent this
+  /// `calibration` say how far a count turns a joint; it must be that of the glove that sent this
   /// sample, which may not have sent the last one. A sensor that jumped farther than a joint can
   /// turn since its last accepted count is held at that count for this one sample. Its next count
   /// is always accepted, so that a real jump is only one sample late. A sensor that was absent

@@ -63,7 +63,7 @@ public:
 
   /// The axes of the thumb and of the knuckles, in the axes of a right hand.
   struct Axes {
-    Eigen::Matrix3d thumb; ///< of the axis about which the thumb rolls, in those of the wrist
+    Eigen::Matrix3d thumb; ///< axes in which the thumb rolls, in those of the wrist
     bool thumb_is_tilted;  ///< false: `thumb` is the identity
     double thumb_rest_rad; ///< the angle between thumb and index finger at zero angles
     ThumbPronation thumb_pronation;
@@ -86,8 +86,8 @@ private:
   using Offsets = std::array<Eigen::Vector3d, joint_count>;
   /// The parts of a finger that are the same in every pose, in the axes of this side's own hand.
   struct FingerRoot {
-    Eigen::Vector3d base_m; ///< of the metacarpal, from the wrist
-    Eigen::Vector3d head_m; ///< of the metacarpal, from its base
+    Eigen::Vector3d base_m; ///< the metacarpal's base, from the wrist
+    Eigen::Vector3d head_m; ///< the metacarpal's head, from its base
     /// The axes of the metacarpal. Its -Z points along the bone, whereas the finger's zero is
     /// parallel to the wrist's axis.
     Eigen::Matrix3d metacarpal_axes;
@@ -102,7 +102,7 @@ private:
   Side side_;
   Offsets offsets_m_;
   Axes axes_;
-  Eigen::Matrix3d own_thumb_axes_; ///< of this side's own hand
+  Eigen::Matrix3d own_thumb_axes_; ///< axes of this side's own hand
   Eigen::Vector3d pad_m_;
   Eigen::Vector3d palm_m_;
   Eigen::Vector3d thumb_base_m_;

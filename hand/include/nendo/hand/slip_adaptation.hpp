@@ -1,5 +1,5 @@
 #pragma once
-// Follows a calibrated glove as it slips on the hand. Nobody bends a joint farther than he could
+// Follows a calibrated glove as it slips on the hand. No wearer bends a joint farther than
 // when the calibration was made; so if a sensor now goes beyond the end that it reached then, and
 // no longer comes to its other end, then the sensor has slipped, by the lesser of the two. A hand
 // that only moves less, or in the middle of its range, teaches nothing. Gains and couplings stay.

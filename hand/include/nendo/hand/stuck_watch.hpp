@@ -1,5 +1,5 @@
 #pragma once
-// Finds sensors that stand still though their joints move. A sensor may stand still because its
+// Finds sensors that do not change though their joints move. A sensor may not change because its
 // joint rests; that it is stuck shows only where its neighbours move to and fro for long, which no
 // hand does without moving this joint by a count. So nothing is found while nothing moves, and
 // a finger that moves alone shows nothing of the others.
@@ -16,8 +16,8 @@ namespace nendo::hand {
 /// same. Wait-free, no allocation.
 class NENDO_API StuckWatch {
 public:
-  static constexpr double min_still_s = 3.0;       ///< before a sensor is taken to be stuck
-  static constexpr double min_swing_counts = 16.0; ///< of 255: about 11 degrees
+  static constexpr double min_still_s = 3.0;       ///< time until a sensor is taken to be stuck
+  static constexpr double min_swing_counts = 16.0; ///< counts of 255: about 11 degrees
 
   /// `stuck` are the sensors that an earlier watch of the same glove had found.
   explicit StuckWatch(CountScale scale = {}, SensorMask stuck = {}) noexcept;
@@ -29,10 +29,6 @@ public:
   SensorMask stuck() const noexcept { return stuck_; }
   /// Returns the glove's hand, by the last sample.
   Side side() const noexcept { return side_; }
-  /// Returns the count at which a sensor stands still, which was seen before.
-  std::uint16_t stands_at(Sensor sensor) const noexcept {
-    return watched_[static_cast<std::size_t>(sensor)].low;
-  }
 
 private:
   static constexpr std::size_t kept_swings = 8;
@@ -61,26 +57,26 @@ private:
   std::array<Watched, sensor_slots> watched_{};
   SensorMask present_;
   SensorMask stuck_;
-  SensorMask first_stuck_; ///< for the first sample
+  SensorMask first_stuck_; ///< stuck sensors at the first sample
   Side side_ = Side::right;
-  std::uint64_t number_ = 0; ///< of the sample
+  std::uint64_t number_ = 0; ///< number of the sample
 };
 
-/// Returns whether a count is at an end of what a bare converter can count, where a broken sensor
-/// usually stands. A glove that calibrates itself is at an end whenever a joint is.
+/// Returns whether a count is at an end of the range of a bare converter, where a broken sensor
+/// usually is. A glove that calibrates itself is at an end whenever a joint is.
 constexpr bool is_at_end(std::uint16_t count, CountScale scale) noexcept {
   return !scale.whole_range && (count <= 1 || count + 1 >= scale.most);
 }
 
-/// Returns whether a sensor that counts from `low` to `high` stands still. A twelve-bit converter
-/// may flicker by its last two bits, and so does the last bit at an end.
+/// Returns whether a sensor that counts from `low` to `high` does not change. A twelve-bit
+/// converter may flicker by its last two bits, and so does the last bit at an end.
 constexpr bool is_still(std::uint16_t low, std::uint16_t high, CountScale scale) noexcept {
   const bool same_end = high - low <= 1 && is_at_end(low, scale) && is_at_end(high, scale);
   return high - low <= scale.most / 1024 || same_end;
 }
 
 /// Returns whether counts reach an end of a glove that calibrates itself, where it holds a straight
-/// or a fully bent joint: to stand still there means nothing.
+/// or a fully bent joint: a constant count there means nothing.
 constexpr bool rests_at_end(double low, double high, CountScale scale) noexcept {
   return scale.whole_range && (low <= 0.0 || high >= scale.most);
 }

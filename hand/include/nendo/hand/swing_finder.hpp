@@ -14,7 +14,7 @@ class NENDO_API SwingFinder {
 public:
   struct End {
     double counts = 0.0;
-    double amplitude = 0.0; ///< of the swing that ends here, counts
+    double amplitude = 0.0; ///< size of the swing that ends here, counts
     bool is_top = false;
   };
 
@@ -27,12 +27,12 @@ public:
   void reset() noexcept { seen_ = 0; }
 
 private:
-  static constexpr std::size_t window = 5; ///< of the median that takes out spikes
+  static constexpr std::size_t window = 5; ///< window of the median that removes spikes
 
   std::optional<double> median(std::uint16_t count) noexcept;
 
   std::array<std::uint16_t, window> recent_{};
-  std::size_t seen_ = 0;            ///< of `recent_`, since it began again
+  std::size_t seen_ = 0;            ///< number of counts since the last reset
   double bottom_ = 0.0, top_ = 0.0; ///< the swing under way, counts
   bool rises_ = false, falls_ = false;
 };

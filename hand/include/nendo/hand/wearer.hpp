@@ -33,8 +33,8 @@ struct Wearer {
   /// If it is set, only slips from the calibration of that side are learned. The other side's
   /// stays as it is.
   std::optional<CalibratedRange> ends{};
-  /// If it is set, sensors of a glove with such counts that stand still while others move are left
-  /// out as long as they do (stuck_watch.hpp).
+  /// If it is set, sensors of a glove with such counts that do not change while others move are
+  /// left out as long as they do (stuck_watch.hpp).
   std::optional<CountScale> watched{};
   /// Sensors that an earlier watch of this glove has found stuck.
   SensorMask stuck{};

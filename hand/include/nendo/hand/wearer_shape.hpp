@@ -1,7 +1,7 @@
 #pragma once
 // How one wearer's hand differs from the proportions of an average hand of its size: the bones, the
 // base and the axes of the thumb, how the knuckles' axes are tilted, and the pads. A calibration
-// finds it, because pads that touch tell it.
+// finds it, because pads that touch determine it.
 
 #include <array>
 #include <cstddef>
@@ -41,12 +41,12 @@ enum class ShapeTerm : std::uint8_t {
   thumb_pronation_by_roll,      ///< how much more the thumb turns about itself for each radian of
   thumb_pronation_by_abduction, ///< roll, or of abduction
   pad_depth,                    ///< how much deeper below the bone a digit's pad is, metres,
-  pad_behind,                   ///< and how much farther behind its end
+  pad_behind,                   ///< the pad's distance from the end of the finger
 };
 
 inline constexpr std::size_t shape_terms = 30;
 
-// Of an average hand. A pad is the middle of what touches another pad.
+// An average hand's. A pad is the middle of the area that touches another pad.
 inline constexpr double pad_depth_m = 0.006;
 inline constexpr double pad_behind_tip_m = 0.003;
 
