@@ -54,34 +54,38 @@ bool read_sample(const json& line, GloveSample& sample) {
   });
 }
 
+/// Returns false if the line has no largest count.
+bool read_scale(const json& line, CountScale& counts) {
+  const auto max = number(line, "counts_most", 1.0, 65535.0);
+  if (!max) return false;
+  counts = {static_cast<std::uint16_t>(*max), line.value("whole_range", json(false)) == true};
+  return true;
+}
+
 bool read_reading(const json& line, hand::PoseReading& reading, CountScale& counts) {
   const auto pose =
       line["pose"].is_string() ? hand::pose_named(line["pose"].get<std::string>()) : std::nullopt;
-  const auto most = number(line, "counts_most", 1.0, 65535.0);
-  if (!pose || !most) return false;
-  counts = {static_cast<std::uint16_t>(*most), line.value("whole_range", json(false)) == true};
+  if (!pose || !read_scale(line, counts)) return false;
   reading.pose = *pose;
   hand::HeldPose& held = reading.held;
-  const bool noise = for_each_count(line, "noise_counts", *most, [&](std::size_t slot, double n) {
-    held.noise_counts[slot] = n;
-  });
-  return noise && for_each_count(line, "mean_counts", *most, [&](std::size_t slot, double n) {
+  const bool noise =
+      for_each_count(line, "noise_counts", counts.most,
+                     [&](std::size_t slot, double n) { held.noise_counts[slot] = n; });
+  return noise && for_each_count(line, "mean_counts", counts.most, [&](std::size_t slot, double n) {
            held.mean_counts[slot] = n;
            held.present.add(static_cast<Sensor>(slot));
          });
 }
 
 bool read_free_motion(const json& line, hand::CountRanges& motion, CountScale& counts) {
-  const auto most = number(line, "counts_most", 1.0, 65535.0);
-  if (!most) return false;
-  counts = {static_cast<std::uint16_t>(*most), line.value("whole_range", json(false)) == true};
+  if (!read_scale(line, counts)) return false;
   SensorMask high;
-  const bool low = for_each_count(line, "low_counts", *most, [&](std::size_t slot, double n) {
+  const bool low = for_each_count(line, "low_counts", counts.most, [&](std::size_t slot, double n) {
     motion.low_counts[slot] = n;
     motion.present.add(static_cast<Sensor>(slot));
   });
   return low &&
-         for_each_count(line, "high_counts", *most,
+         for_each_count(line, "high_counts", counts.most,
                         [&](std::size_t slot, double n) {
                           motion.high_counts[slot] = n;
                           high.add(static_cast<Sensor>(slot));

@@ -10,8 +10,8 @@ using hand::AssumedAngle;
 using hand::HeldPose;
 using hand::PoseId;
 
-/// Returns how far fist has a joint bent from flat, or 0 if wearers do not do the two so surely
-/// that they tell it well apart.
+/// Returns how far fist has a joint bent from flat, or 0 if wearers do not repeat the two poses
+/// exactly enough to separate them.
 double bend_rad(std::size_t slot) {
   const AssumedAngle& flat = hand::pose_of(PoseId::flat).assumed[slot];
   const AssumedAngle& fist = hand::pose_of(PoseId::fist).assumed[slot];
@@ -157,20 +157,20 @@ void CalibrationGuide::restore(std::span<const hand::PoseReading> readings,
   free_motion_ = hand::RangeCapture(free_motion);
   for (const auto& reading : readings) {
     std::size_t takes = 0, end = 0; // of this pose, and where its last one ends
-    std::optional<std::size_t> room;
+    std::optional<std::size_t> free_place;
     for (std::size_t k = 0; k < poses_.size(); ++k) {
       if (poses_[k] != reading.pose) continue;
       ++takes;
       end = k + 1;
-      if (!kept_[k] && !room) room = k;
+      if (!kept_[k] && !free_place) free_place = k;
     }
-    if (takes == 0 || (!room && takes >= max_takes)) continue;
-    if (!room) {
+    if (takes == 0 || (!free_place && takes >= max_takes)) continue;
+    if (!free_place) {
       poses_.insert(poses_.begin() + static_cast<std::ptrdiff_t>(end), reading.pose);
       kept_.insert(kept_.begin() + static_cast<std::ptrdiff_t>(end), std::nullopt);
-      room = end;
+      free_place = end;
     }
-    kept_[*room] = reading.held;
+    kept_[*free_place] = reading.held;
   }
   at_ = 0;
   advance();
@@ -212,11 +212,10 @@ std::optional<Sensor> CalibrationGuide::find_unbent(const HeldPose& held) const 
   std::optional<Sensor> worst;
   double worst_counts = min_counts;
   int judged = 0, unbent = 0;
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const auto sensor = static_cast<Sensor>(slot);
+  for (const Sensor sensor : held.present) {
+    const std::size_t slot = index_of(sensor);
     const double gain = usual.sensors[slot].gain_rad_per_count;
-    if (!held.present.has(sensor) || !other->present.has(sensor) || stiff_.has(sensor) ||
-        bend_rad(slot) == 0.0 || gain == 0.0)
+    if (!other->present.has(sensor) || stiff_.has(sensor) || bend_rad(slot) == 0.0 || gain == 0.0)
       continue;
     ++judged;
     const double rise = (now == PoseId::fist ? 1.0 : -1.0) * (gain > 0.0 ? 1.0 : -1.0) *
@@ -237,14 +236,14 @@ std::optional<Sensor> CalibrationGuide::find_implausible(const HeldPose& held) c
   const HeldPose* flat = kept(PoseId::flat);
   const HeldPose* fist = kept(PoseId::fist);
   if (flat == nullptr || fist == nullptr) return std::nullopt;
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+  for (const Sensor sensor : held.present) {
+    const std::size_t slot = index_of(sensor);
     const AssumedAngle& at_flat = hand::pose_of(PoseId::flat).assumed[slot];
     const AssumedAngle& expected = hand::pose_of(asked()).assumed[slot];
     const double counts = fist->mean_counts[slot] - flat->mean_counts[slot];
     const double turn_rad = bend_rad(slot);
-    // Only joints that the two poses tell well apart can judge a third.
-    const auto sensor = static_cast<Sensor>(slot);
-    if (!held.present.has(sensor) || stiff_.has(sensor) || turn_rad == 0.0 || !expected.known() ||
+    // Only joints that the two poses separate well can judge a third.
+    if (stiff_.has(sensor) || turn_rad == 0.0 || !expected.known() ||
         std::abs(counts) < hand::PoseCapture::min_change_counts)
       continue;
     const double angle_rad =

@@ -1,18 +1,131 @@
 #include "calibrate/hand_drawing.hpp"
 
-#include <cstdint>
-
-#include "calibrate/limb_canvas.hpp"
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
 
 namespace nendo::calibrate {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 using hand::Joint;
 
-constexpr std::uint8_t palm_part = 0;
+/// The dots that a character covers, row by row from the top. A row has four bits, of which the
+/// highest is the dot on the left.
+struct Glyph {
+  char character;
+  std::array<std::uint8_t, LimbCanvas::dots_down> rows;
+};
+constexpr std::array<Glyph, 14> glyphs{{
+    {'|', {6, 6, 6, 6, 6, 6, 6, 6}},
+    {'-', {0, 0, 0, 15, 15, 0, 0, 0}},
+    {'_', {0, 0, 0, 0, 0, 0, 15, 15}},
+    {'/', {1, 1, 2, 2, 4, 4, 8, 8}},
+    {'\\', {8, 8, 4, 4, 2, 2, 1, 1}},
+    {'(', {2, 4, 8, 8, 8, 8, 4, 2}},
+    {')', {4, 2, 1, 1, 1, 1, 2, 4}},
+    {'.', {0, 0, 0, 0, 0, 0, 6, 6}},
+    {'\'', {6, 6, 6, 0, 0, 0, 0, 0}},
+    {',', {0, 0, 0, 0, 0, 6, 6, 4}},
+    {'`', {12, 6, 0, 0, 0, 0, 0, 0}},
+    {'~', {0, 0, 0, 5, 10, 0, 0, 0}},
+    {'+', {0, 6, 6, 15, 15, 6, 6, 0}},
+    {'"', {15, 9, 9, 0, 0, 0, 0, 0}},
+}};
+
+/// Safe for any double: a NaN becomes 0.
+int dot_of(double place, int most) {
+  return place > 0.0 ? static_cast<int>(std::min(place, static_cast<double>(most))) : 0;
+}
 
 } // namespace
+
+LimbCanvas::LimbCanvas(int columns, int rows)
+    : width_(columns * dots_across), height_(rows * dots_down),
+      parts_(static_cast<std::size_t>(width_ * height_), nothing),
+      depths_(parts_.size(), -std::numeric_limits<double>::infinity()) {
+  // A hand with spread fingers is as wide as it is long. The wrist must fit.
+  metres_a_dot_ = std::max(0.235 / height_, 0.21 / width_);
+}
+
+Vector2d LimbCanvas::place_m(int column, int row) const noexcept {
+  return {(column - 0.5 * width_) * metres_a_dot_, (0.5 * height_ - row) * metres_a_dot_};
+}
+
+// The ranges have a dot more at either end, because of rounding.
+LimbCanvas::DotRange LimbCanvas::columns_within(double left_m, double right_m) const noexcept {
+  const auto dot = [&](double x_m) { return x_m / metres_a_dot_ + 0.5 * width_; };
+  return {dot_of(dot(left_m) - 1.0, width_), dot_of(dot(right_m) + 2.0, width_ - 1)};
+}
+
+LimbCanvas::DotRange LimbCanvas::rows_within(double low_m, double high_m) const noexcept {
+  const auto dot = [&](double y_m) { return 0.5 * height_ - y_m / metres_a_dot_; };
+  return {dot_of(dot(high_m) - 1.0, height_), dot_of(dot(low_m) + 2.0, height_ - 1)};
+}
+
+void LimbCanvas::draw(const Limb& limb) {
+  const double radius = std::max(limb.begin_radius, limb.end_radius);
+  const auto low = limb.begin.cwiseMin(limb.end).eval();
+  const auto high = limb.begin.cwiseMax(limb.end).eval();
+  const DotRange columns = columns_within(low.x() - radius, high.x() + radius);
+  const DotRange rows = rows_within(low.y() - radius, high.y() + radius);
+  for (int row = rows.first; row <= rows.last; ++row)
+    for (int column = columns.first; column <= columns.last; ++column)
+      draw_dot(limb, column, row);
+}
+
+void LimbCanvas::draw_dot(const Limb& limb, int column, int row) {
+  const Vector2d at = place_m(column, row);
+  const Vector2d along = (limb.end - limb.begin).head<2>();
+  const double length2 = along.squaredNorm();
+  const double part =
+      length2 > 0.0 ? std::clamp((at - limb.begin.head<2>()).dot(along) / length2, 0.0, 1.0) : 0.0;
+  const double radius = limb.begin_radius + part * (limb.end_radius - limb.begin_radius);
+  const double off2 = (at - limb.begin.head<2>() - part * along).squaredNorm();
+  if (!(off2 <= radius * radius)) return; // also if it is not a number
+  const double depth =
+      limb.begin.z() + part * (limb.end.z() - limb.begin.z()) + std::sqrt(radius * radius - off2);
+  const auto dot = static_cast<std::size_t>(row * width_ + column);
+  if (depth <= depths_[dot]) return;
+  depths_[dot] = depth;
+  parts_[dot] = limb.part;
+}
+
+char LimbCanvas::character(int column, int row) const {
+  std::array<std::uint8_t, dots_down> edges{};
+  int count = 0;
+  for (int y = 0; y < dots_down; ++y)
+    for (int x = 0; x < dots_across; ++x) {
+      if (!is_edge(column * dots_across + x, row * dots_down + y)) continue;
+      edges[static_cast<std::size_t>(y)] |= static_cast<std::uint8_t>(8 >> x);
+      ++count;
+    }
+  if (count < 3) return ' ';
+  const auto distance = [&](const Glyph& glyph) {
+    int differing = 0;
+    for (std::size_t y = 0; y < edges.size(); ++y)
+      differing += std::popcount(static_cast<unsigned>(edges[y] ^ glyph.rows[y]));
+    return differing;
+  };
+  return std::min_element(
+             glyphs.begin(), glyphs.end(),
+             [&](const Glyph& one, const Glyph& other) { return distance(one) < distance(other); })
+      ->character;
+}
+
+std::uint8_t LimbCanvas::part(int column, int row) const noexcept {
+  if (column < 0 || row < 0 || column >= width_ || row >= height_) return nothing;
+  return parts_[static_cast<std::size_t>(row * width_ + column)];
+}
+
+bool LimbCanvas::is_edge(int column, int row) const noexcept {
+  const std::uint8_t here = part(column, row);
+  return part(column + 1, row) != here || part(column, row + 1) != here ||
+         part(column - 1, row) != here || part(column, row - 1) != here;
+}
 
 std::vector<std::string> draw_hand(const hand::HandPose& pose, Side side, HandView view,
                                    int columns, int rows) {
@@ -24,6 +137,7 @@ std::vector<std::string> draw_hand(const hand::HandPose& pose, Side side, HandVi
                                   : Vector3d(outwards * p.y(), up, -outwards * p.x());
   };
   const auto seen = [&](Joint joint) { return seen_at(pose[joint].translation()); };
+  constexpr std::uint8_t palm_part = 0;
   LimbCanvas canvas(columns, rows);
   const auto limb = [&](Joint from, Joint to, double from_mm, double to_mm, std::size_t part) {
     canvas.draw(

@@ -63,30 +63,6 @@ hand::HandSkeleton stranger(std::mt19937& random) {
   return hand::HandSkeleton(Side::right, size);
 }
 
-/// The angles as sensors measure them, of pairs of fingers.
-hand::SensorAngles measured(const hand::JointAngles& joints) {
-  hand::SensorAngles angles{};
-  const auto at = [&](Sensor sensor) -> double& {
-    return angles[static_cast<std::size_t>(sensor)];
-  };
-  at(Sensor::thumb_roll) = joints.thumb_roll_rad;
-  at(Sensor::thumb_mcp) = joints.thumb_mcp_flexion_rad;
-  at(Sensor::thumb_ip) = joints.thumb_ip_flexion_rad;
-  at(Sensor::thumb_abduction) = joints.thumb_abduction_rad;
-  for (std::size_t f = 0; f < joints.fingers.size(); ++f) {
-    angles[4 * f + 4] = joints.fingers[f].mcp_flexion_rad;
-    angles[4 * f + 5] = joints.fingers[f].pip_flexion_rad;
-    angles[4 * f + 6] = joints.fingers[f].dip_flexion_rad;
-    if (f > 0)
-      angles[4 * f + 7] =
-          joints.fingers[f - 1].mcp_abduction_rad - joints.fingers[f].mcp_abduction_rad;
-  }
-  at(Sensor::palm_arch) = joints.palm_arch_rad;
-  at(Sensor::wrist_pitch) = joints.wrist_pitch_rad;
-  at(Sensor::wrist_yaw) = joints.wrist_yaw_rad;
-  return angles;
-}
-
 } // namespace
 
 PracticeHand::PracticeHand(std::uint32_t seed, std::optional<double> hold_s)
@@ -97,7 +73,7 @@ PracticeHand::PracticeHand(std::uint32_t seed, std::optional<double> hold_s)
   }
   const hand::HandSkeleton skeleton = stranger(random_); // a left hand's angles are the same
   for (const hand::PoseId id : ids_) {
-    hand::SensorAngles angles = measured(demonstrated_angles(id, skeleton));
+    hand::SensorAngles angles = sensor_angles_of(demonstrated_angles(id, skeleton));
     const hand::CalibrationPose& pose = hand::pose_of(id);
     for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
       // Where nothing is asked, the joint is anywhere near; pads that touch hold a joint closely.
@@ -113,7 +89,7 @@ PracticeHand::PracticeHand(std::uint32_t seed, std::optional<double> hold_s)
   from_ = now_ = free_motion(0.0);
 }
 
-/// A sensor at an end of what it can measure keeps a pose from being taken: where one would come
+/// A sensor at an end of its range keeps a pose from being taken: where one would come
 /// there, the glove's gain is less.
 void PracticeHand::keep_from_ends() {
   constexpr double margin_counts = 6.0;

@@ -32,7 +32,7 @@ public:
   /// `time_s` must not fall.
   hand::SensorAngles at(double time_s);
 
-  /// Continues to the next pose, or back to the one before. Any thread.
+  /// Continues to the next pose, or back to the previous one. Any thread.
   void go_on() noexcept {
     if (shown_ <= pose_count()) ++asked_;
   }

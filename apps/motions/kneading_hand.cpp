@@ -14,7 +14,6 @@
 
 #include "motions/knead_plan.hpp"
 #include "motions/plan_hands.hpp"
-#include "motions/sensor_angles.hpp"
 
 namespace nendo::motions {
 namespace {

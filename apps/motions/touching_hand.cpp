@@ -15,7 +15,6 @@
 #include <nendo/hand/inverse_kinematics.hpp>
 #include <nendo/hand/joint_limits.hpp>
 
-#include "motions/sensor_angles.hpp"
 #include "motions/surface_walk.hpp"
 #include "motions/touch_score.hpp"
 

@@ -153,4 +153,26 @@ JointAngles joint_angles(const GloveSample& sample, const Calibration& calibrati
   return angles;
 }
 
+SensorAngles sensor_angles_of(const JointAngles& joints) noexcept {
+  SensorAngles angles{};
+  const auto at = [&](Sensor sensor) -> double& { return angles[index_of(sensor)]; };
+  at(Sensor::thumb_roll) = joints.thumb_roll_rad;
+  at(Sensor::thumb_mcp) = joints.thumb_mcp_flexion_rad;
+  at(Sensor::thumb_ip) = joints.thumb_ip_flexion_rad;
+  at(Sensor::thumb_abduction) = joints.thumb_abduction_rad;
+  for (std::size_t f = 0; f < joints.fingers.size(); ++f) {
+    const auto [mcp, pip, dip] = finger_sensors[f];
+    at(mcp) = joints.fingers[f].mcp_flexion_rad;
+    at(pip) = joints.fingers[f].pip_flexion_rad;
+    at(dip) = joints.fingers[f].dip_flexion_rad;
+    if (f > 0) // the gap's slot is after the DIP joint's
+      angles[index_of(dip) + 1] =
+          joints.fingers[f - 1].mcp_abduction_rad - joints.fingers[f].mcp_abduction_rad;
+  }
+  at(Sensor::palm_arch) = joints.palm_arch_rad;
+  at(Sensor::wrist_pitch) = joints.wrist_pitch_rad;
+  at(Sensor::wrist_yaw) = joints.wrist_yaw_rad;
+  return angles;
+}
+
 } // namespace nendo::hand

@@ -1,6 +1,8 @@
 #include "ros_joints.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -19,7 +21,7 @@ constexpr std::size_t max_joint_points = 4096;
 constexpr double min_raw = -0.1; // drivers' own files have -0.001
 constexpr double max_raw = 1.1;
 constexpr double max_angle_deg = 1e9; // a steep line is far beyond its joint at the counts' ends
-constexpr double told_deviation_deg = 0.05;
+constexpr double reported_deviation_deg = 0.05;
 
 std::string fixed_text(double value, int decimals) {
   std::array<char, 64> text{};
@@ -98,7 +100,7 @@ public:
       return {};
     }
     if (seen_[*slot])
-      return bad_line(name_, joint.line, joint.name + " stands here twice; leave one out");
+      return bad_line(name_, joint.line, joint.name + " is here twice; leave one out");
     seen_[*slot] = true;
     if (const std::string wrong = complaint_about_points(joint.points); !wrong.empty())
       return bad_line(name_, joint.line, joint.name + ": " + wrong);
@@ -139,7 +141,7 @@ private:
     }
     lines_.sensors[slot] = line;
     lines_.line[slot] = joint.line;
-    if (best.deviation >= told_deviation_deg)
+    if (best.deviation >= reported_deviation_deg)
       notes_.push_back(who + ": a line replaces its " + std::to_string(joint.points.size()) +
                        " points, and is off by up to " + fixed_text(best.deviation, 1) +
                        " degrees, as at raw value " + fixed_text(best.deviation_at, 3));
@@ -160,6 +162,60 @@ private:
   bool any_unknown_ = false;
   std::vector<std::string> notes_;
 };
+
+// Written are two points of each sensor's line.
+struct TwoPoints {
+  std::string_view name;
+  std::array<RosPoint, 2> points;
+};
+
+struct WrittenJoints {
+  std::vector<TwoPoints> joints;
+  std::vector<std::string> notes;
+};
+
+Result<WrittenJoints> joints_for(const Calibration& calibration, CountScale counts) {
+  if (counts.whole_range || counts.most == 0)
+    return Error{Errc::bad_input,
+                 "the ROS forms are for a CyberGlove's bare counts, and this glove "
+                 "calibrates itself; export as toml or csv"};
+  const double scale = 255.0 / counts.most;
+  WrittenJoints written;
+  std::string missing;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    if (ros_names[slot].empty()) continue;
+    const SensorCalibration& line = calibration.sensors[slot];
+    if (line.gain_rad_per_count == 0.0) {
+      missing.append(missing.empty() ? "" : ", ").append(sensor_names[slot]);
+      continue;
+    }
+    TwoPoints joint{ros_names[slot], {}};
+    for (std::size_t at = 0; at < 2; ++at) { // where the sensor's range begins and ends
+      const double raw = at == 0 ? 0.0 : 1.0;
+      const double count = (ros_first_count + ros_counts * raw) / scale;
+      joint.points[at] = {raw, to_degrees(line.gain_rad_per_count * (count - line.offset_counts))};
+    }
+    written.joints.push_back(joint);
+  }
+  if (written.joints.empty())
+    return Error{Errc::bad_input, "no sensor is calibrated; `nendo calibrate` does it"};
+  if (!missing.empty())
+    written.notes.push_back("not calibrated, so left out: " + missing +
+                            "; a ROS driver that needs them stops");
+  if (calibration.has_couplings())
+    written.notes.emplace_back("the couplings (mixed_in) are lost: the ROS forms have none");
+  if (calibration.middle_bias != 0.0)
+    written.notes.emplace_back("the middle bias is lost: the ROS forms have none");
+  return written;
+}
+
+std::string number_text(double value) {
+  std::array<char, 400> digits{}; // the largest double has 309 before the point
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
+                                 std::chars_format::fixed, 9)
+                       .ptr;
+  return {digits.data(), end};
+}
 
 } // namespace
 
@@ -184,6 +240,34 @@ Result<ImportedCalibration> imported_joints(std::vector<RosJoint> joints, std::s
   for (RosJoint& joint : joints)
     if (auto fine = import.add(joint); !fine) return fine.error();
   return import.finish();
+}
+
+Result<ExportedCalibration> ros_yaml_text(const Calibration& calibration, CountScale counts) {
+  auto written = joints_for(calibration, counts);
+  if (!written) return written.error();
+  std::string text = "{'cyberglove_calibration': [\n";
+  for (const TwoPoints& joint : written->joints) {
+    text.append("['").append(joint.name).append("', [");
+    for (const RosPoint& point : joint.points)
+      text += std::string(&point == joint.points.data() ? "" : ",") + "[" + number_text(point.raw) +
+              "," + number_text(point.angle_deg) + "]";
+    text += "]],\n";
+  }
+  return ExportedCalibration{text + "]}\n", std::move(written->notes)};
+}
+
+Result<ExportedCalibration> ros_xml_text(const Calibration& calibration, CountScale counts) {
+  auto written = joints_for(calibration, counts);
+  if (!written) return written.error();
+  std::string text = "<?xml version=\"1.0\" ?>\n<Cyberglove_calibration>\n";
+  for (const TwoPoints& joint : written->joints) {
+    text.append("<Joint name=\"").append(joint.name).append("\">\n");
+    for (const RosPoint& point : joint.points)
+      text += "<calib raw_value=\"" + number_text(point.raw) + "\" calibrated_value=\"" +
+              number_text(point.angle_deg) + "\"/>\n";
+    text += "</Joint>\n";
+  }
+  return ExportedCalibration{text + "</Cyberglove_calibration>\n", std::move(written->notes)};
 }
 
 } // namespace nendo::hand

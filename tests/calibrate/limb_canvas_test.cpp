@@ -1,4 +1,4 @@
-#include "calibrate/limb_canvas.hpp"
+#include "calibrate/hand_drawing.hpp"
 
 #include <cmath>
 #include <random>

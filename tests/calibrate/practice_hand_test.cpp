@@ -124,7 +124,7 @@ TEST_SUITE("practice_hand") {
     CHECK(practice.guide.is_done());
   }
 
-  TEST_CASE("it goes back as it went on, and never beyond the first or the last") {
+  TEST_CASE("it goes back as it went ahead, and never beyond the first or the last") {
     PracticeHand hand(1, {});
     hand.go_on();
     hand.go_on();

@@ -66,7 +66,7 @@ TEST_SUITE("calibration_fit") {
       CHECK(off < before);
       before = off;
     }
-    // A habit is 0.6 of what wearers are off by, 6 degrees where fingers are spread; the default's
+    // A habit is 0.6 of the wearers' deviations, 6 degrees where fingers are spread; the default's
     // pull may be taken for one.
     CHECK(before < 4.0 * rad);
   }
@@ -112,7 +112,7 @@ TEST_SUITE("calibration_fit") {
     CHECK(fit->calibration.middle_bias == default_calibration().middle_bias);
   }
 
-  TEST_CASE("touches mend a thumb whose poses were not held as asked") {
+  TEST_CASE("touches correct a thumb whose poses were not held as asked") {
     const Calibration truth = some_truth(7);
     const HandSkeleton skeleton(Side::right);
     std::mt19937 random(8);
@@ -147,7 +147,7 @@ TEST_SUITE("calibration_fit") {
       CHECK(reading.gap_m < 0.004);
   }
 
-  TEST_CASE("the ends of a free motion mend fists that were held too loosely") {
+  TEST_CASE("the ends of a free motion correct fists that were held too loosely") {
     const Calibration truth = some_truth(19);
     std::mt19937 random(20);
     std::vector<PoseReading> loose;

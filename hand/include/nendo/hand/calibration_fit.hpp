@@ -53,7 +53,7 @@ struct FitOptions {
   HandSize size{};
   bool size_known = false;
   /// Sensors of joints that cannot do the poses. Of them only what the flat hand says is believed,
-  /// and no touch of their fingers; gains stay the default's where nothing else tells them.
+  /// and no touch of their fingers; gains stay the default's where nothing else determines them.
   SensorMask stiff{};
   /// The calibration that is touched up; needed for that alone.
   std::optional<Calibration> start{};
@@ -102,14 +102,13 @@ struct CalibrationFit {
   /// poses better than those of the full fit. They are chosen by groups of like joints.
   SensorMask uses_quick_fit;
   std::array<SensorFit, sensor_slots> sensors{};
-  std::array<bool, couplings.size()> coupling_determined{};
   /// Fingers, thumb to little finger, whose joints moved so much less than the poses ask
   /// that their gains are implausible for a glove: they may be stiff (FitOptions::stiff).
   std::array<bool, finger_count> limited_range{};
   SensorMask undetermined; ///< sensors that are present, whose gain or offset is the default's
   std::vector<ReadingFit> readings; ///< in the order of those given
   /// Ratio of the largest singular value of the determined problem to its smallest, in units of
-  /// what the default leaves open.
+  /// the default's deviation.
   double condition = 1.0;
 };
 
@@ -118,7 +117,7 @@ struct CalibrationFit {
 /// stays at its default, because no pose shows it. Takes some hundred milliseconds and allocates.
 /// Fails with bad_input on: a reading that is not finite, out of scale, saturated or lacks a
 /// sensor; flat or fist missing; a sensor of a finger's first two joints that moves the wrong way
-/// or not at all. Other contradictions refuse nobody; their evidence is set aside.
+/// or not at all. Other contradictions are no errors; their evidence is set aside.
 NENDO_API Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Side side,
                                                  SensorMask sensors,
                                                  const FitOptions& options = {});

@@ -48,7 +48,7 @@ struct NENDO_API JointAngles {
 /// usually 0.
 ///
 /// Angles of absent sensors are estimated from present ones, by rules that are continuous and do
-/// not fall when a measured angle rises; angle_sources.hpp tells which angles are estimated:
+/// not fall when a measured angle rises; angle_sources.hpp says which angles are estimated:
 /// - finger DIP: 0.32 PIP^2 + 0.17 PIP, of a bent PIP (the vendor library's rule for 18-sensor
 ///   gloves);
 /// - finger PIP: 1.1 MCP, of a bent MCP. A glove with one sensor a finger measures curl, and in a
@@ -62,17 +62,22 @@ struct NENDO_API JointAngles {
 /// - all others, and a thumb without any flexion sensor: zero, that is closed fingers, a flat palm,
 ///   a straight wrist.
 /// Angles of sensors that are present but `left_out`, because they are stuck, are estimated from
-/// more: from the same joints of the fingers beside, and where nothing tells them, they are
+/// more: from the same joints of the fingers beside, and where nothing determines them, they are
 /// those of a hand at rest.
 /// Wait-free; the result is finite.
 NENDO_API JointAngles joint_angles(const GloveSample& sample, const Calibration& calibration,
                                    SensorMask left_out = {}) noexcept;
 
+/// Returns the angles of all sensors in a glove on a hand with these joints. joint_angles() turns
+/// them into `joints`, if the middle finger does not turn aside, which no glove measures.
+/// Wait-free.
+NENDO_API SensorAngles sensor_angles_of(const JointAngles& joints) noexcept;
+
 /// Returns Calibration::angles_rad(), where the angles of sensors that are `left_out` follow from
 /// the others: a finger's flexion from the same joints beside it and from its own other joints, a
-/// gap from the other gaps, the thumb's flexion from its other one; and where nothing tells them,
-/// as of a hand at rest. Without any left out it returns the same bits as that. Wait-free; finite
-/// if the measured angles are.
+/// gap from the other gaps, the thumb's flexion from its other one; and where nothing determines
+/// them, as of a hand at rest. Without any left out it returns the same bits as that. Wait-free;
+/// finite if the measured angles are.
 NENDO_API SensorAngles filled_angles_rad(const GloveSample& sample, const Calibration& calibration,
                                          SensorMask left_out) noexcept;
 
