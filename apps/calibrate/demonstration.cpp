@@ -69,7 +69,7 @@ JointAngles demonstrated_angles(hand::PoseId id, const hand::HandSkeleton& skele
   const hand::CalibrationPose& pose = hand::pose_of(id);
   const JointAngles angles = assumed_angles(pose);
   if (!pose.touch) return angles;
-  const bool straight = pose.assumed[static_cast<std::size_t>(Sensor::index_pip)].known();
+  const bool straight = pose.assumed[index_of(Sensor::index_pip)].known();
   return touching(angles, pose.touch->with, straight, skeleton);
 }
 

@@ -15,8 +15,7 @@ namespace nendo::calibrate {
 struct Limb {
   Eigen::Vector3d begin, end; ///< x to the right, y up, z towards the viewer; metres
   double begin_radius, end_radius;
-  std::uint8_t
-      part; ///< palm or finger, so that overlapping limbs can be distinguished; not `nothing`
+  std::uint8_t part; ///< palm or finger, to distinguish overlapping limbs; not `nothing`
 };
 
 class LimbCanvas {

@@ -66,7 +66,7 @@ std::span<const PoseId> StillSensors::poses_since_change(std::size_t slot) const
 }
 
 bool StillSensors::contradicts(Sensor sensor, PoseId pose) const {
-  const auto slot = static_cast<std::size_t>(sensor);
+  const auto slot = index_of(sensor);
   const auto before = poses_since_change(slot);
   std::vector<PoseId> poses(before.begin(), before.end());
   poses.push_back(pose);

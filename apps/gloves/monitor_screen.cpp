@@ -136,7 +136,7 @@ std::string angle_text(const MonitorPicture& picture, Sensor sensor) {
   const hand::Calibration& calibration = *picture.calibration;
   if (calibration[sensor].gain_rad_per_count == 0.0) return std::string(angle_width, ' ');
   const auto angles_rad = hand::filled_angles_rad(*picture.sample, calibration, picture.left_out);
-  const double angle_rad = angles_rad[static_cast<std::size_t>(sensor)];
+  const double angle_rad = angles_rad[index_of(sensor)];
   const double angle_deg = std::round(to_degrees(angle_rad)) + 0.0; // 0 without a sign
   const char* const mark = picture.left_out.has(sensor) ? "e" : (picture.uncalibrated ? "~" : "");
   return right_aligned(mark + fixed(std::clamp(angle_deg, -999.0, 999.0), 0) + " deg", angle_width);

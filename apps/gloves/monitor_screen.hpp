@@ -25,9 +25,7 @@ public:
   void add(const GloveSample& sample) noexcept;
   void clear() noexcept { present_ = {}; }
   /// Returns the range of a sensor that the sample added last has.
-  const Range& operator[](Sensor sensor) const noexcept {
-    return ranges_[static_cast<std::size_t>(sensor)];
-  }
+  const Range& operator[](Sensor sensor) const noexcept { return ranges_[index_of(sensor)]; }
 
 private:
   std::array<Range, sensor_slots> ranges_{};

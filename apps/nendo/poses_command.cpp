@@ -3,23 +3,32 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <iostream>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/tick_grid.hpp>
 #include <nendo/hand/active_calibration.hpp>
+#include <nendo/hand/angle_deviations.hpp>
+#include <nendo/hand/bvh_file.hpp>
 #include <nendo/hand/sensor_gate.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/json_line.hpp"
 #include "cli/quantities.hpp"
 #include "export/hands_bvh.hpp"
+#include "gloves/glove_json.hpp"
 #include "gloves/open_hand.hpp"
-#include "gloves/pose_output.hpp"
 #include "gloves/sample_grid.hpp"
 #include "gloves/stuck_sensors.hpp"
 #include "nendo/commands.hpp"
@@ -64,11 +73,129 @@ hand::HandSkeleton skeleton_for(Side side, const gloves::OpenHand& hand) {
   return hand::HandSkeleton(side, hand.wearer.of(side).size);
 }
 
+class PoseOutput {
+public:
+  PoseOutput() = default;
+  PoseOutput(const PoseOutput&) = delete;
+  PoseOutput& operator=(const PoseOutput&) = delete;
+  virtual ~PoseOutput() = default;
+
+  /// Returns the hand of which every pose must be, or nullopt if any hand will do.
+  virtual std::optional<Side> only_side() const = 0;
+  /// Takes a pose that was made of these angles, which these sensors measured, but for those that
+  /// were left out. Keeps it until flush(), which it calls itself when much is kept; blocks then.
+  virtual Result<void> put(HostTime time, Side side, const hand::HandPose& pose,
+                           const hand::JointAngles& angles, SensorMask sensors,
+                           SensorMask left_out) = 0;
+  /// Writes the kept poses. Blocks as long as the disk or the reader does. Error: failed.
+  virtual Result<void> flush() = 0;
+  /// Flushes and completes the output. Must be the last call. Error: failed.
+  virtual Result<void> finish() = 0;
+};
+
+// A rate that the machine cannot keep up with must not fill its memory.
+constexpr std::size_t max_pending_bytes = 1 << 16;
+constexpr std::uint64_t max_pending_frames = 64;
+
+/// Of the estimated angles alone.
+nlohmann::ordered_json deviations_json(const hand::JointAngles& angles, SensorMask sensors,
+                                       SensorMask left_out) {
+  const hand::AngleSources sources = hand::angle_sources(sensors, left_out);
+  const hand::AngleDeviations deviations = hand::angle_deviations(angles, sensors, left_out);
+  nlohmann::ordered_json by_angle;
+  for (std::size_t at = 0; at < hand::angle_count; ++at)
+    if (hand::is_estimated(sources[at]))
+      by_angle[std::string(hand::angle_names[at])] =
+          std::round(10.0 * to_degrees(deviations[at])) / 10.0;
+  return by_angle;
+}
+
+/// Returns the line of a pose without a line end, with the key angles if it is a glove's first.
+std::string pose_json(HostTime time, Side side, const hand::HandPose& pose,
+                      const hand::JointAngles& angles, SensorMask sensors, SensorMask left_out,
+                      bool is_first) {
+  nlohmann::ordered_json joints = nlohmann::ordered_json::object();
+  for (std::size_t at = 0; at < hand::joint_count; ++at) {
+    const Eigen::Isometry3d& joint = pose.joints[at];
+    const Eigen::Vector3d position = joint.translation();
+    Eigen::Quaterniond q(joint.linear());
+    q.normalize();
+    if (q.w() < 0.0) q.coeffs() = -q.coeffs(); // both are the same turn
+    joints[std::string(name_of(static_cast<hand::Joint>(at)))] = {
+        {"position_m", {position.x(), position.y(), position.z()}},
+        {"orientation_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+  }
+  nlohmann::ordered_json line{{"time_s", to_seconds(time.time_since_epoch())},
+                              {"hand", name_of(side)},
+                              {"joints", std::move(joints)}};
+  if (auto deviations = deviations_json(angles, sensors, left_out); !deviations.empty())
+    line["deviations_deg"] = std::move(deviations);
+  if (left_out.bits != 0) line["left_out"] = gloves::sensors_json(left_out);
+  if (is_first) line["angles"] = gloves::angle_sources_json(sensors, left_out);
+  return cli::json_text(line);
+}
+
+/// Writes a JSON object in a line for each pose to standard output. Its keys are time_s (host
+/// clock), hand ("left" or "right") and joints. joints has OpenXR's names in OpenXR's order, each
+/// with position_m [x, y, z] and orientation_xyzw, a unit quaternion whose w is not negative. The
+/// first pose of each glove has also the key angles, with what angle_sources_json() returns. A pose
+/// with estimated angles has the key deviations_deg: by the name of each of these angles, one
+/// standard deviation (hand::angle_deviations()). Where sensors are stuck, the key left_out has
+/// their names.
+class JsonLines final : public PoseOutput {
+public:
+  std::optional<Side> only_side() const override { return std::nullopt; }
+  Result<void> put(HostTime time, Side side, const hand::HandPose& pose,
+                   const hand::JointAngles& angles, SensorMask sensors,
+                   SensorMask left_out) override {
+    const bool first = gloves_.is_first(side, sensors, left_out);
+    lines_ += pose_json(time, side, pose, angles, sensors, left_out, first);
+    lines_ += '\n';
+    return lines_.size() < max_pending_bytes ? Result<void>() : flush();
+  }
+  Result<void> flush() override {
+    std::cout << lines_ << std::flush; // what cannot be written ends the program by itself
+    lines_.clear();
+    return {};
+  }
+  Result<void> finish() override { return flush(); }
+
+private:
+  std::string lines_;
+  gloves::GloveChanges gloves_;
+};
+
+class BvhRecording final : public PoseOutput {
+public:
+  BvhRecording(hand::BvhFile file, std::string path, Side side)
+      : file_(std::move(file)), path_(std::move(path)), side_(side) {}
+
+  std::optional<Side> only_side() const override { return side_; }
+  Result<void> put(HostTime, Side, const hand::HandPose& pose, const hand::JointAngles&, SensorMask,
+                   SensorMask) override {
+    if (auto added = file_.add(pose); !added) return added;
+    return ++put_ % max_pending_frames != 0 ? Result<void>() : flush();
+  }
+  Result<void> flush() override { return file_.flush(); }
+  Result<void> finish() override {
+    if (auto finished = file_.finish(); !finished) return finished;
+    std::cout << path_ << ": " << file_.frames() << " poses of a " << name_of(side_) << " hand"
+              << std::endl;
+    return {};
+  }
+
+private:
+  hand::BvhFile file_;
+  std::string path_;
+  Side side_;
+  std::uint64_t put_ = 0;
+};
+
 /// Makes poses of samples and puts them into an output, until there are enough.
 class PoseStream {
 public:
   /// `written` counts the poses of all gloves.
-  PoseStream(gloves::OpenHand& hand, const Options& options, gloves::PoseOutput& output,
+  PoseStream(gloves::OpenHand& hand, const Options& options, PoseOutput& output,
              std::uint64_t& written)
       : hand_(hand), options_(options), output_(output), written_(written),
         start_(hand.first.arrival), calibration_(hand.wearer),
@@ -87,7 +214,7 @@ public:
     return continues && pass_time(now) && !ended;
   }
   const Result<void>& state() const noexcept { return state_; }
-  gloves::PoseOutput& output() const noexcept { return output_; }
+  PoseOutput& output() const noexcept { return output_; }
 
 private:
   bool take(const GloveSample& sample) {
@@ -121,7 +248,7 @@ private:
 
   gloves::OpenHand& hand_;
   const Options& options_;
-  gloves::PoseOutput& output_;
+  PoseOutput& output_;
   std::uint64_t& written_;
   bool is_first_taken_ = false;
   HostTime start_;
@@ -149,19 +276,19 @@ Result<void> stream(std::span<PoseStream> streams) {
   return {};
 }
 
-using Outputs = std::vector<std::unique_ptr<gloves::PoseOutput>>;
+using Outputs = std::vector<std::unique_ptr<PoseOutput>>;
 
 /// One for all gloves, or one for each.
 Result<Outputs> open_outputs(const Options& options, const std::vector<gloves::OpenHand>& hands) {
   Outputs outputs;
-  if (options.bvh.empty()) outputs.push_back(gloves::json_pose_output());
+  if (options.bvh.empty()) outputs.push_back(std::make_unique<JsonLines>());
   for (const gloves::OpenHand& hand : hands) {
     if (options.bvh.empty()) break;
     const std::string name =
         hands.size() == 1 ? options.bvh : exporting::path_of_hand(options.bvh, hand.side).string();
-    auto file = gloves::bvh_pose_output(name, skeleton_for(hand.side, hand), rate_of(options));
+    auto file = hand::BvhFile::create(name, skeleton_for(hand.side, hand), rate_of(options));
     if (!file) return file.error();
-    outputs.push_back(*std::move(file));
+    outputs.push_back(std::make_unique<BvhRecording>(*std::move(file), name, hand.side));
   }
   return outputs;
 }

@@ -155,8 +155,8 @@ Result<void> check_fingers(std::span<const PoseReading> readings, SensorMask sen
                            const FitOptions& options) {
   const Calibration start = default_calibration(options.scale);
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const bool mcp_or_pip = slot >= static_cast<std::size_t>(Sensor::index_mcp) &&
-                            slot < static_cast<std::size_t>(Sensor::palm_arch) && slot % 4 < 2;
+    const bool mcp_or_pip =
+        slot >= index_of(Sensor::index_mcp) && slot < index_of(Sensor::palm_arch) && slot % 4 < 2;
     const auto sensor = static_cast<Sensor>(slot);
     if (!mcp_or_pip || !sensors.has(sensor) || options.stiff.has(sensor)) continue;
     std::array<double, 2> counts{}, angles{}, number{};

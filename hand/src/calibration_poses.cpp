@@ -30,8 +30,8 @@ public:
   }
   constexpr Described& of(Sensor sensor, Asked asked) {
     const bool bent = asked.angle_deg > 8.0 || asked.angle_deg < -8.0;
-    pose_.assumed[static_cast<std::size_t>(sensor)] = {from_degrees(asked.angle_deg),
-                                                       from_degrees(asked.deviation_deg), bent};
+    pose_.assumed[index_of(sensor)] = {from_degrees(asked.angle_deg),
+                                       from_degrees(asked.deviation_deg), bent};
     return *this;
   }
   constexpr Described& finger(std::size_t number, Asked mcp, Asked pip, Asked dip) {
@@ -51,7 +51,7 @@ public:
   /// Palm and first phalanx on a table, the others pressed against its side.
   constexpr Described& over_edge(std::size_t number) {
     finger(number, straight, {90, 4}, straight);
-    pose_.assumed[static_cast<std::size_t>(Sensor::index_pip) + 4 * number].by_feel = false;
+    pose_.assumed[index_of(Sensor::index_pip) + 4 * number].by_feel = false;
     return *this;
   }
   /// The first `extended` fingers straight, the others as in a fist, but less surely.

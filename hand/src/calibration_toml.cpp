@@ -73,7 +73,7 @@ void read_sensor(TomlReader& reader, Sensor sensor, const toml::node& node,
       reader.number(*table, "residual_rad"), reader.number(*table, "least_counts"),
       reader.number(*table, "most_counts"), reader.number(*table, "confidence")};
   complain_if(reader, node, name, complaint_about(quality));
-  wearer.quality[static_cast<std::size_t>(sensor)] = quality;
+  wearer.quality[index_of(sensor)] = quality;
 }
 
 void read_sensors(TomlReader& reader, const toml::table& root, WearerCalibration& wearer) {

@@ -30,9 +30,7 @@ struct Measured {
 
   bool has(Sensor sensor) const noexcept { return present.has(sensor); }
   /// Of the calibration: no stop yet.
-  double raw_angle(Sensor sensor) const noexcept {
-    return angles_rad[static_cast<std::size_t>(sensor)];
-  }
+  double raw_angle(Sensor sensor) const noexcept { return angles_rad[index_of(sensor)]; }
   double angle(Sensor sensor, const JointLimit& limit) const noexcept {
     return limit.soften(raw_angle(sensor));
   }

@@ -62,7 +62,7 @@ public:
   }
 
 private:
-  double& at(Sensor sensor) noexcept { return angles_[static_cast<std::size_t>(sensor)]; }
+  double& at(Sensor sensor) noexcept { return angles_[index_of(sensor)]; }
   bool is_measured(Sensor sensor) const noexcept { return measured_.has(sensor); }
   template <class Estimate>
   void fill(Sensor sensor, Estimate&& estimate) noexcept {
@@ -109,7 +109,7 @@ private:
   /// roll and abduction, one that is left out is taken to be as at rest.
   void couple() noexcept {
     const SensorAngles lines = angles_;
-    const auto line = [&](Sensor sensor) { return lines[static_cast<std::size_t>(sensor)]; };
+    const auto line = [&](Sensor sensor) { return lines[index_of(sensor)]; };
     fill(Sensor::thumb_roll, [] { return opposed_at_rest; });
     fill(Sensor::thumb_abduction, [] { return opposed_at_rest; });
     for (std::size_t k = 0; k < couplings.size(); ++k) {

@@ -5,7 +5,7 @@
 namespace nendo::hand {
 
 void CountRanges::widen(Sensor sensor, double counts) noexcept {
-  const auto slot = static_cast<std::size_t>(sensor);
+  const auto slot = index_of(sensor);
   const bool first = !present.has(sensor);
   present.add(sensor);
   low_counts[slot] = first ? counts : std::min(low_counts[slot], counts);

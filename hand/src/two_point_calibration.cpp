@@ -74,7 +74,7 @@ Result<ImportedCalibration> parse_two_point(std::string_view text, std::string_v
     if (a->count == b->count) return bad(place + "has one count for two angles; measure it again");
     const double slope = (b->angle_rad - a->angle_rad) / (b->count - a->count);
     if (slope == 0.0) return bad(place + "has one angle at two counts; measure it again");
-    const auto slot = static_cast<std::size_t>(sensor);
+    const auto slot = index_of(sensor);
     read.sensors[slot] = {sign * slope, a->count - a->angle_rad / slope};
     read.line[slot] = lines.line();
   }

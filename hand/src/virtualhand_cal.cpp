@@ -14,8 +14,8 @@ namespace nendo::hand {
 namespace {
 
 constexpr std::size_t rows_per_group = 4;
-constexpr auto gain_slot = static_cast<std::size_t>(Sensor::index_abduction);
-constexpr auto bias_slot = static_cast<std::size_t>(Sensor::index_middle_abduction);
+constexpr auto gain_slot = index_of(Sensor::index_abduction);
+constexpr auto bias_slot = index_of(Sensor::index_middle_abduction);
 // What published calibrations have for pairs lies between 0.005 and 0.02 rad a count; a middle bias
 // is 0 or some tenths.
 constexpr double min_pair_gain = 0.002;

@@ -51,10 +51,10 @@ struct NENDO_API Calibration {
   double middle_bias = 0.0;
 
   constexpr const SensorCalibration& operator[](Sensor sensor) const noexcept {
-    return sensors[static_cast<std::size_t>(sensor)];
+    return sensors[index_of(sensor)];
   }
   constexpr SensorCalibration& operator[](Sensor sensor) noexcept {
-    return sensors[static_cast<std::size_t>(sensor)];
+    return sensors[index_of(sensor)];
   }
 
   constexpr bool has_couplings() const noexcept {
