@@ -79,15 +79,14 @@ Result<void> check(std::span<const PoseReading> readings, SensorMask sensors,
 FreeUnknowns first_unknowns(SensorMask sensors, const FitOptions& options) {
   const Calibration start = default_calibration(options.scale);
   FreeUnknowns free;
-  const auto add = [&](std::size_t unknown) { free.push_back(static_cast<Eigen::Index>(unknown)); };
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const bool real = start.sensors[slot].gain_rad_per_count != 0.0; // slot 7 has no default
     if (!sensors.has(static_cast<Sensor>(slot)) || !real) continue;
-    if (options.mode != FitMode::touch_up) add(gain_of(slot));
-    add(level_of(slot));
+    if (options.mode != FitMode::touch_up) free.push_back(gain_of(slot));
+    free.push_back(level_of(slot));
   }
   for (std::size_t k = 0; options.mode == FitMode::full && k < couplings.size(); ++k) {
-    if (sensors.has(couplings[k].of) && sensors.has(couplings[k].by)) add(mix_of(k));
+    if (sensors.has(couplings[k].of) && sensors.has(couplings[k].by)) free.push_back(mix_of(k));
   }
   return free;
 }
@@ -444,9 +443,8 @@ Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Si
   fit.calibration = problem.calibration(solution.at);
   fit.size = problem.size(solution.at);
   fit.condition = condition_of(solution.covariance);
-  const auto determined = [&](std::size_t unknown) {
-    return std::find(solution.free.begin(), solution.free.end(),
-                     static_cast<Eigen::Index>(unknown)) != solution.free.end();
+  const auto determined = [&](Eigen::Index unknown) {
+    return std::find(solution.free.begin(), solution.free.end(), unknown) != solution.free.end();
   };
   const bool gains_are_kept = options.mode == FitMode::touch_up;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {

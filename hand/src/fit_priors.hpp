@@ -14,8 +14,7 @@ namespace nendo::hand {
 // between fingers need it: the poses that spread them are few and loosely held, and a wider prior
 // made their errors greater by a fifth. Published offsets differ by half of theirs, so that one or
 // two poses outweigh it.
-inline constexpr double gain_deviation =
-    0.22; ///< deviation of the gain's logarithm: its sign is known
+inline constexpr double gain_deviation = 0.22; ///< the logarithm's: a gain's sign is known
 inline constexpr double offset_deviation_of_range = 40.0 / 255.0;
 // Thumb sensors mix strongly; published slope matrices have ratios up to 0.9.
 inline constexpr double thumb_mix_deviation = 0.5;
@@ -35,7 +34,7 @@ inline constexpr double palm_depth_deviation_m = 0.003;
 // twice as far as those of hand_shape.hpp. The deviations of its turn cover both, for a touch that
 // is believed as if the thumb were better known pulls roll and abduction off. All but ANSUR's are
 // quoted from memory.
-inline constexpr double length_deviation = 0.06; ///< deviation of its logarithm
+inline constexpr double length_deviation = 0.06; ///< the logarithm's
 inline constexpr double breadth_deviation = 0.05;
 constexpr double shape_deviation(ShapeTerm term) noexcept {
   if (term <= ShapeTerm::little_distal) return 0.06;
@@ -48,8 +47,7 @@ constexpr double shape_deviation(ShapeTerm term) noexcept {
   return (term < ShapeTerm::index_tilt ? 10.0 : 7.0) * degree;
 }
 
-// Even the right terms leave an error of a hand's form, in each coordinate of
-// a touch.
+// Even the right terms leave an error of a hand's form, in each coordinate of a touch.
 inline constexpr double form_deviation_m = 0.0045;
 
 // How far sensors slip between wearings before anything is known of a wearing: the vendor's figure

@@ -141,21 +141,21 @@ std::vector<Eigen::Index> FitProblem::wearers_unknowns() const {
   std::vector<Eigen::Index> chosen;
   const bool touches = std::any_of(rows_.begin(), rows_.end(),
                                    [](const Rows& rows) { return rows.end > rows.touch; });
-  for (std::size_t k = line_unknowns; k < habit_unknowns && touches; ++k)
-    if (k < hand_unknowns || fits_hand(k)) chosen.push_back(static_cast<Eigen::Index>(k));
+  for (Eigen::Index k = line_unknowns; k < habit_unknowns && touches; ++k)
+    if (k < hand_unknowns || fits_hand(k)) chosen.push_back(k);
   std::array<bool, sensor_slots> bent{};
   for (const auto& of_reading : assumptions_)
     for (const Assumption& assumption : of_reading)
       bent[assumption.slot] = bent[assumption.slot] || (full_ && assumption.assumed.by_feel);
   for (std::size_t slot = 0; slot < sensor_slots; ++slot)
-    if (bent[slot]) chosen.push_back(static_cast<Eigen::Index>(habit_of(slot)));
+    if (bent[slot]) chosen.push_back(habit_of(slot));
   return chosen;
 }
 
 FitProblem::Line FitProblem::line(const Unknowns& at, std::size_t slot) const noexcept {
   Line line = lines_[slot];
-  line.gain *= std::exp(gain_deviation * at[static_cast<Eigen::Index>(gain_of(slot))]);
-  line.level += line.level_unit * at[static_cast<Eigen::Index>(level_of(slot))];
+  line.gain *= std::exp(gain_deviation * at[gain_of(slot)]);
+  line.level += line.level_unit * at[level_of(slot)];
   return line;
 }
 
@@ -166,7 +166,7 @@ Calibration FitProblem::calibration(const Unknowns& at) const {
     if (now.gain != 0.0) fitted.sensors[slot] = {now.gain, now.mean_counts - now.level / now.gain};
   }
   for (std::size_t k = 0; k < couplings.size(); ++k)
-    fitted.coupling_gains[k] += mix_deviation(k) * at[static_cast<Eigen::Index>(mix_of(k))];
+    fitted.coupling_gains[k] += mix_deviation(k) * at[mix_of(k)];
   return fitted;
 }
 
@@ -181,9 +181,8 @@ SensorAngles FitProblem::angles_rad(const Unknowns& at, std::size_t reading,
     own[slot] = now.angle_rad(counts[slot]);
     if (jacobian == nullptr) continue;
     const auto row = static_cast<Eigen::Index>(slot);
-    (*jacobian)(row, static_cast<Eigen::Index>(gain_of(slot))) =
-        gain_deviation * now.turn_rad(counts[slot]);
-    (*jacobian)(row, static_cast<Eigen::Index>(level_of(slot))) = now.level_unit;
+    (*jacobian)(row, gain_of(slot)) = gain_deviation * now.turn_rad(counts[slot]);
+    (*jacobian)(row, level_of(slot)) = now.level_unit;
   }
   SensorAngles angles = own;
   AngleJacobian mixed;
@@ -191,7 +190,7 @@ SensorAngles FitProblem::angles_rad(const Unknowns& at, std::size_t reading,
   for (std::size_t k = 0; k < couplings.size(); ++k) {
     const auto [of, by] = couplings[k];
     if (!sensors_.has(of) || !sensors_.has(by)) continue;
-    const auto column = static_cast<Eigen::Index>(mix_of(k));
+    const Eigen::Index column = mix_of(k);
     const double mix = start_.coupling_gains[k] + mix_deviation(k) * at[column];
     angles[index_of(of)] += mix * own[index_of(by)];
     if (jacobian == nullptr) continue;
@@ -212,7 +211,7 @@ void FitProblem::add_assumptions(std::size_t reading, const Unknowns& at,
     const double habit_rad = full_ && assumed.by_feel ? habit_part * assumed.deviation_rad : 0.0;
     const double deviation_rad =
         std::sqrt(assumed.deviation_rad * assumed.deviation_rad - habit_rad * habit_rad);
-    const auto habit = static_cast<Eigen::Index>(habit_of(slot));
+    const Eigen::Index habit = habit_of(slot);
     const double meant_rad = assumed.angle_rad + habit_rad * at[habit];
     const double weight = is_set_aside ? set_aside_weight : 1.0;
     const Robust result = robust((angles[slot] - meant_rad) / deviation_rad);
@@ -236,9 +235,8 @@ void FitProblem::add_range_ends(const Unknowns& at, Eigen::VectorXd& residuals,
     residuals[row] = result.residual;
     if (jacobian != nullptr) {
       const double slope = result.slope / end.deviation_rad;
-      (*jacobian)(row, static_cast<Eigen::Index>(gain_of(slot))) =
-          slope * gain_deviation * now.turn_rad(counts);
-      (*jacobian)(row, static_cast<Eigen::Index>(level_of(slot))) = slope * now.level_unit;
+      (*jacobian)(row, gain_of(slot)) = slope * gain_deviation * now.turn_rad(counts);
+      (*jacobian)(row, level_of(slot)) = slope * now.level_unit;
     }
     ++row;
   }
@@ -264,11 +262,11 @@ void FitProblem::for_each_line(Visit&& visit) const {
   for (std::size_t n = 0; n < readings_.size(); ++n) {
     Eigen::Index row = rows_[n].begin;
     for (const Assumption& assumption : assumptions_[n])
-      visit(row++, static_cast<Eigen::Index>(gain_of(assumption.slot)));
+      visit(row++, gain_of(assumption.slot));
   }
   Eigen::Index row = height_ - static_cast<Eigen::Index>(range_ends_.size());
   for (const RangeEnd& end : range_ends_)
-    visit(row++, static_cast<Eigen::Index>(gain_of(end.slot)));
+    visit(row++, gain_of(end.slot));
 }
 
 void FitProblem::weigh_as(const Unknowns& before, const Unknowns& at, double part,

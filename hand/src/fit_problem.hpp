@@ -16,23 +16,23 @@ namespace nendo::hand {
 /// the couplings. The others are the wearer's: how deep the palm's flesh is; the hand's length,
 /// breadth and shape; and for each slot the habit, by which the joint differs from every asked
 /// angle.
-inline constexpr std::size_t line_unknowns = 2 * sensor_slots + couplings.size();
-inline constexpr std::size_t palm_unknown = line_unknowns;
-inline constexpr std::size_t hand_unknowns = palm_unknown + 1;
-inline constexpr std::size_t shape_unknowns = hand_unknowns + 2;
-inline constexpr std::size_t habit_unknowns = shape_unknowns + shape_terms;
-inline constexpr std::size_t unknown_count = habit_unknowns + sensor_slots;
-constexpr std::size_t gain_of(std::size_t slot) noexcept {
-  return 2 * slot;
+inline constexpr Eigen::Index line_unknowns = 2 * sensor_slots + couplings.size();
+inline constexpr Eigen::Index palm_unknown = line_unknowns;
+inline constexpr Eigen::Index hand_unknowns = palm_unknown + 1;
+inline constexpr Eigen::Index shape_unknowns = hand_unknowns + 2;
+inline constexpr Eigen::Index habit_unknowns = shape_unknowns + Eigen::Index{shape_terms};
+inline constexpr Eigen::Index unknown_count = habit_unknowns + Eigen::Index{sensor_slots};
+constexpr Eigen::Index gain_of(std::size_t slot) noexcept {
+  return static_cast<Eigen::Index>(2 * slot);
 }
-constexpr std::size_t level_of(std::size_t slot) noexcept {
-  return 2 * slot + 1;
+constexpr Eigen::Index level_of(std::size_t slot) noexcept {
+  return gain_of(slot) + 1;
 }
-constexpr std::size_t mix_of(std::size_t coupling) noexcept {
-  return 2 * sensor_slots + coupling;
+constexpr Eigen::Index mix_of(std::size_t coupling) noexcept {
+  return static_cast<Eigen::Index>(2 * sensor_slots + coupling);
 }
-constexpr std::size_t habit_of(std::size_t slot) noexcept {
-  return habit_unknowns + slot;
+constexpr Eigen::Index habit_of(std::size_t slot) noexcept {
+  return habit_unknowns + static_cast<Eigen::Index>(slot);
 }
 
 using Unknowns = Eigen::Matrix<double, unknown_count, 1>;
@@ -95,7 +95,7 @@ private:
                         const HandSkeleton& skeleton) const;
   Eigen::Vector3d gap_m(const JointAngles& joints, const Touch& touch, double palm_m,
                         const HandSkeleton& skeleton) const;
-  bool fits_hand(std::size_t unknown) const noexcept;
+  bool fits_hand(Eigen::Index unknown) const noexcept;
   /// The hand's unknowns, each with a hand in which it alone is a little greater.
   struct Moved {
     Eigen::Index unknown;

@@ -111,9 +111,8 @@ bool drop_undetermined(FreeUnknowns& free, const Eigen::MatrixXd& information, U
 } // namespace
 
 Eigen::Index lines_in(const FreeUnknowns& free) {
-  return std::count_if(free.begin(), free.end(), [](Eigen::Index unknown) {
-    return unknown < static_cast<Eigen::Index>(line_unknowns);
-  });
+  return std::count_if(free.begin(), free.end(),
+                       [](Eigen::Index unknown) { return unknown < line_unknowns; });
 }
 
 Solution solve(const FitProblem& problem, FreeUnknowns free, const Unknowns& start) {

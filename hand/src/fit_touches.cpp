@@ -51,36 +51,35 @@ JointAngles joints_of(const SensorAngles& angles, SensorMask sensors) {
 
 HandSize FitProblem::size(const Unknowns& at) const {
   HandSize size = start_size_;
-  const auto unknown = [&](std::size_t k) { return at[static_cast<Eigen::Index>(k)]; };
   // Far steps of the search must not lead to hands that cannot be.
-  const auto scale = [&](std::size_t k, double deviation) {
-    return std::exp(std::clamp(deviation * unknown(k), -0.4, 0.4));
+  const auto scale = [&](Eigen::Index unknown, double deviation) {
+    return std::exp(std::clamp(deviation * at[unknown], -0.4, 0.4));
   };
   if (fits_hand(hand_unknowns)) {
     const double longer = scale(hand_unknowns, length_deviation);
     size.length_m *= longer;
     size.breadth_m *= longer * scale(hand_unknowns + 1, breadth_deviation);
   }
-  for (std::size_t k = 0; k < shape_terms && fits_hand(shape_unknowns + k); ++k) {
+  for (std::size_t k = 0; k < shape_terms && fits_hand(shape_unknowns); ++k) {
     const auto term = static_cast<ShapeTerm>(k);
-    size.shape.terms[k] =
-        std::clamp(size.shape.terms[k] + shape_deviation(term) * unknown(shape_unknowns + k),
-                   -max_of(term), max_of(term));
+    const double unknown = at[shape_unknowns + static_cast<Eigen::Index>(k)];
+    size.shape.terms[k] = std::clamp(size.shape.terms[k] + shape_deviation(term) * unknown,
+                                     -max_of(term), max_of(term));
   }
   return size;
 }
 
-bool FitProblem::fits_hand(std::size_t unknown) const noexcept {
+bool FitProblem::fits_hand(Eigen::Index unknown) const noexcept {
   return mode_ == FitMode::full && (unknown >= shape_unknowns || !size_known_);
 }
 
 FitProblem::Hands FitProblem::hands(const Unknowns& at, bool with_moved) const {
   Hands hands{HandSkeleton(side_, size(at)), {}};
-  for (std::size_t k = hand_unknowns; with_moved && k < habit_unknowns; ++k) {
+  for (Eigen::Index k = hand_unknowns; with_moved && k < habit_unknowns; ++k) {
     if (!fits_hand(k)) continue;
     Unknowns next = at;
-    next[static_cast<Eigen::Index>(k)] += hand_step;
-    hands.moved.push_back({static_cast<Eigen::Index>(k), HandSkeleton(side_, size(next))});
+    next[k] += hand_step;
+    hands.moved.push_back({k, HandSkeleton(side_, size(next))});
   }
   return hands;
 }
@@ -127,7 +126,7 @@ bool FitProblem::usable(const Touch& touch) const noexcept {
 }
 
 double FitProblem::palm_m(const Unknowns& at) noexcept {
-  return palm_depth_m + palm_depth_deviation_m * at[static_cast<Eigen::Index>(palm_unknown)];
+  return palm_depth_m + palm_depth_deviation_m * at[palm_unknown];
 }
 
 Eigen::Vector3d FitProblem::gap_m(const SensorAngles& angles, const Touch& touch, double palm_m,
@@ -185,8 +184,8 @@ void FitProblem::add_touch(std::size_t reading, const Unknowns& at, SensorAngles
         slopes.cwiseProduct(slope) * by_unknowns.row(static_cast<Eigen::Index>(slot));
   }
   Unknowns deeper = at;
-  deeper[static_cast<Eigen::Index>(palm_unknown)] += 1.0; // linear: any step will do
-  jacobian->block<3, 1>(row, static_cast<Eigen::Index>(palm_unknown)) =
+  deeper[palm_unknown] += 1.0; // linear: any step will do
+  jacobian->block<3, 1>(row, palm_unknown) =
       slopes.cwiseProduct(gap_m(joints, touch, palm_m(deeper), hands.now) - off_m);
   for (const auto& [unknown, skeleton] : hands.moved) {
     jacobian->block<3, 1>(row, unknown) =
