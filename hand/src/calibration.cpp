@@ -65,16 +65,12 @@ SensorCalibration scaled(const TypicalSensor& sensor, double most) noexcept {
 
 SensorAngles Calibration::angles_rad(const GloveSample& sample) const noexcept {
   SensorAngles lines{};
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    if (sample.present.has(static_cast<Sensor>(slot)))
-      lines[slot] = sensors[slot].angle_rad(sample.raw[slot]);
-  }
+  for (const Sensor sensor : sample.present)
+    lines[index_of(sensor)] = (*this)[sensor].angle_rad(sample[sensor]);
   SensorAngles angles = lines;
   for (std::size_t k = 0; k < couplings.size(); ++k) {
     const auto [of, by] = couplings[k];
-    if (sample.present.has(of))
-      angles[static_cast<std::size_t>(of)] +=
-          coupling_gains[k] * lines[static_cast<std::size_t>(by)];
+    if (sample.present.has(of)) angles[index_of(of)] += coupling_gains[k] * lines[index_of(by)];
   }
   return angles;
 }

@@ -51,12 +51,12 @@ FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorM
   for (const auto& reading : readings_) {
     const CalibrationPose& pose = pose_of(reading.pose);
     auto& assumptions = assumptions_.emplace_back();
-    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-      // Without couplings, a fist says nothing of the gaps between fingers.
+    for (const Sensor sensor : sensors_) {
+      const std::size_t slot = index_of(sensor);
+      // Without couplings, a fist says nothing about the gaps between fingers.
       const bool is_flat = reading.pose == PoseId::flat;
-      const bool speaks =
-          is_flat || (!stiff_.has(static_cast<Sensor>(slot)) && (full_ || is_flexion(slot)));
-      if (sensors_.has(static_cast<Sensor>(slot)) && pose.assumed[slot].known() && speaks)
+      const bool counts = is_flat || (!stiff_.has(sensor) && (full_ || is_flexion(slot)));
+      if (pose.assumed[slot].known() && counts)
         assumptions.push_back({slot, as_it_comes_out(pose.assumed[slot], slot)});
     }
     const Eigen::Index touch = height_ + static_cast<Eigen::Index>(assumptions.size());

@@ -102,22 +102,20 @@ SensorAngles SlipAdaptation::slips_counts() const noexcept {
 
 SensorRanges SlipAdaptation::ranges() const noexcept {
   SensorRanges ranges;
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const Learner& learner = learners_[slot];
-    if (followed_.has(static_cast<Sensor>(slot)))
-      ranges[slot] = {learner.low, learner.high,
-                      std::uint64_t{learner.bottoms} + std::uint64_t{learner.tops}};
+  for (const Sensor sensor : followed_) {
+    const Learner& learner = learners_[index_of(sensor)];
+    ranges[index_of(sensor)] = {learner.low, learner.high,
+                                std::uint64_t{learner.bottoms} + std::uint64_t{learner.tops}};
   }
   return ranges;
 }
 
 LearnedRanges SlipAdaptation::learned() const noexcept {
   LearnedRanges learned{ends_.side, {}};
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const Learner& learner = learners_[slot];
-    if (followed_.has(static_cast<Sensor>(slot)))
-      learned.sensors[slot] = {learner.low, learner.high, learner.bottoms, learner.tops,
-                               calibration_.sensors[slot]};
+  for (const Sensor sensor : followed_) {
+    const Learner& learner = learners_[index_of(sensor)];
+    learned.sensors[index_of(sensor)] = {learner.low, learner.high, learner.bottoms, learner.tops,
+                                         calibration_[sensor]};
   }
   return learned;
 }

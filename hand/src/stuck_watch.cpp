@@ -92,10 +92,9 @@ bool StuckWatch::shown_by_thumb(std::size_t slot) const noexcept {
 /// Returns whether so many per cent of all other sensors have swung so often.
 bool StuckWatch::shown_by_hand(std::size_t slot, std::size_t times, int part) const noexcept {
   int others = 0, moved = 0;
-  for (std::size_t other = 0; other < sensor_slots; ++other) {
-    if (other == slot || !present_.has(static_cast<Sensor>(other)) ||
-        stuck_.has(static_cast<Sensor>(other)))
-      continue;
+  for (const Sensor sensor : SensorMask{present_.bits & ~stuck_.bits}) {
+    const std::size_t other = index_of(sensor);
+    if (other == slot) continue;
     ++others;
     if (has_swung(other, watched_[slot].changed, times)) ++moved;
   }
