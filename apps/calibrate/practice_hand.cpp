@@ -9,7 +9,7 @@
 namespace nendo::calibrate {
 namespace {
 
-/// Where a free motion takes each joint, degrees. Those of the usual ranges of motion.
+/// The range of each joint in a free motion, degrees: the usual ranges of motion.
 struct Reach {
   Sensor sensor;
   double min_deg, max_deg;

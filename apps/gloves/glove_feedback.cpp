@@ -7,7 +7,7 @@
 namespace nendo::gloves {
 namespace {
 
-// So that a press that hardly changes pauses no stream.
+// Steps of strength, so that a press that hardly changes does not pause the stream.
 constexpr float levels = 8.0F;
 // The weakest of these is still felt.
 constexpr float min_vibration = 48.0F;

@@ -12,7 +12,7 @@
 namespace nendo::gloves {
 namespace {
 
-/// Of a table that is replayed.
+/// Notes the unused columns of a replayed table.
 void note_columns_not_read(const driver::GloveInfo& info) {
   for (const driver::GloveFact& fact : info.facts)
     if (info.kind == driver::GloveKind::recorded && fact.name == "columns_not_read")

@@ -15,7 +15,7 @@ constexpr std::array<double, 4> finger_deg{2.6, 1.8, 2.8, 2.2};
 constexpr double arch_deg = 4.0;
 constexpr double wrist_deg = 2.7;
 
-/// Of a DIP joint that follows from a PIP joint at this angle.
+/// The deviation of a DIP joint that is estimated from a PIP joint at this angle.
 double dip_deg(double pip_rad) noexcept {
   if (!std::isfinite(pip_rad)) return 90.0;
   const double pip_deg = std::clamp(to_degrees(pip_rad), -30.0, 130.0);

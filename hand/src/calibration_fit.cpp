@@ -91,7 +91,7 @@ FreeUnknowns first_unknowns(SensorMask sensors, const FitOptions& options) {
   return free;
 }
 
-/// Of the calibration, whatever the wearer's own unknowns are.
+/// The condition of the calibration alone, without the wearer's own unknowns.
 double condition_of(const Eigen::MatrixXd& covariance) {
   if (covariance.rows() == 0) return 1.0;
   const Eigen::VectorXd open = eigenvalues_of_symmetric(covariance);

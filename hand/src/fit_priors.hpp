@@ -58,7 +58,7 @@ inline constexpr double max_slip_rad = 0.11;
 // How surely a wearer who goes to both ends of a joint's range comes to the middle between them
 // again: either end differs by some two degrees from one time to the next.
 inline constexpr double middle_of_ends_deviation_rad = 0.02;
-// Who moves a joint less than this part of its range has not gone to its ends.
+// A free motion over less than this fraction of a joint's range did not reach its ends.
 inline constexpr double min_part_of_range = 0.5;
 
 // Beyond this many deviations a residual counts by its size and no longer by its square. So a pose

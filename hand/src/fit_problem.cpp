@@ -16,7 +16,7 @@ double mix_deviation(std::size_t coupling) {
                                                                    : gap_mix_deviation;
 }
 
-/// The angle that comes out where this one is asked for.
+/// The mean angle of wearers where this one is asked for.
 AssumedAngle as_it_comes_out(AssumedAngle assumed, std::size_t slot) {
   const bool is_pip =
       slot >= index_of(Sensor::index_pip) && slot % 4 == 1 && slot < index_of(Sensor::palm_arch);
@@ -24,7 +24,7 @@ AssumedAngle as_it_comes_out(AssumedAngle assumed, std::size_t slot) {
   return assumed;
 }
 
-/// Of finger and thumb joints.
+/// Whether the sensor measures flexion of a finger or of the thumb.
 bool is_flexion(std::size_t slot) {
   const RangeEnds& ends = range_ends_of[slot];
   return ends.high_deviation_deg > 0.0 && ends.low_deviation_deg == 0.0;
@@ -96,8 +96,8 @@ void FitProblem::compare_ends(CountRanges now, const CountRanges& then) {
   height_ += static_cast<Eigen::Index>(range_ends_.size());
 }
 
-/// Of each sensor poses and ends say how far it is off, and how surely. What is more than that is
-/// slip.
+/// Poses and ends of ranges say how far each sensor is off, and how surely. The variance beyond
+/// that is slip.
 void FitProblem::find_slips() {
   struct Said {
     double off = 0.0, weight = 0.0; ///< the weighted sum of offsets, and of weights

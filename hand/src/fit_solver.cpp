@@ -10,12 +10,12 @@
 namespace nendo::hand {
 namespace {
 
-// An unknown of which the poses leave more than this part of the default's variance is theirs no
-// more: it is fixed at the default.
+// An unknown of which the poses leave more than this part of the default's variance is fixed at
+// the default.
 constexpr double max_left_open = 0.8;
 
-/// What poses as far apart as these say of the free unknowns, J^T J. How far each is off says
-/// nothing of a gain: all deviations are in counts here.
+/// The information of such poses about the free unknowns, J^T J. All deviations are in counts here,
+/// because the poses' errors say nothing about a gain.
 Eigen::MatrixXd information_at(const FitProblem& problem, const FreeUnknowns& free,
                                const Unknowns& at) {
   Eigen::VectorXd residuals;
@@ -83,15 +83,15 @@ void minimise_safely(const FitProblem& problem, const FreeUnknowns& free, Unknow
   if (cost_at(in_counts) <= much_worse * cost_at(at) + 1e-9) at = in_counts;
 }
 
-/// The covariance of the free unknowns, the default's word included.
+/// The covariance of the free unknowns, with the default as prior.
 Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information) {
   Eigen::MatrixXd with_default = information;
   with_default.diagonal().array() += 1.0;
   return inverse_of_positive_definite(with_default);
 }
 
-/// Takes out the unknown that is determined least, if any is not determined; those of which the
-/// poses say nothing at all go together.
+/// Removes the unknown that is determined least, if any is not determined; those about which the
+/// poses say nothing are removed together.
 bool drop_undetermined(FreeUnknowns& free, const Eigen::MatrixXd& information, Unknowns& at) {
   const Eigen::VectorXd open = covariance_of(information).diagonal().head(lines_in(free));
   Eigen::Index worst = 0;

@@ -9,7 +9,7 @@
 namespace nendo::hand {
 namespace {
 
-// Of an unknown of the hand, for derivatives by differences.
+// The step of an unknown of the hand, for derivatives by differences.
 constexpr double hand_step = 1e-4;
 
 /// The joints that these angles make. What no sensor measures follows the rules, which is had by

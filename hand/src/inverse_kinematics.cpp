@@ -206,7 +206,7 @@ Matrix3d wrist_turn(double pitch_rad, double yaw_rad) noexcept {
 
 using Chains = std::array<FingerChain, finger_count>;
 
-/// Where a fingertip is to be, in metres.
+/// The wanted position of a fingertip, in metres.
 struct Aim {
   Vector3d place_m = Vector3d::Zero();
   double weight = 0.0; ///< 1 at most; 0: none

@@ -17,7 +17,7 @@ constexpr double max_roll = from_degrees(30);
 constexpr double max_abduction = from_degrees(35);
 constexpr double fully_bent_thumb_mcp = from_degrees(55);
 
-/// Of thumb roll or abduction, which reaches `max_rad`.
+/// The estimate of thumb roll or abduction, which reaches `max_rad`.
 constexpr double estimated_opposition(double thumb_mcp_rad, double max_rad) noexcept {
   const double part = std::min(bent(thumb_mcp_rad) / fully_bent_thumb_mcp, 1.0);
   return resting_opposition + part * (max_rad - resting_opposition);
@@ -29,7 +29,7 @@ struct Measured {
   SensorAngles angles_rad;
 
   bool has(Sensor sensor) const noexcept { return present.has(sensor); }
-  /// Of the calibration: no stop yet.
+  /// The calibration's angle, without soft stops.
   double raw_angle(Sensor sensor) const noexcept { return angles_rad[index_of(sensor)]; }
   double angle(Sensor sensor, const JointLimit& limit) const noexcept {
     return limit.soften(raw_angle(sensor));

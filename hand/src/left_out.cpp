@@ -7,7 +7,7 @@
 namespace nendo::hand {
 namespace {
 
-// Of finger_sensors.
+// Indices in finger_sensors.
 constexpr std::size_t mcp_at = 0, pip_at = 1, dip_at = 2;
 constexpr std::array<Sensor, 3> gap_sensors{
     Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_pinky_abduction};

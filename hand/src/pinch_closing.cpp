@@ -26,7 +26,7 @@ using DigitAngles = std::array<FourAngles, finger_count>; // or what they turn b
 // pinch.
 constexpr double thumb_certainty = 0.6;
 
-// Of a gap that is closed half: about what the joints make of a pinch.
+// The gap of a half-closed pinch: about the error of the joints' angles in a pinch.
 constexpr double half_gap_m = 0.008;
 constexpr double min_weight = 1e-6;
 

@@ -20,7 +20,7 @@ double decline(std::uint32_t ends, double first, double last) noexcept {
   return last + (first - last) / (1.0 + ends / half_after);
 }
 
-/// Where the bound moves to because of an end of a swing. `outwards` is -1 or 1; amplitude is of
+/// Returns the bound as the end of a swing moves it. `outwards` is -1 or 1; amplitude is of
 /// the swing.
 double drawn(double bound, double end, double outwards, double amplitude, double span,
              double usual_span, std::uint32_t ends) noexcept {

@@ -91,7 +91,7 @@ private:
 
 constexpr Eigen::Index first_arched = 2; // ring finger: the first that the palm's arch moves
 
-// Where each angle's turn is found. A finger's four begin at `finger_turns`.
+// The index of each angle's turn. A finger's four begin at `finger_turns`.
 enum : Eigen::Index {
   yaw_turn,
   pitch_turn,

@@ -11,8 +11,8 @@ namespace {
 constexpr std::array<Sensor, 4> thumb_sensors{Sensor::thumb_roll, Sensor::thumb_mcp,
                                               Sensor::thumb_ip, Sensor::thumb_abduction};
 
-/// So many samples in a row say that a stuck sensor moves again: bits that turn over on the line do
-/// not come so often.
+/// This number of changed samples in a row shows that a stuck sensor moves again: bits that turn
+/// over on the line do not come so often.
 constexpr std::uint8_t samples_back = 5;
 
 } // namespace
@@ -68,8 +68,8 @@ int StuckWatch::swung(const Sensors& sensors, std::size_t of, std::size_t times)
   }));
 }
 
-/// Of a finger's flexion: the other joints of the finger move; where only one of them does, and it
-/// may be bent alone, the same joints of other fingers must.
+/// A finger's flexion sensor is stuck if the other joints of the finger move; where only one of
+/// them does, and it may be bent alone, the same joints of other fingers must.
 bool StuckWatch::shown_by_finger(std::size_t slot) const noexcept {
   const std::size_t finger = slot / 4 - 1, joint = slot % 4;
   int usable = 0;

@@ -20,7 +20,7 @@ enum class AngleSource : std::uint8_t {
   opposition, ///< estimated: the thumb's roll and abduction, from its flexion
   from_gaps,  ///< estimated: a finger's direction, from gaps between fingers that are not enough
   zero,       ///< assumed: always 0
-  // Of sensors that are left out:
+  // For sensors that are left out:
   from_neighbours, ///< estimated: from the finger's other joints, and from the fingers beside
   at_rest,         ///< estimated: always as of a hand at rest
 };
