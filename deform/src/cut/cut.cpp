@@ -116,7 +116,7 @@ private:
 
   const CutAssembly& assembly_;
   const Mesh& mesh_;
-  const Points& rest_; ///< of the vertices that were there before: all of faces that are not cut
+  const Points& rest_; ///< places of the old vertices, which are all vertices of uncut faces
   const CutSurface& surface_;
   double reach_; ///< no face whose corners are all farther from the blade can meet cut faces
   std::uint32_t first_added_;
@@ -142,8 +142,8 @@ bool is_fit(const Eigen::Vector3d& vector) noexcept {
   return (vector.array().abs() <= largest_size).all();
 }
 
-/// Returns places for the blade to give way to, the widest gap between vertices first. `sides` has
-/// the vertices' heights.
+/// Returns the offsets by which the blade may be displaced, the widest gap between vertices first.
+/// `sides` has the vertices' heights.
 std::vector<double> gaps_within(const std::vector<double>& sides, double band) {
   std::vector<double> near{-band, band};
   for (const double side : sides)
@@ -162,8 +162,9 @@ std::vector<double> gaps_within(const std::vector<double>& sides, double band) {
   return places;
 }
 
-/// Where the blade stands in an attempt, from 0 on. The band grows threefold each time. The first
-/// attempts take the widest gap; those after every second one take another gap or another place.
+/// The blade's displacement in an attempt, counted from 0. The band grows threefold each time. The
+/// first attempts take the widest gap; those after every second one take another gap or another
+/// place.
 double give_of(const std::vector<double>& sides, double diagonal, std::uint32_t attempt) {
   const double band = 1e-6 * diagonal * std::pow(3.0, attempt);
   const std::vector<double> places = gaps_within(sides, band);

@@ -272,7 +272,8 @@ private:
   FaceWriter faces_;
   std::uint32_t first_added_;
   std::uint32_t first_inner_ = 0;
-  std::vector<std::uint32_t> first_piece_; ///< of each face, and then the piece behind each
+  std::vector<std::uint32_t>
+      first_piece_; ///< each face's first piece; next_piece_ has the piece after each
   std::vector<std::uint32_t> next_piece_;
   std::vector<std::uint32_t> crossed_of_piece_;
   std::uint32_t cap_object_ = no_index;

@@ -1,5 +1,5 @@
 #pragma once
-// Makes a mesh of what the cut leaves: faces that were not crossed, pieces of those that were, and
+// Makes the mesh after a cut: faces that were not crossed, pieces of those that were, and
 // cut faces.
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct ChosenCut {
   const Blade& blade;
   double give;
   double diagonal;
-  std::vector<std::uint8_t> keeps; ///< of each loop: it is cut
+  std::vector<std::uint8_t> keeps; ///< whether each loop is cut
   Cap cap;
   bool faces_inwards = false; ///< the whole model does
   const CutOptions& options;
@@ -30,7 +30,7 @@ struct CutAssembly {
   std::vector<CutVertex> added;
   std::size_t first_cut_face = 0; ///< half of the faces from here close the upper side, then the
                                   ///< lower
-  std::vector<std::uint32_t> crossing_vertices; ///< of each crossing its vertex on the upper side;
+  std::vector<std::uint32_t> crossing_vertices; ///< each crossing's vertex on the upper side;
                                                 ///< the lower one is behind it
   std::vector<std::uint32_t> cut_pieces;        ///< faces that are parts of crossed ones
 };

@@ -1,6 +1,6 @@
 #pragma once
-// The faces that close both sides of a cut: a triangulation, in the blade's chart, of what the
-// loops of crossings enclose.
+// The faces that close both sides of a cut: a triangulation, in the blade's chart, of the area
+// that the loops of crossings enclose.
 
 #include <cstdint>
 #include <span>
@@ -24,7 +24,7 @@ struct Cap {
   /// Corners below `crossings` are crossings; corner crossings + k is inner point k. They turn to
   /// the left in the chart.
   std::vector<Corners> triangles;
-  std::vector<std::uint8_t> on_left; ///< of each loop: the inside lies on its left
+  std::vector<std::uint8_t> on_left; ///< whether the inside lies on each loop's left
 };
 
 struct CapOptions {

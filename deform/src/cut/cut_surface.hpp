@@ -42,7 +42,7 @@ struct CrossedPiece {
   std::uint32_t after, before; ///< crossings of the edges that begin and end at the lone corner
 };
 
-/// What a blade that gives way by `give` does to a model.
+/// The effect of a blade that is displaced by `give` on a model.
 class CutSurface {
 public:
   /// `sides` has Blade::side() of all vertices. No vertex may be just `give` above the blade. The
@@ -71,15 +71,15 @@ public:
   const std::vector<CrossedPiece>& crossed() const noexcept { return crossed_; }
   const std::vector<EdgePoint>& crossings() const noexcept { return crossings_; }
   const std::vector<SpacePoint>& crossing_points() const noexcept { return crossing_points_; }
-  /// Of each crossing the next one, with the upper side's surface on the left.
+  /// The crossing after each one, with the upper side's surface on the left.
   const std::vector<std::uint32_t>& next() const noexcept { return next_; }
-  /// Loops of crossings, and of each crossing its loop.
+  /// Loops of crossings, and each crossing's loop.
   const std::vector<std::vector<std::uint32_t>>& loops() const noexcept { return loops_; }
   const std::vector<std::uint32_t>& loop_of() const noexcept { return loop_of_; }
   /// Texture coordinates: the mesh's, and those of new corners behind them.
   const std::vector<TexturePoint>& new_texcoords() const noexcept { return new_texcoords_; }
-  /// Returns the index of a texture coordinate between two others; what was made for this point
-  /// before is taken again.
+  /// Returns the index of a texture coordinate between two others; one that
+  /// was made for this point before is used again.
   std::uint32_t texcoord_between(std::uint64_t point, std::uint32_t from, std::uint32_t to,
                                  double part);
 
@@ -106,7 +106,7 @@ private:
   std::vector<double> sides_;
   std::vector<SpacePoint> added_points_;
   std::vector<EdgePoint> added_;
-  std::vector<std::uint8_t> active_; ///< of each face; 2: its triangles were split
+  std::vector<std::uint8_t> active_; ///< per face; 2: its triangles were split
   std::vector<Piece> pieces_;
   std::unordered_map<std::uint64_t, std::uint32_t> piece_of_edge_;
   std::unordered_map<std::uint64_t, std::uint32_t> crossing_of_edge_;

@@ -39,7 +39,7 @@ void take_columns(const Columns& from, const std::vector<std::uint32_t>& which, 
     to.col(column++) = from.col(static_cast<Eigen::Index>(old));
 }
 
-/// Vertices and faces of all parts, each part's behind the one before.
+/// Vertices or faces of all parts, part after part.
 struct ByPart {
   std::vector<std::uint32_t> starts, members;
 };

@@ -34,7 +34,7 @@ struct Mark {
   std::string_view remedy;
 };
 
-// A longer mark stands before a shorter one that it begins with.
+// A longer mark precedes a shorter one that it begins with.
 constexpr Mark marks[] = {
     {0, "Kaydara FBX Binary"sv, "is an FBX file", by_blender},
     {0, "PXR-USDC"sv, "is a USD file (binary)", by_blender},
@@ -115,7 +115,7 @@ bool has(std::string_view text, std::string_view part) noexcept {
   return text.find(part) != std::string_view::npos;
 }
 
-/// An archive's first file tells what it is of.
+/// The format of an archive, by its first file.
 std::string zip_kind(std::string_view bytes) {
   const std::string_view head = bytes.substr(0, 1024);
   if (has(head, "3D/") || has(head, "[Content_Types].xml"))

@@ -127,7 +127,7 @@ Layout layout_of(std::uint64_t component, std::size_t width, std::uint64_t offse
   const std::size_t element = width * size_of_component(component);
   if (stride == 0) stride = element;
   if (stride < element) refuse("a bufferView has a byteStride that is too small for its numbers");
-  // No product may overflow: the count is compared with what the view has room for.
+  // No product may overflow: the count is compared with the capacity of the view.
   const bool fits = offset <= view.size() && view.size() - offset >= element &&
                     count - 1 <= (view.size() - offset - element) / stride;
   if (!fits) refuse("an accessor reaches beyond the end of its bufferView");

@@ -15,7 +15,7 @@
 
 namespace nendo::deform {
 
-/// What is wrong with a document, in words that go behind its name. It is thrown and caught within
+/// What is wrong with a document, in words that follow its name. It is thrown and caught within
 /// the reader of glTF; nothing else sees it.
 struct GltfRefusal {
   std::string what;
@@ -68,7 +68,7 @@ private:
   const ModelFolder* folder_;
   Json root_;
   Bytes binary_;                 ///< the chunk of a binary file
-  std::vector<std::string> own_; ///< of buffers that are not that chunk
+  std::vector<std::string> own_; ///< contents of buffers that are not that chunk
   std::vector<Bytes> buffers_;
 };
 

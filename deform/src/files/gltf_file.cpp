@@ -411,7 +411,7 @@ private:
   std::vector<GltfMaterial> materials_;
   std::vector<double> vertices_;             ///< three numbers each
   std::vector<double> texcoords_;            ///< two numbers each
-  std::vector<float> colours_;               ///< of the first vertices, four numbers each
+  std::vector<float> colours_;               ///< the first vertices', four numbers each
   std::map<VertexKey, std::uint32_t> known_; ///< vertices of this mesh
   /// Of this mesh, by the accessors of POSITION, NORMAL and COLOR_0.
   std::map<std::array<std::uint64_t, 3>, std::vector<std::uint32_t>> vertices_of_;

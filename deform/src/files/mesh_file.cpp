@@ -35,7 +35,7 @@ CornerSpan span_of(const Mesh& mesh, std::size_t face) noexcept {
       .subspan(mesh.face_starts[face], mesh.face_starts[face + 1] - mesh.face_starts[face]);
 }
 
-/// Whether a corner stands beside itself; the last stands beside the first.
+/// Whether a corner follows itself; the first corner follows the last.
 bool repeats_corner(CornerSpan corners) noexcept {
   return (corners.size() > 1 && corners.front() == corners.back()) ||
          std::adjacent_find(corners.begin(), corners.end()) != corners.end();
@@ -79,7 +79,7 @@ public:
       if (!has_three_corners(corners)) {
         left_out_.note(face);
       } else {
-        if (repeats_corner(corners)) mended_.note(face);
+        if (repeats_corner(corners)) fixed_.note(face);
         keep_corners(begin, end);
         keep_names(face);
         mesh_.face_starts[++faces_kept_] = corners_kept_;
@@ -90,8 +90,8 @@ public:
     if (left_out_.count > 0)
       notes.push_back(left_out_.faces("has", "have") + " fewer than three different corners and " +
                       (left_out_.count == 1 ? "is" : "are") + " left out");
-    if (mended_.count > 0)
-      notes.push_back(mended_.faces("names", "name") +
+    if (fixed_.count > 0)
+      notes.push_back(fixed_.faces("names", "name") +
                       " a corner twice in a row, which is taken once");
   }
 
@@ -127,7 +127,7 @@ private:
   Mesh& mesh_;
   std::uint32_t corners_kept_ = 0;
   std::size_t faces_kept_ = 0;
-  Tally left_out_, mended_;
+  Tally left_out_, fixed_;
 };
 
 /// Takes a corner that a face names twice in a row once only, and leaves out faces with fewer than

@@ -101,7 +101,7 @@ std::string in_small_letters(std::string_view text) {
 /// What a map_ statement says.
 struct MapStatement {
   std::string file;
-  bool is_moved = false; ///< by options that scale or move the texture
+  bool is_moved = false; ///< options scale or move the texture
 };
 
 MapStatement map_statement(TextScanner& scanner) {
@@ -234,7 +234,7 @@ void MtlReader::settle_colour(std::size_t at) {
   material.colour = colour;
 }
 
-/// d wins over Tr, wherever it stands. Tr is 1 - d, but some programs write d's value there; of
+/// d wins over Tr, wherever it is. Tr is 1 - d, but some programs write d's value there; of
 /// these two meanings, `Tr 1` has the one in which something can be seen.
 void MtlReader::settle_opacity(std::size_t at) {
   const Stated& stated = stated_[at];

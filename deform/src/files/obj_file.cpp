@@ -336,10 +336,10 @@ private:
   ObjLeftOut left_out_;
   std::vector<double> vertices_;  ///< three numbers each
   std::vector<double> texcoords_; ///< two numbers each
-  std::vector<float> colours_;    ///< of the first vertices, four numbers each, as they are written
+  std::vector<float> colours_;    ///< the first vertices', four numbers each, as they are written
   ColourRange colour_range_;
   CurrentName material_, group_, object_;
-  std::vector<std::uint32_t> painted_; ///< by ZBrush, of the first vertices
+  std::vector<std::uint32_t> painted_; ///< the first vertices' colours that ZBrush wrote
   HighestIndex highest_vertex_;
   HighestIndex highest_texcoord_;
   Mesh mesh_;

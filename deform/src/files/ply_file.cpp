@@ -79,7 +79,7 @@ public:
 
   /// How many items of these sizes the rest could hold at the most; one digit and one blank each in
   /// ASCII.
-  bool has_room_for(std::uint64_t count, std::uint64_t item_bytes) const noexcept {
+  bool can_hold(std::uint64_t count, std::uint64_t item_bytes) const noexcept {
     if (format_ == PlyFormat::ascii) return count <= (bytes_.size() - words_.offset() + 1) / 2;
     return item_bytes == 0 || count <= (bytes_.size() - at_) / item_bytes;
   }
@@ -142,7 +142,7 @@ enum class Use {
   alpha,
   across, ///< texture coordinates
   up,
-  texcoords, ///< of a face's corners
+  texcoords, ///< texture coordinates of a face's corners
   texture    ///< its number
 };
 
@@ -292,7 +292,7 @@ private:
     std::uint64_t min_bytes = 0;
     for (const auto& property : element.properties)
       min_bytes += size_of(property.count_type.value_or(property.type));
-    if (!body_.has_room_for(element.count, min_bytes))
+    if (!body_.can_hold(element.count, min_bytes))
       return body_.bad("the header promises " + std::to_string(element.count) + " of " +
                        in_quotes(element.name) + ", the file is too short for them");
     if (element.name == "vertex") {
@@ -326,7 +326,7 @@ private:
         *count > std::numeric_limits<std::uint32_t>::max())
       return body_.bad("the length of a list is not a whole number from 0 on");
     const auto length = static_cast<std::uint64_t>(*count);
-    if (!body_.has_room_for(length, size_of(property.type)))
+    if (!body_.can_hold(length, size_of(property.type)))
       return body_.bad("a list of " + std::to_string(length) +
                        " reaches beyond the end of the file");
     const bool is_corners = use == Use::corners || use == Use::strips;

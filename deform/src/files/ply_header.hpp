@@ -35,8 +35,8 @@ constexpr std::size_t size_of(PlyType type) noexcept {
 
 struct PlyProperty {
   std::string_view name;
-  PlyType type = PlyType::float32;     ///< of the value, or of a list's items
-  std::optional<PlyType> count_type{}; ///< of a list's length; nothing for a single value
+  PlyType type = PlyType::float32;     ///< the type of the value, or of a list's items
+  std::optional<PlyType> count_type{}; ///< the type of a list's length; nothing for a single value
 };
 
 struct PlyElement {

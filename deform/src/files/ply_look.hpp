@@ -43,9 +43,9 @@ private:
   void finish_materials(const std::vector<std::string>& textures, Mesh& mesh) const;
 
   std::vector<double> of_vertices_, of_corners_; ///< two numbers each
-  std::vector<double> list_;                     ///< of the face that is read
+  std::vector<double> list_;                     ///< numbers of the face that is read
   double number_ = 0.0;
-  std::vector<double> numbers_; ///< of each face
+  std::vector<double> numbers_; ///< one per face
   std::size_t unusable_ = 0;    ///< texture coordinates that are no number
   std::size_t faces_without_ = 0;
 };

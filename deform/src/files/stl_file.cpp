@@ -160,7 +160,7 @@ private:
     return {};
   }
   Result<void> vertex() {
-    if (!in_loop_) return bad("a vertex stands outside of a loop");
+    if (!in_loop_) return bad("a vertex is outside of a loop");
     std::array<double, 3> place{};
     for (double& coordinate : place) {
       const std::string_view field = words_.field_on_any_line();
@@ -174,7 +174,7 @@ private:
     return {};
   }
   Result<void> facet_ends() {
-    if (!in_loop_) return bad("endloop stands outside of a loop");
+    if (!in_loop_) return bad("endloop is outside of a loop");
     in_loop_ = false;
     if (faces_.end_face()) objects_.of_face.push_back(object_);
     return {};
@@ -291,16 +291,16 @@ private:
     if (text_.size() < facets_offset)
       return bad("is an STL that is cut off within its header; get the whole file");
     const std::size_t promised = little_endian(text_, stl_header_bytes, 4);
-    const std::size_t room = (text_.size() - facets_offset) / facet_bytes;
+    const std::size_t available = (text_.size() - facets_offset) / facet_bytes;
     const bool is_unknown = promised == 0 || promised == std::numeric_limits<std::uint32_t>::max();
-    if (is_unknown && room > 0) {
-      notes.push_back("does not say how many triangles it has; all " + std::to_string(room) +
+    if (is_unknown && available > 0) {
+      notes.push_back("does not say how many triangles it has; all " + std::to_string(available) +
                       " that are there are read");
-      return room;
+      return available;
     }
-    if (promised > room)
+    if (promised > available)
       return bad("says that it has " + std::to_string(promised) + " triangles, and has bytes for " +
-                 std::to_string(room) + "; it is cut off, or no STL: get the whole file");
+                 std::to_string(available) + "; it is cut off, or no STL: get the whole file");
     if (promised == 0) return bad("is an STL without a triangle");
     const std::size_t more = text_.size() - facets_offset - facet_bytes * promised;
     if (more > 0)
@@ -313,7 +313,7 @@ private:
     for (std::size_t corner = 0; corner < 3; ++corner) {
       std::array<double, 3> place{};
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::size_t at = begin + 12 + 12 * corner + 4 * axis; // the normal stands first
+        const std::size_t at = begin + 12 + 12 * corner + 4 * axis; // after the normal
         const auto value = std::bit_cast<float>(little_endian(text_, at, 4));
         place[axis] = static_cast<double>(value);
         if (!is_usable(place[axis]))

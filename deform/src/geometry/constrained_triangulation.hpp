@@ -24,10 +24,10 @@ enum class PlaneFault {
   crossing,   ///< the segment crosses another one
 };
 
-/// Which triangles are meant.
+/// The triangles that triangles() returns.
 enum class PlaneFill {
-  enclosed, ///< all that no way leads to from outside without crossing a segment
-  odd,      ///< those that an odd number of segments parts from outside; segments form closed loops
+  enclosed, ///< those that segments separate from outside
+  odd, ///< those that an odd number of segments separates from outside; segments form closed loops
 };
 
 class ConstrainedTriangulation {
@@ -38,7 +38,7 @@ public:
   /// that holds everything.
   ConstrainedTriangulation(const PlanePoint& lowest, const PlanePoint& highest);
 
-  /// Makes room for so many points. Everything works without.
+  /// Reserves memory for this number of points, which saves time only.
   void reserve(std::size_t points);
   /// Adds a point. The k-th point that was taken has the number k, from 0.
   PlaneFault add(const PlanePoint& point);
@@ -83,7 +83,7 @@ private:
   std::vector<std::uint32_t> corners_;
   std::vector<std::uint32_t> twins_;
   std::vector<std::uint8_t> fixed_;
-  std::vector<std::uint32_t> edge_from_; ///< of each point some edge that begins there
+  std::vector<std::uint32_t> edge_from_; ///< some edge that begins at each point
   std::vector<std::uint32_t> stack_;
   std::vector<std::array<std::uint32_t, 2>> crossed_; ///< right end, left end
   std::uint32_t start_ = 0;                           ///< the edge where the next search begins

@@ -72,9 +72,9 @@ Expansion<N> negated(Expansion<N> value) noexcept {
   return value;
 }
 
-/// Writes a + b, whose room must be for all terms of both.
-template <std::size_t N, std::size_t M, std::size_t Room>
-void add_to(const Expansion<N>& a, const Expansion<M>& b, Expansion<Room>& sum) noexcept {
+/// Writes a + b, which must have space for all terms of both.
+template <std::size_t N, std::size_t M, std::size_t Capacity>
+void add_to(const Expansion<N>& a, const Expansion<M>& b, Expansion<Capacity>& sum) noexcept {
   sum.count = 0;
   std::size_t at = 0;
   std::size_t bt = 0;

@@ -1,6 +1,6 @@
 #pragma once
 // On which side a point lies, decided without error: signs of determinants of coordinates as they
-// stand in the mesh. Most calls end at a filter in plain doubles; the others are summed as
+// are in the mesh. Most calls end at a filter in plain doubles; the others are summed as
 // expansions (J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust
 // geometric predicates, 1997).
 //

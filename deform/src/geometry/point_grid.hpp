@@ -72,10 +72,11 @@ private:
   }
 
   Eigen::Vector3d lowest_ = Eigen::Vector3d::Zero();
-  Cell highest_{}; ///< of any point
+  Cell highest_{}; ///< the highest cell of a point
   double cells_per_unit_ = 1.0;
   std::vector<Entry> sorted_;
-  std::vector<std::uint32_t> begins_; ///< of each cell in sorted_, if there are not many more cells
+  std::vector<std::uint32_t>
+      begins_; ///< each cell's first entry in sorted_, if there are not many more cells
 };
 
 } // namespace nendo::deform

@@ -1,6 +1,6 @@
 #pragma once
 // Points and triangles in space as plain numbers, and arithmetic of them, for the code that cuts
-// and joins. It works on the coordinates as they stand in the mesh.
+// and joins. It works on the coordinates as they are in the mesh.
 
 #include <array>
 #include <cmath>

@@ -14,7 +14,7 @@ namespace nendo::deform {
 struct Crossing {
   std::uint32_t part;     ///< 0 or 1: whose edge it is
   std::uint32_t from, to; ///< the edge's points, the lesser number first
-  std::uint32_t face;     ///< of the other part
+  std::uint32_t face;     ///< the crossed face of the other part
   double along;           ///< 0 at `from`, 1 at `to`
   SpacePoint place;
 };
@@ -33,7 +33,7 @@ struct Crossings {
 struct CrossedPart {
   std::span<const SpacePoint> points;
   std::span<const Corners> faces;
-  const BoxTree* tree; ///< of these
+  const BoxTree* tree; ///< a tree of these faces
 };
 
 /// Finds all crossings. Returns false if the parts are not in general position: a point of one lies
@@ -41,7 +41,7 @@ struct CrossedPart {
 bool find_crossings(const std::array<CrossedPart, 2>& parts, Crossings& crossings);
 
 /// Returns 1 if the place is inside of the closed surface, 0 if it is outside, and -1 if that
-/// cannot be told, because the place is on the surface. Decided by a ray, exactly.
+/// cannot be decided, because the place is on the surface. Decided by a ray, exactly.
 int is_inside(const SpacePoint& place, const CrossedPart& part);
 
 } // namespace nendo::deform

@@ -132,7 +132,7 @@ bool is_closed_solid(const TriangleSurface& surface) {
          volume_of(surface.points, surface.faces) > 0.0;
 }
 
-/// The second surface's points get their bits back where it had to give way only to find a clear
+/// The second surface's points get their bits back where it was displaced only to find a clear
 /// position: everywhere but at crossed faces, and where it is as near to the first one as that.
 /// Surfaces must be closed and two-manifold. Error: failed (they do not touch, or no union passes
 /// the checks). Allocates.
@@ -173,7 +173,7 @@ Result<void> check_part(const JoinPart& part) {
     return bad("has coordinates beyond 1e60; scale it down");
   if (const ManifoldCheck check = check_closed_manifold(mesh); !check)
     return bad(describe(check, mesh) +
-               "; only closed models can be joined, so mend it with `nendo repair IN --out OUT`");
+               "; only closed models can be joined, so repair it with `nendo repair IN --out OUT`");
   if (!(diagonal_of(mesh.vertices) > min_size)) return bad("has no size; scale it up");
   return {};
 }
@@ -198,7 +198,7 @@ Error explained(Error error, const TriangleSurface& surface, const Eigen::Vector
   const SpacePoint& near = surface.points[surface.faces[pairs[0].first][0]];
   error.message += "; " + part.name + " cuts itself near " +
                    place_text(Eigen::Vector3d(near.data()), offset) +
-                   ", which `nendo repair` does not mend: remove that where it was made";
+                   ", which `nendo repair` does not fix: remove that where it was made";
   return error;
 }
 

@@ -17,7 +17,7 @@ namespace nendo::deform {
 struct CollapseLimits {
   double longest = 0.0;    ///< no edge becomes longer, unless one around the point was
   double thin = 0.0;       ///< the normals of faces that are lower say nothing
-  double min_cosine = 0.5; ///< of the angle by which a face's normal turns
+  double min_cosine = 0.5; ///< the least cosine of the angle by which a face's normal turns
 };
 
 class LiveSurface : private SurfaceMesh {

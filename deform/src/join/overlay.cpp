@@ -181,15 +181,16 @@ bool cut_faces(const CrossedPart& part, std::uint32_t number, const Crossings& c
   return true;
 }
 
-/// Ways in which the second surface gives way: odd directions, one for each attempt.
-constexpr std::array<SpacePoint, max_overlay_attempts> give_ways{{{0.6137, -0.4219, 0.6673},
-                                                                  {-0.3571, 0.7919, 0.4951},
-                                                                  {0.2347, 0.5813, -0.7793},
-                                                                  {-0.8363, -0.2917, 0.4643},
-                                                                  {0.4733, -0.8123, -0.3407},
-                                                                  {-0.5591, 0.1873, -0.8077},
-                                                                  {0.8911, 0.3671, 0.2663},
-                                                                  {-0.1319, -0.6841, -0.7177}}};
+/// Displacements of the second surface: odd directions, one per attempt.
+constexpr std::array<SpacePoint, max_overlay_attempts> overlay_displacements{
+    {{0.6137, -0.4219, 0.6673},
+     {-0.3571, 0.7919, 0.4951},
+     {0.2347, 0.5813, -0.7793},
+     {-0.8363, -0.2917, 0.4643},
+     {0.4733, -0.8123, -0.3407},
+     {-0.5591, 0.1873, -0.8077},
+     {0.8911, 0.3671, 0.2663},
+     {-0.1319, -0.6841, -0.7177}}};
 constexpr double give_part = 1e-7;
 
 double size_of(std::span<const SpacePoint> points) {
@@ -240,7 +241,7 @@ private:
   }
 
   /// Says of each piece whether it is in the other part: patch by patch, by a ray from the patch's
-  /// largest piece. Returns false if the pieces are not closed, or a ray cannot tell.
+  /// largest piece. Returns false if the pieces are not closed, or no ray can decide.
   bool find_inside(std::uint32_t part) {
     const std::vector<Corners>& faces = result_.pieces[part].faces;
     const std::size_t points = parts_[part].points.size() + result_.crossings.points.size();
@@ -298,7 +299,8 @@ Result<Overlay> overlay(const TriangleSurface& first, const TriangleSurface& sec
   for (int attempt = first_attempt; attempt < max_overlay_attempts; ++attempt) {
     result.attempts = attempt + 1;
     const auto way = static_cast<std::size_t>(attempt);
-    if (maker.attempt(std::ldexp(give_part * size, attempt) * give_ways[way])) return result;
+    if (maker.attempt(std::ldexp(give_part * size, attempt) * overlay_displacements[way]))
+      return result;
   }
   return Error{Errc::failed, "no position was found in which the parts cross clearly; move one of "
                              "them a little"};

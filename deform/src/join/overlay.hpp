@@ -3,8 +3,8 @@
 // known whether it is inside of the other one. Union and intersection are then choices of pieces.
 //
 // Points of crossings are named by edge and face, and all signs are exact, so what is chosen is
-// closed whatever rounding does. No general position is waited for: the second surface gives way by
-// 1e-7 of its size from the first attempt on.
+// closed whatever rounding does. The second surface is displaced by 1e-7 of its size from
+// the first attempt on, so that no position is special.
 
 #include <array>
 #include <cstdint>
@@ -26,10 +26,10 @@ struct PartPieces {
 };
 
 struct Overlay {
-  std::vector<SpacePoint> second_points; ///< of the second surface, after it has given way
+  std::vector<SpacePoint> second_points; ///< points of the displaced second surface
   Crossings crossings;
   std::array<PartPieces, 2> pieces;
-  std::array<std::vector<char>, 2> inside; ///< of each piece: in the other surface
+  std::array<std::vector<char>, 2> inside; ///< whether each piece is in the other surface
   int attempts = 0;
 };
 
@@ -43,13 +43,13 @@ struct Chosen {
   /// Where each point is from: its number in the first surface, or that in the second plus the
   /// first one's points, or that of the crossing plus both.
   std::vector<std::uint32_t> origins;
-  std::vector<std::uint32_t> face_parts; ///< of each face: 0 or 1
+  std::vector<std::uint32_t> face_parts; ///< each face's part: 0 or 1
   std::vector<std::uint32_t> made;       ///< faces that are pieces of crossed ones
 };
 
 /// Surfaces must be closed, face outwards and be free of self-intersections; otherwise the result
-/// need not be what one expects. `first_attempt` > 0 leaves out as many ways to give. Error: failed
-/// (no way to give way led to general position). Allocates, blocks.
+/// need not be what one expects. `first_attempt` > 0 leaves out as many displacements. Error:
+/// failed (no displacement led to general position). Allocates, blocks.
 Result<Overlay> overlay(const TriangleSurface& first, const TriangleSurface& second,
                         int first_attempt = 0);
 inline constexpr int max_overlay_attempts = 8;

@@ -21,7 +21,7 @@ struct RefineLimits {
   double longest = 0.0;     ///< an edge that is longer is split; > 0
   double shortest = 0.0;    ///< one that is shorter is collapsed; at most longest / 2
   double thin = 0.0;        ///< faces that are lower may fold: they say little of the shape
-  double min_cosine = 0.5;  ///< of the angle by which a collapse turns a face: at most 60 degrees
+  double min_cosine = 0.5;  ///< the least cosine of the angle by which a collapse turns a face
   std::size_t budget = 500; ///< splits and collapses in one call
   std::size_t max_points = 4000000; ///< no splits beyond it
   bool only_splits = false;         ///< what never makes the surface meet itself

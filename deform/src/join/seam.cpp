@@ -104,12 +104,13 @@ std::vector<SpacePoint> thin_plate(const LiveSurface& surface,
 
 /// So many edges lie side by side in the seam's width, at least; more where the surface is finer.
 constexpr double edges_in_width = 4.0;
-constexpr double long_edge = 1.4;   ///< of the mean edge: what is longer is split
-constexpr double short_edge = 0.4;  ///< of the longest: what is shorter is collapsed
-constexpr double thin_face = 1e-3;  ///< of the longest: steps where a part only gave way are lower
-constexpr double zone_widths = 4.0; ///< so far away is the surface refined
-constexpr double coarser = 2.0;     ///< beyond the width: so much longer edges a width further
-constexpr double farthest_motion = 1.0; ///< of the width
+constexpr double long_edge = 1.4;  ///< relative to the mean edge: longer edges are split
+constexpr double short_edge = 0.4; ///< relative to the longest: shorter edges are collapsed
+constexpr double thin_face =
+    1e-3; ///< relative to the longest: steps where a part was only displaced are lower
+constexpr double zone_widths = 4.0;     ///< so far away is the surface refined
+constexpr double coarser = 2.0;         ///< beyond the width: so much longer edges a width further
+constexpr double farthest_motion = 1.0; ///< relative to the width
 constexpr int max_rounds = 12;
 constexpr std::size_t max_operations = 100000;
 /// A long and narrow seam gets longer edges instead of more triangles. Its band of twice the width,

@@ -34,7 +34,7 @@ struct TriangleSurface {
   std::vector<FaceLook> looks;              ///< one for each face
   std::vector<Colour> colours;              ///< one for each point, or none at all
   std::vector<TexturePoint> texture_points; ///< none, if corners have none
-  std::vector<Corners> face_texture;        ///< of each face's corners, or none at all
+  std::vector<Corners> face_texture;        ///< one per face, or none at all
   std::vector<SpacePoint> rest;     ///< where each point is before the hands, or none at all
   std::vector<VertexDetail> detail; ///< one for each point, or none at all
 

@@ -280,8 +280,8 @@ private:
     return are_one(corner, before) || are_one(corner, behind) ||
            product(corner, before, behind) > 0.0;
   }
-  /// Of a tip that was there from the beginning: a spike leads outwards, a slit inwards. Where it
-  /// begins, the polygon's other edges tell.
+  /// Of a tip that was there from the beginning: a spike leads outwards, a slit inwards. The
+  /// polygon's other edges decide where it begins.
   bool is_outside(std::uint32_t tip) const noexcept {
     std::uint32_t one = last_[tip], other = next_[tip];
     if (are_one(tip, one) || are_one(tip, other)) return true;
@@ -414,8 +414,8 @@ private:
 };
 
 struct FaceTriangles::Parts {
-  std::vector<SpacePoint> places; ///< of a face's corners
-  SpacePoint normal{};            ///< of the face; zero if it has none
+  std::vector<SpacePoint> places; ///< a face's corners
+  SpacePoint normal{};            ///< the face's; zero if it has none
   EarClipper clipper;
 };
 

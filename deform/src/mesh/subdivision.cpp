@@ -16,7 +16,7 @@
 namespace nendo::deform {
 namespace {
 
-/// An edge of a face: its ends, the lesser one first, and the corner behind which it is.
+/// An edge of a face: its ends, the lesser one first, and the corner after which it is.
 struct Edge {
   std::uint64_t ends;
   std::uint32_t corner;
@@ -48,10 +48,10 @@ std::vector<Edge> sorted_edges(const Mesh& mesh, const std::vector<std::uint32_t
 }
 
 /// Numbers the middles of edges and of faces from `first` on: of each corner the middle of the edge
-/// behind it, and of each face its own.
+/// after it, and of each face its own.
 struct Middles {
   std::vector<std::uint32_t> of_corner;
-  std::vector<std::uint32_t> of_face; ///< of those with more than three corners
+  std::vector<std::uint32_t> of_face; ///< only for faces with more than three corners
   std::vector<std::uint32_t> parent_starts{0};
   std::vector<std::uint32_t> parents;
 

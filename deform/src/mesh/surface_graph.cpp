@@ -174,7 +174,7 @@ SurfaceGraph::SurfaceGraph(const Mesh& mesh) : vertices_(mesh.vertices) {
           across(vertices_.col(one.low), vertices_.col(one.high), vertices_.col(one.opposite),
                  vertices_.col(other.opposite)));
     }
-  // A way from two faces stands there twice, which only costs its memory.
+  // A way from two faces is listed twice, which only costs its memory.
   std::sort(all.begin(), all.end(), [](const auto& one, const auto& other) {
     return std::tie(one.first, one.second.to, one.second.length) <
            std::tie(other.first, other.second.to, other.second.length);

@@ -1,9 +1,9 @@
 #pragma once
 // Triangles that know their neighbours while they are split, flipped, collapsed, removed and added:
-// the structure of all that edits a surface (refinement, joining, changes of topology).
+// the structure of each editor of a surface (refinement, joining, changes of topology).
 //
-// It has numbers only. What belongs to points, faces or edges stands beside it in columns, which
-// have one entry for each number; the editor of the mesh lets them grow with it. Numbers of points
+// It has numbers only. Attributes of points, faces or edges are columns beside it, which have one
+// entry for each number; the editor of the mesh lets them grow with it. Numbers of points
 // and faces that are gone are not used again, until take() renumbers what is left.
 
 #include <cstddef>
@@ -109,7 +109,7 @@ private:
 
   std::vector<Corners> faces_; ///< removed faces have corners no_index
   std::vector<std::uint32_t> twins_;
-  std::vector<std::uint32_t> edge_at_; ///< by point: an edge that begins there
+  std::vector<std::uint32_t> edge_at_;                        ///< an edge that begins at each point
   std::unordered_map<std::uint64_t, std::uint32_t> boundary_; ///< edges, by the points of both ends
 };
 

@@ -19,7 +19,7 @@
 namespace nendo::deform {
 namespace {
 
-/// A hand's frame when it took the part, or when somebody else did, and now.
+/// A hand's frame now, and when this or another hand took the part.
 struct HeldFrame {
   Eigen::Isometry3d from, now;
 };
@@ -60,9 +60,9 @@ Quaterniond turn_of_two(const HeldFrame& one, const HeldFrame& other) noexcept {
   return Quaterniond(Eigen::AngleAxisd(mean, axis)) * along;
 }
 
-/// Returns the motion of what one hand or two hold. With two, it leads the middle between them to
-/// the middle between them, and the line to the line; about the line it turns by the mean of what
-/// the hands turn. If all frames are what they were, it is the identity, bit for bit. Wait-free.
+/// Returns the motion of a part that one hand or two hold. With two, the middle and the line
+/// between them follow the hands; about the line the part turns by the mean of the hands' turns. If
+/// no frame has changed, it is the identity, bit for bit. Wait-free.
 Isometry3d motion_of(std::span<const HeldFrame> hands) noexcept {
   if (std::all_of(hands.begin(), hands.end(), stays)) return Isometry3d::Identity();
   if (hands.size() == 1) return hands[0].now * hands[0].from.inverse();
@@ -122,7 +122,7 @@ public:
   void take_hold(const BoundedShape& shape, std::span<const PartGrip> grips) noexcept {
     holds_ = true;
     for (const Hand& hand : hands_)
-      if (hand.part != no_index) begin_anew(hand.part, shape.shape, grips);
+      if (hand.part != no_index) restart(hand.part, shape.shape, grips);
   }
   void release() noexcept {
     holds_ = is_moved_ = false;
@@ -160,10 +160,10 @@ private:
     const bool was_closed = std::exchange(hand.was_closed, is_closed);
     if (is_closed && !was_closed) {
       hand.part = part_at(shape, grips[number].frame.translation());
-      if (hand.part != no_index) begin_anew(hand.part, shape.shape, grips);
+      if (hand.part != no_index) restart(hand.part, shape.shape, grips);
     } else if (!is_closed && hand.part != no_index) {
       const std::uint32_t part = std::exchange(hand.part, no_index);
-      begin_anew(part, shape.shape, grips); // for the other hand
+      restart(part, shape.shape, grips); // for the other hand
     }
   }
 
@@ -195,8 +195,8 @@ private:
   }
 
   /// What holds the part moves it from here.
-  void begin_anew(std::uint32_t part, const BlockShape& shape,
-                  std::span<const PartGrip> grips) noexcept {
+  void restart(std::uint32_t part, const BlockShape& shape,
+               std::span<const PartGrip> grips) noexcept {
     for (std::size_t hand = 0; hand < hands_.size(); ++hand)
       if (hands_[hand].part == part) {
         hands_[hand].from = grips[hand].frame;

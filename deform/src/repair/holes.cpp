@@ -26,7 +26,8 @@ inline constexpr std::size_t max_crooked_rim = 600;
 
 /// Returns triangles of the rim's corners, in its direction, whose areas have the least sum (G.
 /// Barequet and M. Sharir, Filling gaps in the boundary of a polyhedron, 1995); none if there is no
-/// way. `may_join(a, b)` tells whether an inner edge may go from one corner to another. Allocates.
+/// way. `may_join(a, b)` returns whether an inner edge may lead from one corner to another.
+/// Allocates.
 template <class MayJoin>
 std::vector<Corners> min_area_lid(std::span<const SpacePoint> rim, const MayJoin& may_join) {
   constexpr double never = 1e300;
@@ -65,13 +66,13 @@ std::vector<Corners> min_area_lid(std::span<const SpacePoint> rim, const MayJoin
   return lid;
 }
 
-/// Corners of the mesh, whose vertices stand in the order that the lid's faces need.
+/// Corners of the mesh, in the order that the lid's faces need.
 using Rim = std::vector<std::uint32_t>;
 
 /// What was done to one part of the mesh.
 struct PartHoles {
   std::size_t count = 0, crossing = 0;
-  std::uint32_t vertex = no_index; ///< of a part that stays open
+  std::uint32_t vertex = no_index; ///< a vertex of a part that stays open
   std::string why, remedy;
 };
 
@@ -270,7 +271,7 @@ private:
   }
 
   Mesh& mesh_;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> edges_; ///< by vertices, at rims
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges_; ///< pairs of vertices, at rims
   std::size_t looks_ = 0;
   std::vector<std::uint32_t> part_of_; ///< each vertex
   std::vector<PartHoles> parts_;

@@ -129,7 +129,7 @@ public:
   }
 
 private:
-  /// Faces with fewer than three corners, and corners that repeat the one before.
+  /// Faces with fewer than three corners, and corners that repeat the previous one.
   void drop_thin_faces() {
     std::vector<std::uint32_t> same(mesh_.vertex_count());
     for (std::uint32_t at = 0; at < same.size(); ++at)
@@ -262,7 +262,7 @@ private:
                         "give it a thickness where it was made"});
     leave_out_parts(flat);
   }
-  /// What was separated from them was not, as far as anybody sees.
+  /// What was separated from them was not, as far as users see.
   void drop_left_out_vertices() {
     if (result_.left_out.empty()) return;
     const std::vector<std::uint8_t> used = used_vertices();
@@ -350,8 +350,8 @@ private:
 
   Repair result_;
   Mesh& mesh_;
-  std::vector<std::uint32_t> place_of_; ///< of each corner: the first vertex of its place
-  std::vector<std::uint8_t> keeps_;     ///< of each face, while some are left out
+  std::vector<std::uint32_t> place_of_; ///< the first vertex of each corner's place
+  std::vector<std::uint8_t> keeps_;     ///< one per face, while some are left out
   double left_out_area_ = 0.0;
   std::size_t left_out_vertices_ = 0; ///< that are in the mesh still
 };

@@ -41,7 +41,7 @@ struct UnfilledPart {
 
 struct FilledHoles {
   std::size_t count = 0;
-  std::size_t crossing = 0; ///< whose lid goes through the model, because each way to close it does
+  std::size_t crossing = 0;           ///< holes whose lid goes through the model, as each lid would
   std::vector<UnfilledPart> unfilled; ///< some of whose holes may be closed, but not counted
 };
 
@@ -52,17 +52,16 @@ struct FilledHoles {
 /// place: they do not. Allocates.
 Result<FilledHoles> fill_holes(Mesh& mesh);
 
-/// Turns a face round: its corners go the other way, with all that belongs to them. The first
+/// Reverses a face: its corners, with all that belongs to them. The first
 /// corner stays the first.
 void turn_face(Mesh& mesh, std::size_t face);
 
-/// What turn_alike() did.
 struct TurnedAlike {
   std::size_t turned = 0;
   /// The places of an edge at which a surface comes back to itself turned, as a Möbius strip does.
   /// Then no face is turned.
   std::optional<std::pair<std::uint32_t, std::uint32_t>> one_sided;
-  std::vector<std::uint32_t> one_sided_faces; ///< of all such surfaces
+  std::vector<std::uint32_t> one_sided_faces; ///< the faces of all such surfaces
 };
 
 /// Turns faces so that each faces as its neighbours do, over all edges with two faces. Of faces

@@ -143,7 +143,7 @@ private:
   std::span<const std::uint32_t> element_of_;
   UnionFind& sets_;
   std::vector<PlacedEdge> edges_;
-  std::vector<SpacePoint> normals_; ///< of faces
+  std::vector<SpacePoint> normals_; ///< one per face
 };
 
 } // namespace

@@ -20,7 +20,7 @@ std::vector<std::uint32_t> exact_places(const Points& points);
 /// them: all steps of repairing share this sorted table instead.
 struct PlacedEdge {
   std::uint32_t low, high;
-  std::uint32_t corner, next; ///< of its face
+  std::uint32_t corner, next; ///< corners of its face
   std::uint32_t face;
   bool forward; ///< the face goes from the lesser place to the greater one
 

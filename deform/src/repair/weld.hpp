@@ -26,7 +26,7 @@ bool is_soup(const Mesh& mesh);
 /// What renumber_corners() dropped.
 struct DroppedCorners {
   std::size_t faces = 0;   ///< that had fewer than three vertices
-  std::size_t corners = 0; ///< of other faces, that repeated the one before
+  std::size_t corners = 0; ///< corners of other faces, that repeated the previous one
 };
 
 /// Gives corners the vertices that `vertex_of` names, and drops what has become too thin by it.

@@ -36,7 +36,7 @@ struct Facing {
     return std::abs(out) < (out < 0.0 ? through_wall : through_air) && off < aside;
   }
 };
-/// Through air it is less than is between the ends of what has parted. What has begun continues to
+/// Through air the limit is below the gap between the ends of a parted neck. A change continues to
 /// where a wall is as thick as an edge: there its rim has good triangles.
 constexpr Facing begins{0.7, 0.15, 0.6};
 constexpr Facing goes_on{1.1, 0.2, 0.9};

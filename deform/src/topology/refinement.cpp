@@ -21,8 +21,8 @@ constexpr double shortest_of_detail = 0.5;
 constexpr double min_height = 1e-3;
 /// No collapse turns a face by more than 25 degrees: sharp edges stay sharp.
 constexpr double min_cosine = 0.9;
-/// Where no edge has changed its length by more, nobody has been, and the triangles are left alone,
-/// however uneven they are.
+/// Where no edge has changed its length by more, no hand has been, and the triangles are left
+/// alone, however uneven they are.
 constexpr double min_change = 0.3;
 constexpr int max_refining_rounds = 8;
 /// Where an operation made a self-intersection, nothing is done the next time. The last attempts
@@ -79,8 +79,8 @@ std::vector<char> bounding(const Points& vertices) {
 
 struct Refiner::Parts {
   Appearance look;
-  LiveSurface surface;      ///< of the mesh before the hands
-  std::vector<char> bounds; ///< of each point whether the bounding box needs it
+  LiveSurface surface;      ///< the mesh before the hands
+  std::vector<char> bounds; ///< whether the bounding box needs each point
   Eigen::Vector3d offset;   ///< Mesh::offset
   double target = 1.0;      ///< the limits' measure; Mesh::detail says what part or multiple of it
 
@@ -164,7 +164,7 @@ namespace {
 struct Attempt {
   TriangleSurface surface;
   Eigen::Matrix3Xf shape;
-  std::vector<std::uint32_t> numbers; ///< of each point, those that are gone as well
+  std::vector<std::uint32_t> numbers; ///< one per point, those that are gone as well
   std::vector<EdgeOperation> operations;
 };
 

@@ -11,7 +11,7 @@ namespace nendo::deform {
 namespace {
 
 constexpr double gap_of_edge = 0.25;  // between the ends of a neck that has parted
-constexpr std::size_t min_faces = 32; // of what is no crumb
+constexpr std::size_t min_faces = 32; // of a part that is no crumb
 
 } // namespace
 

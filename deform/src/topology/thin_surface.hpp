@@ -57,7 +57,7 @@ private:
   };
   struct SideOfLoop {
     std::vector<std::uint32_t> faces; ///< at the loop
-    SpacePoint middle;                ///< of what they reach beyond it
+    SpacePoint middle;                ///< the middle of their points beyond it
   };
   std::uint32_t other_face(std::uint32_t edge) const noexcept { return twin(edge) / 3; }
   bool find_sides(const Triple& loop, SideOfLoop& left, SideOfLoop& right) const;
