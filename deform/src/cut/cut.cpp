@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
-#include <vector>
 
 #include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/triangles.hpp>

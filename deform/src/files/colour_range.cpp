@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace nendo::deform {
-
 namespace {
 
 constexpr double full_of_bytes = 255.0;

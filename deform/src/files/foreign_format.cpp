@@ -1,13 +1,10 @@
 #include "files/mesh_formats.hpp"
 
 #include <algorithm>
-#include <span>
-#include <string>
 
 #include <nendo/base/text.hpp>
 
 namespace nendo::deform {
-
 namespace {
 
 using namespace std::string_view_literals;

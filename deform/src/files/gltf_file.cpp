@@ -1,12 +1,8 @@
 // The reader of glTF: all meshes of a scene, in their places, as one model.
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <map>
-#include <optional>
 #include <set>
-#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -18,11 +14,11 @@
 #include "files/gltf_scene.hpp"
 #include "files/mesh_formats.hpp"
 #include "files/mtl_file.hpp"
+#include "files/number_text.hpp"
 #include "geometry/usable.hpp"
 #include "repair/weld.hpp"
 
 namespace nendo::deform {
-
 namespace {
 
 using Json = GltfDocument::Json;
@@ -39,10 +35,6 @@ void visit_list(const Json& object, const char* name, const Visit& visit) {
 std::size_t list_length(const Json& object, const char* name) {
   const Json* const list = gltf_member(object, name);
   return list != nullptr && list->is_array() ? list->size() : 0;
-}
-
-std::string count_of_things(std::size_t count, const std::string& one, const std::string& many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
 std::string in_one_list(const std::vector<std::string>& parts) {
@@ -79,11 +71,11 @@ PrimitiveCounts primitives_of(const Json& root) {
 
 void note_motion(const Json& root, std::size_t targets, NoteSum& notes) {
   std::vector<std::string> parts;
-  if (targets > 0) parts.push_back(count_of_things(targets, "morph target", "morph targets"));
+  if (targets > 0) parts.push_back(count_words(targets, "morph target", "morph targets"));
   if (const std::size_t count = list_length(root, "animations"); count > 0)
-    parts.push_back(count_of_things(count, "animation", "animations"));
+    parts.push_back(count_words(count, "animation", "animations"));
   if (const std::size_t count = list_length(root, "skins"); count > 0)
-    parts.push_back(count_of_things(count, "skeleton", "skeletons"));
+    parts.push_back(count_words(count, "skeleton", "skeletons"));
   if (!parts.empty())
     notes.add(in_one_list(parts) + " left out; the model is read in its default shape and pose");
 }
@@ -122,16 +114,16 @@ void note_left_out(const GltfDocument& document, NoteSum& notes) {
   note_motion(root, primitives.targets, notes);
   std::vector<std::string> loose;
   if (primitives.points > 0)
-    loose.push_back(count_of_things(primitives.points, "set of points", "sets of points"));
+    loose.push_back(count_words(primitives.points, "set of points", "sets of points"));
   if (primitives.lines > 0)
-    loose.push_back(count_of_things(primitives.lines, "set of lines", "sets of lines"));
+    loose.push_back(count_words(primitives.lines, "set of lines", "sets of lines"));
   if (!loose.empty()) notes.add(in_one_list(loose) + " left out; only faces are read");
   for (const std::string& name : primitives.further)
     notes.add("colours of vertices", name, ": are left out; those of COLOR_0 are read");
   note_further_textures(root, notes);
   note_variants(root, notes);
   if (const std::size_t scenes = document.size_of("scenes"); scenes > 1)
-    notes.add(count_of_things(scenes - 1, "scene", "scenes") +
+    notes.add(count_words(scenes - 1, "scene", "scenes") +
               " left out; the default scene is read, so export each by itself if it is wanted");
   visit_list(root, "extensionsUsed", [&](const Json& extension) {
     const std::string name = extension.is_string() ? extension.get<std::string>() : std::string();

@@ -1,8 +1,6 @@
 #include "files/gltf_scene.hpp"
 
 #include <algorithm>
-#include <map>
-#include <optional>
 #include <utility>
 
 #include "files/gltf_document.hpp"

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <new>
-#include <span>
-#include <string>
-#include <vector>
 
 #include <nendo/base/endings.hpp>
 #include <nendo/base/files.hpp>
@@ -19,13 +16,13 @@
 #include "files/mesh_formats.hpp"
 #include "files/model_folder.hpp"
 #include "files/mtl_file.hpp"
+#include "files/number_text.hpp"
 #include "files/text_scanner.hpp"
 #include "geometry/usable.hpp"
 #include "mesh/columns.hpp"
 #include "repair/weld.hpp"
 
 namespace nendo::deform {
-
 namespace {
 
 using CornerSpan = std::span<const std::uint32_t>;
@@ -50,21 +47,6 @@ bool has_three_corners(CornerSpan corners) noexcept {
                      [&](std::uint32_t corner) { return corner != one && corner != *other; });
 }
 
-/// What happened to faces, and to which one first, counted from 1.
-struct Tally {
-  std::size_t count = 0;
-  std::size_t first = 0;
-
-  void note(std::size_t face) noexcept {
-    if (count++ == 0) first = face + 1;
-  }
-  std::string faces(const char* one_does, const char* more_do) const {
-    const std::string face = "face " + std::to_string(first);
-    return std::to_string(count) + (count == 1 ? " face (" + face + ") " + one_does
-                                               : " faces (the first is " + face + ") " + more_do);
-  }
-};
-
 /// Copies what is kept of a mesh's faces to the front of their lists.
 class FaceTidier {
 public:
@@ -77,9 +59,9 @@ public:
       const std::uint32_t end = mesh_.face_starts[face + 1];
       const CornerSpan corners = CornerSpan(mesh_.face_corners).subspan(begin, end - begin);
       if (!has_three_corners(corners)) {
-        left_out_.note(face);
+        left_out_.add(face + 1);
       } else {
-        if (repeats_corner(corners)) fixed_.note(face);
+        if (repeats_corner(corners)) fixed_.add(face + 1);
         keep_corners(begin, end);
         keep_names(face);
         mesh_.face_starts[++faces_kept_] = corners_kept_;
@@ -87,11 +69,9 @@ public:
       begin = end;
     }
     shrink();
-    if (left_out_.count > 0)
-      notes.push_back(left_out_.faces("has", "have") + " fewer than three different corners and " +
-                      (left_out_.count == 1 ? "is" : "are") + " left out");
+    if (left_out_.count > 0) notes.push_back(left_out_.without_three_corners("face"));
     if (fixed_.count > 0)
-      notes.push_back(fixed_.faces("names", "name") +
+      notes.push_back(fixed_.words("face", "names", "name") +
                       " a corner twice in a row, which is taken once");
   }
 
@@ -250,9 +230,8 @@ void weld_soup(Mesh& mesh, Format format, ReadNotes& notes) {
 void note_strays(const Mesh& mesh, ReadNotes& notes) {
   const std::size_t strays = stray_vertices(mesh).size();
   if (strays > 0)
-    notes.push_back(std::to_string(strays) +
-                    (strays == 1 ? " vertex belongs to no face; it is kept, and does"
-                                 : " vertices belong to no face; they are kept, and do") +
+    notes.push_back(count_words(strays, "vertex belongs to no face; it is kept, and does",
+                                "vertices belong to no face; they are kept, and do") +
                     " not count for the model's size");
 }
 
@@ -350,8 +329,8 @@ std::vector<std::string> lost_in_file(const std::filesystem::path& path, const M
   std::vector<std::string> notes;
   const std::size_t seams = is_stl ? 0 : count_colour_seams(mesh);
   if (seams > 0)
-    notes.push_back("OBJ and PLY have one colour for each vertex, so " + std::to_string(seams) +
-                    (seams == 1 ? " vertex gets" : " vertices get") +
+    notes.push_back("OBJ and PLY have one colour for each vertex, so " +
+                    count_words(seams, "vertex gets", "vertices get") +
                     " the mean of the faces' colours there");
   if (!is_stl && !ends_in(path.string(), ".ply")) return notes;
   const Appearance& look = mesh.look;

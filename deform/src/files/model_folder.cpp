@@ -1,16 +1,12 @@
 #include "files/model_folder.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <system_error>
-#include <utility>
-#include <vector>
 
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 
 namespace nendo::deform {
-
 namespace {
 
 constexpr std::size_t max_listed_files = 50'000; // of one folder

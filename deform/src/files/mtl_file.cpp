@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 #include <system_error>
-#include <utility>
 
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
@@ -14,7 +13,6 @@
 #include "files/text_scanner.hpp"
 
 namespace nendo::deform {
-
 namespace {
 
 namespace fs = std::filesystem;

@@ -12,6 +12,32 @@
 
 namespace nendo::deform {
 
+/// Returns the count and the noun: "1 face", "2 faces".
+inline std::string count_words(std::size_t count, const char* one, const char* many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+/// Counts things, and remembers the first one's number, from 1.
+struct Tally {
+  std::size_t count = 0, first = 0;
+
+  void add(std::size_t number) noexcept {
+    if (count++ == 0) first = number;
+  }
+  /// Returns the words "1 face (face 3) has" or "2 faces (the first is face 3) have".
+  std::string words(const std::string& noun, const char* one_does, const char* more_do) const {
+    const std::string number = noun + " " + std::to_string(first);
+    return std::to_string(count) + " " + noun +
+           (count == 1 ? " (" + number + ") " + one_does
+                       : "s (the first is " + number + ") " + more_do);
+  }
+  /// The same, of faces or facets that are left out because they have no area.
+  std::string without_three_corners(const std::string& noun) const {
+    return words(noun, "has", "have") + " fewer than three different corners and " +
+           (count == 1 ? "is" : "are") + " left out";
+  }
+};
+
 /// Appends the shortest decimals that read back the same.
 template <class Number>
 void append_number(std::string& text, Number number) {

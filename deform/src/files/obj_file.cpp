@@ -2,21 +2,10 @@
 // which are computed, and lines, points and curves, which are noted.
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <map>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <system_error>
-#include <utility>
-#include <vector>
-
-#include <Eigen/Core>
 
 #include <nendo/base/text.hpp>
 #include <nendo/deform/corner_colours.hpp>
@@ -72,10 +61,6 @@ constexpr std::string_view harmless[] = {
     "csh",    "bzp",    "bsp", "cdc",  "cdp",  "res",    "shadow_obj", "trace_obj",
 };
 
-std::string several(std::size_t count, const char* one, const char* more) {
-  return std::to_string(count) + " " + (count == 1 ? one : more);
-}
-
 class ObjLeftOut {
 public:
   /// Counts a statement that is not read. Known ones that change no polygon, such as vn and s, do
@@ -98,7 +83,7 @@ public:
   void add_to(std::vector<std::string>& notes) const {
     std::string what;
     const auto add = [&](std::size_t count, const char* one, const char* more) {
-      if (count > 0) what += (what.empty() ? "" : ", ") + several(count, one, more);
+      if (count > 0) what += (what.empty() ? "" : ", ") + count_words(count, one, more);
     };
     add(lines_, "line of edges (l)", "lines of edges (l)");
     add(points_, "line of points (p)", "lines of points (p)");
@@ -107,10 +92,10 @@ public:
     if (!what.empty())
       notes.push_back(what + (is_one ? " is" : " are") + " left out; only faces (f) are read");
     if (weights_ > 0)
-      notes.push_back("the fourth number of " + several(weights_, "vertex", "vertices") +
+      notes.push_back("the fourth number of " + count_words(weights_, "vertex", "vertices") +
                       " is left out, because w weights curves and not polygons");
     if (unknown_ > 0)
-      notes.push_back(several(unknown_, "line", "lines") + " of an unknown kind " +
+      notes.push_back(count_words(unknown_, "line", "lines") + " of an unknown kind " +
                       (unknown_ == 1 ? "is" : "are") + " left out (" +
                       (unknown_ == 1 ? "" : "first ") + first_unknown_ + " in line " +
                       std::to_string(first_unknown_line_) + ")");

@@ -1,13 +1,10 @@
 // The reader of PLY: the body after the header.
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <optional>
-#include <utility>
 
 #include <nendo/base/text.hpp>
 
@@ -20,7 +17,6 @@
 #include "geometry/usable.hpp"
 
 namespace nendo::deform {
-
 namespace {
 
 template <class Number>
@@ -212,21 +208,9 @@ Use use_in_face(const PlyProperty& property, bool is_strips) noexcept {
 }
 
 ColourNumbers colour_numbers_of(PlyType type) noexcept {
-  switch (type) {
-  case PlyType::int8:
-  case PlyType::uint8:
-    return ColourNumbers::int8;
-  case PlyType::int16:
-  case PlyType::uint16:
-    return ColourNumbers::int16;
-  case PlyType::int32:
-  case PlyType::uint32:
-    return ColourNumbers::int32;
-  case PlyType::float32:
-  case PlyType::float64:
-    break;
-  }
-  return ColourNumbers::floats;
+  if (type >= PlyType::float32) return ColourNumbers::floats;
+  if (size_of(type) == 4) return ColourNumbers::int32;
+  return size_of(type) == 2 ? ColourNumbers::int16 : ColourNumbers::int8;
 }
 
 std::size_t channel_of(Use use) noexcept {

@@ -1,14 +1,12 @@
 #include "files/ply_header.hpp"
 
 #include <limits>
-#include <string>
 
 #include <nendo/base/text.hpp>
 
 #include "files/text_scanner.hpp"
 
 namespace nendo::deform {
-
 namespace {
 
 struct TypeName {

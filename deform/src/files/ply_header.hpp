@@ -16,21 +16,8 @@ enum class PlyFormat { ascii, little_endian, big_endian };
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 constexpr std::size_t size_of(PlyType type) noexcept {
-  switch (type) {
-  case PlyType::int8:
-  case PlyType::uint8:
-    return 1;
-  case PlyType::int16:
-  case PlyType::uint16:
-    return 2;
-  case PlyType::int32:
-  case PlyType::uint32:
-  case PlyType::float32:
-    return 4;
-  case PlyType::float64:
-    break;
-  }
-  return 8;
+  constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+  return sizes[static_cast<std::size_t>(type)];
 }
 
 struct PlyProperty {

@@ -1,13 +1,12 @@
 #include "files/ply_look.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <numeric>
 #include <tuple>
-#include <utility>
 
 #include "files/mesh_formats.hpp"
 #include "files/model_folder.hpp"
+#include "files/number_text.hpp"
 #include "geometry/usable.hpp"
 
 namespace nendo::deform {
@@ -91,13 +90,11 @@ void PlyLook::finish(const std::vector<std::string>& textures, Mesh& mesh, ReadN
     notes.emplace_back("the texture coordinates of vertices are left out, because faces have "
                        "their own");
   if (faces_without_ > 0)
-    notes.push_back(std::to_string(faces_without_) +
-                    (faces_without_ == 1 ? " face has" : " faces have") +
+    notes.push_back(count_words(faces_without_, "face has", "faces have") +
                     " no texture coordinates, or not two for each corner; their corners are at "
                     "(0, 0) of the texture");
   if (unusable_ > 0)
-    notes.push_back(std::to_string(unusable_) +
-                    (unusable_ == 1 ? " texture coordinate is" : " texture coordinates are") +
+    notes.push_back(count_words(unusable_, "texture coordinate is", "texture coordinates are") +
                     " not finite; the corners there are at (0, 0) of the texture");
 }
 

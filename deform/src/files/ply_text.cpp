@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstring>
 #include <limits>
-#include <utility>
 
 #include <nendo/deform/corner_colours.hpp>
 
@@ -12,7 +11,6 @@
 #include "files/mesh_formats.hpp"
 
 namespace nendo::deform {
-
 namespace {
 
 template <class Number>

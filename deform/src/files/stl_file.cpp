@@ -1,12 +1,8 @@
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
-#include <optional>
-#include <span>
 
 #include <Eigen/Geometry>
 #include <nendo/base/endings.hpp>
@@ -20,7 +16,6 @@
 #include "geometry/usable.hpp"
 
 namespace nendo::deform {
-
 namespace {
 
 constexpr std::size_t stl_header_bytes = 80;
@@ -69,7 +64,8 @@ bool looks_binary(std::string_view text) noexcept {
 struct StlFaces {
   std::vector<double> vertices; ///< three numbers each
   Mesh mesh;
-  std::size_t facets = 0, left_out = 0, first_left_out = 0;
+  std::size_t facets = 0;
+  Tally left_out;
 
   void add_vertex(const std::array<double, 3>& place) {
     mesh.face_corners.push_back(static_cast<std::uint32_t>(vertices.size() / 3));
@@ -84,7 +80,7 @@ struct StlFaces {
       mesh.face_starts.push_back(to_index(mesh.face_corners.size()));
       return true;
     }
-    if (left_out++ == 0) first_left_out = facets;
+    left_out.add(facets);
     mesh.face_corners.resize(begin);
     vertices.resize(3 * begin); // each corner has a vertex of its own
     return false;
@@ -104,13 +100,7 @@ struct StlFaces {
     return false;
   }
   void note_left_out(ReadNotes& notes) const {
-    const std::string first = "facet " + std::to_string(first_left_out);
-    if (left_out > 0)
-      notes.push_back(std::to_string(left_out) +
-                      (left_out == 1 ? " facet (" + first + ") has"
-                                     : " facets (the first is " + first + ") have") +
-                      " fewer than three different corners and " + (left_out == 1 ? "is" : "are") +
-                      " left out");
+    if (left_out.count > 0) notes.push_back(left_out.without_three_corners("facet"));
   }
   Mesh take() && {
     mesh.vertices = columns_of<3>(vertices);
@@ -193,9 +183,9 @@ private:
     faces_.note_left_out(notes);
     if (in_solid_) notes.push_back("ends without endsolid; it may be cut off");
     if (unknown_ > 0)
-      notes.push_back(std::to_string(unknown_) + (unknown_ == 1 ? " line" : " lines") +
-                      " that no STL has " + (unknown_ == 1 ? "is" : "are") +
-                      " left out (the first is line " + std::to_string(first_unknown_) + ")");
+      notes.push_back(count_words(unknown_, "line", "lines") + " that no STL has " +
+                      (unknown_ == 1 ? "is" : "are") + " left out (the first is line " +
+                      std::to_string(first_unknown_) + ")");
   }
 
   Error bad(const std::string& what) const { return bad_line(name_, words_.line(), what); }

@@ -1,7 +1,6 @@
 #include "files/text_scanner.hpp"
 
 namespace nendo::deform {
-
 namespace {
 
 constexpr bool is_blank(char c) noexcept {

@@ -1,11 +1,8 @@
 #include "files/gltf_document.hpp"
 
-#include <cstdint>
-
 #include <nendo/base/text.hpp>
 
 namespace nendo::deform {
-
 namespace {
 
 constexpr std::string_view data_scheme = "data:";

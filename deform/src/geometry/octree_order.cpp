@@ -7,7 +7,6 @@
 #include <numeric>
 
 namespace nendo::deform {
-
 namespace {
 
 constexpr int depth = 21;

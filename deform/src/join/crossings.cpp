@@ -1,7 +1,6 @@
 #include "join/crossings.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <unordered_map>
 #include <utility>
 

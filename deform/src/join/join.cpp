@@ -2,11 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <deque>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include <nendo/base/result.hpp>
 #include <nendo/deform/closed_manifold.hpp>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <utility>
 
 namespace nendo::deform {
 namespace {

@@ -1,8 +1,6 @@
 #include "join/mesh_surface.hpp"
 
 #include <algorithm>
-#include <string>
-#include <utility>
 
 #include <nendo/deform/corner_colours.hpp>
 #include <nendo/deform/triangles.hpp>

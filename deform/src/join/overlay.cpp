@@ -1,11 +1,7 @@
 #include "join/overlay.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <utility>
-#include <vector>
 
 #include "geometry/constrained_triangulation.hpp"
 #include "geometry/union_find.hpp"

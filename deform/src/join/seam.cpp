@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <queue>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <Eigen/SparseCholesky>
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <utility>
 
 #include "geometry/box_tree.hpp"
 #include "geometry/triangle_meeting.hpp"

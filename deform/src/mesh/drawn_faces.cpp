@@ -3,7 +3,6 @@
 #include <algorithm>
 
 namespace nendo::deform {
-
 namespace {
 
 constexpr float min_opacity = 0.5F;

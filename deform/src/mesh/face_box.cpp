@@ -4,7 +4,6 @@
 #include <limits>
 
 namespace nendo::deform {
-
 namespace {
 
 /// 1 for each vertex that a face has.

@@ -8,7 +8,6 @@
 #include <nendo/deform/triangles.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 

@@ -1,9 +1,7 @@
 #include <nendo/deform/subdivision.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <span>
 #include <utility>
 
 #include <Eigen/Geometry>

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <utility>
 
 #include <nendo/base/text.hpp>
 
 #include "geometry/usable.hpp"
 
 namespace nendo::deform {
-
 namespace {
 
 bool is_positive(double value) noexcept {

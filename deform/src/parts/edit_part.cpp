@@ -1,7 +1,6 @@
 #include <nendo/deform/edit_part.hpp>
 
 #include <algorithm>
-#include <vector>
 
 #include "cut/cut_assembly.hpp"
 #include "parts/append_mesh.hpp"

@@ -1,13 +1,9 @@
 #include <nendo/deform/part_mover.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
-#include <span>
-#include <utility>
 
 #include <Eigen/Geometry>
 

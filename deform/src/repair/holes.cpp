@@ -1,11 +1,7 @@
 #include "repair/steps.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <set>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/triangles.hpp>

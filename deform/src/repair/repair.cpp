@@ -1,15 +1,9 @@
 #include <nendo/deform/repair.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <map>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <Eigen/Geometry>
 

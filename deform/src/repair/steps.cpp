@@ -4,8 +4,6 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <optional>
-#include <utility>
 
 #include <nendo/deform/repair.hpp>
 #include <nendo/deform/triangles.hpp>

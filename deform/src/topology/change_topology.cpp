@@ -1,12 +1,9 @@
 #include <nendo/deform/topology.hpp>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <set>
 #include <tuple>
-#include <utility>
-#include <vector>
 
 #include <nendo/deform/refinement.hpp>
 
@@ -16,7 +13,6 @@
 #include "topology/thin_surface.hpp"
 
 namespace nendo::deform {
-
 namespace {
 
 /// Three points whose edges bound no face, or two whose sheets are near each other.

@@ -7,7 +7,6 @@
 #include <utility>
 
 namespace nendo::deform {
-
 namespace {
 
 constexpr double gap_of_edge = 0.25;  // between the ends of a neck that has parted
