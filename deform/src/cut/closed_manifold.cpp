@@ -5,7 +5,7 @@
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/triangles.hpp>
 
-#include "mesh/half_edges.hpp"
+#include "mesh/surface_mesh.hpp"
 
 namespace nendo::deform {
 namespace {

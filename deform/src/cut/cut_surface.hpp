@@ -17,7 +17,7 @@
 #include <nendo/deform/triangles.hpp>
 
 #include "cut/blade.hpp"
-#include "mesh/half_edges.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "mesh/texture_point.hpp"
 
 namespace nendo::deform {

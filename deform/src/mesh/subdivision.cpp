@@ -9,7 +9,7 @@
 #include <nendo/deform/triangles.hpp>
 
 #include "mesh/columns.hpp"
-#include "mesh/half_edges.hpp"
+#include "mesh/surface_mesh.hpp"
 
 namespace nendo::deform {
 namespace {

@@ -1,10 +1,6 @@
 #pragma once
-// Triangles that know their neighbours while they are split, flipped, collapsed, removed and added:
-// the structure of each editor of a surface (refinement, joining, changes of topology).
-//
-// It has numbers only. Attributes of points, faces or edges are columns beside it, which have one
-// entry for each number; the editor of the mesh lets them grow with it. Numbers of points
-// and faces that are gone are not used again, until take() renumbers what is left.
+// Which edges of faces run against each other: of triangles that change (SurfaceMesh), and of
+// polygons that do not (HalfEdges).
 
 #include <cstddef>
 #include <cstdint>
@@ -12,11 +8,38 @@
 #include <unordered_map>
 #include <vector>
 
+#include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/index.hpp>
 
+#include "geometry/rows_by_key.hpp"
 #include "geometry/space.hpp"
 
 namespace nendo::deform {
+
+/// The edges of polygons, as numbers of corners: corner k begins the edge from this corner to the
+/// next one of its face. SurfaceMesh cannot replace this: the diagonals of triangles would be edges
+/// that the model does not have, and checks name edges of the model.
+struct HalfEdges {
+  std::vector<std::uint32_t> next; ///< the edge after it in its face
+  std::vector<std::uint32_t> last; ///< the edge before it
+  /// The edge of another face that goes the other way; no_index if there is none, or several.
+  std::vector<std::uint32_t> twin;
+  RowsByKey<std::uint32_t> out; ///< the edges that begin at each vertex, in rising order
+};
+
+/// Returns a key for maps: the edge from one vertex to another.
+inline std::uint64_t edge_key(std::uint32_t from, std::uint32_t to) noexcept {
+  return std::uint64_t{from} << 32 | to;
+}
+
+/// Each corner must be below `vertices`. Allocates.
+HalfEdges half_edges_of(std::span<const std::uint32_t> face_starts,
+                        std::span<const std::uint32_t> face_corners, std::size_t vertices);
+
+/// The same as the public function, if the edges are known.
+ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
+                                    std::span<const std::uint32_t> face_corners,
+                                    const HalfEdges& edges);
 
 /// The new number of each point and of each face; no_index for those that are gone.
 struct Renumbering {
@@ -33,6 +56,12 @@ void renumber(std::vector<Entry>& column, std::span<const std::uint32_t> numbers
   column.resize(kept);
 }
 
+/// Triangles that know their neighbours while they are split, flipped, collapsed, removed and
+/// added: the structure of each editor of a surface (refinement, joining, changes of topology).
+///
+/// It has numbers only. Attributes of points, faces or edges are columns beside it, which have one
+/// entry for each number; the editor of the mesh lets them grow with it. Numbers of points and
+/// faces that are gone are not used again, until take() renumbers what is left.
 class SurfaceMesh {
 public:
   SurfaceMesh() = default;

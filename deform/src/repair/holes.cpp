@@ -12,7 +12,7 @@
 #include "geometry/space.hpp"
 #include "join/self_intersections.hpp"
 #include "mesh/columns.hpp"
-#include "mesh/half_edges.hpp"
+#include "mesh/surface_mesh.hpp"
 
 namespace nendo::deform {
 namespace {
