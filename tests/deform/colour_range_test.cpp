@@ -55,7 +55,7 @@ TEST_CASE("deform/colour_range/colours of an OBJ from 0 to 1 are as they are wri
   CHECK(model.notes.empty());
 }
 
-TEST_CASE("deform/colour_range/one number above 1 tells that an OBJ's colours are bytes") {
+TEST_CASE("deform/colour_range/one number above 1 means that an OBJ's colours are bytes") {
   const ReadModel model = parse(obj_of("0 128 1", "1 0 0", "255 51 102"));
   check_colour(model.mesh, 0, 0.0, 128.0 / 255.0, 1.0 / 255.0);
   check_colour(model.mesh, 1, 1.0 / 255.0, 0.0, 0.0);

@@ -61,10 +61,10 @@ TEST_SUITE("corner_colours") {
   TEST_CASE("repair joins what lies a little apart, and turns and fills") {
     Mesh loose = soup_of_six_colours(cube_of_cells(3));
     loose.vertices += 1e-7 * Points::Random(3, loose.vertices.cols());
-    const auto mended = repair(loose);
-    REQUIRE_MESSAGE(mended, mended.error().message);
-    CHECK(check_closed_manifold(mended->mesh));
-    CHECK(worst_of_six_colours(mended->mesh) == 0.0F);
+    const auto fixed = repair(loose);
+    REQUIRE_MESSAGE(fixed, fixed.error().message);
+    CHECK(check_closed_manifold(fixed->mesh));
+    CHECK(worst_of_six_colours(fixed->mesh) == 0.0F);
   }
 
   TEST_CASE("finer faces have the colours of the faces that they were") {

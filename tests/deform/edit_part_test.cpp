@@ -71,8 +71,7 @@ SeenFace face_of(const Mesh& mesh, std::size_t face, const Eigen::Vector3d& move
 } // namespace
 
 TEST_SUITE("edit_part") {
-  TEST_CASE(
-      "a copy stands beside its part and looks like it, and all else keeps numbers and bits") {
+  TEST_CASE("a copy is beside its part and looks like it, and all else keeps numbers and bits") {
     const Mesh before = two_balls();
     const std::size_t faces = before.face_count() / 2;
     for (const std::uint32_t part : {0U, 1U}) {

@@ -371,7 +371,7 @@ TEST_CASE("deform/gltf_file/a file that is cut off or spoilt anywhere does no ha
   CHECK(deep.error().message.find("levels") != std::string::npos);
 }
 
-TEST_CASE("deform/gltf_file/sparse numbers stand in their places") {
+TEST_CASE("deform/gltf_file/sparse numbers are in their places") {
   Square square;
   const std::size_t before = square.binary.size();
   append<std::uint16_t>(square.binary, {2, 0});

@@ -118,7 +118,7 @@ TEST_SUITE("odd_models") {
     CHECK(model.error().message.find("counts vertices from 1") != std::string::npos);
   }
 
-  TEST_CASE("zeros behind the end of a text are nothing") {
+  TEST_CASE("zeros after the end of a text are ignored") {
     CHECK(read(tetrahedron + std::string(100, '\0')).mesh.face_count() == 4);
   }
 

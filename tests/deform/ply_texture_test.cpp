@@ -229,7 +229,7 @@ TEST_SUITE("ply_texture") {
     CHECK(read(text("")).mesh.look.vertex_colours.cols() == 3);
   }
 
-  TEST_CASE("what a PLY loses of it is told, and an OBJ keeps it") {
+  TEST_CASE("what a PLY loses of it is reported, and an OBJ keeps it") {
     const ReadModel model = read(with_wedges("ascii", "comment TextureFile skin.png\n"));
     CHECK(lost_in_file("o.ply", model.mesh) ==
           std::vector<std::string>{"a PLY cannot keep materials, texture coordinates; an OBJ can"});

@@ -96,7 +96,7 @@ void check_repeats(const Shaped& before, const Refinement& made) {
 }
 
 TEST_SUITE("refinement") {
-  TEST_CASE("what is stretched gets vertices, and what nobody touched keeps its bits") {
+  TEST_CASE("what is stretched gets vertices, and the untouched rest keeps its bits") {
     const Shaped before(ball(), pulled(ball().vertices));
     const std::size_t unfit = before.unfit();
     CHECK(unfit > 100);
@@ -123,7 +123,7 @@ TEST_SUITE("refinement") {
     check_repeats(before, made);
   }
 
-  TEST_CASE("a shape that nobody has touched stays as it is, however uneven its edges are") {
+  TEST_CASE("a shape that no hand has touched stays as it is, however uneven its edges are") {
     for (const Mesh& mesh : {ball(), nendo::test::cube_of_cells(4), nendo::test::torus(12, 30)}) {
       const Shaped before(mesh, mesh.vertices);
       CHECK(before.unfit() == 0);

@@ -129,15 +129,15 @@ TEST_SUITE("repair") {
     Mesh two = cube_of_cells(2, true);
     append(two, moved(torus(9, 7), {4, 0, 0}));
     for (const Mesh& whole : {textured, two, shell(6, 0.5), sponge(1)}) {
-      const auto mended = repair(whole);
-      REQUIRE_MESSAGE(mended, mended.error().message);
-      CHECK(lines_of(*mended).empty());
-      CHECK(mended->mesh.vertices == whole.vertices);
-      CHECK(mended->mesh.face_corners == whole.face_corners);
-      CHECK(mended->mesh.face_starts == whole.face_starts);
-      CHECK(mended->mesh.texcoords == whole.texcoords);
-      CHECK(mended->mesh.corner_texcoords == whole.corner_texcoords);
-      CHECK(mended->mesh.look.vertex_colours == whole.look.vertex_colours);
+      const auto fixed = repair(whole);
+      REQUIRE_MESSAGE(fixed, fixed.error().message);
+      CHECK(lines_of(*fixed).empty());
+      CHECK(fixed->mesh.vertices == whole.vertices);
+      CHECK(fixed->mesh.face_corners == whole.face_corners);
+      CHECK(fixed->mesh.face_starts == whole.face_starts);
+      CHECK(fixed->mesh.texcoords == whole.texcoords);
+      CHECK(fixed->mesh.corner_texcoords == whole.corner_texcoords);
+      CHECK(fixed->mesh.look.vertex_colours == whole.look.vertex_colours);
     }
   }
 
@@ -150,12 +150,12 @@ TEST_SUITE("repair") {
         number += way(random);
       RepairOptions options;
       if (noise > 1e-5) options.tolerance = 4.0 * noise;
-      const auto mended = repair(broken, options);
-      REQUIRE_MESSAGE(mended, mended.error().message);
-      CHECK(check_closed_manifold(mended->mesh));
-      CHECK(mended->mesh.vertices.cols() == 56);
-      CHECK(euler_characteristic(mended->mesh) == 2);
-      CHECK(volume_of(mended->mesh) == doctest::Approx(1.0).epsilon(10.0 * noise));
+      const auto fixed = repair(broken, options);
+      REQUIRE_MESSAGE(fixed, fixed.error().message);
+      CHECK(check_closed_manifold(fixed->mesh));
+      CHECK(fixed->mesh.vertices.cols() == 56);
+      CHECK(euler_characteristic(fixed->mesh) == 2);
+      CHECK(volume_of(fixed->mesh) == doctest::Approx(1.0).epsilon(10.0 * noise));
       if (noise > 1e-5) CHECK(!repair(broken)); // by default, they are too far apart
     }
   }
@@ -164,11 +164,11 @@ TEST_SUITE("repair") {
     Mesh loose = unshared(cube_of_cells(2));
     add_face(loose, {loose.face_corners[0], loose.face_corners[1], loose.face_corners[2]});
     add_face(loose, {loose.face_corners[5], loose.face_corners[4], loose.face_corners[3]});
-    const auto mended = repair(loose);
-    REQUIRE_MESSAGE(mended, mended.error().message);
-    CHECK(mended->dropped == 2);
-    CHECK(mended->mesh.vertices.cols() == 26);
-    CHECK(volume_of(mended->mesh) == doctest::Approx(1.0).epsilon(1e-12));
+    const auto fixed = repair(loose);
+    REQUIRE_MESSAGE(fixed, fixed.error().message);
+    CHECK(fixed->dropped == 2);
+    CHECK(fixed->mesh.vertices.cols() == 26);
+    CHECK(volume_of(fixed->mesh) == doctest::Approx(1.0).epsilon(1e-12));
   }
 
   TEST_CASE("surfaces that touch in a point, or at an edge, are separated") {
@@ -178,13 +178,13 @@ TEST_SUITE("repair") {
       append(both, moved(cube, way));
       const Mesh touching = merged(both);
       CHECK(!check_closed_manifold(touching));
-      const auto mended = repair(touching);
-      REQUIRE_MESSAGE(mended, mended.error().message);
-      CHECK(check_closed_manifold(mended->mesh));
-      CHECK(mended->separated == (way.z() > 0.5 ? 1U : 3U)); // an edge of two cells
-      CHECK(euler_characteristic(mended->mesh) == 4);        // two balls
-      CHECK(volume_of(mended->mesh) == doctest::Approx(2.0).epsilon(1e-12));
-      CHECK(separate(mended->mesh).size() == 2);
+      const auto fixed = repair(touching);
+      REQUIRE_MESSAGE(fixed, fixed.error().message);
+      CHECK(check_closed_manifold(fixed->mesh));
+      CHECK(fixed->separated == (way.z() > 0.5 ? 1U : 3U)); // an edge of two cells
+      CHECK(euler_characteristic(fixed->mesh) == 4);        // two balls
+      CHECK(volume_of(fixed->mesh) == doctest::Approx(2.0).epsilon(1e-12));
+      CHECK(separate(fixed->mesh).size() == 2);
       // And so, if all faces have vertices of their own, whichever way one of both faces.
       Mesh loose = unshared(cube);
       append(loose, unshared(reversed(moved(cube, way))));
@@ -219,10 +219,10 @@ TEST_SUITE("repair") {
     Mesh mixed = reversed(hollow);
     append(mixed, moved(reversed(cube_of_cells(2)), {3, 0, 0}));
     append(mixed, moved(cube_of_cells(2), {6, 0, 0}));
-    const auto mended = repair(mixed);
-    REQUIRE_MESSAGE(mended, mended.error().message);
-    CHECK(mended->turned == hollow.face_count() + 48);
-    CHECK(volume_of(mended->mesh) == doctest::Approx(volume + 2.0).epsilon(1e-12));
+    const auto fixed = repair(mixed);
+    REQUIRE_MESSAGE(fixed, fixed.error().message);
+    CHECK(fixed->turned == hollow.face_count() + 48);
+    CHECK(volume_of(fixed->mesh) == doctest::Approx(volume + 2.0).epsilon(1e-12));
     CHECK(lines_of(*repair(hollow)).empty());
   }
 
@@ -244,14 +244,14 @@ TEST_SUITE("repair") {
         add_face(tube, {at, next, around + next, around + at});
         add_face(tube, {next, at, 2 * around});
       }
-      const auto mended = repair(tube);
-      REQUIRE_MESSAGE(mended, mended.error().message);
-      CHECK(mended->filled == 1);
-      CHECK(mended->filled_crossing == 0);
-      CHECK(check_closed_manifold(mended->mesh));
+      const auto fixed = repair(tube);
+      REQUIRE_MESSAGE(fixed, fixed.error().message);
+      CHECK(fixed->filled == 1);
+      CHECK(fixed->filled_crossing == 0);
+      CHECK(check_closed_manifold(fixed->mesh));
       const double base = 0.5 * around * std::sin(2.0 * std::numbers::pi / around);
-      CHECK(volume_of(mended->mesh) == doctest::Approx(base).epsilon(waves > 0.0 ? 0.2 : 1e-9));
-      CHECK(mended->mesh.vertices == tube.vertices);
+      CHECK(volume_of(fixed->mesh) == doctest::Approx(base).epsilon(waves > 0.0 ? 0.2 : 1e-9));
+      CHECK(fixed->mesh.vertices == tube.vertices);
     }
   }
 
@@ -276,12 +276,12 @@ TEST_SUITE("repair") {
       add_face(broken, {corner[0], corner[1], corner[2]});
     }
     REQUIRE(!check_closed_manifold(broken));
-    const auto mended = repair(broken);
-    REQUIRE_MESSAGE(mended, mended.error().message);
-    CHECK(mended->split == 1);
-    CHECK(mended->filled == 0);
-    CHECK(check_closed_manifold(mended->mesh));
-    CHECK(volume_of(mended->mesh) == doctest::Approx(1.0).epsilon(1e-12));
+    const auto fixed = repair(broken);
+    REQUIRE_MESSAGE(fixed, fixed.error().message);
+    CHECK(fixed->split == 1);
+    CHECK(fixed->filled == 0);
+    CHECK(check_closed_manifold(fixed->mesh));
+    CHECK(volume_of(fixed->mesh) == doctest::Approx(1.0).epsilon(1e-12));
   }
 
   TEST_CASE("a face whose last corner is its first again loses it, and it is said") {
@@ -291,37 +291,37 @@ TEST_SUITE("repair") {
     for (std::size_t face = 1; face < mesh.face_starts.size(); ++face)
       ++mesh.face_starts[face];
     CHECK(!check_closed_manifold(mesh));
-    const auto mended = repair(mesh);
-    REQUIRE_MESSAGE(mended, mended.error().message);
-    CHECK(mended->repeated == 1);
-    CHECK(check_closed_manifold(mended->mesh));
-    CHECK(mended->mesh.face_starts == whole.face_starts);
-    CHECK(volume_of(mended->mesh) == doctest::Approx(1.0).epsilon(1e-14));
+    const auto fixed = repair(mesh);
+    REQUIRE_MESSAGE(fixed, fixed.error().message);
+    CHECK(fixed->repeated == 1);
+    CHECK(check_closed_manifold(fixed->mesh));
+    CHECK(fixed->mesh.face_starts == whole.face_starts);
+    CHECK(volume_of(fixed->mesh) == doctest::Approx(1.0).epsilon(1e-14));
   }
 
   TEST_CASE("vertices without a face go, and it is said") {
     Mesh mesh = torus(12, 8);
     mesh.vertices.conservativeResize(3, mesh.vertices.cols() + 2);
     mesh.vertices.rightCols<2>().setConstant(1000.0);
-    const auto mended = repair(mesh);
-    REQUIRE(mended);
-    CHECK(mended->mesh.vertices == torus(12, 8).vertices);
-    CHECK(lines_of(*mended) == std::vector<std::string>{"dropped 2 vertices without a face"});
+    const auto fixed = repair(mesh);
+    REQUIRE(fixed);
+    CHECK(fixed->mesh.vertices == torus(12, 8).vertices);
+    CHECK(lines_of(*fixed) == std::vector<std::string>{"dropped 2 vertices without a face"});
   }
 
   TEST_CASE("a loose flap is left out, and the rest is repaired") {
     const Mesh cube = cube_of_cells(2);
     const auto check = [&](const Mesh& mesh, std::size_t faces) {
-      const auto mended = repair(mesh);
-      REQUIRE_MESSAGE(mended, mended.error().message);
-      CHECK(check_closed_manifold(mended->mesh));
-      CHECK(volume_of(mended->mesh) == doctest::Approx(1.0).epsilon(1e-12));
-      CHECK(mended->mesh.vertices.cols() == 26);
-      CHECK(mended->stray == 0);
-      CHECK(mended->separated == 0);
-      REQUIRE(mended->left_out.size() == 1);
-      CHECK(mended->left_out[0].faces == faces);
-      const std::vector<std::string> lines = lines_of(*mended);
+      const auto fixed = repair(mesh);
+      REQUIRE_MESSAGE(fixed, fixed.error().message);
+      CHECK(check_closed_manifold(fixed->mesh));
+      CHECK(volume_of(fixed->mesh) == doctest::Approx(1.0).epsilon(1e-12));
+      CHECK(fixed->mesh.vertices.cols() == 26);
+      CHECK(fixed->stray == 0);
+      CHECK(fixed->separated == 0);
+      REQUIRE(fixed->left_out.size() == 1);
+      CHECK(fixed->left_out[0].faces == faces);
+      const std::vector<std::string> lines = lines_of(*fixed);
       CHECK(lines.back().starts_with("left out " + std::to_string(faces) + " face"));
       return lines.back();
     };
@@ -348,7 +348,7 @@ TEST_SUITE("repair") {
     CHECK(check(with_strip, 24).find("one side only") != std::string::npos);
   }
 
-  TEST_CASE("that open edges are too many to look for vertices in them is told") {
+  TEST_CASE("too many open edges to look for vertices in them are reported") {
     // Thin slivers, each as long as all others: so each edge is compared with each vertex.
     Mesh mesh = cube_of_cells(1);
     constexpr int slivers = 7000;
@@ -361,10 +361,10 @@ TEST_SUITE("repair") {
       mesh.vertices.col(first + 3 * at + 2) << 0.5, height, 1e-3;
       add_face(mesh, {first + 3 * at, first + 3 * at + 1, first + 3 * at + 2});
     }
-    const auto mended = repair(mesh, {.tolerance = 1e-9});
-    REQUIRE_MESSAGE(mended, mended.error().message);
-    CHECK(mended->skipped_junctions);
-    CHECK(lines_of(*mended).back().starts_with("has too many open edges"));
+    const auto fixed = repair(mesh, {.tolerance = 1e-9});
+    REQUIRE_MESSAGE(fixed, fixed.error().message);
+    CHECK(fixed->skipped_junctions);
+    CHECK(lines_of(*fixed).back().starts_with("has too many open edges"));
     CHECK_FALSE(repair(cube_of_cells(1))->skipped_junctions);
   }
 
@@ -381,11 +381,11 @@ TEST_SUITE("repair") {
 
   TEST_CASE("sheets, one-sided surfaces and surfaces laid double are refused with the reason") {
     const auto refusal = [](const Mesh& mesh) {
-      const auto mended = repair(mesh);
-      REQUIRE(!mended);
-      CHECK(mended.error().code == nendo::Errc::bad_input);
-      CHECK(mended.error().message.starts_with("cannot be repaired: "));
-      return mended.error().message;
+      const auto fixed = repair(mesh);
+      REQUIRE(!fixed);
+      CHECK(fixed.error().code == nendo::Errc::bad_input);
+      CHECK(fixed.error().message.starts_with("cannot be repaired: "));
+      return fixed.error().message;
     };
     const Mesh sheet = grid(4, 1.0);
     CHECK(refusal(sheet).find("is a sheet without an inside") != std::string::npos);
@@ -402,27 +402,27 @@ TEST_SUITE("repair") {
         std::reverse(broken.face_corners.begin() + broken.face_starts[face],
                      broken.face_corners.begin() + broken.face_starts[face + 1]);
       CHECK(!check_closed_manifold(broken));
-      const auto mended = repair(broken);
-      REQUIRE(mended);
-      CHECK(check_closed_manifold(mended->mesh));
-      CHECK(volume_of(mended->mesh) == doctest::Approx(volume_of(whole)).epsilon(1e-12));
-      CHECK(mended->filled == 0);
-      CHECK(mended->mesh.vertices.cols() == whole.vertices.cols());
-      CHECK(mended->joined ==
+      const auto fixed = repair(broken);
+      REQUIRE(fixed);
+      CHECK(check_closed_manifold(fixed->mesh));
+      CHECK(volume_of(fixed->mesh) == doctest::Approx(volume_of(whole)).epsilon(1e-12));
+      CHECK(fixed->filled == 0);
+      CHECK(fixed->mesh.vertices.cols() == whole.vertices.cols());
+      CHECK(fixed->joined ==
             whole.face_corners.size() - static_cast<std::size_t>(whole.vertices.cols()));
-      CHECK(mended->turned == (broken.face_count() + 2) / 3);
-      CHECK(mended->mesh.face_count() == whole.face_count());
+      CHECK(fixed->turned == (broken.face_count() + 2) / 3);
+      CHECK(fixed->mesh.face_count() == whole.face_count());
     }
   }
 
   TEST_CASE("holes are filled: of a cube so that its volume comes back") {
     const Mesh cube = cube_of_cells(4);
     const Mesh open = without_faces(cube, 10, 7);
-    const auto mended = repair(open);
-    REQUIRE(mended);
-    CHECK(mended->filled >= 1);
-    CHECK(check_closed_manifold(mended->mesh));
-    CHECK(volume_of(mended->mesh) == doctest::Approx(1.0).epsilon(0.05));
+    const auto fixed = repair(open);
+    REQUIRE(fixed);
+    CHECK(fixed->filled >= 1);
+    CHECK(check_closed_manifold(fixed->mesh));
+    CHECK(volume_of(fixed->mesh) == doctest::Approx(1.0).epsilon(0.05));
     CHECK(volume_of(repair(cube)->mesh) == doctest::Approx(1.0).epsilon(1e-14));
   }
 
@@ -432,11 +432,11 @@ TEST_SUITE("repair") {
     add_face(mesh, {mesh.face_corners[0], mesh.face_corners[1], mesh.face_corners[2]});
     add_face(mesh, {3, 4, 4});
     add_face(mesh, {5, 6});
-    const auto mended = repair(mesh);
-    REQUIRE(mended);
-    CHECK(mended->dropped == 3);
-    CHECK(mended->mesh.face_count() == faces);
-    CHECK(lines_of(*mended) ==
+    const auto fixed = repair(mesh);
+    REQUIRE(fixed);
+    CHECK(fixed->dropped == 3);
+    CHECK(fixed->mesh.face_count() == faces);
+    CHECK(lines_of(*fixed) ==
           std::vector<std::string>{
               "dropped 3 faces that had fewer than three corners or repeated another"});
   }
@@ -444,15 +444,15 @@ TEST_SUITE("repair") {
   TEST_CASE("the shipped head, open at the neck, can be cut when it is repaired") {
     const auto head = read_mesh(std::filesystem::path(NENDO_MODELS) / "head.obj");
     REQUIRE(head);
-    const auto mended = repair(*head);
-    if (!mended) {
-      MESSAGE(mended.error().message);
-      CHECK(mended.error().message.starts_with("cannot be repaired: "));
+    const auto fixed = repair(*head);
+    if (!fixed) {
+      MESSAGE(fixed.error().message);
+      CHECK(fixed.error().message.starts_with("cannot be repaired: "));
       return;
     }
-    CHECK(check_closed_manifold(mended->mesh));
+    CHECK(check_closed_manifold(fixed->mesh));
     const Eigen::Vector3d middle = head->vertices.rowwise().mean();
-    CHECK(cut_model(mended->mesh, CutPlane{middle, {0.1, 1.0, 0.2}}));
+    CHECK(cut_model(fixed->mesh, CutPlane{middle, {0.1, 1.0, 0.2}}));
   }
 
   TEST_CASE("what cannot be repaired says why") {
@@ -464,10 +464,10 @@ TEST_SUITE("repair") {
     add_face(mesh, {0, 1, 2});
     add_face(mesh, {1, 0, 3});
     add_face(mesh, {0, 1, 4});
-    const auto mended = repair(mesh);
-    REQUIRE(!mended);
-    CHECK(mended.error().code == nendo::Errc::bad_input);
-    CHECK(mended.error().message.starts_with("cannot be repaired"));
+    const auto fixed = repair(mesh);
+    REQUIRE(!fixed);
+    CHECK(fixed.error().code == nendo::Errc::bad_input);
+    CHECK(fixed.error().message.starts_with("cannot be repaired"));
   }
 }
 

@@ -33,7 +33,7 @@ Mesh of_material(Mesh mesh, const char* name, const Eigen::Vector4f& colour) {
 } // namespace
 
 TEST_SUITE("side_by_side") {
-  TEST_CASE("the first keeps its bits, and the others stand to the right on the same floor") {
+  TEST_CASE("the first keeps its bits, and the others are to its right on the same floor") {
     const std::array models{ball_at({7.0, 1.0, -3.0}, 1.0), ball_at({0.0, -20.0, 9.0}, 2.0),
                             ball_at({100.0, 3.0, 3.0}, 0.5)};
     const auto all = side_by_side(models);

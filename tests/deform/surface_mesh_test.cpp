@@ -35,7 +35,7 @@ std::vector<Corners> bipyramid_faces() {
   return {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}};
 }
 
-/// V - E + F of what is left.
+/// V - E + F of the remaining surface.
 long euler_number(const SurfaceMesh& mesh) {
   long count = 0;
   for (std::uint32_t point = 0; point < mesh.point_count(); ++point)

@@ -18,7 +18,7 @@ namespace weld_test {
 using namespace nendo::deform;
 using namespace nendo::test;
 
-/// Each face with vertices of its own, one behind the other.
+/// Each face with vertices of its own, face after face.
 Mesh soup_of(const Mesh& mesh) {
   Mesh loose = mesh;
   loose.vertices.resize(3, static_cast<Eigen::Index>(mesh.face_corners.size()));
