@@ -30,8 +30,6 @@ public:
   using SurfaceMesh::from;
   using SurfaceMesh::has_face;
   using SurfaceMesh::has_point;
-  using SurfaceMesh::last;
-  using SurfaceMesh::next;
   using SurfaceMesh::point_count;
   using SurfaceMesh::to;
   using SurfaceMesh::twin;

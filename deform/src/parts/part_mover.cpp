@@ -16,14 +16,15 @@
 namespace nendo::deform {
 namespace {
 
-/// A hand's frame now, and when this or another hand took the part.
-struct HeldFrame {
-  Eigen::Isometry3d from, now;
-};
-
 using Eigen::Isometry3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+/// A hand's frame now, and when this or another hand took the part.
+struct HeldFrame {
+  Isometry3d from, now;
+};
 
 bool stays(const HeldFrame& hand) noexcept {
   return hand.now.matrix() == hand.from.matrix();
@@ -70,10 +71,6 @@ Isometry3d motion_of(std::span<const HeldFrame> hands) noexcept {
   motion.translation() = now - motion.linear() * from;
   return motion;
 }
-
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
-using Eigen::Vector3f;
 
 /// Parts may be put so many units of the layout away: float is precise enough there.
 constexpr double farthest = 1e4;
