@@ -33,7 +33,7 @@ TEST_SUITE("block_evaluator") {
     return field;
   }
 
-  /// A field that nobody solved: random centres and coefficients.
+  /// A field that is no solution: random centres and coefficients.
   static CsrbfField random_field(Eigen::Index entries, double radius, unsigned seed) {
     std::mt19937 random(seed);
     CsrbfField field;
@@ -91,7 +91,7 @@ TEST_SUITE("block_evaluator") {
           CAPTURE(cells);
           CAPTURE(radius);
           for (const auto name : simd_names()) {
-            if (cells > 64 && name != simd_names().front()) continue; // small ones tell enough
+            if (cells > 64 && name != simd_names().front()) continue; // small ones suffice
             REQUIRE(use_simd(name));
             CAPTURE(name);
             CHECK(apart(field, mesh) < promised);
@@ -287,7 +287,7 @@ TEST_SUITE("block_evaluator") {
     CHECK(refused(field));
   }
 
-  TEST_CASE("a shape that grows without end stays finite, and is told apart when it cannot grow") {
+  TEST_CASE("a shape that grows without end stays finite, and is recognised when it cannot grow") {
     const BlockLayout layout(nendo::test::sphere(10, 12, 5.0).vertices);
     BoundedShape shape(layout.pack());
     BlockEvaluator evaluator(layout, 1, {});

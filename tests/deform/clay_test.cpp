@@ -53,7 +53,7 @@ struct Ball {
       : mesh(nendo::reference::icosphere(level, 30.0)), shape(mesh.vertices, history),
         clay(shape, corners_of_triangles(mesh), bodies, parts_a_body, options) {}
 
-  /// Moves the body from where it is along a straight way, in that many calls.
+  /// Moves the body from where it is along a straight way, in `calls` calls.
   ClayReport go(Parts& parts, const Vector3d& by, int calls) {
     ClayReport worst;
     for (int call = 0; call < calls; ++call) {
@@ -94,7 +94,7 @@ struct Ball {
 } // namespace
 
 TEST_SUITE("clay") {
-  TEST_CASE("a body that stands still, such as a table, only holds against another") {
+  TEST_CASE("a body that does not move, such as a table, only holds against another") {
     ClayOptions options;
     options.still_bodies = 1;
     Ball ball(options, 2);
@@ -347,7 +347,7 @@ TEST_SUITE("clay") {
     ball.clay.begin(pinch(gap, {-20, 0, 0}));
     close_to(54.0, 20);
     const Vector3d before = middle_of(ball.now());
-    CHECK(before.norm() < 1.0); // both sides give way alike
+    CHECK(before.norm() < 1.0); // both sides yield alike
     Parts parts = pinch(gap, {-20, 0, 0});
     ball.go(parts, {0, 25, 10}, 40);
     const Vector3d by = middle_of(ball.now()) - before;
@@ -370,7 +370,7 @@ TEST_SUITE("clay") {
     CHECK(nendo::test::count_self_intersections(ball.now()) == 0);
   }
 
-  TEST_CASE("two fingers that close take hold, pull, and let go when they open") {
+  TEST_CASE("two fingers that close grab, pull, and release when they open") {
     Ball ball({.radius_mm = 18.0}, 1, 5, {}, 2);
     double gap = 60.0;
     const auto move_to = [&](double to, int calls) {
@@ -537,7 +537,7 @@ TEST_SUITE("clay") {
     CHECK(ball.depth(parts) < 1e-3);
   }
 
-  TEST_CASE("a hand that takes hold inside of the surface pushes its way out") {
+  TEST_CASE("a hand that grabs inside of the surface pushes its way out") {
     Ball ball;
     const Parts parts = moved(finger(), Vector3d(0, 0, 25));
     ball.clay.begin(parts);
@@ -567,7 +567,7 @@ TEST_SUITE("clay") {
     CHECK(counts.locks == 0);
   }
 
-  TEST_CASE("the cost is that of what is near") {
+  TEST_CASE("the cost grows only with what is near") {
     const auto distances = [](int level) {
       Ball ball({.keeps_volume = false}, 1, level);
       Parts parts = moved(finger(), Vector3d(0, 0, 30.5));

@@ -90,8 +90,8 @@ TEST_SUITE("deformers") {
     folding.apply(far_ends(), shape);
     CHECK(turned_faces(shape_of(folding, shape)) > 20);
     CHECK(folding.report().links == 0);
-    for (const std::size_t room : {std::size_t{8} << 20, std::size_t{0}}) {
-      Type1Deformer deformer(plane().vertices, 10, injective(room));
+    for (const std::size_t memory : {std::size_t{8} << 20, std::size_t{0}}) {
+      Type1Deformer deformer(plane().vertices, 10, injective(memory));
       REQUIRE(is_solved(deformer.grab(start_points())));
       CHECK(is_solved(deformer.apply(far_ends(), shape)));
       const Points far = shape_of(deformer, shape);

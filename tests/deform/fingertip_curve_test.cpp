@@ -144,7 +144,7 @@ TEST_SUITE("fingertip_curve") {
       CHECK(cuts.size() == FingertipCurve::max_pieces);
       CHECK(cuts.back() == lone(x));
     }
-    curve.end_at(lone(1e-310)); // nearer than a distance can tell
+    curve.end_at(lone(1e-310)); // nearer than a distance can express
     CHECK(cuts_of(curve).empty());
   }
 

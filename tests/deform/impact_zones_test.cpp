@@ -169,7 +169,7 @@ TEST_SUITE("impact_zones") {
     CHECK(meetings_of(ball) == 0);
   }
 
-  TEST_CASE("a shape that crumples all over is taken back, bit for bit") {
+  TEST_CASE("a shape that crumples all over is reverted, bit for bit") {
     Ball ball(5);
     const BlockShape before = ball.shape.shape;
     ball.zones.begin(ball.shape);
@@ -183,7 +183,7 @@ TEST_SUITE("impact_zones") {
       REQUIRE(vertex_at(ball.shape.shape, place) == vertex_at(before, place));
   }
 
-  TEST_CASE("a call that is taken back has moved nothing, and its way waits") {
+  TEST_CASE("a call that is reverted has moved nothing, and its way waits") {
     StrokedBall ball(nendo::test::stroking_rod());
     const ClayDeformer& clay = ball.clay;
     int taken_back = 0;
@@ -202,7 +202,7 @@ TEST_SUITE("impact_zones") {
     CHECK(taken_back > 0);
   }
 
-  TEST_CASE("the volume that is told is the shape's, where faces were kept apart, too") {
+  TEST_CASE("the reported volume is the shape's, also where faces were kept apart") {
     StrokedBall ball(nendo::test::stroking_finger());
     double max_off = 0.0;
     int kept_apart = 0;

@@ -97,7 +97,7 @@ TEST_SUITE("injective chain") {
     CHECK(folded_at_once >= 24); // of 32
   }
 
-  TEST_CASE("the ends are reached where nobody is held") {
+  TEST_CASE("the ends are reached where no point is held") {
     std::mt19937 random(62);
     int free = 0;
     for (int stroke = 0; stroke < 20; ++stroke) {
@@ -210,7 +210,7 @@ TEST_SUITE("injective chain") {
     }
   }
 
-  TEST_CASE("a stroke goes on from where it is, and a pair that was held comes free") {
+  TEST_CASE("a stroke continues from where it is, and a pair that was held comes free") {
     Points starts(3, 2);
     starts << -1.5, 1.5, 0.0, 0.0, 0.0, 0.0;
     std::mt19937 random(66);
@@ -270,7 +270,7 @@ TEST_SUITE("injective chain") {
     }
   }
 
-  TEST_CASE("a call makes no more links than it may, and the next one goes on") {
+  TEST_CASE("a call makes no more links than it may, and the next one continues") {
     std::mt19937 random(68);
     const Points starts = random_points(random, 10, 2.0 * radius);
     const Points ends = starts + random_points(random, 10, radius);

@@ -39,7 +39,7 @@ TEST_SUITE("jacobian") {
     return field;
   }
 
-  /// Two hands whose fingertips stand nearer to each other than the radius by far.
+  /// Two hands whose fingertips are nearer to each other than the radius by far.
   static CsrbfField crowded(std::mt19937 & random, const CsrbfOptions& options) {
     Points starts = random_points(random, 10, 2.0);
     for (Eigen::Index i = 0; i < 10; ++i)

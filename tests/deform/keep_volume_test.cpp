@@ -258,7 +258,7 @@ TEST_SUITE("keep volume") {
     CHECK(change(1e-9) > 1e-2);
   }
 
-  TEST_CASE("start points go where they are told to, however far") {
+  TEST_CASE("start points reach their displacements, however far") {
     for (Stroke stroke : strokes_of_sphere()) {
       CAPTURE(stroke.name);
       for (const double times : {0.1, 1.0, 3.7}) {

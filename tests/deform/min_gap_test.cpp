@@ -41,7 +41,7 @@ TEST_SUITE("least gap") {
     return allowed;
   }
 
-  TEST_CASE("points that run into each other stop at the gap, each giving way by the same amount") {
+  TEST_CASE("points that run into each other stop at the gap, each displaced by the same amount") {
     const Points from = pair({-2, 0, 0}, {2, 0, 0});
     LeastGap gaps = begun(from);
     const Points to = pair({3, 0, 0}, {-1, 0, 0});
@@ -144,7 +144,7 @@ TEST_SUITE("least gap") {
     CHECK(largest_change < 40.0 * step);
   }
 
-  TEST_CASE("a pair is released when it is told to be apart, and not before") {
+  TEST_CASE("a pair is released when it is wanted apart, and not before") {
     const Points from = pair({-2, 0, 0}, {2, 0, 0});
     LeastGap gaps = begun(from);
     end_of(gaps, from, pair({3, 0, 0}, {-1, 0, 0}));

@@ -90,7 +90,7 @@ TEST_SUITE("offset") {
     }
   }
 
-  TEST_CASE("whatever is made of a model stands where the model is") {
+  TEST_CASE("whatever is made of a model is where the model is") {
     const Vector3d away(1e6, -2e6, 3e5);
     const Mesh mesh = counted(test::moved(reference::icosphere(2, 1.0), away));
     REQUIRE_FALSE(mesh.offset.isZero(0.0));

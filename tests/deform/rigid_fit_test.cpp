@@ -54,7 +54,7 @@ TEST_SUITE("rigid_fit") {
     carriers[1] = {Vector3d(1, 0, 0), -Vector3d::UnitX(), Vector3d::Zero(), 0.1, 0.0};
     CHECK(fit_rigid_motion(carriers, Vector3d::Zero(), 0.5, 1.0).translation().x() ==
           doctest::Approx(0.1).epsilon(1e-3));
-    // A part pressed from one side only gives way altogether.
+    // A part pressed from one side only moves altogether.
     carriers.pop_back();
     CHECK(fit_rigid_motion(carriers, Vector3d::Zero(), 0.5, 1.0).translation().x() ==
           doctest::Approx(0.3).epsilon(1e-3));

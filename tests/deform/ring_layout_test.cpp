@@ -1,4 +1,4 @@
-#include "clay/ring_layout.hpp"
+#include "clay/volume_keeper.hpp"
 
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@ using namespace nendo::deform;
 
 namespace {
 
-/// The places of a vertex' neighbours as the rows have them; each vertex' x tells its place.
+/// The places of a vertex' neighbours as the rows have them; each vertex' x is its place.
 std::vector<std::uint32_t> neighbours_of(const RingLayout& rings, const BlockShape& numbered,
                                          std::size_t place) {
   const std::size_t block = place / block_size, lane = place % block_size;

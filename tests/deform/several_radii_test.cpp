@@ -47,7 +47,7 @@ MatrixXd wendland_matrix(Wendland kernel, const Points& at, const Points& centre
 
 /// Of a field of one shared and then the own functions: what the solution makes as small as it can.
 struct Energy {
-  MatrixXd hessian;   ///< of shared, then own coefficients; the energy is half of x^T H x, doubled
+  MatrixXd hessian; ///< rows: shared, then own coefficients; the energy is half of x^T H x, doubled
   MatrixXd at_starts; ///< all functions at the start points
 };
 

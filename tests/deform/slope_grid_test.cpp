@@ -1,4 +1,4 @@
-#include "clay/slope_grid.hpp"
+#include "clay/press_problem.hpp"
 
 #include <algorithm>
 #include <random>

@@ -13,7 +13,6 @@
 
 #include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/surface_deformer.hpp>
-#include <nendo/deform/surface_stroke.hpp>
 #include <nendo/deform/type2.hpp>
 
 #include "support/test_meshes.hpp"
@@ -155,7 +154,7 @@ TEST_SUITE("surface") {
     CHECK(corner.in(mesh.vertices).norm() < 1e-12);
   }
 
-  TEST_CASE("a field is the dense solution in double, and leads each point where it is told") {
+  TEST_CASE("a field is the dense solution in double, and leads each point to its goal") {
     const Mesh mesh = two_sheets(0.1);
     const SurfaceSetup setup = setup_on(mesh);
     const Made made(mesh, setup);
@@ -228,7 +227,7 @@ TEST_SUITE("surface") {
       others.push_back(vertex);
     setup.parts = {{others, {0, 1, 2, 3}, true}};
     const Made affine(mesh, setup);
-    // All points are in one plane, so that a shift and a turn in the plane are what they can tell.
+    // All points are in one plane, so that a shift and a turn in the plane are what they determine.
     Eigen::Isometry3d move = Eigen::Isometry3d::Identity();
     move.rotate(Eigen::AngleAxisd(0.3, Vector3d::UnitZ()));
     move.translation() = Vector3d(0.2, -0.1, 0.4);
@@ -383,7 +382,7 @@ TEST_SUITE("surface") {
     CHECK(one.vertices() != one.mesh.vertices);
   }
 
-  TEST_CASE("what a step of type 2 tells leads from the shape before to its own") {
+  TEST_CASE("what a step of type 2 reports leads from the previous shape to its own") {
     Stroked one(test::grid(20, 10.0));
     std::mt19937 random(8);
     REQUIRE(one.deformer->begin(one.tips) == FieldStatus::ok);

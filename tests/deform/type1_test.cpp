@@ -46,7 +46,7 @@ TEST_SUITE("type1") {
   }
 
   /// Without weights, fields are evaluated instead: each law holds in both ways.
-  constexpr std::initializer_list<std::size_t> weight_rooms{std::size_t{64} << 20, 0};
+  constexpr std::initializer_list<std::size_t> weight_memories{std::size_t{64} << 20, 0};
 
   /// What shapes in float may be off in a model of this size: a few units of float's last place.
   constexpr double float_gap = 5e-6;
@@ -60,8 +60,8 @@ TEST_SUITE("type1") {
 
   TEST_CASE("fingers that have not moved leave the rest shape bit for bit") {
     for (const auto polynomial : {Polynomial::none, Polynomial::constant, Polynomial::linear})
-      for (const std::size_t room : weight_rooms) {
-        Type1Deformer deformer(rest, 10, 6.0, {.polynomial = polynomial}, {.weight_bytes = room});
+      for (const std::size_t memory : weight_memories) {
+        Type1Deformer deformer(rest, 10, 6.0, {.polynomial = polynomial}, {.weight_bytes = memory});
         Points out;
         REQUIRE(deformer.grab(start_points()) == FieldStatus::ok);
         REQUIRE(apply(deformer, end_points(1.0), out) == FieldStatus::ok);
@@ -139,7 +139,7 @@ TEST_SUITE("type1") {
     for (const double radius : nendo::reference::table1_radii)
       for (const auto& starts :
            {nendo::reference::table1_starts(), nendo::reference::crowded_starts()})
-        for (const std::size_t room : weight_rooms) {
+        for (const std::size_t memory : weight_memories) {
           std::mt19937 random(23);
           const Points moves = nendo::reference::table1_displacements(random);
           CsrbfSolver solver({});
@@ -152,9 +152,9 @@ TEST_SUITE("type1") {
             REQUIRE(use_simd(name));
             CAPTURE(name);
             CAPTURE(radius);
-            Type1Deformer deformer(mesh, 10, radius, {}, {.weight_bytes = room});
+            Type1Deformer deformer(mesh, 10, radius, {}, {.weight_bytes = memory});
             REQUIRE(is_solved(deformer.grab(starts)));
-            CHECK((deformer.weight_bytes() > 0) == (room > 0));
+            CHECK((deformer.weight_bytes() > 0) == (memory > 0));
             Points out;
             REQUIRE(is_solved(apply(deformer, starts + moves, out)));
             CHECK((out - expected).colwise().norm().maxCoeff() < 1e-5 * diagonal_of(mesh));
@@ -167,11 +167,11 @@ TEST_SUITE("type1") {
     const Points starts = nendo::reference::table1_starts();
     for (const int cells : {88, 110}) { // 7921 vertices, too few for two with weights, and 12 321
       const Points mesh = nendo::reference::table1_plane(cells);
-      for (const std::size_t room : weight_rooms) {
+      for (const std::size_t memory : weight_memories) {
         CAPTURE(cells);
-        CAPTURE(room);
-        Type1Deformer one(mesh, 10, 20.0, {}, {.weight_bytes = room});
-        Type1Deformer two(mesh, 10, 20.0, {}, {.threads = 2, .weight_bytes = room});
+        CAPTURE(memory);
+        Type1Deformer one(mesh, 10, 20.0, {}, {.weight_bytes = memory});
+        Type1Deformer two(mesh, 10, 20.0, {}, {.threads = 2, .weight_bytes = memory});
         REQUIRE(is_solved(one.grab(starts)));
         REQUIRE(is_solved(two.grab(starts)));
         std::mt19937 random(24);
@@ -207,7 +207,7 @@ TEST_SUITE("type1") {
       }
   }
 
-  /// W, a row a vertex: how far each start point's unit displacement moves it.
+  /// W, a row per vertex: how far each start point's unit displacement moves it.
   static Eigen::MatrixXd dense_weights(const Points& mesh, const Points& starts, double radius) {
     Eigen::MatrixXd weights(mesh.cols(), starts.cols());
     for (Eigen::Index start = 0; start < starts.cols(); ++start) {
@@ -247,10 +247,10 @@ TEST_SUITE("type1") {
     use_simd("");
   }
 
-  TEST_CASE("weights keep to their room, and what no support reaches has none") {
+  TEST_CASE("weights keep to their memory, and what no support reaches has none") {
     const Points mesh = nendo::reference::table1_plane(64);
-    const auto bytes = [&](double radius, std::size_t room) {
-      Type1Deformer deformer(mesh, 10, radius, {}, {.weight_bytes = room});
+    const auto bytes = [&](double radius, std::size_t memory) {
+      Type1Deformer deformer(mesh, 10, radius, {}, {.weight_bytes = memory});
       deformer.grab(nendo::reference::table1_starts());
       return deformer.weight_bytes();
     };
@@ -262,7 +262,7 @@ TEST_SUITE("type1") {
     CHECK(bytes(10.0, std::size_t{64} << 20) < all / 7);
   }
 
-  TEST_CASE("what a release lets go, and what a commit moves, is restored in an old picture") {
+  TEST_CASE("what a release frees, and what a commit moves, is restored in an old picture") {
     // One picture, as a frame's buffer, sees a stroke, a grab elsewhere, a commit and another grab.
     const Points mesh = nendo::reference::table1_plane(64);
     Points here(3, 1);
@@ -270,8 +270,8 @@ TEST_SUITE("type1") {
     Points there(3, 1);
     there << 40, 40, 1;
     const Points up = Eigen::Vector3d(0, 0, 3);
-    for (const std::size_t room : weight_rooms) {
-      Type1Deformer deformer(mesh, 1, 8.0, {}, {.weight_bytes = room});
+    for (const std::size_t memory : weight_memories) {
+      Type1Deformer deformer(mesh, 1, 8.0, {}, {.weight_bytes = memory});
       BlockShape picture;
       const auto is_whole = [&] {
         BlockShape fresh;
@@ -304,9 +304,9 @@ TEST_SUITE("type1") {
   }
 
   TEST_CASE(
-      "undo gives the rest shape before a commit back, bit for bit, as far as there is room") {
-    for (const std::size_t room : {0U, 2U, 10U}) {
-      Type1Deformer deformer(rest, 10, with_undo(room));
+      "undo gives the rest shape before a commit back, bit for bit, as far as memory suffices") {
+    for (const std::size_t memory : {0U, 2U, 10U}) {
+      Type1Deformer deformer(rest, 10, with_undo(memory));
       std::vector<Points> shapes;
       Points out;
       REQUIRE(deformer.grab(start_points()) == FieldStatus::ok);
@@ -315,7 +315,7 @@ TEST_SUITE("type1") {
         REQUIRE(apply(deformer, end_points(length), out) == FieldStatus::ok);
         REQUIRE(deformer.commit(end_points(length)) == FieldStatus::ok);
       }
-      CHECK(deformer.sculpted().undo_steps() == std::min<std::size_t>(room, 4));
+      CHECK(deformer.sculpted().undo_steps() == std::min<std::size_t>(memory, 4));
       apply(deformer, start_points(), out); // is dropped
       while (deformer.sculpted().undo_steps() > 0) {
         REQUIRE(deformer.go(HistoryMove::undo, start_points()) == FieldStatus::ok);
@@ -324,7 +324,7 @@ TEST_SUITE("type1") {
         CHECK(out == shapes.back());
         shapes.pop_back();
       }
-      CHECK(shapes.size() == 4 - std::min<std::size_t>(room, 4));
+      CHECK(shapes.size() == 4 - std::min<std::size_t>(memory, 4));
       const Points last = unpacked(deformer, deformer.rest());
       CHECK(deformer.go(HistoryMove::undo, end_points(1.0)) == FieldStatus::ok);
       CHECK(unpacked(deformer, deformer.rest()) == last);
@@ -335,13 +335,13 @@ TEST_SUITE("type1") {
     }
   }
 
-  TEST_CASE("take_back drops what was pulled and no commit, and redo brings it back if there was "
-            "room") {
+  TEST_CASE("take_back drops what was pulled and no commit, and redo brings it back if memory "
+            "sufficed") {
     for (const bool injective : {false, true})
-      for (const std::size_t room : {0U, 1U, 10U}) {
+      for (const std::size_t memory : {0U, 1U, 10U}) {
         CAPTURE(injective);
-        CAPTURE(room);
-        DeformerOptions options = with_undo(room);
+        CAPTURE(memory);
+        DeformerOptions options = with_undo(memory);
         if (injective) options.injective.emplace();
         Type1Deformer deformer(rest, 10, options);
         Points pulled;
@@ -362,11 +362,12 @@ TEST_SUITE("type1") {
         CHECK(out == committed); // held there
         CHECK(deformer.sculpted().undo_steps() == steps);
         CHECK(deformer.sculpted().forgotten_steps() == 0);
-        CHECK(deformer.sculpted().redo_steps() == (room == 10 ? 1 : 0));
+        CHECK(deformer.sculpted().redo_steps() == (memory == 10 ? 1 : 0));
         REQUIRE(deformer.go(HistoryMove::redo, start_points()) == FieldStatus::ok);
-        CHECK(unpacked(deformer, deformer.rest()) == (room == 10 ? pulled : committed));
-        if (room == 0) continue;
-        if (room == 10) REQUIRE(deformer.go(HistoryMove::undo, start_points()) == FieldStatus::ok);
+        CHECK(unpacked(deformer, deformer.rest()) == (memory == 10 ? pulled : committed));
+        if (memory == 0) continue;
+        if (memory == 10)
+          REQUIRE(deformer.go(HistoryMove::undo, start_points()) == FieldStatus::ok);
         REQUIRE(deformer.go(HistoryMove::undo, start_points()) == FieldStatus::ok);
         CHECK(unpacked(deformer, deformer.rest()) == unpacked(deformer, deformer.layout().pack()));
       }

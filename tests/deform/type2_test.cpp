@@ -139,7 +139,7 @@ TEST_SUITE("type2") {
     CHECK(shape_of(deformer).allFinite());
   }
 
-  TEST_CASE("fingertips that are not finite are refused, and the stroke goes on after them") {
+  TEST_CASE("fingertips that are not finite are refused, and the stroke continues after them") {
     Type2Deformer deformer(clay, 10, 6.0, 0.1, {});
     Points spoilt = start_points();
     spoilt(2, 2) = std::nan("");

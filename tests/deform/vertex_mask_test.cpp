@@ -132,7 +132,7 @@ TEST_SUITE("vertex mask") {
     }
   }
 
-  TEST_CASE("in links, too, what is held stays, and so it does when the stroke ends") {
+  TEST_CASE("what is held stays in links and when the stroke ends") {
     const BlockLayout layout(ball.vertices);
     DeformerOptions with =
         options_with(std::make_shared<VertexMask>(layout, weights_of(ball.vertices)));

@@ -66,7 +66,7 @@ TEST_SUITE("volume_keeper") {
     }
   }
 
-  TEST_CASE("a vertex may have more neighbours than a byte tells") {
+  TEST_CASE("a vertex may have more neighbours than a byte counts") {
     for (const std::uint32_t around : {100U, 300U, 1000U}) {
       CAPTURE(around);
       const Mesh cones = nendo::test::sphere(1, around, 1.0);

@@ -28,7 +28,7 @@ inline publish::LoopOutline outline_of(const LoopUnderTest& test) {
   outline.mode = test.options.sculptor.mode;
   outline.rate_hz = test.options.rate_hz;
   outline.units_per_metre = test.placement.units_per_metre;
-  outline.max_fields = test.loop->frames().front().fields.room();
+  outline.max_fields = test.loop->frames().front().fields.capacity();
   outline.functions =
       static_cast<std::size_t>(test.options.sculptor.deformer.supports.functions(10));
   return outline;

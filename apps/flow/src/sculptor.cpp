@@ -4,7 +4,7 @@
 #include <numeric>
 #include <type_traits>
 
-#include <nendo/deform/surface_stroke.hpp>
+#include <nendo/deform/surface_deformer.hpp>
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/hand/held_points.hpp>
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include <nendo/deform/step_note.hpp>
+#include <nendo/deform/sculpted_shape.hpp>
 #include <nendo/flow/frame.hpp>
 
 namespace nendo::flow {

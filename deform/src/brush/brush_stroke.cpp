@@ -95,7 +95,7 @@ bool BrushDabs::gather(const Dab& dab, const BoundedShape& shape) noexcept {
       const double square =
           (vertex_at(shape.shape, place).cast<double>() - dab.centre).squaredNorm();
       if (!(square < square_radius)) continue;
-      Reached& reached = reached_.emplace_back(); // there is room for all
+      Reached& reached = reached_.emplace_back(); // reserved for all
       reached.place = static_cast<std::uint32_t>(place);
       reached.weight = free * static_cast<float>(wendland(kernel_, std::sqrt(square) / dab.radius));
     }

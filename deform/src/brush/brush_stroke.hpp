@@ -24,14 +24,14 @@ struct Dab {
   Brush brush = Brush::push;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double radius = 1.0; ///< > 0
-  double way = 0.0;    ///< of the fingertip, times the strength; its sign tells which way
+  double way = 0.0;    ///< the fingertip's way, times the strength; the sign is the direction
 };
 
 /// Belongs to one thread. dab() neither allocates nor waits. It looks at the bounds of all blocks,
 /// and at the triangles around each vertex within the radius.
 class BrushDabs {
 public:
-  /// Allocates 32 bytes a vertex.
+  /// Allocates 32 bytes per vertex.
   BrushDabs(std::shared_ptr<const VertexRings> rings, Wendland kernel, double keep_volume,
             std::shared_ptr<const VertexMask> mask = nullptr);
 
@@ -65,17 +65,17 @@ private:
 
   std::shared_ptr<const VertexRings> rings_;
   Wendland kernel_;
-  double keep_volume_;                               ///< of Brush::push (CsrbfOptions)
+  double keep_volume_;                               ///< CsrbfOptions::keep_volume, for Brush::push
   std::shared_ptr<const VertexMask> mask_;           ///< null: all are free
   std::vector<Reached> reached_;                     ///< in block order
-  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero(); ///< of the reached surface
+  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero(); ///< the middle of the reached surface
   Eigen::Vector3d normal_ = Eigen::Vector3d::Zero(); ///< its mean, of unit length
 };
 
 /// Belongs to one thread. After the constructor nothing allocates.
 class BrushStroke {
 public:
-  static constexpr int max_dabs = 16; ///< of one start point on a piece
+  static constexpr int max_dabs = 16; ///< limit for one start point on a piece
   /// Longer ways than this part of a radius are made in several dabs. None of push, twist, scale
   /// and flatten then folds space: the slope of a dab is below 1.
   static constexpr double longest_dab = 0.125;
@@ -105,7 +105,7 @@ private:
   std::vector<OfPoint> points_;
   double strength_;
   BrushDabs dabs_;
-  std::optional<BrushDabs> images_; ///< of mirrored points
+  std::optional<BrushDabs> images_; ///< those of mirrored points
 };
 
 /// Returns the start points that pull, of so many.

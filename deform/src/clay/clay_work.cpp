@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "field/block_edit.hpp"
 #include "geometry/usable.hpp"
 
 namespace nendo::deform {
@@ -19,7 +18,7 @@ namespace {
 constexpr double margin_mm = 0.5;   // around a body, where surfaces are kept from being pulled in
 constexpr double skin_mm = 0.02;    // a surface this deep is outside
 constexpr double between_mm = 0.3;  // and this deep it may wait for the next sub-step
-constexpr double give_mm = 0.3;     // by which skin gives way sideways before it drags
+constexpr double give_mm = 0.3;     // how far skin is displaced sideways before it drags
 constexpr double loaded_mm = 0.01;  // less does not stick
 constexpr double max_step_mm = 2.5; // of a body in a sub-step
 constexpr double max_straight_mm = 0.2; // a last push, which may fold
@@ -60,7 +59,7 @@ int max_centres(std::size_t bodies, const ClayOptions& options) noexcept {
   return std::max(options.max_constraints, static_cast<int>(bodies * Grip::max_held));
 }
 
-CsrbfField room_for(int most, double radius, const BlockLayout& layout) {
+CsrbfField empty_field(int most, double radius, const BlockLayout& layout) {
   CsrbfField field;
   field.centres = Points::Zero(3, most);
   field.coefficients = Points::Zero(3, most);
@@ -80,8 +79,8 @@ ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32
       loads_(bodies, ContactLoad(layout_.block_count(), load_mm * mm_)),
       problem_(static_cast<std::size_t>(options.max_constraints)),
       frictions_(static_cast<std::size_t>(options.max_constraints)), pull_(bodies * Grip::max_held),
-      field_(room_for(max_centres(bodies, options), options.radius_mm * options.units_per_mm,
-                      layout_)),
+      field_(empty_field(max_centres(bodies, options), options.radius_mm * options.units_per_mm,
+                         layout_)),
       evaluator_(layout_, max_centres(bodies, options), options.evaluation), masked_(options.mask),
       volume_(layout_, options.keeps_volume ? triangles : std::span<const std::uint32_t>{}),
       deep_(bodies), pressed_(from_.size()), around_(BoxGate::shut()) {
@@ -153,7 +152,7 @@ double ClayDeformer::Work::way_to_target() const noexcept {
   return way;
 }
 
-/// All that a body sweeps over lies in the box of both poses. Bodies that stand still come to
+/// All that a body sweeps over lies in the box of both poses. Bodies that do not move come to
 /// nothing.
 bool ClayDeformer::Work::is_way_free(const BoundedShape& shape) noexcept {
   std::fill(boxes_.begin(), boxes_.end(), BoxGate::shut());
@@ -175,8 +174,8 @@ void ClayDeformer::Work::place_at(double share) noexcept {
   search_.set_parts(is_);
 }
 
-/// Skin is soft: what touches it follows a bone only when that has gone farther than the skin gives
-/// way. So a hand that trembles does not knead.
+/// Skin is soft: what touches it follows a bone only when that has gone farther than the skin
+/// yields. So a hand that trembles does not knead.
 void ClayDeformer::Work::drag(std::size_t part) noexcept {
   const Eigen::Isometry3d before = skins_[part].frame;
   const Eigen::Isometry3d lag = motion_between(is_[part].frame, before);

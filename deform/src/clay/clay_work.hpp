@@ -7,11 +7,9 @@
 
 #include <nendo/deform/clay.hpp>
 
-#include "clay/contact_load.hpp"
 #include "clay/contact_points.hpp"
 #include "clay/contact_search.hpp"
 #include "clay/grip.hpp"
-#include "clay/held_field.hpp"
 #include "clay/impact_zones.hpp"
 #include "clay/press_problem.hpp"
 #include "clay/rigid_fit.hpp"
@@ -27,8 +25,8 @@ public:
   Work(const SculptedShape& shape, std::span<const std::uint32_t> triangles, std::size_t bodies,
        std::size_t parts_a_body, const ClayOptions& options);
 
-  /// Returns whether all numbers are usable. There must be as many parts as the constructor was
-  /// told.
+  /// Returns whether all numbers are usable. The number of parts must be the
+  /// constructor's.
   bool accepts(std::span<const ContactPart> parts) const noexcept;
   /// Puts the bodies there, and takes the shape's volume as the one to keep.
   void take_hold(const BoundedShape& shape, std::span<const ContactPart> parts) noexcept;
@@ -48,7 +46,7 @@ public:
 
 private:
   static constexpr double load_mm = 0.5;   ///< clay springs back by that
-  static constexpr double max_bound = 0.9; ///< of a field that does not fold
+  static constexpr double max_bound = 0.9; ///< limit for a field that does not fold
 
   /// What was applied of a pass' field: only a part of it if all would fold.
   enum class Applied : std::uint8_t { nothing, part, whole };
@@ -95,12 +93,12 @@ private:
   double radius_;
   std::size_t parts_a_body_;
   bool holds_ = false;
-  std::vector<ContactPart> from_, target_; ///< of a call
-  std::vector<ContactPart> is_;            ///< of a sub-step
+  std::vector<ContactPart> from_, target_; ///< poses before and after a call
+  std::vector<ContactPart> is_;            ///< poses in a sub-step
   std::vector<ContactPart> skins_;         ///< frames that lag behind the bones'
   std::vector<ContactPart> skins_before_;  ///< a call
   bool is_dragging_ = false;               ///< some skin has moved
-  std::vector<Eigen::Isometry3d> ways_;    ///< of each part's surface in a sub-step
+  std::vector<Eigen::Isometry3d> ways_;    ///< the motion of each part's surface in a sub-step
   std::vector<BoxGate> boxes_;
   ContactSearch search_;
   ContactPoints chosen_;
@@ -110,12 +108,12 @@ private:
   std::vector<Grip> grips_; ///< one a body
   std::vector<Carrier> carriers_;
   HeldField pull_;
-  Eigen::Isometry3d rigid_ = Eigen::Isometry3d::Identity(); ///< of the model in a sub-step
+  Eigen::Isometry3d rigid_ = Eigen::Isometry3d::Identity(); ///< the model's motion in a sub-step
   CsrbfField field_;
   Eigen::Index used_ = 0; ///< columns of the field
   BlockEvaluator evaluator_;
   MaskedStep masked_;
-  NearestLanes free_lanes_; ///< room for the function of that name
+  NearestLanes free_lanes_; ///< scratch for the function of that name
   VolumeKeeper volume_;
   std::optional<ImpactZones> zones_; ///< where the volume is kept
   double whole_volume_ = 0.0;

@@ -92,7 +92,7 @@ private:
   NearestLanes nearest_{};
   Boxes boxes_;
   std::vector<PartFromBoxes> seen_;  ///< each part of a body, from 64 boxes
-  std::vector<std::uint32_t> lists_; ///< of 64 boxes: parts that may be the nearest
+  std::vector<std::uint32_t> lists_; ///< the parts that may be the nearest to each of 64 boxes
 };
 
 template <class Visit>

@@ -1,4 +1,4 @@
-#include "clay/face_meetings.hpp"
+#include "clay/impact_zones.hpp"
 
 #include <algorithm>
 #include <array>
@@ -55,7 +55,7 @@ bool looks_away(const Eigen::Vector3f& normal, const Eigen::Vector3f& way) noexc
 }
 
 /// Returns whether the angle between the axes, and those around both, are together wider. Cosines
-/// and sines of sums tell it without the angles, which would take longer.
+/// and sines of sums show it without the angles, which would take longer.
 bool may_face(const RingFacts& one, const RingFacts& other) noexcept {
   const float cosine = one.min_cosine * other.min_cosine - one.sine * other.sine;
   const float sine = one.sine * other.min_cosine + one.min_cosine * other.sine;
@@ -249,7 +249,7 @@ void FaceMeetings::measure_boxes(const BlockShape& shape, std::uint32_t block) n
 }
 
 /// Where all faces around a vertex look to one side, none of them meet. All: those that belong to
-/// other blocks, which nobody may have looked at.
+/// other blocks, which may not have been examined.
 bool FaceMeetings::is_uneven(const BlockShape& shape, std::uint32_t place) noexcept {
   if (!gone_round_.add(place)) return uneven_.has(place);
   for (const Triangle at : triangles_at_[place])

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 
 #include <nendo/deform/contact_part.hpp>
@@ -20,7 +21,7 @@ namespace nendo::deform {
 struct HeldPoint {
   std::uint32_t part = 0;
   Eigen::Vector3d local = Eigen::Vector3d::Zero(); ///< in the part's frame
-  Eigen::Vector3d at = Eigen::Vector3d::Zero();    ///< of the clay
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();    ///< the place of the clay
   Eigen::Vector3d goal = Eigen::Vector3d::Zero();  ///< where that shall go
 };
 
@@ -40,7 +41,7 @@ public:
   /// Holds what another grip of a body of as many parts holds, in coordinates that are `scale`
   /// times as large, with `origin` added.
   void take_over(const Grip& other, double scale, const Eigen::Vector3d& origin) noexcept;
-  /// Sets the goals of what is held. Parts that open do not pull clay apart: they are not glued.
+  /// Sets the goals of the held places. Parts that open do not pull clay apart: they are not glued.
   void follow(std::span<const ContactPart> parts) noexcept;
 
   bool holds() const noexcept { return !held_.empty(); }
@@ -87,7 +88,33 @@ private:
   std::vector<HeldPoint> held_;
   std::size_t held_side_ = 0; ///< points before this are of the first side
   double narrowest_ = 0.0;    ///< between the sides, since it grabbed
-  int calls_ = 0;             ///< for which the parts have faced, or been open
+  int calls_ = 0;             ///< the calls during which the parts have faced, or been open
+};
+
+/// The CSRBF field that takes places along which are held, both ways:
+///   s(x) = sum_i a_i psi(|x - c_i| / r), with (Psi + ridge) a = ways.
+class HeldField {
+public:
+  /// Allocates for so many places.
+  explicit HeldField(std::size_t most);
+
+  void add(std::size_t at, const Eigen::Vector3d& place, const Eigen::Vector3d& way) noexcept;
+  /// Solves for the first `count` places. Returns an L with |s(x) - s(y)| <= L |x - y|.
+  double solve(std::size_t count, double radius) noexcept;
+  Eigen::Vector3d place(std::size_t at) const noexcept { return column(places_, at); }
+  Eigen::Vector3d coefficient(std::size_t at) const noexcept { return column(coefficients_, at); }
+  /// Returns s there.
+  Eigen::Vector3d field_at(const Eigen::Vector3d& place) const noexcept;
+
+private:
+  static Eigen::Vector3d column(const Eigen::Matrix3Xd& all, std::size_t at) noexcept {
+    return all.col(static_cast<Eigen::Index>(at));
+  }
+
+  Eigen::Index count_ = 0;
+  double radius_ = 1.0;
+  Eigen::Matrix3Xd places_, ways_, coefficients_;
+  Eigen::MatrixXd psi_, factor_;
 };
 
 } // namespace nendo::deform

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "field/block_edit.hpp"
-
 namespace nendo::deform {
 namespace {
 

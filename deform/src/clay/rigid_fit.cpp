@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr int max_rounds = 12;
-constexpr double inertia = 1e-6;       // of what nothing determines
-constexpr double enough_change = 1e-3; // of what yields
+constexpr double inertia = 1e-6;       // resists motions that nothing determines
+constexpr double enough_change = 1e-3; // share of the yielding depth
 
 /// The equations of a round. The unknowns are the middle's way and the turn about it.
 struct Equations {

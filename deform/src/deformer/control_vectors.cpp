@@ -38,7 +38,7 @@ private:
 
   TableReader table_;
   std::string_view name_;
-  std::array<std::optional<std::size_t>, 7> columns_; ///< by column_names
+  std::array<std::optional<std::size_t>, 7> columns_; ///< in the order of column_names
   std::vector<double> numbers_;                       ///< six a row
   std::vector<OwnSupport> own_;
 };
@@ -79,7 +79,7 @@ Result<void> VectorTable::read_row() {
   for (std::size_t at = 0; at < radius_at; ++at) {
     const auto number = table_.number(*columns_[at]);
     if (!number || !is_usable(*number))
-      return table_.bad_cell(*columns_[at], "is not a finite number of at most 1e100; mend it, or "
+      return table_.bad_cell(*columns_[at], "is not a finite number of at most 1e100; fix it, or "
                                             "leave the row out");
     numbers_.push_back(*number);
   }

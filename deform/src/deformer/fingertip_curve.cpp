@@ -163,7 +163,7 @@ bool FingertipCurve::next_cut(Points& cut) noexcept {
   }
   position_ = std::min(position_ + wanted, lengths_.back());
   carried_ = 0.0;
-  if (position_ >= lengths_.back() * (1.0 - rounding)) { // exactly where it was told to go
+  if (position_ >= lengths_.back() * (1.0 - rounding)) { // exactly at the given place
     position_ = lengths_.back();
     cut = to_;
     return true;

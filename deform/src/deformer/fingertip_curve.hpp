@@ -23,7 +23,7 @@ public:
   void begin(const Points& tips);
   /// Continues to `tips` if a fingertip is at least half a piece away from the curve's end.
   /// Fingertips that are nearer than a quarter of a piece stay, so that trembling does not lengthen
-  /// the curve. If this gives more than `max_pieces` pieces, that many longer ones are made
+  /// the curve. If this gives more than `max_pieces` pieces, `max_pieces` longer ones are made
   /// instead.
   void extend(const Points& tips);
   /// Continues to `tips`, however near they are. The last cut is there.
@@ -50,7 +50,7 @@ private:
   Points from_, to_;          ///< the last piece of the curve
   Points leaving_, arriving_; ///< its tangents, as dp/du with u from 0 to 1
   Points tangent_;            ///< at to_, by length
-  Points slope_, last_slope_; ///< of this piece's chord and the one before, by length
+  Points slope_, last_slope_; ///< chords of this and the previous piece, by length
   double last_length_ = 0.0;
   std::array<double, steps + 1> lengths_{}; ///< along it, up to each step
   double position_ = 0.0;                   ///< how far it has been cut

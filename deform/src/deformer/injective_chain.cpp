@@ -7,7 +7,7 @@
 
 #include "deformer/min_gap.hpp"
 #include "geometry/usable.hpp"
-#include "solver/solver_room.hpp"
+#include "solver/reserve_solver.hpp"
 
 namespace nendo::deform {
 
@@ -17,10 +17,10 @@ InjectiveChain::InjectiveChain(Eigen::Index points, Supports supports, CsrbfOpti
       solvers_{CsrbfSolver(csrbf), CsrbfSolver(csrbf)}, starts_(Points::Zero(3, points)),
       radii_(min_radii(supports_, points)), places_(starts_), wanted_(starts_), allowed_(starts_),
       step_(starts_), tips_(starts_), gaps_(std::make_unique<LeastGap>(options.min_gap)),
-      field_(room_for_field(supports_, points, csrbf.kernel)), piece_(field_) {
+      field_(zero_field(supports_, points, csrbf.kernel)), piece_(field_) {
   assert(options.max_bound > 0.0 && options.max_bound < 1.0);
   for (CsrbfSolver& solver : solvers_)
-    make_room(solver, supports_, points);
+    reserve_solver(solver, supports_, points);
   gaps_->reserve(points);
   probe_.reserve(DeterminantProbe::ring_size * points);
 }
@@ -132,8 +132,8 @@ FieldStatus InjectiveChain::make_link() noexcept {
     if (first && report_.links == 0) report_.whole_bound = whole;
     // The field is linear in the displacements, and bounds of sums are at most sums of bounds.
     const double free = gaps_->free_part(tips_, allowed_);
-    const double room = std::max(options_.max_bound - link_bound_, 0.0);
-    const double part = std::min(free, whole > room ? room / whole : 1.0);
+    const double left = std::max(options_.max_bound - link_bound_, 0.0);
+    const double part = std::min(free, whole > left ? left / whole : 1.0);
     link_bound_ += part * whole;
     extend(part, first);
     const bool held = part == free && free < 1.0 && gaps_->hold(tips_, allowed_, part);

@@ -7,7 +7,7 @@
 
 #include <nendo/deform/volume_kernel.hpp>
 
-#include "simd/probe_kernels.hpp"
+#include "simd/field_kernels.hpp"
 
 namespace nendo::deform {
 
@@ -129,8 +129,8 @@ double lipschitz_bound(const CsrbfField& field) noexcept {
 
 void DeterminantProbe::reserve(Eigen::Index points) {
   constexpr auto vector = static_cast<Eigen::Index>(probe_vector);
-  const Eigen::Index room = (points + vector - 1) / vector * vector;
-  if (places_.rows() < room) places_.resize(room, 4);
+  const Eigen::Index rows = (points + vector - 1) / vector * vector;
+  if (places_.rows() < rows) places_.resize(rows, 4);
 }
 
 void DeterminantProbe::start(const Points& points) {

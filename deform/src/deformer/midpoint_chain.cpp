@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "geometry/usable.hpp"
-#include "solver/solver_room.hpp"
+#include "solver/reserve_solver.hpp"
 
 namespace nendo::deform {
 
@@ -23,11 +23,11 @@ MidpointChain::MidpointChain(Eigen::Index points, Supports supports, CsrbfOption
     : supports_(std::move(supports)), max_length_(step_length * min_radius(supports_)),
       solvers_{CsrbfSolver(csrbf), CsrbfSolver(csrbf)}, starts_(Points::Zero(3, points)),
       displacements_(starts_), places_(starts_), step_(starts_),
-      fields_{room_for_field(supports_, points, csrbf.kernel),
-              room_for_field(supports_, points, csrbf.kernel)},
+      fields_{zero_field(supports_, points, csrbf.kernel),
+              zero_field(supports_, points, csrbf.kernel)},
       max_steps_(max_steps) {
   for (CsrbfSolver& solver : solvers_)
-    make_room(solver, supports_, points);
+    reserve_solver(solver, supports_, points);
 }
 
 MidpointChain::~MidpointChain() = default;

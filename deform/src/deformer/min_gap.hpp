@@ -1,7 +1,7 @@
 #pragma once
 // No injective map moves fingertips along paths that cross. Such pairs are held at a least gap:
 // when a pair comes to it, a wall is put between the two, across the line that joins them. Neither
-// of them passes the wall, and both slide along it freely. Each gives way by the same amount.
+// of them passes the wall, and both slide along it freely. Each is displaced by the same amount.
 
 #include <span>
 #include <vector>
@@ -11,7 +11,7 @@
 namespace nendo::deform {
 
 /// A wall depends continuously on the path that meets it: for a path that only touches it, the push
-/// grows from zero and falls to zero again. A wall stands until the pair is told to go apart again
+/// grows from zero and falls to zero again. A wall exists until the wanted places are apart again
 /// along the normal.
 class LeastGap {
 public:
@@ -24,7 +24,7 @@ public:
   /// Removes all walls. Like the functions below, it does not allocate for up to the number of
   /// points reserved.
   void begin(const Points& starts, const Eigen::VectorXd& radii);
-  /// Removes the walls whose pairs are told to be apart.
+  /// Removes the walls whose pairs are wanted apart.
   void release(const Points& wanted) noexcept;
   /// Writes the places that respect all walls and are nearest to `wanted` (least sum of squares).
   void project(const Points& wanted, Points& allowed) noexcept;

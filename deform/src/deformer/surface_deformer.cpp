@@ -7,7 +7,6 @@
 
 #include <nendo/deform/csrbf.hpp>
 #include <nendo/deform/surface_field.hpp>
-#include <nendo/deform/surface_stroke.hpp>
 
 #include "field/block_evaluator.hpp"
 #include "geometry/usable.hpp"

@@ -7,7 +7,7 @@
 #include "field/cardinal_weights.hpp"
 #include "field/masked_step.hpp"
 #include "history/sculpted_parts.hpp"
-#include "solver/solver_room.hpp"
+#include "solver/reserve_solver.hpp"
 
 namespace nendo::deform {
 
@@ -16,7 +16,7 @@ namespace {
 constexpr int max_midpoint_steps = max_midpoint_fields / 2; // of a way: one and a half radii
 
 std::size_t max_fields_of_type1(const DeformerOptions& options) {
-  if (keeps_volume(options)) return 2 * static_cast<std::size_t>(max_midpoint_steps);
+  if (options.csrbf.keeps_volume()) return 2 * static_cast<std::size_t>(max_midpoint_steps);
   return options.injective ? static_cast<std::size_t>(options.injective->max_links) : 1;
 }
 
@@ -38,22 +38,22 @@ Type1Deformer::Type1Deformer(SculptedShape& shape, Eigen::Index control_points,
     : shape_(&shape), starts_(Points::Zero(3, control_points)), rounded_(starts_),
       displacements_(starts_), asked_(starts_),
       supports_(rounded(options.supports, shape.layout())), solver_(options.csrbf),
-      field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
+      field_(zero_field(supports_, control_points, options.csrbf.kernel)),
       fields_(max_fields_of_type1(options), field_),
       evaluator_(std::make_unique<BlockEvaluator>(shape.layout(), field_.centres.cols(),
                                                   options.evaluation)),
       weights_(std::make_unique<CardinalWeights>(shape.layout(), control_points, field_,
-                                                 keeps_volume(options)
+                                                 options.csrbf.keeps_volume()
                                                      ? 0 // they would be matrices
                                                      : options.evaluation.weight_bytes)),
       masked_(std::make_unique<MaskedStep>(options.mask)) {
-  if (keeps_volume(options)) {
+  if (options.csrbf.keeps_volume()) {
     steps_.emplace(control_points, supports_, options.csrbf, max_midpoint_steps);
-    evaluator_->make_room_for_halves(shape.layout());
+    evaluator_->reserve_halves(shape.layout());
   } else if (options.injective) {
     chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
   } else {
-    make_room(solver_, supports_, control_points);
+    reserve_solver(solver_, supports_, control_points);
     return;
   }
   // Not of the present shape, which another thread may be changing.
@@ -96,11 +96,7 @@ FieldStatus Type1Deformer::build(const Points& starts) {
 /// Of the rest shape, where the solver has been built for.
 void Type1Deformer::take_hold() {
   grabbed_ = true;
-  in_links_ = false;
-  displacements_.setZero();
-  field_.coefficients.setZero();
-  field_.polynomial.setZero();
-  fields_.clear();
+  forget_applied();
   weights_->build(solver(), rest_shape(), *evaluator_);
 }
 
@@ -230,14 +226,17 @@ FieldStatus Type1Deformer::commit(const Points& ends) {
 }
 
 void Type1Deformer::release(bool is_step) noexcept {
-  const bool is_moved = in_links_ || !displacements_.isZero(0.0);
-  if (grabbed_ && is_moved) absorb();
+  if (grabbed_ && is_moved()) absorb();
   drop(is_step);
 }
 
 void Type1Deformer::drop(bool is_step) noexcept {
   if (is_step) shape_->parts().keep();
   grabbed_ = false;
+  forget_applied();
+}
+
+void Type1Deformer::forget_applied() noexcept {
   in_links_ = false;
   displacements_.setZero();
   field_.coefficients.setZero();
@@ -250,7 +249,7 @@ FieldStatus Type1Deformer::go(HistoryMove move, const Points& tips) {
   if (move == HistoryMove::redo && shape_->redo_steps() == 0) return FieldStatus::ok;
   const FieldStatus status = build(tips);
   if (!is_solved(status)) return status;
-  if (move == HistoryMove::reset && (in_links_ || !displacements_.isZero(0.0))) absorb();
+  if (move == HistoryMove::reset && is_moved()) absorb();
   shape_->parts().go(move);
   take_hold();
   return status;
@@ -262,7 +261,7 @@ FieldStatus Type1Deformer::take_back(const Points& tips) {
   if (!is_solved(status)) return status;
   SculptedShape::Parts& parts = shape_->parts();
   if (parts.history.is_kept()) {
-    if (in_links_ || !displacements_.isZero(0.0)) absorb();
+    if (is_moved()) absorb();
     parts.history.keep_undone(parts.now, parts.note);
   }
   take_hold();

@@ -4,14 +4,14 @@
 #include <cassert>
 #include <utility>
 
-#include <nendo/deform/surface_stroke.hpp>
+#include <nendo/deform/surface_deformer.hpp>
 
 #include "brush/brush_stroke.hpp"
 #include "deformer/fingertip_curve.hpp"
 #include "field/masked_step.hpp"
 #include "geometry/usable.hpp"
 #include "history/sculpted_parts.hpp"
-#include "solver/solver_room.hpp"
+#include "solver/reserve_solver.hpp"
 
 namespace nendo::deform {
 
@@ -24,7 +24,7 @@ static_assert(2 * max_steps_of_piece * Type2Deformer::max_pieces <= max_midpoint
 
 /// Of one call.
 std::size_t max_fields(const DeformerOptions& options) {
-  if (keeps_volume(options))
+  if (options.csrbf.keeps_volume())
     return static_cast<std::size_t>(2 * max_steps_of_piece * FingertipCurve::max_pieces);
   return static_cast<std::size_t>(options.injective ? options.injective->max_links
                                                     : FingertipCurve::max_pieces);
@@ -58,8 +58,7 @@ Type2Deformer::Type2Deformer(SculptedShape& shape, Eigen::Index control_points, 
       pulling_(Points::Zero(3, static_cast<Eigen::Index>(pulling_points_.size()))), step_(pulling_),
       rounded_(pulling_),
       supports_(rounded(supports_of(pulling_points_, options.supports), shape.layout())),
-      solver_(options.csrbf),
-      field_(room_for_field(supports_, pulling_.cols(), options.csrbf.kernel)),
+      solver_(options.csrbf), field_(zero_field(supports_, pulling_.cols(), options.csrbf.kernel)),
       fields_(max_fields(options), field_),
       evaluator_(std::make_unique<BlockEvaluator>(shape.layout(), field_.centres.cols(),
                                                   options.evaluation)),
@@ -67,12 +66,12 @@ Type2Deformer::Type2Deformer(SculptedShape& shape, Eigen::Index control_points, 
   if (options.brushes.rings && !options.brushes.are_all_pull())
     brushes_ = std::make_unique<BrushStroke>(shape.layout(), control_points, options);
   if (pulling_points_.empty()) return;
-  if (keeps_volume(options)) {
+  if (options.csrbf.keeps_volume()) {
     steps_.emplace(pulling_.cols(), supports_, options.csrbf, max_steps_of_piece);
-    evaluator_->make_room_for_halves(shape.layout());
+    evaluator_->reserve_halves(shape.layout());
     return;
   }
-  make_room(solver_, supports_, pulling_.cols());
+  reserve_solver(solver_, supports_, pulling_.cols());
   if (!options.injective) return;
   chain_.emplace(pulling_.cols(), supports_, options.csrbf, *options.injective);
   max_links_ = options.injective->max_links;
@@ -174,12 +173,17 @@ FieldStatus Type2Deformer::apply_piece() {
   return status;
 }
 
-FieldStatus Type2Deformer::pull_piece() {
+/// Sets the start points and the displacements of the piece.
+void Type2Deformer::begin_piece() {
   step_ = pulling(next_);
   pulling(current_);
   step_ -= pulling_;
   for (Eigen::Index i = 0; i < pulling_.cols(); ++i)
     rounded_.col(i) = shape_->layout().rounded(pulling_.col(i));
+}
+
+FieldStatus Type2Deformer::pull_piece() {
+  begin_piece();
   FieldStatus status = solver_.build(rounded_, supports_);
   if (is_solved(status)) status = solver_.solve(step_, field_);
   return is_solved(status) ? std::max(status, apply(field_)) : status;
@@ -187,11 +191,7 @@ FieldStatus Type2Deformer::pull_piece() {
 
 /// As pull_piece(), but in midpoint steps.
 FieldStatus Type2Deformer::apply_steps() {
-  step_ = pulling(next_);
-  pulling(current_);
-  step_ -= pulling_;
-  for (Eigen::Index i = 0; i < pulling_.cols(); ++i)
-    rounded_.col(i) = shape_->layout().rounded(pulling_.col(i));
+  begin_piece();
   FieldStatus status = steps_->grab(rounded_);
   if (is_solved(status)) status = std::max(status, steps_->go(step_));
   while (is_solved(status) && steps_->next())
@@ -208,7 +208,7 @@ FieldStatus Type2Deformer::apply(const CsrbfField& field) {
   return FieldStatus::ok;
 }
 
-/// Fingertips that are held stay where they are; the next piece tells them again where to go.
+/// Fingertips that are held stay where they are; the next piece gives them a goal again.
 FieldStatus Type2Deformer::apply_links() {
   FieldStatus status = chain_->from_here(pulling(next_), max_links_ - report_.links);
   while (is_solved(status) && chain_->next())

@@ -35,21 +35,21 @@ void BoundedShape::follow(const BoundedShape& other) {
   extent = other.extent;
 }
 
-void ListRoom::reserve(std::size_t entries) {
+void ListArrays::reserve(std::size_t entries) {
   if (lists_ != nullptr && entries <= entries_) return;
   entries_ = entries;
-  lists_ = hwy::AllocateAligned<std::uint32_t>(group_size * list_room(entries));
+  lists_ = hwy::AllocateAligned<std::uint32_t>(group_size * padded_list_size(entries));
   for (auto& array : names_)
-    array = hwy::AllocateAligned<std::uint32_t>(list_room(entries));
+    array = hwy::AllocateAligned<std::uint32_t>(padded_list_size(entries));
   for (auto& array : numbers_)
-    array = hwy::AllocateAligned<float>(list_room(entries));
+    array = hwy::AllocateAligned<float>(padded_list_size(entries));
 }
 
 BlockEvaluator::Parts::Parts(const BlockLayout& layout, Eigen::Index entries, int threads)
     : field(layout, entries), reached(layout.block_count(), 0) {
   if (threads > 1) worker.emplace();
-  for (auto& room : lists)
-    room.reserve(static_cast<std::size_t>(entries));
+  for (auto& list : lists)
+    list.reserve(static_cast<std::size_t>(entries));
 }
 
 BlockEvaluator::BlockEvaluator(const BlockLayout& layout, Eigen::Index entries,
@@ -60,13 +60,13 @@ BlockEvaluator::BlockEvaluator(BlockEvaluator&&) noexcept = default;
 BlockEvaluator& BlockEvaluator::operator=(BlockEvaluator&&) noexcept = default;
 
 bool BlockEvaluator::set_field(const CsrbfField& field) noexcept {
-  for (auto& room : parts_->lists)
-    room.reserve(static_cast<std::size_t>(field.centres.cols()));
+  for (auto& list : parts_->lists)
+    list.reserve(static_cast<std::size_t>(field.centres.cols()));
   parts_->is_halfway = field.is_halfway;
   return parts_->field.assign(field, BlockField::Zeros::left_out);
 }
 
-void BlockEvaluator::make_room_for_halves(const BlockLayout& layout) {
+void BlockEvaluator::reserve_halves(const BlockLayout& layout) {
   parts_->places.emplace(layout.pack());
 }
 

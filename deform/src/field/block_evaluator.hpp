@@ -22,18 +22,32 @@ struct NENDO_API BoundedShape {
   double extent = 0.0;             ///< no coordinate is larger
 };
 
+inline void set_vertex(VertexBlock& block, std::size_t lane, const Eigen::Vector3f& to) noexcept {
+  block.x[lane] = to.x();
+  block.y[lane] = to.y();
+  block.z[lane] = to.z();
+}
+
+/// Makes what a block has beyond its `used` vertices equal to the last of these, as
+/// BlockLayout::pack() does.
+inline void repeat_last(VertexBlock& block, std::size_t used) noexcept {
+  const Eigen::Vector3f last = vertex_in(block, used - 1);
+  for (std::size_t lane = used; lane < block_size; ++lane)
+    set_vertex(block, lane, last);
+}
+
 /// An evaluator belongs to one thread at a time. Its functions neither allocate nor wait, except
 /// where they say so.
 class NENDO_API BlockEvaluator {
 public:
-  /// Allocates for fields of that many entries.
+  /// Allocates for fields of `entries` functions.
   BlockEvaluator(const BlockLayout& layout, Eigen::Index entries, const EvaluationOptions& options);
   ~BlockEvaluator();
   BlockEvaluator(BlockEvaluator&&) noexcept;
   BlockEvaluator& operator=(BlockEvaluator&&) noexcept;
 
   /// Allocates for fields that are halfway (CsrbfField::is_halfway).
-  void make_room_for_halves(const BlockLayout& layout);
+  void reserve_halves(const BlockLayout& layout);
   /// Sets the field for the next calls. Returns false, and sets the zero field, if a number in it
   /// is not finite or is too large for float. Allocates only for more entries than ever before.
   bool set_field(const CsrbfField& field) noexcept;

@@ -46,11 +46,11 @@ BlockField::BlockField(const BlockLayout& layout, Eigen::Index entries)
 void BlockField::reserve(Eigen::Index entries) {
   if (x_ != nullptr && entries <= capacity_) return;
   capacity_ = entries;
-  const std::size_t room = list_room(static_cast<std::size_t>(entries));
+  const std::size_t size = padded_list_size(static_cast<std::size_t>(entries));
   for (auto* array : {&x_, &y_, &z_, &squared_radius_})
-    *array = hwy::AllocateAligned<float>(room);
-  names_ = hwy::AllocateAligned<std::uint32_t>(room);
-  std::iota(names_.get(), names_.get() + room, 0U);
+    *array = hwy::AllocateAligned<float>(size);
+  names_ = hwy::AllocateAligned<std::uint32_t>(size);
+  std::iota(names_.get(), names_.get() + size, 0U);
   entries_.resize(static_cast<std::size_t>(entries));
   precise_entries_.resize(static_cast<std::size_t>(entries));
 }
@@ -74,7 +74,7 @@ bool BlockField::assign(const CsrbfField& field, Zeros zeros) {
   }
   // The padding to whole vectors reaches nothing.
   const auto count = static_cast<std::size_t>(size_);
-  for (std::size_t at = count; at < list_room(count); ++at) {
+  for (std::size_t at = count; at < padded_list_size(count); ++at) {
     x_[at] = y_[at] = z_[at] = 0.0F;
     squared_radius_[at] = -1.0F;
   }

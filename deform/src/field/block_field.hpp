@@ -20,7 +20,7 @@ using VectorArray = hwy::AlignedFreeUniquePtr<T[]>;
 
 class BlockField {
 public:
-  /// Allocates for that many entries.
+  /// Allocates for `entries` functions.
   BlockField(const BlockLayout& layout, Eigen::Index entries);
 
   /// What becomes of functions whose coefficients are all zero. They belong to fingertips that
@@ -43,7 +43,7 @@ private:
 
   Eigen::Vector3d origin_;
   double inverse_unit_; ///< exact: units are powers of two
-  double tolerance_;    ///< of the error of float sums, in units
+  double tolerance_;    ///< the largest error of float sums, in units
   Eigen::Index capacity_ = 0;
   Eigen::Index size_ = 0;
   VectorArray<float> x_, y_, z_, squared_radius_;
@@ -53,7 +53,7 @@ private:
   std::array<std::array<double, 4>, 3> polynomial_{};
   double sum_of_coefficients_ = 0.0;
   double largest_coefficient_ = 0.0;
-  bool in_range_ = true; ///< of float sums
+  bool in_range_ = true; ///< whether float sums hold the numbers
   FieldView view_{};
 };
 

@@ -28,21 +28,22 @@ CardinalWeights::CardinalWeights(const BlockLayout& layout, Eigen::Index starts,
       steps_(starts_) {
   const std::size_t blocks = layout.block_count();
   if (starts_ == 0 || starts_ > max_weighted_starts) return;
-  const std::size_t room =
+  const std::size_t max_entries =
       std::min(blocks * starts_, weight_bytes / (bytes_in_steps + sizeof(WeightEntry)));
-  if (room == 0) return;
+  if (max_entries == 0) return;
   const std::size_t bytes =
-      std::min(room * bytes_in_float, weight_bytes - room * sizeof(WeightEntry));
+      std::min(max_entries * bytes_in_float, weight_bytes - max_entries * sizeof(WeightEntry));
   map_.resize(entries_ * starts_);
   polynomial_.resize(4 * starts_);
-  room_for_kernels_ = hwy::AllocateAligned<double>(block_size * entries_);
-  room_for_weights_ = hwy::AllocateAligned<float>(block_size * starts_);
+  kernel_scratch_ = hwy::AllocateAligned<double>(block_size * entries_);
+  weight_scratch_ = hwy::AllocateAligned<float>(block_size * starts_);
   blocks_.resize(blocks);
-  weight_entries_.resize(room);
+  weight_entries_.resize(max_entries);
   reached_.resize(blocks);
   weights_ = hwy::AllocateAligned<std::byte>(bytes);
   std::memset(weights_.get(), 0, bytes); // its pages are there now
-  cache_ = {blocks_.data(), weight_entries_.data(), weights_.get(), room, bytes, 0, 0, 0, 0.0};
+  cache_ = {
+      blocks_.data(), weight_entries_.data(), weights_.get(), max_entries, bytes, 0, 0, 0, 0.0};
 }
 
 /// The coefficients are linear in the displacements, and each axis is solved by itself: a unit for
@@ -99,8 +100,8 @@ bool CardinalWeights::build(CsrbfSolver& solver, const BoundedShape& rest,
                             global ? polynomial_.data() : nullptr,
                             starts_,
                             min_weight,
-                            room_for_kernels_.get(),
-                            room_for_weights_.get()};
+                            kernel_scratch_.get(),
+                            weight_scratch_.get()};
   built_ = build_weights(view, pass, source, cache_);
   return built_;
 }

@@ -21,8 +21,8 @@ public:
   CardinalWeights(const BlockLayout& layout, Eigen::Index starts, CsrbfField field,
                   std::size_t weight_bytes);
 
-  /// Makes the weights of the rest shape for the start points of `solver`. Returns false if there
-  /// is no room for them, or for so many start points.
+  /// Makes the weights of the rest shape for the start points of `solver`. Returns false if the
+  /// memory does not suffice, or there are too many start points.
   bool build(CsrbfSolver& solver, const BoundedShape& rest, BlockEvaluator& evaluator) noexcept;
   bool is_built() const noexcept { return built_; }
   std::size_t bytes_used() const noexcept {
@@ -51,10 +51,10 @@ private:
   CsrbfField unit_field_;
   std::vector<double> map_;
   std::vector<double> polynomial_;
-  VectorArray<double> room_for_kernels_;
+  VectorArray<double> kernel_scratch_;
   std::size_t entries_;
   std::vector<WeightedBlock> blocks_;
-  VectorArray<float> room_for_weights_;
+  VectorArray<float> weight_scratch_;
   VectorArray<std::byte> weights_;
   std::vector<WeightEntry> weight_entries_;
   std::vector<std::uint8_t> reached_;

@@ -74,7 +74,7 @@ inline bool leaves_caches(const BlockShape& shape) noexcept {
 }
 
 /// Lists of centres, for one thread.
-class ListRoom {
+class ListArrays {
 public:
   void reserve(std::size_t entries);
   ListScratch scratch() const noexcept {
@@ -99,7 +99,7 @@ struct BlockEvaluator::Parts {
   Parts(const BlockLayout& layout, Eigen::Index entries, int threads);
 
   BlockField field;
-  std::array<ListRoom, 2> lists;
+  std::array<ListArrays, 2> lists;
   std::vector<std::uint8_t> reached;
   std::optional<SpinWorker> worker;
   /// Where vertices are asked for the next field, if the field before it was halfway.

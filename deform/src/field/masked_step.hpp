@@ -18,12 +18,12 @@ public:
   explicit MaskedStep(std::shared_ptr<const VertexMask> mask);
 
   const VertexMask* mask() const noexcept { return mask_.get(); }
-  void begin(const BlockShape& shape) noexcept; ///< before the shape changes
-  void end(BoundedShape& shape) const noexcept; ///< after it, with its bounds and stamps
+  void begin(const BlockShape& shape) noexcept; ///< call it before the shape changes
+  void end(BoundedShape& shape) const noexcept; ///< call it afterwards; updates bounds and stamps
 
 private:
   std::shared_ptr<const VertexMask> mask_;
-  std::vector<VertexBlock> kept_; ///< of each part of the mask
+  std::vector<VertexBlock> kept_; ///< one for each part of the mask
   std::vector<std::uint64_t> stamps_;
 };
 

@@ -144,7 +144,7 @@ BlockLayout::BlockLayout(Points vertices)
   if (half > 0.0) unit_ = std::ldexp(1.0, std::clamp(std::ilogb(half) + 1, -1000, 1023));
 }
 
-/// A coordinate that is not finite stands still in the middle, where it harms no bounds.
+/// A coordinate that is not finite stays in the middle, where it harms no bounds.
 float BlockLayout::packed(double coordinate, Eigen::Index axis) const noexcept {
   return std::isfinite(coordinate) ? static_cast<float>((coordinate - origin_[axis]) / unit_)
                                    : 0.0F;

@@ -1,20 +1,154 @@
 #pragma once
-// What the deformers of a shape work on.
+// The parts of a SculptedShape that deformers change, with its undo memory: the shapes before the
+// last steps, and after the steps that were undone. It keeps only the blocks that each step
+// changed, and a note of each step. When memory ends, the oldest steps are dropped for new ones.
 
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include <nendo/deform/sculpted_shape.hpp>
+#include <nendo/deform/undo_memory.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
 
 #include "field/block_evaluator.hpp"
-#include "history/shape_history.hpp"
 
 namespace nendo::deform {
+
+struct SavedBlock;
+
+/// What is noted of a step, in a list of all steps.
+struct StepHead {
+  StepNote note;
+  SavedBlock* before; ///< the head of the previous step; valid while that step is there
+  SavedBlock* after;  ///< the head of the next step, or null
+};
+
+/// A block as it was before a step or, once the step is undone, as it was after the step. The first
+/// one of a step holds no block but the note of the step.
+struct SavedBlock {
+  static constexpr std::uint32_t head = ~std::uint32_t{0};
+
+  union {
+    VertexBlock content;
+    StepHead of_step; ///< if `block` is `head`
+  };
+  std::uint64_t stamp;
+  std::uint64_t step; ///< that changed it
+  SavedBlock* next;
+  SavedBlock* previous;
+  std::uint32_t block;
+};
+
+class ShapeHistory {
+public:
+  /// Allocates about this many bytes, and one more shape like this one. Later it allocates nothing,
+  /// but takes blocks from `more`, if that is not null; `more` must outlive this. Without `more`
+  /// and with fewer bytes than a block needs, nothing is kept.
+  ShapeHistory(const BlockShape& first, std::size_t bytes, UndoMemory* more);
+  ~ShapeHistory();
+  ShapeHistory(ShapeHistory&&) noexcept = default;
+
+  /// Returns whether there is any memory, so that revert() can go back.
+  bool is_kept() const noexcept { return kept_.block_count() > 0; }
+  /// Ends a step, which leads from the shape kept last to this one, and forgets undone steps. If
+  /// nothing changed, there is no step. A step that does not fit is not kept, and neither
+  /// are those before it.
+  void keep(const BlockShape& now, const StepNote& note) noexcept;
+  /// Makes `shape` again the shape that was kept last, as keep() and undo() would, so that redo()
+  /// leads to what `shape` is now. It drops no step that can be undone: without memory it only
+  /// makes the shape what it was. Does nothing if nothing is kept or nothing has changed.
+  void keep_undone(BoundedShape& shape, const StepNote& note) noexcept;
+  /// Adds a step that does not change the shape, and forgets undone steps.
+  void mark(const StepNote& note) noexcept;
+  /// Makes `shape` again the shape that was kept last.
+  void revert(BoundedShape& shape) const noexcept;
+  /// Undoes the last step. `shape` must be the shape that was kept last. Returns false if there is
+  /// no step, or none behind the fence.
+  bool undo(BoundedShape& shape) noexcept;
+  /// Does the last undone step again. `shape` must be the shape that was kept last. Returns false,
+  /// and changes nothing, if there is no undone step.
+  bool redo(BoundedShape& shape) noexcept;
+
+  /// Makes undo() stop here, and forgets the undone steps.
+  void fence() noexcept {
+    forget_undone();
+    fence_ = steps_;
+    ++version_;
+  }
+  void unfence() noexcept {
+    fence_ = 0;
+    ++version_;
+  }
+
+  /// Returns the note of the step that undo() or redo() would do next; null if there is none.
+  const StepNote* to_undo() const noexcept { return steps() > 0 ? &head_->of_step.note : nullptr; }
+  const StepNote* to_redo() const noexcept {
+    return undone_ > 0 ? &next_head()->of_step.note : nullptr;
+  }
+  /// Changes that note. There must be such a step.
+  void note_to_undo(const StepNote& note) noexcept {
+    head_->of_step.note = note;
+    ++version_;
+  }
+  void note_to_redo(const StepNote& note) noexcept {
+    next_head()->of_step.note = note;
+    ++version_;
+  }
+  /// Copies the notes of the last steps that can be undone, the last one first, and of the first of
+  /// those that were undone, the first one first. Returns how many there were to copy.
+  std::size_t copy_undoable(std::span<StepNote> notes) const noexcept;
+  std::size_t copy_undone(std::span<StepNote> notes) const noexcept;
+  /// Returns a number that changes whenever these lists do.
+  std::uint64_t version() const noexcept { return version_; }
+
+  std::size_t steps() const noexcept { return steps_ - fence_; } ///< that undo() may undo
+  std::size_t undone() const noexcept { return undone_; }
+  std::size_t forgotten() const noexcept {
+    return forgotten_;
+  } ///< the steps dropped because memory ended
+
+private:
+  std::size_t count_changed(const BlockShape& now) const noexcept;
+  bool take_more(std::size_t blocks) noexcept;
+  bool free_blocks(std::size_t blocks) noexcept;
+  SavedBlock& take() noexcept;
+  void begin_step(const StepNote& note) noexcept;
+  void save(std::size_t block) noexcept;
+  SavedBlock* next_head() const noexcept;
+  void exchange(SavedBlock& saved, BoundedShape& shape) noexcept;
+  void own(std::size_t count);
+  void add_free(const SavedChain& chain) noexcept;
+  void forget_undone() noexcept;
+  void drop_oldest() noexcept;
+
+  BlockShape kept_;
+  std::vector<std::unique_ptr<SavedBlock[]>> own_;
+  UndoMemory* more_;
+  SavedBlock* free_ = nullptr; ///< a list by `next`
+  std::size_t free_count_ = 0;
+  SavedBlock* oldest_ = nullptr; ///< the oldest block of all steps, undone ones at the end
+  SavedBlock* newest_ = nullptr;
+  SavedBlock* present_ = nullptr; ///< the last that is not undone; nullptr: all are
+  std::size_t undone_blocks_ = 0;
+  std::size_t steps_ = 0;
+  std::size_t fence_ = 0; ///< as many steps are not undone
+  std::size_t undone_ = 0;
+  std::size_t forgotten_ = 0;
+  std::uint64_t next_step_ = 0;
+  std::uint64_t version_ = 0;
+  SavedBlock* head_ = nullptr;       ///< head of the last step that is not undone, or null
+  SavedBlock* first_head_ = nullptr; ///< head of the oldest step
+};
 
 struct SculptedShape::Parts {
   BoundedShape original;
   BoundedShape now;
   ShapeHistory history;
-  StepNote note{}; ///< of the next step
+  StepNote note{}; ///< the note for the next step
   StepNote note_of_reset{};
   /// Whether `now` may differ from the shape that was kept last. To find out reads a stamp a block,
   /// which is too much for the tick that takes another version of a large model.

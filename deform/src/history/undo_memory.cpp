@@ -6,7 +6,7 @@
 
 #include <nendo/base/usable_memory.hpp>
 
-#include "history/shape_history.hpp"
+#include "history/sculpted_parts.hpp"
 
 namespace nendo::deform {
 namespace {

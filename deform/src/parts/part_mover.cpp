@@ -10,7 +10,6 @@
 #include <nendo/deform/vertex_mask.hpp>
 
 #include "cut/cut_assembly.hpp"
-#include "field/block_edit.hpp"
 #include "history/sculpted_parts.hpp"
 
 namespace nendo::deform {

@@ -30,13 +30,6 @@ HWY_INLINE ContactV product(ContactTag d, const Vectors3<ContactV>& a,
                     hn::MulAdd(a.y, hn::Set(d, b[1]), hn::Mul(a.z, hn::Set(d, b[2]))));
 }
 
-template <class Entry>
-HWY_INLINE Vectors3<ContactV> relative_to(ContactTag d, const Entry& entry,
-                                          const Vectors3<ContactV>& place) {
-  return {hn::Sub(place.x, hn::Set(d, entry.x)), hn::Sub(place.y, hn::Set(d, entry.y)),
-          hn::Sub(place.z, hn::Set(d, entry.z))};
-}
-
 /// `from_centre` leads from the ball's centre to the place.
 HWY_INLINE void take_if_nearer(ContactV distance, const Vectors3<ContactV>& from_centre,
                                const Vectors3<ContactV>& place, ContactV part,
@@ -66,8 +59,8 @@ HWY_INLINE void visit_cone(ContactTag d, const ConeEntry& cone, const Vectors3<C
   take_if_nearer(hn::Sub(hn::Sqrt(dot_product(left, left)), radius), left, place, part, best);
 }
 
-/// For each place the part of a triangle's distance that its inside tells, and whether an edge may
-/// be nearer: those edges beyond which the best place of the whole plane lies. The distance is
+/// For each place the part of a triangle's distance that depends on its inside, and whether an edge
+/// may be nearer: those edges beyond which the best place of the whole plane lies. The distance is
 /// convex in the plane, so that from the nearest place of the triangle the way to the best one
 /// leaves it.
 struct BesidePlane {

@@ -24,7 +24,7 @@ struct ConeEntry {
 struct PlaneEntry {
   float x, y, z;
   std::array<float, 3> normal;
-  std::array<float, 3> slope; ///< of the radius, in the plane
+  std::array<float, 3> slope; ///< the radius' slope in the plane
   float tilt;
   std::array<float, 3> first,
       second; ///< a place's barycentric coordinates: its products with these

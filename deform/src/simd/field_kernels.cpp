@@ -1,9 +1,8 @@
 // Evaluation of a field on blocks: for each block the centres that reach it, then for each vector
-// of vertices all of those, so that sums stay in registers. What it costs is told by `nendo bench
-// deform`.
+// of vertices all of those, so that sums stay in registers. `nendo bench deform` measures the
+// cost.
 
 #include "simd/field_kernels.hpp"
-#include "simd/probe_kernels.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/field_kernels.cpp"
@@ -26,10 +25,8 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE void distances_to(D d, const FieldEntry<hn::TFromD<D>>& entry,
                              const Vectors3<V> (&places)[abreast], V (&distances)[abreast]) {
   for (std::size_t n = 0; n < abreast; ++n) {
-    const V x = hn::Sub(places[n].x, hn::Set(d, entry.x));
-    const V y = hn::Sub(places[n].y, hn::Set(d, entry.y));
-    const V z = hn::Sub(places[n].z, hn::Set(d, entry.z));
-    distances[n] = hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
+    const Vectors3<V> way = relative_to(d, entry, places[n]);
+    distances[n] = hn::Sqrt(dot_product(way, way));
   }
 }
 
@@ -153,11 +150,9 @@ HWY_INLINE void add_volume_entry(D d, const VolumeParts<hn::TFromD<D>>& parts,
   const Vectors3<V> a{hn::Set(d, entry.coefficient[0]), hn::Set(d, entry.coefficient[1]),
                       hn::Set(d, entry.coefficient[2])};
   for (std::size_t n = 0; n < abreast; ++n) {
-    const V x = hn::Sub(places[n].x, hn::Set(d, entry.x));
-    const V y = hn::Sub(places[n].y, hn::Set(d, entry.y));
-    const V z = hn::Sub(places[n].z, hn::Set(d, entry.z));
-    const V along = hn::MulAdd(x, a.x, hn::MulAdd(y, a.y, hn::Mul(z, a.z)));
-    const V t = hn::Mul(hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)))), inverse);
+    const Vectors3<V> way = relative_to(d, entry, places[n]);
+    const V along = dot_product(way, a);
+    const V t = hn::Mul(hn::Sqrt(dot_product(way, way)), inverse);
     const V o = hn::Max(hn::Sub(one, t), hn::Zero(d));
     const V o2 = hn::Mul(o, o);
     const V o4 = hn::Mul(o2, o2);
@@ -166,9 +161,9 @@ HWY_INLINE void add_volume_entry(D d, const VolumeParts<hn::TFromD<D>>& parts,
     if constexpr (has_air)
       w = hn::MulAdd(hn::Set(d, parts.air_factor), air_weight(d, parts.air, o), w);
     const V b = hn::Mul(hn::Mul(hn::Set(d, entry.inner), o4), along);
-    sums[n].x = hn::MulAdd(w, a.x, hn::MulAdd(b, x, sums[n].x));
-    sums[n].y = hn::MulAdd(w, a.y, hn::MulAdd(b, y, sums[n].y));
-    sums[n].z = hn::MulAdd(w, a.z, hn::MulAdd(b, z, sums[n].z));
+    sums[n].x = hn::MulAdd(w, a.x, hn::MulAdd(b, way.x, sums[n].x));
+    sums[n].y = hn::MulAdd(w, a.y, hn::MulAdd(b, way.y, sums[n].y));
+    sums[n].z = hn::MulAdd(w, a.z, hn::MulAdd(b, way.z, sums[n].z));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <nendo/deform/field.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/deform/wendland.hpp>
 
@@ -64,8 +65,8 @@ struct CentreArrays {
   std::size_t count;
 };
 
-/// Room for centres that reach several blocks.
-struct CandidateRoom {
+/// Arrays for centres that reach several blocks.
+struct CandidateArrays {
   std::uint32_t* names;
   float* x;
   float* y;
@@ -76,13 +77,13 @@ struct CandidateRoom {
 /// The number of blocks whose lists are made together.
 inline constexpr std::size_t group_size = 16;
 
-/// Room for one thread's lists of centres while a pass runs. Candidates' arrays have
-/// list_room(count) entries, and lists have group_size times as many.
+/// Memory for one thread's lists of centres while a pass runs. Candidates' arrays have
+/// padded_list_size(count) entries, and lists have group_size times as many.
 struct ListScratch {
   std::uint32_t* lists;
-  std::array<CandidateRoom, 2> candidates;
+  std::array<CandidateArrays, 2> candidates;
 };
-constexpr std::size_t list_room(std::size_t entries) noexcept {
+constexpr std::size_t padded_list_size(std::size_t entries) noexcept {
   return (entries + 2 * block_size - 1) / block_size * block_size;
 }
 
@@ -104,8 +105,9 @@ struct BlockPass {
   /// What the field's displacements at `from` are added to; null: `from`. Only for fields that keep
   /// the volume.
   const VertexBlock* base = nullptr;
-  const BlockBounds* bounds; ///< of `from`
-  BlockBounds* new_bounds;   ///< of `to`, where blocks were written; may be `bounds`, may be null
+  const BlockBounds* bounds; ///< those of `from`
+  BlockBounds*
+      new_bounds; ///< those of `to`, where blocks were written; may be `bounds`, may be null
   std::uint8_t* reached;
   std::size_t begin, end;
   ListScratch scratch;
@@ -117,7 +119,23 @@ struct BlockPass {
 
 void displace_pass(const FieldView& field, const BlockPass& pass) noexcept;
 /// Returns the number of pairs of a block and a centre that reaches it. Uses only the bounds and
-/// the scratch room.
+/// the scratch memory.
 std::size_t count_pairs(const FieldView& field, const BlockPass& pass) noexcept;
+
+/// The lengths of arrays are multiples of this.
+inline constexpr std::size_t probe_vector = 8;
+
+/// Places that move through a field, as separate arrays of coordinates, which need not be aligned.
+struct ProbeArrays {
+  double* x;
+  double* y;
+  double* z;
+  double* determinant;
+  std::size_t count; ///< a multiple of probe_vector
+};
+
+/// Computes determinant *= det(I + ds/dx), and then x += s(x). Returns the
+/// least determinant.
+double advance_probes(const CsrbfField& field, const ProbeArrays& probes) noexcept;
 
 } // namespace nendo::deform

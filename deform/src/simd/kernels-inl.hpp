@@ -101,6 +101,12 @@ template <class V>
 HWY_INLINE Vectors3<V> difference_of(const Vectors3<V>& a, const Vectors3<V>& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
+/// Returns the way from an entry's x, y and z to the place.
+template <class D, class Entry, class V = hn::Vec<D>>
+HWY_INLINE Vectors3<V> relative_to(D d, const Entry& entry, const Vectors3<V>& place) {
+  return {hn::Sub(place.x, hn::Set(d, entry.x)), hn::Sub(place.y, hn::Set(d, entry.y)),
+          hn::Sub(place.z, hn::Set(d, entry.z))};
+}
 template <class V>
 HWY_INLINE Vectors3<V> scaled(const Vectors3<V>& a, V by) {
   return {hn::Mul(a.x, by), hn::Mul(a.y, by), hn::Mul(a.z, by)};

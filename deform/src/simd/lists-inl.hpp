@@ -101,11 +101,11 @@ HWY_INLINE std::size_t store_reaching(const CentreVector& centres, const BlockBo
   }
 }
 
-/// Writes, for each box, the centres that reach it, to lists that are `room` apart.
+/// Writes, for each box, the centres that reach it, to lists that are `stride` apart.
 HWY_INLINE void list_reaching(const CentreArrays& centres, const BlockBounds* boxes,
-                              std::size_t count, std::uint32_t* list, std::size_t room,
+                              std::size_t count, std::uint32_t* list, std::size_t stride,
                               std::size_t* sizes) {
-  for (std::size_t box = 0; box < count; ++box, list += room) {
+  for (std::size_t box = 0; box < count; ++box, list += stride) {
     std::size_t size = 0;
     for (std::size_t at = 0; at < centres.count; at += hn::Lanes(ListVectors()))
       size += store_reaching(load_centres(centres, at), boxes[box], list + size);
@@ -116,12 +116,12 @@ HWY_INLINE void list_reaching(const CentreArrays& centres, const BlockBounds* bo
 /// Does the same if all centres fit into so many vectors, which then stay in registers.
 template <std::size_t vectors>
 HWY_INLINE void list_reaching_few(const CentreArrays& centres, const BlockBounds* boxes,
-                                  std::size_t count, std::uint32_t* list, std::size_t room,
+                                  std::size_t count, std::uint32_t* list, std::size_t stride,
                                   std::size_t* sizes) {
   CentreVector held[vectors];
   for (std::size_t n = 0; n < vectors; ++n)
     held[n] = load_centres(centres, n * hn::Lanes(ListVectors()));
-  for (std::size_t box = 0; box < count; ++box, list += room) {
+  for (std::size_t box = 0; box < count; ++box, list += stride) {
     std::size_t size = 0;
     for (const CentreVector& few : held)
       size += store_reaching(few, boxes[box], list + size);
@@ -139,40 +139,40 @@ HWY_INLINE BlockBounds common_bounds(const BlockBounds* bounds, std::size_t begi
   return box;
 }
 
-/// Copies the centres that reach a box to `room`.
+/// Copies the centres that reach a box to `to`.
 static HWY_NOINLINE CentreArrays gather_reaching(const CentreArrays& centres,
                                                  const BlockBounds& box,
-                                                 const CandidateRoom& room) {
+                                                 const CandidateArrays& to) {
   const ListVectors d;
   std::size_t count = 0;
   for (std::size_t at = 0; at < centres.count; at += hn::Lanes(d)) {
     const auto reached = reaching(load_centres(centres, at), box);
     if constexpr (hn::MaxLanes(ListVectors()) >= 16) {
       const hn::RebindToUnsigned<ListVectors> du;
-      const auto take = [&](const float* from, float* to) HWY_ATTR {
-        hn::StoreU(hn::Compress(hn::Load(d, from + at), reached), d, to + count);
+      const auto take = [&](const float* from, float* place) HWY_ATTR {
+        hn::StoreU(hn::Compress(hn::Load(d, from + at), reached), d, place + count);
       };
       const auto names = hn::Load(du, centres.names + at);
-      hn::StoreU(hn::Compress(names, hn::RebindMask(du, reached)), du, room.names + count);
-      take(centres.x, room.x);
-      take(centres.y, room.y);
-      take(centres.z, room.z);
-      take(centres.squared_radius, room.squared_radius);
+      hn::StoreU(hn::Compress(names, hn::RebindMask(du, reached)), du, to.names + count);
+      take(centres.x, to.x);
+      take(centres.y, to.y);
+      take(centres.z, to.z);
+      take(centres.squared_radius, to.squared_radius);
       count += hn::CountTrue(d, reached);
       continue;
     }
     auto bits = static_cast<std::uint32_t>(bits_of(ListVectors(), reached));
     for (; bits != 0; bits &= bits - 1, ++count) {
       const std::size_t from = at + static_cast<std::size_t>(std::countr_zero(bits));
-      room.names[count] = centres.names[from];
-      room.x[count] = centres.x[from];
-      room.y[count] = centres.y[from];
-      room.z[count] = centres.z[from];
-      room.squared_radius[count] = centres.squared_radius[from];
+      to.names[count] = centres.names[from];
+      to.x[count] = centres.x[from];
+      to.y[count] = centres.y[from];
+      to.z[count] = centres.z[from];
+      to.squared_radius[count] = centres.squared_radius[from];
     }
   }
-  hn::StoreU(hn::Set(d, -1.0F), d, room.squared_radius + count); // of nobody: reaches nothing
-  return {room.x, room.y, room.z, room.squared_radius, room.names, count};
+  hn::StoreU(hn::Set(d, -1.0F), d, to.squared_radius + count); // of no centre: reaches nothing
+  return {to.x, to.y, to.z, to.squared_radius, to.names, count};
 }
 
 /// With more centres than this, groups of neighbouring blocks are tested first: 256 blocks against
@@ -192,7 +192,7 @@ struct ListedBlocks {
   std::size_t sizes[group_size]{};
 
   HWY_INLINE const std::uint32_t* list(std::size_t block) const {
-    return pass.scratch.lists + (block - begin) * list_room(nearest.count);
+    return pass.scratch.lists + (block - begin) * padded_list_size(nearest.count);
   }
 };
 
@@ -217,7 +217,7 @@ static HWY_NOINLINE void list_next(ListedBlocks& blocks) {
   }
   const auto list = [&](const auto& by) HWY_ATTR {
     by(blocks.nearest, pass.bounds + blocks.begin, blocks.end - blocks.begin, pass.scratch.lists,
-       list_room(blocks.nearest.count), blocks.sizes);
+       padded_list_size(blocks.nearest.count), blocks.sizes);
   };
   const std::size_t lanes = hn::Lanes(ListVectors());
   if (blocks.nearest.count <= lanes) return list(list_reaching_few<1>);

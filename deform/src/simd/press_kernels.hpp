@@ -34,7 +34,7 @@ void add_row(const PressArrays& arrays, const double* row, const std::array<doub
 /// used. The first one begins at the origin.
 inline constexpr std::size_t slope_cells = 32;
 struct SlopeCells {
-  float size, radius; ///< of a cell; of the functions
+  float size, radius; ///< a cell's size; the functions' radius
   std::array<std::size_t, 3> counts;
   float* sums; ///< one a cell; rows along x
 };

@@ -35,7 +35,7 @@ HWY_INLINE Ring3 masked(hn::Mask<RingTag> mask, const Ring3& a) {
 }
 
 #if HWY_TARGET != HWY_SCALAR
-/// The vectors of which the first byte tells, the fifth, the ninth, and so on.
+/// The vectors with the numbers in the first byte, the fifth, the ninth, and so on.
 template <class D>
 HWY_INLINE hn::Vec<D> load_each_fourth(D d, const RingTable& table, const std::uint8_t* first) {
   if constexpr (hn::MaxLanes(D()) == 4) {
@@ -77,7 +77,7 @@ HWY_INLINE void each_row(const BlockRings& rings, const Visit& visit) {
 /// Sums over the ring around each vertex, of ways from it.
 struct RingSums {
   Ring3 crosses, ways;
-  RingV squares, longest; ///< of the ways
+  RingV squares, longest; ///< sum and maximum of the squared ways
   RingV least;            ///< below 0: some face is not even
   RingV smallest;         ///< square of a face's cross product
 };

@@ -11,7 +11,7 @@
 namespace nendo::deform {
 
 /// Vectors, the last number of each being 0: one load takes one, where three would wait for three
-/// cache lines. A byte tells which.
+/// cache lines. A byte is the number of one.
 using RingTable = std::array<std::array<float, 4>, 256>;
 /// One neighbour of each vertex of a block, by its number in a table.
 using RingRow = std::array<std::uint8_t, block_size>;
@@ -25,16 +25,16 @@ struct RingPart {
 /// has fewer than the others repeats its last one.
 struct BlockRings {
   std::span<const RingPart> parts;
-  const float* counts; ///< of each vertex' neighbours
+  const float* counts; ///< the number of each vertex' neighbours
 };
 
 /// Of each vertex of a block. Where the weight is w, a shape that swells by `far` moves the vertex
 /// by w (far direction + min(0.3, fairness per_edge) fairing).
 struct alignas(64) RingBlock {
-  VertexBlock direction;                  ///< of length 1, smoothed
+  VertexBlock direction;                  ///< a unit vector, smoothed
   VertexBlock fairing;                    ///< the way to the middle of the ring, sideways
   std::array<float, block_size> per_edge; ///< an inverse edge
-  std::array<float, block_size> rate;     ///< by which the volume grows with the distance
+  std::array<float, block_size> rate;     ///< growth of the volume with the distance
   std::array<float, block_size> bend;     ///< and with its square
 };
 
@@ -42,10 +42,10 @@ struct alignas(64) RingBlock {
 struct RingFacts {
   double volume = 0.0;         ///< the block's part
   std::array<float, 3> axis{}; ///< the middle of the directions, of length 1
-  float min_cosine = 1.0F;     ///< of an angle between the axis and a direction
-  float sine = 0.0F;           ///< of that angle
+  float min_cosine = 1.0F;     ///< the least of the angles between the axis and a direction
+  float sine = 0.0F;           ///< the sine of that angle
   float longest_edge = 0.0F;
-  float min_height = 0.0F; ///< of a face; at most
+  float min_height = 0.0F; ///< at most the least height of a face
   bool is_even = true;     ///< each face looks into the directions of its corners, to 72 degrees
   bool may_turn = false;   ///< some face may have been turned over by swelling since
 };
@@ -72,8 +72,8 @@ struct SwellRates {
 };
 SwellRates swell_rates(const RingBlock& measured, const float* weights) noexcept;
 struct Swelling {
-  double grown; ///< by how much fairing makes the volume grow, to first order
-  float spread; ///< by how much the ways along the directions differ in the block
+  double grown; ///< growth of the volume by fairing, to first order
+  float spread; ///< difference of the ways along the directions in the block
   float aside;  ///< the longest way of fairing
 };
 /// Moves the vertices of a block.

@@ -26,13 +26,9 @@ HWY_INLINE void kernel_at(const FieldEntry<double>& entry, const VertexBlock& bl
                           double* values) {
   const hn::ScalableTag<double> d;
   for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
-    const auto place = load_vectors(d, block, lane);
-    const auto x = hn::Sub(place.x, hn::Set(d, entry.x));
-    const auto y = hn::Sub(place.y, hn::Set(d, entry.y));
-    const auto z = hn::Sub(place.z, hn::Set(d, entry.z));
-    const auto squared = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
-    const auto o =
-        hn::NegMulAdd(hn::Sqrt(squared), hn::Set(d, entry.inverse_radius), hn::Set(d, 1.0));
+    const auto way = relative_to(d, entry, load_vectors(d, block, lane));
+    const auto distance = hn::Sqrt(dot_product(way, way));
+    const auto o = hn::NegMulAdd(distance, hn::Set(d, entry.inverse_radius), hn::Set(d, 1.0));
     hn::Store(weight<kernel>(d, hn::Max(o, hn::Zero(d))), d, values + lane);
   }
 }
@@ -65,7 +61,7 @@ HWY_INLINE double weights_of(const WeightSource& source, std::size_t j, const st
       sum = hn::MulAdd(place.y, hn::Set(d, p[2]), hn::MulAdd(place.x, hn::Set(d, p[1]), sum));
     }
     for (std::size_t at = 0; at < count; ++at)
-      sum = hn::MulAdd(hn::Load(d, source.room_for_kernels + at * block_size + lane),
+      sum = hn::MulAdd(hn::Load(d, source.kernel_scratch + at * block_size + lane),
                        hn::Set(d, source.map[list[at] * source.starts + j]), sum);
     store_from(d, sum, weights + lane);
     largest = hn::Max(largest, hn::Abs(sum));
@@ -117,7 +113,7 @@ struct WeightBuild {
     if (!done || (size == 0 && source.polynomial == nullptr)) return;
     for (std::size_t at = 0; at < size; ++at)
       kernel_of(field.kernel, field.precise_entries[list[at]], pass.from[block],
-                source.room_for_kernels + at * block_size);
+                source.kernel_scratch + at * block_size);
     WeightedBlock& made = cache.blocks[cache.block_count];
     made = {static_cast<std::uint32_t>(block), 0, 0, cache.used_entries, cache.used_bytes};
     done = weigh(list, size, pass.from[block], made);
@@ -126,13 +122,13 @@ struct WeightBuild {
     ++cache.block_count;
   }
 
-  /// False if there is no room, or a weight is not finite.
+  /// False if memory is exhausted, or a weight is not finite.
   HWY_INLINE bool weigh(const std::uint32_t* list, std::size_t size, const VertexBlock& vertices,
                         WeightedBlock& made) {
     std::array<WeightEntry, max_weighted_starts> entries;
     std::size_t count = 0;
     for (std::size_t j = 0; j < source.starts; ++j) {
-      float* const weights = source.room_for_weights + count * block_size;
+      float* const weights = source.weight_scratch + count * block_size;
       const double largest = weights_of(source, j, list, size, vertices, weights);
       if (!(largest <= max_units)) return false; // NaN, too
       if (largest <= static_cast<double>(source.least)) continue;
@@ -143,7 +139,7 @@ struct WeightBuild {
     for (const bool in_steps : {true, false})
       for (std::size_t at = 0; at < count; ++at)
         if (std::isnan(entries[at].middle) != in_steps &&
-            !keep(entries[at], source.room_for_weights + at * block_size, in_steps, made))
+            !keep(entries[at], source.weight_scratch + at * block_size, in_steps, made))
           return false;
     return true;
   }

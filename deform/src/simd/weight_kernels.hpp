@@ -40,7 +40,7 @@ inline constexpr std::size_t bytes_in_steps = block_size * sizeof(std::int16_t);
 inline constexpr std::size_t bytes_in_float = block_size * sizeof(float);
 
 struct WeightCache {
-  WeightedBlock* blocks; ///< room for all of the shape's
+  WeightedBlock* blocks; ///< at least as many as the shape has
   WeightEntry* entries;  ///< `max_entries`
   std::byte* weights;    ///< `max_bytes`, aligned for vectors
   std::size_t max_entries, max_bytes;
@@ -59,11 +59,11 @@ struct WeightSource {
   /// Where no weight of a start point in a block is larger than this, its weights are left out
   /// there.
   float least;
-  double* room_for_kernels; ///< 64 for each entry, of which there must be precise ones
-  float* room_for_weights;  ///< 64 for each start point
+  double* kernel_scratch; ///< 64 for each entry, of which there must be precise ones
+  float* weight_scratch;  ///< 64 for each start point
 };
 
-/// Fills the cache. Returns false if its room is not enough, or if a weight is not finite.
+/// Fills the cache. Returns false if it is too small, or if a weight is not finite.
 bool build_weights(const FieldView& field, const BlockPass& pass, const WeightSource& source,
                    WeightCache& cache) noexcept;
 

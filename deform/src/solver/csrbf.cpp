@@ -25,7 +25,7 @@ constexpr std::array<std::pair<Polynomial, std::string_view>, 3> polynomial_name
     {Polynomial::linear, "linear"},
 }};
 
-/// Seconds since the last question; never asks the clock unless told to.
+/// Seconds since the last call; reads the clock only if `on`.
 class Laps {
 public:
   explicit Laps(bool on) : on_(on) { lap(); }
@@ -91,13 +91,12 @@ public:
 private:
   using Systems = std::array<std::unique_ptr<KernelSystem>, 3>; ///< lean, dense, sparse
 
-  bool keeps_volume() const noexcept { return options_.keep_volume > 0.0; }
   /// Of M: three a start point, where its entries are matrices.
   Eigen::Index rows_of(Eigen::Index points) const noexcept {
-    return keeps_volume() ? 3 * points : points;
+    return options_.keeps_volume() ? 3 * points : points;
   }
   bool has_polynomial() const noexcept {
-    return options_.polynomial != Polynomial::none && !keeps_volume();
+    return options_.polynomial != Polynomial::none && !options_.keeps_volume();
   }
   /// Returns whether p(x) is solved apart. With own functions it cannot join M, since a solution
   /// would then not be certain for every choice. So p(x) is what the shared functions alone would
@@ -122,8 +121,8 @@ private:
   OwnFunctions own_;
   OwnFunctions no_own_;            ///< stays empty
   Systems systems_;                ///< made when first needed
-  KernelSystem* system_ = nullptr; ///< of M
-  Systems shared_systems_;         ///< of its shared part, for a polynomial apart
+  KernelSystem* system_ = nullptr; ///< the system of M
+  Systems shared_systems_;         ///< systems of its shared part, for a polynomial apart
   KernelSystem* shared_system_ = nullptr;
   PolynomialPart polynomial_;
   bool merged_ = false;
@@ -180,8 +179,8 @@ KernelSystem::Assembled CsrbfSolver::State::assemble(const OwnFunctions& own, Sy
     system = systems[at].get();
     return system->assemble(options_, ordered_starts_, ordered_supports_, own);
   };
-  if (keeps_volume() && n > max_volume_points) return KernelSystem::Assembled::too_dense;
-  if (keeps_volume())
+  if (options_.keeps_volume() && n > max_volume_points) return KernelSystem::Assembled::too_dense;
+  if (options_.keeps_volume())
     return n <= lean_size ? assemble_in(0, make_lean_system) : assemble_in(1, make_dense_system);
   if (choices.storage == Storage::sparse ||
       (choices.storage == Storage::by_size && n > lean_size)) {
@@ -226,7 +225,8 @@ FieldStatus CsrbfSolver::State::build(const Points& starts) {
   Laps laps(starts.cols() > lean_size);
   put_in_order(starts);
   effort.order_s = laps.lap();
-  if (!keeps_volume() && !own_.evaluate(options_.kernel, ordered_starts_, ordered_supports_))
+  if (!options_.keeps_volume() &&
+      !own_.evaluate(options_.kernel, ordered_starts_, ordered_supports_))
     return FieldStatus::too_dense;
   const auto assembled = assemble(own_, systems_, system_);
   effort.assembly_s = laps.lap();
@@ -236,7 +236,7 @@ FieldStatus CsrbfSolver::State::build(const Points& starts) {
   const double shared_size = SharedKernel(options_.kernel, ordered_supports_).at(0.0);
   const double points = static_cast<double>(std::max<std::size_t>(order_.size(), 1));
   double own_size = own_.trace() / points;
-  if (keeps_volume())
+  if (options_.keeps_volume())
     for (const OwnSupport& own : supports.own)
       own_size += own.support.weight / points;
   FieldStatus status = factorise(*system_, shared_size + own_size);
@@ -259,7 +259,7 @@ void CsrbfSolver::State::take_right_side(const Points& displacements) {
   for (std::size_t k = 0; k < order_.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(k);
     const auto displacement = displacements.col(order_[k]);
-    if (!keeps_volume()) {
+    if (!options_.keeps_volume()) {
       right_side_.row(row) << displacement.transpose(), 0.0;
       continue;
     }
@@ -297,7 +297,7 @@ FieldStatus CsrbfSolver::State::solve(const Points& displacements, CsrbfField& f
 
 /// Of the start point that has this place in the order of elimination.
 Eigen::Vector3d CsrbfSolver::State::coefficient(Eigen::Index place) const {
-  if (keeps_volume()) return solution_.block<3, 1>(3 * place, 0);
+  if (options_.keeps_volume()) return solution_.block<3, 1>(3 * place, 0);
   return solution_.row(place).head<3>();
 }
 
@@ -305,7 +305,7 @@ void CsrbfSolver::State::take_own_coefficients() {
   own_coefficients_.resize(static_cast<Eigen::Index>(supports.own.size()), 4);
   for (std::size_t e = 0; e < supports.own.size(); ++e) {
     auto row = own_coefficients_.row(static_cast<Eigen::Index>(e));
-    if (keeps_volume()) {
+    if (options_.keeps_volume()) {
       const OwnSupport& own = ordered_supports_.own[e];
       row << own_volume_coefficient(options_, ordered_starts_, own, solution_).transpose(), 0.0;
     } else {
@@ -316,7 +316,7 @@ void CsrbfSolver::State::take_own_coefficients() {
 
 /// The field in the order in which the start points came; not if it is not finite.
 bool CsrbfSolver::State::write(CsrbfField& field, const Eigen::Matrix4d& b) {
-  // The square leaves room for sums and for the product with any usable coordinate.
+  // The square permits sums and for the product with any usable coordinate.
   constexpr double largest_coefficient = largest_number * largest_number;
   Eigen::Matrix<double, 3, 4> polynomial = Eigen::Matrix<double, 3, 4>::Zero();
   if (has_polynomial()) polynomial = polynomial_.in_world(b);

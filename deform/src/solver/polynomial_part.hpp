@@ -35,7 +35,7 @@ private:
   Rows solved_basis_;                 ///< M^-1 Q
   Eigen::Vector4d undetermined_;      ///< U's diagonal
   Eigen::Matrix4d world_to_basis_;    ///< q(x) from (1, x, y, z)
-  Eigen::LLT<Eigen::Matrix4d> schur_; ///< of Q^T M^-1 Q + U
+  Eigen::LLT<Eigen::Matrix4d> schur_; ///< the factor of Q^T M^-1 Q + U
 };
 
 } // namespace nendo::deform

@@ -20,7 +20,7 @@ struct SolverChoices {
   Storage storage = Storage::by_size;
 };
 
-/// Returns a solver that orders and stores as it is told.
+/// Returns a solver with these choices.
 NENDO_API CsrbfSolver solver_with(const CsrbfOptions& options, const SolverChoices& choices);
 
 } // namespace nendo::deform

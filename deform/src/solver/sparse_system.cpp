@@ -120,7 +120,7 @@ private:
   double reach_;
   double squared_reach_;
   PointGrid grid_;
-  double diagonal_; ///< of the shared part
+  double diagonal_; ///< that of the shared part
   Eigen::VectorXd own_diagonal_, ties_diagonal_;
   std::vector<double> column_;
   std::vector<char> in_use_;
@@ -145,9 +145,10 @@ std::optional<SparseAssembly> assemble_sparse(const CsrbfOptions& options, const
   return assembly;
 }
 
-/// Beyond an eighth of all pairs, dense is as fast: it does five times as many operations a second.
+/// Beyond an eighth of all pairs, dense is as fast: it does five times as many operations per
+/// second.
 constexpr std::size_t min_sparsity = 8;
-/// Of M's triangle: a fair part of what the factor may have.
+/// The limit for M's triangle: a fair part of the factor's limit.
 constexpr std::size_t max_matrix_entries = CsrbfSolver::max_factor_entries / 2;
 
 /// Below, what minimum degree takes from the factor's time is less than it takes itself.

@@ -34,7 +34,7 @@ double Ties::strength(double distance, double own_size, double own_resistance) c
   if (near == 0.0) return 0.0;
   const double most = size_ + own_size;
   if (!(near < 1.0)) return most;
-  // The ties start on the scale of what the matrix itself does about a difference, not on that of
+  // The ties start on the scale of the matrix's own resistance to a difference, not on that of
   // its entries, or all would happen within a hair of the merge distance. What the own functions do
   // grows with the distance's square.
   const double farther = reach_ / distance;

@@ -23,8 +23,8 @@ public:
 
 private:
   double reach_;
-  double size_;       ///< of the shared part's diagonal entries
-  double resistance_; ///< of the shared part to a difference of a_i and a_j at the merge distance
+  double size_;       ///< the shared part's diagonal entries
+  double resistance_; ///< the shared part's, to a difference of a_i and a_j at the merge distance
 };
 
 } // namespace nendo::deform

@@ -38,13 +38,13 @@ NENDO_API bool are_all_pull(std::span<const Brush> brushes) noexcept; ///< none 
 inline constexpr double usual_brush_strength = 0.5;
 
 struct BrushOptions {
-  std::vector<Brush> of_points{}; ///< of each start point; empty: all pull
+  std::vector<Brush> of_points{}; ///< one for each start point; empty: all pull
   /// The second half of the points mirrors the first. What a brush does at a point and at its image
   /// is then worked out of the same shape, so that none of the two comes first.
   bool are_mirrored = false;
-  /// How much a brush does on a way of a given length, -1 to 1. At 1, push and inflate lead as far
+  /// Brush effect per unit of path length, -1 to 1. At 1, push and inflate lead as far
   /// as the fingertip goes, and on a way of one radius twist turns by one radian, scale grows and
-  /// pinch shrinks by e, and smooth and flatten do 86 % of what is left to do. Below 0 each does
+  /// pinch shrinks by e, and smooth and flatten do 86 % of the remaining way. Below 0 each does
   /// the opposite, but smooth and flatten, which have none. Pull always leads all the way.
   double strength = usual_brush_strength;
   /// Of the model; needed if any brush is neither pull nor none.

@@ -20,7 +20,7 @@ namespace nendo::deform {
 /// Lengths in millimetres are those of the bodies.
 struct ClayOptions {
   double units_per_mm = 1.0; ///< model units per millimetre, > 0
-  double radius_mm = 25.0;   ///< of the functions, > 0: how soft the clay is. About 2.5 fingers'.
+  double radius_mm = 25.0;   ///< how soft the clay is, > 0: about 2.5 fingers
   double friction = 0.5;     ///< Coulomb's coefficient, >= 0
   bool keeps_volume = true;  ///< only of closed, oriented surfaces
   /// Otherwise bodies carry, turn and roll the model by what sticks to them and presses it.
@@ -28,10 +28,10 @@ struct ClayOptions {
   /// Two parts of a body that press from sides that face each other grab what is under
   /// them, until they have opened.
   bool grips = true;
-  /// So many of the last bodies stand still, such as a table. They press nothing by themselves, and
-  /// contacts() does not tell of them.
+  /// This number of the last bodies does not move, such as a table. They press nothing by
+  /// themselves, and contacts() does not list them.
   std::size_t still_bodies = 0;
-  int max_constraints = 256; ///< of one pass
+  int max_constraints = 256; ///< limit for one pass
   /// Of one call. When they are used up, the bodies' step is shortened, and the rest of their way
   /// waits for the next call. What has begun is always finished.
   int max_passes = 48;
@@ -45,16 +45,16 @@ struct ClayOptions {
 struct ClayContact {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   float load_mm = 0.0F; ///< the pressure: by how much the clay would spring back there, up to 0.5
-  float pressed_mm = 0.0F; ///< how deep the part came in this call, before the surface gave way
+  float pressed_mm = 0.0F; ///< how deep the part came in this call, before the surface moved
   std::uint32_t body = 0;
-  std::uint32_t part = 0; ///< of the body
+  std::uint32_t part = 0; ///< the body's part
 };
 
 struct ClayReport {
   FieldStatus status = FieldStatus::ok;
   int sub_steps = 0;
-  int passes = 0;            ///< of all sub-steps; each is a field that does not fold
-  int max_constraints = 0;   ///< of a pass
+  int passes = 0;            ///< those of all sub-steps; each is a field that does not fold
+  int max_constraints = 0;   ///< the most in a pass
   int touching = 0;          ///< conditions that pushed in the last pass
   std::size_t distances = 0; ///< from a vertex to a part
   /// How deep a vertex still was in a body after the passes, before it was pushed straight out.
@@ -93,7 +93,7 @@ public:
   void release(bool is_step) noexcept;
   /// Moves the bodies from where they are to `parts`, in as many sub-steps as keep each from
   /// passing through a thin part, and deforms the shape. Does not allocate, lock or call the
-  /// system. Its cost is that of what lies near the bodies. If a number is not finite, nothing
+  /// system. Its cost grows with the vertices near the bodies. If a number is not finite, nothing
   /// happens and the status is not_finite. Before begin() or grab(), this is begin().
   const ClayReport& press_to(std::span<const ContactPart> parts);
 

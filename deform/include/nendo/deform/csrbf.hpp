@@ -27,11 +27,13 @@ struct CsrbfOptions {
   /// continuous, and the field stays below about 0.25 / merge_fraction times the displacements, or
   /// five times that with several radii. Beyond this distance, interpolation is exact.
   double merge_fraction = 1e-6;
-  /// 0, air, to 1, clay (volume_kernel.hpp). Above 0 there is no polynomial, and one field keeps
-  /// the volume only as far as it is short: longer ways are for MidpointChain.
+  /// 0: compressible, to 1: volume-preserving (volume_kernel.hpp). Above 0 there is no polynomial,
+  /// and one field keeps the volume only as far as it is short: for longer displacements use
+  /// MidpointChain.
   double keep_volume = 0.0;
-  /// Above 0, start points need not go exactly where they are told to: of a diagonal entry of the
-  /// equations, what is added to it. Points that come close together are then not torn apart.
+  /// Above 0, start points need not reach their displacements exactly: this share of a diagonal
+  /// entry of the equations is added to it. Points that come close together are then not torn
+  /// apart.
   double smoothing = 0.0;
 
   bool keeps_volume() const noexcept { return keep_volume > 0.0; }
@@ -57,7 +59,7 @@ struct SolverChoices; // those of tests and benchmarks: src/solver/solver_choice
 /// What the last build() took. Up to lean_size points no clock is read, and the times are 0.
 struct SolverEffort {
   bool sparse = false;
-  Eigen::Index matrix_entries = 0; ///< of one triangle
+  Eigen::Index matrix_entries = 0; ///< those of one triangle
   Eigen::Index factor_entries = 0;
   double order_s = 0.0;    ///< octree
   double assembly_s = 0.0; ///< neighbours, matrix

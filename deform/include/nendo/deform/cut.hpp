@@ -35,8 +35,8 @@ struct CutOptions {
       nullptr; ///< its places decide about triangles (triangles.hpp); null: the mesh's
 };
 
-/// A vertex that the cut made: a part of the way from one vertex to another, both of which come
-/// before it. Inside cut faces there is no such way, and both are no_index.
+/// A vertex that the cut made: at a fraction between two vertices, both of which come before it.
+/// Inside cut faces there are none, and both are no_index.
 struct CutVertex {
   std::uint32_t from, to;
   double part;
@@ -53,8 +53,8 @@ struct CutModel {
   std::uint32_t loops = 0;                   ///< rims that were cut and closed on both sides
   std::uint32_t left_whole = 0;              ///< rims at which the blade does not go through
   std::uint32_t attempts = 1;
-  double give = 0.0; ///< so far the blade gave way, in model units, at most 1e-6 of the diagonal in
-                     ///< the first attempt and three times as much in each further one
+  double give = 0.0; ///< how far the blade was displaced, in model units, at most 1e-6 of the
+                     ///< diagonal in the first attempt and three times as much in each further one
 };
 
 /// Cuts a model that is closed and two-manifold. Every part is so, and no cut face meets

@@ -1,5 +1,5 @@
 #pragma once
-// Which faces of a model pictures show, in the order in which they are drawn.
+// Selects the faces that pictures show, in drawing order.
 
 #include <cstdint>
 #include <vector>

@@ -15,7 +15,7 @@ namespace nendo::deform {
 NENDO_API Result<Mesh> copied_part(const Mesh& mesh, std::uint32_t part);
 
 /// Returns the mesh without one of its parts. The others keep their order and bits. Allocates.
-/// Error, likewise: bad_input (there is no such part, or no other).
+/// Error: bad_input (there is no such part, or no other).
 NENDO_API Result<Mesh> removed_part(const Mesh& mesh, std::uint32_t part);
 
 } // namespace nendo::deform

@@ -20,9 +20,9 @@ struct NENDO_API CsrbfField {
   Points coefficients;   ///< a_i, 3 by #centres
   Eigen::Matrix<double, 3, 4> polynomial =
       Eigen::Matrix<double, 3, 4>::Zero(); ///< p(x) = P (1, x, y, z)
-  double keep_volume = 0.0;                ///< 0, air, to 1, clay
-  /// The first half of a midpoint step. Nothing moves by it: the next field moves each x by what it
-  /// is at x + s(x).
+  double keep_volume = 0.0;                ///< 0: compressible, to 1: volume-preserving
+  /// The first half of a midpoint step. It is not applied by itself: the next field is
+  /// evaluated at x + s(x), and moves x.
   bool is_halfway = false;
 
   /// Returns s(x).

@@ -14,17 +14,17 @@ namespace nendo::deform {
 class FieldSequence {
 public:
   FieldSequence() = default;
-  /// Allocates room for `most` fields of the size of `like`. The other functions do not allocate
+  /// Allocates `most` fields of the size of `like`. The other functions do not allocate
   /// for fields of that size.
   FieldSequence(std::size_t most, const CsrbfField& like) : fields_(most, like) {}
 
   void clear() noexcept { used_ = 0; }
-  /// Appends a field; there must be room for it.
+  /// Appends a field; fewer than capacity() must be there.
   void push(const CsrbfField& field) noexcept {
     assert(used_ < fields_.size());
     fields_[used_++] = field;
   }
-  /// Copies `other`, which may have no more fields than there is room for.
+  /// Copies `other`, which may have no more fields than capacity().
   void follow(const FieldSequence& other) noexcept {
     clear();
     for (const CsrbfField& field : other.fields())
@@ -33,12 +33,12 @@ public:
 
   /// Returns the fields in the order in which they are to be applied.
   std::span<const CsrbfField> fields() const noexcept { return {fields_.data(), used_}; }
-  /// Returns how many fields there is room for.
-  std::size_t room() const noexcept { return fields_.size(); }
+  /// Returns the largest number of fields.
+  std::size_t capacity() const noexcept { return fields_.size(); }
   /// Returns whether follow() copies any fields of such a sequence without allocating.
   bool has_room_of(const FieldSequence& other) const noexcept {
-    return room() >= other.room() &&
-           (other.room() == 0 || fields_[0].centres.cols() == other.fields_[0].centres.cols());
+    return capacity() >= other.capacity() &&
+           (other.capacity() == 0 || fields_[0].centres.cols() == other.fields_[0].centres.cols());
   }
 
 private:

@@ -16,29 +16,30 @@ namespace nendo::deform {
 
 class LeastGap;
 
-/// Two fingertips between which a wall stands, because their paths cross.
+/// Two fingertips separated by a wall, because their paths cross.
 struct HeldPair {
   Eigen::Index first = 0; ///< column of the fingertip on the wall's upper side; less than `second`
   Eigen::Index second = 0;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero(); ///< unit length, from the second to the first
   double gap = 0.0;                                 ///< along the normal, in model units
-  double push = 0.0; ///< how far each is kept from where it was told to go, in model units
+  double push = 0.0; ///< how far each is kept from its wanted place, in model units
 };
 
 struct InjectiveOptions {
   double max_bound = 0.9; ///< largest Lipschitz bound of a link; below 1
-  int max_links = 64;     ///< of one call
-  double min_gap = 0.05;  ///< of a point's least radius; 0 lets points come as near as they like
+  int max_links = 64;     ///< limit for one call
+  double min_gap = 0.05;  ///< in least radii of a point; 0 lets points come as near as they like
 };
 
 struct ChainReport {
   FieldStatus status = FieldStatus::ok;
-  int links = 0;                ///< how many links were made
-  double whole_bound = 0.0;     ///< Lipschitz bound of the first link's field, had it not been cut
-  double bound = 0.0;           ///< the largest of the links'
-  double min_determinant = 1.0; ///< of the chain's Jacobian, round the points; see DeterminantProbe
-  int held_pairs = 0;           ///< pairs that are kept from where they were told to go
-  bool reached = true;          ///< false if `max_links` were not enough for the whole way
+  int links = 0;            ///< how many links were made
+  double whole_bound = 0.0; ///< Lipschitz bound of the first link's field, had it not been cut
+  double bound = 0.0;       ///< the largest of the links'
+  double min_determinant =
+      1.0;            ///< the least of the chain's Jacobian, round the points; see DeterminantProbe
+  int held_pairs = 0; ///< pairs that are kept from their wanted places
+  bool reached = true; ///< false if `max_links` were not enough for the whole way
 };
 
 /// Call one of the two ways of going, then apply field() to the shape as long as next() is true:
@@ -59,7 +60,7 @@ public:
   /// rest shape and depend on nothing else. If an end is not finite, the chain goes where it went
   /// last.
   FieldStatus from_start(const Points& ends) noexcept;
-  /// Type-2: continues from where the chain has come to, with the walls that stand, in at most
+  /// Type-2: continues from where the chain has come to, with the existing walls, in at most
   /// `max_links` links. The links are for the shape as it is now. If an end is not finite, no link
   /// follows.
   FieldStatus from_here(const Points& ends, int max_links) noexcept;
@@ -74,7 +75,7 @@ public:
   /// Returns the field of the link made last.
   const CsrbfField& field() const noexcept { return field_; }
   const ChainReport& report() const noexcept { return report_; }
-  /// Returns where the chain has come to. Points that are held are not where they were told to go.
+  /// Returns where the chain has come to. Points that are held are not at their wanted places.
   const Points& places() const noexcept { return places_; }
   /// Returns all walls. A pair is held if its `push` is positive.
   std::span<const HeldPair> walls() const noexcept;

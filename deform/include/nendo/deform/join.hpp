@@ -18,7 +18,7 @@ struct JoinPart {
 };
 
 struct JoinOptions {
-  /// How far the seam is smeared to each side, along the surface, in model units; 0: sharp.
+  /// Blend width of the seam to each side, along the surface, in model units; 0: sharp.
   double seam_width = 0.0;
 };
 
@@ -29,7 +29,7 @@ struct JoinStep {
   /// The width that the seam has: less than was asked for if it would cut itself otherwise, and 0
   /// if it would at a quarter of it.
   double seam_width = 0.0;
-  double sharp_volume = 0.0; ///< of the union before the seam was smeared
+  double sharp_volume = 0.0; ///< the union's before the seam was smeared
   double volume = 0.0;
   /// By how much these two can differ at most: the area of the faces that the smear moved, times
   /// the farthest motion.

@@ -27,7 +27,7 @@ struct Material {
   std::string name;
   /// Unknown if the model's file names the material, but no file says what it is like.
   std::optional<Eigen::Vector4f> colour;
-  std::uint32_t texture = no_index; ///< of the base colour, which it multiplies
+  std::uint32_t texture = no_index; ///< the texture of the base colour, which it multiplies
   bool drawn = true;                ///< false: wholly transparent, so pictures leave its faces out
 };
 

@@ -19,7 +19,7 @@ namespace nendo::deform {
 /// The axis of the file that points up. Nendo's own is y.
 enum class UpAxis { y, z };
 
-/// The endings of what write_mesh() can write.
+/// The endings of files that write_mesh() can write.
 inline constexpr std::array<std::string_view, 3> mesh_endings{".obj", ".ply", ".stl"};
 /// What --help says of them.
 inline constexpr const char* mesh_endings_text = ".obj, .ply or .stl";

@@ -2,7 +2,7 @@
 // Long ways of fields that keep the volume. A field without divergence keeps it only while it is a
 // velocity. So a way is cut into steps, each by the midpoint rule: a point is asked for the field
 // half a step on, at the place where the field at its beginning leads by then. Both fields
-// interpolate there, so start points go exactly where they are told to, step by step.
+// interpolate there, so start points reach their displacements exactly, step by step.
 
 #include <array>
 
@@ -31,8 +31,8 @@ public:
   /// Goes straight from the start points by these displacements (3 by points). If one is not
   /// usable, no step follows.
   FieldStatus go(const Points& displacements) noexcept;
-  /// Makes the next field. Returns false if there is none, or if the step to it has no solution,
-  /// which status() then tells.
+  /// Makes the next field. Returns false if there is none, or if the step to it has no solution;
+  /// status() is then the reason.
   bool next() noexcept;
 
   const CsrbfField& field() const noexcept { return fields_[is_halfway_ ? 0 : 1]; }
@@ -43,14 +43,14 @@ private:
   FieldStatus make_step(double part) noexcept;
 
   Supports supports_;
-  double max_length_;                  ///< of a step
+  double max_length_;                  ///< the longest step
   std::array<CsrbfSolver, 2> solvers_; ///< one has the start points' factor
   std::size_t kept_ = 0;               ///< which is the start points'
   Points starts_, displacements_, places_, step_;
-  std::array<CsrbfField, 2> fields_; ///< of a step: halfway, and the whole
+  std::array<CsrbfField, 2> fields_; ///< a step's fields: halfway, and the whole
   int max_steps_;
-  double done_ = 0.0, part_ = 1.0; ///< of the way; of it in a step
-  bool is_halfway_ = false;        ///< of a step the first field was the last
+  double done_ = 0.0, part_ = 1.0; ///< shares of the way: done, and in a step
+  bool is_halfway_ = false;        ///< the last field was the first of a step
   FieldStatus status_ = FieldStatus::singular;
 };
 

@@ -59,7 +59,7 @@ struct PartGrip {
 
 struct PartMoverOptions {
   std::size_t hands = 2;
-  double reach = 0.0; ///< of fingers that close, model units, > 0
+  double reach = 0.0; ///< reach of closing fingers, model units, > 0
   /// Parts with a vertex of a weight below 1/2 stay where they are.
   std::shared_ptr<const VertexMask> mask{};
 };

@@ -57,8 +57,8 @@ public:
   Refiner& operator=(Refiner&&) noexcept;
   ~Refiner();
 
-  /// Returns how many edges of that shape of the mesh are too short, or too long, if there is room
-  /// for more vertices. Allocates.
+  /// Returns how many edges of that shape of the mesh are too short, or too long, unless the
+  /// limit of vertices is reached. Allocates.
   std::size_t count_unfit(const BlockShape& shape, const BlockLayout& layout,
                           const RefinementLimits& limits) const;
   /// Allocates.

@@ -37,7 +37,7 @@ struct Repair {
   std::size_t turned = 0;    ///< faces
   std::size_t separated = 0; ///< vertices that were added where surfaces only touched
   std::size_t filled = 0;    ///< holes
-  std::size_t filled_crossing = 0; ///< of these, lids that go through the model
+  std::size_t filled_crossing = 0; ///< filled holes whose lids go through the model
   std::size_t stray = 0;           ///< vertices without a face, which were dropped
   std::vector<LeftOut> left_out;   ///< parts that cannot be closed, by their reasons
   /// There were too many open edges to look for vertices that lie in them.

@@ -2,19 +2,39 @@
 // A shape that deformers change, with its layout and its history. Several deformers may work on one
 // shape, one after another, so that their settings can change and the shape and its history stay.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include <nendo/base/api.hpp>
-#include <nendo/deform/step_note.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 
 namespace nendo::deform {
 
 struct DeformerOptions;
+
+/// What a caller notes of a step of the history, for example its name, or the settings before it.
+/// The bytes mean nothing to this library.
+struct StepNote {
+  alignas(8) std::array<std::byte, 192> bytes;
+
+  template <class Value>
+  void set(const Value& value) noexcept {
+    static_assert(std::is_trivially_copyable_v<Value> && sizeof(Value) <= sizeof(StepNote));
+    std::memcpy(bytes.data(), &value, sizeof value);
+  }
+  template <class Value>
+  Value get() const noexcept {
+    Value value;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    return value;
+  }
+};
 
 /// What a deformer does with the history of its shape. What it has made of the shape since the last
 /// step becomes a step first, except by a redo, which drops it.

@@ -27,7 +27,7 @@ struct Subdivision {
 NENDO_API Subdivision subdivide(const Mesh& mesh);
 
 /// Returns the shape of the subdivided mesh that a shape of the mesh before means: old vertices
-/// keep their bits, and a new one is moved by the mean of what its parents are moved by. `before`
+/// keep their bits, and a new one is moved by the mean of its parents' moves. `before`
 /// and `after` are the layouts of both meshes. Allocates.
 NENDO_API BlockShape subdivided(const BlockShape& shape, const BlockLayout& before,
                                 const Subdivision& subdivision, const BlockLayout& after);

@@ -69,15 +69,15 @@ inline constexpr double default_common_weight = 0.01;
 
 /// Returns supports in which start points have the radii of `own`, at least one, beside a common
 /// radius that all share. Without `common`, the common radius is the least of them, with
-/// default_common_weight, so that no finger reaches farther than it was told to. Where all radii
+/// default_common_weight, so that no finger reaches farther than its radius. Where all radii
 /// are equal, the result is that one radius, since the field would be the same.
 NENDO_API Supports with_common(std::vector<OwnSupport> own, std::optional<Support> common = {});
 /// Writes the same for one radius a start point. Does not allocate if `out` held as many before. An
 /// empty list gives one radius of 1.
 NENDO_API void assign_radii(Supports& out, const Eigen::VectorXd& radii);
 
-/// Parses a radius like `10`, or several with weights like `10+40:0.5`: "+" stands between supports
-/// and ":" before a weight. Returns nullopt if the text has another form, or if a number is not
+/// Parses a radius like `10`, or several with weights like `10+40:0.5`: "+" separates supports,
+/// and ":" precedes a weight. Returns nullopt if the text has another form, or if a number is not
 /// finite, above 1e100, or not > 0.
 NENDO_API std::optional<std::vector<Support>> parse_supports(std::string_view text);
 /// Parses one such text that all start points share, or several strings with commas between them,

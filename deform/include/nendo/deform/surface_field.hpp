@@ -23,7 +23,7 @@ namespace nendo::deform {
 struct SurfacePoint {
   SurfacePlace place;
   double radius = 1.0; ///< along the surface, model units, > 0
-  std::string name{};  ///< for errors; empty: its number
+  std::string name{};  ///< its name in errors; empty: its number
   /// In place of `radius`, unless it is empty. The point's function is then the weighted mean of
   /// those of these radii, so that it is narrow at the top and wide at the foot.
   std::vector<Support> mix{};
@@ -40,12 +40,12 @@ struct FollowingPart {
   bool is_affine = true;
 };
 
-/// What a SurfaceField did to a shape, for whoever makes that shape elsewhere: each vertex moved by
-/// the sum of its terms, each of them a value times a vector.
+/// What a SurfaceField did to a shape, for code that makes that shape elsewhere: each vertex moved
+/// by the sum of its terms, each of them a value times a vector.
 struct SurfaceMove {
   std::uint64_t field = 0;    ///< SurfaceField::number(); 0: nothing was moved along the surface
   std::uint32_t count = 0;    ///< SurfaceField::vector_count()
-  Eigen::Matrix3Xf vectors{}; ///< in blocks' units; may have room for more than `count`
+  Eigen::Matrix3Xf vectors{}; ///< in blocks' units; may be larger than `count`
 
   void clear() noexcept { field = count = 0; }
 };
@@ -70,7 +70,7 @@ public:
   make(const Mesh& mesh, const BlockLayout& layout, const SurfaceSetup& setup);
 
   Eigen::Index point_count() const noexcept { return inverse_.rows(); }
-  double condition() const noexcept { return condition_; } ///< of A, in the 1-norm
+  double condition() const noexcept { return condition_; } ///< that of A, in the 1-norm
   /// Returns what each vertex gets of each control vector: #points by #vertices. Allocates.
   Eigen::MatrixXf weights() const;
 
@@ -100,7 +100,7 @@ public:
   /// Writes to = from + s, block by block, where s is not 0, and copies the other blocks where they
   /// differ. Does not allocate.
   void displace(const Coefficients& by, const BlockShape& from, BlockShape& to) const noexcept;
-  /// Writes what displace() does with these coefficients. Allocates only if `move` has no room.
+  /// Writes what displace() does with these coefficients. Allocates only if `move` is too small.
   void write_move(const Coefficients& by, SurfaceMove& move) const;
   bool reaches(std::size_t block) const noexcept { return starts_[block] < starts_[block + 1]; }
 
@@ -108,19 +108,19 @@ private:
   /// A function in a block.
   struct alignas(64) Entry {
     std::array<float, block_size> values{};
-    std::uint32_t column = 0; ///< of Coefficients::all
+    std::uint32_t column = 0; ///< in Coefficients::all
   };
 
   friend class SurfaceFieldBuilder;
   SurfaceField() = default;
 
-  Eigen::MatrixXd inverse_; ///< of A
+  Eigen::MatrixXd inverse_; ///< the inverse of A
   double condition_ = 1.0;
   double unit_ = 1.0;
   std::uint64_t number_ = 0;
   std::vector<std::uint32_t> columns_; ///< those of Coefficients::all that any vertex takes
   std::vector<std::uint32_t> order_;   ///< BlockLayout::order()
-  std::vector<std::size_t> starts_;    ///< of each block's entries
+  std::vector<std::size_t> starts_;    ///< the first entry of each block
   std::vector<Entry> entries_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 // Distances along a surface. Through the air the lips of a closed mouth are a millimetre apart;
-// along the skin they are centimetres apart, so that a mouth whose parts are told apart by the
+// along the skin they are centimetres apart, so that a mouth whose parts are distinguished by the
 // distance along its skin can open.
 
 #include <array>
@@ -60,7 +60,7 @@ private:
   std::vector<std::uint32_t> about(const SurfacePlace& place) const;
 
   const Points& vertices_;
-  std::vector<std::size_t> starts_; ///< of each vertex's ways
+  std::vector<std::size_t> starts_; ///< the first way of each vertex
   std::vector<Way> ways_;
 };
 

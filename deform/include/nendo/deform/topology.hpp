@@ -22,7 +22,7 @@ struct TopologyCounts {
 /// Closed and two-manifold, and nothing meets that did not meet before. Vertices that nothing
 /// happened to keep their order, bits and looks.
 struct ChangedTopology {
-  Mesh mesh; ///< of triangles; with Mesh::detail if there was any
+  Mesh mesh; ///< triangles; with Mesh::detail if there was any
   TopologyCounts counts;
 };
 
@@ -33,9 +33,9 @@ struct ChangedTopology {
 /// * Two sheets that are nearer than 0.7 of an edge through a wall, or 0.15 through air, lose the
 ///   triangles where vertices face each other, and the rims are joined: a hole through a wall, or a
 ///   bridge through air.
-/// What would make a crumb, or let faces meet, is left alone. The same bits for the same bits.
-/// Error, which goes behind the model's name: bad_input (not finite, not closed, or not
-/// two-manifold). Allocates.
+/// Changes that would create tiny fragments or self-intersections are skipped. The same bits for
+/// the same bits. Error text, to be appended to the model's name: bad_input (not finite, not
+/// closed, or not two-manifold). Allocates.
 NENDO_API Result<ChangedTopology> change_topology(const Mesh& mesh);
 
 /// Returns how many places there are where change_topology() would try something, of a mesh that it

@@ -19,9 +19,9 @@ class CardinalWeights;
 class MaskedStep;
 struct BoundedShape;
 
-/// Shapes are in blocks, in float, and within 1e-5 of the model's diagonal of what displace() makes
-/// in double. Functions do not allocate if `out` has the layout's size and there are at most
-/// CsrbfSolver::lean_size start points.
+/// Shapes are in blocks, in float, and within 1e-5 of the model's diagonal of the result of
+/// displace() in double. Functions do not allocate if `out` has the layout's size and there are at
+/// most CsrbfSolver::lean_size start points.
 class NENDO_API Type1Deformer {
 public:
   /// Allocates for the rest shape (3 by #vertices) and for `control_points` start points. With
@@ -72,7 +72,7 @@ public:
   /// each link, or two for each midpoint step. The centres are the start points rounded by
   /// BlockLayout::rounded(); those of later links are where the link before leads.
   const FieldSequence& fields() const noexcept { return fields_; }
-  /// Returns whether a mask holds vertices, so that fields() does not tell all.
+  /// Returns whether a mask holds vertices, so that fields() is not all.
   bool is_masked() const noexcept;
   /// Returns what the last apply() took; all is 0 unless the deformer is injective.
   ChainReport report() const noexcept { return chain_ ? chain_->report() : ChainReport{}; }
@@ -83,6 +83,8 @@ private:
   Type1Deformer(std::unique_ptr<SculptedShape> own, Eigen::Index control_points,
                 const DeformerOptions& options);
   const BoundedShape& rest_shape() const noexcept;
+  bool is_moved() const noexcept { return in_links_ || !displacements_.isZero(0.0); }
+  void forget_applied() noexcept;
   void absorb();
   FieldStatus apply_links(const Points& ends, BlockShape& out);
   FieldStatus apply_steps(const Points& ends, BlockShape& out);
@@ -100,7 +102,7 @@ private:
   Points displacements_; ///< the last that had a solution
   Points asked_;
   Supports supports_;  ///< with radii as float holds them
-  CsrbfSolver solver_; ///< of the start points, unless the chain has it
+  CsrbfSolver solver_; ///< the one for the start points, unless the chain has it
   CsrbfField field_;   ///< unless the shape is in several links
   FieldSequence fields_;
   std::unique_ptr<BlockEvaluator> evaluator_;

@@ -27,11 +27,11 @@ struct StrokeResult {
   int pieces = 0; ///< how many pieces were cut and applied
 };
 
-/// The shape is in blocks, in float, and within 1e-5 of the model's diagonal of what displace()
-/// makes in double of the same piece.
+/// The shape is in blocks, in float, and within 1e-5 of the model's diagonal of the result of
+/// displace() in double for the same piece.
 class NENDO_API Type2Deformer {
 public:
-  static constexpr int max_pieces = 16; ///< of one call, without `injective`
+  static constexpr int max_pieces = 16; ///< limit for one call, without `injective`
 
   /// Allocates for the shape (3 by #vertices) and for `control_points` fingertips. piece_length is
   /// > 0, in model units. With `injective`, a piece is made in as many links as it takes; a call
@@ -81,10 +81,10 @@ public:
   /// Returns the fields that the last call applied to the shape. Their centres are the fingertips
   /// rounded by BlockLayout::rounded(). None along the surface.
   const FieldSequence& fields() const noexcept { return fields_; }
-  /// Returns whether a brush has changed the shape in the last call, so that fields() does not tell
+  /// Returns whether a brush has changed the shape in the last call, so that fields() is not
   /// all.
   bool is_brushed() const noexcept { return is_brushed_; }
-  /// Returns whether a mask holds vertices, which fields() does not tell either.
+  /// Returns whether a mask holds vertices, which fields() does not contain either.
   bool is_masked() const noexcept;
   /// Returns what the stroke has done along the surface; null: distances go through the air.
   const SurfaceStroke* along() const noexcept { return along_.get(); }
@@ -102,6 +102,7 @@ private:
   FieldStatus take_hold(const Points& tips);
   StrokeResult follow(const Points& tips, Lead lead);
   const Points& pulling(const Points& tips);
+  void begin_piece();
   FieldStatus pull_piece();
   FieldStatus apply_piece();
   FieldStatus apply_links();

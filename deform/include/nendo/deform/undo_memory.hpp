@@ -41,8 +41,8 @@ public:
   /// Takes some blocks; none, with a count of 0, if none are ready. Wait-free. Loop's
   /// thread.
   SavedChain take() noexcept;
-  /// Returns how many free blocks the deformer has itself. Wait-free. Loop's thread.
-  void tell_free(std::size_t blocks) noexcept { free_.store(blocks, std::memory_order_relaxed); }
+  /// Reports how many free blocks the deformer has itself. Wait-free. Loop's thread.
+  void report_free(std::size_t blocks) noexcept { free_.store(blocks, std::memory_order_relaxed); }
 
 private:
   std::size_t blocks_ahead_;

@@ -1,6 +1,6 @@
 #pragma once
 // Vertices in the form that suits vector instructions: in float, in blocks of 64 neighbours in
-// space, with separate arrays of x, y and z. A block's bounds tell whether a field reaches it.
+// space, with separate arrays of x, y and z. A block's bounds show whether a field reaches it.
 
 #include <array>
 #include <cstddef>
@@ -69,7 +69,7 @@ inline Eigen::Vector3f vertex_at(const BlockShape& shape, std::size_t place) noe
   return vertex_in(shape[place / block_size], place % block_size);
 }
 
-/// Where each vertex of a mesh stands in the blocks, and what the numbers there mean: vertex =
+/// The place of each vertex of a mesh in the blocks, and what the numbers there mean: vertex =
 /// origin + unit * coordinate. The origin is the middle of the model and the unit a power of two of
 /// about half its size, so that float is precise enough for models of any size and place. A layout
 /// does not change: thread-safe.
@@ -81,7 +81,7 @@ public:
   const Points& original() const noexcept { return original_; }
   const Eigen::Vector3d& origin() const noexcept { return origin_; }
   double unit() const noexcept { return unit_; }
-  double diagonal() const noexcept { return diagonal_; } ///< of the original, in model units
+  double diagonal() const noexcept { return diagonal_; } ///< that of the original, in model units
   std::size_t vertex_count() const noexcept { return order_.size(); }
   std::size_t block_count() const noexcept { return block_count_of(order_.size()); }
   /// The k-th vertex in block order is vertex order()[k] of the mesh.
@@ -115,7 +115,7 @@ private:
   std::vector<std::uint32_t> order_;
 };
 
-/// The largest number that may stand in a block. Sums of such numbers do not overflow; squares may.
+/// The largest number that a block may contain. Sums of such numbers do not overflow; squares may.
 inline constexpr double max_units = 1e35;
 
 } // namespace nendo::deform

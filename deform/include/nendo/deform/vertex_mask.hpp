@@ -26,7 +26,7 @@ public:
   /// weights: one for each vertex of the layout's mesh, 0 to 1. Allocates.
   VertexMask(const BlockLayout& layout, const Eigen::VectorXd& weights);
 
-  const std::vector<Part>& parts() const noexcept { return parts_; } ///< by rising blocks
+  const std::vector<Part>& parts() const noexcept { return parts_; } ///< in the order of blocks
   /// Returns the weights of the block's vertices; null: all are free.
   const float* of_block(std::size_t block) const noexcept {
     return numbers_[block] == no_index ? nullptr : parts_[numbers_[block]].weights.data();
@@ -38,7 +38,7 @@ public:
 
 private:
   std::vector<Part> parts_;
-  std::vector<std::uint32_t> numbers_; ///< of each block's part; no_index
+  std::vector<std::uint32_t> numbers_; ///< the number of each block's part, or no_index
 };
 
 /// Makes `to`, where a block was moved to from `from`, what the weights leave of that way.

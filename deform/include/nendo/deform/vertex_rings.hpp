@@ -40,7 +40,7 @@ private:
   void find_rings(const Mesh& mesh, const BlockLayout& layout);
   void find_neighbours();
 
-  std::vector<std::uint32_t> ring_; ///< of each place
+  std::vector<std::uint32_t> ring_; ///< the ring of each place
   std::vector<std::uint32_t> triangle_starts_, neighbour_starts_;
   std::vector<std::array<std::uint32_t, 2>> corners_;
   std::vector<std::uint32_t> neighbours_;

@@ -1,10 +1,10 @@
-#include "solver/solver_room.hpp"
+#include "solver/reserve_solver.hpp"
 
 #include <algorithm>
 
 namespace nendo::deform {
 
-CsrbfField room_for_field(const Supports& supports, Eigen::Index points, Wendland kernel) {
+CsrbfField zero_field(const Supports& supports, Eigen::Index points, Wendland kernel) {
   const Eigen::Index functions = supports.functions(points);
   return {.kernel = kernel,
           .centres = Points::Zero(3, functions),
@@ -12,13 +12,13 @@ CsrbfField room_for_field(const Supports& supports, Eigen::Index points, Wendlan
           .coefficients = Points::Zero(3, functions)};
 }
 
-void make_room(CsrbfSolver& solver, const Supports& supports, Eigen::Index points) {
+void reserve_solver(CsrbfSolver& solver, const Supports& supports, Eigen::Index points) {
   solver.reserve(points);
   if (points > CsrbfSolver::lean_size) return;
   Points apart(3, points); // anything that can be solved will do
   for (Eigen::Index i = 0; i < points; ++i)
     apart.col(i).setConstant(static_cast<double>(i) * supports.shared.front().radius);
-  CsrbfField field = room_for_field(supports, points, Wendland::c2);
+  CsrbfField field = zero_field(supports, points, Wendland::c2);
   solver.build(apart, supports);
   solver.solve(Points::Zero(3, points), field);
 }
