@@ -203,7 +203,7 @@ inline constexpr std::array run_rows{
     run_row("topology", keys("O"),
             "Separates thin necks, opens thin walls, and fuses surfaces that come close; undo "
             "reverts this.",
-            simple<flow::ChangeTopology>, Buttons::model, "Fix thin spots"),
+            simple<flow::ChangeTopology>, Buttons::model, "Fix thin"),
     refused_if(
         shown_if(run_row("copy part", keys("D"),
                          "Places a copy of the last grabbed part beside it; undo reverts this.",

@@ -167,7 +167,7 @@ void add(cli::Command& program) {
   takes::add_up_option(command, arguments->up);
   session::add_setting(command, flow::setting::mode, arguments->mode);
   command.add_option(
-      "--changes", arguments->changes_a_minute,
+      "--changes", arguments->changes_per_minute,
       "Change the radius this number of times per minute, in every other second, and "
       "report the seconds with and without changes separately");
   command.add_option(std::string(flow::setting::radius.option), arguments->radius,

@@ -66,8 +66,10 @@ SegmentPlan plan_segment(const LoopOutline& outline) noexcept {
   plan.vertices = outline.layout->vertex_count();
   plan.triangles = triangles_of(*outline.model);
   plan.record_stride = whole_lines(8 * max_record_words(outline));
-  const auto a_second = static_cast<std::uint64_t>(std::clamp(outline.rate_hz, 4.0, 1024.0));
-  plan.record_slots = std::clamp(max_record_bytes / plan.record_stride, std::uint64_t{4}, a_second);
+  const auto records_per_second =
+      static_cast<std::uint64_t>(std::clamp(outline.rate_hz, 4.0, 1024.0));
+  plan.record_slots =
+      std::clamp(max_record_bytes / plan.record_stride, std::uint64_t{4}, records_per_second);
   plan.shape_stride = whole_lines(8 * shape_slot_words(plan.vertices));
   plan.shape_slots = 4;
   plan.setup_offset = sizeof(nendo_publish_header);

@@ -117,7 +117,7 @@ ordered_json floor_json(const PlatformFloor& floor) {
 
 ordered_json changes_json(const StressOptions& options, const StressOutcome& outcome) {
   if (!outcome.by_changes) return nullptr;
-  ordered_json line{{"a_minute", options.changes_a_minute}, {"taken", outcome.changes}};
+  ordered_json line{{"a_minute", options.changes_per_minute}, {"taken", outcome.changes}};
   for (const bool with : {false, true}) {
     const ChangeTally& tally = (*outcome.by_changes)[with ? 1 : 0];
     line[with ? "with" : "without"] = {{"ticks", tally.ticks},

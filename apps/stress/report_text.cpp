@@ -149,7 +149,7 @@ void print_counts(std::FILE* out, const StressOutcome& outcome) {
 void print_changes(std::FILE* out, const StressOptions& options, const StressOutcome& outcome) {
   if (!outcome.by_changes) return;
   fmt::print(out, "\n  {} changes of the radius, {:g} per minute in every other second:\n",
-             outcome.changes, options.changes_a_minute);
+             outcome.changes, options.changes_per_minute);
   const auto figures = [](const flow::Histogram& of) {
     const auto at = [&](double fraction) {
       return shown(to_microseconds(of.percentile(fraction)));

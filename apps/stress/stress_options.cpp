@@ -88,11 +88,11 @@ Result<StressOptions> parse(const StressArguments& arguments) {
     return usage("--floor: use 0 (not measured) to 3600 seconds");
   options.floor_s = arguments.floor_s;
   constexpr double max_changes = 6000.0; // at most one in each look of the main thread
-  if (!(arguments.changes_a_minute >= 0.0 && arguments.changes_a_minute <= max_changes))
+  if (!(arguments.changes_per_minute >= 0.0 && arguments.changes_per_minute <= max_changes))
     return usage("--changes: use 0 to 6000 per minute");
-  if (arguments.changes_a_minute > 0.0 && !(run.loop.stages.input && run.loop.stages.deform))
+  if (arguments.changes_per_minute > 0.0 && !(run.loop.stages.input && run.loop.stages.deform))
     return usage("--changes: needs the stages input and deform, which they change");
-  options.changes_a_minute = arguments.changes_a_minute;
+  options.changes_per_minute = arguments.changes_per_minute;
   if (run.left.empty() && run.right.empty()) run.left = run.right = "sim";
   if (run.mesh.empty()) run.mesh = cli::shipped_model("moai.obj").string();
   return options;

@@ -49,7 +49,7 @@ struct StressArguments {
   std::optional<double> break_us;
   std::optional<unsigned> histogram_us;
   double floor_s = 1.0;
-  double changes_a_minute = 0.0;
+  double changes_per_minute = 0.0;
   std::string hgrm;
   std::string picture;
   std::string compare;
@@ -66,7 +66,7 @@ struct StressOptions {
   std::vector<Condition> conditions;
   std::optional<std::chrono::nanoseconds> break_at; ///< ends at a tick that is later than that
   double floor_s = 0.0;
-  double changes_a_minute = 0.0; ///< changes of settings in every other second
+  double changes_per_minute = 0.0; ///< changes of settings in every other second
 };
 
 /// Checks the arguments. Error: usage, naming the option.

@@ -164,7 +164,7 @@ void watch(const StressOptions& options, Collector& collector, const std::atomic
            StressOutcome& outcome, const StressProgress& progress, Watch& watched,
            flow::DeformLoop& loop) {
   HostTime next_report = outcome.start;
-  SettingsChanger changer(options.changes_a_minute);
+  SettingsChanger changer(options.changes_per_minute);
   while (!ended && !session::is_over(options.run, outcome.start)) {
     watched.update(loop, outcome.pictures);
     changer.update(loop, outcome.start);
@@ -234,7 +234,7 @@ Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const d
     if (!run.loop.stages.input) hand.glove->stop();
   }
   outcome->grants.insert(outcome->grants.end(), opened->grants.begin(), opened->grants.end());
-  if (options.changes_a_minute > 0.0) outcome->by_changes.emplace();
+  if (options.changes_per_minute > 0.0) outcome->by_changes.emplace();
   flow::TickRing ring(records_kept);
   run.loop.records = &ring;
   Watch watched;

@@ -313,7 +313,7 @@ std::string complaint_about(const Timeline& timeline) {
   if (auto wrong = complaint_about(timeline.sculptor, timeline.point_count()); !wrong.empty())
     return wrong;
   if (flow::is_by_hands(timeline.sculptor.mode) &&
-      !flow::can_press(timeline.rig ? timeline.rig.get() : timeline.masks_numbered(0)))
+      flow::is_played(timeline.rig ? timeline.rig.get() : timeline.masks_numbered(0)))
     return "puppets neither press clay nor move parts; use mode type1 or type2";
   if (auto wrong = complaint_about(timeline.rig.get(), timeline.rig_state); !wrong.empty())
     return wrong;

@@ -196,7 +196,7 @@ void tell(const Options& options, bool held, const Figures& figures) {
 /// A loop at 1 kHz, in whose second half the radius changes 1,000 times a minute.
 void measure_changes(const Options& options) {
   constexpr double rate_hz = 1000.0;
-  constexpr unsigned changes_a_minute = 1000;
+  constexpr unsigned changes_per_minute = 1000;
   TimedLoop timed(plane(70), true, rate_hz);
   flow::DeformLoop& loop = timed.loop();
   std::atomic<bool> stop{false};
@@ -214,7 +214,7 @@ void measure_changes(const Options& options) {
   flow::LoopSettings settings = loop.changes().settings();
   const double first_m = settings.radius_m[0];
   for (HostTime next = HostClock::now(); half < 2 && !cli::stop_requested();) {
-    std::this_thread::sleep_until(next += std::chrono::milliseconds(60'000 / changes_a_minute));
+    std::this_thread::sleep_until(next += std::chrono::milliseconds(60'000 / changes_per_minute));
     timed.bend(); // no tick without something to do
     loop.frames().update();
     loop.changes().refill_undo();

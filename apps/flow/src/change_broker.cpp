@@ -18,13 +18,19 @@ SculptorSetup first_setup(const CoreOptions& options, const ModelVersion& versio
   SculptorSetup setup = options.setup;
   const puppet::Rig* const rig = options.rig.get();
   if (is_played(rig)) setup.options.hold = Hold::fingertips; // its points hold
-  if (can_press(rig)) setup.options.bodies = options.bodies;
+  if (!is_played(rig)) setup.options.bodies = options.bodies;
   set_masks(rig, version.mesh, version.layout(), setup.options);
   if (!is_played(rig) || setup.options.surface) return setup;
   const deform::DeformerOptions& unmasked = options.setup.options.deformer;
   if (auto surface = surface_for(*rig, version.mesh, version.layout(), unmasked))
     setup.options.surface = *std::move(surface);
   return setup;
+}
+
+/// Returns the kind of the step from one to the other: puppet, mask, or symmetry.
+StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept {
+  if (is_played(before) || is_played(after)) return StepKind::puppet;
+  return mirror_of(before) == mirror_of(after) ? StepKind::mask : StepKind::symmetry;
 }
 
 } // namespace
@@ -111,7 +117,7 @@ Result<SculptorSetup> ChangeBroker::Parts::setup_for(const SculptorSetup& before
                                       puppets.hands_of(asked_puppet), units_per_metre);
   setup.options.surface = asked.options.surface; // others may be another version's
   setup.options.deformer.mask = asked.options.deformer.mask;
-  setup.options.bodies = can_press(rig) ? bodies : nullptr;
+  setup.options.bodies = is_played(rig) ? nullptr : bodies;
   const bool is_other_mode = settings.mode != asked.settings.mode;
   LoopSettings judged = settings;
   if (!is_other_mode) judged.mode = Mode::type1;

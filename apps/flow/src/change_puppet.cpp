@@ -29,6 +29,18 @@ bool have_same_field(const puppet::Rig& one, const puppet::Rig& other) {
   return field(one) == field(other);
 }
 
+/// Returns what `first` would be with the control points of that puppet, or of hands, but
+/// without a field along the surface. supports: of the points, or of the fingertips without images.
+SculptorSetup with_control_points(SculptorSetup first, deform::Supports supports,
+                                  const puppet::Rig* masks, Eigen::Index hands) {
+  first.options.mirror = mirror_of(masks);
+  if (first.options.mirror) supports = of_both_sides(std::move(supports), 5 * hands);
+  first.options.piece_length = first.settings.piece_fraction * deform::min_radius(supports);
+  first.options.deformer.supports = std::move(supports);
+  first.options.surface.reset();
+  return first;
+}
+
 } // namespace
 
 KeptPuppets::KeptPuppets(SculptorSetup first, std::shared_ptr<const puppet::Rig> rig,
@@ -111,7 +123,7 @@ const puppet::Rig* ChangeBroker::first_puppet() const noexcept {
 
 Result<void> ChangeBroker::change_puppet(std::shared_ptr<const puppet::Rig> rig) {
   assert(rig != nullptr);
-  if (is_by_hands(settings().mode) && !can_press(rig.get()))
+  if (is_by_hands(settings().mode) && is_played(rig.get()))
     return Error{Errc::bad_input,
                  "puppets neither press clay nor move parts; choose type 1 or 2 first"};
   parts_->puppets.add(std::move(rig));
@@ -159,7 +171,7 @@ Result<SculptorSetup> ChangeBroker::Parts::setup_with(std::uint32_t puppet) cons
   SculptorSetup setup =
       with_settings(first, first, asked.settings, puppets.hands_of(puppet), units_per_metre);
   setup.options.surface.reset();
-  setup.options.bodies = can_press(rig) ? bodies : nullptr;
+  setup.options.bodies = is_played(rig) ? nullptr : bodies;
   if (masks_of(rig) == masks_of(before))
     setup.options.deformer.mask = asked.options.deformer.mask;
   else

@@ -10,13 +10,13 @@
 namespace nendo::flow {
 namespace {
 
-constexpr double mm_a_metre = 1000.0;
+constexpr double mm_per_metre = 1000.0;
 
 deform::ClayOptions clay_options(const HandBodies& bodies, double radius_m,
                                  const deform::DeformerOptions& deformer) {
   deform::ClayOptions options;
-  options.units_per_mm = bodies.units_per_metre() / mm_a_metre;
-  options.radius_mm = mm_a_metre * std::max(radius_m, ClayHands::min_radius_m);
+  options.units_per_mm = bodies.units_per_metre() / mm_per_metre;
+  options.radius_mm = mm_per_metre * std::max(radius_m, ClayHands::min_radius_m);
   options.still_bodies = HandBodies::tables;
   options.evaluation = deformer.evaluation;
   options.mask = deformer.mask;

@@ -6,6 +6,17 @@
 #include <nendo/flow/finger_supports.hpp>
 
 namespace nendo::flow {
+namespace {
+
+/// Returns the ratio of the sums of the radii.
+double scale_of_radii(const LoopSettings& settings, const LoopSettings& first) noexcept {
+  const auto sum = [](const auto& radii) {
+    return std::accumulate(radii.begin(), radii.end(), 0.0);
+  };
+  return sum(settings.radius_m) / sum(first.radius_m);
+}
+
+} // namespace
 
 LoopSettings usual_settings() noexcept {
   LoopSettings settings;
@@ -41,13 +52,6 @@ LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOpti
   settings.piece_fraction = sculptor.piece_length / deform::min_radius(supports);
   settings.filter = filter;
   return settings;
-}
-
-double scale_of_radii(const LoopSettings& settings, const LoopSettings& first) noexcept {
-  const auto sum = [](const auto& radii) {
-    return std::accumulate(radii.begin(), radii.end(), 0.0);
-  };
-  return sum(settings.radius_m) / sum(first.radius_m);
 }
 
 deform::Supports scaled(deform::Supports supports, double scale) {

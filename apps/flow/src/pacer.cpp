@@ -63,14 +63,14 @@ void sleep_until(HostTime deadline) noexcept {
 SpinMargin::SpinMargin(HostClock::duration period) noexcept
     : period_(period), cap_(std::min<HostClock::duration>(most, period / 5)),
       margin_(std::min(cap_, period / max_of_period)),
-      ticks_in_a_second_(static_cast<std::uint32_t>(
+      ticks_per_second_(static_cast<std::uint32_t>(
           std::max<HostClock::rep>(1, std::chrono::seconds(1) / period))) {}
 
 void SpinMargin::observe(HostClock::duration lateness) noexcept {
   const auto us = std::clamp<microseconds::rep>(
       std::chrono::duration_cast<microseconds>(lateness).count(), 0, most.count());
   ++counts_[static_cast<std::size_t>(us)];
-  if (++seen_ == ticks_in_a_second_) adapt();
+  if (++seen_ == ticks_per_second_) adapt();
 }
 
 microseconds SpinMargin::needed() const noexcept {

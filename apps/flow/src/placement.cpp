@@ -179,12 +179,6 @@ Placement place_hands(const deform::Mesh& model,
     }
     T = registration.T;
     T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
-    const Fingertips tips = moved(T, *tips_wrist[at]);
-    for (Index i = 0; i < tips.cols(); ++i) {
-      const Vector3d nearest = surface.points.col(surface.nearest(tips.col(i)));
-      placement.greatest_gap_m[at] =
-          std::max(placement.greatest_gap_m[at], (tips.col(i) - nearest).norm());
-    }
   }
   return placement;
 }

@@ -21,17 +21,9 @@
 namespace nendo::flow {
 namespace {
 
-Grant granted(std::string name, std::string wanted) {
-  return {std::move(name), std::move(wanted), true, {}, {}};
-}
-
 Grant judged(std::string name, std::string wanted, int error, std::string remedy) {
-  Grant grant = granted(std::move(name), std::move(wanted));
-  if (error == 0) return grant;
-  grant.granted = false;
-  grant.why = std::strerror(error);
-  grant.remedy = std::move(remedy);
-  return grant;
+  if (error == 0) return {std::move(name), std::move(wanted), true, {}, {}};
+  return {std::move(name), std::move(wanted), false, std::strerror(error), std::move(remedy)};
 }
 
 Grant fifo(std::string name, unsigned priority, pthread_t thread) {

@@ -1,14 +1,10 @@
 #include <nendo/flow/rig_setup.hpp>
 
 #include <string>
-#include <utility>
 
-#include <nendo/flow/finger_supports.hpp>
 #include <nendo/puppet/puppet.hpp>
 
 namespace nendo::flow {
-
-using deform::Points;
 
 bool is_played(const puppet::Rig* rig) noexcept {
   return rig != nullptr && rig->puppet().is_played();
@@ -30,10 +26,6 @@ std::optional<double> mirror_of(const puppet::Rig* rig) noexcept {
   return rig->puppet().mirror_at;
 }
 
-bool can_press(const puppet::Rig* rig) noexcept {
-  return !is_played(rig);
-}
-
 Result<void> check_points(const puppet::Rig* rig, const SculptorOptions& sculptor) {
   if (!is_played(rig) || rig->starts().cols() <= deform::CsrbfSolver::lean_size) return {};
   if (rig->puppet().distance == puppet::Distance::surface) return {};
@@ -43,34 +35,11 @@ Result<void> check_points(const puppet::Rig* rig, const SculptorOptions& sculpto
                                     " of them, unless distances go along the surface"};
 }
 
-StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept {
-  if (is_played(before) || is_played(after)) return StepKind::puppet;
-  return mirror_of(before) == mirror_of(after) ? StepKind::mask : StepKind::symmetry;
-}
-
-void mirror_half(double at, Points& points) noexcept {
-  const Eigen::Index half = points.cols() / 2;
-  for (Eigen::Index point = 0; point < half; ++point) {
-    points.col(half + point) = points.col(point);
-    points(0, half + point) = 2.0 * at - points(0, point);
-  }
-}
-
 void set_masks(const puppet::Rig* rig, const deform::Mesh& model, const deform::BlockLayout& layout,
                SculptorOptions& sculptor) {
   sculptor.mirror = mirror_of(rig);
   sculptor.deformer.mask =
       rig == nullptr ? nullptr : puppet::vertex_mask(rig->puppet(), layout, model.vertices);
-}
-
-SculptorSetup with_control_points(SculptorSetup first, deform::Supports supports,
-                                  const puppet::Rig* masks, Eigen::Index hands) {
-  first.options.mirror = mirror_of(masks);
-  if (first.options.mirror) supports = of_both_sides(std::move(supports), 5 * hands);
-  first.options.piece_length = first.settings.piece_fraction * deform::min_radius(supports);
-  first.options.deformer.supports = std::move(supports);
-  first.options.surface.reset();
-  return first;
 }
 
 Result<std::shared_ptr<const deform::SurfaceField>>

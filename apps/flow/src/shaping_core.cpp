@@ -46,6 +46,15 @@ Eigen::Index points_at_first(const CoreOptions& options) {
                            static_cast<Eigen::Index>(options.hands.size()));
 }
 
+/// Makes the second half of the points the mirror images of the first.
+void mirror_half(double at, Points& points) noexcept {
+  const Eigen::Index half = points.cols() / 2;
+  for (Eigen::Index point = 0; point < half; ++point) {
+    points.col(half + point) = points.col(point);
+    points(0, half + point) = 2.0 * at - points(0, point);
+  }
+}
+
 } // namespace
 
 /// The wire or knife that hands draw through the model. It does not allocate.

@@ -52,7 +52,7 @@ Result<void> check_user(const hand::CalibrationList& stored, const std::string& 
   return Error{
       Errc::bad_input,
       option + " " + printable(user) + ": no calibration of " + printable(user) + " is stored; " +
-          (known.empty() ? "there is none yet" : "there are those of " + known) +
+          (known.empty() ? "no user has one yet" : "there are those of " + known) +
           "; `nendo calibrate GLOVE --user " + shell_word(printable(user)) + "` makes one"};
 }
 

@@ -65,10 +65,10 @@ void set_supports(deform::Supports supports, flow::SculptorOptions& sculptor) {
 void set_undo_space(const deform::Mesh& model, std::size_t max_bytes, flow::LoopOptions& loop) {
   // Memory for some dozens of whole shapes, of which strokes mostly change parts.
   constexpr std::size_t max_at_once = std::size_t{64} << 20;
-  constexpr std::size_t shapes_of_a_vertex = std::size_t{64} * 3 * sizeof(float);
+  constexpr std::size_t bytes_per_vertex = std::size_t{64} * 3 * sizeof(float);
   const std::size_t at_once =
       std::min({max_at_once, max_bytes,
-                shapes_of_a_vertex * static_cast<std::size_t>(model.vertices.cols() + 1000)});
+                bytes_per_vertex * static_cast<std::size_t>(model.vertices.cols() + 1000)});
   loop.sculptor.deformer.undo_bytes = at_once;
   loop.undo_max_bytes = max_bytes - at_once;
 }

@@ -47,9 +47,6 @@ NENDO_API LoopSettings plain_settings_of(const SculptorOptions& sculptor) noexce
 /// Puts these into the options, but for `injective`.
 NENDO_API void set_plain_settings(SculptorOptions& sculptor, const LoopSettings& settings) noexcept;
 
-/// Returns the ratio of the sums of the radii of these settings and of `first`.
-NENDO_API double scale_of_radii(const LoopSettings& settings, const LoopSettings& first) noexcept;
-
 /// The options of a sculptor, and the settings that they mean.
 struct SculptorSetup {
   SculptorOptions options{};

@@ -1,5 +1,5 @@
 #pragma once
-// Says where the hands are. A glove measures no position in space. So the model is put on a stage
+// Places the hands. A glove measures no position in space. So the model is put on a stage
 // and scaled to a size that two hands can hold. A hand is placed at each side of it, with the
 // fingertips on the surface.
 
@@ -34,7 +34,6 @@ struct Placement {
   std::array<Eigen::Isometry3d, 2> T_stage_wrist{Eigen::Isometry3d::Identity(),
                                                  Eigen::Isometry3d::Identity()};
   std::optional<Table> table; ///< nothing: table_under() the model with which a loop begins
-  std::array<double, 2> greatest_gap_m{}; ///< farthest that a fingertip is from the surface
 
   static constexpr std::size_t index_of(Side side) noexcept { return side == Side::left ? 0 : 1; }
 };
@@ -48,7 +47,7 @@ NENDO_API Placement place_hands(const deform::Mesh& model,
                                 const PlacementOptions& options = {});
 
 /// Places the hands of a puppet's player before the model and beside it, as the player sees them:
-/// backs towards the viewer, fingers up and a little forward. Nothing is searched for.
+/// backs towards the viewer, fingers up and a little forward. No search is performed.
 NENDO_API Placement place_player(const deform::Mesh& model, double model_size_m = 0.46);
 
 /// Returns a table as high as the lowest vertex of the model, which reaches far beyond it.

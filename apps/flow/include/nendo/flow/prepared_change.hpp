@@ -28,7 +28,7 @@ struct LoopState {
     SensorMask stuck{}; ///< sensors that were found stuck
   };
   std::vector<Input> inputs{}; ///< in the loop's order
-  Placement placement{};       ///< without the gaps
+  Placement placement{};
   bool held = true;
   SculptorSetup sculptor{};
   /// How the model came from the one with which the loop began, the first change first.

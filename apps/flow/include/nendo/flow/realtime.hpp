@@ -33,13 +33,13 @@ struct Grant {
   std::string wanted; ///< "SCHED_FIFO 80"
   bool granted = false;
   std::string why;    ///< the system's words; empty if granted
-  std::string remedy; ///< the command or deed that fixes it; empty if granted
+  std::string remedy; ///< the command or action that fixes it; empty if granted
 };
 /// Returns a line for each refused right: what was refused, why, and the remedy.
 NENDO_API std::vector<std::string> refusals(const std::vector<Grant>& grants);
 
 /// Holds the process's rights while it lives. Memory is locked, and malloc keeps it. If a priority
-/// is asked for, the processor is kept from sleep states that take long to leave
+/// is requested, the processor is kept from sleep states that take long to leave
 /// (/dev/cpu_dma_latency). Locked memory stays locked until the process ends. The constructor
 /// blocks while pages come in.
 class NENDO_API RealtimeProcess {

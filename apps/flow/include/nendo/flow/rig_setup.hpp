@@ -7,9 +7,7 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/deform/surface_field.hpp>
-#include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/sculptor.hpp>
-#include <nendo/flow/step.hpp>
 #include <nendo/puppet/rig.hpp>
 
 namespace nendo::flow {
@@ -25,23 +23,13 @@ NENDO_API Eigen::Index supported_points(const puppet::Rig* rig, Eigen::Index han
 /// Returns the x of the plane, in model units, on both sides of which the fingertips shape;
 /// nothing: of none.
 NENDO_API std::optional<double> mirror_of(const puppet::Rig* rig) noexcept;
-/// Returns whether hands with that puppet, which may be null, can press clay: it has no points.
-NENDO_API bool can_press(const puppet::Rig* rig) noexcept;
 /// Returns whether a tick can solve for that puppet's points without allocating. Error, bad_input:
 /// there are more than deform::CsrbfSolver::lean_size. Where distances go along the surface, any
 /// number is good, because their field is solved for beforehand.
 NENDO_API Result<void> check_points(const puppet::Rig* rig, const SculptorOptions& sculptor);
-/// Returns the kind of the step from one to the other: puppet, mask, or symmetry.
-NENDO_API StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept;
-/// Makes the second half of the points the mirror images of the first.
-NENDO_API void mirror_half(double at, deform::Points& points) noexcept;
 /// Puts the puppet's masks on that model, and whether it mirrors, into the options. Allocates.
 NENDO_API void set_masks(const puppet::Rig* rig, const deform::Mesh& model,
                          const deform::BlockLayout& layout, SculptorOptions& sculptor);
-/// Returns what `first` would be with the control points of that puppet, or of so many hands, but
-/// without a field along the surface. supports: of the points, or of the fingertips without images.
-NENDO_API SculptorSetup with_control_points(SculptorSetup first, deform::Supports supports,
-                                            const puppet::Rig* masks, Eigen::Index hands);
 /// Returns the field of a puppet along that model's surface, with the kernel and the radii of these
 /// options; null if it measures distances through the air, or no hand plays it. Error: as
 /// SurfaceField::make(). Allocates.

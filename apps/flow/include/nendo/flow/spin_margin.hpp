@@ -34,7 +34,7 @@ private:
   HostClock::duration period_;
   HostClock::duration cap_;
   HostClock::duration margin_;
-  std::uint32_t ticks_in_a_second_;
+  std::uint32_t ticks_per_second_;
   std::uint32_t seen_ = 0;
   /// Counts wake-ups by lateness in whole microseconds; the last entry counts all that are later.
   std::array<std::uint32_t, most.count() + 1> counts_{};
