@@ -31,35 +31,22 @@ void describe_hand(const flow::HandFrame& hand, nendo_publish_hand& out) noexcep
   }
 }
 
-std::uint32_t status_number(deform::FieldStatus status) noexcept {
-  switch (status) {
-  case deform::FieldStatus::ok:
-    return 0;
-  case deform::FieldStatus::merged:
-    return 1;
-  case deform::FieldStatus::singular:
-    return 2;
-  case deform::FieldStatus::too_dense:
-    return 3;
-  case deform::FieldStatus::not_finite:
-    return 4;
-  }
-  return 2;
+// The numbers in a record are those of the enumerations, which must not change.
+constexpr std::uint32_t published_number(deform::FieldStatus status) noexcept {
+  return static_cast<std::uint32_t>(status);
 }
-
-std::uint32_t kernel_number(deform::Wendland kernel) noexcept {
-  switch (kernel) {
-  case deform::Wendland::c0:
-    return 0;
-  case deform::Wendland::c2:
-    return 1;
-  case deform::Wendland::c4:
-    return 2;
-  case deform::Wendland::c6:
-    return 3;
-  }
-  return 1;
+constexpr std::uint32_t published_number(deform::Wendland kernel) noexcept {
+  return static_cast<std::uint32_t>(kernel);
 }
+static_assert(published_number(deform::FieldStatus::ok) == 0 &&
+              published_number(deform::FieldStatus::merged) == 1 &&
+              published_number(deform::FieldStatus::singular) == 2 &&
+              published_number(deform::FieldStatus::too_dense) == 3 &&
+              published_number(deform::FieldStatus::not_finite) == 4);
+static_assert(published_number(deform::Wendland::c0) == 0 &&
+              published_number(deform::Wendland::c2) == 1 &&
+              published_number(deform::Wendland::c4) == 2 &&
+              published_number(deform::Wendland::c6) == 3);
 
 } // namespace
 
@@ -78,7 +65,7 @@ std::size_t FrameRecord::put_field(const deform::CsrbfField& field, std::size_t 
   if (end > words_.size()) return 0;
   nendo_publish_field head{};
   const bool keeps_volume = field.keep_volume > 0.0;
-  head.kernel = kernel_number(field.kernel);
+  head.kernel = published_number(field.kernel);
   if (keeps_volume) head.kernel |= std::uint32_t{NENDO_PUBLISH_KEEPS_VOLUME};
   if (field.is_halfway) head.kernel |= std::uint32_t{NENDO_PUBLISH_HALFWAY};
   head.functions = static_cast<std::uint32_t>(functions);
@@ -114,7 +101,7 @@ void FrameRecord::describe(const flow::Frame& frame, std::uint64_t number,
   head.shape_changes = shape_changes;
   head.units_per_metre = frame.units_per_metre;
   if (frame.held) head.flags |= NENDO_PUBLISH_HELD;
-  head.status = status_number(frame.status);
+  head.status = published_number(frame.status);
   head.mode = static_cast<std::uint8_t>(1 + static_cast<int>(frame.settings.mode));
   used_ = head_words;
   for (const auto& field : frame.fields.fields()) {
