@@ -50,7 +50,7 @@ Result<Target> parse_segment(std::string_view text, std::string_view rest) {
   constexpr std::string_view key = "group=";
   const std::string_view option = rest.substr(mark + 1);
   if (!option.starts_with(key))
-    return wrong(text, "unknown option; there is ?group=GROUP, who may read it, too");
+    return wrong(text, "unknown option; ?group=GROUP lets that group read it");
   target.group = group_of(std::string(option.substr(key.size())));
   if (!target.group) return wrong(text, "no such group; getent group lists them");
   return Target(target);

@@ -100,10 +100,11 @@ Result<deform::CsrbfOptions> csrbf_for(const flow::LoopSettings& settings,
                  "--polynomial " + polynomial + ": unknown; use none, constant or linear"};
   const flow::NumberSetting& volume = flow::setting::keep_volume;
   if (volume.of(settings) > 0.0 && *known != deform::Polynomial::none)
-    return Error{Errc::usage,
-                 fmt::format("{} and --polynomial {}: a polynomial stretches the whole model; "
-                             "choose one of them",
-                             volume.option, polynomial)};
+    return Error{
+        Errc::usage,
+        fmt::format("{} cannot be combined with --polynomial {}: a polynomial stretches the "
+                    "whole model; choose one of them",
+                    volume.option, polynomial)};
   flow::SculptorOptions sculptor;
   flow::set_plain_settings(sculptor, settings);
   sculptor.deformer.csrbf.polynomial = *known;

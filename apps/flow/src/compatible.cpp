@@ -87,7 +87,7 @@ constexpr std::array exclusions{
     Exclusion{Party::puppet, Party::brushes, always,
               "fingertips have brushes, and a puppet's points pull"},
     Exclusion{Party::puppet, Party::injective, always,
-              "nothing promises that a puppet's surface does not fold"},
+              "fold prevention does not cover the surface of a puppet"},
     Exclusion{Party::puppet, Party::volume, on_surface,
               "a puppet's distances go along the surface, where no kernel is known that keeps the "
               "volume, but distance = \"air\" in its file allows both",
@@ -95,10 +95,10 @@ constexpr std::array exclusions{
     Exclusion{Party::mode, Party::brushes, in_another_type, "only type 2 has brushes"},
     Exclusion{Party::mode, Party::hold, in_type2, "type 2 needs fingertip paths"},
     Exclusion{Party::hold, Party::volume, always,
-              "90 points with matrices take longer than a tick has"},
+              "90 points that keep the volume take longer than a tick"},
     Exclusion{Party::volume, Party::injective, always,
-              "links are cut for kernels without matrices, and the steps that keep the volume are "
-              "short enough for a lone finger not to fold the surface"},
+              "moves that keep the volume cannot be split for fold prevention; their steps are so "
+              "short that a single finger does not fold the surface"},
 };
 
 Result<void> first_exclusion(const LoopSettings& settings, Played played, Naming naming,
@@ -110,7 +110,7 @@ Result<void> first_exclusion(const LoopSettings& settings, Played played, Naming
       });
   if (found == exclusions.end()) return {};
   return Error{naming == Naming::options ? Errc::usage : Errc::bad_input,
-               words_for(found->one, settings, naming) + " and " +
+               words_for(found->one, settings, naming) + " cannot be combined with " +
                    words_for(found->other, settings, naming) + ": " + std::string(found->reason) +
                    "; choose one of them"};
 }

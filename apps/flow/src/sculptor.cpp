@@ -181,14 +181,6 @@ FieldStatus Sculptor::grab(const Points& tips) noexcept {
       [&](auto& hands) { return hands.begin(tips); }));
 }
 
-FieldStatus Sculptor::update(const Points& tips, BlockShape& out) noexcept {
-  return shape_to(tips, false, out);
-}
-
-FieldStatus Sculptor::finish(const Points& tips, BlockShape& out) noexcept {
-  return shape_to(tips, true, out);
-}
-
 FieldStatus Sculptor::shape_to(const Points& tips, bool ends, BlockShape& out) noexcept {
   const auto changed = [&](FieldStatus status) { // the deformer has changed the rest shape
     out.follow(rest());

@@ -107,9 +107,13 @@ public:
   /// Writes the shape for the fingertips' present places into `out`; blocks that `out` already has
   /// are not written again. Wait-free, except that it may wait for a second thread to finish its
   /// part. It does not allocate if `out` has the right size.
-  deform::FieldStatus update(const deform::Points& tips, deform::BlockShape& out) noexcept;
+  deform::FieldStatus update(const deform::Points& tips, deform::BlockShape& out) noexcept {
+    return shape_to(tips, false, out);
+  }
   /// Does what update() does, and completes the stroke up to `tips`.
-  deform::FieldStatus finish(const deform::Points& tips, deform::BlockShape& out) noexcept;
+  deform::FieldStatus finish(const deform::Points& tips, deform::BlockShape& out) noexcept {
+    return shape_to(tips, true, out);
+  }
   /// Makes the shape that finish() gave the rest shape, which the fingertips then hold where they
   /// are. It must be called after finish() with the same tips. If the equations have no solution,
   /// nothing changes. It does not allocate.
