@@ -16,7 +16,7 @@ namespace {
 constexpr Eigen::Index fingertips_of_hand = 5;
 constexpr Eigen::Index fingertips_of_two = 2 * fingertips_of_hand;
 
-/// Returns the text with lengths on the stage in model units. Weights, behind a colon, have no
+/// Returns the text with lengths on the stage in model units. Weights, after a colon, have no
 /// unit.
 std::string in_model_units(std::string_view text, double units_per_metre) {
   std::string plain;

@@ -1,4 +1,4 @@
-#include <nendo/flow/kept_rest.hpp>
+#include <nendo/flow/model_version.hpp>
 
 #include <algorithm>
 #include <array>

@@ -9,7 +9,6 @@
 #include <nendo/deform/join.hpp>
 #include <nendo/deform/topology.hpp>
 #include <nendo/deform/triangles.hpp>
-#include <nendo/flow/kept_rest.hpp>
 
 namespace nendo::flow {
 namespace {

@@ -124,7 +124,7 @@ void Shaping::step_to(Request step, ModelVersion& next, const Awaited& before) n
   step_over_change(step, *model_, {before.settings, next.number, before.puppet});
   if (&next == model_) return;
   step_over_change(step, next, before);
-  if (step == Request::undo) next.behind = model_;
+  if (step == Request::undo) next.after = model_;
 }
 
 /// Adds a step from these settings to the present ones. Without `is_step`, it extends the last step
@@ -157,7 +157,7 @@ static StepKind kind_of(ModelSource source) noexcept {
 void Shaping::record_model(ModelVersion& next, const LoopSettings& before) noexcept {
   const Step step = step_now(kind_of(next.origin->source));
   next.before = model_;
-  model_->behind = nullptr; // as mark() forgets what was undone
+  model_->after = nullptr; // as mark() forgets what was undone
   model_->shape.mark(NotedStep{step, {before, next.number, puppet_}}.note());
   next.shape.mark(NotedStep{step, {before, model_->number, puppet_}}.note());
 }
@@ -198,14 +198,14 @@ std::size_t Shaping::steps_to_undo() const noexcept {
 
 std::size_t Shaping::steps_to_redo() const noexcept {
   std::size_t steps = 0;
-  for (const ModelVersion* at = model_; at != nullptr; at = at->behind)
+  for (const ModelVersion* at = model_; at != nullptr; at = at->after)
     steps += at->shape.redo_steps() - (at != model_ && at->shape.redo_steps() > 0 ? 1 : 0);
   return steps;
 }
 
 /// After a new step, no redo leads to another version.
 void Shaping::forget_redo() noexcept {
-  if (model_->shape.redo_steps() == 0) model_->behind = nullptr;
+  if (model_->shape.redo_steps() == 0) model_->after = nullptr;
 }
 
 /// Fills the list's first part from its end, the last step first, and moves the steps to the front.
@@ -226,7 +226,7 @@ void Shaping::list_undoable(StepList& list) const noexcept {
 void Shaping::list_undone(StepList& list) const noexcept {
   std::array<deform::StepNote, StepList::max_undone> notes;
   const std::size_t max_count = list.undoable + StepList::max_undone;
-  for (const ModelVersion* version = model_; version != nullptr; version = version->behind) {
+  for (const ModelVersion* version = model_; version != nullptr; version = version->after) {
     const std::size_t count = version->shape.copy_undone(notes);
     for (std::size_t note = version == model_ ? 0 : 1; note < count && list.count < max_count;
          ++note)
