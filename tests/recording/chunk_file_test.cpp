@@ -28,11 +28,11 @@ std::vector<std::byte> bytes_of(std::string_view text) {
 struct Sample {
   std::vector<std::byte> file;
   std::vector<std::vector<std::byte>> payloads;
-  std::vector<std::size_t> ends; ///< of each chunk
+  std::vector<std::size_t> ends; ///< end of each chunk
 
-  explicit Sample(std::initializer_list<std::string_view> texts) {
+  explicit Sample(std::initializer_list<std::string_view> contents) {
     ByteWriter(file).bytes(file_header());
-    for (const auto text : texts)
+    for (const auto text : contents)
       add(bytes_of(text));
   }
   void add(std::vector<std::byte> payload) {
@@ -145,7 +145,7 @@ TEST_SUITE("chunk_file") {
     }
   }
 
-  TEST_CASE("bytes that are missing or too many, and chunks that are, are told") {
+  TEST_CASE("bytes that are missing or too many, and chunks that are, are reported") {
     const Sample sample{"one", "the second", "three", "four"};
     for (std::size_t at = sample.ends[0]; at < sample.ends[1]; ++at) {
       std::vector<std::byte> shorter = sample.file;
@@ -194,7 +194,7 @@ TEST_SUITE("chunk_file") {
     CHECK(read.damages >= 1);
   }
 
-  TEST_CASE("what is no recording is told in a line that says why") {
+  TEST_CASE("what is no recording is reported in a line that says why") {
     const test::TemporaryFolder folder;
     const auto path = folder.path() / "take";
     write(path, {});

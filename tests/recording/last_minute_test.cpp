@@ -9,7 +9,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "crash_handler.hpp"
 #include "support/eventually.hpp"
 #include "support/takes.hpp"
 
@@ -57,7 +56,7 @@ Kept read(const std::filesystem::path& path) {
   return kept;
 }
 
-/// A ring filled with ticks, so many a payload, a second apart.
+/// A ring filled with ticks, some per payload, a second apart.
 struct Filled {
   test::TemporaryFolder folder;
   std::filesystem::path path = folder.path() / "kept.nendo";
@@ -193,7 +192,7 @@ TEST_SUITE("last_minute") {
     CHECK(kept.damages == 0);
     CHECK(kept.gaps == 0); // nothing is a minute old
     CHECK(kept.ticks.front() == 0);
-    CHECK(live.told.size() == recorded->kept);
+    CHECK(live.warnings.size() == recorded->kept);
   }
 
   TEST_CASE("a crash writes the last minute before the process ends as it would have") {

@@ -38,7 +38,7 @@ struct LayeredTake {
   Setup setup;
   LayeredLoop played;
   std::unique_ptr<Recorder> recorder;
-  std::vector<deform::Points> shapes; ///< of the file that is recorded last
+  std::vector<deform::Points> shapes; ///< shapes of the last recorded file
 
   LayeredTake(LoopUnderTest& test, std::filesystem::path file, std::vector<flow::HandInput> inputs,
               flow::InputScript* script = nullptr)
@@ -175,7 +175,7 @@ TEST_SUITE("layered_take") {
     }
   }
 
-  TEST_CASE("a recording that begins while a layer comes in goes on with it, bit for bit") {
+  TEST_CASE("a recording that begins while a layer comes in continues with it, bit for bit") {
     test::TemporaryFolder folder;
     LoopUnderTest like(Mode::type1, {.rings_of_ball = 10});
     const HostTime begin(1000s);
@@ -252,7 +252,7 @@ TEST_SUITE("layered_take") {
     many.push_back(layer);
     CHECK_FALSE(read(many, 0, 0));
 
-    // A setup whose layer could not be read tells so, and not of another shape.
+    // A setup with an unreadable layer is reported as that, and not as another shape.
     Setup setup = LayeredTake::setup_with(like, {like.inputs[0], layer});
     CHECK(LoopReplay::make(setup, like.model));
     setup.hands.pop_back();

@@ -41,7 +41,7 @@ struct Clenching {
   HostTime begin = HostClock::now();
   std::uint64_t tick = 0;
   int counts = 0;
-  int changes = 0; ///< of what the left hand holds
+  int changes = 0; ///< changes of the left hand's held functions
   bool let_go = false;
   Shapes shapes;
 
@@ -73,7 +73,7 @@ std::unique_ptr<RecordedLoop> loop_of(unsigned seed) {
 }
 
 struct Replayed {
-  Shapes shapes; ///< of each tick
+  Shapes shapes; ///< one per tick
   deform::Points last;
   std::uint64_t changes = 0;
   std::uint32_t models = 0; ///< the highest number of a version
@@ -188,7 +188,7 @@ TEST_SUITE("live_settings") {
     CHECK((refined > 0 || !are_all));
   }
 
-  TEST_CASE("gestures let go and take hold in a replay as they did live, bit for bit") {
+  TEST_CASE("gestures release and grab in a replay as they did live, bit for bit") {
     Clenching person;
     person.live.record();
     person.go_on(400);

@@ -137,7 +137,8 @@ TEST_SUITE("loop_replay") {
     CHECK((test.loop->final_shape() - test.model.vertices).cwiseAbs().maxCoeff() > 1e-3);
   }
 
-  TEST_CASE("a loop that goes on with what one before it has learned is replayed with that") {
+  TEST_CASE(
+      "a loop that continues with the learned ranges of a previous one is replayed with them") {
     bool slips = false;
     SUBCASE("ranges") {}
     SUBCASE("slips") {
@@ -274,19 +275,19 @@ TEST_SUITE("loop_replay") {
   TEST_CASE("what found the input log full is counted, and the replay says that it is not exact") {
     RecordedLoop live(Mode::type1);
     const HostTime begin = HostClock::now();
-    // Nobody empties the input log: 3 entries a tick, and 2^14 of them fit.
+    // The input log is not emptied: 3 entries per tick, and 2^14 of them fit.
     constexpr std::uint64_t ticks = 6000;
     for (std::uint64_t tick = 0; tick < ticks; ++tick) {
       live.test.bend(static_cast<int>(tick % 20), begin + tick * std::chrono::milliseconds(11));
       live.test.frame_after_tick(tick);
     }
     live.record();
-    live.test.frame_after_tick(ticks); // the recorder may have made room by then, or not
+    live.test.frame_after_tick(ticks); // the recorder may have emptied the log by then, or not
     const auto recorded = live.end();
     REQUIRE(recorded);
     CHECK(recorded->lost > 0);
     CHECK(recorded->lost + recorded->samples + recorded->ticks == 3 * ticks + 1);
-    CHECK(live.told.size() == 1);
+    CHECK(live.warnings.size() == 1);
     CHECK_FALSE(replayed(live.path, live.test.model)->is_exact());
   }
 

@@ -130,10 +130,10 @@ def end(b):
 
 
 def sent(b):
-    told = {"gloves": [dict(zip(("delivered", "missed", "refused", "bad"), b.take("4Q"))) for _ in range(b.take("B"))]}
+    lines = {"gloves": [dict(zip(("delivered", "missed", "refused", "bad"), b.take("4Q"))) for _ in range(b.take("B"))]}
     if b.left() > 0:
-        told["known"] = [dict(zip(("missed", "clamped"), b.take("BQ"))) for _ in told["gloves"]]
-    return told
+        lines["known"] = [dict(zip(("missed", "clamped"), b.take("BQ"))) for _ in lines["gloves"]]
+    return lines
 
 
 def tape(b):
@@ -199,9 +199,9 @@ def main():
         payload = data[at + 20:at + 20 + size]
         assert struct.unpack_from("<I", data, at + 20 + size)[0] == crc32c(payload), f"payload at {at}"
         b = Bytes(payload)
-        told = readers[kind.decode()](b)
+        lines = readers[kind.decode()](b)
         assert b.left() == 0, f"{kind} at {at} has {b.left()} bytes too many"
-        for line in told if isinstance(told, list) else [told]:
+        for line in lines if isinstance(lines, list) else [lines]:
             print(json.dumps(dict(chunk=kind.decode(), **line)))
         at += 24 + size
         number += 1

@@ -99,7 +99,7 @@ TEST_SUITE("recorder") {
     CHECK(counts.ticks == 300);
     CHECK(counts.gaps + counts.damages == 0);
     CHECK(counts.has_ending);
-    CHECK(live.told.empty());
+    CHECK(live.warnings.empty());
     auto reader = TakeReader::open(live.path);
     while (reader->next()) {
     }
@@ -130,7 +130,7 @@ TEST_SUITE("recorder") {
                  .sent_time = 30ms});
     test::play(live, 100);
     std::vector<driver::RecordCounts> seen;
-    // As after a crash: no ending, but what was told so far.
+    // As after a crash: no ending, but the latest counts.
     CHECK(test::eventually([&] {
       seen = sent_in(live.path);
       return seen.size() == 2 && seen[0].missed > 1;
@@ -156,19 +156,19 @@ TEST_SUITE("recorder") {
     CHECK_THROWS_WITH(live.record(), doctest::Contains("cannot be made"));
   }
 
-  TEST_CASE("a disk that fills up: one warning, what is written stays whole, the loop goes on") {
+  TEST_CASE("a disk that fills up: one warning, what is written stays whole, the loop continues") {
     RecordedLoop live(Mode::type1);
     live.record({.chunk_time = 1ms});
     const test::SmallDisk small(64 * 1024);
-    test::play(live, 100); // a third of what fits
+    test::play(live, 100); // a third of the space
     CHECK(test::eventually([&] { return counts_of(live.path).ticks > 0; }));
     for (unsigned seed = 1; seed < 12; ++seed)
       test::play(live, 100, seed);
     const auto recorded = live.end();
     REQUIRE_FALSE(recorded);
     CHECK(recorded.error().code == Errc::failed);
-    CHECK(recorded.error().message.find("make room") != std::string::npos);
-    CHECK(live.told.size() == 1);
+    CHECK(recorded.error().message.find("free some space") != std::string::npos);
+    CHECK(live.warnings.size() == 1);
     CHECK(live.test.loop->stats().ticks == 1200);
     CHECK(std::filesystem::file_size(live.path) <= 64 * 1024);
     const Counts counts = counts_of(live.path);
@@ -177,7 +177,7 @@ TEST_SUITE("recorder") {
     CHECK_FALSE(counts.has_ending);
   }
 
-  TEST_CASE("a disk that is full from the beginning is told, and the name stays free") {
+  TEST_CASE("a disk that is full from the beginning is reported, and the name stays free") {
     RecordedLoop live(Mode::type1);
     std::string said;
     {
@@ -188,14 +188,14 @@ TEST_SUITE("recorder") {
         said = error.what();
       }
     }
-    CHECK(said.find("make room") != std::string::npos);
+    CHECK(said.find("free some space") != std::string::npos);
     CHECK(said.find("recording has ended") == std::string::npos); // none had begun
     CHECK_FALSE(std::filesystem::exists(live.path));
     live.record();
     CHECK(live.end());
   }
 
-  TEST_CASE("a last minute for which there is no room is told, and leaves no half of a file") {
+  TEST_CASE("a last minute without space is reported, and leaves no half of a file") {
     RecordedLoop live(Mode::type1);
     const auto stem = live.folder.path() / "clay";
     live.record({.keep_last = 60s, .kept_stem = stem, .chunk_time = 1ms});
@@ -211,7 +211,7 @@ TEST_SUITE("recorder") {
     CHECK_FALSE(std::filesystem::exists(stem.string() + ".kept-1.nendo"));
   }
 
-  TEST_CASE("a folder that vanishes is told while the loop runs") {
+  TEST_CASE("a folder that vanishes is reported while the loop runs") {
     RecordedLoop live(Mode::type1);
     live.path = live.folder.path() / "stick" / "take.nendo";
     std::filesystem::create_directory(live.path.parent_path());
@@ -221,7 +221,7 @@ TEST_SUITE("recorder") {
     const auto recorded = live.end();
     REQUIRE_FALSE(recorded);
     CHECK(recorded.error().message.find("was removed") != std::string::npos);
-    CHECK(live.told.size() == 1);
+    CHECK(live.warnings.size() == 1);
   }
 }
 

@@ -122,7 +122,7 @@ TEST_SUITE("replay_driver") {
     CHECK(again.front().sequence == samples.back().sequence + 1);
   }
 
-  TEST_CASE("with loop=yes it begins again, and its sequence goes on") {
+  TEST_CASE("with loop=yes it begins again, and its sequence continues") {
     const Take take(3);
     const auto glove = open_replay(take.spec("?hand=left&loop=yes&speed=10"));
     REQUIRE(glove);
@@ -196,7 +196,7 @@ TEST_SUITE("replay_driver") {
     CHECK_FALSE((*never)->has_ended());
   }
 
-  TEST_CASE("what cannot be replayed is told in a line with the right code") {
+  TEST_CASE("what cannot be replayed is reported in a line with the right code") {
     const Take take(2);
     CHECK(code_of(take.spec("")) == Errc::usage); // which of the two?
     CHECK(code_of(take.spec("?speed=0")) == Errc::usage);

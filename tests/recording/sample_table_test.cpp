@@ -94,7 +94,7 @@ TEST_SUITE("sample_table") {
     CHECK(none.read({.side = Side::left})->info.side == Side::left);
   }
 
-  TEST_CASE("without times the rate tells them") {
+  TEST_CASE("without times, these follow from the rate") {
     const Table table("index_mcp\n1\n2\n3\n");
     CHECK(says(table.complaint(), "rate"));
     const auto read = table.read({.rate_hz = 50.0});
@@ -152,7 +152,7 @@ TEST_SUITE("sample_table") {
     CHECK(table->info.facts[0].value == "note");
   }
 
-  TEST_CASE("what is wrong is told with its line") {
+  TEST_CASE("what is wrong is reported with its line") {
     CHECK(says(Table("a,b\n1,2\n").complaint(), "thumb_roll"));
     CHECK(says(Table("time_s,index_mcp\n").complaint(), "no row"));
     CHECK(says(Table("").complaint(), "empty"));

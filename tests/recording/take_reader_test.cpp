@@ -26,7 +26,7 @@ using test::RecordedLoop;
 namespace {
 
 /// What the reader of the test's own, which was written from FORMAT.md, makes of a recording.
-std::vector<json> told_by_python(const std::filesystem::path& path) {
+std::vector<json> read_by_python(const std::filesystem::path& path) {
   const std::string command = "python3 " NENDO_READER " '" + path.string() + "'";
   std::FILE* const pipe = ::popen(command.c_str(), "r");
   REQUIRE(pipe != nullptr);
@@ -48,28 +48,28 @@ std::int64_t ns(HostTime time) {
   return std::chrono::nanoseconds(time.time_since_epoch()).count();
 }
 
-bool is_sample(const json& told, unsigned glove, const GloveSample& sample) {
+bool is_sample(const json& line, unsigned glove, const GloveSample& sample) {
   const unsigned flags = (sample.has_device_time ? 1U : 0U) | (sample.sampled_too_fast ? 2U : 0U) |
                          static_cast<unsigned>(sample.wrist_switch) * 4U |
                          (sample.side == Side::right ? 16U : 0U);
-  bool same = told["glove"] == glove && told["arrival"] == ns(sample.arrival) &&
-              told["measured"] == ns(sample.measured) &&
-              told["device_time"] == sample.device_time.count() &&
-              told["sequence"] == sample.sequence && told["present"] == sample.present.bits &&
-              told["flags"] == flags;
+  bool same = line["glove"] == glove && line["arrival"] == ns(sample.arrival) &&
+              line["measured"] == ns(sample.measured) &&
+              line["device_time"] == sample.device_time.count() &&
+              line["sequence"] == sample.sequence && line["present"] == sample.present.bits &&
+              line["flags"] == flags;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot)
-    same = same && told["raw"][slot] == sample.raw[slot].value;
+    same = same && line["raw"][slot] == sample.raw[slot].value;
   return same;
 }
 
-void check_calibration(const json& told, const hand::Calibration& calibration) {
+void check_calibration(const json& line, const hand::Calibration& calibration) {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    CHECK(told["lines"][2 * slot] == calibration.sensors[slot].gain_rad_per_count);
-    CHECK(told["lines"][2 * slot + 1] == calibration.sensors[slot].offset_counts);
+    CHECK(line["lines"][2 * slot] == calibration.sensors[slot].gain_rad_per_count);
+    CHECK(line["lines"][2 * slot + 1] == calibration.sensors[slot].offset_counts);
   }
   for (std::size_t at = 0; at < calibration.coupling_gains.size(); ++at)
-    CHECK(told["couplings"][at] == calibration.coupling_gains[at]);
-  CHECK(told["middle_bias"] == calibration.middle_bias);
+    CHECK(line["couplings"][at] == calibration.coupling_gains[at]);
+  CHECK(line["middle_bias"] == calibration.middle_bias);
 }
 
 /// A setup of which nothing is what it is by default.
@@ -172,7 +172,7 @@ TEST_SUITE("take_reader") {
     test::play(live, 80, 1, true, [](const flow::Frame&) {});
     const auto recorded = live.end();
     REQUIRE(recorded);
-    const auto lines = told_by_python(live.path);
+    const auto lines = read_by_python(live.path);
     std::size_t at = 0;
     const Setup& setup = live.setup;
     CHECK(lines[at]["chunk"] == "HEAD");
@@ -342,7 +342,7 @@ TEST_SUITE("take_reader") {
     while (const auto chunk = reader->next()) {
       if (chunk->type != chunk_type("LOOP") && chunk->type != chunk_type("HAND")) continue;
       std::uint64_t refused = 0;
-      // NaN, infinity, and the largest of everything, at each place where a number may stand.
+      // NaN, infinity, and the largest of everything, at each position of a number.
       for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
                                std::numeric_limits<double>::infinity(), 1e300}) {
         const auto pattern = std::bit_cast<std::array<std::byte, 8>>(bad);
@@ -382,7 +382,7 @@ TEST_SUITE("take_reader") {
     REQUIRE(live.end());
     std::vector<std::string> kinds;
     json sent;
-    for (const auto& line : told_by_python(live.path)) {
+    for (const auto& line : read_by_python(live.path)) {
       kinds.push_back(line["chunk"]);
       if (kinds.back() == "SENT") sent = line;
     }
@@ -408,7 +408,7 @@ TEST_SUITE("take_reader") {
     std::uint64_t tick = 0;
     std::uint64_t shapes = 0;
     json shape;
-    for (const auto& line : told_by_python(with)) {
+    for (const auto& line : read_by_python(with)) {
       if (line.contains("tick") && line["chunk"] == "TAPE") tick = line["tick"];
       if (line["chunk"] != "SHAP") continue;
       ++shapes;

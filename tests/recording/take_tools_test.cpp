@@ -76,7 +76,7 @@ std::uint64_t ticks_in(const std::vector<Entry>& entries) {
       }));
 }
 
-/// A recording whose checksums fit, but which tells of most of its gloves behind the first sample.
+/// A recording whose checksums fit, but which describes most of its gloves after the first sample.
 std::vector<std::byte> with_late_gloves(std::uint8_t gloves) {
   Setup setup = begin_setup("test 1.0");
   setup.gloves.resize(1);
@@ -190,9 +190,9 @@ TEST_SUITE("take_tools") {
           CHECK(cuts);
           continue;
         }
-        const auto mended = summarise(take.made);
-        REQUIRE(mended);
-        CHECK(mended->damage_count == 0);
+        const auto of_made = summarise(take.made);
+        REQUIRE(of_made);
+        CHECK(of_made->damage_count == 0);
         if (summary) CHECK(repaired->damages == summary->damage_count);
         CHECK(repaired->chunks > 0);
         CHECK(repaired->shapes == 0);
@@ -248,26 +248,26 @@ TEST_SUITE("take_tools") {
     live.record({.sent = [&] { return sent; }});
     test::play(live, 50);
     REQUIRE(live.end());
-    const auto told = [](const std::filesystem::path& path) {
+    const auto sent_counts = [](const std::filesystem::path& path) {
       const auto summary = summarise(path);
       REQUIRE(summary);
       CHECK(summary->is_whole());
       return std::vector{summary->gloves[0].sent, summary->gloves[1].sent};
     };
     const std::vector<std::optional<driver::RecordCounts>> known{sent[0], sent[1]};
-    CHECK(told(live.path) == known);
+    CHECK(sent_counts(live.path) == known);
     const auto made = live.folder.path() / "made.nendo";
     REQUIRE(repair_take(live.path, made));
-    CHECK(told(made) == known);
+    CHECK(sent_counts(made) == known);
     const auto with_shapes = live.folder.path() / "shapes.nendo";
     REQUIRE(add_shapes(live.path, with_shapes, live.test.model, 10.0));
-    CHECK(told(with_shapes) == known);
-    // Nobody knows which part of it was missed in a part of the time.
+    CHECK(sent_counts(with_shapes) == known);
+    // It is unknown how much of it was missed in a part of the time.
     const auto part = live.folder.path() / "part.nendo";
     REQUIRE(cut_take(live.path, part, 0s, 1h));
-    CHECK(told(part) == std::vector<std::optional<driver::RecordCounts>>(2));
+    CHECK(sent_counts(part) == std::vector<std::optional<driver::RecordCounts>>(2));
     Take old;
-    CHECK(told(old.live.path) == std::vector<std::optional<driver::RecordCounts>>(2));
+    CHECK(sent_counts(old.live.path) == std::vector<std::optional<driver::RecordCounts>>(2));
   }
 
   TEST_CASE("counts of other gloves than the recording has, or half of them, are none") {
@@ -293,7 +293,8 @@ TEST_SUITE("take_tools") {
     }
   }
 
-  TEST_CASE("gloves that are told of behind the first sample are none, and nor are their samples") {
+  TEST_CASE(
+      "gloves that are described after the first sample are ignored, and so are their samples") {
     const std::uint8_t gloves = 200;
     const auto bytes = with_late_gloves(gloves);
     const test::TemporaryFolder folder;
@@ -308,7 +309,7 @@ TEST_SUITE("take_tools") {
     }
   }
 
-  TEST_CASE("a copy for which there is no room leaves no half of a file, and can be tried again") {
+  TEST_CASE("a copy for which there is no space leaves no half of a file, and can be tried again") {
     Take take(20);
     const std::string whole = take.bytes;
     const auto model = take.live.test.model;
@@ -320,18 +321,18 @@ TEST_SUITE("take_tools") {
       const auto full = make();
       REQUIRE(full);
       CHECK(std::filesystem::file_size(take.made) == full->bytes);
-      for (const std::uint64_t room : {std::uint64_t{0}, std::uint64_t{10}, std::uint64_t{100},
-                                       full->bytes / 2, full->bytes - 1}) {
-        CAPTURE(room);
+      for (const std::uint64_t space : {std::uint64_t{0}, std::uint64_t{10}, std::uint64_t{100},
+                                        full->bytes / 2, full->bytes - 1}) {
+        CAPTURE(space);
         std::filesystem::remove(take.made);
         Result<NewTake> made = NewTake{};
         {
-          const test::SmallDisk small(room);
+          const test::SmallDisk small(space);
           made = make();
         }
         REQUIRE_FALSE(made);
         CHECK(made.error().code == Errc::failed);
-        CHECK(made.error().message.find("make room") != std::string::npos);
+        CHECK(made.error().message.find("free some space") != std::string::npos);
         CHECK(made.error().message.find("recording has ended") == std::string::npos);
         CHECK_FALSE(std::filesystem::exists(take.made));
       }

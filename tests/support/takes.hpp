@@ -59,7 +59,7 @@ struct RecordedLoop {
   recording::Setup setup;
   std::unique_ptr<recording::Recorder> recorder;
   recording::Recorder* other = nullptr; ///< to which the loop's log goes, if not to `recorder`
-  std::vector<std::string> told;        ///< by the recorder's thread; read it after end()
+  std::vector<std::string> warnings;    ///< by the recorder's thread; read it after end()
 
   explicit RecordedLoop(flow::Mode mode, hand::FilterKind filter = hand::FilterKind::off,
                         bool adapts = false, bool injective = false,
@@ -80,7 +80,7 @@ struct RecordedLoop {
   void record(recording::RecorderOptions options = {}) {
     if (options.file.empty() && options.keep_last == HostClock::duration::zero())
       options.file = path;
-    options.report = [this](std::string_view line) { told.emplace_back(line); };
+    options.report = [this](std::string_view line) { warnings.emplace_back(line); };
     auto begun = recording::Recorder::begin(setup, input_log, std::move(options));
     if (!begun) throw std::runtime_error(begun.error().message);
     recorder = *std::move(begun);

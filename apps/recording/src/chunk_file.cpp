@@ -217,7 +217,7 @@ std::optional<Chunk> ChunkReader::next() {
     if (!header) {
       const std::uint64_t found = find_header(at_ + 1);
       damaged(at_, found - at_,
-              found == end_ ? "ends in the middle of a chunk" : "what stands here is no chunk");
+              found == end_ ? "ends in the middle of a chunk" : "these bytes are no chunk");
       at_ = found;
       continue;
     }

@@ -1,6 +1,6 @@
 #pragma once
 // The last minute of a recording, or whatever span was asked for, in memory that is allocated
-// beforehand. It is a ring of chunks of an input log, in which the oldest make room for new ones.
+// beforehand. It is a ring of chunks of an input log, in which new ones replace the oldest.
 // It can be written to a file at any time, also by a signal handler in a process that is about to
 // die.
 
@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -27,11 +28,11 @@ public:
   LastMinute(const LastMinute&) = delete;
   LastMinute& operator=(const LastMinute&) = delete;
 
-  /// Adds a chunk behind the setup, which stays whatever is dropped. To be called by the thread
+  /// Adds a chunk after the setup, which stays whatever is dropped. To be called by the thread
   /// that pushes. Allocates.
   void add_chunk(ChunkType type, std::span<const std::byte> payload);
 
-  /// Adds the payload of an input log chunk with that many entries, which ended at `time`. A
+  /// Adds the payload of an input log chunk with `entries` entries, which ended at `time`. A
   /// payload larger than an eighth of the memory is dropped. Only one thread may call this.
   void push(std::span<const std::byte> payload, std::uint64_t entries, HostTime time) noexcept;
 
@@ -73,6 +74,22 @@ private:
   std::atomic<std::uint64_t> dropped_{0}; ///< entries
   std::atomic<bool> pushing_{false};
   std::atomic<bool> frozen_{false};
+};
+
+/// While this object exists, SIGSEGV, SIGBUS, SIGILL, SIGFPE and SIGABRT write `ring` to `path`,
+/// unless that file exists already, and then take their default action. Other threads that crash
+/// meanwhile wait for at most 30 s. Nothing is written if a stack has overflowed, because the
+/// handler has no other stack. The destructor restores the previous handlers. Only one object at a
+/// time is active; a second one does nothing.
+class CrashHandler {
+public:
+  CrashHandler(LastMinute& ring, const std::filesystem::path& path);
+  ~CrashHandler();
+  CrashHandler(const CrashHandler&) = delete;
+  CrashHandler& operator=(const CrashHandler&) = delete;
+
+private:
+  bool armed_ = false;
 };
 
 } // namespace nendo::recording

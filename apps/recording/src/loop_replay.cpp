@@ -53,9 +53,10 @@ std::optional<flow::Command> command_in(const Entry& entry) {
 Result<flow::LoopOptions> loop_options_of(const Setup& setup, const deform::Mesh& model) {
   if (!setup.loop || setup.hands.empty()) return Error{Errc::bad_input, std::string(without_loop)};
   if (setup.hands.size() < setup.gloves.size())
-    return Error{Errc::bad_input,
-                 "what tells of a hand or of a layer is missing, damaged, or not of a hand; record "
-                 "it anew, or cut nothing out of it"};
+    return Error{
+        Errc::bad_input,
+        "the description of a hand or of a layer is missing, damaged, or not of a hand; record "
+        "it again, or cut nothing out of it"};
   flow::LoopOptions options = setup.loop->options;
   if (const auto fine = set_rig(*setup.loop, model, options); !fine) return fine.error();
   const Eigen::Index points = flow::supported_points(
@@ -87,7 +88,7 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
   replay->loop_ = std::make_unique<flow::DeformLoop>(
       model, setup.loop->placement, std::move(inputs), options, has_first ? &first : nullptr);
   if (!is_solved(replay->loop_->grab_status()))
-    return Error{Errc::bad_input, "the recorded hands cannot take hold of the model: " +
+    return Error{Errc::bad_input, "the recorded hands cannot grab the model: " +
                                       std::string(describe(replay->loop_->grab_status()))};
   return replay;
 }

@@ -17,7 +17,7 @@
 
 #include <nendo/flow/wrist_switch.hpp>
 
-#include "crash_handler.hpp"
+#include "last_minute.hpp"
 #include "take_file.hpp"
 
 namespace nendo::recording {
@@ -28,7 +28,7 @@ constexpr std::size_t largest_payload = std::size_t{1} << 18;
 constexpr std::chrono::milliseconds drain_time{20};
 
 /// Returns how many bytes of memory a span may take. Gloves are counted as twice as fast as they
-/// say, and as sending 250 samples a second at least.
+/// say, and as sending at least 250 samples per second.
 std::size_t memory_for(const Setup& setup, HostClock::duration span) {
   constexpr double sample_bytes = 88.0;
   constexpr double tick_bytes = 26.0;
@@ -77,7 +77,7 @@ public:
 
 private:
   void record(const std::stop_token& stop) {
-    std::mutex mutex; // nobody else locks it; the wait needs one
+    std::mutex mutex; // only the wait needs it
     std::condition_variable_any wake;
     std::unique_lock lock(mutex);
     HostTime next_chunk = HostClock::now() + options_.chunk_time;
@@ -120,7 +120,7 @@ private:
     put(change.settings);
     settings_ = change.settings;
   }
-  /// The chunk with the puppet stands before the entry.
+  /// The chunk with the puppet precedes the entry.
   void add_one(const flow::ChangePuppet& change) {
     puppet_ = PuppetChange{change.number, puppet_numbered(change.number)};
     if (puppet_->puppet && written_puppets_.insert(change.number).second) {
@@ -170,13 +170,13 @@ private:
     append(log_chunk);
     payload_.clear();
     entries_ = 0;
-    // A chunk may be the first that is kept, so each tells the settings, if they have changed.
+    // A chunk may be the first that is kept, so each has the settings, if they have changed.
     settings_due_ = settings_.has_value();
     puppet_due_ = puppet_.has_value();
   }
   void write_sent() {
     if (!options_.sent) return;
-    write_chunk(); // it stands behind the samples that it counts
+    write_chunk(); // it follows the samples that it counts
     recorded_.sent = options_.sent();
     ByteWriter writer(payload_);
     put_sent(writer, recorded_.sent);
@@ -202,7 +202,7 @@ private:
     if (!file) return fail(file.error());
     if (!last_minute_->write(file->fd()) || ::fdatasync(file->fd()) != 0 || !file->close()) {
       const std::string why = std::generic_category().message(errno);
-      return fail({Errc::failed, path.string() + ": cannot be kept: " + why + "; make room"});
+      return fail({Errc::failed, path.string() + ": cannot be kept: " + why + "; free some space"});
     }
     file->make_permanent();
     ++recorded_.kept;
@@ -243,7 +243,8 @@ private:
   bool puppet_due_ = false;                    ///< as settings_due_
   std::set<std::uint32_t> written_puppets_;
   std::mutex puppets_mutex_;
-  std::map<std::uint32_t, std::shared_ptr<const RecordedPuppet>> puppets_; ///< by their numbers
+  std::map<std::uint32_t, std::shared_ptr<const RecordedPuppet>>
+      puppets_; ///< indexed by their numbers
   std::array<flow::WristSwitchEdge, flow::max_inputs> switches_{};
   Recorded recorded_;
   std::optional<Error> failure_; ///< the first one

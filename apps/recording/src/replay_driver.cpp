@@ -138,7 +138,7 @@ public:
 
   bool has_ended() const noexcept override { return ended_.load(std::memory_order_acquire); }
 
-  void set_feedback(const driver::Feedback& /*feedback*/) noexcept override {} // nobody wears it
+  void set_feedback(const driver::Feedback& /*feedback*/) noexcept override {} // there is no glove
 
 private:
   void replay(const std::stop_token& stop, SampleRing& ring) {
@@ -149,7 +149,7 @@ private:
       begin = *end;
     } while (settings_.loops);
     if (settings_.holds || stop.stop_requested()) return;
-    ended_.store(true, std::memory_order_release); // whoever sees it sees all samples, too
+    ended_.store(true, std::memory_order_release); // a reader that sees it also sees all samples
   }
 
   /// When the next pass begins; nothing if there is none.
@@ -213,7 +213,7 @@ private:
 std::vector<RecordedGlove> gloves_of(ChunkReader reader) {
   std::vector<RecordedGlove> gloves;
   while (const auto chunk = reader.next()) {
-    if (chunk->type == log_chunk) break; // the gloves are told before their samples
+    if (chunk->type == log_chunk) break; // the gloves come before their samples
     if (chunk->type != glove_chunk) continue;
     if (auto glove = glove_of(chunk->payload)) gloves.push_back(*std::move(glove));
   }
@@ -223,7 +223,7 @@ std::vector<RecordedGlove> gloves_of(ChunkReader reader) {
 Result<RecordedGlove> choose(const driver::GloveSpec& spec, std::vector<RecordedGlove> gloves,
                              std::optional<Side> asked, std::optional<Side> wanted) {
   if (gloves.empty())
-    return error_of(spec, Errc::bad_input, "no glove was recorded, or what tells of it is damaged");
+    return error_of(spec, Errc::bad_input, "no glove was recorded, or its description is damaged");
   const std::optional<Side> side = asked ? asked : wanted;
   const auto found = std::find_if(gloves.begin(), gloves.end(), [&](const RecordedGlove& glove) {
     return side && glove.info.side == *side;
@@ -274,7 +274,7 @@ Result<std::unique_ptr<driver::Glove>> open_table(const driver::GloveSpec& spec,
   if (const auto option = spec.options.find("rate"); option != spec.options.end()) {
     const auto rate_hz = to_number(option->second);
     if (!rate_hz || !(*rate_hz >= 1.0 && *rate_hz <= 1e4))
-      return error_of(spec, Errc::usage, "rate must be a number from 1 to 10000, rows a second");
+      return error_of(spec, Errc::usage, "rate must be a number from 1 to 10000, rows per second");
     wishes.rate_hz = rate_hz;
   }
   auto table = read_sample_table(spec.target, wishes);

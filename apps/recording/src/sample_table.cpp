@@ -132,10 +132,10 @@ private:
     if (!without_unit.empty())
       return table_.bad("column " + without_unit +
                         " has no unit in its name; name it time_s, time_ms, "
-                        "time_us or time_ns, or add ?rate=HZ, the rows a second");
+                        "time_us or time_ns, or add ?rate=HZ, the rows per second");
     return table_.bad(
         "there is no column time_s (or time_ms, time_us, time_ns), so add ?rate=HZ, the "
-        "rows a second");
+        "rows per second");
   }
 
   Result<void> read_row() {

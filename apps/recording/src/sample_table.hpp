@@ -14,7 +14,7 @@
 namespace nendo::recording {
 
 struct SampleTable {
-  driver::GloveInfo info; ///< what the columns and the times tell
+  driver::GloveInfo info; ///< as the columns and the times imply
   std::vector<GloveSample> samples;
 };
 
@@ -22,7 +22,7 @@ struct SampleTable {
 struct TableWishes {
   std::optional<Side> hand{};      ///< only rows of that hand
   std::optional<Side> side{};      ///< that, if there are some
-  std::optional<double> rate_hz{}; ///< of a table without times
+  std::optional<double> rate_hz{}; ///< rate of a table without times
 };
 
 /// The fact of a table's GloveInfo that names the columns which were not read.

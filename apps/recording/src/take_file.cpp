@@ -59,14 +59,14 @@ Result<void> TakeFile::append(ChunkType type, std::span<const std::byte> payload
 
 Result<void> TakeFile::sync() {
   if (failed_) return {};
-  if (::fdatasync(file_.fd()) != 0) return give_up(last_error(), "make room");
+  if (::fdatasync(file_.fd()) != 0) return give_up(last_error(), "free some space");
   file_.make_permanent();
   return {};
 }
 
 Result<void> TakeFile::write(std::span<const std::byte> bytes) {
   if (!write_all(file_.fd(), bytes) || (kind_ == Kind::live && ::fdatasync(file_.fd()) != 0))
-    return give_up(last_error(), "make room");
+    return give_up(last_error(), "free some space");
   bytes_ += bytes.size();
   struct stat info{};
   if (::fstat(file_.fd(), &info) == 0 && info.st_nlink == 0)
@@ -80,7 +80,7 @@ Error TakeFile::give_up(const std::string& reason, const std::string& remedy) {
   if (!file_.is_permanent())
     return Error{Errc::failed, name + ": cannot be written: " + reason + "; " + remedy +
                                    " and try again: nothing of it was kept"};
-  // What is half-written goes; should that fail, the chunk's checksum tells.
+  // What is half-written goes; should that fail, the chunk's checksum shows it.
   if (::ftruncate(file_.fd(), static_cast<off_t>(bytes_)) == 0) ::fdatasync(file_.fd());
   return Error{Errc::failed, name +
                                  ": recording has ended early, what was written until now is "

@@ -51,7 +51,7 @@ public:
   /// unless sync() has succeeded.
   enum class Kind { live, copy };
 
-  /// Creates the file with `setup` as its first bytes, which contain that many chunks. After an
+  /// Creates the file with `setup` as its first bytes, which contain `chunks` chunks. After an
   /// error there is no file. Error: failed.
   static Result<TakeFile> create(const std::filesystem::path& path,
                                  std::span<const std::byte> setup, std::uint32_t chunks, Kind kind);

@@ -72,8 +72,8 @@ private:
   std::uint64_t ticks_ = 0;
   std::array<std::uint64_t, flow::max_inputs> samples_{};
   bool exact_ = true;
-  std::optional<flow::LoopSettings> settings_; ///< of the last entry
-  std::optional<std::uint32_t> puppet_;        ///< likewise
+  std::optional<flow::LoopSettings> settings_; ///< the last entry's
+  std::optional<std::uint32_t> puppet_;        ///< the last entry's
   decltype(TakeInput::puppets) puppets_;
 };
 
@@ -88,7 +88,7 @@ Result<TakeInput> read_take_input(const std::filesystem::path& path) {
   TakeInput input{reader->setup(), nullptr, std::move(script.puppets()), reader->sent()};
   if (!input.setup.loop || !script.has_ticks())
     return Error{Errc::bad_input, path.string() + ": " + std::string(without_loop)};
-  if (input.sent.size() != input.setup.gloves.size()) { // nobody has counted more than arrived
+  if (input.sent.size() != input.setup.gloves.size()) { // only the arrived samples are known
     input.sent.clear();
     for (std::size_t at = 0; at < std::min(input.setup.gloves.size(), flow::max_inputs); ++at)
       input.sent.push_back({script.samples_of(at)});

@@ -1,203 +1,225 @@
 #include <nendo/recording/take_reader.hpp>
 
 #include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <type_traits>
 #include <utility>
+
+#include <nendo/base/byte_reader.hpp>
 
 #include "setup_parts.hpp"
 
 namespace nendo::recording {
 namespace {
 
-constexpr std::size_t tick_bytes = 24;
-constexpr std::size_t request_bytes = 1;
-constexpr std::size_t gap_bytes = 8;
-constexpr std::size_t wrist_bytes = 57;
-constexpr std::size_t model_bytes = 21;
-constexpr std::size_t clutch_bytes = 3;
-constexpr std::size_t role_bytes = 4;
-constexpr std::size_t layer_bytes = 2;
-constexpr std::size_t puppet_bytes = 4;
+/// What an entry has in a file: its kind, the size of its body, and the body's fields.
+template <class One>
+struct Format;
+
+template <>
+struct Format<flow::Request> {
+  static constexpr EntryKind kind = EntryKind::request;
+  static constexpr std::size_t bytes = 1;
+  static void put(auto& fields, auto& request) { fields.one_of(request, flow::Request::take_hold); }
+};
+
+template <>
+struct Format<flow::LoggedTick> {
+  static constexpr EntryKind kind = EntryKind::tick;
+  static constexpr std::size_t bytes = 24;
+  static void put(auto& fields, auto& tick) {
+    fields.u64(tick.number);
+    fields.time(tick.scheduled);
+    fields.time(tick.woke);
+  }
+};
+
+template <>
+struct Format<flow::WristMove> {
+  static constexpr EntryKind kind = EntryKind::wrist;
+  static constexpr std::size_t bytes = 57;
+  static void put(auto& fields, auto& move) {
+    fields.one_of(move.side, Side::right);
+    for (auto& number : move.position_m)
+      fields.number(number);
+    for (auto& number : move.turn_xyzw)
+      fields.number(number);
+    fields.require(move.is_usable());
+  }
+};
+
+template <>
+struct Format<flow::HoldStill> {
+  static constexpr EntryKind kind = EntryKind::hold_still;
+  static constexpr std::size_t bytes = 0;
+  static void put(auto& /*fields*/, auto& /*still*/) {}
+};
+
+template <>
+struct Format<flow::ChangeModel> {
+  static constexpr EntryKind kind = EntryKind::model;
+  static constexpr std::size_t bytes = 21;
+  static void put(auto& fields, auto& change) {
+    fields.u32(change.number);
+    fields.one_of(change.source, flow::ModelSource::topology);
+    fields.u32(change.max_vertices);
+    fields.number(change.seam_width, 0.0, std::numeric_limits<double>::max());
+    fields.u32(change.part);
+  }
+};
+
+template <>
+struct Format<flow::Mark> {
+  static constexpr EntryKind kind = EntryKind::mark;
+  static constexpr std::size_t bytes = 0;
+  static void put(auto& /*fields*/, auto& /*mark*/) {}
+};
+
+template <>
+struct Format<flow::SetClutch> {
+  static constexpr EntryKind kind = EntryKind::clutch;
+  static constexpr std::size_t bytes = 3;
+  static void put(auto& fields, auto& clutch) {
+    fields.one_of(clutch.side, Side::right);
+    fields.u8(clutch.finger);
+    fields.flag(clutch.holds);
+  }
+};
+
+template <>
+struct Format<flow::SetRole> {
+  static constexpr EntryKind kind = EntryKind::role;
+  static constexpr std::size_t bytes = 4;
+  static void put(auto& fields, auto& role) {
+    fields.u16(role.function);
+    fields.signal(role.input);
+  }
+};
+
+template <>
+struct Format<flow::SetSymmetry> {
+  static constexpr EntryKind kind = EntryKind::symmetry;
+  static constexpr std::size_t bytes = 1;
+  static void put(auto& fields, auto& symmetry) { fields.flag(symmetry.on); }
+};
+
+template <>
+struct Format<flow::SetLayer> {
+  static constexpr EntryKind kind = EntryKind::layer;
+  static constexpr std::size_t bytes = 2;
+  static void put(auto& fields, auto& layer) {
+    fields.u8(layer.input);
+    fields.flag(layer.on);
+  }
+};
+
+template <>
+struct Format<flow::DrawWire> {
+  static constexpr EntryKind kind = EntryKind::wire;
+  static constexpr std::size_t bytes = 1;
+  static void put(auto& fields, auto& wire) {
+    auto blade = static_cast<std::uint8_t>(wire.on ? 1U + static_cast<unsigned>(wire.blade) : 0U);
+    fields.u8(blade);
+    fields.require(blade <= 1U + static_cast<unsigned>(flow::Blade::knife));
+    if constexpr (std::remove_cvref_t<decltype(fields)>::reads) {
+      wire.on = blade > 0;
+      if (wire.on) wire.blade = static_cast<flow::Blade>(blade - 1U);
+    }
+  }
+};
+
+template <>
+struct Format<PuppetChange> {
+  static constexpr EntryKind kind = EntryKind::puppet;
+  static constexpr std::size_t bytes = 4;
+  static void put(auto& fields, auto& change) { fields.u32(change.number); }
+};
+
+template <>
+struct Format<Gap> {
+  static constexpr EntryKind kind = EntryKind::gap;
+  static constexpr std::size_t bytes = 8;
+  static void put(auto& fields, auto& gap) { fields.u64(gap.entries); }
+};
 
 struct EntryWriter {
   ByteWriter& writer;
 
   void operator()(const RecordedSample& sample) const { put_sample(writer, sample); }
-  void operator()(flow::Request request) const {
-    put_entry_head(writer, EntryKind::request, request_bytes);
-    writer.u8(static_cast<std::uint8_t>(request));
-  }
-  void operator()(const flow::LoggedTick& tick) const {
-    put_entry_head(writer, EntryKind::tick, tick_bytes);
-    writer.u64_le(tick.number);
-    put_time(writer, tick.scheduled);
-    put_time(writer, tick.woke);
-  }
-  void operator()(const flow::WristMove& move) const {
-    put_entry_head(writer, EntryKind::wrist, wrist_bytes);
-    writer.u8(static_cast<std::uint8_t>(move.side));
-    for (const double number : move.position_m)
-      writer.f64_le(number);
-    for (const double number : move.turn_xyzw)
-      writer.f64_le(number);
-  }
   void operator()(const flow::LoopSettings& settings) const {
-    put_entry_head(writer, EntryKind::settings, settings_bytes + brushes_bytes + hold_bytes);
-    put_settings(writer, settings);
-    put_brushes(writer, settings);
-    put_hold(writer, settings);
+    put_entry_head(writer, EntryKind::settings, settings_bytes);
+    put_settings_entry(writer, settings);
   }
-  void operator()(const flow::HoldStill&) const {
-    put_entry_head(writer, EntryKind::hold_still, 0);
-  }
-  void operator()(const flow::ChangeModel& change) const {
-    put_entry_head(writer, EntryKind::model, model_bytes);
-    writer.u32_le(change.number);
-    writer.u8(static_cast<std::uint8_t>(change.source));
-    writer.u32_le(change.max_vertices);
-    writer.f64_le(change.seam_width);
-    writer.u32_le(change.part);
-  }
-  void operator()(const flow::Mark&) const { put_entry_head(writer, EntryKind::mark, 0); }
-  void operator()(const flow::SetClutch& clutch) const {
-    put_entry_head(writer, EntryKind::clutch, clutch_bytes);
-    writer.u8(static_cast<std::uint8_t>(clutch.side));
-    writer.u8(clutch.finger);
-    writer.u8(static_cast<std::uint8_t>(clutch.holds));
-  }
-  void operator()(const flow::SetRole& role) const {
-    put_entry_head(writer, EntryKind::role, role_bytes);
-    writer.u16_le(role.function);
-    put_signal(writer, role.input);
-  }
-  void operator()(const flow::SetSymmetry& symmetry) const {
-    put_entry_head(writer, EntryKind::symmetry, 1);
-    writer.u8(static_cast<std::uint8_t>(symmetry.on));
-  }
-  void operator()(const flow::SetLayer& layer) const {
-    put_entry_head(writer, EntryKind::layer, layer_bytes);
-    writer.u8(layer.input);
-    writer.u8(static_cast<std::uint8_t>(layer.on));
-  }
-  void operator()(const flow::DrawWire& wire) const {
-    put_entry_head(writer, EntryKind::wire, 1);
-    writer.u8(static_cast<std::uint8_t>(wire.on ? 1U + static_cast<unsigned>(wire.blade) : 0U));
-  }
-  void operator()(const PuppetChange& change) const {
-    put_entry_head(writer, EntryKind::puppet, puppet_bytes);
-    writer.u32_le(change.number);
-  }
-  void operator()(const Gap& gap) const {
-    put_entry_head(writer, EntryKind::gap, gap_bytes);
-    writer.u64_le(gap.entries);
+  template <class One>
+  void operator()(const One& one) const {
+    put_entry_head(writer, Format<One>::kind, Format<One>::bytes);
+    FieldWriter fields(writer);
+    Format<One>::put(fields, one);
   }
 };
 
-std::optional<Entry> request_of(std::uint8_t value) {
-  const auto* const found =
-      std::find_if(flow::requests.begin(), flow::requests.end(), [value](flow::Request known) {
-        return static_cast<std::uint8_t>(known) == value;
-      });
-  if (found == flow::requests.end()) return std::nullopt;
-  return *found;
+/// Returns nothing if the entry's body is not usable.
+template <class One>
+std::optional<Entry> read_entry(const LogEntry& record) {
+  ByteReader reader(record.body);
+  FieldReader fields(reader);
+  One one{};
+  Format<One>::put(fields, one);
+  if (!fields.fine()) return std::nullopt;
+  return one;
 }
 
-std::optional<Entry> tick_of(ByteReader& reader) {
-  flow::LoggedTick tick;
-  tick.number = reader.u64_le();
-  tick.scheduled = read_time(reader);
-  tick.woke = read_time(reader);
-  if (reader.overrun() || !is_usable_time(tick.scheduled.time_since_epoch()) ||
-      !is_usable_time(tick.woke.time_since_epoch()))
-    return std::nullopt;
-  return tick;
+using EntryReader = std::optional<Entry> (*)(const LogEntry& record);
+
+/// Returns null if the entry is not of one of these types.
+template <class... Types>
+EntryReader reader_of(const LogEntry& record) {
+  EntryReader found = nullptr;
+  ((found = record.is(Format<Types>::kind) ? read_entry<Types> : found), ...);
+  return found;
 }
 
-std::optional<Entry> wrist_of(ByteReader& reader) {
-  flow::WristMove move;
-  const std::uint8_t side = reader.u8();
-  for (double& number : move.position_m)
-    number = reader.f64_le();
-  for (double& number : move.turn_xyzw)
-    number = reader.f64_le();
-  if (reader.overrun() || side > static_cast<std::uint8_t>(Side::right) || !move.is_usable())
-    return std::nullopt;
-  move.side = static_cast<Side>(side);
-  return move;
+void ending_fields(auto& fields, auto& ending) {
+  fields.time(ending.host);
+  for (auto* const count : {&ending.samples, &ending.requests, &ending.ticks, &ending.lost})
+    fields.u64(*count);
+  bool has_shape = ending.shape.has_value();
+  ShapeSum shape = ending.shape.value_or(ShapeSum{});
+  fields.flag(has_shape);
+  fields.u64(shape.vertices);
+  fields.u32(shape.crc);
+  if constexpr (std::remove_cvref_t<decltype(fields)>::reads)
+    if (has_shape) ending.shape = shape;
 }
 
-std::optional<Entry> model_of(ByteReader& reader) {
-  flow::ChangeModel change;
-  change.number = reader.u32_le();
-  const std::uint8_t source = reader.u8();
-  if (reader.overrun() || source > static_cast<std::uint8_t>(flow::ModelSource::topology))
-    return std::nullopt;
-  change.source = static_cast<flow::ModelSource>(source);
-  change.max_vertices = reader.u32_le();
-  change.seam_width = reader.f64_le();
-  change.part = reader.u32_le();
-  if (reader.overrun() || !(change.seam_width >= 0.0) || !std::isfinite(change.seam_width))
-    return std::nullopt;
-  return change;
-}
-
-std::optional<Entry> wire_of(ByteReader& reader) {
-  const std::uint8_t blade = reader.u8(); // from 1 on
-  if (reader.overrun() || blade > 1U + static_cast<unsigned>(flow::Blade::knife))
-    return std::nullopt;
-  if (blade == 0) return flow::DrawWire{};
-  return flow::DrawWire{true, static_cast<flow::Blade>(blade - 1U)};
-}
-
-std::optional<Entry> clutch_of(ByteReader& reader) {
-  flow::SetClutch clutch;
-  const std::uint8_t side = reader.u8();
-  clutch.finger = reader.u8();
-  clutch.holds = reader.u8() != 0;
-  if (reader.overrun() || side > static_cast<std::uint8_t>(Side::right)) return std::nullopt;
-  clutch.side = static_cast<Side>(side);
-  return clutch;
-}
-
-std::optional<Entry> role_of(ByteReader& reader) {
-  flow::SetRole role;
-  role.function = reader.u16_le();
-  const auto input = read_signal(reader);
-  if (!input || reader.overrun()) return std::nullopt;
-  role.input = *input;
-  return role;
+void sent_fields(auto& fields, auto& gloves) {
+  for (auto& counts : gloves)
+    for (auto* const count : {&counts.delivered, &counts.missed, &counts.refused, &counts.bad})
+      fields.u64(*count);
+  for (auto& counts : gloves) {
+    fields.flag(counts.tells_missed);
+    fields.u64(counts.clamped);
+  }
 }
 
 std::optional<Ending> ending_of(std::span<const std::byte> payload) {
   ByteReader reader(payload);
+  FieldReader fields(reader);
   Ending ending;
-  ending.host = read_time(reader);
-  ending.samples = reader.u64_le();
-  ending.requests = reader.u64_le();
-  ending.ticks = reader.u64_le();
-  ending.lost = reader.u64_le();
-  const bool has_shape = reader.u8() != 0;
-  ShapeSum shape;
-  shape.vertices = reader.u64_le();
-  shape.crc = reader.u32_le();
-  if (has_shape) ending.shape = shape;
-  if (reader.overrun() || !is_usable_time(ending.host.time_since_epoch())) return std::nullopt;
+  ending_fields(fields, ending);
+  if (!fields.fine()) return std::nullopt;
   return ending;
 }
 
 std::optional<std::vector<driver::RecordCounts>> sent_of(std::span<const std::byte> payload) {
   ByteReader reader(payload);
+  FieldReader fields(reader);
   std::vector<driver::RecordCounts> gloves(reader.u8());
-  for (driver::RecordCounts& counts : gloves) {
-    counts.delivered = reader.u64_le();
-    counts.missed = reader.u64_le();
-    counts.refused = reader.u64_le();
-    counts.bad = reader.u64_le();
-  }
-  for (driver::RecordCounts& counts : gloves) {
-    counts.tells_missed = reader.u8() != 0;
-    counts.clamped = reader.u64_le();
-  }
-  if (reader.overrun()) return std::nullopt;
+  sent_fields(fields, gloves);
+  if (!fields.fine()) return std::nullopt;
   return gloves;
 }
 
@@ -208,28 +230,18 @@ void put_entry(ByteWriter& writer, const Entry& entry) {
 }
 
 void put_ending(ByteWriter& writer, const Ending& ending) {
-  put_time(writer, ending.host);
-  for (const std::uint64_t count : {ending.samples, ending.requests, ending.ticks, ending.lost})
-    writer.u64_le(count);
-  const ShapeSum shape = ending.shape.value_or(ShapeSum{});
-  writer.u8(static_cast<std::uint8_t>(ending.shape.has_value()));
-  writer.u64_le(shape.vertices);
-  writer.u32_le(shape.crc);
+  FieldWriter fields(writer);
+  ending_fields(fields, ending);
 }
 
 void put_sent(ByteWriter& writer, std::span<const driver::RecordCounts> gloves) {
+  FieldWriter fields(writer);
   writer.u8(static_cast<std::uint8_t>(gloves.size()));
-  for (const driver::RecordCounts& counts : gloves)
-    for (const std::uint64_t count : {counts.delivered, counts.missed, counts.refused, counts.bad})
-      writer.u64_le(count);
-  for (const driver::RecordCounts& counts : gloves) {
-    writer.u8(counts.tells_missed ? 1 : 0);
-    writer.u64_le(counts.clamped);
-  }
+  sent_fields(fields, gloves);
 }
 
 TakeReader::TakeReader(ChunkReader chunks) : chunks_(std::move(chunks)) {
-  next_chunk(); // the setup stands before the first input log
+  next_chunk(); // the setup precedes the first input log
 }
 
 Result<TakeReader> TakeReader::begin(ChunkReader chunks, const std::string& name) {
@@ -296,52 +308,27 @@ bool TakeReader::take_chunk(const Chunk& chunk) {
 /// Returns nothing if the kind of the entry is unknown. Returns nothing, and makes a gap due, if
 /// the entry cannot be used.
 std::optional<Entry> TakeReader::entry_of(const LogEntry& record) {
-  ByteReader reader(record.body);
   std::optional<Entry> entry;
   if (record.is(EntryKind::sample)) {
     const auto sample = sample_of(record);
     if (sample && sample->glove < setup_.gloves.size()) entry = *sample;
-  } else if (record.is(EntryKind::request)) {
-    const std::uint8_t request = reader.u8();
-    if (!reader.overrun()) entry = request_of(request);
-  } else if (record.is(EntryKind::tick)) {
-    entry = tick_of(reader);
-  } else if (record.is(EntryKind::wrist)) {
-    entry = wrist_of(reader);
   } else if (record.is(EntryKind::settings)) {
-    auto settings = read_settings(reader);
-    if (settings && read_brushes(reader, *settings) && read_hold(reader, *settings))
-      entry = *settings;
-  } else if (record.is(EntryKind::hold_still)) {
-    entry = flow::HoldStill{};
-  } else if (record.is(EntryKind::model)) {
-    entry = model_of(reader);
-  } else if (record.is(EntryKind::mark)) {
-    entry = flow::Mark{};
-  } else if (record.is(EntryKind::clutch)) {
-    entry = clutch_of(reader);
-  } else if (record.is(EntryKind::role)) {
-    entry = role_of(reader);
-  } else if (record.is(EntryKind::symmetry)) {
-    const flow::SetSymmetry symmetry{reader.u8() != 0};
-    if (!reader.overrun()) entry = symmetry;
-  } else if (record.is(EntryKind::layer)) {
-    const std::uint8_t input = reader.u8();
-    const flow::SetLayer layer{input, reader.u8() != 0};
-    const bool is_layer = input < setup_.hands.size() && setup_.hands[input].layer;
-    if (!reader.overrun() && is_layer) entry = layer;
-  } else if (record.is(EntryKind::wire)) {
-    entry = wire_of(reader);
-  } else if (record.is(EntryKind::puppet)) {
-    PuppetChange change{reader.u32_le(), nullptr};
-    if (const auto known = puppets_.find(change.number); known != puppets_.end())
-      change.puppet = known->second;
-    if (!reader.overrun()) entry = std::move(change);
-  } else if (record.is(EntryKind::gap)) {
-    const Gap gap{reader.u64_le()};
-    if (!reader.overrun()) entry = gap;
+    ByteReader reader(record.body);
+    if (const auto settings = read_settings_entry(reader)) entry = *settings;
+  } else if (const auto read =
+                 reader_of<flow::Request, flow::LoggedTick, flow::WristMove, flow::HoldStill,
+                           flow::ChangeModel, flow::Mark, flow::SetClutch, flow::SetRole,
+                           flow::SetSymmetry, flow::SetLayer, flow::DrawWire, PuppetChange, Gap>(
+                     record)) {
+    entry = read(record);
   } else {
     return std::nullopt;
+  }
+  if (auto* const change = entry ? std::get_if<PuppetChange>(&*entry) : nullptr) {
+    if (const auto known = puppets_.find(change->number); known != puppets_.end())
+      change->puppet = known->second;
+  } else if (const auto* const layer = entry ? std::get_if<flow::SetLayer>(&*entry) : nullptr) {
+    if (layer->input >= setup_.hands.size() || !setup_.hands[layer->input].layer) entry.reset();
   }
   if (!entry) {
     ++unknown_entries_;
@@ -364,6 +351,44 @@ std::optional<Entry> TakeReader::next() {
     records_ = LogEntries({});
     if (!next_chunk() && !gap_due_) return std::nullopt;
   }
+}
+
+RecordedShape shape_of(std::uint64_t tick, const deform::Points& vertices) {
+  RecordedShape shape;
+  shape.tick = tick;
+  shape.xyz.resize(static_cast<std::size_t>(vertices.size()));
+  Eigen::Matrix3Xf::Map(shape.xyz.data(), 3, vertices.cols()) = vertices.cast<float>();
+  return shape;
+}
+
+void put_shape(ByteWriter& writer, const RecordedShape& shape) {
+  assert(shape.xyz.size() <= 3 * max_recorded_vertices);
+  writer.u64_le(shape.tick);
+  writer.u32_le(static_cast<std::uint32_t>(shape.xyz.size() / 3));
+  for (const float coordinate : shape.xyz)
+    writer.u32_le(std::bit_cast<std::uint32_t>(coordinate));
+}
+
+std::optional<RecordedShape> read_shape(std::span<const std::byte> payload) {
+  ByteReader reader(payload);
+  RecordedShape shape;
+  shape.tick = reader.u64_le();
+  const std::size_t vertices = reader.u32_le();
+  if (reader.overrun() || 12 + 12 * vertices > payload.size()) return std::nullopt;
+  shape.xyz.resize(3 * vertices);
+  for (float& coordinate : shape.xyz)
+    coordinate = std::bit_cast<float>(reader.u32_le());
+  const bool finite = std::all_of(shape.xyz.begin(), shape.xyz.end(),
+                                  [](float coordinate) { return std::isfinite(coordinate); });
+  if (!finite) return std::nullopt;
+  return shape;
+}
+
+std::optional<double> distance_between(const RecordedShape& shape, const deform::Points& vertices) {
+  if (static_cast<Eigen::Index>(shape.xyz.size()) != vertices.size()) return std::nullopt;
+  if (vertices.cols() == 0) return 0.0;
+  const auto recorded = Eigen::Matrix3Xf::Map(shape.xyz.data(), 3, vertices.cols());
+  return (recorded.cast<double>() - vertices).colwise().norm().maxCoeff();
 }
 
 } // namespace nendo::recording

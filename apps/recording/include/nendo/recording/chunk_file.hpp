@@ -17,7 +17,7 @@
 
 namespace nendo::recording {
 
-/// A chunk's type: four letters, in the order in which they stand in the file.
+/// A chunk's type: four letters, in the order of the file.
 using ChunkType = std::uint32_t;
 constexpr ChunkType chunk_type(const char (&letters)[5]) noexcept {
   ChunkType type = 0;
@@ -37,7 +37,7 @@ inline constexpr std::size_t max_payload_bytes = std::size_t{1} << 24;
 
 /// Returns the first bytes of a file. Pure; may be called in a signal handler.
 NENDO_API std::array<std::byte, file_header_bytes> file_header() noexcept;
-/// Returns what stands before `payload`, which has at most max_payload_bytes. `number` counts the
+/// Returns the header of `payload`, which has at most max_payload_bytes. `number` counts the
 /// chunks of the file, from 0. Pure; may be called in a signal handler.
 NENDO_API std::array<std::byte, chunk_header_bytes>
 chunk_header(ChunkType type, std::uint32_t number, std::span<const std::byte> payload) noexcept;

@@ -44,8 +44,9 @@ private:
   std::vector<std::unique_ptr<SampleRing>> rings_;
   flow::CommandRing commands_{2048};
   std::unique_ptr<flow::DeformLoop> loop_;
-  std::map<std::uint32_t, std::uint32_t> versions_; ///< of the model, by their recorded numbers
-  std::map<std::uint32_t, std::uint32_t> puppets_;  ///< by their recorded numbers
+  std::map<std::uint32_t, std::uint32_t>
+      versions_; ///< the model's versions, by their recorded numbers
+  std::map<std::uint32_t, std::uint32_t> puppets_; ///< indexed by recorded numbers
   bool exact_ = true;
 };
 

@@ -30,9 +30,9 @@ struct RecorderOptions {
   /// The period in which a chunk is written to the disk. A crash can lose that much.
   HostClock::duration chunk_time = std::chrono::milliseconds(500);
   /// Returns what became of each glove's records since the recording began, by the gloves' numbers;
-  /// the recorder's thread and end() call it. Empty: the file does not tell.
+  /// the recorder's thread and end() call it. Empty: the file has no counts.
   std::function<std::vector<driver::RecordCounts>()> sent{};
-  /// The period in which the file is told. A crash can lose that much of the counts.
+  /// The period in which the file gets these counts. A crash can lose that much of the counts.
   HostClock::duration sent_time = std::chrono::seconds(10);
 };
 
@@ -42,7 +42,7 @@ struct Recorded {
   std::uint64_t requests = 0;
   std::uint64_t ticks = 0;
   std::uint64_t lost = 0;                   ///< entries that found the input log full
-  std::uint64_t bytes = 0;                  ///< of the file
+  std::uint64_t bytes = 0;                  ///< size of the file
   std::uint64_t kept = 0;                   ///< files that save_last_minute() made
   std::vector<driver::RecordCounts> sent{}; ///< at the end, by the gloves' numbers
 };
@@ -66,7 +66,7 @@ public:
   /// Requests that what is in memory is written to a file soon. Does nothing without keep_last.
   /// Thread-safe, wait-free.
   virtual void save_last_minute() noexcept = 0;
-  /// Tells of a puppet (flow::DeformLoop::puppet()) before the loop gets it, for the recording to
+  /// Announces a puppet (flow::DeformLoop::puppet()) before the loop gets it, for the recording to
   /// have it. Thread-safe. It takes a lock, which the loop never does.
   virtual void add_puppet(std::uint32_t number, RecordedPuppet puppet) = 0;
   /// To be called after the loop's last tick. Writes the remaining entries and the ending, and

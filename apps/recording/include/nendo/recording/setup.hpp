@@ -25,7 +25,7 @@ struct ShapeSum {
 NENDO_API ShapeSum sum_of(const deform::Points& vertices) noexcept;
 
 struct RecordedPuppet {
-  std::string text{};      ///< of its file
+  std::string text{};      ///< its file's text
   deform::Points starts{}; ///< puppet::Rig::starts()
 };
 /// Makes the puppet again, for the model of the recording. Error: bad_input.
@@ -49,11 +49,11 @@ struct LoopSetup {
 };
 
 struct Setup {
-  std::chrono::sys_time<std::chrono::nanoseconds> begun; ///< by the system clock
+  std::chrono::sys_time<std::chrono::nanoseconds> begun; ///< the system clock's time
   HostTime begun_host{};                                 ///< the same moment by HostClock
   std::string program;                   ///< the program that recorded it, such as "nendo 0.2.0"
   std::string wearer;                    ///< empty means unknown
-  std::vector<driver::GloveInfo> gloves; ///< by their numbers
+  std::vector<driver::GloveInfo> gloves; ///< indexed by their numbers
   /// By the numbers of their gloves, also if there is no loop. They have no rings and no measured
   /// bones.
   std::vector<flow::HandInput> hands;

@@ -20,7 +20,7 @@ struct TakeInput {
   /// The puppets to which it changes (flow::ChangePuppet), by their numbers. One that is not here
   /// is that with which the recording began.
   std::map<std::uint32_t, std::shared_ptr<const RecordedPuppet>> puppets{};
-  std::vector<driver::RecordCounts> sent; ///< of each glove, by its number
+  std::vector<driver::RecordCounts> sent; ///< one per glove
   bool is_exact = true;                   ///< nothing is missing
 };
 

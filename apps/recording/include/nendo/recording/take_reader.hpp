@@ -14,14 +14,38 @@
 #include <variant>
 #include <vector>
 
+#include <nendo/base/byte_writer.hpp>
+#include <nendo/deform/mesh.hpp>
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/input_log.hpp>
 #include <nendo/recording/chunk_file.hpp>
-#include <nendo/recording/recorded_shape.hpp>
 #include <nendo/recording/sample_record.hpp>
 #include <nendo/recording/setup.hpp>
 
 namespace nendo::recording {
+
+/// A shape in a recording. A replay does not need it. It is for programs that have no loop, and for
+/// a comparison with the result of a replay on another machine.
+struct RecordedShape {
+  std::uint64_t tick = 0; ///< the number of the tick that made it
+  std::vector<float> xyz; ///< model units, x y z of one vertex after another
+};
+
+inline constexpr ChunkType shape_chunk = chunk_type("SHAP");
+/// The maximum number of vertices in a chunk.
+inline constexpr std::size_t max_recorded_vertices = (max_payload_bytes - 12) / 12;
+
+NENDO_API RecordedShape shape_of(std::uint64_t tick, const deform::Points& vertices);
+/// Writes the payload of a chunk. The shape must have at most max_recorded_vertices.
+NENDO_API void put_shape(ByteWriter& writer, const RecordedShape& shape);
+/// Returns nothing if the payload is not what put_shape() writes, or has a number that is not
+/// finite.
+NENDO_API std::optional<RecordedShape> read_shape(std::span<const std::byte> payload);
+
+/// Returns the greatest distance between a vertex of `shape` and the same vertex of `vertices`, in
+/// model units. Returns nothing if the numbers of vertices differ.
+NENDO_API std::optional<double> distance_between(const RecordedShape& shape,
+                                                 const deform::Points& vertices);
 
 /// Marks a place where something is missing: the recorder could not keep up, a chunk is damaged, or
 /// the recording begins in the middle.
@@ -29,8 +53,7 @@ struct Gap {
   std::uint64_t entries = 0; ///< 0 means an unknown number
 };
 
-/// The loop continues with that puppet. Its text and its points stand in a chunk before, and are
-/// with the entry.
+/// The loop continues with that puppet. Its text and its points are in a previous chunk.
 struct PuppetChange {
   std::uint32_t number = 0;
   std::shared_ptr<const RecordedPuppet> puppet; ///< null: the one with which the recording began
@@ -54,7 +77,7 @@ struct Ending {
   std::uint64_t requests = 0;
   std::uint64_t ticks = 0;
   std::uint64_t lost = 0;        ///< entries that found the input log full
-  std::optional<ShapeSum> shape; ///< of the loop after its last tick
+  std::optional<ShapeSum> shape; ///< the loop's, after its last tick
 };
 
 /// Writes an entry as it is in an input log chunk. The `hand` of a sample is the number of its
@@ -62,7 +85,7 @@ struct Ending {
 NENDO_API void put_entry(ByteWriter& writer, const Entry& entry);
 NENDO_API void put_ending(ByteWriter& writer, const Ending& ending);
 inline constexpr ChunkType ending_chunk = chunk_type("END ");
-/// Writes a puppet as a chunk, which must stand before the entries that name its number.
+/// Writes a puppet as a chunk, which must precede the entries that name its number.
 NENDO_API void put_puppet_version(ByteWriter& writer, std::uint32_t number,
                                   const RecordedPuppet& puppet);
 inline constexpr ChunkType puppet_version_chunk = chunk_type("PUPV");
@@ -91,7 +114,7 @@ public:
   /// Returns the ending once next() has reached the end. It stays empty if the recording was cut
   /// off.
   const std::optional<Ending>& ending() const noexcept { return ending_; }
-  /// Returns the latest counts of what the gloves sent, by their numbers, as far as next() has
+  /// Returns the latest counts of the gloves' records, by their numbers, as far as next() has
   /// come. Empty if not recorded.
   const std::vector<driver::RecordCounts>& sent() const noexcept { return sent_; }
   const ChunkReader& chunks() const noexcept { return chunks_; }
@@ -109,7 +132,8 @@ private:
 
   ChunkReader chunks_;
   Setup setup_;
-  std::map<std::uint32_t, std::shared_ptr<const RecordedPuppet>> puppets_; ///< by their numbers
+  std::map<std::uint32_t, std::shared_ptr<const RecordedPuppet>>
+      puppets_; ///< indexed by their numbers
   LogEntries records_{{}};
   std::optional<Ending> ending_;
   std::vector<driver::RecordCounts> sent_;

@@ -24,21 +24,21 @@ struct NENDO_API GloveSummary {
   HostTime first{};
   HostTime last{};
   HostClock::duration longest_pause{};      ///< between two samples
-  std::optional<driver::RecordCounts> sent; ///< nothing: nobody has counted
-  std::uint64_t punches = 0;                ///< of a layer: how often it came in or went out
+  std::optional<driver::RecordCounts> sent; ///< nothing: not counted
+  std::uint64_t punches = 0;                ///< how often a layer came in or went out
 
   double rate_hz() const noexcept; ///< 0 if there are less than two samples
 };
 
 struct NENDO_API TakeSummary {
   Setup setup;
-  std::vector<GloveSummary> gloves; ///< by their numbers
+  std::vector<GloveSummary> gloves; ///< indexed by their numbers
   std::array<std::uint64_t, flow::requests.size()> requests{};
   std::uint64_t wrist_moves = 0;
   std::uint64_t settings_changes = 0;
-  std::uint64_t model_changes = 0;        ///< undos and redos of them, too
-  std::uint64_t puppet_changes = 0;       ///< likewise
-  std::vector<HostClock::duration> marks; ///< of flow::Mark, since the beginning
+  std::uint64_t model_changes = 0;        ///< also undos and redos of them
+  std::uint64_t puppet_changes = 0;       ///< also undos and redos of them
+  std::vector<HostClock::duration> marks; ///< times of flow::Mark, since the beginning
   std::uint64_t shapes = 0;
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0; ///< deadlines between ticks
@@ -46,7 +46,7 @@ struct NENDO_API TakeSummary {
   std::uint64_t gaps = 0;
   std::uint64_t missing = 0; ///< entries that the gaps count
   std::optional<Ending> ending;
-  HostTime last{}; ///< of any entry
+  HostTime last{}; ///< the last entry's time
   std::uint64_t bytes = 0;
   std::uint64_t good_end = 0; ///< where the last whole chunk ends
   std::uint64_t damage_count = 0;
@@ -68,10 +68,10 @@ NENDO_API Result<TakeSummary> summarise(std::span<const std::byte> bytes, std::s
 /// What was written to a new file.
 struct NewTake {
   std::uint64_t bytes = 0;
-  std::uint64_t entries = 0; ///< of cut_take() and add_shapes()
-  std::uint64_t shapes = 0;  ///< of add_shapes()
-  std::uint64_t chunks = 0;  ///< of repair_take()
-  std::uint64_t damages = 0; ///< of repair_take(): places that are gaps now
+  std::uint64_t entries = 0; ///< entries that cut_take() or add_shapes() wrote
+  std::uint64_t shapes = 0;  ///< shapes that add_shapes() wrote
+  std::uint64_t chunks = 0;  ///< chunks that repair_take() wrote
+  std::uint64_t damages = 0; ///< repaired places that are gaps now
 };
 
 /// Writes all whole chunks to a new file, with new numbers. A gap stands for each damaged place.
