@@ -1,18 +1,27 @@
 #include "edit/edit_session.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <thread>
 #include <utility>
 
 #include <nendo/flow/finger_supports.hpp>
+#include <nendo/version.hpp>
 
 #include "commands/commands.hpp"
 #include "edit/edit_words.hpp"
+#include "export/chosen_frames.hpp"
+#include "export/gltf_export.hpp"
+#include "takes/timeline_frames.hpp"
+#include "timeline/edit.hpp"
 #include "timeline/timeline_file.hpp"
 
 namespace nendo::edit {
-
 using namespace timeline;
 using viewer::EditCommand;
 using viewer::StripKey;
@@ -27,11 +36,57 @@ std::string export_name(const std::string& out) {
 
 } // namespace
 
+/// Exports a timeline as a GLB file on a thread of its own while the timeline is edited further.
+class GlbExport {
+public:
+  /// Starts the export. The file appears only when it is complete.
+  GlbExport(const timeline::Timeline& timeline, const deform::Mesh& model, const std::string& path);
+  /// Stops the export if it is still running, and waits for its thread.
+  ~GlbExport();
+  GlbExport(const GlbExport&) = delete;
+  GlbExport& operator=(const GlbExport&) = delete;
+
+  /// Returns the result of the export, or nothing while it is running. Errors: those of
+  /// export_gltf().
+  std::optional<Result<exporting::Exported>> result() const;
+
+private:
+  std::atomic<bool> stop_ = false;
+  std::atomic<bool> done_ = false;
+  std::optional<Result<exporting::Exported>> result_; ///< once done_
+  std::thread thread_;
+};
+
+GlbExport::GlbExport(const Timeline& timeline, const deform::Mesh& model, const std::string& path)
+    : thread_([this, timeline, model, path] {
+        const auto frames = takes::TimelineFrames::make(timeline, model);
+        const exporting::Choice choice{.rate_hz = exporting::animators_rate_hz, .stop = &stop_};
+        exporting::GltfOptions options;
+        options.generator = "Nendo " NENDO_VERSION;
+        if (frames)
+          result_ = exporting::export_gltf(**frames, choice, options, path);
+        else
+          result_ = frames.error();
+        done_ = true;
+      }) {}
+
+GlbExport::~GlbExport() {
+  stop_ = true;
+  thread_.join();
+}
+
+std::optional<Result<exporting::Exported>> GlbExport::result() const {
+  if (!done_) return std::nullopt;
+  return result_;
+}
+
 EditSession::EditSession(Timeline timeline, deform::Mesh model, std::string out)
     : model_(std::move(model)), out_(std::move(out)), export_file_(export_name(out_)),
       history_(std::move(timeline)), cache_(model_) {
   follow_history();
 }
+
+EditSession::~EditSession() = default;
 
 void EditSession::report(std::string message, bool refused) {
   view_.message = std::move(message);
@@ -79,10 +134,10 @@ void EditSession::handle(EditCommand command) {
   if (command == EditCommand::undo || command == EditCommand::redo) history_.keep();
   if (const char* const refusal = commands::row_of(command).refusal_in(facts()))
     return report(refusal, true);
-  obey(command);
+  execute(command);
 }
 
-void EditSession::obey(EditCommand command) {
+void EditSession::execute(EditCommand command) {
   constexpr double faster = 1.25;
   switch (command) {
   case EditCommand::play:
@@ -266,6 +321,112 @@ const render::SceneFrame& EditSession::scene_frame() {
     scene_frame_.hands[flow::Placement::index_of(hands[at].side)] = seen;
   }
   return scene_frame_;
+}
+
+namespace {
+
+Result<Selection> after(const Result<void>& done, const Selection& selected) {
+  if (!done) return done.error();
+  return selected;
+}
+
+Error nothing_selected() {
+  return {Errc::usage, commands::no_key};
+}
+
+} // namespace
+
+void EditSession::try_out(const viewer::KeyDrag& drag) {
+  const auto key = key_of(drag.key);
+  if (!key) return;
+  const auto done = history_.try_out([&](Timeline& timeline) -> Result<Selection> {
+    const auto moved = drag.copy ? timeline::copy_key(timeline, key->side, key->key, drag.to_s)
+                                 : move_key(timeline, key->side, key->key, drag.to_s);
+    return after(moved, key_at(timeline, key->side, drag.to_s));
+  });
+  report(done, (drag.copy ? "copied to " : "moved to ") + fixed(drag.to_s, 3) + " s");
+  if (done) seek(drag.to_s);
+}
+
+void EditSession::try_out(const viewer::TipDrag& drag) {
+  const Selection key = history_.selected();
+  TipSet set;
+  const auto done = history_.try_out([&](Timeline& timeline) -> Result<Selection> {
+    if (!key) return nothing_selected();
+    // Out of reach is reported, and the finger goes as far as it can.
+    const auto bent = timeline::set_tip(timeline, key->side, key->key, drag.finger, drag.target_m,
+                                        std::numeric_limits<double>::infinity());
+    if (!bent) return bent.error();
+    set = *bent;
+    return key;
+  });
+  constexpr double fine_m = 1e-3;
+  report(done, std::string(name_of(drag.finger)) +
+                   (set.off_m > fine_m ? " tip: out of reach, " : " tip: ") +
+                   fixed(1e3 * set.off_m, 3) + " mm off");
+}
+
+void EditSession::try_out(const viewer::KeyBlend& blend) {
+  const Selection key = history_.selected();
+  report(history_.try_out([&](Timeline& timeline) -> Result<Selection> {
+    if (!key) return nothing_selected();
+    return after(blend_key(timeline, key->side, key->key, blend.factor), key);
+  }),
+         "blended with its neighbours, " + fixed(blend.factor, 2));
+}
+
+/// Of the selected key's hand; with none selected, of all hands that have none there.
+void EditSession::add_keys() {
+  const Selection selected = history_.selected();
+  const double at_s = head_.time_s();
+  report(history_.apply([&](Timeline& timeline) -> Result<Selection> {
+    Result<Selection> added = nothing_selected(); // replaced, for there is a hand
+    for (const HandTrack& hand : std::vector(timeline.hands)) {
+      if (selected && selected->side != hand.side) continue;
+      const auto done = add_key(timeline, hand.side, at_s);
+      if (done)
+        added = Selection(key_at(timeline, hand.side, at_s));
+      else if (!added)
+        added = done.error();
+    }
+    return added;
+  }),
+         "a key more, at " + fixed(at_s, 3) + " s");
+}
+
+void EditSession::delete_key() {
+  const KeyRef key = *history_.selected();
+  report(history_.apply([&](Timeline& timeline) {
+    return after(timeline::delete_key(timeline, key.side, key.key), std::nullopt);
+  }),
+         "deleted");
+}
+
+void EditSession::copy_key() {
+  const KeyRef key = *history_.selected();
+  const double to_s = head_.time_s();
+  report(history_.apply([&](Timeline& timeline) {
+    const auto copied = timeline::copy_key(timeline, key.side, key.key, to_s);
+    return after(copied, key_at(timeline, key.side, to_s));
+  }),
+         "copied to " + fixed(to_s, 3) + " s");
+}
+
+void EditSession::mirror() {
+  Selection key = history_.selected();
+  if (key) key->side = key->side == Side::left ? Side::right : Side::left;
+  report(history_.apply([&](Timeline& timeline) {
+    return after(timeline::mirror(timeline, takes::middle_plane_m(timeline, model_)), key);
+  }),
+         "mirrored");
+}
+
+void EditSession::retime(const viewer::Retiming& times) {
+  report(history_.apply([&](Timeline& timeline) {
+    return after(timeline::retime(timeline, times.scale, times.from_s, times.to_s),
+                 history_.selected());
+  }),
+         "re-timed, " + fixed(times.scale, 3) + " times as long");
 }
 
 } // namespace nendo::edit

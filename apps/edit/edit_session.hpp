@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "commands/edit_command.hpp"
-#include "edit/glb_export.hpp"
 #include "render/scene_frame.hpp"
 #include "timeline/edit_history.hpp"
 #include "timeline/hand_curve.hpp"
@@ -19,11 +18,16 @@
 
 namespace nendo::edit {
 
+class GlbExport;
+
 class EditSession {
 public:
   /// out: the file to which the timeline is saved; its name ends in .timeline.toml. It must be
   /// possible to play the timeline over the model.
   EditSession(timeline::Timeline timeline, deform::Mesh model, std::string out);
+  ~EditSession();
+  EditSession(const EditSession&) = delete;
+  EditSession& operator=(const EditSession&) = delete;
 
   /// Does all that a person asks for. What cannot be done is reported in the view's message.
   void handle(const viewer::EditActions& actions);
@@ -42,7 +46,7 @@ public:
   timeline::ShapeCache::Progress progress() const { return cache_.progress(); }
 
   const timeline::EditHistory& history() const noexcept { return history_; }
-  bool has_ended() const noexcept { return ended_; } ///< somebody quit
+  bool has_ended() const noexcept { return ended_; } ///< the user quit
 
 private:
   using Edit = timeline::EditHistory::Edit;
@@ -50,7 +54,7 @@ private:
   /// Reports `message` if `done` is no error, or else the message of the error.
   void report(const Result<void>& done, const std::string& message);
   void handle(viewer::EditCommand command);
-  void obey(viewer::EditCommand command);
+  void execute(viewer::EditCommand command);
   void try_out(const viewer::KeyDrag& drag);
   void try_out(const viewer::TipDrag& drag);
   void try_out(const viewer::KeyBlend& blend);

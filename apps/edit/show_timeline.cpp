@@ -51,27 +51,10 @@ nlohmann::ordered_json key_json(const Timeline& timeline, const HandTrack& hand,
   return line;
 }
 
-/// The value of a setting.
-struct SettingJson {
-  const flow::LoopSettings& settings;
-
-  template <class T>
-  nlohmann::ordered_json operator()(const flow::ChoiceSetting<T>& choice) const {
-    return choice.name_of(choice.of(settings));
-  }
-  nlohmann::ordered_json operator()(const flow::BrushesSetting& brushes) const {
-    return flow::in_words(brushes.of(settings));
-  }
-  template <class T>
-  nlohmann::ordered_json operator()(const flow::Setting<T>& setting) const {
-    return setting.of(settings);
-  }
-};
-
 nlohmann::ordered_json settings_json(const flow::LoopSettings& settings) {
   nlohmann::ordered_json values;
   flow::for_each_shape_setting([&](const auto& setting) {
-    values[std::string(setting.name)] = SettingJson{settings}(setting);
+    values[std::string(setting.name)] = flow::reported_value(setting, settings);
   });
   return values;
 }

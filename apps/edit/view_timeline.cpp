@@ -24,7 +24,7 @@ struct Options {
   std::string file;
   std::string mesh; ///< empty: the timeline's
   std::string out;  ///< where it is saved; empty: into the file
-  std::string hand; ///< of the key that is selected at first
+  std::string hand; ///< side of the first selected key
   std::optional<unsigned> key;
   std::optional<double> at_s;
   std::string screenshot;   ///< where the last picture goes, .png; empty: nowhere
@@ -43,7 +43,7 @@ Result<void> check(const Options& options) {
   return cli::check_place("--screenshot", options.screenshot, {".png"});
 }
 
-/// Where the play head stands at first, and what is selected.
+/// Sets the first position of the play head, and the selection.
 Result<void> begin_at(const Options& options, EditSession& session) {
   const timeline::Timeline& timeline = session.history().timeline();
   if (options.key) {
@@ -63,8 +63,8 @@ Result<void> begin_at(const Options& options, EditSession& session) {
   return {};
 }
 
-/// Until somebody quits, or so many pictures of a shape that is made were shown. The last picture
-/// is written whatever ended it.
+/// Until the user quits, or this number of pictures of a shape that is made were shown. The last
+/// picture is written whatever ended it.
 Result<void> edit_in(viewer::TimelineWindow& window, EditSession& session, const Options& options) {
   HostTime before = HostClock::now();
   std::uint32_t shown = 0;
@@ -137,7 +137,7 @@ void add_timeline_view(cli::Command& edit) {
   command.add_option("--mesh", options->mesh, "Another model than the timeline's");
   command.add_option("--out", options->out,
                      "Where it is saved, .timeline.toml; without it, into FILE");
-  command.add_duration("--at", options->at_s, "Seconds where the play head stands at first");
+  command.add_duration("--at", options->at_s, "First position of the play head, in seconds");
   command.add_option("--hand", options->hand, "left or right, for --key");
   command.add_option("--key", options->key, "Number of the key that is selected at first");
   command.add_option("--screenshot", options->screenshot,

@@ -22,7 +22,7 @@ Result<void> check(const Choice& choice) {
   if (!(choice.from_s >= 0.0 && choice.from_s < to_s && to_s <= max_s))
     return Error{Errc::usage, "--from, --to: use seconds from the beginning, --from before --to"};
   if (choice.rate_hz && !(*choice.rate_hz > 0.0 && *choice.rate_hz <= max_export_rate_hz))
-    return Error{Errc::usage, "--rate: use frames a second above 0 and up to 10000"};
+    return Error{Errc::usage, "--rate: use frames per second above 0 and up to 10000"};
   return {};
 }
 
@@ -89,6 +89,26 @@ void ChosenFrames::hold_nearest(double moment_s) {
     held_s_ = source_->time_s();
     is_ahead_ = source_->next();
   }
+}
+
+Result<Exported> export_to_one_file(ChosenFrames& frames, const std::filesystem::path& path,
+                                    const PutFrame& put) {
+  auto file = FileReplacement::begin(path);
+  if (!file) return file.error();
+  Exported done{{path.string()}, 0, frames.first_s(), frames.first_s()};
+  for (;;) {
+    const auto more = frames.next();
+    if (!more) return more.error();
+    if (!*more) break;
+    if (const auto written = put(*file); !written) return written.error();
+    done.last_s = frames.time_s();
+  }
+  if (const auto finished = file->finish(); !finished) return finished.error();
+  done.frames = frames.made();
+  done.bytes = file->size();
+  done.rate_hz = frames.rate_hz();
+  done.exact = frames.source().is_exact();
+  return done;
 }
 
 } // namespace nendo::exporting

@@ -5,8 +5,16 @@
 
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include <nendo/base/file_replacement.hpp>
 #include <nendo/base/result.hpp>
 
 #include "takes/frame_source.hpp"
@@ -49,7 +57,7 @@ public:
   std::optional<std::uint64_t> count() const noexcept { return count_; }
   double period_s() const noexcept { return 1.0 / *choice_.rate_hz; } ///< only at an even rate
   const std::optional<double>& rate_hz() const noexcept { return choice_.rate_hz; }
-  std::uint64_t made() const noexcept { return made_; } ///< by next()
+  std::uint64_t made() const noexcept { return made_; } ///< frames that next() made
 
   /// Returns the puppet of the frame; nothing if the hands touch the model.
   std::optional<takes::PlayedPuppet> puppet() const { return even_ ? puppet_ : source_->puppet(); }
@@ -77,7 +85,54 @@ private:
   std::uint64_t made_ = 0;
   flow::Frame held_;
   double held_s_ = 0.0;                         ///< the own time of held_
-  std::optional<takes::PlayedPuppet> puppet_{}; ///< of held_
+  std::optional<takes::PlayedPuppet> puppet_{}; ///< the puppet of held_
 };
+
+/// What the morph targets of a model are.
+enum class MorphBasis : std::uint8_t {
+  key_shapes,
+  control_vectors, ///< exact
+  functions,       ///< those of a puppet; exact
+};
+
+/// "key shapes", "control vectors" or "functions".
+std::string_view name_of(MorphBasis basis) noexcept;
+
+/// How a model's motion became morph targets.
+struct MorphReport {
+  MorphBasis basis = MorphBasis::key_shapes;
+  bool has_puppet = false; ///< in the take, whatever the basis is
+  std::size_t targets = 0;
+  std::size_t models = 1;  ///< one after another, where the model or its puppet changed
+  std::size_t keys = 0;    ///< moments between which weights are interpolated
+  double tolerance = 0.0;  ///< error limit of key shapes per model diagonal; otherwise 0
+  double diagonal_m = 0.0; ///< the model's, on the stage
+  /// The greatest distance of a vertex from nendo's own shape, over all exported frames, as a
+  /// fraction of the model's diagonal.
+  double greatest_error = 0.0;
+};
+
+/// The report of an export.
+struct Exported {
+  std::vector<std::string> files;
+  std::uint64_t frames = 0;
+  double first_s = 0.0; ///< since the take began
+  double last_s = 0.0;
+  std::uint64_t bytes = 0;             ///< sum over all files
+  std::optional<MorphReport> morphs{}; ///< glTF with a model
+  std::optional<double> rate_hz{};     ///< nothing means that each frame is at its own time
+  bool exact = true;                   ///< nothing was missing in the take up to the last frame
+  std::vector<double> begin_s{};       ///< each file's, if the model differs from file to file
+  /// deform::Mesh::offset, where the files' places count from there: in model units.
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+};
+
+/// Writes the latest frame to the file. Before the first frame it also writes the file's header.
+using PutFrame = std::function<Result<void>(FileReplacement& file)>;
+
+/// Writes the file atomically and replaces an existing one. Blocks. Errors: those of
+/// ChosenFrames::next(), `put` and FileReplacement.
+Result<Exported> export_to_one_file(ChosenFrames& frames, const std::filesystem::path& path,
+                                    const PutFrame& put);
 
 } // namespace nendo::exporting

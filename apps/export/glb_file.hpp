@@ -21,9 +21,9 @@ namespace nendo::exporting {
 class GlbFile {
 public:
   using Json = nlohmann::ordered_json;
-  using Index = std::size_t; ///< of accessors, nodes, and so on
+  using Index = std::size_t; ///< index of an accessor, a node, and so on
 
-  enum class Use { vertices, indices, animation }; ///< of the numbers in a view
+  enum class Use { vertices, indices, animation }; ///< what the numbers in a view are
 
   /// `max_bytes` limits the size of the file and of its numbers. A GLB file counts them in 32
   /// bits.
@@ -71,7 +71,7 @@ private:
   Json views_ = Json::array();
   Json accessors_ = Json::array();
   std::vector<std::vector<std::byte>> parts_; ///< one for each view, padded to fours
-  std::uint64_t bytes_ = 0;                   ///< of all parts
+  std::uint64_t bytes_ = 0;                   ///< sum over all parts
 };
 
 } // namespace nendo::exporting

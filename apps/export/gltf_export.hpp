@@ -4,13 +4,13 @@
 // node scales the model to the stage.
 //
 // - Each material has a primitive, with its base colour and its texture, and with vertices of its
-//   own (gltf_parts.hpp): those of the mesh, in its order, and after them copies of those that
+//   own (gltf_model.hpp): those of the mesh, in its order, and after them copies of those that
 //   have several texture coordinates. They keep their colours. Faces become triangles as deform's
 //   triangles.hpp says.
 // - A take of a puppet of Type-1 is exact. Each function is a target that has its name, and a
-//   frame's weights are the values of the functions, from 0 to 1 (function_morphs.hpp).
+//   frame's weights are the values of the functions, from 0 to 1 (FunctionMorphs).
 // - Any other take of Type-1 is exact. For each control vector it has targets along each axis and
-//   against it (control_morphs.hpp).
+//   against it (ControlMorphs).
 // - All other takes (with commits, motion in several links, or Type-2) have key shapes
 //   (key_shapes.hpp). Each key shape is a target, and at any time two of them are mixed. As long
 //   as such a take is a sum of functions or of control vectors, its frames are that sum, which is
@@ -19,7 +19,7 @@
 // - Where the model becomes another one, as when it is subdivided, or its puppet is edited, each
 //   part of the take has a mesh of its own. Its node is shown in its time by an animation of its
 //   scale, which is 0 otherwise.
-// - Targets also move the normals, as far as sums of targets can (morph_normals.hpp). Blender
+// - Targets also move the normals, as far as sums of targets can (MorphNormals). Blender
 //   computes its own from the faces.
 // - A take of gloves alone has no model, and the file then has the hands alone.
 // - Time 0 is that of the first frame. Weights and joints are interpolated linearly, as players do.
@@ -30,12 +30,11 @@
 #include <string>
 
 #include "export/chosen_frames.hpp"
-#include "export/exported.hpp"
 
 namespace nendo::exporting {
 
 struct GltfOptions {
-  double tolerance = 0.01;             ///< of key shapes, as a fraction of the model's diagonal
+  double tolerance = 0.01; ///< error limit of key shapes, as a fraction of the model's diagonal
   std::optional<double> tolerance_m{}; ///< in place of it, as a length on the stage
   bool hands = true;
   std::string generator = "Nendo";

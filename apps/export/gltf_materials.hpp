@@ -26,7 +26,7 @@ public:
   }
 
 private:
-  GlbFile::Index plain_ = 0; ///< of faces without a material
+  GlbFile::Index plain_ = 0; ///< material of faces without one
   std::vector<GlbFile::Index> indices_;
 };
 

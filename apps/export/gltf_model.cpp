@@ -4,10 +4,13 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 
 #include <nendo/deform/corner_colours.hpp>
+#include <nendo/deform/triangles.hpp>
+#include <nendo/deform/vertex_areas.hpp>
 
 namespace nendo::exporting {
 
@@ -65,7 +68,137 @@ Eigen::Matrix3Xf columns_of(const Eigen::Matrix3Xf& of_vertices, const GltfPart&
   return columns;
 }
 
+// A vertex whose faces have next to no area has no direction that one could turn.
+constexpr double min_area_fraction = 1e-12; ///< as a part of the diagonal's square
+
+using deform::no_index;
+
+/// The corners of all triangles of a material.
+using CornersByMaterial = std::map<std::uint32_t, std::vector<std::uint32_t>>;
+
+CornersByMaterial corners_by_material(const deform::Mesh& mesh) {
+  CornersByMaterial corners; // no_index is the greatest key
+  const auto& of_face = mesh.look.face_materials;
+  deform::for_each_face_triangle(mesh, [&](std::size_t face, const deform::Triangle& triangle) {
+    auto& of_material = corners[of_face.empty() ? no_index : of_face[face]];
+    of_material.insert(of_material.end(), triangle.begin(), triangle.end());
+  });
+  return corners;
+}
+
+/// Makes parts one after another. The lists of its members have an entry for each vertex.
+class PartMaker {
+public:
+  explicit PartMaker(const deform::Mesh& mesh)
+      : mesh_(mesh), wanted_(static_cast<std::size_t>(mesh.vertices.cols()), false),
+        place_of_(wanted_.size(), no_index) {}
+
+  /// Wants the vertices that no face names, in the next part.
+  void add_lone_vertices() {
+    wanted_.assign(wanted_.size(), true);
+    for (const std::uint32_t vertex : mesh_.face_corners)
+      wanted_[vertex] = false;
+  }
+
+  GltfPart make(std::uint32_t material, const std::vector<std::uint32_t>& corners) {
+    GltfPart part;
+    part.material = material;
+    for (const std::uint32_t corner : corners)
+      wanted_[mesh_.face_corners[corner]] = true;
+    for (std::uint32_t vertex = 0; vertex < wanted_.size(); ++vertex) {
+      if (!wanted_[vertex]) continue;
+      wanted_[vertex] = false;
+      place_of_[vertex] = static_cast<std::uint32_t>(part.vertices.size());
+      part.vertices.push_back(vertex);
+    }
+    part.texcoords.resize(part.vertices.size(), no_index);
+    add_triangles(corners, part);
+    return part;
+  }
+
+private:
+  void add_triangles(const std::vector<std::uint32_t>& corners, GltfPart& part) const {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> copies;
+    for (const std::uint32_t corner : corners) {
+      const std::uint32_t vertex = mesh_.face_corners[corner];
+      std::uint32_t place = place_of_[vertex];
+      const std::uint32_t texcoord =
+          mesh_.corner_texcoords.empty() ? no_index : mesh_.corner_texcoords[corner];
+      if (part.texcoords[place] == no_index) part.texcoords[place] = texcoord;
+      if (part.texcoords[place] != texcoord) {
+        const auto next = static_cast<std::uint32_t>(part.vertices.size());
+        const auto [copy, is_new] = copies.emplace(std::pair(vertex, texcoord), next);
+        place = copy->second;
+        if (is_new) {
+          part.vertices.push_back(vertex);
+          part.texcoords.push_back(texcoord);
+        }
+      }
+      part.triangles.push_back(place);
+    }
+  }
+
+  const deform::Mesh& mesh_;
+  std::vector<bool> wanted_;
+  std::vector<std::uint32_t> place_of_; ///< in the part, of its vertices
+};
+
 } // namespace
+
+std::vector<GltfPart> parts_of(const deform::Mesh& mesh) {
+  CornersByMaterial corners = corners_by_material(mesh);
+  if (corners.empty()) corners[no_index];
+  PartMaker maker(mesh);
+  maker.add_lone_vertices();
+  std::vector<GltfPart> parts;
+  for (const auto& [material, of_material] : corners)
+    parts.push_back(maker.make(material, of_material));
+  return parts;
+}
+
+MorphNormals::MorphNormals(const deform::Mesh& mesh) {
+  const double diagonal = deform::diagonal_of(mesh.vertices);
+  if (diagonal > 0.0) unit_ = diagonal;
+  shape_.vertices = mesh.vertices;
+  shape_.face_starts = mesh.face_starts;
+  shape_.face_corners = mesh.face_corners;
+  rest_areas_ = deform::vertex_areas(shape_, shape_.vertices, unit_);
+  lengths_ = rest_areas_.colwise().norm();
+  for (double& length : lengths_)
+    if (length < min_area_fraction) length = 0.0;
+}
+
+/// The areas at rest plus so many times the displacement.
+deform::Points MorphNormals::areas(double way_factor, const Eigen::Matrix3Xf& way) const {
+  return deform::vertex_areas(shape_, shape_.vertices + way_factor * way.cast<double>(), unit_);
+}
+
+Eigen::Matrix3Xf MorphNormals::rest() const {
+  Eigen::Matrix3Xf normals(3, rest_areas_.cols());
+  for (Index vertex = 0; vertex < normals.cols(); ++vertex)
+    normals.col(vertex) =
+        lengths_[vertex] > 0.0
+            ? Eigen::Vector3f((rest_areas_.col(vertex) / lengths_[vertex]).cast<float>())
+            : Eigen::Vector3f(Eigen::Vector3f::UnitY()); // any will do
+  return normals;
+}
+
+Eigen::Matrix3Xf MorphNormals::divided(const deform::Points& turn) const {
+  Eigen::Matrix3Xf turns = Eigen::Matrix3Xf::Zero(3, turn.cols());
+  for (Index vertex = 0; vertex < turns.cols(); ++vertex)
+    if (lengths_[vertex] > 0.0)
+      turns.col(vertex) = (turn.col(vertex) / lengths_[vertex]).cast<float>();
+  return turns;
+}
+
+Eigen::Matrix3Xf MorphNormals::turn_to(const Eigen::Matrix3Xf& way) const {
+  return divided(areas(1.0, way) - rest_areas_);
+}
+
+Eigen::Matrix3Xf MorphNormals::turn_along(const Eigen::Matrix3Xf& way) const {
+  // A polynomial of degree two has its derivative as the central difference, whatever the step.
+  return divided((areas(1.0, way) - areas(-1.0, way)) / 2.0);
+}
 
 GltfModel::GltfModel(const deform::Mesh& mesh, GlbFile& file)
     : parts_(parts_of(mesh)), normals_(mesh) {
@@ -107,7 +240,7 @@ std::vector<float> GltfModel::add_control_targets(const ControlMorphs& morphs, G
   const auto width = static_cast<std::size_t>(3 * influences.rows());
   const float scale = scale_for(morphs.greatest_vector());
   struct Used {
-    std::size_t coordinate; ///< of a moment's vectors
+    std::size_t coordinate; ///< index in a moment's vectors
     float sign;
   };
   std::vector<Used> used;

@@ -7,15 +7,57 @@
 
 #include <nendo/deform/mesh.hpp>
 
-#include "export/control_morphs.hpp"
-#include "export/exported.hpp"
-#include "export/function_morphs.hpp"
+#include "export/chosen_frames.hpp"
+#include "export/exact_morphs.hpp"
 #include "export/glb_file.hpp"
 #include "export/gltf_materials.hpp"
-#include "export/gltf_parts.hpp"
-#include "export/morph_normals.hpp"
 
 namespace nendo::exporting {
+
+/// The faces of one material, which are a primitive. glTF has one texture coordinate for each
+/// vertex, so vertices are split where several meet. Readers copy all vertices that a primitive
+/// names, so primitives do not share vertices. The three lists of vertices have the same length.
+struct GltfPart {
+  std::uint32_t material = deform::no_index; ///< an index of the look's materials, or no_index
+  std::vector<std::uint32_t> vertices;       ///< vertex indices of the mesh
+  std::vector<std::uint32_t> texcoords;      ///< one per vertex, or no_index
+  std::vector<std::uint32_t> triangles;      ///< three indices into `vertices` for each triangle
+};
+
+/// Returns the parts in the order of their materials; faces without a material come last. The
+/// vertices of a part are in the order of the mesh, and then the copies. A vertex without a face
+/// belongs to the first part. There is at least one part; it has no triangles if the mesh has none.
+std::vector<GltfPart> parts_of(const deform::Mesh& mesh);
+
+/// The normals of morph targets.
+/// A viewer adds the weighted normals of the targets to the normal at
+/// rest, and makes the sum a unit vector (glTF 2.0, 3.7.2.2). A vertex's normal has the direction
+/// of the sum of its faces' areas, which is a polynomial of degree two in the displacement. So sums
+/// of areas, divided by the area at rest, come much closer to the normal of a mixed shape than
+/// differences of unit vectors do.
+class MorphNormals {
+public:
+  /// Copies what it needs of the mesh.
+  explicit MorphNormals(const deform::Mesh& mesh);
+
+  /// Returns the unit normals at rest, 3 by #vertices.
+  Eigen::Matrix3Xf rest() const;
+  /// Returns what must be added to them so that the sum has the direction of the normal of the
+  /// displaced shape. `way` is the displacement, 3 by #vertices. For a target that is alone.
+  Eigen::Matrix3Xf turn_to(const Eigen::Matrix3Xf& way) const;
+  /// Returns the part of this that is linear in the displacement. For targets that are mixed with
+  /// small weights.
+  Eigen::Matrix3Xf turn_along(const Eigen::Matrix3Xf& way) const;
+
+private:
+  deform::Points areas(double way_factor, const Eigen::Matrix3Xf& way) const;
+  Eigen::Matrix3Xf divided(const deform::Points& turn) const;
+
+  deform::Mesh shape_; ///< vertices and faces alone
+  double unit_ = 1.0;  ///< unit of length: the model's diagonal
+  deform::Points rest_areas_;
+  Eigen::VectorXd lengths_; ///< the areas at rest; 0 where a vertex has no area
+};
 
 class GltfModel {
 public:
@@ -61,8 +103,8 @@ private:
   std::vector<GlbFile::Json> primitives_; ///< one for each part
   std::vector<GlbFile::Json> targets_;    ///< the lists of the parts' targets
   GlbFile::Json names_ = GlbFile::Json::array();
-  std::vector<float> target_values_;                      ///< of functions
-  Eigen::Matrix3Xf latest_;                               ///< of the targets
+  std::vector<float> target_values_;                      ///< values of functions
+  Eigen::Matrix3Xf latest_;                               ///< the latest target
   std::vector<std::optional<std::uint32_t>> key_targets_; ///< nothing means the rest shape
 };
 

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "export/chosen_frames.hpp"
-#include "export/exported.hpp"
 
 namespace nendo::exporting {
 

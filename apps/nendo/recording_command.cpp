@@ -8,7 +8,7 @@
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
-#include "takes/joint_report.hpp"
+#include "takes/joint_study.hpp"
 #include "takes/recorded_model.hpp"
 #include "takes/recording_report.hpp"
 

@@ -124,13 +124,7 @@ ordered_json published_json(const RunOutcome& outcome) {
 void add_settings(ordered_json& line, const RunOutcome& outcome) {
   const flow::LoopSettings settings = flow::plain_settings_of(outcome.sculptor);
   flow::for_each_plain_setting([&](const auto& setting) {
-    ordered_json& value = line[std::string(setting.name)];
-    if constexpr (requires { setting.name_of; })
-      value = setting.name_of(setting.of(settings));
-    else if constexpr (requires { flow::in_words(setting.of(settings)); })
-      value = flow::in_words(setting.of(settings));
-    else
-      value = setting.of(settings);
+    line[std::string(setting.name)] = flow::reported_value(setting, settings);
   });
   line["radius"] = outcome.radius;
 }

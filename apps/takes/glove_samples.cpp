@@ -16,7 +16,7 @@ bool is_of_simulated(std::string_view source) {
   return spec && spec->kind == "sim";
 }
 
-/// Tells by where a glove's samples came from, at first, because a recording keeps no more of that.
+/// Recognises it by the source of a glove's samples, because a recording keeps no more of that.
 bool was_simulated(const driver::GloveInfo& glove) {
   return is_of_simulated(glove.source) ||
          std::any_of(glove.facts.begin(), glove.facts.end(), [](const auto& fact) {
@@ -29,7 +29,7 @@ bool was_simulated(const driver::GloveInfo& glove) {
 bool is_calibrated(const recording::Setup& setup, std::size_t glove) {
   const flow::HandInput& hand = setup.hands[glove];
   if (hand.wearer.adapt) return true;
-  if (glove >= setup.gloves.size()) return false; // what told of it is damaged
+  if (glove >= setup.gloves.size()) return false; // its description is damaged
   const driver::GloveInfo& info = setup.gloves[glove];
   return was_simulated(info) ||
          !(hand.wearer.of(hand.first.side).calibration == hand::default_calibration(info.counts));

@@ -16,7 +16,7 @@ namespace nendo::takes {
 /// Returns whether a recorded hand has angles of its own: its calibration is not the default one of
 /// such a glove, or is learned, or the hand is a simulated one, which the default is made for.
 bool is_calibrated(const recording::Setup& setup, std::size_t glove);
-/// Tells the same of the hand that is shaped as one of that side; nothing if there is none.
+/// Returns the same for the hand that shapes as that side; nothing if there is none.
 std::optional<bool> is_calibrated(const recording::Setup& setup, Side side);
 
 class GloveSamples {
@@ -32,8 +32,8 @@ public:
   bool next();
   const GloveSample& sample() const noexcept { return sample_; } ///< the latest
   std::size_t glove() const noexcept { return glove_; }          ///< that sent it
-  /// Returns the calibration for the latest sample, or null if what told of its hand is damaged. It
-  /// may be an average hand's.
+  /// Returns the calibration for the latest sample, or null if the description of its hand is
+  /// damaged. It may be an average hand's.
   const hand::Calibration* calibration() const noexcept { return calibration_; }
   /// Returns the sensors of the latest sample that are left out, because they are stuck.
   SensorMask left_out() const noexcept {

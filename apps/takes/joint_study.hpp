@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <nendo/base/result.hpp>
@@ -32,7 +33,7 @@ struct JointPair {
   hand::Angle one, other;
   std::optional<double> published_slope{};
   double correlation = 0.0; ///< Pearson's
-  double slope = 0.0;       ///< of `other` over `one`
+  double slope = 0.0;       ///< slope of `other` over `one`
 };
 
 struct JointStudy {
@@ -40,7 +41,7 @@ struct JointStudy {
   bool is_calibrated = false; ///< otherwise the angles are an average hand's
   std::size_t samples = 0;
   double duration_s = 0.0;
-  std::array<JointRange, hand::angle_count> ranges{}; ///< by hand::index_of()
+  std::array<JointRange, hand::angle_count> ranges{}; ///< indexed by hand::index_of()
   /// Neighbouring joints of a finger, and the same joint of neighbouring fingers; of measured
   /// angles that moved.
   std::vector<JointPair> pairs;
@@ -57,5 +58,11 @@ Result<std::vector<JointStudy>> study_joints(const std::filesystem::path& path);
 /// left out. For tests, and for angles from elsewhere.
 JointStudy study_joints(const std::vector<hand::JointAngles>& angles, SensorMask sensors,
                         SensorMask left_out = {});
+
+/// Prints a table of joints, pairs of joints, and principal components of each hand, beside what is
+/// published of them.
+void print_joints(const std::string& file, const std::vector<JointStudy>& studies);
+/// Prints the same as one JSON object.
+void print_joints_json(const std::string& file, const std::vector<JointStudy>& studies);
 
 } // namespace nendo::takes

@@ -1,5 +1,5 @@
 #pragma once
-// The moments of a take that tell the most of it.
+// The most expressive moments of a take.
 
 #include <cstddef>
 #include <vector>

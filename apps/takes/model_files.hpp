@@ -17,9 +17,9 @@ namespace nendo::takes {
 Result<deform::ReadModel> read_model(const std::string& file,
                                      const deform::ReadOptions& options = {});
 
-/// Reads that file, or those of cli::files_of_name(), which then stand side by side
-/// (deform::side_by_side()). Its vertices count likewise. Errors: those of deform::read_mesh();
-/// bad_input (too large together).
+/// Reads that file, or those of cli::files_of_name(), which then are placed side by side
+/// (deform::side_by_side()). The offset is the same. Errors: those of
+/// deform::read_mesh(); bad_input (too large together).
 Result<deform::ReadModel> read_models(const std::string& name,
                                       const deform::ReadOptions& options = {});
 /// Does the same, but prints nothing.

@@ -1,7 +1,9 @@
 #include "takes/recorded_frames.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
+#include <variant>
 
 #include <nendo/flow/rig_setup.hpp>
 
@@ -71,6 +73,114 @@ bool RecordedFrames::next() {
     if (!replay_->feed(*entry)) continue;
     time_s_ = time_after(time_s_, setup(), std::get<flow::LoggedTick>(*entry));
     replay_->loop().frames().update();
+    return true;
+  }
+  return false;
+}
+
+namespace {
+
+constexpr HostClock::duration silent_after = std::chrono::milliseconds(500); // as of a run
+
+struct GloveExtent {
+  std::uint64_t samples = 0;
+  HostTime first{};
+  HostTime last{};
+
+  double rate_hz() const {
+    const double length_s = seconds_between(first, last);
+    return samples > 1 && length_s > 0.0 ? static_cast<double>(samples - 1) / length_s : 0.0;
+  }
+};
+
+std::vector<GloveExtent> extents_of(recording::TakeReader reader) {
+  std::vector<GloveExtent> gloves(reader.setup().hands.size());
+  while (const auto entry = reader.next()) {
+    const auto* const recorded = std::get_if<recording::RecordedSample>(&*entry);
+    if (recorded == nullptr || recorded->glove >= gloves.size()) continue;
+    GloveExtent& glove = gloves[recorded->glove];
+    glove.last = recorded->sample.arrival;
+    if (glove.samples++ == 0) glove.first = glove.last;
+  }
+  return gloves;
+}
+
+Eigen::Isometry3d wrist_of(Side side) {
+  Eigen::Isometry3d wrist = Eigen::Isometry3d::Identity();
+  wrist.translation().x() =
+      side == Side::left ? -GloveFrames::wrist_aside_m : GloveFrames::wrist_aside_m;
+  return wrist;
+}
+
+} // namespace
+
+Result<std::unique_ptr<GloveFrames>> GloveFrames::open(const std::filesystem::path& path) {
+  auto scanned = recording::TakeReader::open(path);
+  if (!scanned) return scanned.error();
+  const auto gloves = extents_of(*std::move(scanned));
+  auto reader = recording::TakeReader::open(path);
+  if (!reader) return reader.error();
+  std::unique_ptr<GloveFrames> frames(new GloveFrames(*std::move(reader)));
+  const HostTime begun = frames->reader_.setup().begun_host;
+  std::uint64_t samples = 0;
+  for (const GloveExtent& glove : gloves) {
+    samples += glove.samples;
+    frames->rate_hz_ = std::max(frames->rate_hz_, glove.rate_hz());
+    if (glove.samples > 0)
+      frames->duration_s_ = std::max(frames->duration_s_, seconds_between(begun, glove.last));
+  }
+  if (samples == 0)
+    return Error{Errc::bad_input, path.string() + ": there is no sample of a glove in it"};
+  if (!(frames->rate_hz_ > 0.0)) frames->rate_hz_ = 1.0; // one moment has no rate
+  return frames;
+}
+
+GloveFrames::GloveFrames(recording::TakeReader reader)
+    : reader_(std::move(reader)), layout_(deform::Points(3, 0)) {
+  for (auto& hand : frame_.hands)
+    hand.pose.joints.fill(Eigen::Isometry3d::Identity());
+  frame_.held = false;
+  flow::Placement placement;
+  for (const Side side : {Side::left, Side::right})
+    placement.T_stage_wrist[flow::Placement::index_of(side)] = wrist_of(side);
+  for (flow::HandInput input : reader_.setup().hands) {
+    input.filter = {}; // poses of samples as they are
+    hands_.emplace_back(std::move(input), placement, false);
+    frame_.hands[hands_.back().slot].present = true;
+    show(hands_.back());
+  }
+}
+
+void GloveFrames::show(const flow::GloveHand& hand) noexcept {
+  flow::HandFrame& shown = frame_.hands[hand.slot];
+  shown.left_out = hand.left_out();
+  shown.angles = hand.angles;
+  shown.T_stage_wrist = hand.T_stage_wrist;
+  shown.pose = hand.skeleton().pose(shown.angles, shown.T_stage_wrist);
+  shown.swapped = hand.latest.side != hand.input.first.side;
+}
+
+void GloveFrames::note_silence(HostTime now) noexcept {
+  for (const flow::GloveHand& hand : hands_)
+    frame_.hands[hand.slot].silent = now - hand.latest.arrival > silent_after;
+}
+
+bool GloveFrames::next() {
+  while (const auto entry = reader_.next()) {
+    const auto* const recorded = std::get_if<recording::RecordedSample>(&*entry);
+    if (recorded == nullptr || recorded->glove >= hands_.size()) {
+      exact_ = exact_ && recorded == nullptr && !std::holds_alternative<recording::Gap>(*entry);
+      continue;
+    }
+    flow::GloveHand& hand = hands_[recorded->glove];
+    hand.update(recorded->sample);
+    show(hand);
+    ++frame_.hands[hand.slot].samples;
+    frame_.tick = frame_.ticks_run++;
+    frame_.woke = frame_.scheduled = recorded->sample.arrival;
+    note_silence(frame_.woke);
+    // Times do not fall, whatever the recording says. The first samples came before it began.
+    time_s_ = std::max(time_s_, seconds_between(reader_.setup().begun_host, frame_.woke));
     return true;
   }
   return false;

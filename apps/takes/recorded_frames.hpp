@@ -1,18 +1,23 @@
 #pragma once
-// The frames of a recording, whose loop runs again tick by tick.
+// The frames of recordings.
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <nendo/base/result.hpp>
+#include <nendo/flow/glove_hand.hpp>
 #include <nendo/recording/loop_replay.hpp>
+#include <nendo/recording/take_reader.hpp>
 
 #include "takes/frame_source.hpp"
 #include "takes/glove_samples.hpp"
 
 namespace nendo::takes {
 
+/// The frames of a recording, whose loop runs again tick by tick.
 class RecordedFrames final : public FrameSource {
 public:
   /// Opens a recording. `model` must come from recorded_model(). The whole recording is read once
@@ -57,6 +62,48 @@ private:
   double duration_s_ = 0.0;
   double time_s_ = 0.0;
   bool has_one_model_ = true;
+};
+
+/// The frames of a recording in which there are gloves and no loop, as `nendo record` makes it: the
+/// hands alone, a frame for each sample of either hand. There is no model, so model() is empty. A
+/// glove knows no place in space, so the hands lie side by side on the stage, backs upwards, with
+/// the fingers pointing away from the operator.
+class GloveFrames final : public FrameSource {
+public:
+  /// How far the ends of the forearms are from the middle of the stage.
+  static constexpr double wrist_aside_m = 0.12;
+
+  /// Opens a recording. It is read once to find its duration. Blocks. Errors: those of
+  /// TakeReader::open(); bad_input (no glove, or no sample).
+  static Result<std::unique_ptr<GloveFrames>> open(const std::filesystem::path& path);
+
+  const deform::Mesh& model(std::uint32_t) const override { return model_; }
+  const deform::BlockLayout& layout(std::uint32_t) const override { return layout_; }
+  /// Returns the rate of the fastest glove.
+  double rate_hz() const override { return rate_hz_; }
+  double duration_s() const override { return duration_s_; }
+  bool next() override;
+  const flow::Frame& frame() const override { return frame_; }
+  double time_s() const override { return time_s_; }
+  std::optional<bool> is_calibrated(Side side) const override {
+    return takes::is_calibrated(reader_.setup(), side);
+  }
+  bool is_exact() const override { return exact_ && reader_.chunks().damage_count() == 0; }
+
+private:
+  explicit GloveFrames(recording::TakeReader reader);
+  void show(const flow::GloveHand& hand) noexcept;
+  void note_silence(HostTime now) noexcept;
+
+  recording::TakeReader reader_;
+  deform::Mesh model_;
+  deform::BlockLayout layout_;
+  std::vector<flow::GloveHand> hands_; ///< indexed by the numbers of their gloves
+  flow::Frame frame_;
+  bool exact_ = true;
+  double rate_hz_ = 0.0;
+  double duration_s_ = 0.0;
+  double time_s_ = 0.0;
 };
 
 } // namespace nendo::takes

@@ -95,7 +95,7 @@ ordered_json gloves_json(const TakeSummary& summary) {
     const auto counts = driver::by_name(glove.sent.value_or(driver::RecordCounts{}));
     for (const auto& [name, count] : counts) {
       ordered_json& value = line[std::string(name)];
-      if (glove.sent && count) value = *count; // otherwise null: nobody knows
+      if (glove.sent && count) value = *count; // otherwise null: unknown
     }
     const auto& hands = summary.setup.hands;
     line["layer"] = nullptr; // of the whole hand
@@ -137,7 +137,7 @@ void print_take(const std::string& file, const TakeSummary& summary) {
   const recording::Setup& setup = summary.setup;
   const std::string begun = begun_of(summary);
   std::printf("%s: begun %s, %.1f s%s%s%s%s; %llu bytes\n", file.c_str(),
-              begun.empty() ? "nobody knows when" : begun.c_str(), to_seconds(summary.duration()),
+              begun.empty() ? "at an unknown time" : begun.c_str(), to_seconds(summary.duration()),
               setup.program.empty() ? "" : ", by ", printable(setup.program).c_str(),
               setup.wearer.empty() ? "" : ", worn by ", printable(setup.wearer).c_str(),
               number(summary.bytes));
@@ -152,7 +152,7 @@ void print_take(const std::string& file, const TakeSummary& summary) {
     std::printf("  %-12s %llu, of %llu entries that are counted\n", "gaps", number(summary.gaps),
                 number(summary.missing));
   if (!summary.ending) std::printf("  %-12s it was cut off; what there is counts\n", "end");
-  if (!summary.is_whole()) std::printf("  %-12s `nendo recording check` tells where\n", "damage");
+  if (!summary.is_whole()) std::printf("  %-12s `nendo recording check` shows where\n", "damage");
   std::fflush(stdout);
 }
 

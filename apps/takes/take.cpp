@@ -91,8 +91,8 @@ private:
   render::SceneFrame scene_;
   render::SceneFrame next_; ///< if has_next_
   bool has_next_ = false;
-  std::uint32_t model_ = 0;                  ///< of the latest frame
-  std::shared_ptr<const deform::Mesh> mesh_; ///< of that version; null: Take::rest
+  std::uint32_t model_ = 0;                  ///< the latest frame's
+  std::shared_ptr<const deform::Mesh> mesh_; ///< the mesh of that version; null: Take::rest
 };
 
 /// The mean time of the first samples of all gloves. It is negative where they came before the
@@ -136,9 +136,9 @@ Result<Take> read_edited(const std::filesystem::path& path, const std::string& n
   take.units_per_metre = timeline.units_per_metre;
   take.duration_s = (*frames)->duration_s();
   const auto open = [timeline, rest = take.rest]() -> Result<std::unique_ptr<FrameSource>> {
-    auto anew = TimelineFrames::make(timeline, rest);
-    if (!anew) return anew.error();
-    return std::unique_ptr<FrameSource>(*std::move(anew));
+    auto again = TimelineFrames::make(timeline, rest);
+    if (!again) return again.error();
+    return std::unique_ptr<FrameSource>(*std::move(again));
   };
   take.open = open;
   const auto player = std::make_shared<ScenePlayer>(open, *std::move(frames));

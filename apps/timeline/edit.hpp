@@ -10,11 +10,11 @@
 
 #include <nendo/base/result.hpp>
 
-#include "timeline/key_search.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::timeline {
 
-/// Returns where a key goes that somebody wants at `time_s`: there, unless it is behind the end by
+/// Returns where a key goes that is wanted at `time_s`: there, unless it is later than the end by
 /// at most a tick, as where the last tick of a run was missed. Then it goes to the end, or, if the
 /// hand has a key there already, half a tick before it. `moved` is the key that goes, and that is
 /// not in its own way.
@@ -62,7 +62,7 @@ Result<TipSet> set_tip(Timeline& timeline, Side side, std::size_t key, hand::Fin
 
 struct ValueSet {
   KeyRef key;         ///< that was changed
-  double value = 0.0; ///< of the function there
+  double value = 0.0; ///< the function's value there
 };
 /// Bends the finger that plays a function of the puppet so that the function has that value at the
 /// finger's key. Error: there is no such function or key, the value is beyond its limits or those

@@ -10,7 +10,7 @@
 
 #include <nendo/base/result.hpp>
 
-#include "timeline/key_search.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::timeline {
 
@@ -64,7 +64,7 @@ private:
   std::vector<Step> steps_;
   std::size_t done_ = 0;                  ///< steps that are in timeline_; the others are undone
   std::optional<std::size_t> saved_ = 0U; ///< done_ at the last saved(), if not discarded
-  std::unique_ptr<Base> base_;            ///< of what is being tried
+  std::unique_ptr<Base> base_;            ///< the state before the edit that is being tried
   std::uint64_t revision_ = 0;
 };
 

@@ -113,40 +113,40 @@ std::optional<std::uint16_t> number_in(const puppet::Rig& timelines, const puppe
 }
 
 // Follows a replay, and keeps a key a tick of each hand, and what the ticks did.
-class Follower {
+class TickRecorder {
 public:
-  Follower(Timeline& timeline, const flow::LoopOptions& options)
+  TickRecorder(Timeline& timeline, const flow::LoopOptions& options)
       : timeline_(timeline), held_(timeline.held),
         on_grid_(options.policy == flow::OverrunPolicy::skip ||
                  options.policy == flow::OverrunPolicy::catch_up) {}
 
-  void hear(flow::Request request) {
+  void record(flow::Request request) {
     if (flow::goes_through_history(request)) steps_.push_back(request);
     if (request != flow::Request::take_hold) return;
     if (timeline_.rig)
-      told_.emplace_back(request);
+      puppet_commands_.emplace_back(request);
     else
       takes_hold_ = true;
   }
 
-  /// What the puppet is told that is played then, and marks. Roles of functions that it has not say
-  /// nothing; a loop passes over them.
-  void hear_told(const flow::Command& command, const flow::DeformLoop& loop) {
+  /// Commands of the puppet that is played then, and marks. A loop ignores roles of functions that
+  /// the puppet does not have.
+  void add_puppet_command(const flow::Command& command, const flow::DeformLoop& loop) {
     const auto& played = loop.changes().puppet(loop.changes().newest_puppet());
     const auto* role = std::get_if<flow::SetRole>(&command);
     if (role != nullptr && played && timeline_.rig) {
       if (const auto number = number_in(*timeline_.rig, *played, role->function))
-        told_.emplace_back(flow::SetRole{*number, role->input});
+        puppet_commands_.emplace_back(flow::SetRole{*number, role->input});
     } else if (flow::is_for_puppet(command)) {
-      told_.push_back(command);
+      puppet_commands_.push_back(command);
     }
     if (std::holds_alternative<flow::Mark>(command)) marks_.push_back(command);
   }
 
-  void hear(const flow::HoldStill&) { is_still_ = true; }
+  void record(const flow::HoldStill&) { is_still_ = true; }
   /// The model is made of the shape of the tick in which the loop began to hold still; a cut one by
   /// that wire.
-  void hear(const flow::ChangeModel& change, const flow::WirePath& wire) {
+  void record(const flow::ChangeModel& change, const flow::WirePath& wire) {
     is_still_ = false;
     if (!change.is_new()) return;
     if (change.source != flow::ModelSource::cut)
@@ -157,7 +157,7 @@ public:
   }
 
   /// Returns false if a timeline has no such settings.
-  bool hear(const flow::LoopSettings& settings, const flow::LoopSettings& in_force) {
+  bool record(const flow::LoopSettings& settings, const flow::LoopSettings& in_force) {
     if (settings.filter != in_force.filter) return false;
     if (settings == in_force) return true;
     settings_ = settings;
@@ -167,7 +167,7 @@ public:
   }
 
   /// The fingertips have other masks; `number` is the replay's.
-  void hear(std::uint32_t number, const std::shared_ptr<const puppet::Rig>& masks) {
+  void record(std::uint32_t number, const std::shared_ptr<const puppet::Rig>& masks) {
     if (std::exchange(masks_, number) == number) return; // recorders repeat it
     auto& all = timeline_.masks;
     all.resize(std::max<std::size_t>(all.size(), number + 1));
@@ -177,24 +177,25 @@ public:
   }
 
   /// A tick has run.
-  void see(const flow::LoggedTick& tick, const flow::Frame& frame, const flow::LoopStats& stats) {
+  void record_tick(const flow::LoggedTick& tick, const flow::Frame& frame,
+                   const flow::LoopStats& stats) {
     if (!first_) first_ = tick;
     const double before_s = timeline_.duration_s;
     const double time_s = std::max(before_s, time_of(tick));
-    hear_switches(frame, stats);
-    add_told(before_s, time_s);
+    record_switches(frame, stats);
+    add_puppet_events(before_s, time_s);
     for (auto& hand : timeline_.hands) {
       const std::size_t slot = flow::Placement::index_of(hand.side);
       const Key key = key_of(time_s, frame.hands[slot].angles, frame.hands[slot].T_stage_wrist);
       if (time_s > hand.keys.back().time_s) hand.keys.push_back(key);
     }
     timeline_.duration_s = time_s;
-    see_events(time_s, frame, stats);
+    add_events(time_s, frame, stats);
     if (std::exchange(is_still_, false)) still_at_s_ = time_s;
     awaited_ = frame.awaited;
     puppet_ = frame.puppet;
   }
-  bool has_seen() const noexcept { return first_.has_value(); }
+  bool has_ticks() const noexcept { return first_.has_value(); }
 
 private:
   // Ticks of the grid are frames of the timeline's, whose times are quotients as these.
@@ -210,26 +211,26 @@ private:
   }
 
   /// By which hands release a puppet, and grab it again.
-  void hear_switches(const flow::Frame& frame, const flow::LoopStats& stats) {
+  void record_switches(const flow::Frame& frame, const flow::LoopStats& stats) {
     for (const Side side : {Side::left, Side::right}) {
       const std::size_t slot = flow::Placement::index_of(side);
       const bool used =
           std::exchange(switch_uses_[slot], stats.switch_uses[slot]) != stats.switch_uses[slot];
       const auto by_switch = puppet::ClutchMeans::wrist_switch;
       if (used && timeline_.rig && timeline_.rig->puppet().clutch.means[slot] == by_switch)
-        told_.emplace_back(
+        puppet_commands_.emplace_back(
             flow::SetClutch{side, puppet::RigPlayer::all_fingers, !frame.let_go[slot]});
     }
   }
 
-  /// A puppet that is told something finds the hands as they were in the last tick. Where ticks
+  /// A puppet's command applies to the hands as they were in the last tick. Where ticks
   /// were missed, that is the frame behind it.
-  void add_told(double before_s, double time_s) {
+  void add_puppet_events(double before_s, double time_s) {
     const double period_s = 1.0 / timeline_.rate_hz;
     const double next_s = time_s < before_s + 1.5 * period_s ? time_s : before_s + period_s;
-    for (const flow::Command& command : told_)
+    for (const flow::Command& command : puppet_commands_)
       if (timeline_.rig) add(next_s, command);
-    told_.clear();
+    puppet_commands_.clear();
   }
 
   // One that waits for settings, and those behind it, have not happened yet.
@@ -251,7 +252,7 @@ private:
       add(time_s, steps_.front());
   }
 
-  void see_events(double time_s, const flow::Frame& frame, const flow::LoopStats& stats) {
+  void add_events(double time_s, const flow::Frame& frame, const flow::LoopStats& stats) {
     add_steps(time_s, frame, stats);
     if (!is_still_ && std::exchange(takes_hold_, false)) add(time_s, flow::Request::take_hold);
     const bool committed = stats.commits > commits_;
@@ -273,8 +274,8 @@ private:
   std::uint64_t commits_ = 0;
   std::array<std::uint64_t, 2> switch_uses_{};
   std::uint64_t done_ = 0;                     ///< undos, redos and resets
-  std::vector<flow::Command> told_;            ///< to the puppet since the last tick
-  std::vector<flow::Command> marks_;           ///< likewise
+  std::vector<flow::Command> puppet_commands_; ///< to the puppet since the last tick
+  std::vector<flow::Command> marks_;           ///< since the last tick
   std::vector<flow::Request> steps_;           ///< undos, redos and resets since the last tick
   bool takes_hold_ = false;                    ///< it was asked for since the last tick
   std::optional<flow::LoopSettings> settings_; ///< a change since the last tick
@@ -288,14 +289,15 @@ private:
   std::optional<flow::LoggedTick> first_;
 };
 
-void hear_told(const recording::Entry& entry, const flow::DeformLoop& loop, Follower& follower) {
-  const auto hear = [&](const auto* command) {
-    if (command != nullptr) follower.hear_told(*command, loop);
+void add_puppet_command(const recording::Entry& entry, const flow::DeformLoop& loop,
+                        TickRecorder& recorder) {
+  const auto record = [&](const auto* command) {
+    if (command != nullptr) recorder.add_puppet_command(*command, loop);
   };
-  hear(std::get_if<flow::Mark>(&entry));
-  hear(std::get_if<flow::SetClutch>(&entry));
-  hear(std::get_if<flow::SetRole>(&entry));
-  hear(std::get_if<flow::SetSymmetry>(&entry));
+  record(std::get_if<flow::Mark>(&entry));
+  record(std::get_if<flow::SetClutch>(&entry));
+  record(std::get_if<flow::SetRole>(&entry));
+  record(std::get_if<flow::SetSymmetry>(&entry));
 }
 
 // Of frames or of events; empty if nothing does.
@@ -349,15 +351,15 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
   }
   made.has_last_puppet = change.has_value();
   keep_puppet((*replay)->loop(), setup.loop->options.rig_state, std::move(last), made.timeline);
-  Follower follower(made.timeline, setup.loop->options);
+  TickRecorder recorder(made.timeline, setup.loop->options);
   while (const auto entry = reader->next()) {
-    if (const auto* request = std::get_if<flow::Request>(&*entry)) follower.hear(*request);
-    hear_told(*entry, (*replay)->loop(), follower);
-    if (const auto* still = std::get_if<flow::HoldStill>(&*entry)) follower.hear(*still);
+    if (const auto* request = std::get_if<flow::Request>(&*entry)) recorder.record(*request);
+    add_puppet_command(*entry, (*replay)->loop(), recorder);
+    if (const auto* still = std::get_if<flow::HoldStill>(&*entry)) recorder.record(*still);
     if (const auto* model_change = std::get_if<flow::ChangeModel>(&*entry))
-      follower.hear(*model_change, (*replay)->loop().drawn_wire());
+      recorder.record(*model_change, (*replay)->loop().drawn_wire());
     const auto* settings = std::get_if<flow::LoopSettings>(&*entry);
-    if (settings != nullptr && !follower.hear(*settings, (*replay)->loop().changes().settings()))
+    if (settings != nullptr && !recorder.record(*settings, (*replay)->loop().changes().settings()))
       return bad("changes the filter of the hands on the way, which a timeline cannot; cut out the "
                  "part before that with `nendo recording cut`");
     const bool ticked = (*replay)->feed(*entry);
@@ -367,16 +369,17 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
       if (flow::is_played(masks.get()))
         return bad("begins a puppet on the way, and a timeline has one from the beginning on; save "
                    "the puppet, and record a run with it by --puppet FILE");
-      follower.hear(loop.changes().newest_puppet(), masks);
+      recorder.record(loop.changes().newest_puppet(), masks);
     }
     if (!ticked) continue;
     auto& frames = (*replay)->loop().frames();
     frames.update();
-    follower.see(std::get<flow::LoggedTick>(*entry), frames.front(), (*replay)->loop().stats());
+    recorder.record_tick(std::get<flow::LoggedTick>(*entry), frames.front(),
+                         (*replay)->loop().stats());
     if (const std::string many = what_exceeds(made.timeline, most); !many.empty())
       return bad("has more than " + many + "; cut a part with `nendo recording cut`");
   }
-  if (!follower.has_seen()) return bad("there is no tick of a loop in it");
+  if (!recorder.has_ticks()) return bad("there is no tick of a loop in it");
   if (const std::string wrong = complaint_about(made.timeline); !wrong.empty())
     return bad("cannot become a timeline: " + wrong);
   reduce(tolerance, made);

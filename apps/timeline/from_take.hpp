@@ -17,7 +17,7 @@ struct MadeTimeline {
 };
 
 /// Runs the recorded loop again over `model`, which should be the recorded one. The hands' angles
-/// become keys; requests, what the wrist switch did, what a puppet was told, and marks become
+/// become keys; requests, what the wrist switch did, commands of a puppet, and marks become
 /// events. The points of a puppet are off by the tolerance at most, by both hands together. The key
 /// at 0 s is the pose in which a hand grabbed, one period before the first tick. Blocks. Errors:
 /// those of TakeReader::open() and LoopReplay::make(); bad_input (no tick, or more than `most`

@@ -81,8 +81,8 @@ Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Me
   player->pose_hands(0.0);
   const deform::FieldStatus status = player->core_.begin(player->hands(), player->frame_);
   if (!is_solved(status))
-    return Error{Errc::bad_input, "the hands cannot take hold of the model: " +
-                                      std::string(deform::describe(status))};
+    return Error{Errc::bad_input,
+                 "the hands cannot grab the model: " + std::string(deform::describe(status))};
   return player;
 }
 

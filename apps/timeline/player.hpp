@@ -20,8 +20,8 @@ class Player {
 public:
   /// `model` should be the timeline's (Timeline::mesh_sum), and any field along the surface
   /// (SculptorOptions::surface) must be of it. Error: bad_input, without the file's name, if
-  /// complaint_about() has a complaint, the puppet does not fit the model, or the hands cannot take
-  /// hold of it.
+  /// complaint_about() has a complaint, the puppet does not fit the model, or the hands cannot grab
+  /// it.
   static Result<std::unique_ptr<Player>> make(Timeline timeline, const deform::Mesh& model);
 
   /// Makes the next frame, the first one at 0 s. Returns false if there is none. Allocates for
@@ -30,7 +30,7 @@ public:
   /// Returns true if there is a next frame that is not later than time_s, except for rounding.
   bool has_frame_by(double time_s) const noexcept;
   const flow::Frame& frame() const noexcept { return frame_; } ///< not before next()
-  double time_s() const noexcept;                              ///< of frame()
+  double time_s() const noexcept;                              ///< the time of frame()
   /// Returns the time of the timeline's last frame.
   double last_time_s() const noexcept;
   std::uint64_t frame_count() const noexcept { return frames_; } ///< in all
@@ -73,7 +73,7 @@ private:
 
   Timeline timeline_;
   std::vector<Hand> hands_;
-  std::array<puppet::HandState, 2> poses_; ///< by slot
+  std::array<puppet::HandState, 2> poses_; ///< indexed by slot
   flow::ChangeBroker changes_;
   flow::ShapingCore core_;
   flow::Frame frame_;

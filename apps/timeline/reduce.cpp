@@ -18,10 +18,6 @@ Tips tips_of(const hand::HandPose& pose, const Key& key) {
   return tips;
 }
 
-Tips tips_of(const hand::HandSkeleton& skeleton, const Key& key) {
-  return tips_of(skeleton.pose(key.angles, key.wrist_pose()), key);
-}
-
 double angle_between(const Key& one, const Key& other) {
   double most = one.wrist_turn.angularDistance(other.wrist_turn);
   if (one.wrist_turn.coeffs() == other.wrist_turn.coeffs()) most = 0.0; // but for its rounding
@@ -181,15 +177,10 @@ private:
   const PointSway* sway_;
   std::vector<bool> must_stay_; ///< as a key
   std::vector<bool> is_key_;
-  std::vector<Seen> seen_; ///< of each frame
+  std::vector<Seen> seen_; ///< one per frame
 };
 
 } // namespace
-
-Deviation deviation_between(const hand::HandSkeleton& skeleton, const Key& one, const Key& other) {
-  return {angle_between(one, other),
-          (tips_of(skeleton, one) - tips_of(skeleton, other)).colwise().norm().maxCoeff(), 0.0};
-}
 
 Reduction reduce_keys(const hand::HandSkeleton& skeleton, std::span<const Key> frames,
                       const Tolerance& tolerance, const PointSway* sway) {
@@ -198,6 +189,49 @@ Reduction reduce_keys(const hand::HandSkeleton& skeleton, std::span<const Key> f
   reducer.add_keys();
   reducer.drop_keys();
   return reducer.result();
+}
+
+PointSway::PointSway(const Timeline& timeline, Side side) {
+  if (!timeline.rig) return;
+  bool is_symmetric = timeline.rig_state.symmetric;
+  for (const Event& event : timeline.events) {
+    const auto* symmetry = std::get_if<flow::SetSymmetry>(&event.command);
+    is_symmetric = is_symmetric || (symmetry != nullptr && symmetry->on);
+    if (!std::holds_alternative<flow::Mark>(event.command)) held_at_s_.push_back(event.time_s);
+  }
+  reach_m_.resize(timeline.point_count(), 0);
+  const auto& functions = timeline.rig_state.functions;
+  for (std::size_t at = 0; at < functions.size(); ++at)
+    if (functions[at].input.side() == side) add(timeline, at, functions[at].input, is_symmetric);
+  for (const Event& event : timeline.events)
+    if (const auto* role = std::get_if<flow::SetRole>(&event.command);
+        role != nullptr && role->input.side() == side)
+      add(timeline, role->function, role->input, is_symmetric);
+}
+
+void PointSway::add(const Timeline& timeline, std::size_t function, const puppet::HandSignal& input,
+                    bool moves_twin) {
+  const puppet::Puppet& puppet = timeline.rig->puppet();
+  Eigen::VectorXd reach = timeline.rig->vectors_of(function).colwise().norm();
+  const auto twin = puppet.function_named(puppet::twin_of(puppet.functions[function].name));
+  if (moves_twin && twin && *twin != function)
+    reach += timeline.rig->vectors_of(*twin).colwise().norm().transpose();
+  reach /= std::abs(puppet.functions[function].travel) * timeline.units_per_metre;
+  inputs_.push_back(input);
+  reach_m_.conservativeResize(Eigen::NoChange, reach_m_.cols() + 1);
+  reach_m_.rightCols<1>() = reach;
+}
+
+Eigen::VectorXd PointSway::signals(const puppet::HandState& hand) const {
+  Eigen::VectorXd signals(static_cast<Eigen::Index>(inputs_.size()));
+  for (std::size_t at = 0; at < inputs_.size(); ++at)
+    signals[static_cast<Eigen::Index>(at)] = inputs_[at].of(hand);
+  return signals;
+}
+
+double PointSway::off_m(const Eigen::VectorXd& one, const Eigen::VectorXd& other) const {
+  if (inputs_.empty()) return 0.0;
+  return (reach_m_ * (one - other).cwiseAbs()).maxCoeff();
 }
 
 } // namespace nendo::timeline

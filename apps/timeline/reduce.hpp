@@ -5,17 +5,42 @@
 #include <span>
 #include <vector>
 
-#include "timeline/point_sway.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::timeline {
+
+/// How far the points of a puppet are off where the hand that plays it is off.
+class PointSway {
+public:
+  /// Of the functions that listen to that hand at any time. Without a puppet there are none.
+  PointSway(const Timeline& timeline, Side side);
+
+  /// Returns the numbers of that hand to which functions listen.
+  Eigen::VectorXd signals(const puppet::HandState& hand) const;
+  /// Returns how far any point is off where the signals are `one` in place of `other`, in metres on
+  /// the stage. It is a bound: limits of functions, and ways that cancel each other, make it less.
+  double off_m(const Eigen::VectorXd& one, const Eigen::VectorXd& other) const;
+  /// Returns the times at which functions may grab the hands. If hands are off there, so
+  /// are the values from then on.
+  const std::vector<double>& held_at_s() const noexcept { return held_at_s_; }
+
+private:
+  void add(const Timeline& timeline, std::size_t function, const puppet::HandSignal& input,
+           bool moves_twin);
+
+  std::vector<puppet::HandSignal> inputs_;
+  Eigen::MatrixXd
+      reach_m_; ///< displacement of each point, for a unit of each input; #points by #inputs
+  std::vector<double> held_at_s_;
+};
 
 /// The greatest allowed distance between a frame and the curve through the keys. With 0, every
 /// frame that is not exactly on the curve becomes a key.
 struct Tolerance {
   double angle_rad =
-      std::numeric_limits<double>::infinity();              ///< of any joint, and the wrist's turn
-  double tip_m = std::numeric_limits<double>::infinity();   ///< of any fingertip, and the wrist
-  double point_m = std::numeric_limits<double>::infinity(); ///< of any point of a puppet
+      std::numeric_limits<double>::infinity(); ///< limit of any joint, and the wrist's turn
+  double tip_m = std::numeric_limits<double>::infinity(); ///< limit of any fingertip, and the wrist
+  double point_m = std::numeric_limits<double>::infinity(); ///< limit of any point of a puppet
 };
 
 struct Deviation {
@@ -24,13 +49,10 @@ struct Deviation {
   double point_m = 0.0; ///< PointSway::off_m()
 };
 
-/// Returns the deviation between two poses of a hand that touches the model.
-Deviation deviation_between(const hand::HandSkeleton& skeleton, const Key& one, const Key& other);
-
 struct Reduction {
   std::vector<Key> keys;
   std::size_t frames = 0;
-  Deviation worst; ///< of any frame from the HandCurve of the keys
+  Deviation worst; ///< max deviation of a frame from the HandCurve of the keys
 };
 
 /// Returns keys for the frames, which must fulfil the conditions of HandTrack::keys. The first and

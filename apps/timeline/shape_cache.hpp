@@ -14,15 +14,23 @@
 #include <vector>
 
 #include "timeline/player.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::timeline {
+
+/// Returns a number of frames at the beginning that are the same in both, bit for bit. It may be
+/// too low, but never too high. `frames_before` and `frames_after` are Player::frame_count(). The
+/// rates must be equal. At most `most` frames are compared.
+std::uint64_t unchanged_frames(const Timeline& before, std::uint64_t frames_before,
+                               const Timeline& after, std::uint64_t frames_after,
+                               std::uint64_t most);
 
 struct CachedShape {
   std::uint64_t frame = 0;
   double time_s = 0.0;
   bool held = false;
   double held_since_s = 0.0;        ///< where the fingertips grabbed, if held
-  std::array<double, 5> radius_m{}; ///< of each finger then
+  std::array<double, 5> radius_m{}; ///< each finger's radius then
   std::vector<float> functions;     ///< their values, of a puppet
   deform::BlockShape shape;
   std::shared_ptr<const flow::ModelVersion> model; ///< that the shape is of
@@ -52,11 +60,11 @@ public:
 
   struct Progress {
     double until_s = 0.0;       ///< shapes are fresh up to this time
-    double duration_s = 0.0;    ///< of the timeline that is worked on
+    double duration_s = 0.0;    ///< the current timeline's duration
     std::uint64_t stride = 1;   ///< k
     bool done = false;          ///< all shapes are made, or there is an error
     std::size_t shapes = 0;     ///< that are kept
-    std::optional<Error> error; ///< of Player::make()
+    std::optional<Error> error; ///< an error of Player::make()
   };
   Progress progress() const;
   /// Blocks until Progress::done.
@@ -79,8 +87,8 @@ private:
   mutable std::mutex mutex_; ///< guards all members below
   mutable std::condition_variable changed_;
   std::optional<Timeline> wanted_; ///< the next timeline; nothing once work on it has begun
-  std::uint64_t number_ = 0;       ///< of the latest wanted timeline
-  std::uint64_t settled_ = 0;      ///< of the timeline that the following members describe
+  std::uint64_t number_ = 0;       ///< number of the latest wanted timeline
+  std::uint64_t settled_ = 0;      ///< number of the timeline that the following members describe
   std::vector<Shape> slots_;
   std::size_t fresh_ = 0; ///< the number of fresh shapes, which come first
   std::uint64_t frames_ = 0;

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <numbers>
 
-#include <nendo/flow/deform_loop.hpp>
 #include <nendo/flow/rig_setup.hpp>
 #include <nendo/flow/setting.hpp>
 #include <nendo/flow/tick_grid.hpp>
@@ -79,7 +78,7 @@ std::string complaint_about(const flow::SculptorOptions& sculptor, Eigen::Index 
   return {};
 }
 
-/// Of what a puppet is told; empty for all other commands.
+/// The complaint about a puppet's command; empty for all other commands.
 std::string complaint_about(const flow::Command& command, const puppet::Rig* rig) {
   if (!flow::is_for_puppet(command)) return {};
   if (rig == nullptr) return "is about a puppet, and there is none";
@@ -93,7 +92,7 @@ std::string complaint_about(const flow::Command& command, const puppet::Rig* rig
   return {};
 }
 
-/// Of what changes the model's parts; empty for all other commands.
+/// The complaint about a change of the model's parts; empty for all other commands.
 std::string complaint_about_parts(const flow::Command& command, const Timeline& timeline) {
   const auto* change = std::get_if<flow::ChangeModel>(&command);
   const auto* edit = std::get_if<flow::EditPart>(&command);
@@ -172,7 +171,7 @@ std::string words_of(const flow::SetClutch& clutch) {
   else if (clutch.finger > 0)
     who += " finger";
   return "the " + std::string(name_of(clutch.side)) + " " + who +
-         (clutch.holds ? " takes hold" : " lets go");
+         (clutch.holds ? " grabs" : " releases");
 }
 
 } // namespace
@@ -230,7 +229,7 @@ bool changes_model(const flow::Command& command) noexcept {
   return flow::model_asked_by(command) || std::holds_alternative<flow::ChangeModel>(command);
 }
 
-/// Of what changes the model.
+/// The words of a change of the model.
 static std::string words_of_model(const flow::Command& command) {
   if (const auto* refine = std::get_if<flow::Refine>(&command))
     return "refine up to " + std::to_string(refine->max_vertices) + " vertices";
@@ -322,6 +321,59 @@ std::string complaint_about(const Timeline& timeline) {
     if (flow::is_played(masks.get())) return "masks must have no points";
   if (std::string wrong = complaint_about(timeline.wires); !wrong.empty()) return wrong;
   return complaint_about(timeline.events, timeline);
+}
+
+namespace {
+
+auto first_from(const std::vector<Key>& keys, double time_s) noexcept {
+  return std::lower_bound(keys.begin(), keys.end(), time_s,
+                          [](const Key& key, double time) { return key.time_s < time; });
+}
+
+std::size_t index_in(const std::vector<Key>& keys, std::vector<Key>::const_iterator key) noexcept {
+  return static_cast<std::size_t>(key - keys.begin());
+}
+
+} // namespace
+
+const Key* find_key(const Timeline& timeline, const KeyRef& key) noexcept {
+  const HandTrack* const track = timeline.track(key.side);
+  return track == nullptr || key.key >= track->keys.size() ? nullptr : &track->keys[key.key];
+}
+
+std::optional<KeyRef> key_at(const Timeline& timeline, Side side, double time_s) noexcept {
+  const HandTrack* const track = timeline.track(side);
+  if (track == nullptr) return std::nullopt;
+  const auto found = first_from(track->keys, time_s);
+  if (found == track->keys.end() || found->time_s != time_s) return std::nullopt;
+  return KeyRef{side, index_in(track->keys, found)};
+}
+
+std::optional<KeyRef> key_after(const Timeline& timeline, double time_s,
+                                std::optional<Side> side) noexcept {
+  std::optional<KeyRef> nearest;
+  for (const HandTrack& hand : timeline.hands) {
+    if (side && hand.side != *side) continue;
+    auto found = first_from(hand.keys, time_s);
+    if (found != hand.keys.end() && found->time_s == time_s) ++found;
+    if (found == hand.keys.end()) continue;
+    if (!nearest || found->time_s < find_key(timeline, *nearest)->time_s)
+      nearest = KeyRef{hand.side, index_in(hand.keys, found)};
+  }
+  return nearest;
+}
+
+std::optional<KeyRef> key_before(const Timeline& timeline, double time_s,
+                                 std::optional<Side> side) noexcept {
+  std::optional<KeyRef> nearest;
+  for (const HandTrack& hand : timeline.hands) {
+    if (side && hand.side != *side) continue;
+    const auto after = first_from(hand.keys, time_s);
+    if (after == hand.keys.begin()) continue;
+    if (!nearest || (after - 1)->time_s > find_key(timeline, *nearest)->time_s)
+      nearest = KeyRef{hand.side, index_in(hand.keys, after - 1)};
+  }
+  return nearest;
 }
 
 } // namespace nendo::timeline

@@ -46,7 +46,7 @@ struct Event {
   double time_s = 0.0;
   /// A Request, ChangeSettings (without a filter, because keys are poses that were filtered),
   /// Subdivide, Refine, Mark, or, with a puppet, SetClutch, SetRole or SetSymmetry. These three
-  /// find the hands as they were in the frame before. Without a puppet, ChangePuppet names other
+  /// find the hands as they were in the previous frame. Without a puppet, ChangePuppet names other
   /// `masks`, JoinParts, ChangeTopology or EditPart (with its part) changes the model, and so does
   /// ChangeModel of a cut, whose number is that of the wire in `wires`.
   flow::Command command = flow::Request::grab;
@@ -61,8 +61,8 @@ struct Timeline {
   std::string mesh;             ///< the model's file
   recording::ShapeSum mesh_sum; ///< identifies the model
   double units_per_metre = 1.0; ///< from the stage to the model
-  double rate_hz = 90.0;        ///< of the frames that are made from the timeline
-  double duration_s = 0.0;      ///< of the last frame
+  double rate_hz = 90.0;        ///< rate of the frames that are made from the timeline
+  double duration_s = 0.0;      ///< time of the last frame
   bool held = true;             ///< the hands hold the model at first
   /// A field along the surface is not in files. Without it, a player makes it of the puppet.
   flow::SculptorOptions sculptor;
@@ -90,10 +90,10 @@ struct Timeline {
   }
 };
 
-/// Returns the state of a puppet that nobody has played yet.
+/// Returns the state of a puppet that has not been played yet.
 puppet::RigState first_state(const puppet::Rig& rig);
 
-/// The name of what a SetClutch is about (SetClutch::finger): "thumb" to "little", "palm", "all".
+/// The name of a finger, or of several (SetClutch::finger): "thumb" to "little", "palm", "all".
 std::string_view clutched_name(std::uint8_t finger) noexcept;
 std::optional<std::uint8_t> clutched_named(std::string_view name) noexcept;
 
@@ -101,7 +101,7 @@ std::optional<std::uint8_t> clutched_named(std::string_view name) noexcept;
 /// (0.3)", "the left index finger releases".
 std::string in_words(const Timeline& timeline, const Event& event);
 
-inline constexpr std::size_t max_keys = 1'000'000; ///< of a hand
+inline constexpr std::size_t max_keys = 1'000'000; ///< max number per hand
 inline constexpr std::size_t max_events = 1'000'000;
 inline constexpr double longest_s = 1e6;
 inline constexpr double farthest_m = 1e3;
@@ -110,5 +110,22 @@ inline constexpr double farthest_m = 1e3;
 /// line without the file's name, or an empty text if the timeline can be played.
 std::string complaint_about(const Timeline& timeline);
 std::string complaint_about(const Key& key);
+
+struct KeyRef {
+  Side side = Side::right;
+  std::size_t key = 0; ///< counted from 0
+
+  friend bool operator==(const KeyRef&, const KeyRef&) = default;
+};
+
+/// Returns null if there is no such key.
+const Key* find_key(const Timeline& timeline, const KeyRef& key) noexcept;
+/// Returns the hand's key at exactly that time.
+std::optional<KeyRef> key_at(const Timeline& timeline, Side side, double time_s) noexcept;
+/// Return the nearest key after or before time_s, either of the hand of that side or of any hand.
+std::optional<KeyRef> key_after(const Timeline& timeline, double time_s,
+                                std::optional<Side> side = std::nullopt) noexcept;
+std::optional<KeyRef> key_before(const Timeline& timeline, double time_s,
+                                 std::optional<Side> side = std::nullopt) noexcept;
 
 } // namespace nendo::timeline

@@ -61,7 +61,7 @@ std::string brush_names(const std::array<deform::Brush, 5>& brushes) {
   return "[" + names + "]";
 }
 
-/// Returns the value of a setting as it stands in a file.
+/// Returns the value of a setting as a file has it.
 struct SettingValue {
   const flow::LoopSettings& settings;
 
@@ -169,26 +169,26 @@ std::string clutch_text(const flow::SetClutch& clutch) {
 /// The strings of all masks, by their numbers.
 std::string masks_text(const Timeline& timeline) {
   if (timeline.masks.empty()) return {};
-  std::string texts;
+  std::string lines;
   for (const auto& masks : timeline.masks)
-    texts += "  " + (masks ? toml_lines(masks->puppet().text) : std::string("\"\"")) + ",\n";
-  return "masks = [\n" + texts + "]\n";
+    lines += "  " + (masks ? toml_lines(masks->puppet().text) : std::string("\"\"")) + ",\n";
+  return "masks = [\n" + lines + "]\n";
 }
 
 /// The places of all wires, by their numbers.
 std::string wires_text(const Timeline& timeline) {
   if (timeline.wires.empty()) return {};
-  std::string texts;
+  std::string lines;
   for (const auto& wire : timeline.wires) {
-    texts += "  [\n";
+    lines += "  [\n";
     for (const deform::WirePlace& place : wire) {
       Eigen::Matrix<double, 6, 1> ends;
       ends << place.from, place.to;
-      texts += "    " + list(ends) + ",\n";
+      lines += "    " + list(ends) + ",\n";
     }
-    texts += "  ],\n";
+    lines += "  ],\n";
   }
-  return "wires = [\n" + texts + "]\n";
+  return "wires = [\n" + lines + "]\n";
 }
 
 std::string event_text(const Timeline& timeline, const Event& event) {

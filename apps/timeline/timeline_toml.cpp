@@ -243,11 +243,11 @@ void complain_in_text(TomlReader& reader, const toml::node& text, const std::str
 
 /// The strings of all masks, by their numbers; an empty one: none.
 void read_masks(TomlReader& reader, const toml::table& root, Timeline& timeline) {
-  const toml::array* const texts = reader.array(root, "masks");
-  if (texts == nullptr) return;
-  for (const toml::node& node : *texts) {
+  const toml::array* const strings = reader.array(root, "masks");
+  if (strings == nullptr) return;
+  for (const toml::node& node : *strings) {
     const auto text = node.value<std::string>();
-    if (!text) return reader.complain(node, "masks must be texts of mask files");
+    if (!text) return reader.complain(node, "masks must be strings with mask files");
     auto& masks = timeline.masks.emplace_back();
     if (text->empty()) continue;
     auto puppet = puppet::parse_puppet(*text, "");

@@ -104,7 +104,7 @@ TEST_SUITE("edit_session") {
                    });
   }
 
-  TEST_CASE("what is shown at a frame's time are the player's hands, and where they took hold") {
+  TEST_CASE("what is shown at a frame's time are the player's hands, and where they grabbed") {
     Edited edited;
     auto player = Player::make(edited.first, edited.model);
     REQUIRE(player);
@@ -290,7 +290,7 @@ TEST_SUITE("edit_session") {
     CHECK(elsewhere.has_ended());
   }
 
-  TEST_CASE("the export is of the timeline as it is edited, and goes on beside") {
+  TEST_CASE("the export is of the timeline as it is edited, and continues beside") {
     Edited edited;
     edited.wish(EditCommand::mirror);
     edited.wish(EditCommand::export_glb);

@@ -1,4 +1,4 @@
-#include "export/control_morphs.hpp"
+#include "export/exact_morphs.hpp"
 
 #include <doctest/doctest.h>
 

@@ -10,14 +10,14 @@
 
 #include <nendo/recording/recorder.hpp>
 
+#include "export/csv_tables.hpp"
 #include "export/gltf_export.hpp"
 #include "export/hands_bvh.hpp"
-#include "export/samples_csv.hpp"
 #include "support/bvh_reader.hpp"
 #include "support/csv_table.hpp"
 #include "support/glb_reader.hpp"
 #include "support/takes.hpp"
-#include "takes/glove_frames.hpp"
+#include "takes/recorded_frames.hpp"
 
 namespace glove_recording_test {
 
@@ -36,7 +36,7 @@ struct RecordedGloves {
   test::TemporaryFolder folder;
   std::filesystem::path path = folder.path() / "gloves.nendo";
   recording::Setup setup = recording::begin_setup("test 1.0");
-  std::vector<GloveSample> samples; ///< of both, in the order of the recording
+  std::vector<GloveSample> samples; ///< samples of both, in the order of the recording
 
   RecordedGloves() {
     for (const Side side : {Side::left, Side::right}) {
@@ -144,7 +144,7 @@ hand::HandPose pose_of(const RecordedGloves& gloves, std::size_t sample) {
 } // namespace
 
 TEST_SUITE("glove_recording") {
-  TEST_CASE("every sample is a row, with its counts, both clocks and what the glove told") {
+  TEST_CASE("every sample is a row, with its counts, both clocks and the glove's readings") {
     const RecordedGloves gloves;
     const auto done = export_samples_csv(gloves.path, {}, gloves.out("a.csv"));
     REQUIRE(done);

@@ -138,7 +138,7 @@ TEST_SUITE("gltf_export") {
       REQUIRE(puppet);
       const deform::Points& model = motion.played.test.model.vertices;
       const Eigen::VectorXd weights = puppet::mask_weights(*puppet, model);
-      int stopped = 0; // of what moves without a mask
+      int stopped = 0; // vertices that move without a mask
       for (Eigen::Index v = 0; v < model.cols(); ++v)
         if (weights[v] == 0.0) {
           CHECK(motion.shapes[30].col(v) == model.col(v));
@@ -192,7 +192,7 @@ TEST_SUITE("gltf_export") {
                            motion.shapes[9 + 2 * at]) < 1.01e-3 * motion.diagonal());
   }
 
-  TEST_CASE("ways in several links are no control vectors, and are told apart by their shapes") {
+  TEST_CASE("ways in several links are no control vectors, and are distinguished by their shapes") {
     const RecordedMotion motion(Motion{.injective = true, .bend_counts = 60.0});
     const auto done = export_it(motion);
     REQUIRE(done);
@@ -265,7 +265,7 @@ TEST_SUITE("gltf_export") {
     }
   }
 
-  TEST_CASE("joints stand where the hands' were, and the skin follows as the viewer's does") {
+  TEST_CASE("joints are where the hands' were, and the skin follows as the viewer's does") {
     const RecordedMotion motion(Motion{});
     REQUIRE(export_it(motion));
     const Glb glb = read(motion);

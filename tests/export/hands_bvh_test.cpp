@@ -84,10 +84,10 @@ TEST_SUITE("hands_bvh") {
     REQUIRE(export_to(motion.path("b.bvh")));
     const rlim_t most = std::max(std::filesystem::file_size(motion.path("b-left.bvh")),
                                  std::filesystem::file_size(motion.path("b-right.bvh")));
-    for (const rlim_t room : {rlim_t{100}, most - 1}) { // in the head, and in the last frame
+    for (const rlim_t space : {rlim_t{100}, most - 1}) { // in the head, and in the last frame
       Result<Exported> done = Exported{};
       {
-        const test::SmallDisk small(room);
+        const test::SmallDisk small(space);
         done = export_to(folder.path() / "a.bvh");
       }
       check_kept(done, Errc::failed);

@@ -66,7 +66,7 @@ TEST_SUITE("joint_study") {
     CHECK(study.components.back() == doctest::Approx(1.0));
   }
 
-  TEST_CASE("noise is told although the hand moves") {
+  TEST_CASE("noise is reported although the hand moves") {
     for (const double noise_rad : {0.002, 0.01}) {
       const auto study = takes::study_joints(two_motions(4000, noise_rad), sensors_22);
       for (const Angle angle : {Angle::index_pip_flexion, Angle::thumb_ip_flexion})

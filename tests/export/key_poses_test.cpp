@@ -33,7 +33,7 @@ void play_one_after_another(flow::Frame& frame) {
 } // namespace
 
 TEST_SUITE("key_poses") {
-  TEST_CASE("they are the first frame, and the peaks of what is played, in their order") {
+  TEST_CASE("they are the first frame, and the peaks of the played functions, in their order") {
     ScriptedFrames frames(times(400));
     frames.change = play_one_after_another;
     const auto found = takes::key_poses(frames, 4);
@@ -43,7 +43,7 @@ TEST_SUITE("key_poses") {
       CHECK(found[peak + 1] == doctest::Approx(0.5 + static_cast<double>(peak)));
   }
 
-  TEST_CASE("without a puppet, the hands' angles tell, and nothing is chosen twice") {
+  TEST_CASE("without a puppet, the hands' angles decide, and nothing is chosen twice") {
     ScriptedFrames frames(times(100));
     frames.change = [](flow::Frame& frame) {
       frame.hands[1].present = true;

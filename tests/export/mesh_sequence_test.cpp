@@ -1,4 +1,4 @@
-#include "export/mesh_sequence.hpp"
+#include "export/shape_files.hpp"
 
 #include <doctest/doctest.h>
 
@@ -17,7 +17,7 @@ TEST_SUITE("mesh_sequence") {
   TEST_CASE("a number has one place in a name, as printf has it") {
     struct Row {
       const char* pattern;
-      const char* name; ///< of number 7; null: refused
+      const char* name; ///< name of number 7; null: refused
     };
     for (const Row& row : std::initializer_list<Row>{{"a-%04d.obj", "a-0007.obj"},
                                                      {"%d.ply", "7.ply"},
@@ -65,7 +65,7 @@ TEST_SUITE("mesh_sequence") {
     }
   }
 
-  TEST_CASE("a frame that cannot be written ends it, and what is whole is told") {
+  TEST_CASE("a frame that cannot be written ends it, and what is whole is reported") {
     const RecordedMotion motion(Motion{.ticks = 4});
     std::filesystem::create_directory(motion.path("f-3.obj"));
     const auto source = motion.frames();

@@ -1,4 +1,4 @@
-#include "export/motion_csv.hpp"
+#include "export/csv_tables.hpp"
 
 #include <limits>
 
@@ -16,7 +16,8 @@ using nendo::test::Motion;
 using nendo::test::RecordedMotion;
 
 TEST_SUITE("motion_csv") {
-  TEST_CASE("a row a frame has time, status, fingertips, and angles that make those fingertips") {
+  TEST_CASE(
+      "each frame's row has time, status, fingertips, and angles that make those fingertips") {
     const RecordedMotion motion(Motion{.ticks = 15, .commit_at_tick = 9});
     const auto source = motion.frames();
     auto frames = ChosenFrames::make(*source, {});
@@ -71,7 +72,7 @@ TEST_SUITE("motion_csv") {
     std::vector<std::string> missing;
     for (const auto& [name, cells] : table) {
       REQUIRE(cells.size() == 3);
-      if (name.ends_with("_calibrated")) continue; // frames by a script tell no calibration
+      if (name.ends_with("_calibrated")) continue; // frames by a script have no calibration
       CHECK(cells[0] != "nan");
       if (cells[1] == "nan") missing.push_back(name);
     }

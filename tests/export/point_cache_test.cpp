@@ -1,4 +1,4 @@
-#include "export/point_cache.hpp"
+#include "export/shape_files.hpp"
 
 #include <cstring>
 
@@ -90,7 +90,7 @@ TEST_SUITE("point_cache") {
     check_points(motion, words, 8 + 4 * 5, 5, 1, 5);
   }
 
-  TEST_CASE("where the model becomes finer another file begins, and it is told when") {
+  TEST_CASE("where the model becomes finer another file begins, and the report says when") {
     const RecordedMotion motion(Motion{.subdivide_at_tick = 24});
     for (const PointCache format : {PointCache::pc2, PointCache::mdd}) {
       const bool is_mdd = format == PointCache::mdd;
@@ -118,10 +118,10 @@ TEST_SUITE("point_cache") {
     }
   }
 
-  TEST_CASE("where it cannot be written is told, and nothing is left there") {
+  TEST_CASE("a file that cannot be written is reported, and nothing is left there") {
     const RecordedMotion motion(Motion{.ticks = 3});
     const auto done = export_point_caches(frames_of(motion), {.rate_hz = 100.0}, PointCache::pc2,
-                                          "/proc/nobody/a.pc2");
+                                          "/proc/missing/a.pc2");
     REQUIRE_FALSE(done);
     CHECK(done.error().code == Errc::failed);
     const auto device =

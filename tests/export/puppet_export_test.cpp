@@ -9,7 +9,7 @@
 
 #include <nendo/puppet/puppet_edit.hpp>
 
-#include "export/control_morphs.hpp"
+#include "export/exact_morphs.hpp"
 #include "export/gltf_export.hpp"
 #include "support/counted_frames.hpp"
 #include "support/glb_reader.hpp"
@@ -267,7 +267,8 @@ TEST_SUITE("puppet_export") {
     }
   }
 
-  TEST_CASE("shapes that are no sums of the functions are told, and are as near as is asked for") {
+  TEST_CASE(
+      "shapes that are no sums of the functions are reported, and are as near as is asked for") {
     for (const PuppetMotion& motion :
          {PuppetMotion{.request = flow::Request::undo}, PuppetMotion{.mode = flow::Mode::type2},
           PuppetMotion{.distance = "air", .request = flow::Request::commit}}) {

@@ -15,8 +15,7 @@
 #include <nendo/hand/joints.hpp>
 #include <nendo/recording/recorder.hpp>
 
-#include "export/motion_csv.hpp"
-#include "export/samples_csv.hpp"
+#include "export/csv_tables.hpp"
 #include "support/csv_table.hpp"
 #include "support/recorded_motion.hpp"
 #include "support/takes.hpp"
@@ -76,7 +75,7 @@ void check_columns(const std::string& file, const std::vector<std::string>& desc
   std::getline(lines, head);
   std::set<std::string> unexplained;
   for (const std::string& name : test::csv_cells(head))
-    CHECK_MESSAGE(unexplained.insert(name).second, name, " stands there twice");
+    CHECK_MESSAGE(unexplained.insert(name).second, name, " is there twice");
   for (const std::string& name : described) {
     std::size_t matches = 0;
     for (const std::string& one : expanded(name))

@@ -57,7 +57,7 @@ struct Played {
   std::array<HandState, 2> states;
   HostTime time{1h};
   double greatest_jump = 0.0;
-  int changes = 0; ///< of what the left hand holds
+  int changes = 0; ///< changes of the left hand's held functions
 
   explicit Played(const std::string& clutch)
       : player(rig_with(clutch)), plain(rig_with(clutch)), gestures(player.rig()) {
@@ -99,7 +99,7 @@ const std::string fist = "[clutch]\nleft = \"fist\"\n";
 } // namespace
 
 TEST_SUITE("gesture_clutch") {
-  TEST_CASE("a fist that is held lets go at the values from before it, and the next takes hold") {
+  TEST_CASE("a fist that is held releases the values from before it, and the next grabs") {
     Played played(fist);
     played.go(0.0, 60.0, 0.5);
     played.stay(60.0, 0.5);
@@ -172,7 +172,7 @@ TEST_SUITE("gesture_clutch") {
     }
   }
 
-  TEST_CASE("the other hand goes on, bit for bit, and so do hands without gestures") {
+  TEST_CASE("the other hand continues, bit for bit, and so do hands without gestures") {
     Played played(fist);
     for (int round = 0; round < 3; ++round) {
       played.go(0.0, 230.0, 0.3);
@@ -187,7 +187,7 @@ TEST_SUITE("gesture_clutch") {
     CHECK(none.value(left_index) == none.plain.values()[left_index]);
   }
 
-  TEST_CASE("a finger that has let go by itself stays so when its hand lets go and takes hold") {
+  TEST_CASE("a finger that has released by itself stays so when its hand releases and grabs") {
     Played played(fist);
     played.go(0.0, 60.0, 0.4);
     played.player.set_clutch(Side::left, 3, false, played.hands()); // the ring finger
@@ -208,7 +208,7 @@ TEST_SUITE("gesture_clutch") {
     CHECK(played.value(left_ring) > ring + 0.1);
   }
 
-  TEST_CASE("a finger takes hold alone of a hand that has let go") {
+  TEST_CASE("a finger grabs alone of a hand that has released") {
     Played played("");
     played.player.set_clutch(Side::left, RigPlayer::all_fingers, false, played.hands());
     played.player.set_clutch(Side::left, 1, true, played.hands());
@@ -230,7 +230,7 @@ TEST_SUITE("gesture_clutch") {
     CHECK(played.changes == 1);
   }
 
-  TEST_CASE("a pinch of a right hand's skeleton lets go, an open hand and a fist do not") {
+  TEST_CASE("a pinch of a right hand's skeleton releases, an open hand and a fist do not") {
     const hand::HandSkeleton skeleton(Side::right);
     const auto strength = [&](const hand::JointAngles& angles) {
       return gesture_strength(ClutchMeans::pinch,

@@ -297,7 +297,7 @@ TEST_SUITE("puppet edit") {
     }
   }
 
-  TEST_CASE("mirror on and off: sides are told by names, and twins become points of their own") {
+  TEST_CASE("mirror on and off: sides follow from names, and twins become points of their own") {
     Ball ball = with_two_points();
     ball.take(with_function(ball.rig, {{-0.6, 0, 0.8}, 0.5}, {-0.3, 0.1, 0}, index_bends, travel));
     ball.take(with_mirror(ball.rig, true));

@@ -76,7 +76,7 @@ TEST_SUITE("puppet file") {
       CHECK(refuses(replaced(whole, "radius = 1.5", wrong), "p.toml:6"));
   }
 
-  TEST_CASE("a mirrored file has twins of what is named Left: other hand, other side") {
+  TEST_CASE("a mirrored file has twins of those named Left: other hand, other side") {
     const auto parsed = parse_puppet(whole, "p.toml");
     REQUIRE(parsed);
     REQUIRE(parsed->points.size() == 4);
@@ -116,7 +116,7 @@ TEST_SUITE("puppet file") {
       if (point.name == "cornerRight") CHECK(point.radius == 4.0);
   }
 
-  TEST_CASE("unknown keys are refused, wherever they stand") {
+  TEST_CASE("unknown keys are refused, wherever they are") {
     CHECK(refuses("colour = 1\n" + whole, "'colour'"));
     CHECK(refuses(replaced(whole, "radius = 2.0", "radius = 2.0, size = 1"), "'size'"));
     CHECK(refuses(replaced(whole, "travel_deg = 90", "travel_deg = 90\nspeed = 2"), "'speed'"));

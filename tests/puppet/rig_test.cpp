@@ -137,7 +137,7 @@ TEST_SUITE("rig") {
     }
   }
 
-  TEST_CASE("hands that stay as they took hold leave the model as it is") {
+  TEST_CASE("hands that stay as they grabbed leave the model as it is") {
     const deform::Mesh mesh = ball();
     const auto rig = rig_of(text, mesh);
     RigPlayer player(rig);
@@ -170,7 +170,7 @@ TEST_SUITE("rig") {
     }
   }
 
-  TEST_CASE("letting go and taking hold elsewhere keeps the values") {
+  TEST_CASE("a release and a grab elsewhere keep the values") {
     const deform::Mesh mesh = ball();
     RigPlayer player(rig_of(text, mesh));
     player.take_hold(TwoHands(0.0, 0.0).hands());
@@ -315,7 +315,7 @@ TEST_SUITE("rig") {
     }
   }
 
-  TEST_CASE("a mix of radii interpolates through the air, too, narrower than its widest radius") {
+  TEST_CASE("a mix of radii also interpolates through the air, narrower than its widest radius") {
     const deform::Mesh mesh = ball();
     const auto moved = [&](const char* radius) {
       std::string file = "version = 1\nmodel = \"ball\"\ndistance = \"air\"\n[points]\n"

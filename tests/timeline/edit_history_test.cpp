@@ -65,34 +65,34 @@ Result<Selection> refuse(Timeline& timeline) {
 } // namespace
 
 TEST_SUITE("edit_history") {
-  TEST_CASE("undo takes back every edit and redo does it again, bit for bit, without limit") {
+  TEST_CASE("undo reverts every edit and redo does it again, bit for bit, without limit") {
     for (const unsigned seed : {1U, 2U, 3U}) {
       std::mt19937 random(seed);
       EditHistory history(some_timeline(seed));
-      std::vector<std::string> texts{text_of(history.timeline())};
+      std::vector<std::string> versions{text_of(history.timeline())};
       std::vector<Selection> selections{history.selected()};
       for (int edit = 0; edit < test::rounds(300); ++edit) {
-        const std::string before = texts.back();
+        const std::string before = versions.back();
         const bool done = static_cast<bool>(history.apply(random_edit(random)));
         const std::string now = text_of(history.timeline());
         CHECK(complaint_about(history.timeline()).empty());
         if (!done) CHECK(now == before);
         if (now == before) continue; // no step
-        texts.push_back(now);
+        versions.push_back(now);
         selections.push_back(history.selected());
       }
-      CHECK(texts.size() > static_cast<std::size_t>(test::rounds(100)));
+      CHECK(versions.size() > static_cast<std::size_t>(test::rounds(100)));
       for (int round = 0; round < 2; ++round) {
-        for (std::size_t at = texts.size() - 1; at > 0; --at) {
+        for (std::size_t at = versions.size() - 1; at > 0; --at) {
           CHECK(history.can_undo());
           REQUIRE(history.undo());
-          CHECK(text_of(history.timeline()) == texts[at - 1]);
+          CHECK(text_of(history.timeline()) == versions[at - 1]);
         }
         CHECK_FALSE(history.undo());
-        for (std::size_t at = 1; at < texts.size(); ++at) {
+        for (std::size_t at = 1; at < versions.size(); ++at) {
           CHECK(history.can_redo());
           REQUIRE(history.redo());
-          CHECK(text_of(history.timeline()) == texts[at]);
+          CHECK(text_of(history.timeline()) == versions[at]);
           CHECK(history.selected() == selections[at]);
         }
         CHECK_FALSE(history.redo());
@@ -137,7 +137,7 @@ TEST_SUITE("edit_history") {
     CHECK_FALSE(history.is_modified());
   }
 
-  TEST_CASE("of what a mouse tries only the last is kept, as one step, or nothing") {
+  TEST_CASE("only the last of a mouse's tries is kept, as one step, or nothing") {
     const Timeline first = some_timeline();
     EditHistory history(first);
     const double time_s = first.hands[0].keys[2].time_s;

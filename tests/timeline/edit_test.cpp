@@ -64,7 +64,7 @@ TEST_SUITE("edit") {
     CHECK(test::same_bits(edited, before));
   }
 
-  TEST_CASE("a time behind the end by a tick at most is the end, or just before the key there") {
+  TEST_CASE("a time after the end by a tick at most is the end, or just before the key there") {
     Timeline edited = some_timeline();
     std::vector<Key>& keys = edited.hands[1].keys;
     const double end_s = edited.duration_s;
@@ -217,7 +217,7 @@ TEST_SUITE("edit") {
     }
   }
 
-  TEST_CASE("a blend keeps what a hand's own keys behind the end make of the time before it") {
+  TEST_CASE("a blend keeps what a hand's own keys after the end make of the time before it") {
     const Timeline other = some_timeline(2);
     Timeline one = some_timeline(1);
     for (HandTrack& hand : one.hands) {
@@ -266,7 +266,7 @@ TEST_SUITE("edit") {
     CHECK_FALSE(blend_key(edited, Side::left, 5, 0.5));
   }
 
-  TEST_CASE("a fingertip comes to where it was told, and no other finger moves") {
+  TEST_CASE("a fingertip comes to its target, and no other finger moves") {
     std::mt19937 random(5);
     for (unsigned round = 0; round < 20; ++round) {
       Timeline edited = some_timeline(10 + round);

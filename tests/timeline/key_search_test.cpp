@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "support/timelines.hpp"
-#include "timeline/key_search.hpp"
+#include "timeline/timeline.hpp"
 
 namespace key_search_test {
 

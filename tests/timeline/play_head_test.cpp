@@ -25,7 +25,7 @@ TEST_SUITE("play_head") {
     CHECK(head.is_playing());
   }
 
-  TEST_CASE("in a loop it goes on from the beginning") {
+  TEST_CASE("in a loop it continues from the beginning") {
     PlayHead head;
     head.set_loops(true);
     head.toggle(2.0);

@@ -170,7 +170,7 @@ TEST_SUITE("player") {
   }
 
   TEST_CASE(
-      "a model that becomes finer is finer in the timeline, too, and what was undone is back") {
+      "a model that becomes finer is also finer in the timeline, and what was undone is back") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       CAPTURE(name_of(mode));
       Taken taken(mode);
@@ -222,7 +222,7 @@ TEST_SUITE("player") {
     }
   }
 
-  TEST_CASE("a model that is refined is refined in the timeline, too, up to as many vertices") {
+  TEST_CASE("a model that is refined is also refined in the timeline, up to as many vertices") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       CAPTURE(name_of(mode));
       Taken taken(mode);

@@ -13,10 +13,10 @@
 #include "support/timelines.hpp"
 #include "timeline/edit.hpp"
 #include "timeline/edit_history.hpp"
-#include "timeline/first_change.hpp"
 #include "timeline/from_take.hpp"
 #include "timeline/function_values.hpp"
 #include "timeline/player.hpp"
+#include "timeline/shape_cache.hpp"
 #include "timeline/timeline_file.hpp"
 
 namespace puppet_timeline_test {
@@ -83,7 +83,7 @@ std::size_t count(const Timeline& timeline) {
 
 TEST_SUITE("puppet_timeline") {
   TEST_CASE("with a key for every tick it makes every shape of the take, bit for bit, with hands "
-            "and fingers that let go, roles and symmetry, also after it has been a file") {
+            "and fingers that release, roles and symmetry, also after it has been a file") {
     for (unsigned seed = 0; static_cast<int>(seed) < test::rounds(12); ++seed) {
       CAPTURE(seed);
       std::string text = test::ball_puppet;
@@ -437,12 +437,12 @@ TEST_SUITE("puppet_timeline") {
     CHECK(refused("jawopen", 1, 0.5).find("no function 'jawopen'") != std::string::npos);
     CHECK(refused("pucker", 1, 1.5).find("from 0 to 1") != std::string::npos);
     CHECK(refused("pucker", 99, 0.5).find("key 99") != std::string::npos);
-    CHECK(refused("pucker", 0, 0.5).find("takes hold") != std::string::npos);
+    CHECK(refused("pucker", 0, 0.5).find("grabs") != std::string::npos);
     CHECK(refused("frownLeft", 4, 2.0).find("ends where") != std::string::npos); // -60 degrees
     timeline.events = {{0.1, flow::SetClutch{Side::left, 0, false}}};
-    CHECK(refused("pucker", 4, 0.5).find("let go") != std::string::npos);
+    CHECK(refused("pucker", 4, 0.5).find("released") != std::string::npos);
     timeline.events = {{0.1, flow::Request::let_go}};
-    CHECK(refused("pucker", 4, 0.5).find("let go") != std::string::npos);
+    CHECK(refused("pucker", 4, 0.5).find("released") != std::string::npos);
     timeline.rig.reset();
     timeline.rig_state = {};
     CHECK(refused("pucker", 4, 0.5).find("no puppet") != std::string::npos);
@@ -519,7 +519,7 @@ TEST_SUITE("puppet_timeline") {
     }
   }
 
-  TEST_CASE("a puppet of another model is refused, and so is what has no puppet to be told to") {
+  TEST_CASE("a puppet of another model is refused, and so are commands without a puppet") {
     Timeline made = test::puppet_timeline(test::sphere(6, 8, 1.0), 12);
     puppet::Puppet puppet = made.rig->puppet();
     puppet.points[1].vertex = 5000;

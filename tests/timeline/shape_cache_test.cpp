@@ -151,7 +151,7 @@ TEST_SUITE("shape_cache") {
     }
   }
 
-  TEST_CASE("what an edit does not reach is kept, and is the same as if it were made anew") {
+  TEST_CASE("what an edit does not reach is kept, and is the same as if it were made again") {
     Timeline timeline = test::waved_timeline(model(), flow::Mode::type2);
     ShapeCache cache(model());
     cache.follow(timeline);
@@ -182,7 +182,7 @@ TEST_SUITE("shape_cache") {
     check_all(cache, timeline);
   }
 
-  TEST_CASE("what cannot be played is told, and what comes after it is made") {
+  TEST_CASE("what cannot be played is reported, and what comes after it is made") {
     Timeline timeline = test::waved_timeline(model(), flow::Mode::type1);
     ShapeCache cache(model());
     Timeline bad = timeline;

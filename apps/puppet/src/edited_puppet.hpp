@@ -65,7 +65,8 @@ public:
   /// Without the points of which `goes` is true.
   void remove_points(const std::vector<bool>& goes);
 
-  static constexpr double middle = 0.05; ///< of the radius: nearer to x = 0, a point has no side
+  static constexpr double middle =
+      0.05; ///< fraction of the radius: nearer to x = 0, a point has no side
 
 private:
   Puppet puppet_;

@@ -2,22 +2,115 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include <nendo/base/text.hpp>
 #include <nendo/deform/surface_graph.hpp>
 #include <nendo/puppet/face_landmarks.hpp>
 #include <nendo/puppet/rig_check.hpp>
 
-#include "face_puppet.hpp"
-
 namespace nendo::puppet {
-
 using deform::Mesh;
 using Eigen::Vector3d;
 
 namespace {
+
+struct DraftPoint {
+  std::string name;
+  std::string place; ///< `at = [...]` or `vertex = ...`
+  double radius = 1.0;
+  bool is_pin = false;
+};
+
+struct DraftFunction {
+  std::string name;
+  std::string input;
+  double travel_deg = 90.0;
+  bool eases = true;
+  /// A turn about an axis along x through (0, y, z), of each point by its part; or moves.
+  double turn_deg = 0.0;
+  double axis_y = 0.0, axis_z = 0.0;
+  std::vector<std::pair<std::string, double>> turns{};
+  std::vector<std::pair<std::string, Eigen::Vector3d>> moves{};
+  double part = 1.0; ///< fraction of the intended value, since more would fold
+};
+
+/// A puppet's file: points and functions that can still be changed.
+struct PuppetDraft {
+  std::string model;
+  std::vector<std::string> comments; ///< lines
+  std::vector<DraftPoint> points;
+  std::vector<DraftFunction> functions;
+  std::string parts; ///< as in the file
+  double unit = 1.0; ///< the face's, by which numbers are rounded
+
+  std::string text() const;
+};
+
+/// Rounded to a power of ten that is fine enough for this unit.
+std::string rounded_text(double value, double unit) {
+  const double grain = std::pow(10.0, std::floor(std::log10(unit / 2000.0)));
+  const double digits = std::round(1.0 / grain); // exact where the grain is a decimal
+  const double rounded =
+      grain < 1.0 ? std::round(value * digits) / digits : std::round(value / grain) * grain;
+  return decimal_text(rounded + 0.0); // no -0
+}
+
+/// Returns `[x, y, z]`, rounded to a 2000th of the unit or less.
+std::string vector_text(const Eigen::Vector3d& vector, double unit) {
+  return "[" + rounded_text(vector.x(), unit) + ", " + rounded_text(vector.y(), unit) + ", " +
+         rounded_text(vector.z(), unit) + "]";
+}
+
+std::string turn_text(const DraftFunction& function, double unit) {
+  std::string text = "turn = { degrees = " + rounded_text(function.part * function.turn_deg, 20.0) +
+                     ", axis = [1, 0, 0], through = " +
+                     vector_text({0.0, function.axis_y, function.axis_z}, unit) + ", points = { ";
+  for (std::size_t at = 0; at < function.turns.size(); ++at)
+    text += (at == 0 ? "" : ", ") + function.turns[at].first + " = " +
+            decimal_text(function.turns[at].second);
+  return text + " } }\n";
+}
+
+std::string move_text(const DraftFunction& function, double unit) {
+  std::string text = "move = { ";
+  for (std::size_t at = 0; at < function.moves.size(); ++at)
+    text += (at == 0 ? "" : ", ") + function.moves[at].first + " = " +
+            vector_text(function.part * function.moves[at].second, unit);
+  return text + " }\n";
+}
+
+std::string function_text(const DraftFunction& function, double unit) {
+  std::string text = "\n";
+  if (function.part < 1.0)
+    text += "# As much as the surface takes: at " +
+            std::to_string(static_cast<int>(std::lround(100.0 / function.part))) +
+            " % of this, triangles turn over.\n";
+  text += "[functions." + function.name + "]\ninput = \"" + function.input +
+          "\"\ntravel_deg = " + std::to_string(std::lround(function.travel_deg)) + "\n";
+  if (function.eases) text += "curve = \"ease\"\n";
+  return text + (function.turns.empty() ? move_text(function, unit) : turn_text(function, unit));
+}
+
+std::string PuppetDraft::text() const {
+  std::string text;
+  for (const std::string& comment : comments)
+    text += "# " + comment + "\n";
+  text += "version = 1\nmodel = \"" + model +
+          "\"\ndistance = \"surface\"\nmirror = \"x\"\n\n[points]\n";
+  for (const DraftPoint& point : points)
+    text += point.name + " = { " + point.place + ", radius = " + rounded_text(point.radius, unit) +
+            (point.is_pin ? ", pin = true }\n" : " }\n");
+  for (const DraftFunction& function : functions)
+    text += function_text(function, unit);
+  return text + parts;
+}
 
 /// Four digits, in any locale.
 std::string number_text(double value) {
@@ -167,7 +260,7 @@ private:
                 {0.6 * unit, face_.mouth->slit.y() - 0.015 * unit, face_.mouth->upper.z()}},
                "points = [\"jaw\", \"jawLeft\", \"jawRight\", \"chin\"]\n");
     if (face_.eye && face_.eyeball_front)
-      add_part("What stands before the eyeballs, such as lashes, goes with the lids.",
+      add_part("What is in front of the eyeballs, such as lashes, goes with the lids.",
                {{-unit, face_.eye->lower[1].y() - 0.1 * unit, *face_.eyeball_front + 0.015 * unit},
                 {unit, face_.eye->upper[1].y() + 0.1 * unit, face_.nose.z()}},
                "");
@@ -218,7 +311,7 @@ std::vector<std::string> findings(const Mesh& model, const FaceLandmarks& face) 
   else
     lines.push_back("eyes: no opening was found, so there is no eyeBlink");
   lines.push_back("brows: " + place_words(face.brow_inner) + " and " +
-                  place_words(face.brow_outer) + ", where the surface stands out");
+                  place_words(face.brow_outer) + ", where the surface protrudes");
   lines.push_back("cheek and side of the jaw: by the proportions of a face");
   return lines;
 }

@@ -26,7 +26,7 @@ bool is_in(const deform::Box& box, const Vector3d& place) {
          (place.array() <= box.highest.array()).all();
 }
 
-/// Vertices on parts of the surface where no point stands.
+/// Vertices on parts of the surface without a point.
 std::vector<std::uint32_t> vertices_without_points(const std::vector<std::uint32_t>& parts,
                                                    const std::vector<SurfacePlace>& places) {
   std::set<std::uint32_t> with_points;

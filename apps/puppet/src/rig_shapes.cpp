@@ -47,7 +47,7 @@ Result<std::unique_ptr<RigShapes>> RigShapes::make(std::shared_ptr<const Rig> ri
   }
   if (!deform::is_solved(status))
     return Error{Errc::bad_input,
-                 "the points cannot take hold of the model: " + std::string(describe(status))};
+                 "the points cannot grab the model: " + std::string(describe(status))};
   return std::unique_ptr<RigShapes>(new RigShapes(std::move(parts)));
 }
 

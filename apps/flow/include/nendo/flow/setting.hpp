@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include <nendo/base/result.hpp>
 #include <nendo/deform/brush.hpp>
@@ -119,6 +120,18 @@ constexpr void for_each_plain_setting(const See& see) {
   see(setting::brush_strength);
   see(setting::keep_volume);
   see(setting::hold);
+}
+
+/// Returns the value of a setting as reports have it: names of choices, or else the value itself.
+/// May allocate.
+template <class Described>
+auto reported_value(const Described& setting, const LoopSettings& settings) {
+  if constexpr (requires { setting.name_of; })
+    return setting.name_of(setting.of(settings));
+  else if constexpr (std::is_same_v<Described, BrushesSetting>)
+    return std::string(in_words(setting.of(settings)));
+  else
+    return setting.of(settings);
 }
 
 /// Returns a range as messages show it: "0.01 to 1000 Hz". Allocates.

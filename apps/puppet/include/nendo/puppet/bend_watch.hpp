@@ -21,7 +21,7 @@ public:
   void begin() noexcept { rest_ = {}; }
   /// Returns the finger that has bent farthest since begin(), or since its hand came, if that is
   /// far enough, and clearly farther than its neighbours, which bend along. The lengths of bends
-  /// are parts of what a finger usually does, so that thumbs count as much as others.
+  /// are fractions of a finger's usual bend, so that thumbs count as much as others.
   std::optional<Bend> follow(const RigPlayer::Hands& hands) noexcept;
 
   /// So much of a usual bend is far enough.
@@ -32,7 +32,8 @@ public:
   static double usual_rad(std::size_t finger) noexcept;
 
 private:
-  std::array<std::optional<std::array<double, hand::finger_count>>, 2> rest_; ///< by side
+  std::array<std::optional<std::array<double, hand::finger_count>>, 2>
+      rest_; ///< angles at rest, by side
 };
 
 } // namespace nendo::puppet

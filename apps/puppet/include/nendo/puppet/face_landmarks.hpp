@@ -33,7 +33,7 @@ struct EyePlaces {
 
 /// Places on the surface in model units; those of one side are at x > 0.
 struct FaceLandmarks {
-  std::vector<bool> is_skin; ///< of each vertex: it belongs to the part with the most vertices
+  std::vector<bool> is_skin; ///< whether a vertex belongs to the part with the most vertices
   /// A length to scale by: from the line of the eyes to that of the lips on a face as people have.
   double unit = 1.0;
   Eigen::Vector3d nose;       ///< tip

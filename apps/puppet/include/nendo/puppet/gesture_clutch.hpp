@@ -34,8 +34,8 @@ public:
   static constexpr double look_back_s = 0.6;   ///< closing a hand may take so long
   static constexpr double rest_s = 0.15;       ///< fingers at rest hardly move for so long
   static constexpr double max_rest_s = 1.0;    ///< after which they are taken to be at rest
-  static constexpr double fist_ends_at = 0.8;  ///< of its bound
-  static constexpr double pinch_ends_at = 1.5; ///< of its bound
+  static constexpr double fist_ends_at = 0.8;  ///< fraction of its bound
+  static constexpr double pinch_ends_at = 1.5; ///< fraction of its bound
 
   explicit GestureClutch(const Rig& rig);
 
@@ -58,16 +58,16 @@ private:
     HostTime time{};
     double strength = 0.0;
     bool followed = false;     ///< the functions did what the hand showed
-    std::vector<double> asked; ///< of each function
+    std::vector<double> asked; ///< one per function
   };
   struct Watch {
     State state = State::unknown;
-    HostTime since{};  ///< of the state
+    HostTime since{};  ///< begin of the state
     HostTime last{};   ///< seen
     double ramp = 0.0; ///< 0: the hand is followed; 1: the functions are kept
     std::vector<double> kept;
     std::array<Moment, 32> moments{}; ///< a ring of the last ones
-    std::size_t count = 0;            ///< of moments so far
+    std::size_t count = 0;            ///< number of moments so far
 
     void go_to(State next) noexcept {
       state = next;
@@ -93,7 +93,7 @@ private:
   double bound(ClutchMeans means) const noexcept;
 
   ClutchOptions options_;
-  std::array<Watch, 2> watches_; ///< by side
+  std::array<Watch, 2> watches_; ///< indexed by side
 };
 
 } // namespace nendo::puppet

@@ -1,6 +1,6 @@
 #pragma once
-// What a hand tells a puppet: one number of its pose. Angles are steadier than places, because a
-// fingertip's place mixes three joints and the wrist.
+// The input of a puppet from a hand: one number of its pose. Angles are steadier than places,
+// because a fingertip's place mixes three joints and the wrist.
 
 #include <cstdint>
 #include <optional>

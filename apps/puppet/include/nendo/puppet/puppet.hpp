@@ -1,7 +1,7 @@
 #pragma once
 // A puppet: what each finger does to a model. The paper assigned the displacements of ten
 // fingertips to ten functions on a face (2.2, figure 3); so does a puppet file, a short text beside
-// the model (README.md of this folder tells its keys). Without points it is a mask file: the
+// the model (README.md of this folder lists its keys). Without points it is a mask file: the
 // fingertips then touch the model, of which masks hold parts, and a mirror lets them shape both
 // sides.
 
@@ -43,21 +43,21 @@ struct PuppetPoint {
   std::vector<deform::Support> supports() const {
     return mix.empty() ? std::vector{deform::Support{radius, 1.0}} : mix;
   }
-  static constexpr std::size_t max_radii = 4; ///< of a mix
+  static constexpr std::size_t max_radii = 4; ///< in one mix
   friend bool operator==(const PuppetPoint&, const PuppetPoint&) = default;
 };
 
 /// About which the points of a function turn.
 struct AxisTurn {
   double degrees = 0.0;
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX(); ///< of any length but 0
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX(); ///< any length but 0
   Eigen::Vector3d through = Eigen::Vector3d::Zero();
   friend bool operator==(const AxisTurn&, const AxisTurn&) = default;
 };
 
 /// What a function does to one point when its value is 1.
 struct Move {
-  std::size_t point = 0;                            ///< of Puppet::points
+  std::size_t point = 0;                            ///< index into Puppet::points
   Eigen::Vector3d vector = Eigen::Vector3d::Zero(); ///< model units
   /// In place of a vector: by how much of Function::turn the point turns. It goes in a straight
   /// line to where that leads.
@@ -69,17 +69,17 @@ struct Move {
 struct Function {
   std::string name; ///< ARKit's, where it means the same
   HandSignal input;
-  double travel = 1.0; ///< by how much the signal changes for a value of 1; may be < 0
+  double travel = 1.0; ///< change of the signal for a value of 1; may be < 0
   double least = 0.0;  ///< the values between which it stays
   double most = 1.0;
   bool eases = false; ///< towards its limits it slows down, in place of stopping
   std::optional<AxisTurn> turn{};
-  std::vector<Move> moves; ///< by the turn, and behind them those by vectors
+  std::vector<Move> moves; ///< moves by the turn, then those by vectors
   bool is_twin = false;    ///< made by `mirror`; no file has it
   friend bool operator==(const Function&, const Function&) = default;
 };
 
-/// Vertices that belong to no part of the surface that a point stands on, such as teeth.
+/// Vertices that belong to no part of the surface with a point, such as teeth.
 struct PuppetPart {
   std::optional<deform::Box> inside{}; ///< only those in here, model units; otherwise all
   std::uint32_t first = 0;             ///< only those from this one
@@ -108,10 +108,10 @@ NENDO_API std::string_view name_of(ClutchMeans means) noexcept; ///< in the file
 NENDO_API std::optional<ClutchMeans> clutch_means_named(std::string_view name) noexcept;
 
 struct ClutchOptions {
-  std::array<ClutchMeans, 2> means{}; ///< of the left and the right hand
+  std::array<ClutchMeans, 2> means{}; ///< the left hand's and the right hand's
   double held_s = 0.5;                ///< how long a gesture must last
-  double fist_deg = 200.0;            ///< by which each finger is bent at least in a fist
-  double pinch_m = 0.02;              ///< by which the tips are apart at most in a pinch
+  double fist_deg = 200.0;            ///< min bend of each finger in a fist
+  double pinch_m = 0.02;              ///< max distance of the tips in a pinch
 
   friend bool operator==(const ClutchOptions&, const ClutchOptions&) = default;
 };
@@ -122,15 +122,15 @@ inline constexpr double half_of_mask = 0.75;
 struct NENDO_API Puppet {
   std::string model; ///< file name, beside the puppet's file
   Distance distance = Distance::surface;
-  bool mirrors = false; ///< `mirror = "x"`: points and functions that are twins stand behind others
+  bool mirrors = false;   ///< `mirror = "x"`: points and functions that are twins follow the others
   double mirror_at = 0.0; ///< x of that plane, model units; 0 if there are points
   std::vector<PuppetPoint> points;
   std::vector<Function> functions;
   std::vector<PuppetPart> parts;
   std::vector<Mask> masks;
-  bool inverted = false; ///< the masks tell what moves, and the rest stays
+  bool inverted = false; ///< the masks select the parts that move, and the rest stays
   ClutchOptions clutch;
-  std::string text; ///< of the file
+  std::string text; ///< the file's text
 
   /// Returns whether hands play it. Otherwise it has no points, and their fingertips touch the
   /// model.

@@ -1,7 +1,7 @@
 #pragma once
 // Edits of a puppet. Each returns another puppet, with the text of its file, and leaves the one
 // that it was made of as it is. What is done to a twin is done to the one whose mirror image it is,
-// on the other side. Whether a field can be made of the points, only the field tells
+// on the other side. Only making the field shows whether the points permit one
 // (SurfaceField::make()). Errors are bad_input, one line that names the point or the function. All
 // functions allocate.
 
@@ -53,7 +53,7 @@ NENDO_API Result<Puppet> with_input(const Rig& rig, std::size_t function, const 
 /// Gives a function another name. Errors: it is no name, or another function has it.
 NENDO_API Result<Puppet> with_name(const Rig& rig, std::size_t function, std::string_view name);
 /// Lets points and functions of one side have twins on the other side of x = 0, or makes points and
-/// functions of their own of these twins. Where names tell no side, they are changed.
+/// functions of their own of these twins. Names without a side are changed.
 NENDO_API Result<Puppet> with_mirror(const Rig& rig, bool mirrors);
 
 /// Adds masks along a stroke of a brush, and, where the puppet mirrors, their mirror images. Places

@@ -39,7 +39,7 @@ private:
 
   Puppet puppet_;
   deform::Points starts_;
-  std::vector<deform::Points> vectors_; ///< of each function
+  std::vector<deform::Points> vectors_; ///< one set per function
 };
 
 /// Returns the value of a function of which that much is asked: it stays within its limits.
@@ -54,7 +54,7 @@ NENDO_API std::vector<std::size_t> functions_before(const Puppet& before, const 
 
 /// What a player of a rig needs to continue where another one is.
 struct FunctionState {
-  double asked = 0.0; ///< of the function by its hand, before its limits
+  double asked = 0.0; ///< the function's value by its hand, before its limits
   HandSignal input;
   bool held = true; ///< it has not been released by itself
   friend bool operator==(const FunctionState&, const FunctionState&) = default;
@@ -135,11 +135,11 @@ private:
   void set_values() noexcept;
 
   std::shared_ptr<const Rig> rig_;
-  std::vector<std::size_t> twins_; ///< of each function; itself, if it has none
+  std::vector<std::size_t> twins_; ///< each function's twin; itself, if it has none
   std::vector<Hold> holds_;
-  std::array<std::uint32_t, 2> grips_{};              ///< by side: how often it grabbed
+  std::array<std::uint32_t, 2> grips_{};              ///< number of grabs, by side
   std::optional<std::array<std::uint32_t, 2>> known_; ///< grips_ of the player it remembers
-  std::array<Kept, 2> kept_{};                        ///< by side
+  std::array<Kept, 2> kept_{};                        ///< indexed by side
   RigState state_;
   std::vector<double> values_;
 };

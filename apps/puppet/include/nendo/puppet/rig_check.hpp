@@ -22,7 +22,7 @@ struct LimitCheck {
   AtLimit one;
   std::optional<AtLimit> other{};
   std::size_t moved = 0;  ///< triangles with a corner that moves
-  std::size_t turned = 0; ///< of these, whose normal turns by more than 90 degrees
+  std::size_t turned = 0; ///< those whose normal turns by more than 90 degrees
 };
 
 /// Two functions that are each other's mirror image, both at their greatest values.
@@ -42,9 +42,9 @@ struct NENDO_API RigCheck {
   static constexpr double image_within = 0.005;
 
   std::vector<LimitCheck> alone;
-  std::vector<LimitCheck> pairs; ///< of functions whose signals differ
+  std::vector<LimitCheck> pairs; ///< pairs of functions whose signals differ
   std::vector<TwinCheck> twins;
-  std::size_t lone_vertices = 0; ///< of the model, without a mirror image
+  std::size_t lone_vertices = 0; ///< the model's vertices without a mirror image
   /// The farthest that a vertex of the model at rest is from the mirror image of its own image, as
   /// a part of the diagonal.
   double model_apart = 0.0;

@@ -8,12 +8,12 @@
 #include <optional>
 #include <vector>
 
+#include <nendo/hand/skeleton.hpp>
+
 #include "export/chosen_frames.hpp"
-#include "export/exported.hpp"
 #include "export/glb_file.hpp"
 #include "export/gltf_export.hpp"
 #include "export/gltf_model.hpp"
-#include "export/hand_rig.hpp"
 
 namespace nendo::exporting {
 
@@ -24,8 +24,35 @@ struct GltfJob {
   const std::filesystem::path& path;
 };
 
-/// What of a take is not its shapes.
-struct Played {
+/// The poses of a hand, kept as the position and rotation of each joint in the frame of its parent.
+class HandTrack {
+public:
+  explicit HandTrack(Side side) : side_(side) {}
+
+  /// Adds the pose of the next moment, in metres. Returns false, and adds nothing, if it is not
+  /// finite.
+  bool add(const hand::HandPose& pose);
+
+  Side side() const noexcept { return side_; }
+  struct JointTrack {
+    std::vector<float> places;    ///< x y z for each moment, metres
+    std::vector<float> rotations; ///< quaternions x y z w for each moment, each with the sign
+                                  ///< nearest to the previous one
+  };
+  const JointTrack& operator[](hand::Joint joint) const noexcept {
+    return joints_[hand::index_of(joint)];
+  }
+  /// Returns a pose in the wrist's frame, with the rotations of `turns` and with the bone lengths
+  /// of the first pose.
+  hand::HandPose first_as(const hand::HandPose& turns) const;
+
+private:
+  Side side_;
+  std::array<JointTrack, hand::joint_count> joints_;
+};
+
+/// The hands and times of a take.
+struct PlayedFrames {
   std::vector<float> times_s; ///< since the first frame; they rise
   std::array<std::optional<HandTrack>, 2> hands;
   double units_per_metre = 1.0;
@@ -38,11 +65,11 @@ using AddFrame =
 
 /// Plays all frames that are wanted. Errors: those of ChosenFrames::next() and of `add`; bad_input
 /// (numbers that 32-bit floats cannot hold).
-Result<Played> play_frames(const GltfJob& job, const AddFrame& add);
+Result<PlayedFrames> play_frames(const GltfJob& job, const AddFrame& add);
 
 /// One file, with the part of its document that animates.
-struct GltfTake {
-  explicit GltfTake(const GltfOptions& options)
+struct GltfAnimation {
+  explicit GltfAnimation(const GltfOptions& options)
       : file(options.generator), animation{{"name", "take"},
                                            {"samplers", GlbFile::Json::array()},
                                            {"channels", GlbFile::Json::array()}} {}
@@ -70,11 +97,11 @@ struct MovingModel {
 
 /// Adds the models, which follow each other in time, and the hands, and writes the file. `report`
 /// has what is not known from the models: the kind of their targets, and the tolerance.
-Result<Exported> finish_models(const GltfJob& job, const Played& played,
-                               const std::vector<MovingModel>& models, MorphReport report,
-                               GltfTake& document);
+Result<Exported> write_models(const GltfJob& job, const PlayedFrames& played,
+                              const std::vector<MovingModel>& models, MorphReport report,
+                              GltfAnimation& document);
 /// Adds the hands, and writes the file. `roots` are the nodes of the models.
-Result<Exported> finish_take(const GltfJob& job, const Played& played, GlbFile::Json roots,
-                             GltfTake& document);
+Result<Exported> write_hands(const GltfJob& job, const PlayedFrames& played, GlbFile::Json roots,
+                             GltfAnimation& document);
 
 } // namespace nendo::exporting
