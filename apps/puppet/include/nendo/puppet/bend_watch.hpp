@@ -24,9 +24,9 @@ public:
   /// are fractions of a finger's usual bend, so that thumbs count as much as others.
   std::optional<Bend> follow(const RigPlayer::Hands& hands) noexcept;
 
-  /// So much of a usual bend is far enough.
+  /// The min bend of a finger, as a fraction of its usual bend.
   static constexpr double min_bend_fraction = 0.6;
-  /// So many times as far as any other finger.
+  /// The min ratio of its bend to that of any other finger.
   static constexpr double dominance_ratio = 1.25;
   /// Returns how far that finger bends for a value of 1, in radians; 0 thumb to 4 little finger.
   static double usual_rad(std::size_t finger) noexcept;

@@ -47,7 +47,7 @@ struct PuppetPoint {
   friend bool operator==(const PuppetPoint&, const PuppetPoint&) = default;
 };
 
-/// About which the points of a function turn.
+/// The rotation axis of a function's points.
 struct AxisTurn {
   double degrees = 0.0;
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX(); ///< any length but 0
@@ -96,7 +96,7 @@ struct Mask {
   friend bool operator==(const Mask&, const Mask&) = default;
 };
 
-/// With what a hand releases its functions and grabs them again, besides keys.
+/// What makes a hand release its functions and grab them again, besides keys.
 enum class ClutchMeans : std::uint8_t {
   none,
   fist,         ///< all four fingers bent

@@ -42,10 +42,10 @@ private:
   std::vector<deform::Points> vectors_; ///< one set per function
 };
 
-/// Returns the value of a function of which that much is asked: it stays within its limits.
+/// Returns the function's value for this input, clamped to its limits.
 NENDO_API double value_of(const Function& function, double asked) noexcept;
-/// Returns the least that must be asked of a function, by its amount, so that it has that value,
-/// which must be within its limits.
+/// Returns the input with the least amount that gives the function this value, which must be within
+/// its limits.
 NENDO_API double asked_for(const Function& function, double value) noexcept;
 /// Returns for each function of a puppet that was edited the number that it had before; no_function
 /// if it is new.
