@@ -1,5 +1,5 @@
 #pragma once
-// Finds the word that somebody meant who mistyped it.
+// Finds the word that was meant by a mistyped one.
 
 #include <string>
 #include <string_view>

@@ -33,12 +33,11 @@ Result<void> check_place(std::string_view option, const std::string& path,
     return Error{Errc::usage, given + ": end the name in " + either(endings)};
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
-    return Error{Errc::usage, given + ": that is a folder; name a file in it"};
+    return Error{Errc::usage, given + ": is a folder; name a file in it"};
   const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   if (::access(folder.c_str(), W_OK | X_OK) == 0) return {};
-  return Error{Errc::failed,
-               given + ": " + folder.string() +
-                   " is not a folder that you may write to; make it or choose another"};
+  return Error{Errc::failed, given + ": " + folder.string() +
+                                 " is not a writable folder; make it or choose another"};
 }
 
 Result<void> check_place(std::string_view option, const std::string& path,

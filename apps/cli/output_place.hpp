@@ -1,6 +1,6 @@
 #pragma once
-// Checks where files go. It is done before the work, so that an hour of work does not end in a file
-// that cannot be written. Existing files stay.
+// Checks output files before the work, so that long work does not end in a file that cannot be
+// written.
 
 #include <initializer_list>
 #include <span>
@@ -29,10 +29,10 @@ check_distinct(std::initializer_list<std::pair<std::string_view, std::string_vie
 /// file. Error: usage.
 Result<void> check_spares(const std::string& model, std::string_view option, const std::string& out,
                           bool force);
-/// What --help says of --force, in all commands.
+/// The help of --force, in all commands.
 inline constexpr const char* force_summary =
-    "Write over what would be lost: the model itself, with its normals, materials and groups, or a "
-    "puppet's file that is there";
+    "Overwrite the model itself, which loses its normals, materials and groups, or an existing "
+    "puppet";
 
 /// Returns how a text in the file `from` names the file `to`: by the way from its folder. Error:
 /// usage (no text in quotes can name it).

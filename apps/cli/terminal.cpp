@@ -30,7 +30,7 @@ std::string move_to_row(int row) {
 
 } // namespace
 
-bool obeys_codes(int descriptor) noexcept {
+bool has_control_codes(int descriptor) noexcept {
   const char* const name = std::getenv("TERM");
   const std::string_view term = name != nullptr ? name : "";
   return ::isatty(descriptor) != 0 && !term.empty() && term != "dumb";
@@ -43,7 +43,7 @@ Keys::Keys(Page* page) noexcept : page_(page) {
 void Keys::take() noexcept {
   termios settings{};
   if (tcgetattr(STDIN_FILENO, &settings) != 0) return;
-  const pid_t foreground = tcgetpgrp(STDIN_FILENO); // -1: a terminal that controls nobody
+  const pid_t foreground = tcgetpgrp(STDIN_FILENO); // -1: a terminal without a session
   if (foreground >= 0 && foreground != getpgrp())
     return; // the system would stop a process in the background
   saved_ = settings;
@@ -97,7 +97,7 @@ std::optional<char> Keys::next(std::chrono::milliseconds timeout) noexcept {
   return std::nullopt;
 }
 
-Terminal::Terminal() : keys_(this), plain_(!obeys_codes(STDOUT_FILENO)) {
+Terminal::Terminal() : keys_(this), plain_(!has_control_codes(STDOUT_FILENO)) {
   if (!plain_) write_all(enter_sequence);
 }
 
@@ -128,11 +128,11 @@ ScreenSize Terminal::size() const noexcept {
 }
 
 ScreenSize screen_size(int descriptor) noexcept {
-  constexpr int most = 500; // nobody's screen, and a bound for what a line may take
+  constexpr int max = 500; // limits the memory of a line
   winsize window{};
   if (ioctl(descriptor, TIOCGWINSZ, &window) != 0 || window.ws_col == 0 || window.ws_row == 0)
     return {};
-  return {std::min<int>(window.ws_col, most), std::min<int>(window.ws_row, most)};
+  return {std::min<int>(window.ws_col, max), std::min<int>(window.ws_row, max)};
 }
 
 void Terminal::draw(const std::vector<std::string>& lines) {

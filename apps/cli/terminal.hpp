@@ -11,23 +11,23 @@
 
 namespace nendo::cli {
 
-/// Returns whether the file descriptor is a terminal that obeys control codes: one that TERM calls
-/// neither "dumb" nor nothing at all.
-bool obeys_codes(int descriptor) noexcept;
+/// Returns whether the file descriptor is a terminal with control codes: TERM is neither empty nor
+/// "dumb".
+bool has_control_codes(int descriptor) noexcept;
 
 class Keys {
 public:
   /// What is shown while keys can come.
   class Page {
   public:
-    virtual void hide() noexcept = 0; ///< before the program is suspended
-    virtual void show() noexcept = 0; ///< once it is in the foreground again
+    virtual void hide() noexcept = 0; ///< called before the program is suspended
+    virtual void show() noexcept = 0; ///< called when it is in the foreground again
   protected:
     ~Page() = default;
   };
 
   /// Takes standard input if it is a terminal whose foreground this process is in: no echo, no
-  /// Return. Ctrl-C stays a signal. Ctrl-Z is obeyed in next(). `page`, if any, must outlive this.
+  /// Return. Ctrl-C stays a signal. next() handles Ctrl-Z. `page`, if any, must outlive this.
   explicit Keys(Page* page = nullptr) noexcept;
   ~Keys(); ///< restore()
   Keys(const Keys&) = delete;
@@ -67,7 +67,7 @@ ScreenSize screen_size(int descriptor) noexcept;
 class Terminal final : private Keys::Page {
 public:
   /// Takes standard output, which must be a terminal, with its alternate screen and a hidden
-  /// cursor. Takes keys, if they can come. If it does not obey control codes, it gets none.
+  /// cursor. Takes keys, if they can come. It gets control codes only if it has them.
   Terminal();
   ~Terminal(); ///< leave()
   Terminal(const Terminal&) = delete;
@@ -75,7 +75,7 @@ public:
 
   /// Returns the present size of the terminal, or 80 by 24 if that is unknown.
   ScreenSize size() const noexcept;
-  /// Returns true if the terminal does not obey control codes.
+  /// Returns true if the terminal has no control codes.
   bool is_plain() const noexcept { return plain_; }
   /// Replaces the page, in one write. Lines must be printable ASCII; what exceeds the screen is
   /// cut. Blocks while the terminal does not read. An interrupted write stays unfinished. On a

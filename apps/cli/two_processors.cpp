@@ -9,7 +9,7 @@ Result<TwoProcessors> two_processors() {
   CPU_ZERO(&allowed);
   if (sched_getaffinity(0, sizeof allowed, &allowed) != 0 || CPU_COUNT(&allowed) < 2)
     return Error{Errc::failed,
-                 "two threads at once need two processors, and here is one; see taskset(1)"};
+                 "needs two processors, and this process may use only one; see taskset(1)"};
   TwoProcessors processors{-1, -1};
   for (int n = 0; processors.second < 0; ++n) {
     if (!CPU_ISSET(static_cast<std::size_t>(n), &allowed)) continue;

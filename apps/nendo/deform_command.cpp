@@ -20,7 +20,6 @@
 #include "cli/cli.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"
-#include "session/loop_options.hpp"
 #include "session/setting_options.hpp"
 
 namespace nendo::app::deform_command {

@@ -9,10 +9,9 @@
 #include <nendo/base/result.hpp>
 #include <nendo/deform/mesh.hpp>
 
-#include "session/live_view.hpp"
-#include "session/loop_options.hpp"
 #include "session/overdub.hpp"
 #include "session/setting_options.hpp"
+#include "session/views.hpp"
 
 namespace nendo::app::run_command {
 

@@ -22,7 +22,6 @@
 #include "nendo/model_output.hpp"
 #include "nendo/run_arguments.hpp"
 #include "service/service_notice.hpp"
-#include "session/browser_view.hpp"
 #include "session/open_hands.hpp"
 #include "session/run_publishing.hpp"
 #include "session/run_report.hpp"

@@ -16,8 +16,8 @@
 #include "cli/terminal.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"
-#include "session/live_view.hpp"
 #include "session/setting_options.hpp"
+#include "session/views.hpp"
 #include "stress/report.hpp"
 #include "takes/model_files.hpp"
 
@@ -40,7 +40,7 @@ Result<ordered_json> read_earlier(const std::string& path) {
 }
 
 stress::StressProgress progress_for(const stress::StressOptions& options) {
-  const bool terminal = cli::obeys_codes(STDERR_FILENO);
+  const bool terminal = cli::has_control_codes(STDERR_FILENO);
   return [terminal, next_s = 2.0, duration_s = options.run.duration_s](
              const stress::TickTally& tally, double elapsed_s) mutable {
     if (!terminal && elapsed_s < next_s) return;
@@ -88,7 +88,7 @@ int run(const stress::StressArguments& arguments) {
   }
   const auto outcome =
       stress::run_stress(*options, model->mesh, progress_for(*options), window.get());
-  if (cli::obeys_codes(STDERR_FILENO)) std::cerr << "\r\x1b[K";
+  if (cli::has_control_codes(STDERR_FILENO)) std::cerr << "\r\x1b[K";
   if (!outcome) return cli::report(outcome.error());
   ordered_json results = stress::stress_json(*options, **outcome);
   results["model_notes"] = cli::model_notes();

@@ -1,14 +1,48 @@
-#include "session/browser_view.hpp"
-
-#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/cli.hpp"
 #include "cli/model_files.hpp"
+#include "session/views.hpp"
 #include "web/model_message.hpp"
+#include "web/server.hpp"
 
 namespace nendo::session {
+namespace {
 
-Result<void> BrowserView::begin(const LoopStart& start) {
+class WebView final : public BrowserView {
+public:
+  WebView(std::unique_ptr<web::Server> server, std::string model_name) noexcept
+      : server_(std::move(server)), model_name_(std::move(model_name)) {}
+
+  Result<void> begin(const LoopStart& start) override;
+  void show(const flow::Frame& frame) noexcept override { streams_.of(frame).show(frame); }
+  Result<void> prepare(const flow::ModelVersion& version) override;
+  Result<void> settle() override;
+  void update(const RunStatus& status, Asks& asks) override;
+  void report(const std::string& message) override { server_->report(message); }
+
+private:
+  Result<void> check(const deform::BlockLayout& layout) const;
+  std::shared_ptr<web::FrameStream> stream_for(const deform::BlockLayout& layout) const;
+  std::vector<std::byte> message_for(const deform::BlockLayout& layout,
+                                     const deform::Mesh& mesh) const;
+
+  void update_weights();
+
+  std::unique_ptr<web::Server> server_;
+  VersionTarget<web::FrameStream> streams_;
+  flow::WantedSettings wanted_;       ///< the settings of all clients
+  std::uint64_t weights_ = 0;         ///< deform::SurfaceField::number() of the last weights
+  web::Pictures pictures_;            ///< the textures of all versions of the model
+  std::vector<std::byte> next_model_; ///< the message of the last prepared version
+  const PlacedLoop* placed_ = nullptr;
+  std::string model_name_; ///< the name on the page
+};
+
+Result<void> WebView::begin(const LoopStart& start) {
   placed_ = &start.placed;
   const deform::BlockLayout& layout = placed_->loop->changes().layout();
   if (auto fine = check(layout); !fine) return fine;
@@ -16,44 +50,45 @@ Result<void> BrowserView::begin(const LoopStart& start) {
   server_->set_settings(placed_->loop->changes().settings());
   pictures_ = web::pictures_of(start.model);
   server_->present(streams_.now(), message_for(layout, start.model), pictures_);
-  follow_weights();
+  update_weights();
   return {};
 }
 
-Result<void> BrowserView::prepare(const flow::ModelVersion& version) {
+Result<void> WebView::prepare(const flow::ModelVersion& version) {
   if (auto fine = check(version.layout()); !fine) return fine;
   streams_.prepare(stream_for(version.layout()));
   next_model_ = message_for(version.layout(), version.mesh);
   return {};
 }
 
-Result<void> BrowserView::settle() {
+Result<void> WebView::settle() {
   if (streams_.settle()) server_->present(streams_.now(), std::move(next_model_), pictures_);
   return {};
 }
 
-Result<void> BrowserView::check(const deform::BlockLayout& layout) const {
+Result<void> WebView::check(const deform::BlockLayout& layout) const {
   if (layout.vertex_count() <= web::max_vertices) return {};
   return Error{Errc::bad_input, "--web: the model has " + std::to_string(layout.vertex_count()) +
-                                    " vertices, and a browser takes " +
+                                    " vertices, and a browser takes at "
+                                    "most " +
                                     std::to_string(web::max_vertices) +
-                                    " at most; run it without --web, or thin it out"};
+                                    "; run it without --web, or reduce the model"};
 }
 
-std::shared_ptr<web::FrameStream> BrowserView::stream_for(const deform::BlockLayout& layout) const {
+std::shared_ptr<web::FrameStream> WebView::stream_for(const deform::BlockLayout& layout) const {
   const FrameCapacity most = frame_capacity(*placed_);
   return std::make_shared<web::FrameStream>(
       layout, web::FrameStream::Capacity{most.fields, most.functions, most.vectors});
 }
 
-std::vector<std::byte> BrowserView::message_for(const deform::BlockLayout& layout,
-                                                const deform::Mesh& mesh) const {
+std::vector<std::byte> WebView::message_for(const deform::BlockLayout& layout,
+                                            const deform::Mesh& mesh) const {
   const PlacedSetup& setup = placed_->setup;
   return web::model_message(layout, mesh, setup.inputs,
                             {model_name_, setup.options.rate_hz, setup.placement.units_per_metre});
 }
 
-void BrowserView::update(const RunStatus& status, Asks& asks) {
+void WebView::update(const RunStatus& status, Asks& asks) {
   web::GloveStates gloves;
   for (std::size_t slot = 0; slot < gloves.size(); ++slot)
     gloves[slot] = {status.gloves[slot].counts, status.gloves[slot].uncalibrated};
@@ -63,7 +98,7 @@ void BrowserView::update(const RunStatus& status, Asks& asks) {
   server_->set_steps(status.frame.steps);
   server_->set_puppet(status.frame.puppet, status.puppet.get());
   server_->set_clay(status.frame);
-  follow_weights();
+  update_weights();
   wanted_.follow(status.frame.settings);
   while (auto asked = server_->next_command()) {
     if (const auto* const row = std::get_if<const commands::Row*>(&*asked)) {
@@ -80,12 +115,14 @@ void BrowserView::update(const RunStatus& status, Asks& asks) {
 }
 
 // The loop makes another field of a puppet when radii, kernel or model change.
-void BrowserView::follow_weights() {
+void WebView::update_weights() {
   const auto& surface = placed_->loop->changes().sculptor_options().surface;
   if (!surface || surface->number() == weights_) return;
   weights_ = surface->number();
   server_->add_weights(weights_, web::weights_message(*surface));
 }
+
+} // namespace
 
 Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoint,
                                                        const std::string& mesh) {
@@ -93,12 +130,14 @@ Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoi
   if (!where) return where.error();
   auto server = web::Server::open(*where);
   if (!server) return server.error();
-  cli::note("to look on, open " + (*server)->url());
+  cli::note("open in a browser: " + (*server)->url());
   const std::string& address = (*server)->endpoint().address;
   if (address == "0.0.0.0" || address == "::")
-    cli::note("from another machine, with this one's address in place of " + address +
-              "; who is on the network can read along, for nothing is encrypted");
-  return std::make_unique<BrowserView>(*std::move(server), cli::short_name(mesh));
+    cli::note("on another machine, replace " + address +
+              " by this machine's address; the connection is not encrypted, so everyone on the "
+              "network can read it");
+  return std::unique_ptr<BrowserView>(
+      std::make_unique<WebView>(*std::move(server), cli::short_name(mesh)));
 }
 
 } // namespace nendo::session

@@ -1,4 +1,4 @@
-#include "session/live_view.hpp"
+#include "session/views.hpp"
 
 #ifdef NENDO_WINDOW
 
@@ -101,7 +101,7 @@ namespace nendo::session {
 
 Result<std::unique_ptr<Observer>> open_live_view(const ViewOptions&, const RunOptions&) {
   return Error{Errc::failed, "this nendo was built without a window; install libglfw3-dev, "
-                             "libimgui-dev and libgl-dev and build it again, look on in a "
+                             "libimgui-dev and libgl-dev and build it again, use a "
                              "browser with `nendo run --web 8080`, or draw files with "
                              "`nendo picture`"};
 }

@@ -24,7 +24,7 @@ std::optional<std::string> LoopCommands::dropped() {
   std::string names;
   for (; reported_ < dropped_.size(); ++reported_)
     names += (names.empty() ? "" : ", ") + std::string(dropped_[reported_]);
-  return "The loop does not answer, so this was dropped: " + names + ".";
+  return "The loop is not responding; dropped: " + names + ".";
 }
 
 } // namespace nendo::session

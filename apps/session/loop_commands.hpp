@@ -1,5 +1,5 @@
 #pragma once
-// What continues to a running loop. Nothing is dropped silently.
+// Passes commands to a running loop. Nothing is dropped silently.
 
 #include <cstddef>
 #include <optional>
@@ -19,10 +19,10 @@ public:
   flow::CommandRing& ring() noexcept { return ring_; }
   /// Returns how many the loop has not taken yet.
   std::size_t size() const noexcept { return ring_.size(); }
-  /// Passes the command on. Returns false if the ring is full, as where the loop stands still; the
+  /// Passes the command on. Returns false if the ring is full, as when the loop has stopped; the
   /// command is then dropped, and named by the next dropped().
   bool push(const flow::Command& command);
-  /// Passes the command on if there is room, and otherwise leaves it to the caller.
+  /// Passes the command on, or returns false if the ring is full.
   bool try_push(const flow::Command& command) noexcept { return ring_.try_push(command); }
   /// Returns a message that names what was dropped since the last call, or nothing. Each command is
   /// named once until one is passed on again.

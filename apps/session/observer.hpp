@@ -25,13 +25,13 @@ struct GloveStatus {
 };
 /// The states of both gloves, by flow::Placement::index_of(side).
 using GloveStatuses = std::array<GloveStatus, 2>;
-/// Asks each glove for its state, which may take a lock.
+/// Returns the states of the gloves. It may take a lock.
 GloveStatuses status_of(const std::vector<gloves::OpenHand>& hands);
 
 struct RunStatus {
   const flow::Frame& frame;        ///< the latest
-  const flow::ModelVersion& model; ///< that it is of
-  bool fresh = false;              ///< it is another one than at the call before
+  const flow::ModelVersion& model; ///< the model of that frame
+  bool fresh = false;              ///< the frame is new since the previous call
   const GloveStatuses& gloves;
   commands::RunFacts facts{};
   /// The puppet whose functions made the frame; null: none.
@@ -40,8 +40,7 @@ struct RunStatus {
   commands::Situation situation() const noexcept { return {frame, facts}; }
 };
 
-/// What an observer asks for: a command, or another puppet, not null, with which the loop shall go
-/// on.
+/// A request of an observer: a command, or another puppet, not null, for the loop.
 using Ask = std::variant<flow::Command, std::shared_ptr<const puppet::Rig>>;
 using Asks = std::vector<Ask>;
 
@@ -51,14 +50,14 @@ public:
   virtual ~Observer() = default;
   /// Called before the loop begins. Its model and hands live as long as the run.
   virtual void loop_begins(const LoopStart& start) { static_cast<void>(start); }
-  /// Called repeatedly while the loop runs. Adds what was asked for since the last call.
+  /// Called repeatedly while the loop runs. Adds the requests since the last call.
   virtual void update(const RunStatus& status, Asks& asks) = 0;
-  /// Tells the person who watches what became of a command.
+  /// Shows a message about a command to the user.
   virtual void report(const std::string& message) { static_cast<void>(message); }
   /// Returns whether update() waits by itself, as a window waits for its screen.
   virtual bool sets_pace() const noexcept { return false; }
   /// Returns whether the run continues when all gloves have ended (Glove::has_ended()), because
-  /// somebody would be surprised: a window closes only when its person closes it.
+  /// only its user may close it, as for a window.
   virtual bool stays_open() const noexcept { return false; }
   /// Called after the loop, when the shape has been written. An error becomes the run's.
   virtual Result<void> end() { return {}; }

@@ -55,7 +55,7 @@ Result<void> check_switch(flow::SwitchAction action, const std::vector<gloves::O
                                 " no wrist switch that nendo can read; leave --switch out"};
 }
 
-/// The other clutches are poses, which every glove can make.
+/// Warns about missing wrist switches. Other clutches are poses, which every glove can measure.
 void note_missing_switches(const puppet::Puppet& puppet,
                            const std::vector<gloves::OpenHand>& hands) {
   for (const gloves::OpenHand& hand : hands) {
@@ -63,9 +63,9 @@ void note_missing_switches(const puppet::Puppet& puppet,
     if (puppet.clutch.means[slot] != puppet::ClutchMeans::wrist_switch ||
         hand.glove->info().abilities.wrist_switch)
       continue;
-    cli::note("the puppet's [clutch] gives the " + std::string(name_of(hand.side)) +
-              " hand the wrist switch, and " + hand.glove->info().source +
-              " has none that nendo can read; that hand lets go and takes hold by the key " +
+    cli::note("the puppet's [clutch] of the " + std::string(name_of(hand.side)) +
+              " hand is the wrist switch, and " + hand.glove->info().source +
+              " has none that nendo can read; that hand releases and grabs by the key " +
               (hand.side == Side::left ? "," : "'"));
   }
 }

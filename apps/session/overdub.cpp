@@ -18,7 +18,7 @@ namespace {
 
 using Span = Overdub::Span;
 
-/// How long after its loop was made a run begins, so that all are ready.
+/// The time between making the loop and the run's begin, so that all threads are ready.
 constexpr HostClock::duration count_in = std::chrono::milliseconds(300);
 
 Error bad_span(const std::string& option, const std::string& text, const std::string& why) {
@@ -31,7 +31,7 @@ Result<Span> parse_span(const std::string& option, const std::string& text,
   if (!span) return span.error();
   const auto from = from_seconds(span->from_s);
   if (from >= length)
-    return bad_span(option, text, fmt::format("the take lasts {:.2f} s", to_seconds(length)));
+    return bad_span(option, text, fmt::format("the recording lasts {:.2f} s", to_seconds(length)));
   return Span{from, std::isinf(span->to_s) ? HostClock::duration::max() : from_seconds(span->to_s)};
 }
 
@@ -41,7 +41,7 @@ Result<void> set_round(const std::string& text, flow::InputScript& script) {
   if (!span) return span.error();
   const flow::InputScript::Round round{span->from, std::min(span->to, script.length())};
   if (round.to - round.from < flow::InputScript::shortest_round)
-    return bad_span("--loop", text, "a round takes 0.2 s at least");
+    return bad_span("--loop", text, "use 0.2 s at least");
   script.repeat(round);
   return {};
 }
@@ -59,7 +59,7 @@ std::array<bool, 2> sides_without_layer(const RunOptions& options) {
   return lacks[0] || lacks[1] ? lacks : std::array{true, true};
 }
 
-/// The gloves that are named must be those of the layer.
+/// The named gloves must be those of the layer.
 Result<void> check_gloves(const std::array<flow::AngleSet, 2>& part, const RunOptions& options) {
   if (options.left.empty() && options.right.empty()) return {};
   for (const Side side : {Side::left, Side::right}) {
@@ -68,15 +68,15 @@ Result<void> check_gloves(const std::array<flow::AngleSet, 2>& part, const RunOp
     const std::string hand(name_of(side));
     if (plays && !is_named)
       return Error{Errc::usage,
-                   "--layer: no glove plays the " + hand + " hand; name one with --" + hand};
+                   "--layer: no glove plays the " + hand + " hand; give one with --" + hand};
     if (is_named && !plays)
-      return Error{Errc::usage, "--" + hand + ": the layer has nothing of that hand; add " + hand +
-                                    " to --layer, or leave the glove out"};
+      return Error{Errc::usage, "--" + hand + ": the layer does not contain that hand; add " +
+                                    hand + " to --layer, or leave the glove out"};
   }
   return {};
 }
 
-/// Has the layer come in and go out at the times of --punch, in each round.
+/// Fades the layer in and out at the times of --punch, in each round.
 void punch(const Span& span, std::uint8_t input, flow::InputScript& script) {
   const auto add = [&](HostClock::duration at, bool on) {
     script.add(at, flow::SetLayer{input, on});
@@ -94,27 +94,26 @@ void add_overdub_options(cli::Command& command, OverdubArguments& arguments) {
     command.add_option(name, value, summary).under("Takes in layers");
   };
   add("--over", arguments.take,
-      "A recording that plays once more, while the gloves play over it; model, puppet, places and "
-      "settings are the recording's");
+      "A recording to replay while the gloves play over it; it decides model, puppet, places and "
+      "settings");
   add("--layer", arguments.layer,
-      "What the gloves play: left, right, or parts with commas between, such as "
+      "The joints that the gloves play: left, right, or parts separated by commas, such as "
       "left.index,right.wrist (thumb, index, middle, ring, little, palm, wrist, or a joint's "
-      "angle). Without it, the hands that the recording lacks or, if it lacks none, all. Without "
+      "angle); without it, the hands that the recording lacks or, if it lacks none, all. Without "
       "--over, all other joints rest");
   add("--punch", arguments.punch,
-      "IN:OUT, times of the recording between which the gloves play, e.g. 2s:5.5s; o does it by "
-      "hand");
+      "IN:OUT, times of the recording between which the gloves play, e.g. 2s:5.5s; key o does the "
+      "same");
   add("--loop", arguments.loop,
-      "A:B, times of the recording: at B it goes on from A, again and again, until the run ends; : "
-      "is all of it");
+      "A:B, times of the recording: repeats this part until the run ends; : is the whole "
+      "recording");
 }
 
 Result<std::shared_ptr<Overdub>> read_overdub(const OverdubArguments& arguments) {
   if (arguments.take.empty()) {
     for (const auto& [option, value] :
          {std::pair{"--punch", &arguments.punch}, {"--loop", &arguments.loop}})
-      if (!value->empty())
-        return Error{Errc::usage, std::string(option) + ": say over which recording, with --over"};
+      if (!value->empty()) return Error{Errc::usage, std::string(option) + ": needs --over"};
     return std::shared_ptr<Overdub>();
   }
   auto take = recording::read_take_input(arguments.take);
@@ -128,7 +127,7 @@ Result<std::shared_ptr<Overdub>> read_overdub(const OverdubArguments& arguments)
     over->punch = *span;
   }
   if (!over->take.is_exact)
-    cli::note(arguments.take + ": something is missing in it, so the shape may be another");
+    cli::note(arguments.take + ": something is missing in it, so the shape may differ");
   return over;
 }
 
@@ -145,7 +144,7 @@ Result<LivePart> live_part(const OverdubArguments& arguments, const RunOptions& 
   if (!part)
     return Error{Errc::usage,
                  "--layer " + arguments.layer +
-                     ": use left, right, or parts of them with commas between, such as "
+                     ": use left, right, or parts of them separated by commas, such as "
                      "left.index,right.wrist: thumb, index, middle, ring, little, palm, wrist, or "
                      "an angle like index_mcp_abduction"};
   if (const auto fine = check_gloves(*part, options); !fine) return fine.error();
@@ -174,10 +173,11 @@ Result<void> play_over(const RunOptions& options, std::vector<flow::HandInput>& 
   script.begin_at(over.begin);
   std::vector<flow::HandInput> all = over.take.setup.hands;
   if (all.size() + inputs.size() > flow::max_inputs)
-    return Error{Errc::usage,
-                 fmt::format("--over {}: has {} hands and layers, and a run has {} at most; record "
-                             "over an earlier take",
-                             over.file, all.size(), flow::max_inputs)};
+    return Error{
+        Errc::usage,
+        fmt::format("--over {}: has {} hands and layers, and the max of a run is {}; record "
+                    "over an earlier take",
+                    over.file, all.size(), flow::max_inputs)};
   for (flow::HandInput& hand : all)
     hand.first = script.moved(hand.first);
   for (flow::HandInput& live : inputs) {

@@ -114,7 +114,7 @@ void add_hand(deform::Supports& supports) {
   }
 }
 
-/// Makes the loop of the take, whose hands stand where they stood.
+/// Makes the loop of the take, whose hands keep their places.
 Result<PlacedLoop> place_over(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                               const deform::Mesh& model) {
   const recording::Setup& take = options.over->take.setup;

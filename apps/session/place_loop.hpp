@@ -18,7 +18,7 @@ struct PlacedSetup {
   std::vector<flow::HandInput> inputs;
   flow::Placement placement;
   flow::LoopOptions options;     ///< with the supports in model units
-  Eigen::Index spare_points = 0; ///< that a puppet may get during the run, for whoever shows frames
+  Eigen::Index spare_points = 0; ///< max points that a puppet may get during the run
 
   /// Returns which inputs are layers that live gloves play; bit k is input k.
   std::uint32_t live_layers() const noexcept;
@@ -46,8 +46,8 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
 /// The most that a frame of a loop may hold, whatever its settings become.
 struct FrameCapacity {
   std::size_t fields = 0;
-  std::size_t functions = 0; ///< of each field
-  std::size_t vectors = 0;   ///< of deform::SurfaceMove
+  std::size_t functions = 0; ///< functions per field
+  std::size_t vectors = 0;   ///< vectors of deform::SurfaceMove
 };
 FrameCapacity frame_capacity(const PlacedLoop& placed);
 

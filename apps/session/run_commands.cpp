@@ -1,16 +1,52 @@
 #include "session/run_commands.hpp"
 
-#include <algorithm>
+#include <array>
 #include <new>
 #include <utility>
 #include <variant>
 
 #include <nendo/flow/compatible.hpp>
 #include <nendo/flow/rig_setup.hpp>
-
-#include "session/mask_edits.hpp"
+#include <nendo/puppet/puppet_edit.hpp>
 
 namespace nendo::session {
+namespace {
+
+Result<puppet::Puppet> edited(const flow::SetMask& mask, const puppet::Rig& rig) {
+  const std::array stroke{Eigen::Vector3d(mask.at[0], mask.at[1], mask.at[2])};
+  switch (mask.edit) {
+  case flow::MaskEdit::hold:
+    return puppet::with_masks(rig, stroke, mask.radius / puppet::half_of_mask);
+  case flow::MaskEdit::free:
+    return puppet::without_masks(rig, stroke, mask.radius);
+  case flow::MaskEdit::clear:
+    return puppet::without_any_mask(rig);
+  case flow::MaskEdit::invert:
+    break;
+  }
+  return puppet::with_masks_inverted(rig);
+}
+
+/// Returns the rig with a SetMask, or with a SetSymmetry if no hand plays it. The rig may be null.
+/// vertices: the model with which the loop began. Error: bad_input (too many masks).
+Result<std::shared_ptr<const puppet::Rig>>
+edited_masks(const flow::Command& command, const std::shared_ptr<const puppet::Rig>& rig,
+             const deform::Points& vertices) {
+  const puppet::Rig nothing(puppet::Puppet{}, deform::Points(3, 0));
+  const puppet::Rig& before = rig ? *rig : nothing;
+  const auto* const symmetry = std::get_if<flow::SetSymmetry>(&command);
+  const auto* const mask = std::get_if<flow::SetMask>(&command);
+  auto after = symmetry != nullptr
+                   ? puppet::with_symmetry(before, symmetry->on,
+                                           symmetry->on ? puppet::plane_of_symmetry(vertices) : 0.0)
+               : mask != nullptr ? edited(*mask, before)
+                                 : Result<puppet::Puppet>(before.puppet());
+  if (!after) return after.error();
+  if (*after == before.puppet()) return rig;
+  return std::make_shared<const puppet::Rig>(*std::move(after), before.starts());
+}
+
+} // namespace
 
 void RunCommands::follow_frame(const flow::Frame& frame) {
   if (frame.ticks_run > 0) {
@@ -22,9 +58,9 @@ void RunCommands::follow_frame(const flow::Frame& frame) {
   if (is_news && !frame.wire.is_drawing()) models_.cut(frame.wire);
 }
 
-// A run continues where there is no memory for what one command needs.
-void RunCommands::obey(const Asks& asks) {
-  const auto obey_one = [this](const auto& one) {
+// A run continues if there is no memory for one command.
+void RunCommands::execute(const Asks& asks) {
+  const auto execute_one = [this](const auto& one) {
     try {
       dispatch(one);
     } catch (const std::bad_alloc&) {
@@ -32,42 +68,41 @@ void RunCommands::obey(const Asks& asks) {
     }
   };
   for (const Ask& ask : asks)
-    std::visit(obey_one, ask);
+    std::visit(execute_one, ask);
   if (options_.over) {
     flow::CommandRing& from_take = options_.over->take.script->for_others();
     flow::Command command;
     while (from_take.try_pop(command))
-      obey_one(command);
+      execute_one(command);
     const std::uint64_t refused = from_take.counters().refused;
     if (std::exchange(take_refused_, refused) != refused)
-      report_("The run was too busy, so it dropped changes of the recording that plays: " +
+      report_("The run was too busy and dropped changes of the recording: " +
               std::to_string(refused) + " so far.");
   }
   for (auto& wrist : wrists_)
     if (wrist && for_loop_.try_push(*wrist)) wrist.reset(); // if it is full, the newest waits
-  tell(for_loop_.dropped());
+  report(for_loop_.dropped());
 }
 
-// There is one function for each kind of command, and no other.
 void RunCommands::dispatch(const flow::Command& command) {
-  std::visit([this](const auto& one) { obey(one); }, command);
+  std::visit([this](const auto& one) { execute(one); }, command);
 }
 
-void RunCommands::obey(const flow::WristMove& move) {
+void RunCommands::execute(const flow::WristMove& move) {
   if (!move.is_usable()) {
     if (!std::exchange(move_refused_, true)) report_(std::string(flow::WristMove::refusal));
     return;
   }
   move_refused_ = false;
-  wrists_[flow::Placement::index_of(move.side)] = move; // only the newest counts
+  wrists_[flow::Placement::index_of(move.side)] = move; // the newest replaces an older one
 }
 
-void RunCommands::obey(const flow::Mark& mark) {
+void RunCommands::execute(const flow::Mark& mark) {
   if (!recorder_.is_recording()) return report_(commands::no_recording);
   if (for_loop_.push(mark)) report_("mark " + std::to_string(++marks_) + " is in the recording");
 }
 
-void RunCommands::obey(const flow::Punch&) {
+void RunCommands::execute(const flow::Punch&) {
   const std::uint32_t live = placed_.setup.live_layers();
   if (live == 0) return report_(commands::no_layers);
   const bool on = !is_in_.value_or(true);
@@ -76,7 +111,7 @@ void RunCommands::obey(const flow::Punch&) {
 }
 
 // The take's loop does not change puppets by itself. Only the newest counts.
-void RunCommands::obey(const flow::ChangePuppet& change) {
+void RunCommands::execute(const flow::ChangePuppet& change) {
   if (options_.over) taken_puppet_ = change.number;
 }
 
@@ -85,7 +120,7 @@ bool RunCommands::plays_puppet() const {
       placed_.loop->changes().puppet(placed_.loop->changes().newest_puppet()).get());
 }
 
-void RunCommands::obey(const flow::SetSymmetry& symmetry) {
+void RunCommands::execute(const flow::SetSymmetry& symmetry) {
   if (plays_puppet() || flow::is_played(puppet_.get()))
     play_otherwise(symmetry);
   else
@@ -109,16 +144,16 @@ void RunCommands::follow(bool fresh) {
   flow::DeformLoop& loop = *placed_.loop;
   const flow::Frame& frame = loop.frames().front();
   const bool awaits = frame.awaited.has_value(); // by an undo or a redo
-  if (fresh && awaits && !settings_) tell(models_.go_to(*frame.awaited));
+  if (fresh && awaits && !settings_) report(models_.go_to(*frame.awaited));
   if (settings_ && !loop.changes().is_changing()) change_settings();
   if (!awaits) edit_masks();
   if (puppet_ && may_change_puppet()) change_puppet();
   if (taken_puppet_ && may_change_puppet()) follow_taken_puppet();
-  // A recording has the whole of a wire that cuts in it, or nothing of it.
+  // A recording contains a wire completely or not at all.
   if (record_ && !recorder_.is_changing() && !models_.is_handing_over() && !models_.is_due())
     recorder_.set_file(*std::exchange(record_, {}), frame);
-  tell(recorder_.follow());
-  tell(models_.follow(!awaits && !recorder_.is_changing()));
+  report(recorder_.follow());
+  report(models_.follow(!awaits && !recorder_.is_changing()));
 }
 
 bool RunCommands::is_due() const {
@@ -127,12 +162,12 @@ bool RunCommands::is_due() const {
          placed_.loop->changes().is_changing();
 }
 
-// Says also which of them has no effect beside another, once.
+// Reports once which of them has no effect beside another.
 void RunCommands::change_settings() {
   const flow::LoopSettings wanted = *std::exchange(settings_, {});
   flow::ChangeBroker& changes = placed_.loop->changes();
   if (const auto changed = changes.change_settings(wanted); !changed)
-    return report_(changed.error().message + "; the run goes on as it was");
+    return report_(changed.error().message + "; nothing changed");
   const puppet::Rig* const rig = changes.puppet(changes.newest_puppet()).get();
   const auto fine = flow::all_effective(wanted, flow::played_by(rig));
   const std::string why = fine ? std::string() : fine.error().message;
@@ -140,7 +175,7 @@ void RunCommands::change_settings() {
   no_effect_ = why;
 }
 
-// Makes one puppet of all edits that have come.
+// Makes one puppet of all pending edits.
 void RunCommands::edit_masks() {
   const flow::DeformLoop& loop = *placed_.loop;
   for (const flow::Command& command : std::exchange(mask_edits_, {})) {
@@ -160,14 +195,14 @@ void RunCommands::change_puppet() {
   const Eigen::Index functions =
       flow::is_played(rig.get()) ? rig->supports().functions(rig->starts().cols()) : 0;
   if (!sinks_.empty() && static_cast<std::size_t>(functions) > frame_capacity(placed_).functions)
-    return report_("a puppet with so many points more cannot be published; save it, and begin "
-                   "again with it");
+    return report_("a puppet with so many more points cannot be published; save it, and start "
+                   "the run again with it");
   recorder_.add_puppet(loop.changes().next_puppet(), *rig);
   if (const auto changed = loop.changes().change_puppet(rig); !changed)
     report_(changed.error().message);
 }
 
-// To a puppet of the take, which the loop has already if the take has changed to it before.
+// The loop has the take's puppet already if the take has changed to it before.
 void RunCommands::follow_taken_puppet() {
   const std::uint32_t number = *std::exchange(taken_puppet_, {});
   flow::DeformLoop& loop = *placed_.loop;

@@ -13,12 +13,12 @@ namespace nendo::session {
 
 namespace {
 
-/// So often at most is the shape looked at for edges that are too long or too short.
+/// Min time between two searches for edges that are too long or too short.
 constexpr std::chrono::milliseconds look_interval(500);
-/// Fewer are not worth another version of the model: the larger of these.
+/// Min number of such edges for another version of the model: the larger of these.
 constexpr std::size_t min_unfit = 24;
-constexpr double min_unfit_fraction = 0.004; ///< of the vertices
-/// In the middle of a stroke, which ends by it: as many times as many.
+constexpr double min_unfit_fraction = 0.004; ///< a fraction of the vertices
+/// Factor during a stroke, because the new version ends it.
 constexpr double in_a_stroke = 5.0;
 
 std::string parts_text(const flow::ModelVersion& model) {
@@ -31,7 +31,7 @@ bool is_part_edit(const flow::ChangeModel& change) noexcept {
   return change.source == flow::ModelSource::copied || change.source == flow::ModelSource::removed;
 }
 
-/// Of a shape of that model: something would happen to it.
+/// Returns whether the topology of a shape of that model would change.
 bool is_thin(const flow::ModelVersion& model, const deform::BlockShape& shape) {
   deform::Points places;
   model.layout().unpack(shape, places);
@@ -59,13 +59,13 @@ Result<void> RunModels::prepare(const flow::ModelVersion& version) {
 std::optional<std::string> RunModels::go_to(const flow::Awaited& awaited) {
   flow::DeformLoop& loop = *placed_.loop;
   if (is_handing_over() || loop.changes().is_changing())
-    return std::nullopt; // it is asked for again
+    return std::nullopt; // the request is repeated
   const auto version = loop.changes().model(awaited.model);
   if (version != nullptr && version.get() != &loop.changes().newest_model())
     if (const auto prepared = prepare(*version); !prepared) return prepared.error().message;
   const auto changed = loop.changes().change_to(awaited);
   if (changed) return std::nullopt;
-  return changed.error().message + "; the run goes on as it was";
+  return changed.error().message + "; nothing changed";
 }
 
 std::optional<std::string> RunModels::follow(bool may_begin) {
@@ -77,13 +77,13 @@ std::optional<std::string> RunModels::follow(bool may_begin) {
     Made made = making_.get();
     if (!made.finer) {
       refine_to_ = is_by_itself_ ? 0 : refine_to_;
-      return "the model " + made.finer.error().message + "; the run goes on as it was";
+      return "the model " + made.finer.error().message + "; nothing changed";
     }
     if (is_by_itself_) made_.source = made.source;
     if (is_by_itself_ && made.is_wanted) was_refined_ = made.source == flow::ModelSource::refined;
     if (made.is_wanted) finer_ = *std::move(made.finer);
   }
-  // Another version would forget what can be redone, and nobody has asked for it.
+  // Another version that was not requested must not discard the redo steps.
   if (is_by_itself_ && stage_ == Stage::none && loop.frames().front().redo_steps > 0)
     finer_.reset();
   if (finer_ && stage_ == Stage::none && may_begin && loop.changes().hold_still())
@@ -93,7 +93,7 @@ std::optional<std::string> RunModels::follow(bool may_begin) {
   return std::nullopt;
 }
 
-/// Lets another thread see whether the newest shape needs refining, and make ready for it.
+/// Starts a thread that checks whether the newest shape needs refining, and prepares it.
 void RunModels::look() {
   flow::DeformLoop& loop = *placed_.loop;
   const flow::Frame& frame = loop.frames().front();
@@ -110,8 +110,8 @@ void RunModels::look() {
   const auto least = std::max(
       min_unfit,
       static_cast<std::size_t>(fraction * static_cast<double>(model.layout().vertex_count())));
-  // Fine triangles find what is thin better, but hands that stretch clay all the time would let
-  // nothing else happen: by turns, where both are needed.
+  // Refinement finds thin places better, but hands that stretch clay all the time would suppress
+  // changes of topology: so they alternate if both are needed.
   making_ = std::async(std::launch::async, [&model, least, how = made_, shape = frame.shape,
                                             changes_topology = changes_topology_,
                                             was_refined = was_refined_] {
@@ -129,7 +129,7 @@ void RunModels::look() {
   });
 }
 
-/// Of what is asked for. Returns a message for people if there is none.
+/// Chooses the part to edit. Returns a message for the user if there is none.
 std::optional<std::string> RunModels::choose_part() {
   flow::DeformLoop& loop = *placed_.loop;
   const flow::Frame& frame = loop.frames().front();
@@ -143,7 +143,7 @@ std::optional<std::string> RunModels::begin() {
   made_ = *std::exchange(asked_, {});
   is_by_itself_ = false;
   if (is_part_edit(made_) && made_.part == deform::no_index)
-    if (auto told = choose_part()) return told;
+    if (auto refusal = choose_part()) return refusal;
   const flow::ModelVersion& model = placed_.loop->changes().newest_model();
   making_ = std::async(std::launch::async, [&model, how = made_, wire = wire_] {
     return Made{flow::PendingModel::make(model, how, wire.places())};
@@ -151,26 +151,25 @@ std::optional<std::string> RunModels::begin() {
   return std::nullopt;
 }
 
-/// The loop holds still.
+/// Gives the new version to the loop, which holds still.
 std::optional<std::string> RunModels::hand_over() {
   flow::DeformLoop& loop = *placed_.loop;
   std::optional<flow::PendingModel> finer = std::exchange(finer_, {});
   stage_ = Stage::handing_over;
-  if (!finer->is_of(loop.changes().newest_model())) { // somebody has undone meanwhile
+  if (!finer->is_of(loop.changes().newest_model())) { // an undo came first
     loop.changes().keep_model();
-    if (is_part_edit(made_)) return "the model is another one now; choose the part again";
-    if (!is_by_itself_) asked_ = made_; // of the model that there is now
+    if (is_part_edit(made_)) return "the model has changed; choose the part again";
+    if (!is_by_itself_) asked_ = made_; // from the current model
     return std::nullopt;
   }
   const auto taken =
       loop.changes().change_model(*finer, [this](const auto& version) { return prepare(version); });
-  // What nobody has asked for happens many times a minute.
+  // Automatic changes happen many times per minute.
   const bool is_topology = made_.source == flow::ModelSource::topology;
   if (is_by_itself_ && (finer->found_nothing() || (taken && !is_topology))) return std::nullopt;
   if (!taken) return taken.error().message + "; the model stays as it is";
   if (is_topology)
-    return "what was thin has parted, opened or fused; " +
-           parts_text(loop.changes().newest_model());
+    return "thin places have parted, opened or fused; " + parts_text(loop.changes().newest_model());
   if (is_of_shape(made_.source)) return parts_text(loop.changes().newest_model());
   return "the model has " + std::to_string(loop.changes().newest_model().layout().vertex_count()) +
          " vertices now";

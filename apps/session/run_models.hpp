@@ -16,40 +16,39 @@ namespace nendo::session {
 class RunModels {
 public:
   /// Both must outlive this. `placed` has its loop before the first call. The model is refined
-  /// again and again where it needs that, up to `refine_to` vertices; 0: only when asked. With
-  /// `changes_topology`, what is thin then parts, opens or fuses.
+  /// automatically up to `refine_to` vertices; 0: only on request. With `changes_topology`, thin
+  /// places then part, open or fuse.
   RunModels(const PlacedLoop& placed, const std::vector<Sink*>& sinks, std::uint32_t refine_to,
             bool changes_topology)
       : placed_(placed), sinks_(sinks), refine_to_(refine_to), changes_topology_(changes_topology) {
   }
 
-  /// Asks for another model, made of the present one: flow::model_asked_by().
+  /// Requests another model, made of the present one: flow::model_asked_by().
   void ask(const flow::ChangeModel& change) noexcept { asked_ = change; }
-  /// Asks for the present model, cut by that wire.
+  /// Requests the present model, cut by that wire.
   void cut(const flow::WirePath& wire) noexcept {
     wire_ = wire;
     ask({0, flow::ModelSource::cut});
   }
-  /// Goes back, or on, to settings and a version that are kept: flow::Frame::awaited. Returns a
-  /// message for people if that cannot be.
+  /// Returns to kept settings and a kept version, for an undo or a redo (flow::Frame::awaited).
+  /// Returns a message for the user if that is impossible.
   std::optional<std::string> go_to(const flow::Awaited& awaited);
-  /// Does what is due, and does not wait for what another thread makes. To be called again and
-  /// again, without `may_begin` while the loop is not to hold still. Returns a message for people,
-  /// if there is something to tell.
+  /// Continues the work without waiting for other threads; call it repeatedly, without `may_begin`
+  /// while the loop must not hold still. Returns a message for the user, if any.
   std::optional<std::string> follow(bool may_begin);
-  /// Returns whether something was asked for and is not done.
+  /// Returns whether a request is not done yet.
   bool is_due() const noexcept { return asked_ || (!is_by_itself_ && (finer_ || making_.valid())); }
-  /// Returns whether the loop holds still, or will, or is about to get a model. No recording may
-  /// begin or end then.
+  /// Returns whether the loop holds still, or is about to get a model. No recording may begin or
+  /// end then.
   bool is_handing_over() const noexcept { return stage_ != Stage::none; }
 
 private:
   enum class Stage { none, holding_still, handing_over };
-  /// What another thread has made.
+  /// The result of another thread.
   struct Made {
     Result<flow::PendingModel> finer;
-    bool is_wanted = true; ///< enough edges are unfit, or something is thin, if nobody has asked
-    flow::ModelSource source = flow::ModelSource::refined; ///< then
+    bool is_wanted = true; ///< requested, or enough edges are unfit, or there are thin places
+    flow::ModelSource source = flow::ModelSource::refined; ///< the kind of change
   };
 
   std::optional<std::string> begin();
@@ -62,15 +61,15 @@ private:
   const std::vector<Sink*>& sinks_;
   std::uint32_t refine_to_;
   bool changes_topology_;
-  HostTime looked_at_{};                       ///< whether the model needs refining
+  HostTime looked_at_{};                       ///< the last search
   std::pair<std::uint64_t, bool> last_look_{}; ///< the newest stamp in the shape, in a stroke
-  bool is_by_itself_ = false;                  ///< what is being made
-  bool was_refined_ = false;                   ///< by itself, the last time
+  bool is_by_itself_ = false;                  ///< the version in the making was not requested
+  bool was_refined_ = false;                   ///< the last automatic change was a refinement
   std::optional<flow::ChangeModel> asked_;     ///< without its number
   std::future<Made> making_;
-  flow::ChangeModel made_;                  ///< what making_ and finer_ are
-  flow::WirePath wire_;                     ///< that cuts
-  std::optional<flow::PendingModel> finer_; ///< made, and not the loop's yet
+  flow::ChangeModel made_;                ///< how making_ and finer_ are made
+  flow::WirePath wire_;                   ///< the wire that cuts
+  std::optional<flow::PendingModel> finer_; ///< the next version, which the loop does not have yet
   Stage stage_ = Stage::none;
 };
 

@@ -17,7 +17,7 @@ namespace nendo::session {
 
 /// Where a puppet that was edited goes.
 struct PuppetPlace {
-  std::string file;             ///< .toml; empty: nobody can edit one
+  std::string file;             ///< .toml; empty: puppets cannot be edited
   bool may_be_replaced = false; ///< as it is the file that was opened
 };
 
@@ -25,16 +25,16 @@ struct RunOptions {
   std::string left;                       ///< GLOVE; empty: not asked for
   std::string right;                      ///< GLOVE; empty: not asked for
   std::string mesh;                       ///< empty: the shipped model, or a puppet's
-  deform::ReadOptions reading{};          ///< of the model; what is written has its axes
+  deform::ReadOptions reading{};          ///< the model's axes, also in written files
   std::string puppet_file;                ///< empty: none
-  std::optional<puppet::Puppet> puppet{}; ///< of that file
+  std::optional<puppet::Puppet> puppet{}; ///< the contents of that file
   PuppetPlace out_puppet{};               ///< where a window saves it
   std::string out;                        ///< empty: a name made of date and time
   std::string picture;                    ///< empty: none
   std::string mask_file;                  ///< as it was given
-  std::optional<puppet::Puppet> masks{};  ///< of fingertips, without points; nothing: none
+  std::optional<puppet::Puppet> masks{};  ///< masks for fingertips, without points; nothing: none
   bool symmetric = false;                 ///< fingertips shape both sides
-  /// The triangles follow the shape by themselves, up to so many vertices; 0: they do not.
+  /// Max vertices of automatic refinement; 0: none.
   std::uint32_t refine_to = 0;
   bool changes_topology = false; ///< meanwhile, what is thin parts, opens or fuses
   double duration_s = 0.0;       ///< 0: until a stop signal
@@ -42,16 +42,16 @@ struct RunOptions {
   std::string radius;
   double model_size_m = 0.8; ///< the model's longest side, on the stage
   bool json = false;
-  bool verbose = false; ///< the summary has what matters to those who look into a deformation, too
-  std::optional<double> undo_memory_mb{}; ///< nothing: half of what there is
+  bool verbose = false;                   ///< the summary has figures about folds
+  std::optional<double> undo_memory_mb{}; ///< nothing: half of the memory
   gloves::CalibrationOptions calibration;
   gloves::HandLength length;
-  hand::FilterOptions filter; ///< of both hands
+  hand::FilterOptions filter; ///< the filter of both hands
   flow::LoopOptions loop;
   std::shared_ptr<Overdub> over{}; ///< a take that plays; null: none
   LivePart live{};                 ///< what the gloves play; nothing: all
   RecordingOptions recording;
-  flow::RealtimeOptions realtime; ///< of the loop's thread
+  flow::RealtimeOptions realtime; ///< the rights of the loop's thread
 };
 
 } // namespace nendo::session

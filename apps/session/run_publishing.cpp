@@ -6,7 +6,6 @@
 #include "publish/datagrams.hpp"
 #include "publish/segment.hpp"
 #include "publish/target.hpp"
-#include "session/version_target.hpp"
 
 namespace nendo::session {
 namespace {
@@ -113,9 +112,9 @@ private:
 void add_publish_option(cli::Command& command, std::vector<std::string>& targets) {
   command
       .add_option("--publish", targets,
-                  "Shows every tick to other programs: shm:NAME (hands, CSRBF update and vertices "
-                  "in /dev/shm/nendo-NAME; ?group=GROUP may read it, too), udp:PORT or "
-                  "udp:ADDRESS:PORT (hands and update). May be given several times")
+                  "Publish every tick for other programs: shm:NAME (hands, CSRBF update and "
+                  "vertices in /dev/shm/nendo-NAME; ?group=GROUP lets a group read it), udp:PORT "
+                  "or udp:ADDRESS:PORT (hands and update). May be repeated")
       .once_each("TARGET");
 }
 
@@ -130,9 +129,9 @@ publish_to(const std::vector<std::string>& targets) {
       return publish::is_same_place(place, *target);
     });
     if (same != places.end())
-      return Error{Errc::usage, "--publish " + text + ": is where --publish " +
+      return Error{Errc::usage, "--publish " + text + ": is the same target as " +
                                     targets[static_cast<std::size_t>(same - places.begin())] +
-                                    " leads; give it once"};
+                                    "; give it once"};
     places.push_back(*target);
     if (const auto* segment = std::get_if<publish::SegmentTarget>(&*target)) {
       sinks.push_back(std::make_unique<SegmentSink>(text, *segment));

@@ -1,5 +1,5 @@
 #pragma once
-// The option --publish: every frame goes to other programs.
+// The option --publish: sends every frame to other programs.
 
 #include <memory>
 #include <string>
@@ -12,15 +12,15 @@ namespace nendo::session {
 
 /// The result of one --publish.
 struct PublishedTo {
-  std::string target; ///< as it was asked for
+  std::string target; ///< the option's value
   std::uint64_t records = 0;
-  std::uint64_t shape_changes = 0; ///< of a segment
-  std::uint64_t bytes = 0;         ///< of a segment, or sent
+  std::uint64_t shape_changes = 0; ///< only for a segment
+  std::uint64_t bytes = 0;         ///< the segment's size, or the sent bytes
   bool is_segment = false;
-  bool is_locked = false; ///< of a segment: no page of it can be swapped out
+  bool is_locked = false; ///< no page of the segment can be swapped out
   std::uint64_t datagrams = 0;
   std::uint64_t lost_records = 0;      ///< overwritten before they were sent
-  std::uint64_t refused_datagrams = 0; ///< by the system
+  std::uint64_t refused_datagrams = 0; ///< refused by the system
 };
 
 /// Publishes to one place.

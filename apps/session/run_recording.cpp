@@ -22,18 +22,18 @@ Result<void> RecordingOptions::check(const std::string& out, flow::SwitchAction 
     if (!seconds) return seconds.error();
     if (*seconds > max_s)
       return Error{Errc::usage,
-                   "--keep-last " + keep_last + ": an hour at most; --record keeps all"};
+                   "--keep-last " + keep_last + ": use at most 1h; --record keeps everything"};
     keep_last_s = *seconds;
   }
   on = !file.empty();
   kept_stem = std::filesystem::path(out).replace_extension().string();
   if (action == flow::SwitchAction::keep && keep_last_s <= 0.0)
-    return Error{Errc::usage, "--switch keep: say how much with --keep-last, e.g. 60s"};
+    return Error{Errc::usage, "--switch keep: needs --keep-last, e.g. --keep-last 60s"};
   std::error_code ignored;
   if (on && std::filesystem::exists(file, ignored)) {
     return Error{Errc::failed, "--record " + file +
-                                   ": is there already, and recordings are never overwritten; name "
-                                   "another file or move it away"};
+                                   ": exists, and recordings are never overwritten; name another "
+                                   "file or move it away"};
   }
   return {};
 }
@@ -41,12 +41,12 @@ Result<void> RecordingOptions::check(const std::string& out, flow::SwitchAction 
 void add_recording_options(cli::Command& command, RecordingOptions& options) {
   command
       .add_option("--record", options.file,
-                  "Records all that comes in to this file, for nendo replay and as a glove")
+                  "Record all input in this file, for `nendo replay` and as a glove")
       .under("Recording");
   command
       .add_option("--keep-last", options.keep_last,
-                  "Keeps so much in memory, e.g. 60s, written by --switch keep and when the "
-                  "program crashes, beside --out")
+                  "Keep this time in memory, e.g. 60s; --switch keep writes it beside --out, and "
+                  "so does a crash")
       .under("Recording");
 }
 
@@ -98,7 +98,7 @@ recording::Setup RunRecorder::setup_now() const {
     setup.loop->puppet.text = rig->puppet().text;
     setup.loop->puppet.starts = rig->starts();
   }
-  if (options_.over) { // whose model may have been subdivided, and shaped, before it began
+  if (options_.over) { // its model may have been subdivided and shaped before it began
     const recording::LoopSetup& taken = *options_.over->take.setup.loop;
     setup.loop->mesh_sum = taken.mesh_sum;
     setup.loop->origins = taken.origins;
@@ -173,11 +173,11 @@ std::optional<std::string> RunRecorder::follow() {
   outcomes_.pop_back();
   to_file_ = false;
   if (keeps_last_minute() && begin(setup, counts_))
-    return begun.error().message + "; the run goes on, and is kept in memory only";
+    return begun.error().message + "; the run continues, and is kept in memory only";
   next_log_.reset();
   is_changing_ = true;
   placed_.loop->changes().change_log(nullptr, state->shape);
-  return begun.error().message + "; the run goes on, and is not recorded";
+  return begun.error().message + "; the run continues without a recording";
 }
 
 bool RunRecorder::keeps_last_minute() const noexcept {
@@ -193,7 +193,7 @@ void RunRecorder::save_last_minute() noexcept {
 }
 
 void RunRecorder::end(const deform::Points& shape) {
-  // What the loop has taken in its last tick is a recording, if without a tick.
+  // A change that the loop made in its last tick ends one recording and begins another.
   if (const auto message = follow()) cli::note(*message);
   end_with(recording::sum_of(shape));
 }

@@ -52,8 +52,7 @@ std::vector<driver::RecordCounts> counts_of(const std::vector<gloves::OpenHand>&
 /// a recorder and, from the second on, a numbered name of its own.
 class RunRecorder {
 public:
-  /// All of them must outlive this. `options` are the run's, and `placed` what its loop was made
-  /// of.
+  /// All of them must outlive this.
   RunRecorder(const RunOptions& options, const PlacedLoop& placed,
               const std::vector<gloves::OpenHand>& hands, const deform::Mesh& model)
       : options_(options), placed_(placed), hands_(hands), model_(model) {}
@@ -63,24 +62,25 @@ public:
   flow::InputLog* first_log();
   /// Begins to record into it, before the loop runs. Error: failed, if the file cannot be made.
   Result<void> begin();
-  /// Has the loop change to another recording, which is to a file or not, as soon as it can.
-  /// `frame` is the latest. Not while is_changing().
+  /// Requests another recording, to a file or in memory. `frame` is the latest one. Not while
+  /// is_changing().
   void set_file(bool on, const flow::Frame& frame);
-  /// Does what is due when the loop has changed. To be called again and again. Returns a message
-  /// for people if a recording could not be begun; the run continues.
+  /// Completes a change; call it repeatedly. Returns a message for the user if a recording could
+  /// not be begun; the run continues.
   std::optional<std::string> follow();
   /// Ends the recording. To be called after the loop's last tick, with its final shape.
   void end(const deform::Points& shape);
 
   bool is_changing() const noexcept { return is_changing_; }
-  bool is_to_file() const noexcept { return to_file_; } ///< of the present recording
-  /// Returns true while there is one, to a file or in memory.
+  /// Returns true while there is a recording to a file.
+  bool is_to_file() const noexcept { return to_file_; }
+  /// Returns true while there is a recording, to a file or in memory.
   bool is_recording() const noexcept { return recorder_ != nullptr; }
   /// Returns true with --keep-last.
   bool keeps_last_minute() const noexcept;
-  /// Tells of a puppet before the loop gets it.
+  /// Records a puppet before the loop gets it.
   void add_puppet(std::uint32_t number, const puppet::Rig& rig);
-  /// Asks for the recording in memory to be written to a file. Does nothing unless
+  /// Requests that the recording in memory is written to a file. Does nothing unless
   /// keeps_last_minute(). Wait-free.
   void save_last_minute() noexcept;
   /// Returns one outcome for each recording.
@@ -88,8 +88,8 @@ public:
 
 private:
   using Counts = std::vector<driver::RecordCounts>;
-  recording::Setup setup_now() const; ///< of the loop as it was made
-  Counts counts() const;              ///< of all inputs of the loop
+  recording::Setup setup_now() const; ///< the setup of the loop at its begin
+  Counts counts() const;              ///< the counts of all inputs of the loop
   Result<void> begin(const recording::Setup& setup, const Counts& before);
   void end_with(const recording::ShapeSum& shape);
   std::string next_name();
@@ -99,13 +99,13 @@ private:
   const std::vector<gloves::OpenHand>& hands_;
   const deform::Mesh& model_; ///< as it was loaded
   std::unique_ptr<flow::InputLog> log_;
-  std::unique_ptr<recording::Recorder> recorder_; ///< of log_; null: there is none
+  std::unique_ptr<recording::Recorder> recorder_; ///< the recorder of log_; null: none
   bool to_file_ = false;
-  std::unique_ptr<flow::InputLog> next_log_; ///< to which the loop changes; null: to none
-  Counts counts_;                            ///< when it was asked to
+  std::unique_ptr<flow::InputLog> next_log_; ///< the log to change to; null: none
+  Counts counts_;                            ///< the counts at the request
   bool is_changing_ = false;
   bool next_to_file_ = false;
-  int number_ = 1; ///< of the latest recording's name
+  int number_ = 1; ///< the number in the latest recording's name
   std::vector<RecordingOutcome> outcomes_;
 };
 

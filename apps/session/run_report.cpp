@@ -21,7 +21,7 @@
 namespace nendo::session {
 namespace {
 
-/// Whether angles are an average hand's, by flow::Placement::index_of(side).
+/// Whether each hand is uncalibrated, by flow::Placement::index_of(side).
 using Uncalibrated = std::array<bool, 2>;
 
 std::string progress_line(const flow::Frame& frame, double elapsed_s, double duration_s,
@@ -36,7 +36,7 @@ std::string progress_line(const flow::Frame& frame, double elapsed_s, double dur
                         hand.silent ? "silent" : std::to_string(hand.samples) + " samples");
     if (uncalibrated[flow::Placement::index_of(side)]) line += ", uncalibrated";
   }
-  if (!frame.held) line += "  let go";
+  if (!frame.held) line += "  released";
   if (frame.chain.held_pairs > 0) line += "  fingertips held apart";
   for (const std::uint32_t held : frame.parts.held)
     if (held != deform::no_index)
@@ -45,7 +45,7 @@ std::string progress_line(const flow::Frame& frame, double elapsed_s, double dur
   return line;
 }
 
-/// The same for a terminal that is too narrow for all of it: what matters most, and first.
+/// The same for a narrow terminal: the most important figures first.
 std::string brief_progress_line(const flow::Frame& frame, double elapsed_s,
                                 const Uncalibrated& uncalibrated) {
   std::string line = fmt::format("{:5.1f} s  {} ticks", elapsed_s, frame.ticks_run);
@@ -59,14 +59,14 @@ std::string brief_progress_line(const flow::Frame& frame, double elapsed_s,
                         hand.silent ? "silent" : std::to_string(hand.samples));
     if (uncalibrated[slot]) without += (without.empty() ? "  " : ", ") + std::string(name_of(side));
   }
-  if (!frame.held) line += "  let go";
+  if (!frame.held) line += "  released";
   if (frame.chain.held_pairs > 0) line += "  held apart";
   if (!without.empty()) line += without + " uncalibrated";
   return line;
 }
 
-/// Returns the part of a line that a terminal shows in one row. The last column stays free, where
-/// some terminals would begin the next row.
+/// Returns the beginning of a line that fits in one row of the terminal. The last column stays
+/// free, because some terminals would begin the next row there.
 std::string fitting(const std::string& line) {
   const auto columns = static_cast<std::size_t>(cli::screen_size(STDERR_FILENO).columns);
   return line.substr(0, columns - 1);
@@ -92,37 +92,36 @@ void print_percentiles(std::string_view name, const flow::Histogram& histogram) 
                               ms(0.50), ms(0.90), ms(0.99), to_milliseconds(histogram.max())));
 }
 
-/// Sensors that were left out at the end, or for a while.
+/// Prints the sensors that were left out at the end, or for a while.
 void print_left_out(SensorMask left_out, SensorMask for_a_while) {
   if (left_out.bits != 0)
     print_row("", sculpting::sensors_in_words(left_out) +
-                      (sculpting::is_one(left_out) ? " stands" : " stand") +
-                      " still: left out, and estimated from the sensors beside");
+                      (sculpting::is_one(left_out) ? " is" : " are") +
+                      " stuck: left out, and estimated from neighbouring sensors");
   if (for_a_while.bits != 0)
     print_row("", sculpting::sensors_in_words(for_a_while) +
-                      " stood still for a while: left out meanwhile, and estimated");
+                      " stuck for a while: left out and estimated during that time");
 }
 
-// The spikes that the velocity gate has kept out, and the sensor that had most of them.
+// Prints the spikes that the velocity gate removed, and the sensor that had most of them.
 void print_spikes(const std::array<std::uint64_t, sensor_slots>& spikes) {
   const auto worst = std::max_element(spikes.begin(), spikes.end());
   if (*worst == 0) return;
   const auto all = std::accumulate(spikes.begin(), spikes.end(), std::uint64_t{0});
-  print_row("", fmt::format(
-                    "{} spikes kept out, most of them {}'s ({}): see to its cable or sensor",
-                    thousands(all), sensor_names[static_cast<std::size_t>(worst - spikes.begin())],
-                    thousands(*worst)));
+  print_row("", fmt::format("{} spikes removed, most of them of {} ({}): check its cable or sensor",
+                            thousands(all),
+                            sensor_names[static_cast<std::size_t>(worst - spikes.begin())],
+                            thousands(*worst)));
 }
 
 void print_ranges(const hand::SensorRanges& ranges, SensorMask sensors) {
-  print_row("", "ranges learned, in counts, from so many turns of the joint:");
+  print_row("", "learned ranges, in counts, and the number of turns of the joint:");
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     if (!sensors.has(static_cast<Sensor>(slot))) continue;
     const hand::SensorRange& range = ranges[slot];
-    print_row("",
-              fmt::format("{:22} {:5.0f} to {:5.0f}  {}", sensor_names[slot], range.low_counts,
-                          range.high_counts,
-                          range.turns > 0 ? std::to_string(range.turns) : "none: the default's"));
+    print_row("", fmt::format("{:22} {:5.0f} to {:5.0f}  {}", sensor_names[slot], range.low_counts,
+                              range.high_counts,
+                              range.turns > 0 ? std::to_string(range.turns) : "none: default"));
   }
 }
 
@@ -132,11 +131,11 @@ void print_slips(const hand::SensorAngles& slips_counts, const hand::SensorRange
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     if (!(std::abs(slips_counts[slot]) >= hand::min_slip_counts(counts))) continue;
     if (!std::exchange(any, true))
-      print_row("", "slips learned, in counts, from so many turns of the joint:");
+      print_row("", "learned slips, in counts, and the number of turns of the joint:");
     print_row("", fmt::format("{:22} {:+5.1f}  {}", sensor_names[slot], slips_counts[slot],
                               ranges[slot].turns));
   }
-  if (!any) print_row("", "no sensor is seen to have slipped since the calibration");
+  if (!any) print_row("", "no sensor has slipped since the calibration");
 }
 
 void print_hand(const gloves::OpenHand& hand, const RunOutcome& outcome) {
@@ -151,7 +150,7 @@ void print_hand(const gloves::OpenHand& hand, const RunOutcome& outcome) {
   print_left_out(stats.left_out[slot],
                  {stats.was_left_out[slot].bits & ~stats.left_out[slot].bits});
   if (hand.uncalibrated)
-    print_row("", "uncalibrated: its angles are an average hand's; see `nendo calibrate`");
+    print_row("", "uncalibrated: its angles are those of an average hand; see `nendo calibrate`");
   if (hand.wearer.ends) {
     print_slips(stats.slips_counts[slot], stats.ranges[slot], info.counts);
   } else if (hand.wearer.adapt) {
@@ -168,35 +167,37 @@ void print_holds(const RunOptions& options, const flow::LoopStats& stats) {
   print_row("shapes kept", fmt::format("{} commits, {} grabs, {} undone, {} redone", stats.commits,
                                        stats.grabs, stats.undos, stats.redos));
   if (stats.refused_steps > 0)
-    print_row("", fmt::format("{} undos, redos and resets were dropped, because too many waited",
-                              stats.refused_steps));
+    print_row("",
+              fmt::format("{} undos, redos and resets were dropped, because too many were pending",
+                          stats.refused_steps));
   if (stats.forgotten_steps > 0)
-    print_row("undo", fmt::format("reached {} steps back; the {} before went for want of memory, "
-                                  "--undo-memory makes more room",
-                                  stats.undo_steps, stats.forgotten_steps));
+    print_row("undo",
+              fmt::format("keeps {} steps; the {} oldest were discarded, --undo-memory keeps more",
+                          stats.undo_steps, stats.forgotten_steps));
 }
 
 void print_filter(const hand::FilterOptions& filter, const flow::LoopStats& stats) {
   if (filter.kind == hand::FilterKind::off) return;
-  print_percentiles("filter's lag", stats.filter_moving);
+  print_percentiles("filter delay", stats.filter_moving);
   namespace setting = flow::setting;
-  print_row("", fmt::format("{}, {} {:g} {}, {} {:g}: of the joints that move; {:.1f} ms at rest; "
-                            "comes on top of all these",
-                            hand::name_of(filter.kind), setting::min_cutoff.words,
-                            filter.min_cutoff_hz, setting::min_cutoff.unit, setting::beta.words,
-                            filter.beta_hz_per_rad_s, to_milliseconds(stats.filter_worst.max())));
+  print_row("",
+            fmt::format("{}, {} {:g} {}, {} {:g}: for moving joints; {:.1f} ms at rest; adds to "
+                        "the times above",
+                        hand::name_of(filter.kind), setting::min_cutoff.words, filter.min_cutoff_hz,
+                        setting::min_cutoff.unit, setting::beta.words, filter.beta_hz_per_rad_s,
+                        to_milliseconds(stats.filter_worst.max())));
 }
 
 void print_injective(const RunOptions& options, const flow::LoopStats& stats) {
   const auto& deformer = options.loop.sculptor.deformer;
   if (!deformer.injective || deformer.csrbf.keeps_volume()) return;
   if (options.verbose)
-    print_row("injective", fmt::format("at most {} links a tick, bound in one step {:.3g}, least "
+    print_row("injective", fmt::format("max {} links per tick, bound in one step {:.3g}, min "
                                        "determinant {:.3g}; fingertips held apart in {} ticks",
                                        stats.max_links, stats.max_bound, stats.min_determinant,
                                        stats.held_apart_ticks));
   else if (stats.held_apart_ticks > 0)
-    print_row("no folds", fmt::format("fingertips whose ways cross were held apart in {} ticks",
+    print_row("no folds", fmt::format("fingertips with crossing paths were held apart in {} ticks",
                                       thousands(stats.held_apart_ticks)));
 }
 
@@ -204,8 +205,7 @@ void print_clay(const flow::LoopStats& stats, double units_per_metre) {
   const flow::ClayState& clay = stats.clay;
   if (!clay.is_clay) return;
   print_row("clay",
-            fmt::format("touched in {} ticks; at most {:.3f} mm deep in a hand, before it was "
-                        "set right",
+            fmt::format("touched in {} ticks; max penetration {:.3f} mm, before it was corrected",
                         thousands(stats.touching_ticks), stats.max_penetration_mm));
   if (!(clay.first_volume > 0.0)) {
     print_row("volume",
@@ -214,7 +214,7 @@ void print_clay(const flow::LoopStats& stats, double units_per_metre) {
   }
   const double cm3 = 1e6 / (units_per_metre * units_per_metre * units_per_metre);
   print_row("volume",
-            fmt::format("{:.2f} cm3, at first {:.2f} cm3 ({:+.4f} %)", cm3 * clay.volume,
+            fmt::format("{:.2f} cm3, initially {:.2f} cm3 ({:+.4f} %)", cm3 * clay.volume,
                         cm3 * clay.first_volume, 100.0 * (clay.volume / clay.first_volume - 1.0)));
 }
 
@@ -224,7 +224,7 @@ void print_recordings(const std::vector<RecordingOutcome>& recordings) {
     print_row("recording",
               recorded ? fmt::format("{}{} bytes, {} entries not recorded, {} kept", name,
                                      thousands(recorded->bytes), recorded->lost, recorded->kept)
-                       : name + "not complete, as was told");
+                       : name + "not complete; see the error above");
   }
 }
 
@@ -252,19 +252,20 @@ void print_summary_text(const RunOptions& options, const std::vector<gloves::Ope
   print_row("ticks", fmt::format("{} at {:g} Hz, {} overruns, {} missed", thousands(stats.ticks),
                                  options.loop.rate_hz, stats.overruns, stats.missed));
   print_percentiles("wake-up", stats.wake_latency);
-  print_percentiles("work a tick", stats.work);
+  print_percentiles("work per tick", stats.work);
   print_percentiles("end to end", stats.end_to_end);
-  print_row("", "from a sample's last byte to the finished mesh");
+  print_row("", "from the last byte of a sample to the finished mesh");
   print_filter(options.filter, stats);
   print_injective(options, stats);
   print_clay(stats, outcome.units_per_metre);
-  print_row("vertices", fmt::format("{} a second ({} in the model)",
+  print_row("vertices", fmt::format("{} per second ({} in the model)",
                                     thousands(static_cast<double>(outcome.vertices) *
                                               static_cast<double>(stats.ticks) / outcome.elapsed_s),
                                     thousands(outcome.vertices)));
   print_recordings(outcome.recordings);
   print_published(outcome);
   print_row("result", outcome.result);
+  if (!options.picture.empty()) print_row("picture", options.picture);
   std::cout << std::flush;
 }
 
@@ -281,7 +282,7 @@ Progress progress_for(const RunOptions& options, const std::vector<gloves::OpenH
   Uncalibrated uncalibrated{};
   for (const auto& hand : hands)
     uncalibrated[flow::Placement::index_of(hand.side)] = hand.uncalibrated;
-  const bool terminal = cli::obeys_codes(STDERR_FILENO);
+  const bool terminal = cli::has_control_codes(STDERR_FILENO);
   return [terminal, uncalibrated, next_s = 2.0,
           duration_s = options.duration_s](const flow::Frame& frame, double elapsed_s) mutable {
     if (!terminal && elapsed_s < next_s) return;

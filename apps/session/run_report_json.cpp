@@ -8,7 +8,7 @@
 #include "cli/json_line.hpp"
 #include "cli/model_files.hpp"
 #include "gloves/glove_json.hpp"
-#include "session/loop_options.hpp"
+#include "session/setting_options.hpp"
 
 namespace nendo::session {
 namespace {

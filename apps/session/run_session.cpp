@@ -3,19 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iostream>
 #include <iterator>
 #include <limits>
 #include <utility>
 
 #include <nendo/deform/undo_memory.hpp>
+#include <nendo/flow/setting.hpp>
+#include <nendo/flow/wanted_settings.hpp>
 #include <nendo/sculpting/loop_thread.hpp>
 #include <nendo/sculpting/placing.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/terminal.hpp"
+#include "commands/commands.hpp"
 #include "gloves/glove_feedback.hpp"
 #include "gloves/stuck_sensors.hpp"
 #include "session/run_commands.hpp"
-#include "session/run_keys.hpp"
 #include "session/run_models.hpp"
 #include "session/run_picture.hpp"
 #include "session/run_saving.hpp"
@@ -24,6 +28,40 @@ namespace nendo::session {
 namespace {
 
 using std::chrono::milliseconds;
+
+/// The keys of a run, in its terminal.
+class RunKeys final : public Observer {
+public:
+  /// `timeout` is how long update() waits for a key.
+  explicit RunKeys(milliseconds timeout) : timeout_(timeout) {
+    if (keys_.are_available()) cli::note("keys: ? lists them, q ends the run");
+  }
+
+  void update(const RunStatus& status, Asks& asks) override {
+    const auto key = keys_.next(timeout_);
+    if (!key) return;
+    const auto* const row = commands::with_key({&*key, 1}, commands::in_terminal);
+    if (row == nullptr) return;
+    if (!row->is_for_run())
+      return report("keys:" + commands::key_list(commands::in_terminal, "\n  ", "  "));
+    wanted_.follow(status.frame.settings);
+    const commands::Answer answer = commands::press(*row, status.situation(), wanted_);
+    if (answer.command) asks.emplace_back(*answer.command);
+    if (answer.refusal != nullptr) report(answer.refusal);
+    if (row->choose != nullptr && answer.command)
+      report(flow::in_words(wanted_.now, status.frame.units_per_metre));
+  }
+  /// Writes to standard error, also without keys.
+  void report(const std::string& message) override {
+    std::cerr << '\n'; // so that the line of progress is not overwritten
+    cli::note(message);
+  }
+
+private:
+  cli::Keys keys_;
+  milliseconds timeout_;
+  flow::WantedSettings wanted_;
+};
 
 std::size_t max_undo_bytes(const RunOptions& options) noexcept {
   return options.undo_memory_mb ? static_cast<std::size_t>(1e6 * *options.undo_memory_mb)
@@ -119,11 +157,11 @@ private:
     asks_.clear();
     for (Observer* observer : observers_)
       observer->update(status, asks_);
-    commands_.obey(asks_);
+    commands_.execute(asks_);
     commands_.follow(fresh);
   }
 
-  /// Says once of each sensor that it is stuck, or moves again.
+  /// Reports once for each sensor that it is stuck, or moves again.
   void follow_stuck(const flow::Frame& frame) {
     if (frame.ticks_run == 0) return;
     for (const auto& hand : hands_) {
@@ -139,12 +177,12 @@ private:
       if (const auto settled = sink->settle(); !settled) report(settled.error().message);
   }
 
-  // Commands that came just before the end are still obeyed, if the loop ticks at all.
+  // Commands that came just before the end are still executed, if the loop ticks at all.
   void wait_until_taken() {
     auto& frames = placed_.loop->frames();
     const HostTime begin = HostClock::now();
-    const auto waits_for = [&](milliseconds most) { return HostClock::now() - begin < most; };
-    // Only a further frame tells that an undo waits for settings.
+    const auto waits_for = [&](milliseconds max) { return HostClock::now() - begin < max; };
+    // Only a further frame shows that an undo waits for settings.
     for (bool is_news = false; waits_for(milliseconds(commands_.is_due() ? 1000 : 100));) {
       std::this_thread::sleep_for(milliseconds(1));
       const bool fresh = frames.update();
@@ -155,7 +193,7 @@ private:
     }
   }
 
-  // When all else is ready: what simulated hands do is done at times of the run.
+  // Called last, because simulated hands act at times of the run.
   Result<void> begin_gloves() {
     gloves_ = status_of(hands_);
     for (Observer* observer : observers_)
@@ -189,8 +227,8 @@ private:
       cli::note(line);
   }
 
-  // Returns whether no glove will send any more, and the loop has taken all that they sent. Its
-  // present tick, for which whoever stops it waits, shows the last of it.
+  // Returns whether all gloves have ended, and the loop has taken all of their samples. Its present
+  // tick, which is completed before it stops, shows the last ones.
   bool is_exhausted() const {
     if (options_.over) return options_.over->take.script->has_ended();
     return gloves::have_ended(hands_) && placed_.loop->frames().front().ticks_run > 0 &&
@@ -198,7 +236,7 @@ private:
                        [](const auto& hand) { return hand.ring->size() == 0; });
   }
 
-  // Returns whether the run ends for it. Somebody who looks at a window decides that himself.
+  // Returns whether the run ends with the gloves. A window's user decides that.
   bool ends_with_gloves() {
     if (!is_exhausted()) return false;
     const auto& observers = participants_.observers;
@@ -206,12 +244,13 @@ private:
                      [](const Observer* observer) { return observer->stays_open(); }))
       return true;
     if (!std::exchange(end_reported_, true))
-      report("the recording has ended, and the hands stay as they are; q or closing the window "
-             "ends the run");
+      report("the recording has ended, and the hands stay in place; press q or close the window to "
+             "end "
+             "the run");
     return false;
   }
 
-  // The LED shows whether the hands hold the model. What they touch of clay is felt.
+  // The LED shows whether the hands hold the model. Vibrators signal contact with clay.
   void give_feedback(const flow::Frame& frame) noexcept {
     const bool both = frame.hands[0].present && frame.hands[1].present;
     for (auto& [side, feedback] : feedback_) {
@@ -251,25 +290,34 @@ private:
   const RunParticipants& participants_;
   std::vector<Observer*> observers_;
   std::vector<flow::Grant> grants_;
-  Asks asks_;         ///< of all observers, since the last time
+  Asks asks_;         ///< the new requests of all observers
   PlacedLoop placed_; ///< outlives what another thread may be making of its model
   RunRecorder recorder_;
   RunModels models_;
-  std::uint32_t shown_model_ = 0; ///< of the latest frame
+  std::uint32_t shown_model_ = 0; ///< the model of the latest frame
   RunSaving saving_;
   RunCommands commands_;
   struct Felt {
     Side side;
     gloves::GloveFeedback feedback;
   };
-  std::vector<Felt> feedback_; ///< of all gloves
+  std::vector<Felt> feedback_; ///< the feedback of all gloves
   GloveStatuses gloves_;
   double elapsed_s_ = 0.0;
-  bool end_reported_ = false;                   ///< that all gloves have ended
-  std::array<gloves::StuckNotices, 2> stuck_{}; ///< by flow::Placement::index_of(side)
+  bool end_reported_ = false;                   ///< the end of all gloves was reported
+  std::array<gloves::StuckNotices, 2> stuck_{}; ///< index: flow::Placement::index_of(side)
 };
 
 } // namespace
+
+GloveStatuses status_of(const std::vector<gloves::OpenHand>& hands) {
+  GloveStatuses statuses;
+  for (const gloves::OpenHand& hand : hands) {
+    statuses[flow::Placement::index_of(hand.side)] = {
+        hand.glove->info().source, driver::counts_of(hand.glove->stats()), hand.uncalibrated};
+  }
+  return statuses;
+}
 
 std::uint64_t ticks_for(const RunOptions& options) noexcept {
   // Ticks that follow samples, or slip, do not measure time.

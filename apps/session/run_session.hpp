@@ -21,7 +21,7 @@ struct RunOutcome {
   std::string result;
   std::vector<flow::Grant> grants;
   std::vector<RecordingOutcome> recordings;
-  std::vector<PublishedTo> published{}; ///< added by whoever owns the sinks
+  std::vector<PublishedTo> published{}; ///< added by the owner of the sinks
   /// After all changes of settings.
   flow::SculptorOptions sculptor{};
   double units_per_metre = 1.0; ///< from the stage to the model
@@ -51,8 +51,8 @@ struct RunParticipants {
 ///
 /// Simulated hands and recordings of gloves begin when the loop does (gloves::begin_again()).
 /// The loop takes all commands without a pause. What a change of settings needs is made on the main
-/// thread beforehand. If a command cannot be obeyed, the observers are told, and the run continues.
-/// Blocks.
+/// thread beforehand. If a command cannot be executed, the observers get a message, and the run
+/// continues. Blocks.
 Result<RunOutcome> run_session(RunOptions options, std::vector<gloves::OpenHand>& hands,
                                deform::Mesh model, const RunParticipants& participants,
                                std::vector<flow::Grant> grants = {});

@@ -1,6 +1,11 @@
 #pragma once
 // A sink takes every frame of a run, for other programs, other machines or a browser.
 
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
 #include <nendo/flow/frame.hpp>
 
 #include "session/place_loop.hpp"
@@ -17,9 +22,50 @@ public:
   /// if the sink cannot take it; the model then stays as it is. It may be called for another
   /// version, or again, before a frame of that one has come.
   virtual Result<void> prepare(const flow::ModelVersion& version) = 0;
-  /// Called on the main thread when the first frame of that version has come. Returns an error to
-  /// be told to people.
+  /// Called on the main thread after the first frame of that version. The error is reported.
   virtual Result<void> settle() { return {}; }
+};
+
+/// The target that a sink writes to. Each version of the model needs its own, and the tick changes
+/// to the next one with the first frame of that version.
+template <class Target>
+class VersionTarget {
+public:
+  /// For the first version, before the loop runs.
+  void begin(std::shared_ptr<Target> first) noexcept {
+    now_ = std::move(first);
+    in_tick_ = now_.get();
+  }
+  /// Returns the target of the frame's version. For the tick; wait-free.
+  Target& of(const flow::Frame& frame) noexcept {
+    if (frame.model != model_) {
+      model_ = frame.model;
+      in_tick_ = next_in_tick_.load(std::memory_order_acquire);
+    }
+    return *in_tick_;
+  }
+
+  // For the main thread:
+
+  /// Sets the target of the version with which the loop will continue, before the loop has it.
+  void prepare(std::shared_ptr<Target> next) noexcept {
+    next_ = std::move(next);
+    next_in_tick_.store(next_.get(), std::memory_order_release);
+  }
+  /// Makes the next target the present one after a frame of its version. Returns the previous one,
+  /// which the tick no longer uses; null if there was no other.
+  std::shared_ptr<Target> settle() noexcept {
+    if (!next_) return nullptr;
+    return std::exchange(now_, std::exchange(next_, nullptr));
+  }
+  const std::shared_ptr<Target>& now() const noexcept { return now_; }
+
+private:
+  std::shared_ptr<Target> now_;
+  std::shared_ptr<Target> next_;
+  std::atomic<Target*> next_in_tick_{nullptr};
+  Target* in_tick_ = nullptr;
+  std::uint32_t model_ = 0;
 };
 
 } // namespace nendo::session

@@ -8,7 +8,7 @@
 
 #include <nendo/driver/record_counts.hpp>
 
-#include "session/loop_options.hpp"
+#include "session/setting_options.hpp"
 #include "stress/report.hpp"
 
 namespace nendo::stress {

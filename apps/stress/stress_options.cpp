@@ -8,7 +8,6 @@
 #include "cli/cli.hpp"
 #include "cli/quantities.hpp"
 #include "session/place_loop.hpp"
-#include "session/setting_options.hpp"
 #include "stress/load.hpp"
 
 namespace nendo::stress {

@@ -9,8 +9,8 @@
 
 #include <nendo/base/result.hpp>
 
-#include "session/loop_options.hpp"
 #include "session/run_options.hpp"
+#include "session/setting_options.hpp"
 
 namespace nendo::stress {
 

@@ -120,8 +120,8 @@ TEST_SUITE("overdub_command") {
         {{"--over", take, "--punch", "9s:10s"}, "--punch 9s:10s: the take lasts"},
         {{"--over", take, "--punch", "5"}, "--punch 5: use two times"},
         {{"--over", take, "--loop", "0.2s:0.1s"}, "--loop 0.2s:0.1s: ends before it begins"},
-        {{"--over", take, "--loop", "0:0.1"}, "a round takes 0.2 s at least"},
-        {{"--punch", "1s:2s"}, "--punch: say over which recording, with --over"},
+        {{"--over", take, "--loop", "0:0.1"}, "use 0.2 s at least"},
+        {{"--punch", "1s:2s"}, "--punch: needs --over"},
         {{"--over", takes.path("take.obj")}, "is no recording"},
         {{"--over", takes.path("missing.nendo")}, "missing.nendo"},
     };

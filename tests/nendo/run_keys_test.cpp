@@ -35,13 +35,13 @@ TEST_SUITE("run_keys") {
     REQUIRE(program.tells("ticks"));
     CHECK(program.is_raw());
     CHECK(program.press('l'));
-    REQUIRE(program.tells("  let go"));
+    REQUIRE(program.tells("  released"));
     CHECK(program.press('s'));
     REQUIRE(program.tells("shape-2.obj")); // what is there stays
     CHECK(program.press('g'));
     REQUIRE(program.sees([](const VtScreen& screen) {
       const std::string& text = screen.transcript();
-      return text.rfind("ticks") > text.rfind("let go") + 20; // a line of progress without it
+      return text.rfind("ticks") > text.rfind("released") + 20; // a line of progress without it
     }));
     CHECK(program.press('?'));
     CHECK(program.tells("k  Keeps the recording of what was just done"));
@@ -112,7 +112,7 @@ TEST_SUITE("run_keys") {
                               columns, 24);
       REQUIRE(program.tells(" left"));
       CHECK(program.press('l'));
-      if (columns == 80) REQUIRE(program.tells("  let go"));
+      if (columns == 80) REQUIRE(program.tells("  released"));
       CHECK(program.press('q'));
       CHECK(program.wait() == 0);
       const std::string& all = program.screen().transcript();

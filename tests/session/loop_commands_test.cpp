@@ -20,12 +20,12 @@ TEST_SUITE("loop_commands") {
     CHECK_FALSE(commands.push(flow::SetLayer{2, true}));
     CHECK_FALSE(commands.push(flow::Request::undo));
     CHECK(commands.dropped() ==
-          "The loop does not answer, so this was dropped: wire, punch, undo.");
+          "The loop is not responding; dropped: wire, punch, undo.");
     CHECK_FALSE(commands.dropped());
     CHECK_FALSE(commands.push(flow::Request::undo)); // which was said
     CHECK_FALSE(commands.dropped());
     CHECK_FALSE(commands.push(flow::DrawWire{true, flow::Blade::knife}));
-    CHECK(commands.dropped() == "The loop does not answer, so this was dropped: knife.");
+    CHECK(commands.dropped() == "The loop is not responding; dropped: knife.");
     CHECK_FALSE(commands.try_push(flow::WristMove{})); // stays with the caller
     CHECK_FALSE(commands.dropped());
 
@@ -33,7 +33,7 @@ TEST_SUITE("loop_commands") {
     CHECK(commands.push(flow::Request::grab));
     CHECK(commands.push(flow::Request::grab));
     CHECK_FALSE(commands.push(flow::Request::undo));
-    CHECK(commands.dropped() == "The loop does not answer, so this was dropped: undo.");
+    CHECK(commands.dropped() == "The loop is not responding; dropped: undo.");
   }
 
   TEST_CASE("what was dropped just before something found room is named all the same") {
@@ -43,7 +43,7 @@ TEST_SUITE("loop_commands") {
     CHECK_FALSE(commands.push(flow::SetSymmetry{true}));
     commands.ring().drain([](const flow::Command&) noexcept {});
     CHECK(commands.push(flow::Request::grab));
-    CHECK(commands.dropped() == "The loop does not answer, so this was dropped: symmetry.");
+    CHECK(commands.dropped() == "The loop is not responding; dropped: symmetry.");
   }
 }
 

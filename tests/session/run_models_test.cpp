@@ -175,7 +175,7 @@ TEST_SUITE("run_models") {
       CHECK(asker.prepared == std::vector<std::uint32_t>{1});
       REQUIRE(asker.reports.size() == (by_itself ? 1 : 2));
       CHECK(asker.reports[0] ==
-            "what was thin has parted, opened or fused; the model is one part now");
+            "thin places have parted, opened or fused; the model is one part now");
       if (!by_itself)
         CHECK(asker.reports[1] ==
               "the model is nowhere thinner than its edges; the model stays as it is");

@@ -366,7 +366,7 @@ TEST_SUITE("run_session") {
     const auto outcome = run.follow({&asker});
     REQUIRE(asker.reports.size() == 1);
     CHECK(asker.reports[0].find("/nowhere/at/all.nendo") != std::string::npos);
-    CHECK(asker.reports[0].find("the run goes on") != std::string::npos);
+    CHECK(asker.reports[0].find("the run continues") != std::string::npos);
     CHECK(outcome.recordings.empty());
     CHECK(outcome.stats.changes == 1);
     CHECK(asker.leaps == 0);

@@ -1,0 +1,33 @@
+#pragma once
+// The views of a run: a window on this machine, and a page in browsers.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "session/observer.hpp"
+#include "session/sink.hpp"
+
+namespace nendo::session {
+
+struct ViewOptions {
+  bool window = false;
+  bool contact = false;     ///< shows at first where hands touch clay
+  std::string screenshot;   ///< where the last picture goes, .png; empty: nowhere
+  std::uint32_t frames = 0; ///< pictures after which the run ends; 0: no limit
+};
+
+/// Opens the window. This and all calls of the window belong to the main thread. Errors: failed (no
+/// screen, no OpenGL, or built without the view); the message says what to do instead.
+Result<std::unique_ptr<Observer>> open_live_view(const ViewOptions& options, const RunOptions& run);
+
+/// It takes every frame in the tick, and observes the run on the main thread.
+class BrowserView : public Sink, public Observer {};
+
+/// Opens the server for --web, and prints its address on standard error. Errors: those of
+/// web::parse_endpoint() and web::Server::open(). The view's begin() and prepare() return bad_input
+/// for a model with more vertices than browsers take.
+Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoint,
+                                                       const std::string& mesh);
+
+} // namespace nendo::session
