@@ -28,4 +28,12 @@ void install_stop_signals() noexcept;
 /// (../share/nendo/models).
 std::filesystem::path shipped_model(std::string_view file_name);
 
+struct TwoProcessors {
+  int first = 0;
+  int second = 0;
+};
+
+/// Returns the first two processors that this process may use. Fails if there is only one.
+Result<TwoProcessors> two_processors();
+
 } // namespace nendo::cli

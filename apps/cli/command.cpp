@@ -297,11 +297,6 @@ Option& Option::required() {
   return *this;
 }
 
-Option& Option::under(const std::string& heading) {
-  option_->group(heading);
-  return *this;
-}
-
 Option& Option::one_of(std::initializer_list<const char*> words) {
   option_->check(CLI::IsMember(std::vector<std::string>(words.begin(), words.end())));
   return *this;
@@ -316,12 +311,23 @@ Command Command::add_command(const std::string& name, const std::string& summary
   return Command(*app_->add_subcommand(name, summary), *chosen_);
 }
 
+Command Command::under(const std::string& heading) const {
+  Command section = *this;
+  section.heading_ = heading;
+  return section;
+}
+
+Option Command::described(CLI::Option& option) const {
+  if (!heading_.empty()) option.group(heading_);
+  return Option(option);
+}
+
 template <class T>
 Option Command::add_option(const std::string& names, T& value, const std::string& summary) {
   CLI::Option* option = app_->add_option(names, value, summary);
   if (!is_blank(value)) option->capture_default_str();
   if constexpr (std::is_unsigned_v<T>) option->check(not_negative);
-  return Option(*option);
+  return described(*option);
 }
 
 template Option Command::add_option(const std::string&, std::string&, const std::string&);
@@ -349,7 +355,7 @@ Option Command::add_quantity(const std::string& names, T& value, const std::stri
   if constexpr (std::is_same_v<T, double>) {
     if (!is_blank(value)) option->default_str(fmt::format("{:g}{}", value, quantity.unit));
   }
-  return Option(*option);
+  return described(*option);
 }
 
 template Option Command::add_quantity(const std::string&, double&, const std::string&, Unit);
@@ -357,7 +363,7 @@ template Option Command::add_quantity(const std::string&, std::optional<double>&
                                       const std::string&, Unit);
 
 Option Command::add_flag(const std::string& names, bool& value, const std::string& summary) {
-  return Option(*app_->add_flag(names, value, summary));
+  return described(*app_->add_flag(names, value, summary));
 }
 
 std::string Command::first_given(const std::vector<std::string>& names) const {

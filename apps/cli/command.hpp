@@ -25,8 +25,6 @@ public:
   explicit Option(CLI::Option& option) noexcept : option_(&option) {}
 
   Option& required();
-  /// Puts the option under this heading of --help.
-  Option& under(const std::string& heading);
   Option& one_of(std::initializer_list<const char*> words);
   /// Lets each use of the option take one value, which --help calls `type`. Otherwise a list takes
   /// all values that follow.
@@ -43,6 +41,8 @@ public:
   Command(CLI::App& app, std::function<int()>& chosen) noexcept : app_(&app), chosen_(&chosen) {}
 
   Command add_command(const std::string& name, const std::string& summary);
+  /// Returns the same command, which puts further options under this heading of --help.
+  Command under(const std::string& heading) const;
   /// Adds an option. `value` must outlive parsing; what it holds is the default, which --help shows
   /// unless it is empty or zero. A name without dashes is a positional argument. T is string,
   /// double, a whole number, an optional, or a list of strings, as command.cpp instantiates.
@@ -87,8 +87,11 @@ private:
   template <class T>
   Option add_quantity(const std::string& names, T& value, const std::string& summary, Unit unit);
 
+  Option described(CLI::Option& option) const;
+
   CLI::App* app_;
   std::function<int()>* chosen_;
+  std::string heading_; ///< empty: "Options"
 };
 
 /// Returns everything that `add_commands` describes, as --help shows it.

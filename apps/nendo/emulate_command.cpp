@@ -190,92 +190,63 @@ int emulate(Options& options) {
   return served ? 0 : cli::report(served.error());
 }
 
-void add_glove_options(cli::Command& command, Options& options) {
+void add_glove_options(cli::Command command, Options& options) {
   emulator::EmulatorOptions& emulator = options.emulator;
-  const std::string heading = "The glove";
-  command
-      .add_option("--glove", emulator.glove,
-                  "Its kind: " + list_of(emulator::emulated_glove_names()))
-      .under(heading);
-  command.add_option("--firmware", emulator.firmware, "Its firmware, see below").under(heading);
-  command.add_option("--connection", emulator.connection, "Its connection, see below")
-      .under(heading);
-  command.add_option("--hand", options.hand, "left or right").under(heading);
-  command
-      .add_option("--sensors", emulator.sensors,
-                  "Number of sensors; a CyberGlove has 22 (default) or 18")
-      .under(heading);
-  command
-      .add_option("--motion", emulator.motion,
-                  "What the hand does: " + list_of(driver::motion_names()) +
-                      ", or poses: those of nendo calibrate, in its order")
-      .under(heading);
-  command
-      .add_duration(
-          "--hold", options.hold_s,
-          "With --motion poses: how long each pose is held, after a free motion of 8 s, "
-          "repeatedly; without it, SPACE advances to the next pose, or without a keyboard "
-          "4 s")
-      .under(heading);
-  command
-      .add_rate("--rate", emulator.rate_hz, "Records per second until the host sets another rate")
-      .under(heading);
-  command.add_option("--seed", emulator.seed, "Seed of motion, noise and faults").under(heading);
+  command.add_option("--glove", emulator.glove,
+                     "Its kind: " + list_of(emulator::emulated_glove_names()));
+  command.add_option("--firmware", emulator.firmware, "Its firmware, see below");
+  command.add_option("--connection", emulator.connection, "Its connection, see below");
+  command.add_option("--hand", options.hand, "left or right");
+  command.add_option("--sensors", emulator.sensors,
+                     "Number of sensors; a CyberGlove has 22 (default) or 18");
+  command.add_option("--motion", emulator.motion,
+                     "What the hand does: " + list_of(driver::motion_names()) +
+                         ", or poses: those of nendo calibrate, in its order");
+  command.add_duration(
+      "--hold", options.hold_s,
+      "With --motion poses: how long each pose is held, after a free motion of 8 s, "
+      "repeatedly; without it, SPACE advances to the next pose, or without a keyboard "
+      "4 s");
+  command.add_rate("--rate", emulator.rate_hz,
+                   "Records per second until the host sets another rate");
+  command.add_option("--seed", emulator.seed, "Seed of motion, noise and faults");
   command.add_option("--pace", options.pace, "clock: as a device; host: as fast as the host reads")
-      .one_of({"clock", "host"})
-      .under(heading);
+      .one_of({"clock", "host"});
 }
 
-void add_cyberglove_options(cli::Command& command, Options& options) {
+void add_cyberglove_options(cli::Command command, Options& options) {
   emulator::EmulatedCyberGlove& glove = options.emulator.cyberglove;
-  const std::string heading = "CyberGlove only";
-  command.add_option("--model", glove.model, "1, 2 or 3").under(heading);
-  command.add_option("--mask", options.mask, "The sensors it has, in hexadecimal, e.g. 6b3b3f")
-      .under(heading);
-  command.add_flag("--touch", glove.touch, "It has the vibrators of a CyberTouch").under(heading);
-  command
-      .add_option("--reply-bytes", glove.reply_bytes,
-                  "Bytes of the reply to a setting: 2, or 3 as one library expects")
-      .under(heading);
+  command.add_option("--model", glove.model, "1, 2 or 3");
+  command.add_option("--mask", options.mask, "The sensors it has, in hexadecimal, e.g. 6b3b3f");
+  command.add_flag("--touch", glove.touch, "It has the vibrators of a CyberTouch");
+  command.add_option("--reply-bytes", glove.reply_bytes,
+                     "Bytes of the reply to a setting: 2, or 3 as one library expects");
   command
       .add_option("--period-order", options.period_order,
                   "Byte order of the words of T: msb or lsb first")
-      .one_of({"msb", "lsb"})
-      .under(heading);
+      .one_of({"msb", "lsb"});
   command
       .add_option("--stamp-bit7", options.stamp_bit7,
                   "Bit 7 of a time stamp's first byte: on: always set; off: set only if needed")
-      .one_of({"on", "off"})
-      .under(heading);
+      .one_of({"on", "off"});
   command
       .add_option(
           "--hires-form", options.hires_form,
           "1S of a III: as the hardware, which echoes it, and 0x03 after it, without NUL and "
           "counts sub-frames from 0; terminated, with NUL and from 1")
-      .one_of({"hardware", "terminated"})
-      .under(heading);
-  command
-      .add_duration(
-          "--restart-time", glove.restart_s,
-          "Duration of a restart of its firmware: 0.2s, which the maker's library expects, or "
-          "1.75s as in the manual")
-      .under(heading);
-  command
-      .add_flag("--overrun", glove.overrun,
-                "Its first period is too short: each record of a stream has es")
-      .under(heading);
-  command
-      .add_flag("--streaming", glove.streaming,
-                "It streams at the start, as after a crash of the host")
-      .under(heading);
-  command
-      .add_flag("--pattern", glove.pattern,
-                "No motion: in record n, slot k counts 1 + (n + 29 k) mod 255")
-      .under(heading);
-  command
-      .add_option("--replay", glove.replay,
-                  "Send the records of this file of received bytes, repeatedly")
-      .under(heading);
+      .one_of({"hardware", "terminated"});
+  command.add_duration(
+      "--restart-time", glove.restart_s,
+      "Duration of a restart of its firmware: 0.2s, which the maker's library expects, or "
+      "1.75s as in the manual");
+  command.add_flag("--overrun", glove.overrun,
+                   "Its first period is too short: each record of a stream has es");
+  command.add_flag("--streaming", glove.streaming,
+                   "It streams at the start, as after a crash of the host");
+  command.add_flag("--pattern", glove.pattern,
+                   "No motion: in record n, slot k counts 1 + (n + 29 k) mod 255");
+  command.add_option("--replay", glove.replay,
+                     "Send the records of this file of received bytes, repeatedly");
 }
 
 } // namespace
@@ -293,8 +264,8 @@ void add(cli::Command& program) {
   command.add_option("--fault", options->emulator.faults, "A fault, see below").once_each("FAULT");
   command.add_option("--log", options->emulator.log,
                      "Write all traffic to this file, one line per message");
-  add_glove_options(command, *options);
-  add_cyberglove_options(command, *options);
+  add_glove_options(command.under("The glove"), *options);
+  add_cyberglove_options(command.under("CyberGlove only"), *options);
   command.set_footer(variants_explained() + faults_explained());
   command.on_chosen([options] { return emulate(*options); });
 }

@@ -1,5 +1,6 @@
 #pragma once
-// The options that the commands share which read models and write models: --up, --out and --force.
+// Functions that commands share: the options of those that read and write models (--up, --out and
+// --force), their reports, and the files of puppets.
 
 #include <span>
 #include <string>
@@ -7,6 +8,7 @@
 #include <nendo/deform/face_box.hpp>
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/supports.hpp>
+#include <nendo/puppet/puppet.hpp>
 
 #include "takes/model_files.hpp"
 
@@ -39,5 +41,15 @@ void warn_about_reach(const std::string& what, const deform::Box& box, const def
 
 /// Reports on standard output that a file was written. An empty name is no file.
 void report_written(const std::string& file);
+
+struct PuppetFile {
+  std::string path;
+  std::string model; ///< path of its model, which is beside it
+  puppet::Puppet puppet;
+};
+
+/// Reads a file, or the shipped puppet of that name ("face"), if there is no such file. Error:
+/// bad_input.
+Result<PuppetFile> open_puppet(const std::string& name);
 
 } // namespace nendo::app

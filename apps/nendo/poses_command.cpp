@@ -32,6 +32,7 @@
 #include "gloves/sample_grid.hpp"
 #include "gloves/stuck_sensors.hpp"
 #include "nendo/commands.hpp"
+#include "session/open_hands.hpp"
 
 namespace nendo::app::poses_command {
 namespace {
@@ -293,18 +294,6 @@ Result<Outputs> open_outputs(const Options& options, const std::vector<gloves::O
   return outputs;
 }
 
-Result<std::vector<gloves::OpenHand>> open_gloves(const Options& options) {
-  std::vector<gloves::OpenHand> hands;
-  for (const std::string& spec : options.gloves) {
-    auto hand = gloves::open_hand(spec);
-    if (!hand) return hand.error();
-    hands.push_back(*std::move(hand));
-  }
-  if (hands.size() == 2 && hands[0].side == hands[1].side)
-    return gloves::same_hand(hands[0], hands[1]);
-  return hands;
-}
-
 void note_losses(const gloves::OpenHand& hand) {
   const auto counts = driver::counts_of(hand.glove->stats());
   if (counts.refused > 0)
@@ -315,7 +304,7 @@ void note_losses(const gloves::OpenHand& hand) {
 
 Result<void> poses(const Options& options) {
   if (auto fine = check(options); !fine) return fine;
-  auto hands = open_gloves(options);
+  auto hands = session::open_each(options.gloves);
   if (!hands) return hands.error();
   cli::install_stop_signals();
   if (auto started = gloves::start(*hands); !started) return started;

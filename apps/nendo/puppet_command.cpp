@@ -20,7 +20,6 @@
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"
-#include "nendo/puppet_file.hpp"
 #include "render/picture.hpp"
 #include "takes/model_files.hpp"
 

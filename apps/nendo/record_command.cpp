@@ -15,6 +15,7 @@
 #include "cli/quantities.hpp"
 #include "gloves/glove_json.hpp"
 #include "nendo/commands.hpp"
+#include "session/open_hands.hpp"
 #include "session/run_recording.hpp"
 
 namespace nendo::app::record_command {
@@ -46,16 +47,10 @@ Result<void> check(Options& options) {
 }
 
 Result<std::vector<gloves::OpenHand>> open_gloves(const Options& options) {
-  std::vector<gloves::OpenHand> hands;
-  for (const auto& spec : options.gloves) {
-    auto hand = gloves::open_hand(spec);
-    if (!hand) return hand.error();
-    hands.push_back(*std::move(hand));
-  }
-  if (hands.size() == 2 && hands[0].side == hands[1].side)
-    return gloves::same_hand(hands[0], hands[1]);
-  if (const auto started = gloves::start(hands); !started) return started.error();
-  if (const auto done = gloves::calibrate(hands, options.calibration, options.length); !done)
+  auto hands = session::open_each(options.gloves);
+  if (!hands) return hands;
+  if (const auto started = gloves::start(*hands); !started) return started.error();
+  if (const auto done = gloves::calibrate(*hands, options.calibration, options.length); !done)
     return done.error();
   return hands;
 }

@@ -22,7 +22,7 @@
 #include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "cli/quantities.hpp"
-#include "nendo/puppet_file.hpp"
+#include "nendo/model_output.hpp"
 #include "takes/model_files.hpp"
 #include "takes/recorded_model.hpp"
 
@@ -56,13 +56,14 @@ Result<void> check_outputs(RunArguments& options) {
   const session::ViewOptions& view = options.view;
   if (!view.window && (view.frames > 0 || view.contact || !view.screenshot.empty()))
     return Error{Errc::usage, "--frames, --screenshot and --contact: need the window; add --view"};
-  if (auto fine = cli::check_place("--out", run.out, deform::mesh_endings); !fine) return fine;
   const std::string& model = run.over ? run.over->take.setup.loop->mesh : run.mesh;
+  if (auto fine = cli::check_place("--out", run.out, deform::mesh_endings); !fine) return fine;
   if (auto fine = cli::check_spares(model, "--out", run.out, options.force); !fine) return fine;
-  if (auto fine = cli::check_place("--picture", run.picture, {".png"}); !fine) return fine;
   if (auto fine = cli::check_place("--record", run.recording.file); !fine) return fine;
   if (auto fine = check_out_puppet(options); !fine) return fine;
-  if (auto fine = cli::check_place("--screenshot", view.screenshot, {".png"}); !fine) return fine;
+  for (const auto& [option, file] :
+       {std::pair{"--picture", &run.picture}, {"--screenshot", &view.screenshot}})
+    if (auto fine = cli::check_place(option, *file, {".png"}); !fine) return fine;
   return cli::check_distinct({{"--out", run.out},
                               {"--picture", run.picture},
                               {"--record", run.recording.file},

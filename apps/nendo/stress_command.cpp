@@ -118,22 +118,17 @@ int run(const stress::StressArguments& arguments) {
   return bad.empty() ? 0 : static_cast<int>(Errc::failed);
 }
 
-void add_reports(cli::Command& command, stress::StressArguments& arguments) {
-  command.add_flag("--json", arguments.json, "The report as one JSON object").under("Report");
-  command
-      .add_option("-h,--histogram", arguments.histogram_us,
-                  "Print the lateness, one line per microsecond, up to this number of microseconds")
-      .under("Report");
-  command.add_option("--hgrm", arguments.hgrm, "Write an HdrHistogram percentile file")
-      .under("Report");
-  command.add_option("--picture", arguments.picture, "Draw the lateness as SVG").under("Report");
-  command
-      .add_option("--compare", arguments.compare, "Show an earlier report (--json) beside this one")
-      .under("Report");
-  command
-      .add_option("--fail-if", arguments.fail_if,
-                  "Exit with 1 if one of these conditions is true, like 'p99.9>200us,missed>0'")
-      .under("Report");
+void add_reports(cli::Command command, stress::StressArguments& arguments) {
+  command.add_flag("--json", arguments.json, "The report as one JSON object");
+  command.add_option(
+      "-h,--histogram", arguments.histogram_us,
+      "Print the lateness, one line per microsecond, up to this number of microseconds");
+  command.add_option("--hgrm", arguments.hgrm, "Write an HdrHistogram percentile file");
+  command.add_option("--picture", arguments.picture, "Draw the lateness as SVG");
+  command.add_option("--compare", arguments.compare,
+                     "Show an earlier report (--json) beside this one");
+  command.add_option("--fail-if", arguments.fail_if,
+                     "Exit with 1 if one of these conditions is true, like 'p99.9>200us,missed>0'");
 }
 
 } // namespace
@@ -175,7 +170,7 @@ void add(cli::Command& program) {
   command.add_flag("--view", arguments->view,
                    "Open the live window, to measure its effect on the loop");
   arguments->loop.add_to(command, true);
-  add_reports(command, *arguments);
+  add_reports(command.under("Report"), *arguments);
   command.on_chosen([arguments] { return run(*arguments); });
 }
 

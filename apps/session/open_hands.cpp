@@ -94,4 +94,16 @@ Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
   return opened;
 }
 
+Result<std::vector<gloves::OpenHand>> open_each(const std::vector<std::string>& specs) {
+  std::vector<gloves::OpenHand> hands;
+  for (const std::string& spec : specs) {
+    auto hand = gloves::open_hand(spec);
+    if (!hand) return hand.error();
+    hands.push_back(*std::move(hand));
+  }
+  if (hands.size() == 2 && hands[0].side == hands[1].side)
+    return gloves::same_hand(hands[0], hands[1]);
+  return hands;
+}
+
 } // namespace nendo::session

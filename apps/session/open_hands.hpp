@@ -1,6 +1,7 @@
 #pragma once
 // Opens the gloves of a run: those that were named, or those that the machine has.
 
+#include <string>
 #include <vector>
 
 #include <nendo/deform/mesh.hpp>
@@ -23,5 +24,9 @@ struct RunHands {
 /// those of gloves::open_glove() and gloves::calibrate().
 Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
                             EventCount& event_count);
+
+/// Opens each of these gloves, one or two. Errors: those of gloves::open_hand(), and usage (two
+/// gloves of one hand).
+Result<std::vector<gloves::OpenHand>> open_each(const std::vector<std::string>& specs);
 
 } // namespace nendo::session

@@ -89,22 +89,24 @@ void punch(const Span& span, std::uint8_t input, flow::InputScript& script) {
 
 } // namespace
 
-void add_overdub_options(cli::Command& command, OverdubArguments& arguments) {
-  const auto add = [&](const char* name, std::string& value, const char* summary) {
-    command.add_option(name, value, summary).under("Takes in layers");
-  };
-  add("--over", arguments.take,
+void add_overdub_options(const cli::Command& whole, OverdubArguments& arguments) {
+  cli::Command command = whole.under("Takes in layers");
+  command.add_option(
+      "--over", arguments.take,
       "A recording to replay while the gloves play over it; it decides model, puppet, places and "
       "settings");
-  add("--layer", arguments.layer,
+  command.add_option(
+      "--layer", arguments.layer,
       "The joints that the gloves play: left, right, or parts separated by commas, such as "
       "left.index,right.wrist (thumb, index, middle, ring, little, palm, wrist, or a joint's "
       "angle); without it, the hands that the recording lacks or, if it lacks none, all. Without "
       "--over, all other joints rest");
-  add("--punch", arguments.punch,
+  command.add_option(
+      "--punch", arguments.punch,
       "IN:OUT, times of the recording between which the gloves play, e.g. 2s:5.5s; key o does the "
       "same");
-  add("--loop", arguments.loop,
+  command.add_option(
+      "--loop", arguments.loop,
       "A:B, times of the recording: repeats this part until the run ends; : is the whole "
       "recording");
 }

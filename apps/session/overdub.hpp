@@ -24,7 +24,7 @@ struct OverdubArguments {
   std::string punch; ///< IN:OUT; empty: from the beginning to the end
   std::string loop;  ///< A:B; empty: the take is played once
 };
-void add_overdub_options(cli::Command& command, OverdubArguments& arguments);
+void add_overdub_options(const cli::Command& command, OverdubArguments& arguments);
 
 /// What is played over.
 struct Overdub {

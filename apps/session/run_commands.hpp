@@ -1,23 +1,94 @@
 #pragma once
-// Executes the commands of a run: passes them to its loop, or keeps them until they are possible.
+// Executes the commands of a run: passes them to its loop, saves files, or keeps commands until
+// they are possible.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "session/loop_commands.hpp"
+#include <nendo/deform/mesh.hpp>
+#include <nendo/flow/command.hpp>
+#include <nendo/flow/deform_loop.hpp>
+
 #include "session/observer.hpp"
 #include "session/run_models.hpp"
+#include "session/run_options.hpp"
 #include "session/run_recording.hpp"
-#include "session/run_saving.hpp"
 
 namespace nendo::session {
+
+/// Passes commands to a running loop, and reports dropped ones. For one thread, except for ring(),
+/// of which the loop is the consumer.
+class LoopCommands {
+public:
+  explicit LoopCommands(std::size_t at_least) : ring_(at_least) {}
+
+  flow::CommandRing& ring() noexcept { return ring_; }
+  /// Returns how many the loop has not taken yet.
+  std::size_t size() const noexcept { return ring_.size(); }
+  /// Passes the command on. Returns false if the ring is full, as when the loop has stopped; the
+  /// command is then dropped, and named by the next dropped().
+  bool push(const flow::Command& command);
+  /// Passes the command on, or returns false if the ring is full.
+  bool try_push(const flow::Command& command) noexcept { return ring_.try_push(command); }
+  /// Returns a message that names what was dropped since the last call, or nothing. Each command is
+  /// named once until one is passed on again.
+  std::optional<std::string> dropped();
+
+private:
+  flow::CommandRing ring_;
+  std::vector<std::string_view> dropped_; ///< since the last command that was passed on
+  std::size_t reported_ = 0;              ///< how many of these dropped() has named
+};
+
+/// Writes the shape to `out`, with the axis `up` of the file up, and notes on standard error what
+/// such a file cannot keep. If that is impossible, on a full disk for example, it writes to the
+/// folder for temporary files, so that the shape is not lost. Blocks. Error: failed, also if the
+/// shape is in the other folder; the message says where.
+Result<void> write_shape(const std::string& out, const deform::Mesh& shape,
+                         deform::UpAxis up = deform::UpAxis::y);
+
+/// Saves a few times per second at most, even if it is asked more often.
+class RunSaving {
+public:
+  /// Saved shapes are named after `options.out` and numbered. `recorder` must outlive this.
+  RunSaving(const RunOptions& options, RunRecorder& recorder);
+
+  /// Takes note of flow::SaveShape, flow::SaveRecording and flow::SavePuppet for save(). Other
+  /// commands change nothing.
+  void add(const flow::Command& command) noexcept;
+  /// Returns whether anything waits to be saved.
+  bool is_due() const noexcept { return shape_ || recording_ || puppet_; }
+  /// Returns whether anything waits to be saved and the last save() was long enough ago.
+  bool is_due_now() const noexcept { return is_due() && HostClock::now() >= next_; }
+  /// Saves what waits. The shape is that of the newest frame. Blocks while it writes. Returns a
+  /// message for people that says what was saved.
+  std::string save(flow::DeformLoop& loop);
+
+private:
+  std::string save_shape(flow::DeformLoop& loop);
+  std::string save_recording();
+  std::string save_puppet(const flow::DeformLoop& loop);
+
+  std::string out_;
+  deform::UpAxis up_;
+  std::string model_; ///< its file
+  PuppetPlace out_puppet_;
+  RunRecorder& recorder_;
+  int saved_ = 0;
+  bool shape_ = false;
+  bool recording_ = false;
+  bool puppet_ = false;
+  HostTime next_{};
+};
 
 class RunCommands {
 public:

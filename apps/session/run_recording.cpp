@@ -38,16 +38,14 @@ Result<void> RecordingOptions::check(const std::string& out, flow::SwitchAction 
   return {};
 }
 
-void add_recording_options(cli::Command& command, RecordingOptions& options) {
-  command
-      .add_option("--record", options.file,
-                  "Record all input in this file, for `nendo replay` and as a glove")
-      .under("Recording");
-  command
-      .add_option("--keep-last", options.keep_last,
-                  "Keep this time in memory, e.g. 60s; --switch keep writes it beside --out, and "
-                  "so does a crash")
-      .under("Recording");
+void add_recording_options(const cli::Command& whole, RecordingOptions& options) {
+  cli::Command command = whole.under("Recording");
+  command.add_option("--record", options.file,
+                     "Record all input in this file, for `nendo replay` and as a glove");
+  command.add_option(
+      "--keep-last", options.keep_last,
+      "Keep this time in memory, e.g. 60s; --switch keep writes it beside --out, and "
+      "so does a crash");
 }
 
 recording::Setup begin_setup(const std::vector<gloves::OpenHand>& hands,

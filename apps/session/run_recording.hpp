@@ -32,7 +32,7 @@ struct RecordingOptions {
 };
 
 /// Adds --record and --keep-last.
-void add_recording_options(cli::Command& command, RecordingOptions& options);
+void add_recording_options(const cli::Command& command, RecordingOptions& options);
 
 /// The result of one recording.
 struct RecordingOutcome {

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <iterator>
 #include <limits>
 #include <utility>
 
+#include <nendo/deform/triangles.hpp>
 #include <nendo/deform/undo_memory.hpp>
 #include <nendo/flow/setting.hpp>
 #include <nendo/flow/wanted_settings.hpp>
@@ -19,15 +21,84 @@
 #include "commands/commands.hpp"
 #include "gloves/glove_feedback.hpp"
 #include "gloves/stuck_sensors.hpp"
+#include "render/picture.hpp"
+#include "render/scene_frame.hpp"
 #include "session/run_commands.hpp"
 #include "session/run_models.hpp"
-#include "session/run_picture.hpp"
-#include "session/run_saving.hpp"
 
 namespace nendo::session {
 namespace {
 
 using std::chrono::milliseconds;
+
+constexpr render::View picture_view{22.0, 10.0};
+constexpr render::Size panel_size{408, 392};
+
+/// Draws the picture of a run: the model at the grab and at the end, with the hands.
+class RunPicture {
+public:
+  /// Does nothing, and writes nothing, if `path` is empty.
+  RunPicture(std::filesystem::path path, const deform::Mesh& model);
+
+  /// Call it for each frame that the main thread gets, from the beginning on. Allocates.
+  void add(const flow::Frame& frame);
+  /// Sets the rest shape of the last frame's model, which decides the triangles of the final shape
+  /// (triangles.hpp).
+  void set_rest(const deform::Points& rest) {
+    if (!path_.empty()) last_rest_ = rest;
+  }
+  /// Draws and writes the picture. Call it after the last frame. Blocks for some seconds. Error:
+  /// failed.
+  Result<void> write(const deform::Mesh& final_shape);
+
+private:
+  std::filesystem::path path_;
+  deform::Mesh before_;
+  deform::Points last_rest_;
+  render::HoldTracker holds_;
+  render::SceneFrame first_, last_;
+  double units_per_metre_ = 0.0; ///< 0: no frame was added
+};
+
+RunPicture::RunPicture(std::filesystem::path path, const deform::Mesh& model)
+    : path_(std::move(path)) {
+  if (!path_.empty()) before_ = model;
+}
+
+void RunPicture::add(const flow::Frame& frame) {
+  if (path_.empty()) return;
+  holds_.follow(frame);
+  render::set_hands(frame, holds_, last_);
+  if (units_per_metre_ > 0.0) return;
+  units_per_metre_ = frame.units_per_metre;
+  first_ = last_;
+  first_.radius_m = frame.settings.radius_m;
+}
+
+Result<void> RunPicture::write(const deform::Mesh& final_shape) {
+  using namespace nendo::render;
+  if (path_.empty()) return {};
+  const SceneBuilder builder(before_, units_per_metre_);
+  first_.vertices = before_.vertices;
+  last_.vertices = final_shape.vertices;
+  Scene before;
+  Scene after;
+  builder.build(first_, {}, before);
+  const bool has_rest = last_rest_.cols() == final_shape.vertices.cols();
+  SceneBuilder(has_rest ? deform::with_triangles_of(final_shape, last_rest_) : final_shape,
+               units_per_metre_)
+      .build(last_, {}, after);
+  auto points = before.outline();
+  const auto more = after.outline();
+  points.insert(points.end(), more.begin(), more.end());
+  const Camera camera =
+      framing(points, picture_view, 1.0 * panel_size.width / panel_size.height, 0.04);
+  const auto panel = [&](const Scene& scene, const char* caption) {
+    return Panel{draw(Lighting(scene, picture_view.azimuth_deg), camera, panel_size), caption};
+  };
+  return write_png(
+      path_, contact_sheet({panel(before, "Before: both hands grab"), panel(after, "After")}, 2));
+}
 
 /// The keys of a run, in its terminal.
 class RunKeys final : public Observer {

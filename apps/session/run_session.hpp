@@ -45,7 +45,7 @@ struct RunParticipants {
 };
 
 /// Runs until the duration is over, a stop signal comes, a command asks for the end, or all gloves
-/// have ended (unless an observer stays open), and then writes the shape. The keys (run_keys.hpp)
+/// have ended (unless an observer stays open), and then writes the shape. The terminal's keys
 /// observe every run. Prints on standard error which rights were refused. `grants` are the rights
 /// that were asked for before, for the process and the readers.
 ///

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/two_processors.hpp"
+#include "cli/cli.hpp"
 
 namespace nendo::session {
 
@@ -81,39 +81,31 @@ Result<void> SettingArguments::parse_brushes(flow::LoopSettings& settings) const
   return {};
 }
 
-void LoopArguments::add_to(cli::Command& command, bool short_names) {
+void LoopArguments::add_to(const cli::Command& whole, bool short_names) {
+  cli::Command command = whole.under("Timing");
   const auto name = [&](const char* brief, const char* full) {
     return short_names ? std::string(brief) + "," + full : std::string(full);
   };
-  command
-      .add_option(
-          name("-p", "--priority"), priority,
-          "SCHED_FIFO priority of the loop, 1 to 97, usually 80; readers of gloves run two above; "
-          "0: ordinary scheduling")
-      .under("Timing");
-  command
-      .add_option(name("-a", "--affinity"), affinity,
-                  "CPUs for the loop, like 1 or 0,2 or 0-3; without it, all")
-      .under("Timing");
-  command.add_flag(name("-m", "--mlockall"), lock_memory, "Lock the process in memory")
-      .under("Timing");
-  command
-      .add_option(
-          "--policy", policy,
-          "After a tick that took too long: skip (miss deadlines, keep the grid), "
-          "catch-up:N (run the last N late), re-anchor (restart the grid); or sample: no grid, "
-          "one tick per sample")
-      .under("Timing");
-  command
-      .add_option("--spin", spin,
-                  "Wake early and spin until the deadline: on, off, auto (below 2000 Hz); only if "
-                  "SCHED_FIFO is granted")
-      .under("Timing");
-  command
-      .add_option("--threads", threads,
-                  "2: a second thread computes half of a large model, with the same result bit for "
-                  "bit. It spins, and keeps a processor busy; cannot be combined with --priority")
-      .under("Timing");
+  command.add_option(
+      name("-p", "--priority"), priority,
+      "SCHED_FIFO priority of the loop, 1 to 97, usually 80; readers of gloves run two above; "
+      "0: ordinary scheduling");
+  command.add_option(name("-a", "--affinity"), affinity,
+                     "CPUs for the loop, like 1 or 0,2 or 0-3; without it, all");
+  command.add_flag(name("-m", "--mlockall"), lock_memory, "Lock the process in memory");
+  command.add_option(
+      "--policy", policy,
+      "After a tick that took too long: skip (miss deadlines, keep the grid), "
+      "catch-up:N (run the last N late), re-anchor (restart the grid); or sample: no grid, "
+      "one tick per sample");
+  command.add_option(
+      "--spin", spin,
+      "Wake early and spin until the deadline: on, off, auto (below 2000 Hz); only if "
+      "SCHED_FIFO is granted");
+  command.add_option(
+      "--threads", threads,
+      "2: a second thread computes half of a large model, with the same result bit for "
+      "bit. It spins, and keeps a processor busy; cannot be combined with --priority");
 }
 
 /// The loop may have to wait for the second thread, so other threads must not delay it. But a

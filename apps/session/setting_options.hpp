@@ -72,7 +72,7 @@ struct LoopArguments {
   std::uint32_t threads = 1;
 
   /// Adds the options, which have cyclictest's names. With `short_names`, adds -p, -a and -m.
-  void add_to(cli::Command& command, bool short_names = false);
+  void add_to(const cli::Command& command, bool short_names = false);
   /// Reads the options into `loop` and `realtime`. Errors: usage; failed (no processor for a second
   /// thread).
   Result<void> parse(flow::LoopOptions& loop, flow::RealtimeOptions& realtime) const;

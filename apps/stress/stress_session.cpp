@@ -12,8 +12,8 @@
 
 #include "cli/cli.hpp"
 #include "commands/commands.hpp"
-#include "session/loop_commands.hpp"
 #include "session/open_hands.hpp"
+#include "session/run_commands.hpp"
 #include "session/run_recording.hpp"
 #include "stress/load.hpp"
 

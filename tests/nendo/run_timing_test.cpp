@@ -9,7 +9,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/two_processors.hpp"
+#include "cli/cli.hpp"
 #include "support/json_lines.hpp"
 #include "support/program.hpp"
 
@@ -114,7 +114,8 @@ TEST_SUITE("run_timing") {
     const auto with_priority =
         nendo::test::nendo({"run", "--left", "sim", "--threads", "2", "--priority", "5"});
     CHECK(with_priority.exit_code == 2);
-    CHECK(is_one_line_about(with_priority.err, "--threads 2: cannot be combined with --priority 5"));
+    CHECK(
+        is_one_line_about(with_priority.err, "--threads 2: cannot be combined with --priority 5"));
     const auto stress = nendo::test::nendo({"stress", "--threads", "2"});
     CHECK(stress.exit_code == 2);
     CHECK(is_one_line_about(stress.err, "--priority 0"));

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "session/loop_commands.hpp"
+#include "session/run_commands.hpp"
 
 namespace loop_commands_test {
 
@@ -19,8 +19,7 @@ TEST_SUITE("loop_commands") {
     CHECK_FALSE(commands.push(flow::SetLayer{1, true}));
     CHECK_FALSE(commands.push(flow::SetLayer{2, true}));
     CHECK_FALSE(commands.push(flow::Request::undo));
-    CHECK(commands.dropped() ==
-          "The loop is not responding; dropped: wire, punch, undo.");
+    CHECK(commands.dropped() == "The loop is not responding; dropped: wire, punch, undo.");
     CHECK_FALSE(commands.dropped());
     CHECK_FALSE(commands.push(flow::Request::undo)); // which was said
     CHECK_FALSE(commands.dropped());

@@ -9,7 +9,7 @@
 
 #include <nendo/base/atomics.hpp>
 
-#include "cli/two_processors.hpp"
+#include "cli/cli.hpp"
 
 namespace nendo::bench {
 
