@@ -107,7 +107,7 @@ TEST_SUITE("advice") {
     }
   }
 
-  TEST_CASE_FIXTURE(Fixture, "an option that a message asks for is taken, and mends it") {
+  TEST_CASE_FIXTURE(Fixture, "an option that a message asks for is taken, and fixes it") {
     struct Case {
       std::string refused;
       std::string asked; ///< as it stands in the message
@@ -178,7 +178,7 @@ TEST_SUITE("advice") {
   }
 
   TEST_CASE_FIXTURE(Fixture,
-                    "the help that a wrong usage names tells of the option that is missing") {
+                    "the help that a wrong usage names is about the option that is missing") {
     for (const auto& [command, option] :
          {std::pair{"nendo edit make take.nendo", "--out"},
           std::pair{"nendo picture a.obj", "--out"}, std::pair{"nendo calibration import", "FILE"},

@@ -265,7 +265,7 @@ TEST_SUITE("calibrate") {
     }
   }
 
-  TEST_CASE("a session that goes on has the free motion of the one that was quit") {
+  TEST_CASE("a session that continues has the free motion of the one that was quit") {
     const TemporaryFolder folder;
     reference::Wearer wearer(2005);
     std::vector<hand::PoseReading> readings;
@@ -402,7 +402,7 @@ TEST_SUITE("calibrate") {
     CHECK_FALSE(std::filesystem::exists(written));
   }
 
-  TEST_CASE("w with a pose missing goes on, and says which") {
+  TEST_CASE("w with a pose missing continues, and says which") {
     const TemporaryFolder folder;
     REQUIRE(::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1) == 0);
     TerminalProgram program({"calibrate", "sim:wave", "--user", "gus"}, 40, 26);
@@ -416,8 +416,9 @@ TEST_SUITE("calibrate") {
     CHECK(program.wait() == 0);
   }
 
-  TEST_CASE("at a terminal the pose is drawn, a moving hand is told to hold still, and q gives the "
-            "terminal back") {
+  TEST_CASE(
+      "at a terminal the pose is drawn, a moving hand is asked to hold still, and q gives the "
+      "terminal back") {
     const TemporaryFolder folder;
     REQUIRE(::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1) == 0);
     TerminalProgram program({"calibrate", "sim:wave", "--user", "cleo"}, 100, 26);

@@ -121,7 +121,7 @@ TEST_SUITE("calibration command") {
     CHECK(calibration({"export", "anna"}).out == contents(path));
   }
 
-  TEST_CASE("a TOML file tells its wearer, glove and hand itself") {
+  TEST_CASE("a TOML file names its wearer, glove and hand itself") {
     const Home home;
     write_file(home.file("x.csv"), csv);
     REQUIRE(calibration({"import", home.file("x.csv").string(), "--user", "anna", "--hand", "left"})
@@ -239,7 +239,7 @@ TEST_SUITE("calibration command") {
     CHECK(home.count() == 1);
   }
 
-  TEST_CASE("wrong usage is told") {
+  TEST_CASE("wrong usage is reported") {
     const Home home;
     write_file(home.file("x.csv"), csv);
     const auto file = home.file("x.csv").string();
@@ -290,7 +290,7 @@ TEST_SUITE("calibration command") {
     CHECK(done.err.find("toml or csv") != std::string::npos);
   }
 
-  TEST_CASE("a stored file that cannot be read is told, and the rest is listed") {
+  TEST_CASE("a stored file that cannot be read is reported, and the rest is listed") {
     const Home home;
     write_file(home.file("x.csv"), csv);
     REQUIRE(
@@ -364,7 +364,7 @@ TEST_SUITE("calibration command") {
     CHECK(run.err.find("berta, left hand") != std::string::npos);
   }
 
-  TEST_CASE("two gloves have two wearers, and one that is not calibrated goes on") {
+  TEST_CASE("two gloves have two wearers, and one that is not calibrated continues") {
     const Home home;
     for (const auto& [user, hand, index_gain] :
          {std::tuple{"anna", "right", "0.02"}, {"berta", "left", "0.03"}}) {
@@ -548,23 +548,23 @@ TEST_SUITE("calibration command") {
     const auto done =
         nendo::test::nendo({"monitor", "serial:" + link.string(), "--json", "--count", "480"});
     REQUIRE_MESSAGE(done.exit_code == 0, done.err);
-    std::size_t left = 0, right = 0, told = 0;
+    std::size_t left = 0, right = 0, report = 0;
     for (const auto& line : lines_of(done.out)) {
       const json sample = json::parse(line);
       const bool is_left = sample["hand"] == "left";
       ++(is_left ? left : right);
-      if (sample.contains("angles")) ++told;
+      if (sample.contains("angles")) ++report;
       const double counts = sample["raw"]["index_mcp"].get<double>() - 60.0;
       REQUIRE(sample["angle_rad"]["index_mcp"].get<double>() ==
               doctest::Approx((is_left ? 0.03 : 0.02) * counts));
     }
     CHECK(left > 0);
     CHECK(right > 0);
-    CHECK(told == 2);                                          // once a glove
+    CHECK(report == 2);                                        // once a glove
     CHECK(done.err.find("in its place") == std::string::npos); // the same wearer's, as one expects
   }
 
-  TEST_CASE("who would get another wearer's calibration by changing the glove is told so") {
+  TEST_CASE("who would get another wearer's calibration by changing the glove gets a message") {
     const Home home;
     for (const auto& [user, hand] : {std::pair{"anna", "left"}, {"bert", "right"}}) {
       write_file(home.file("x.csv"), with_gain("0.03"));

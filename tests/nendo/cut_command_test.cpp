@@ -35,7 +35,7 @@ struct Fixture {
 };
 
 TEST_SUITE("nendo cut") {
-  TEST_CASE_FIXTURE(Fixture, "of a model that faces inwards one line tells that it is turned") {
+  TEST_CASE_FIXTURE(Fixture, "of a model that faces inwards one line reports that it is turned") {
     deform::Mesh mesh = test::cube_of_cells(2);
     for (std::size_t face = 0; face < mesh.face_count(); ++face)
       std::swap(mesh.face_corners[3 * face], mesh.face_corners[3 * face + 1]);

@@ -277,7 +277,7 @@ TEST_SUITE("deform") {
     CHECK(is_one_line_about(wide.err, "smaller radii or fewer points"));
   }
 
-  TEST_CASE("with --injective a plane that would fold does not, and what it took is told") {
+  TEST_CASE("with --injective a plane that would fold does not, and what it took is reported") {
     const TemporaryFolder folder;
     const Mesh mesh = plane(51);
     const auto in = (folder.path() / "plane.ply").string();
@@ -384,7 +384,7 @@ TEST_SUITE("deform") {
     const auto out = (folder.path() / "o.obj").string();
     const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     const std::string lift = "x,y,z,dx,dy,dz\n0,0,0,0,0,1\n";
-    const auto told = [&](const std::string& mesh, const std::string& rows, const char* radius) {
+    const auto shown = [&](const std::string& mesh, const std::string& rows, const char* radius) {
       nendo::test::write_file(in, mesh);
       nendo::test::write_file(vectors, rows);
       const auto done = nendo::test::nendo(
@@ -392,17 +392,17 @@ TEST_SUITE("deform") {
       CHECK(done.exit_code == 0);
       return done.err;
     };
-    CHECK(told(triangle, lift, "0.5").empty());
-    CHECK(is_one_line_about(told("v 0 0 0\nv 1 0 0\n", lift, "0.5"), "no faces"));
-    CHECK(is_one_line_about(told("v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n", lift, "0.5"),
+    CHECK(shown(triangle, lift, "0.5").empty());
+    CHECK(is_one_line_about(shown("v 0 0 0\nv 1 0 0\n", lift, "0.5"), "no faces"));
+    CHECK(is_one_line_about(shown("v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n", lift, "0.5"),
                             "in one place"));
-    CHECK(is_one_line_about(told(triangle, lift, "1.5"), "--radius 1.5: reaches all"));
+    CHECK(is_one_line_about(shown(triangle, lift, "1.5"), "--radius 1.5: reaches all"));
     const std::string far_away = "x,y,z,dx,dy,dz\n9,0,0,0,0,1\n";
-    CHECK(is_one_line_about(told(triangle, far_away, "0.5"), "moves no vertex"));
+    CHECK(is_one_line_about(shown(triangle, far_away, "0.5"), "moves no vertex"));
     const std::string still = "x,y,z,dx,dy,dz\n0,0,0,0,0,0\n";
-    CHECK(is_one_line_about(told(triangle, still, "0.5"), "moves no vertex"));
+    CHECK(is_one_line_about(shown(triangle, still, "0.5"), "moves no vertex"));
     const std::string own = "x,y,z,dx,dy,dz,radius\n0,0,0,0,0,1,2\n";
-    CHECK(is_one_line_about(told(triangle, own, "0.5"), vectors + ": reaches all"));
+    CHECK(is_one_line_about(shown(triangle, own, "0.5"), vectors + ": reaches all"));
   }
 
   TEST_CASE("the model itself is written over only with --force, by whatever name") {

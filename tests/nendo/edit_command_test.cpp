@@ -130,11 +130,11 @@ TEST_SUITE("edit_command") {
       CHECK(run.made["exact"] == true);
       CHECK(run.made["left"]["max_tip_mm"] == 0.0);
       const std::string played = run.path("played.obj");
-      const json told = json::parse(run.fine({"play", run.timeline, "--out", played, "--json"}));
-      CHECK(told["frames"].get<int>() >= run.made["left"]["frames"].get<int>());
-      CHECK(told["failed"] == 0);
+      const json report = json::parse(run.fine({"play", run.timeline, "--out", played, "--json"}));
+      CHECK(report["frames"].get<int>() >= run.made["left"]["frames"].get<int>());
+      CHECK(report["failed"] == 0);
       // A stroke of type 2 is sampled at deadlines, that the live loop missed.
-      if (mode == "type1" || told["frames"] == run.made["left"]["frames"])
+      if (mode == "type1" || report["frames"] == run.made["left"]["frames"])
         CHECK(farthest(played, run.shape) < 1e-4);
     }
   }
@@ -197,8 +197,8 @@ TEST_SUITE("edit_command") {
     CHECK(all["frames"] == 13);
     CHECK(all["commits"] == 1);
     for (const auto& [until, frames] : {std::pair{"0.55", 12}, {"0.6", 13}, {"0.3", 7}}) {
-      const json told = json::parse(run.fine({"play", run.timeline, "--until", until, "--json"}));
-      CHECK(told["frames"] == frames);
+      const json report = json::parse(run.fine({"play", run.timeline, "--until", until, "--json"}));
+      CHECK(report["frames"] == frames);
     }
     const auto exported =
         test::nendo({"export", run.timeline, "--out", run.path("a.csv"), "--rate", "20", "--json"});

@@ -22,7 +22,7 @@ TEST_SUITE("emulate") {
     }
   }
 
-  TEST_CASE("a monitor reads through noise, and Ctrl-C tells what was done") {
+  TEST_CASE("a monitor reads through noise, and Ctrl-C reports what was done") {
     const nendo::test::TemporaryFolder folder;
     const auto link = folder.path() / "glove";
     nendo::test::Program emulator({"emulate", "--link", link.string(), "--rate", "100", "--fault",

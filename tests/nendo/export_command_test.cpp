@@ -71,11 +71,11 @@ TEST_SUITE("export_command") {
     const auto done = run.export_to("take.glb", {"--every-frame"});
     CAPTURE(done.err);
     REQUIRE(done.exit_code == 0);
-    const json told = json::parse(done.out);
-    CHECK(told["morphs"]["by"] == "control vectors");
-    CHECK(told["morphs"]["greatest_error"].get<double>() < 1e-5);
-    CHECK(told["frames"].get<int>() > 10);
-    CHECK_FALSE(told.contains("rate_hz"));
+    const json report = json::parse(done.out);
+    CHECK(report["morphs"]["by"] == "control vectors");
+    CHECK(report["morphs"]["greatest_error"].get<double>() < 1e-5);
+    CHECK(report["frames"].get<int>() > 10);
+    CHECK_FALSE(report.contains("rate_hz"));
     const test::Glb glb(contents(run.path("take.glb")));
     CHECK((glb.vertices(0, 1e6) - shape->vertices).colwise().norm().maxCoeff() < near);
     for (const std::string out : {"a.pc2", "a.mdd", "hands.bvh", "a.csv", "a-%03d.obj"}) {
@@ -116,9 +116,9 @@ TEST_SUITE("export_command") {
     const RecordedRun run("type2");
     const auto done = run.export_to("take.glb", {"--tolerance", "1e-3", "--no-hands"});
     REQUIRE(done.exit_code == 0);
-    const json told = json::parse(done.out);
-    CHECK(told["morphs"]["by"] == "key shapes");
-    CHECK(told["morphs"]["greatest_error"].get<double>() < 1.01e-3);
+    const json report = json::parse(done.out);
+    CHECK(report["morphs"]["by"] == "key shapes");
+    CHECK(report["morphs"]["greatest_error"].get<double>() < 1.01e-3);
     CHECK_FALSE(test::Glb(contents(run.path("take.glb"))).json.contains("skins"));
   }
 
@@ -129,12 +129,12 @@ TEST_SUITE("export_command") {
     CHECK(plain.out.find("24 per second (--rate)") != std::string::npos);
     CHECK(plain.out.find("1 % of the model's diagonal") != std::string::npos);
     CHECK(plain.out.find("(--tolerance)") != std::string::npos);
-    const json told = json::parse(run.export_to("b.glb").out);
+    const json report = json::parse(run.export_to("b.glb").out);
     CHECK(contents(run.path("a.glb")) == contents(run.path("b.glb")));
-    CHECK(told["rate_hz"] == 24.0);
-    CHECK(told["morphs"]["tolerance"] == doctest::Approx(0.01));
-    CHECK(told["frames"].get<int>() >= 20);
-    CHECK(told["frames"].get<int>() <= 26);
+    CHECK(report["rate_hz"] == 24.0);
+    CHECK(report["morphs"]["tolerance"] == doctest::Approx(0.01));
+    CHECK(report["frames"].get<int>() >= 20);
+    CHECK(report["frames"].get<int>() <= 26);
     const json percent = json::parse(run.export_to("c.glb", {"--tolerance", "0.2%"}).out);
     CHECK(percent["morphs"]["tolerance"] == doctest::Approx(0.002));
     const json millimetre = json::parse(run.export_to("d.glb", {"--tolerance", "1mm"}).out);
@@ -181,7 +181,7 @@ TEST_SUITE("export_command") {
     REQUIRE(again);
     REQUIRE(again->vertices.cols() == written->vertices.cols());
     CHECK((again->vertices - written->vertices).cwiseAbs().maxCoeff() <
-          1e-4 * deform::diagonal_of(written->vertices)); // nobody has moved a part yet
+          1e-4 * deform::diagonal_of(written->vertices)); // no one has moved a part yet
     CHECK(again->look.materials.back().name == "cut");
     const auto late =
         test::nendo({"run", "--wire", "5:6", "--duration", "1", "--out", path("none.obj")});

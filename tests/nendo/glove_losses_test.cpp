@@ -80,9 +80,9 @@ TEST_SUITE("glove_losses") {
     const auto info = last_object(test::nendo({"recording", "info", take, "--json"}))["gloves"][0];
     for (const std::string name : {"sent", "delivered", "missed", "refused", "bad_records"})
       CHECK(info[name] == recorded["gloves"][0][name]);
-    const auto told = test::nendo({"recording", "info", take});
-    CHECK(counts_in(told.out)["missed"] == info["missed"].get<double>());
-    CHECK(told.out.find(" lost") == std::string::npos);
+    const auto printed = test::nendo({"recording", "info", take});
+    CHECK(counts_in(printed.out)["missed"] == info["missed"].get<double>());
+    CHECK(printed.out.find(" lost") == std::string::npos);
     CHECK(test::nendo({"recording", "check", take}).exit_code == 0);
 
     const auto text = test::nendo({"record", glove.spec, "--out", take + "2", "--duration", "2s"});
@@ -109,7 +109,8 @@ TEST_SUITE("glove_losses") {
     check_losses(counts_in(shown.err));
   }
 
-  TEST_CASE("a glove that does not tell its losses is said to have sent nothing that nobody saw") {
+  TEST_CASE(
+      "a glove that does not report its losses is said to have sent nothing that nobody saw") {
     const TemporaryFolder folder;
     const std::string link = (folder.path() / "glove").string();
     const std::string take = (folder.path() / "take.nendo").string();
@@ -127,8 +128,8 @@ TEST_SUITE("glove_losses") {
     const auto info = last_object(test::nendo({"recording", "info", take, "--json"}))["gloves"][0];
     for (const std::string name : {"sent", "delivered", "missed", "refused", "bad_records"})
       CHECK(info[name] == recorded[name]);
-    const auto told = test::nendo({"recording", "info", take});
-    CHECK(told.out.find(" sent") == std::string::npos);
+    const auto printed = test::nendo({"recording", "info", take});
+    CHECK(printed.out.find(" sent") == std::string::npos);
     // It is set to 100, and delivers 80.
     const auto shown = test::nendo({"monitor", spec, "--json", "--raw", "--count", "250"});
     CAPTURE(shown.err);
@@ -232,7 +233,7 @@ TEST_SUITE("glove_losses") {
     CHECK(report["gloves"][0]["source"] == glove.spec);
   }
 
-  TEST_CASE("monitor's lines are samples only, and what never became one is told beside them") {
+  TEST_CASE("monitor's lines are samples only, and what never became one is reported beside them") {
     const LossyGlove glove;
     const auto done = test::nendo({"monitor", glove.spec, "--json", "--raw", "--count", "150"});
     CAPTURE(done.err);

@@ -24,7 +24,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// What the system tells of a program while it runs.
+/// What the system reports about a program while it runs.
 struct Seen {
   bool asks = false;       ///< for huge pages, at any time
   std::string environment; ///< at the end

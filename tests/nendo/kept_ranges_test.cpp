@@ -50,7 +50,7 @@ std::uint64_t turns_in(const std::string& report) {
 
 TEST_SUITE("kept_ranges") {
   TEST_CASE(
-      "what a run has learned of a wearer is a calibration, and the next run goes on from it") {
+      "what a run has learned of a wearer is a calibration, and the next run continues from it") {
     const Home home;
     const Finished first = home.run({"--adapt", "--user", "vera"});
     REQUIRE_MESSAGE(first.exit_code == 0, first.err);

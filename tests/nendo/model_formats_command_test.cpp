@@ -98,9 +98,9 @@ TEST_SUITE("model_formats_command") {
     const std::string in = save("a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
                                          "vertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
                                          "endsolid\n");
-    const auto told = test::nendo({"picture", in, "--out", place("a.png"), "--pixels", "64x64"});
-    CHECK(told.exit_code == 0);
-    CHECK(is_one_line_about(told.err, "add --up z"));
+    const auto report = test::nendo({"picture", in, "--out", place("a.png"), "--pixels", "64x64"});
+    CHECK(report.exit_code == 0);
+    CHECK(is_one_line_about(report.err, "add --up z"));
     for (const char* const up : {"y", "z"}) {
       const auto done = test::nendo({"picture", in, "--up", up, "--out",
                                      place(std::string(up) + ".png"), "--pixels", "64x64"});

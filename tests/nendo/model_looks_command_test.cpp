@@ -1,4 +1,4 @@
-// What people see of a model, and what they are told where that is less than its files have.
+// What people see of a model, and which messages they get where that is less than its files have.
 
 #include <algorithm>
 #include <filesystem>

@@ -88,7 +88,7 @@ TEST_SUITE("monitor") {
     CHECK(line["angle_rad"]["index_mcp"].get<double>() < 0.8);
   }
 
-  TEST_CASE("the first line of a glove tells which joints it measures, as nendo info does") {
+  TEST_CASE("the first line of a glove reports which joints it measures, as nendo info does") {
     for (const std::string glove : {"sim?sensors=18", "sim?sensors=22"}) {
       const auto info = nendo::test::nendo({"info", glove, "--json"});
       const auto done = nendo::test::nendo({"monitor", glove, "--count", "3"});
@@ -141,7 +141,7 @@ TEST_SUITE("monitor") {
       REQUIRE(line.size() == 80);
       CHECK(line.find_first_of("[|") != std::string::npos);
       CHECK(line.find(" deg") != std::string::npos);
-      CHECK(line.find("~") != std::string::npos); // nobody has calibrated this emulator's hand
+      CHECK(line.find("~") != std::string::npos); // no one has calibrated this emulator's hand
       CHECK(std::stoi(line.substr(22)) >= 1);
       CHECK(std::stoi(line.substr(22)) <= 255);
     }
@@ -269,7 +269,8 @@ TEST_SUITE("monitor") {
     CHECK(program.is_restored());
   }
 
-  TEST_CASE("a glove that is in use is told as it was typed, with its port and the other program") {
+  TEST_CASE(
+      "a glove that is in use is reported as it was typed, with its port and the other program") {
     const nendo::test::TemporaryFolder folder;
     const auto link = folder.path() / "glove";
     const EmulatedGlove glove(link, "left", "22");

@@ -76,17 +76,17 @@ TEST_SUITE("optical_hand") {
         if (name == "time_s") continue;
         CAPTURE(name);
         const std::string sensor = name.substr(0, name.size() - std::string("_deg").size());
-        const std::vector<double>&counts = out[sensor + "_count"], &told = out[name];
+        const std::vector<double>&counts = out[sensor + "_count"], &report = out[name];
         REQUIRE(counts.size() == angles.size());
-        REQUIRE(told.size() == angles.size());
+        REQUIRE(report.size() == angles.size());
         // The least step of the angle between two counts.
         double step_deg = 5.0;
-        for (std::size_t at = 1; at < told.size(); ++at)
+        for (std::size_t at = 1; at < report.size(); ++at)
           if (std::abs(counts[at] - counts[at - 1]) == 1.0)
-            step_deg = std::abs(told[at] - told[at - 1]);
+            step_deg = std::abs(report[at] - report[at - 1]);
         for (std::size_t at = 0; at < angles.size(); ++at) {
           if (!(counts[at] > 0.0 && counts[at] < 255.0)) continue; // beyond the glove's converter
-          REQUIRE(std::abs(told[at] - angles[at]) <= 0.5 * step_deg + 1e-3);
+          REQUIRE(std::abs(report[at] - angles[at]) <= 0.5 * step_deg + 1e-3);
           ++compared;
         }
       }
@@ -94,11 +94,11 @@ TEST_SUITE("optical_hand") {
     }
   }
 
-  TEST_CASE("the study of its joints tells what the camera's model takes for granted") {
+  TEST_CASE("the study of its joints reports what the camera's model takes for granted") {
     const Worn worn("leap_grab.csv");
-    const auto told = test::nendo({"recording", "joints", worn.take, "--json"});
-    REQUIRE(told.exit_code == 0);
-    const auto hand = nlohmann::json::parse(told.out)["hands"][0];
+    const auto report = test::nendo({"recording", "joints", worn.take, "--json"});
+    REQUIRE(report.exit_code == 0);
+    const auto hand = nlohmann::json::parse(report.out)["hands"][0];
     CHECK(hand["hand"] == "right");
     CHECK(hand["calibrated"] == true);
     CHECK(hand["samples"] == 374);

@@ -129,9 +129,9 @@ TEST_SUITE("picture") {
     CHECK(drawn({"--key-poses", "3", "--captions", "a,b,c"}) != plain);
     const auto coloured = drawn({"--time", "1.4", "--colour", "distance"});
     CHECK(coloured != drawn({"--time", "1.4"}));
-    const auto told = test::nendo({"picture", take, "--out", with.out, "--pixels", "96x96",
-                                   "--time", "1.4", "--colour", "distance"});
-    CHECK(told.err.find("dark red: displaced by 0.") != std::string::npos);
+    const auto report = test::nendo({"picture", take, "--out", with.out, "--pixels", "96x96",
+                                     "--time", "1.4", "--colour", "distance"});
+    CHECK(report.err.find("dark red: displaced by 0.") != std::string::npos);
     const auto image = read_png(with.out);
     REQUIRE(image);
     int red = 0; // pixels that went far

@@ -99,7 +99,7 @@ TEST_SUITE("poses") {
     CHECK(place(poses.front(), "index_tip") != place(poses.back(), "index_tip")); // it waves
   }
 
-  TEST_CASE("the first line of a glove tells which joints it measures, as nendo info does") {
+  TEST_CASE("the first line of a glove reports which joints it measures, as nendo info does") {
     for (const std::string glove : {"sim?sensors=18", "sim?sensors=22"}) {
       const auto info = ordered_json::parse(nendo::test::nendo({"info", glove, "--json"}).out);
       const auto poses = poses_of({"poses", glove, "--count", "3"});

@@ -181,7 +181,7 @@ TEST_SUITE("quantities") {
       const auto done = test::nendo({"poses", "sim:rest", "--count", "1", "--hand-length", length});
       CAPTURE(done.err);
       REQUIRE(done.exit_code == 0);
-      // Where the knuckle is from the wrist, which no finger's motion tells.
+      // Where the knuckle is from the wrist, which no finger's motion reports.
       return nlohmann::json::parse(done.out)["joints"]["little_proximal"]["position_m"].dump();
     };
     const std::string bare = with("200");

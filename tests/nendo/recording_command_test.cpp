@@ -71,13 +71,13 @@ TEST_SUITE("recording_command") {
     CHECK(last_object(twice)["elapsed_s"].get<double>() > 0.4);
     const auto part = test::nendo({"replay", run.take, "--from", "0.4", "--to", "0.7", "--json"});
     CHECK(part.exit_code == 0);
-    const json told = last_object(part);
-    CHECK(told["to_the_end"] == false);
-    CHECK(told["exact"] == true);
-    CHECK(told["same_shape"] == nullptr);
-    CHECK(told["elapsed_s"].get<double>() > 0.2);
-    CHECK(told["ticks"].get<int>() > 0);
-    CHECK(told["ticks"].get<int>() < 90);
+    const json report = last_object(part);
+    CHECK(report["to_the_end"] == false);
+    CHECK(report["exact"] == true);
+    CHECK(report["same_shape"] == nullptr);
+    CHECK(report["elapsed_s"].get<double>() > 0.2);
+    CHECK(report["ticks"].get<int>() > 0);
+    CHECK(report["ticks"].get<int>() < 90);
   }
 
   TEST_CASE("a recording is a glove: monitor, run and stress take it, with its calibration") {
@@ -99,16 +99,16 @@ TEST_SUITE("recording_command") {
     CHECK(stressed.exit_code == 0);
   }
 
-  TEST_CASE("nendo record takes samples without a loop, and info tells of them") {
+  TEST_CASE("nendo record takes samples without a loop, and info reports them") {
     const TemporaryFolder folder;
     const std::string take = (folder.path() / "gloves.nendo").string();
     const auto done = test::nendo({"record", "sim:wave?hand=left", "sim:pinch?rate=50", "--out",
                                    take, "--duration", "1s", "--json"});
     CAPTURE(done.err);
     REQUIRE(done.exit_code == 0);
-    const auto told = test::nendo({"recording", "info", take, "--json"});
-    CHECK(told.exit_code == 0);
-    const json info = last_object(told);
+    const auto report = test::nendo({"recording", "info", take, "--json"});
+    CHECK(report.exit_code == 0);
+    const json info = last_object(report);
     CHECK(info["whole"] == true);
     CHECK(info["ended"] == true);
     CHECK(info["loop"] == nullptr);
@@ -223,11 +223,11 @@ TEST_SUITE("recording_command") {
       }
     }
     std::string headless = bytes;
-    headless[50] = static_cast<char>(headless[50] ^ 1); // in the chunk that tells when it was
+    headless[50] = static_cast<char>(headless[50] ^ 1); // in the chunk that reports when it was
     test::write_file(cut, headless);
-    const auto told = test::nendo({"recording", "info", cut});
-    CHECK(told.exit_code == 0);
-    CHECK(told.out.find("1970") == std::string::npos);
+    const auto report = test::nendo({"recording", "info", cut});
+    CHECK(report.exit_code == 0);
+    CHECK(report.out.find("1970") == std::string::npos);
     CHECK(last_object(test::nendo({"recording", "info", cut, "--json"}))["begun"].is_null());
   }
 

@@ -81,8 +81,8 @@ TEST_SUITE("nendo repair") {
     REQUIRE(done.exit_code == 0);
     CHECK(done.out.find("\"left_out_faces\":1,") != std::string::npos);
     CHECK(done.out.find("\"volume\":1.0") != std::string::npos);
-    const auto told = test::nendo({"repair", in, "--out", place("out.obj")});
-    CHECK(told.out.find(in + ": left out 1 face at (") != std::string::npos);
+    const auto report = test::nendo({"repair", in, "--out", place("out.obj")});
+    CHECK(report.out.find(in + ": left out 1 face at (") != std::string::npos);
     const std::vector<std::string> plane{"--plane", "0.4,0,0,1,0,0"};
     const auto cut =
         test::nendo({"cut", in, plane[0], plane[1], "--repair", "--out", place("p%d.obj")});

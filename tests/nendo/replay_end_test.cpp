@@ -89,7 +89,7 @@ TEST_SUITE("replay_end") {
   }
 
   TEST_CASE(
-      "with end=hold, or with a glove that does not end, they go on until somebody ends them") {
+      "with end=hold, or with a glove that does not end, they continue until somebody ends them") {
     const Recorded recorded;
     const std::vector<std::vector<std::string>> lasting{
         {"monitor", recorded.replay("left", "&end=hold"), "--json"},

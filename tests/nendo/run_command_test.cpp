@@ -81,7 +81,7 @@ TEST_SUITE("run") {
     }
   }
 
-  TEST_CASE("the switch at a glove's wrist takes hold of the model, and the light shows it") {
+  TEST_CASE("the switch at a glove's wrist grabs the model, and the light shows it") {
     const TemporaryFolder folder;
     const auto link = folder.path() / "glove";
     const auto log = folder.path() / "traffic";
@@ -171,7 +171,7 @@ TEST_SUITE("run") {
     }
   }
 
-  TEST_CASE("lengths are taken with a unit and without, and both are told") {
+  TEST_CASE("lengths are taken with a unit and without, and both are reported") {
     const TemporaryFolder folder;
     const deform::Mesh moai = shipped("moai.obj");
     const double side =
@@ -258,7 +258,8 @@ TEST_SUITE("run") {
     }
   }
 
-  TEST_CASE("how a shape was kept from folding is told to those who ask, or where it mattered") {
+  TEST_CASE(
+      "how a shape was kept from folding is reported to those who ask, or where it mattered") {
     const TemporaryFolder folder;
     const auto run = [&](std::vector<std::string> more) {
       std::vector<std::string> arguments{

@@ -26,7 +26,7 @@ TEST_SUITE("run_keys") {
     CHECK(cli::numbered("shape.of.clay.ply", 10) == "shape.of.clay-10.ply");
   }
 
-  TEST_CASE("keys let go, take hold, keep, undo, save and end, and the terminal is given back") {
+  TEST_CASE("keys release, grab, keep, undo, save and end, and the terminal is given back") {
     const TemporaryFolder folder;
     const auto out = folder.path() / "shape.obj";
     std::ofstream(folder.path() / "shape-1.obj") << "somebody else's";
@@ -65,7 +65,7 @@ TEST_SUITE("run_keys") {
   }
 
   TEST_CASE(
-      "keys change settings, record and reset while the loop runs, and say what is in force") {
+      "keys change settings, record and reset while the loop runs, and say what is in effect") {
     const TemporaryFolder folder;
     const auto out = folder.path() / "shape.obj";
     TerminalProgram program({"run", "--right", "sim:sculpt", "--out", out.string()}, 200, 24);
@@ -93,11 +93,11 @@ TEST_SUITE("run_keys") {
     const auto info =
         test::nendo({"recording", "info", "--json", (folder.path() / "shape.nendo").string()});
     REQUIRE(info.exit_code == 0);
-    const auto told = nlohmann::json::parse(info.out);
-    CHECK(told["whole"] == true);
-    CHECK(told["loop"]["settings_changes"].get<int>() >= 1); // quick ones are taken together
-    CHECK(told["loop"]["requests"]["reset"] == 1);
-    CHECK(told["loop"]["requests"]["undo"] == 1);
+    const auto report = nlohmann::json::parse(info.out);
+    CHECK(report["whole"] == true);
+    CHECK(report["loop"]["settings_changes"].get<int>() >= 1); // quick ones are taken together
+    CHECK(report["loop"]["requests"]["reset"] == 1);
+    CHECK(report["loop"]["requests"]["undo"] == 1);
     CHECK(test::nendo({"replay", (folder.path() / "shape.nendo").string(), "--out",
                        (folder.path() / "again.obj").string()})
               .exit_code == 0);

@@ -37,16 +37,16 @@ struct Fixture {
 } // namespace
 
 TEST_SUITE("run_models_command") {
-  TEST_CASE_FIXTURE(Fixture, "a model that is a speck beside the others is told") {
+  TEST_CASE_FIXTURE(Fixture, "a model that is a speck beside the others is reported") {
     const std::string one = save_ball("one.obj", 1.0), fine = save_ball("fine.obj", 0.04),
                       speck = save_ball("speck.obj", 0.001);
     const auto done = run({one, fine, "--out", place("all.obj")});
     CHECK(done.exit_code == 0);
     CHECK(done.err == "");
-    const auto told = run({one, fine, speck, "--out", place("all.obj")});
-    CHECK(told.exit_code == 0);
-    CHECK(is_one_line_about(told.err, "speck.obj"));
-    CHECK(told.err.find("1000 times") != std::string::npos);
+    const auto report = run({one, fine, speck, "--out", place("all.obj")});
+    CHECK(report.exit_code == 0);
+    CHECK(is_one_line_about(report.err, "speck.obj"));
+    CHECK(report.err.find("1000 times") != std::string::npos);
   }
 
   TEST_CASE_FIXTURE(Fixture, "several models stand side by side, and their recording replays") {

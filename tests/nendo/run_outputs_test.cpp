@@ -47,7 +47,7 @@ TEST_SUITE("run_outputs") {
     CHECK(failed.err.find("full") != std::string::npos);
   }
 
-  TEST_CASE("the model itself is no output without --force, and what is odd about it is told") {
+  TEST_CASE("the model itself is no output without --force, and what is odd about it is reported") {
     const TemporaryFolder folder;
     const auto model = (folder.path() / "m.obj").string();
     const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";

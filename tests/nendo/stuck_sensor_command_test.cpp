@@ -1,4 +1,4 @@
-// What people see of a sensor that stands still: in info, doctor, monitor, poses, run and
+// What people see of a sensor that is stuck: in info, doctor, monitor, poses, run and
 // calibrate.
 
 #include <algorithm>
@@ -103,14 +103,14 @@ TEST_SUITE("stuck_sensor_command") {
   TEST_CASE("info and doctor name a sensor that stands at its end, and only such a one") {
     const FaultyGlove glove({"stick@0s=index_pip:255", "stick@0s=ring_mcp:130"});
     // On a busy machine an emulated glove may send nothing for the two seconds that info waits.
-    auto told = nendo::test::nendo({"info", glove.spec()});
-    for (int again = 0; again < 2 && told.out.find("stands at its end") == std::string::npos;
+    auto report = nendo::test::nendo({"info", glove.spec()});
+    for (int again = 0; again < 2 && report.out.find("stands at its end") == std::string::npos;
          ++again)
-      told = nendo::test::nendo({"info", glove.spec()});
-    REQUIRE_MESSAGE(told.exit_code == 0, told.err);
-    CHECK(told.out.find("index_pip stands at its end (255)") != std::string::npos);
-    CHECK(told.out.find("ring_mcp stands") == std::string::npos); // at rest nobody can know
-    for (const auto& line : lines_of(told.out))
+      report = nendo::test::nendo({"info", glove.spec()});
+    REQUIRE_MESSAGE(report.exit_code == 0, report.err);
+    CHECK(report.out.find("index_pip stands at its end (255)") != std::string::npos);
+    CHECK(report.out.find("ring_mcp stands") == std::string::npos); // at rest nobody can know
+    for (const auto& line : lines_of(report.out))
       if (line.find("stands") != std::string::npos) CHECK(line.size() <= 80);
     const auto as_json = nendo::test::nendo({"info", glove.spec(), "--json"});
     REQUIRE(as_json.exit_code == 0);
@@ -123,7 +123,7 @@ TEST_SUITE("stuck_sensor_command") {
     CHECK(json::parse(well.out)["at_end"].empty());
   }
 
-  TEST_CASE("monitor and poses name a sensor that stands still once, and mark what is estimated") {
+  TEST_CASE("monitor and poses name a sensor that is stuck once, and mark what is estimated") {
     const FaultyGlove for_monitor({"stick@0s=index_pip:140", "stick@0s=ring_mcp:1"});
     const FaultyGlove for_poses({"stick@0s=index_pip:255"});
     Program monitor({"monitor", for_monitor.spec(), "--json", "--count", "1600"});
@@ -220,7 +220,7 @@ TEST_SUITE("stuck_sensor_command") {
     }
   }
 
-  TEST_CASE("a wearer at a terminal is told of a stuck sensor, and goes on without it") {
+  TEST_CASE("a wearer at a terminal is warned about a stuck sensor, and continues without it") {
     const FaultyGlove glove({"stick@0s=index_pip:255"}, "poses", {"--hold", "3s"});
     const TemporaryFolder folder;
     TerminalProgram calibrate({"calibrate", glove.spec(), "--user", "anna", "--quick", "--out",

@@ -131,14 +131,14 @@ double gap(const deform::Points& a, const deform::Points& b) {
 } // namespace
 
 TEST_SUITE("view_command") {
-  TEST_CASE("the screen goes on when its last client leaves") {
+  TEST_CASE("the screen continues when its last client leaves") {
     const test::MemoryScreen screen;
     if (!screen.is_there() || !Person::does("version")) return;
     // A screen that restarts puts the pointer in its middle, and refuses a window meanwhile.
     REQUIRE(Person::does("mousemove 11 12"));
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    const auto told = test::shell("xdotool getmouselocation");
-    CHECK(told.out.find("x:11 y:12") == 0);
+    const auto report = test::shell("xdotool getmouselocation");
+    CHECK(report.out.find("x:11 y:12") == 0);
   }
 
   TEST_CASE("a person shapes, changes radius, kernel and mode, shapes on, undoes all of it and "
@@ -178,9 +178,9 @@ TEST_SUITE("view_command") {
     CHECK(summary["kernel"] == "wendland-c4");
     CHECK(summary["undos"].get<int>() >= 5); // changes within a second are one step
     CHECK(summary["redos"].get<int>() >= 5);
-    const auto told = test::nendo({"recording", "info", person.at("take.nendo"), "--json"});
+    const auto report = test::nendo({"recording", "info", person.at("take.nendo"), "--json"});
     // The mask, symmetry, and both ways of each by undo and redo.
-    CHECK(nlohmann::json::parse(told.out)["loop"]["puppet_changes"].get<int>() >= 6);
+    CHECK(nlohmann::json::parse(report.out)["loop"]["puppet_changes"].get<int>() >= 6);
     const auto replayed =
         test::nendo({"replay", person.at("take.nendo"), "--out", person.at("again.ply")});
     REQUIRE(replayed.exit_code == 0);

@@ -167,7 +167,8 @@ constexpr flow::Command change(const flow::LoopSettings& settings) {
 inline constexpr flow::LoopSettings other_settings{
     flow::Mode::type2, deform::Wendland::c4, true, {0.1, 0.11, 0.12, 0.13, 0.14}};
 
-/// Replays a recording, which tells its last shape itself. Returns how often its settings changed.
+/// Replays a recording, which reports its last shape itself. Returns how often its settings
+/// changed.
 inline std::uint64_t replay(const std::filesystem::path& file) {
   auto take = recording::TakeReader::open(file);
   REQUIRE(take);

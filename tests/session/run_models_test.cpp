@@ -120,7 +120,7 @@ TEST_SUITE("run_models") {
       replay(recording.file);
   }
 
-  TEST_CASE("what cannot be cut or joined is told, and the run goes on") {
+  TEST_CASE("what cannot be cut or joined is reported, and the run continues") {
     Run run;
     Asker asker(Changes{{flow::DrawWire{true}},
                         {flow::DrawWire{false}},
@@ -198,7 +198,7 @@ TEST_SUITE("run_models") {
     CHECK(outcome.stats.redos == 2);
   }
 
-  TEST_CASE("a model that a sink cannot take is not taken, and the reason is told") {
+  TEST_CASE("a model that a sink cannot take is not taken, and the reason is reported") {
     Run run;
     Asker asker(Changes{{flow::Subdivide{}}});
     asker.refuses = true;

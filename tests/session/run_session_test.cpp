@@ -57,7 +57,7 @@ public:
 
   std::vector<std::string> reports;
   bool silent = false;
-  int frames_after = 0; ///< after the end was told
+  int frames_after = 0; ///< after the end was reported
 
 private:
   bool stays_;
@@ -177,8 +177,8 @@ TEST_SUITE("run_session") {
     Asker puncher({{flow::Punch{}}, {flow::Punch{}}});
     const RunParticipants participants{[](const auto&, double) {}, {&puncher}, {&puncher}};
     REQUIRE(run_session(run.options, opened->hands, run.mesh, participants));
-    for (const char* told : {"punched out", "punched in"})
-      CHECK(std::count(puncher.reports.begin(), puncher.reports.end(), told) == 1);
+    for (const char* shown : {"punched out", "punched in"})
+      CHECK(std::count(puncher.reports.begin(), puncher.reports.end(), shown) == 1);
     CHECK(replay(file("over.nendo")) == changes);
     const auto after = recording::summarise(file("over.nendo"));
     REQUIRE(after);
@@ -263,7 +263,7 @@ TEST_SUITE("run_session") {
     CHECK(asker.settings[3] == back);
     CHECK(outcome.stats.changes == 3);
     CHECK(outcome.stats.resets == 1);
-    CHECK(outcome.sculptor.mode == flow::Mode::type1); // which the summary tells
+    CHECK(outcome.sculptor.mode == flow::Mode::type1); // which the summary reports
     CHECK(outcome.sculptor.deformer.csrbf.kernel == deform::Wendland::c4);
     REQUIRE(outcome.recordings.size() == 1);
     CHECK(replay(outcome.recordings[0].file) == 3);
@@ -272,17 +272,17 @@ TEST_SUITE("run_session") {
     CHECK((written->vertices - run.mesh.vertices).cwiseAbs().maxCoeff() > 1e-3);
   }
 
-  TEST_CASE("a mark is in the recording, and without one the reason is told") {
+  TEST_CASE("a mark is in the recording, and without one the reason is reported") {
     Run run;
     Asker asker(Changes{{flow::Mark{}}, {record(true)}, {flow::Mark{}}, {flow::Mark{}}});
     asker.min_ticks = 60;
     const auto outcome = run.follow({&asker});
-    const auto told = [&](const char* words) {
+    const auto shown = [&](const char* words) {
       return std::count(asker.reports.begin(), asker.reports.end(), words);
     };
-    CHECK(told("There is no recording to mark; begin one with t.") == 1);
-    CHECK(told("mark 1 is in the recording") == 1);
-    CHECK(told("mark 2 is in the recording") == 1);
+    CHECK(shown("There is no recording to mark; begin one with t.") == 1);
+    CHECK(shown("mark 1 is in the recording") == 1);
+    CHECK(shown("mark 2 is in the recording") == 1);
     REQUIRE(outcome.recordings.size() == 1);
     const auto summary = recording::summarise(outcome.recordings[0].file);
     REQUIRE(summary);
@@ -340,7 +340,7 @@ TEST_SUITE("run_session") {
     CHECK(slow.waiting < 25); // of some 45 that would have come in half a second
   }
 
-  TEST_CASE("what is kept in memory goes on in the next recording, and can be kept as a file") {
+  TEST_CASE("what is kept in memory continues in the next recording, and can be kept as a file") {
     Run run;
     run.options.recording.keep_last = "60s";
     REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
@@ -359,7 +359,7 @@ TEST_SUITE("run_session") {
     CHECK_FALSE(kept->setup().loop->rest.empty());
   }
 
-  TEST_CASE("a recording that cannot be begun is told of, and the run goes on without it") {
+  TEST_CASE("a recording that cannot be begun is reported, and the run continues without it") {
     Run run;
     run.options.recording.file = "/nowhere/at/all.nendo"; // as if its folder had gone
     Asker asker(Changes{{record(true)}, {change(other_settings)}});
@@ -400,7 +400,7 @@ TEST_SUITE("run_session") {
     CHECK(asker.settings.back().radius_m[0] == doctest::Approx(0.249));
   }
 
-  TEST_CASE("settings that nothing can be done with are told of, and the run goes on") {
+  TEST_CASE("settings that nothing can be done with are reported, and the run continues") {
     Run run;
     flow::LoopSettings wrong = other_settings;
     wrong.radius_m[2] = -1.0;

@@ -23,7 +23,7 @@ constexpr double max_off_m = 0.008;
 } // namespace
 
 TEST_SUITE("touching_glove") {
-  TEST_CASE("a GLOVE is told from others by its kind and motion") {
+  TEST_CASE("a GLOVE is distinguished from others by its kind and motion") {
     const deform::Mesh ball = test::sphere(16, 32, 10.0);
     for (const char* touching :
          {"sim:touch", "sim:touch?seed=3", "sim:press", "sim:knead", "sim:grip?rate=120"}) {
