@@ -67,8 +67,8 @@ private:
   bool was_refined_ = false;                   ///< the last automatic change was a refinement
   std::optional<flow::ChangeModel> asked_;     ///< without its number
   std::future<Made> making_;
-  flow::ChangeModel made_;                ///< how making_ and finer_ are made
-  flow::WirePath wire_;                   ///< the wire that cuts
+  flow::ChangeModel made_;                  ///< how making_ and finer_ are made
+  flow::WirePath wire_;                     ///< the wire that cuts
   std::optional<flow::PendingModel> finer_; ///< the next version, which the loop does not have yet
   Stage stage_ = Stage::none;
 };

@@ -52,8 +52,7 @@ TEST_SUITE("stress_session") {
   TEST_CASE("commands that do not fit are named once") {
     const session::Asks asks(100, flow::Command(flow::Request::commit));
     const auto reports = reports_of(asks);
-    CHECK(reports ==
-          std::vector<std::string>{"The loop is not responding; dropped: commit."});
+    CHECK(reports == std::vector<std::string>{"The loop is not responding; dropped: commit."});
   }
 
   TEST_CASE("commands that nendo stress does not execute are refused by name") {

@@ -43,6 +43,8 @@ function(nendo_settings target scope)
     $<$<BOOL:${NENDO_WERROR}>:-Werror>)
   if(NOT CMAKE_UNITY_BUILD) # there, another file's names are seen, too
     target_compile_options(${target} PRIVATE -Wshadow)
+  elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU") # which takes the sources that a batch includes for headers
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
   endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # Under two gigabytes it leaves its garbage: a tenth of the time that Eigen's templates take, for a sixth more memory.

@@ -126,7 +126,7 @@ Result<SculptorSetup> ChangeBroker::Parts::setup_for(const SculptorSetup& before
                                               : Played::nothing;
   if (auto fine = compatible(judged, played); !fine) return fine.error();
   if (is_other_mode)
-    if (auto fine = check_points(rig, setup.options); !fine) return fine.error();
+    if (auto fine = check_points(rig); !fine) return fine.error();
   const bool same =
       settings.kernel == asked.settings.kernel && settings.radius_m == asked.settings.radius_m;
   if (!same)

@@ -167,7 +167,7 @@ Result<SculptorSetup> ChangeBroker::Parts::setup_with(std::uint32_t puppet) cons
   const SculptorSetup first = puppets.first_with(puppet);
   const puppet::Rig* const rig = puppets[puppet].get();
   const puppet::Rig* const before = asked_rig();
-  if (auto fine = check_points(rig, asked.options); !fine) return fine.error();
+  if (auto fine = check_points(rig); !fine) return fine.error();
   SculptorSetup setup =
       with_settings(first, first, asked.settings, puppets.hands_of(puppet), units_per_metre);
   setup.options.surface.reset();

@@ -26,7 +26,7 @@ std::optional<double> mirror_of(const puppet::Rig* rig) noexcept {
   return rig->puppet().mirror_at;
 }
 
-Result<void> check_points(const puppet::Rig* rig, const SculptorOptions& sculptor) {
+Result<void> check_points(const puppet::Rig* rig) {
   if (!is_played(rig) || rig->starts().cols() <= deform::CsrbfSolver::lean_size) return {};
   if (rig->puppet().distance == puppet::Distance::surface) return {};
   return Error{Errc::bad_input, "the puppet has " + std::to_string(rig->starts().cols()) +

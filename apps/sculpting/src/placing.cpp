@@ -98,7 +98,7 @@ Result<std::unique_ptr<flow::DeformLoop>> make_loop(const deform::Mesh& model,
                                                     const flow::LoopOptions& options,
                                                     const deform::BlockShape* first) {
   if (const auto fine = flow::check_inputs(hands); !fine) return fine.error();
-  const auto fine = flow::check_points(options.rig.get(), options.sculptor);
+  const auto fine = flow::check_points(options.rig.get());
   if (!fine) return fine.error();
   auto loop = std::make_unique<flow::DeformLoop>(model, placement, hands, options, first);
   if (!is_solved(loop->grab_status())) {

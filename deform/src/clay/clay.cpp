@@ -309,8 +309,7 @@ bool ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
 }
 
 bool ClayDeformer::Work::is_coarse() const noexcept {
-  return layout_.vertex_count() <= max_coarse_vertices &&
-         masked_.mask() == nullptr;
+  return layout_.vertex_count() <= max_coarse_vertices && masked_.mask() == nullptr;
 }
 
 /// Of a coarse model, what is missing then comes out everywhere alike, which no faces can be in the

@@ -26,7 +26,7 @@ NENDO_API std::optional<double> mirror_of(const puppet::Rig* rig) noexcept;
 /// Returns whether a tick can solve for that puppet's points without allocating. Error, bad_input:
 /// there are more than deform::CsrbfSolver::lean_size. Where distances go along the surface, any
 /// number is good, because their field is solved for beforehand.
-NENDO_API Result<void> check_points(const puppet::Rig* rig, const SculptorOptions& sculptor);
+NENDO_API Result<void> check_points(const puppet::Rig* rig);
 /// Puts the puppet's masks on that model, and whether it mirrors, into the options. Allocates.
 NENDO_API void set_masks(const puppet::Rig* rig, const deform::Mesh& model,
                          const deform::BlockLayout& layout, SculptorOptions& sculptor);
