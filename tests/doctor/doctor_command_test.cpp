@@ -165,7 +165,7 @@ TEST_SUITE("doctor") {
       CHECK(text.out.find(subject, list) != std::string::npos);
     for (const auto& candidate : nendo::driver::find_gloves())
       CHECK(text.out.find(candidate.device, list) != std::string::npos);
-    CHECK(done.out.find("Looked at") == std::string::npos);
+    CHECK(done.out.find("Checked: ") == std::string::npos);
   }
 }
 
