@@ -61,16 +61,17 @@ std::optional<double> millimetres_of(std::string_view text) noexcept {
 /// A number with a unit, or without: then it has the unit that --help shows.
 struct Quantity {
   std::optional<double> (*read)(std::string_view text) noexcept;
-  std::string_view words; ///< the texts that are allowed
+  std::string_view words; ///< the allowed forms
   const char* type;
   const char* unit; ///< the unit of the default
 };
 
 // In the order of Command::Unit.
-constexpr std::array quantities{Quantity{seconds_of, duration_words, "TIME", "s"},
-                                Quantity{millimetres_of, millimetre_words, "LENGTH", "mm"},
-                                Quantity{microseconds_of, microsecond_words, "TIME", "us"},
-                                Quantity{hertz_of, rate_words, "RATE", "Hz"}};
+constexpr std::array quantities{
+    Quantity{seconds_of, duration_words, "TIME", "s"},
+    Quantity{millimetres_of, "millimetres, or a length like 1mm, 0.5cm or 0.2m", "LENGTH", "mm"},
+    Quantity{microseconds_of, "microseconds, or 250us, 1ms, 0.1s", "TIME", "us"},
+    Quantity{hertz_of, "a rate like 90, 90Hz or 1kHz", "RATE", "Hz"}};
 
 /// Returns the words in a type like "TEXT:{left,right}", as CLI11 writes the choices of one_of().
 std::vector<std::string> choices_in(const std::string& type) {

@@ -13,10 +13,6 @@ namespace nendo::cli {
 /// What may be typed for a duration and for a length, for error messages.
 inline constexpr std::string_view duration_words = "seconds, or 500ms, 90s, 10m, 2h, 1d";
 inline constexpr std::string_view length_words = "a length like 1mm, 0.5cm or 0.2m";
-inline constexpr std::string_view millimetre_words =
-    "millimetres, or a length like 1mm, 0.5cm or 0.2m";
-inline constexpr std::string_view microsecond_words = "microseconds, or 250us, 1ms, 0.1s";
-inline constexpr std::string_view rate_words = "a rate like 90, 90Hz or 1kHz";
 
 /// Returns the seconds of "90", "90s", "500ms", "10m", "2h" or "1d". A bare number is seconds, and
 /// any finite number will do, 0 and negative ones too. Nothing if the text is no duration.

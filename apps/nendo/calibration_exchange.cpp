@@ -142,9 +142,10 @@ Result<void> import_calibration(const ImportOptions& options) {
   if (!path) return path.error();
   const auto kept = hand::write_calibration(*path, *wearer);
   if (!kept) return kept.error();
-  if (!kept->empty()) cli::note("the earlier one is kept as " + printable(kept->string()));
   std::cout << "imported for " << sculpting::title_of(*wearer) << ": " << printable(path->string())
             << '\n';
+  if (!kept->empty())
+    std::cout << "the previous one is kept as " << printable(kept->string()) << '\n';
   return {};
 }
 

@@ -28,22 +28,14 @@ struct Options {
 Result<void> info(const Options& options) {
   const auto summary = recording::summarise(options.file);
   if (!summary) return summary.error();
-  if (options.json) {
-    takes::print_take_json(options.file, *summary);
-  } else {
-    takes::print_take(options.file, *summary);
-  }
+  (options.json ? takes::print_take_json : takes::print_take)(options.file, *summary);
   return {};
 }
 
 Result<void> joints(const Options& options) {
   const auto studies = takes::study_joints(std::filesystem::path(options.file));
   if (!studies) return studies.error();
-  if (options.json) {
-    takes::print_joints_json(options.file, *studies);
-  } else {
-    takes::print_joints(options.file, *studies);
-  }
+  (options.json ? takes::print_joints_json : takes::print_joints)(options.file, *studies);
   return {};
 }
 

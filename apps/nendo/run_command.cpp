@@ -1,6 +1,7 @@
 // nendo run: shapes a model with gloves.
 
 #include <algorithm>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
@@ -108,10 +109,14 @@ void choose_injective(const deform::Mesh& model, RunArguments& options) {
                         options.run.mesh, max_injective_unasked));
 }
 
-/// Stores what --adapt has learned about the hands of a --user.
+/// Stores what --adapt has learned about the hands of a --user, and reports it: on standard output,
+/// unless that has JSON.
 Result<void> keep_learned(const session::RunOptions& options,
                           const std::vector<gloves::OpenHand>& hands,
                           const flow::LoopStats& stats) {
+  const auto report = [&](const std::string& text) {
+    options.json ? cli::note(text) : static_cast<void>(std::cout << text << std::endl);
+  };
   for (const gloves::OpenHand& hand : hands) {
     const std::string& user = options.calibration.user_of(hand.first.side);
     if (!hand.wearer.adapt || user.empty()) continue;
@@ -120,21 +125,23 @@ Result<void> keep_learned(const session::RunOptions& options,
       const auto slips = sculpting::keep_slips(hand.glove->info(), hand.wearer.ends->side, user,
                                                stats.slips_counts[slot]);
       if (!slips) return slips.error();
-      cli::note(slips->is_changed
-                    ? "the slips of the sensors are stored in " + printable(slips->path.string()) +
-                          "; a copy of the previous file is kept"
-                    : std::string(name_of(hand.side)) + " hand: no sensor has slipped; " +
-                          printable(slips->path.string()) + " is unchanged");
+      const std::string path = printable(slips->path.string());
+      report(
+          slips->is_changed
+              ? fmt::format("wrote {}: the slips of the sensors; the previous file is kept", path)
+              : fmt::format("{} hand: no sensor has slipped; {} is unchanged", name_of(hand.side),
+                            path));
       continue;
     }
     const auto kept = sculpting::keep_ranges(hand.glove->info(), stats.range_sides[slot], user,
                                              stats.ranges[slot]);
     if (!kept) return kept.error();
-    cli::note(kept->empty()
-                  ? std::string(name_of(hand.side)) + " hand: learned nothing, because no "
-                                                      "joint moved enough"
-                  : "the learned ranges are stored in " + printable(kept->string()) + "; --user " +
-                        printable(user) + " uses them");
+    if (kept->empty())
+      cli::note(fmt::format("{} hand: learned nothing, because no joint moved enough",
+                            name_of(hand.side)));
+    else
+      report(fmt::format("wrote {}: the learned ranges, for --user {}", printable(kept->string()),
+                         printable(user)));
   }
   return {};
 }

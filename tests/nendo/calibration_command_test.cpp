@@ -191,7 +191,7 @@ TEST_SUITE("calibration command") {
     write_file(home.file("x.csv"), with_gain("0.02"));
     const auto second = take_in();
     CHECK(second.exit_code == 0);
-    CHECK(second.err.find("kept as") != std::string::npos);
+    CHECK(second.out.find("kept as") != std::string::npos);
     CHECK(home.count() == 2);
     CHECK(lines_of(calibration({"list", "--json"}).out).size() == 1);
     const auto removed = calibration({"remove", "anna"});
