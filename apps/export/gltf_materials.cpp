@@ -5,7 +5,6 @@
 #include <string>
 #include <string_view>
 
-#include "render/picture_kind.hpp"
 #include "render/texture_image.hpp"
 
 namespace nendo::exporting {

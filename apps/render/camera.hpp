@@ -25,7 +25,7 @@ struct Camera {
   Eigen::Vector3d target = Eigen::Vector3d::Zero(); ///< metres
   double distance_m = 3.0;                          ///< from the target
   View view;
-  double field_of_view_deg = 24.0; ///< of the picture's height
+  double field_of_view_deg = 24.0; ///< angle of the picture's height
   /// Where the target is in the picture, as a part of half its width: 0 is the middle, 1 the right
   /// edge. The picture is shifted as a whole, without distortion, if something covers its left.
   double centre = 0.0;

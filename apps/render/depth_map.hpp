@@ -79,7 +79,7 @@ private:
                      const std::vector<GridCorner>& grid);
 
   Axis across_, up_, toward_;
-  float left_ = 0.0F, bottom_ = 0.0F; ///< of the map's corner, along across_ and up_
+  float left_ = 0.0F, bottom_ = 0.0F; ///< the map's corner, along across_ and up_
   float sample_m_ = 0.0F;             ///< 0: there is nothing
   int side_;
   /// Along toward_; the lowest float where there is nothing. One more is for what is outside.

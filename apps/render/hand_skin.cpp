@@ -126,10 +126,10 @@ Screws screws_of(const std::array<Eigen::Isometry3d, hand::joint_count>& moves) 
 Vector3f moved_by(const Screws& screws, const SkinInfluence& influence, const Vector3f& place) {
   Eigen::Vector4f turn = Eigen::Vector4f::Zero();
   Eigen::Vector4f shift = Eigen::Vector4f::Zero();
-  for (std::size_t rank = 0; rank < 4; ++rank) {
-    const Screw& screw = screws[hand::index_of(influence.joints[rank])];
-    turn += influence.weights[rank] * screw.turn;
-    shift += influence.weights[rank] * screw.shift;
+  for (const auto& [joint, weight] : influence) {
+    const Screw& screw = screws[hand::index_of(joint)];
+    turn += weight * screw.turn;
+    shift += weight * screw.shift;
   }
   const float per_squared = 2.0F / turn.squaredNorm();
   const Vector3f v = turn.head<3>();
@@ -142,8 +142,8 @@ Vector3f moved_by(const Screws& screws, const SkinInfluence& influence, const Ve
 Vector3f moved_by(const Stretches& matrices, const SkinInfluence& influence,
                   const Vector3f& place) {
   Vector3f moved = Vector3f::Zero();
-  for (std::size_t rank = 0; rank < 4; ++rank)
-    moved += influence.weights[rank] * (matrices[hand::index_of(influence.joints[rank])] * place);
+  for (const auto& [joint, weight] : influence)
+    moved += weight * (matrices[hand::index_of(joint)] * place);
   return moved;
 }
 
@@ -191,13 +191,12 @@ SkinInfluence strongest(const Weights& weights) {
                     });
   SkinInfluence influence;
   float sum = 0.0F;
-  for (std::size_t rank = 0; rank < 4; ++rank) {
-    influence.joints[rank] = static_cast<Joint>(order[rank]);
-    influence.weights[rank] = weights[order[rank]];
-    sum += influence.weights[rank];
+  for (std::size_t rank = 0; rank < influence.size(); ++rank) {
+    influence[rank] = {static_cast<Joint>(order[rank]), weights[order[rank]]};
+    sum += influence[rank].weight;
   }
-  for (float& weight : influence.weights)
-    weight /= sum;
+  for (JointShare& share : influence)
+    share.weight /= sum;
   return influence;
 }
 
@@ -209,8 +208,8 @@ void keep_strongest(const std::vector<std::vector<std::uint32_t>>& beside,
     for (Weights& of_place : weights) {
       const SkinInfluence influence = strongest(of_place);
       of_place.fill(0.0F);
-      for (std::size_t rank = 0; rank < 4; ++rank)
-        of_place[hand::index_of(influence.joints[rank])] = influence.weights[rank];
+      for (const auto& [joint, weight] : influence)
+        of_place[hand::index_of(joint)] = weight;
     }
   }
 }
@@ -252,14 +251,6 @@ std::vector<SkinInfluence> weights_of(const HandFlesh& flesh, const SkinMesh& me
 
 hand::HandPose HandSkin::bind_pose(Side side) {
   return hand::HandSkeleton(side).pose(open_angles(), Eigen::Isometry3d::Identity());
-}
-
-std::array<HandSkin::JointShare, 4> HandSkin::influences(std::size_t place) const {
-  const SkinInfluence& influence = influences_[place];
-  std::array<JointShare, 4> shares;
-  for (std::size_t rank = 0; rank < shares.size(); ++rank)
-    shares[rank] = {influence.joints[rank], influence.weights[rank]};
-  return shares;
 }
 
 // A left hand is the mirror image of a right one.

@@ -11,11 +11,12 @@
 
 namespace nendo::render {
 
-/// Up to four joints that carry a place, the strongest first.
-struct SkinInfluence {
-  std::array<hand::Joint, 4> joints{};
-  std::array<float, 4> weights{}; ///< none is negative, and the sum is 1; 0 means not used
+struct JointShare {
+  hand::Joint joint{};
+  float weight = 0.0F; ///< none is negative, and the sum is 1; 0 means not used
 };
+/// Up to four joints that carry a place, the strongest first.
+using SkinInfluence = std::array<JointShare, 4>;
 
 class HandSkin {
 public:
@@ -31,18 +32,14 @@ public:
 
   /// Computes the skin in that pose, moved by -origin_m, and replaces positions, normals and
   /// corners of `surface`. Bones may have any length: the skin is stretched along each bone, and
-  /// its thickness follows the size of the hand. Allocates where `surface` has too little room.
+  /// its thickness follows the size of the hand. Allocates where `surface` is too small.
   void drape(const hand::HandPose& pose, const Eigen::Vector3d& origin_m, Surface& surface,
              Mix mix = Mix::screws) const;
 
   /// Returns the pose of the open hand around which the skin was made. Its wrist is the origin.
   static hand::HandPose bind_pose(Side side);
-  struct JointShare {
-    hand::Joint joint;
-    float weight; ///< the sum is 1; 0 means not used
-  };
   /// Returns the joints that carry one of the positions that drape() makes.
-  std::array<JointShare, 4> influences(std::size_t place) const;
+  const SkinInfluence& influences(std::size_t place) const { return influences_[place]; }
 
 private:
   hand::HandPose bind_;

@@ -21,7 +21,7 @@ struct Size {
   int height = 0; ///< pixels
   friend bool operator==(Size, Size) = default;
 
-  static constexpr int most = 8192; ///< of width and height
+  static constexpr int most = 8192; ///< the limit of width and height
 };
 
 /// Parses "WxH" in pixels, each from 16 to Size::most. Returns nullopt if the text is something

@@ -3,8 +3,10 @@
 // pixels, and Dear ImGui's embedded font is there only in builds with a window.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "render/image.hpp"
@@ -15,105 +17,32 @@ namespace {
 // Strokes with a space between. A point is a digit, x, and a letter, y: c the baseline, g the
 // height of small letters, i that of capitals, a below. "~" begins a curve that ends where its
 // points do and is drawn by the others, "@" a closed one; all others are straight.
-constexpr const char* bowl = "@0d0f1g2g3f3d2c1c";
+// Each letter follows a line feed, and its strokes follow the letter.
+constexpr std::string_view glyphs =
+    "\nA0c2i4c 1e3e\nB0c0i ~0i3i3f0f ~0f4f4c0c\nC~4h3i1i0h0d1c3c4d\nD0c0i ~0i4i4c0c"
+    "\nE4i0i0c4c 0f3f\nF4i0i0c 0f3f\nG~4h3i1i0h0d1c3c4d 4d4f2f\nH0c0i 4c4i 0f4f\nI0c0i"
+    "\nJ~3i3d2c1c0d\nK0c0i 4i0e 1f4c\nL0i0c4c\nM0c0i2e4i4c\nN0c0i4c4i\nO@1i0h0d1c3c4d4h3i"
+    "\nP0c0i ~0i4i4f0f\nQ@1i0h0d1c3c4d4h3i 2e4c\nR0c0i ~0i4i4f0f 2f4c\nS~4h3i1i0h1f3f4d3c1c0d"
+    "\nT0i4i 2i2c\nU~0i0d1c3c4d4i\nV0i2c4i\nW0i1c3i5c6i\nX0i4c 0c4i\nY0i2f4i 2f2c\nZ0i4i0c4c"
+    "\na@0d0f1g2g3f3d2c1c 3g3c\nb0i0c @0d0f1g2g3f3d2c1c\nc~3f2g1g0f0d1c2c3d"
+    "\nd3i3c @0d0f1g2g3f3d2c1c\ne0e3e ~3e3f2g1g0f0d1c2c3d\nf~2i1i1g 1g1c 0g2g"
+    "\ng@0d0f1g2g3f3d2c1c ~3g3b2a1a0b\nh0i0c ~0e0f1g2g3f3d 3e3c\ni0c0g 0i0i\nj~1g1b0a 1i1i"
+    "\nk0i0c 3g0e 1e3c\nl0i0c\nm0g0c ~0e0f1g2g2e 2f2c ~2e2f3g4g4e 4f4c\nn0g0c ~0e0f1g2g3f3d 3e3c"
+    "\no@0d0f1g2g3f3d2c1c\np0g0a @0d0f1g2g3f3d2c1c\nq3g3a @0d0f1g2g3f3d2c1c\nr0g0c ~0e0f1g2g"
+    "\ns~3f2g1g0f1e2e3d2c1c0d\nt1i1d ~1e1c2c 0g2g\nu~0g0d1c2c3d3e 3g3c\nv0g2c4g\nw0g1c2f3c4g"
+    "\nx0g3c 0c3g\ny0g2c 4g1a\nz0g3g0c3c\n0@1i0h0d1c2c3d3h2i\n10h2i2c\n2~0h1i2i3h3g2f0c 0c3c"
+    "\n3~0h1i2i3h3g1f ~1f3f3d2c1c0d\n42c2i0e3e\n53i0i0f ~0f1g2g3f3d2c1c0d"
+    "\n6~3h2i1i0h0d1c2c3d3e2f1f0e\n70i3i1c\n8@1f0g0h1i2i3h3g2f @1f0e0d1c2c3d3e2f"
+    "\n9~0d1c2c3d3h2i1i0h0g1f2f3g\n \n.0c0c\n,1c0b\n:0c0c 0f0f\n-0e2e\n+0e2e 1f1d\n=0d3d 0f3f"
+    "\n/0c3i\n|0b0i\n_0c4c\n(~1i0h0d1c\n)~0i1h1d0c\n%0c4i 0i0i 4c4c\n'0i0h\n!0i0e 0c0c"
+    "\n?~0h1i2i3h3g1f1e 1c1c";
 
 std::string_view strokes_of(char letter) noexcept {
-  static constexpr std::string_view capitals[26] = {"0c2i4c 1e3e",
-                                                    "0c0i ~0i3i3f0f ~0f4f4c0c",
-                                                    "~4h3i1i0h0d1c3c4d",
-                                                    "0c0i ~0i4i4c0c",
-                                                    "4i0i0c4c 0f3f",
-                                                    "4i0i0c 0f3f",
-                                                    "~4h3i1i0h0d1c3c4d 4d4f2f",
-                                                    "0c0i 4c4i 0f4f",
-                                                    "0c0i",
-                                                    "~3i3d2c1c0d",
-                                                    "0c0i 4i0e 1f4c",
-                                                    "0i0c4c",
-                                                    "0c0i2e4i4c",
-                                                    "0c0i4c4i",
-                                                    "@1i0h0d1c3c4d4h3i",
-                                                    "0c0i ~0i4i4f0f",
-                                                    "@1i0h0d1c3c4d4h3i 2e4c",
-                                                    "0c0i ~0i4i4f0f 2f4c",
-                                                    "~4h3i1i0h1f3f4d3c1c0d",
-                                                    "0i4i 2i2c",
-                                                    "~0i0d1c3c4d4i",
-                                                    "0i2c4i",
-                                                    "0i1c3i5c6i",
-                                                    "0i4c 0c4i",
-                                                    "0i2f4i 2f2c",
-                                                    "0i4i0c4c"};
-  static constexpr std::string_view small[26] = {"@0d0f1g2g3f3d2c1c 3g3c",
-                                                 "0i0c @0d0f1g2g3f3d2c1c",
-                                                 "~3f2g1g0f0d1c2c3d",
-                                                 "3i3c @0d0f1g2g3f3d2c1c",
-                                                 "0e3e ~3e3f2g1g0f0d1c2c3d",
-                                                 "~2i1i1g 1g1c 0g2g",
-                                                 "@0d0f1g2g3f3d2c1c ~3g3b2a1a0b",
-                                                 "0i0c ~0e0f1g2g3f3d 3e3c",
-                                                 "0c0g 0i0i",
-                                                 "~1g1b0a 1i1i",
-                                                 "0i0c 3g0e 1e3c",
-                                                 "0i0c",
-                                                 "0g0c ~0e0f1g2g2e 2f2c ~2e2f3g4g4e 4f4c",
-                                                 "0g0c ~0e0f1g2g3f3d 3e3c",
-                                                 bowl,
-                                                 "0g0a @0d0f1g2g3f3d2c1c",
-                                                 "3g3a @0d0f1g2g3f3d2c1c",
-                                                 "0g0c ~0e0f1g2g",
-                                                 "~3f2g1g0f1e2e3d2c1c0d",
-                                                 "1i1d ~1e1c2c 0g2g",
-                                                 "~0g0d1c2c3d3e 3g3c",
-                                                 "0g2c4g",
-                                                 "0g1c2f3c4g",
-                                                 "0g3c 0c3g",
-                                                 "0g2c 4g1a",
-                                                 "0g3g0c3c"};
-  static constexpr std::string_view digits[10] = {
-      "@1i0h0d1c2c3d3h2i",           "0h2i2c",   "~0h1i2i3h3g2f0c 0c3c",
-      "~0h1i2i3h3g1f ~1f3f3d2c1c0d", "2c2i0e3e", "3i0i0f ~0f1g2g3f3d2c1c0d",
-      "~3h2i1i0h0d1c2c3d3e2f1f0e",   "0i3i1c",   "@1f0g0h1i2i3h3g2f @1f0e0d1c2c3d3e2f",
-      "~0d1c2c3d3h2i1i0h0g1f2f3g"};
-  if (letter >= 'A' && letter <= 'Z') return capitals[letter - 'A'];
-  if (letter >= 'a' && letter <= 'z') return small[letter - 'a'];
-  if (letter >= '0' && letter <= '9') return digits[letter - '0'];
-  switch (letter) {
-  case ' ':
-    return "";
-  case '.':
-    return "0c0c";
-  case ',':
-    return "1c0b";
-  case ':':
-    return "0c0c 0f0f";
-  case '-':
-    return "0e2e";
-  case '+':
-    return "0e2e 1f1d";
-  case '=':
-    return "0d3d 0f3f";
-  case '/':
-    return "0c3i";
-  case '|':
-    return "0b0i";
-  case '_':
-    return "0c4c";
-  case '(':
-    return "~1i0h0d1c";
-  case ')':
-    return "~0i1h1d0c";
-  case '%':
-    return "0c4i 0i0i 4c4c";
-  case '\'':
-    return "0i0h";
-  case '!':
-    return "0i0e 0c0c";
-  case '?':
-    return "~0h1i2i3h3g1f1e 1c1c";
-  default:
-    return "0c0i3i3c0c";
-  }
+  const std::array begin{'\n', letter};
+  const auto at = glyphs.find(std::string_view(begin.data(), begin.size()));
+  if (letter == '\n' || at == std::string_view::npos) return "0c0i3i3c0c"; // a box
+  const auto strokes = glyphs.substr(at + begin.size());
+  return strokes.substr(0, strokes.find('\n'));
 }
 
 struct Point {
@@ -165,7 +94,7 @@ double width_of(char letter) noexcept {
   return static_cast<double>(widest - '0');
 }
 
-constexpr double units_a_height = 6.0;
+constexpr double units_per_height = 6.0;
 constexpr double space_units = 1.7;      // between letters
 constexpr double stroke_fraction = 0.12; // of the height
 
@@ -209,12 +138,12 @@ double width_of_words(std::string_view words, double height) noexcept {
   double units = 0.0;
   for (const char letter : words)
     units += width_of(letter) + space_units;
-  return words.empty() ? 0.0 : (units - space_units) * height / units_a_height;
+  return words.empty() ? 0.0 : (units - space_units) * height / units_per_height;
 }
 
 void write_words(Image& image, double x, double y, double height, std::string_view words,
                  Pixel colour) {
-  const double unit = height / units_a_height;
+  const double unit = height / units_per_height;
   const int left = std::max(0, static_cast<int>(x) - 2);
   const int top = std::max(0, static_cast<int>(y - height) - 2);
   const int right =

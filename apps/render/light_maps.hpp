@@ -1,5 +1,5 @@
 #pragma once
-// The lights of a picture, and what of them reaches its surfaces.
+// The lights of a picture, and how much of their light reaches its surfaces.
 
 #include <vector>
 

@@ -15,8 +15,8 @@ using Eigen::Vector3f;
 
 namespace {
 
-// Warm, while the hands are cool, so that one is told from the other at a glance, also without
-// seeing red from green.
+// Warm, while the hands are cool, so that they differ at a glance, also without seeing red from
+// green.
 const Vector3f clay(0.50F, 0.235F, 0.135F);
 
 Vector3f colour_of(const deform::Material* material, bool has_more) {

@@ -16,7 +16,7 @@ namespace nendo::render {
 /// Triangles that follow each other and have one base colour.
 struct Coat {
   std::size_t first = 0;                            ///< triangle
-  std::size_t count = 0;                            ///< of triangles
+  std::size_t count = 0;                            ///< number of triangles
   Eigen::Vector3f colour = Eigen::Vector3f::Ones(); ///< linear
   std::shared_ptr<const TextureImage> texture{};    ///< multiplies the colour; may be null
 };
@@ -46,7 +46,7 @@ public:
 
 private:
   std::vector<Coat> coats_;
-  std::vector<std::uint32_t> coat_of_; ///< of each triangle
+  std::vector<std::uint32_t> coat_of_; ///< the coat of each triangle
   std::vector<Eigen::Vector3f> vertex_colours_;
   std::vector<Eigen::Vector3f> corner_colours_;
   std::vector<Eigen::Vector2f> texcoords_;

@@ -121,12 +121,12 @@ private:
   double middle_y_;
 };
 
-// What of which surface a sample shows.
+// The place of a surface that a sample shows.
 struct Hit {
   float inverse_depth = 0.0F; ///< 0: nothing
   std::uint32_t surface = 0;
   std::uint32_t triangle = 0;    ///< where its corners begin
-  std::array<float, 3> shares{}; ///< of the corners
+  std::array<float, 3> shares{}; ///< the weights of the corners
 };
 
 using Hits = std::vector<Hit>;
@@ -341,8 +341,8 @@ Image contact_sheet(const std::vector<Panel>& panels, int columns) {
     const Panel& one = panels[static_cast<std::size_t>(at)];
     sheet.paste(one.image, x, y);
     const double words = width_of_words(one.caption, letters);
-    const double room = panel.width - 4.0;
-    const double height = words > room ? letters * room / words : letters;
+    const double space = panel.width - 4.0;
+    const double height = words > space ? letters * space / words : letters;
     write_words(sheet, x + (panel.width - width_of_words(one.caption, height)) / 2,
                 y + panel.height + 1.65 * letters, height, one.caption, ink);
   }

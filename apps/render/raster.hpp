@@ -16,7 +16,7 @@ inline bool owns_edge(std::int64_t dx, std::int64_t dy) noexcept {
 }
 
 /// Calls visit(x, y, b) for the sample if the triangle covers it. It is for triangles of about a
-/// sample. Nobody can predict which of them cover one, so there is but one branch for most.
+/// sample. No processor can predict which of them cover one, so there is but one branch for most.
 template <class Visit>
 void visit_if_covered(const std::array<GridCorner, 3>& on, int column, int row, Visit&& visit) {
   const auto x = [&](std::size_t k) { return std::int64_t{on[k].x} - (256 * column + 128); };

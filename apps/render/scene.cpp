@@ -13,7 +13,7 @@ using Eigen::Vector3f;
 
 namespace {
 
-// Linear colours. Clay is warm and the hands are grey, so that one is told from the other at a
+// Linear colours. Clay is warm and the hands are grey, so that they differ at a
 // glance, also without seeing red from green. A hand is solid, but one sees the model through it.
 // That of a silent glove is a mere shade.
 // The model's is its paint's.

@@ -1,7 +1,7 @@
 #pragma once
 // The scene that the renderers draw, one on the processor and one with OpenGL. It consists of
 // surfaces of triangles, made from a SceneFrame and the model's faces. Lengths are in metres. The
-// model stands on the ground, y = 0, around x = z = 0, as large as it is on the stage.
+// model is on the ground, y = 0, around x = z = 0, as large as it is on the stage.
 
 #include <cstdint>
 #include <memory>
@@ -39,7 +39,7 @@ public:
   explicit SceneBuilder(const deform::Mesh& rest, double units_per_metre = 0.0);
 
   /// Makes the scene of a frame, which must have as many vertices as the mesh. Allocates where
-  /// `scene` has too little room, so it must not be called in the loop's thread.
+  /// `scene` is too small, so it must not be called in the loop's thread.
   void build(const SceneFrame& scene_frame, const SceneParts& parts, Scene& scene) const;
   /// Makes only the parts other than the model. Of scene.model, only the material is set.
   void build_beside(const SceneFrame& scene_frame, const SceneParts& parts, Scene& scene) const;
@@ -66,8 +66,8 @@ private:
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d size_m_ = Eigen::Vector3d::Zero();
   std::vector<std::uint32_t> corners_;
-  /// Vertices without a face. Nobody sees them, so they stand where a corner is: a camera that
-  /// shows all of the model need not show them.
+  /// Vertices without a face. They are invisible, so they are placed where a corner is: a camera
+  /// that shows all of the model need not show them.
   std::vector<std::uint32_t> strays_;
   std::uint32_t any_corner_ = 0;
   std::shared_ptr<const Paint> paint_;

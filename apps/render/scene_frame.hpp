@@ -30,7 +30,7 @@ struct SceneFrame {
   double time_s = 0.0;
   deform::Points vertices;                       ///< 3 by #vertices, model units
   std::shared_ptr<const deform::Mesh> mesh;      ///< whose faces it has; null: the model's at first
-  std::array<std::optional<SceneHand>, 2> hands; ///< by flow::Placement::index_of(side)
+  std::array<std::optional<SceneHand>, 2> hands; ///< index: flow::Placement::index_of(side)
   bool held = false; ///< fingertips hold the model; otherwise there are no control vectors
   /// The radius of each fingertip's support, on the stage; 0 means not shown.
   std::array<double, 5> radius_m{};

@@ -7,7 +7,7 @@ namespace nendo::render {
 
 struct ShadedPlace {
   Eigen::Vector3f place;
-  Eigen::Vector3f normal; ///< of any length
+  Eigen::Vector3f normal; ///< not normalised
   float sky = 1.0F;       ///< how much of the sky the place sees
   bool shadowed = true;   ///< whether the key light can be blocked
 };

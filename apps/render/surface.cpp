@@ -35,7 +35,7 @@ namespace {
 struct Ring {
   Vector3f middle;
   float radius = 0.0F;
-  float lean = 0.0F; ///< of the normal along the axis, -1 to 1
+  float lean = 0.0F; ///< the normal's coordinate along the axis, -1 to 1
 };
 
 // A surface of revolution, from its first ring to its last one.

@@ -15,10 +15,10 @@ namespace nendo::render {
 /// Colours are linear, 0 to 1: red, green, blue.
 struct Material {
   Eigen::Vector3f colour{0.6F, 0.6F, 0.6F};
-  float gloss = 0.15F;      ///< of the highlight
+  float gloss = 0.15F;      ///< strength of the highlight
   float opacity = 1.0F;     ///< where the line of sight is perpendicular to the surface
   float rim_opacity = 1.0F; ///< where the line of sight is along the surface
-  float grid_m = 0.0F;      ///< of a ground: distance between its lines; it has faded out at fade_m
+  float grid_m = 0.0F;      ///< distance between a ground's lines; it has faded out at fade_m
   float fade_m = 0.0F;
   bool opaque_before_ground = false; ///< translucent only where the model or a solid is behind it
   bool shadowless = false;           ///< a mark on something else, which casts no shadow
@@ -30,7 +30,7 @@ struct Surface {
   std::vector<Eigen::Vector3f> normals; ///< unit length, or zero where there is no face
   std::vector<std::uint32_t> corners;   ///< three for each triangle, counter-clockwise from outside
   Material material;
-  std::shared_ptr<const Paint> paint{}; ///< of the triangles, in place of the material's colour
+  std::shared_ptr<const Paint> paint{}; ///< colours in place of the material's
 
   void clear() noexcept;
   bool is_empty() const noexcept { return corners.empty(); }

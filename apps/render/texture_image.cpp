@@ -8,7 +8,6 @@
 
 #include <turbojpeg.h>
 
-#include "render/picture_kind.hpp"
 #include "render/tga_bmp.hpp"
 
 namespace nendo::render {
@@ -16,6 +15,44 @@ namespace nendo::render {
 using Eigen::Vector3f;
 
 namespace {
+
+using namespace std::string_view_literals;
+
+struct Signature {
+  std::size_t at;
+  std::string_view bytes;
+  std::string_view format;
+};
+
+constexpr std::array signatures{
+    Signature{8, "WEBP"sv, "a WebP picture"},
+    Signature{0, "\xABKTX 20\xBB"sv, "a KTX2 texture"},
+    Signature{0, "\xABKTX 11\xBB"sv, "a KTX texture"},
+    Signature{0, "sB\x13\x00"sv, "a Basis texture"},
+    Signature{0, "DDS "sv, "a DDS texture"},
+    Signature{0, "II*\0"sv, "a TIFF picture"},
+    Signature{0, "MM\0*"sv, "a TIFF picture"},
+    Signature{0, "II+\0"sv, "a TIFF picture"},
+    Signature{0, "8BPS"sv, "a Photoshop picture"},
+    Signature{0, "v/1\x01"sv, "an OpenEXR picture"},
+    Signature{0, "#?RADIANCE"sv, "a Radiance picture"},
+    Signature{0, "#?RGBE"sv, "a Radiance picture"},
+    Signature{0, "GIF8"sv, "a GIF picture"},
+    Signature{4, "ftypavif"sv, "an AVIF picture"},
+    Signature{4, "ftyphei"sv, "a HEIC picture"},
+    Signature{4, "ftypmif1"sv, "a HEIC picture"},
+    Signature{0, "\0\0\0\x0CjP  "sv, "a JPEG 2000 picture"},
+    Signature{0, "\xFFO\xFFQ"sv, "a JPEG 2000 picture"},
+    Signature{0, "\xFF\x0A"sv, "a JPEG XL picture"},
+    Signature{0, "\0\0\0\x0CJXL "sv, "a JPEG XL picture"},
+    Signature{0, "gimp xcf"sv, "a GIMP picture"},
+    Signature{0, "%PDF"sv, "a PDF document"},
+    Signature{0, "<svg"sv, "an SVG drawing"},
+    Signature{0, "version https://git-lfs"sv, "a pointer of Git LFS"},
+    Signature{0, "<!DOCTYPE"sv, "an HTML page"},
+    Signature{0, "<!doctype"sv, "an HTML page"},
+    Signature{0, "<html"sv, "an HTML page"},
+};
 
 struct DecodedJpeg {
   Image image;
@@ -123,9 +160,9 @@ std::uint32_t longer_side_of_png(std::string_view contents) noexcept {
   return width == 0 || height == 0 ? 0 : std::max(width, height);
 }
 
-/// Tells by its header and its end alone that a picture is whole, for decoding a large one twice
+/// Returns whether a picture's header and end show that it is whole, for decoding a large one twice
 /// would be felt. A PNG ends with its mark; a JPEG has its mark nowhere among the pixels, though
-/// one that belongs to a small picture may stand before them. Others are quick to decode.
+/// one that belongs to a small picture may come before them. Others are quick to decode.
 bool looks_whole(std::string_view contents) {
   const PictureKind kind = picture_kind_of(contents);
   if (kind == PictureKind::jpeg) {
@@ -148,6 +185,23 @@ Result<Image> decode_png_texture(std::string_view contents) {
 }
 
 } // namespace
+
+PictureKind picture_kind_of(std::string_view contents) noexcept {
+  if (contents.starts_with("\x89PNG\r\n\x1A\n")) return PictureKind::png;
+  if (contents.starts_with("\xFF\xD8\xFF")) return PictureKind::jpeg;
+  if (is_bmp(contents)) return PictureKind::bmp;
+  // TGA has no mark, and one may begin like another format by chance.
+  if (foreign_format_of(contents).empty() && is_tga(contents)) return PictureKind::tga;
+  return PictureKind::none;
+}
+
+std::string_view foreign_format_of(std::string_view contents) noexcept {
+  for (const Signature& signature : signatures)
+    if (contents.size() > signature.at &&
+        contents.substr(signature.at).starts_with(signature.bytes))
+      return signature.format;
+  return {};
+}
 
 Result<Image> decode_picture(std::string_view contents) {
   switch (picture_kind_of(contents)) {

@@ -14,6 +14,16 @@
 
 namespace nendo::render {
 
+/// The kind of a texture's file.
+enum class PictureKind { none, png, jpeg, bmp, tga };
+
+/// Returns the kind by the first bytes; none if the file is nothing that is decoded here.
+PictureKind picture_kind_of(std::string_view contents) noexcept;
+
+/// Returns the name of the format of a file that is not decoded here, with its article, such as "a
+/// WebP picture", or an empty text if it is not known either.
+std::string_view foreign_format_of(std::string_view contents) noexcept;
+
 /// Returns the picture of a PNG, JPEG, TGA or BMP file, of at most Size::most pixels along each
 /// side. What is transparent becomes black in a PNG, and is opaque elsewhere. Error: bad_input,
 /// with the end of a sentence that begins with the file's name, such as "is a WebP picture, which

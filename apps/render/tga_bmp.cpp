@@ -65,13 +65,14 @@ constexpr std::size_t bmp_file_header = 14;
 constexpr std::size_t tga_header = 18;
 
 struct BmpHeader {
-  std::size_t offset = 0; ///< of the pixels
-  std::size_t size = 0;   ///< of the second header
+  std::size_t offset = 0; ///< position of the pixels
+  std::size_t size = 0;   ///< bytes of the second header
   std::int64_t width = 0, height = 0;
   std::size_t bits = 0; ///< per pixel
   std::uint32_t compression = 0;
 
-  std::size_t entry_bytes() const noexcept { return size == 12 ? 3 : 4; } ///< of the palette
+  /// Returns the bytes per entry of the palette.
+  std::size_t entry_bytes() const noexcept { return size == 12 ? 3 : 4; }
 };
 
 BmpHeader bmp_header_of(std::string_view contents) noexcept {

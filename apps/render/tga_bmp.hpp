@@ -9,8 +9,8 @@
 
 namespace nendo::render {
 
-/// Tells by its header whether a file is a BMP, or a TGA, which has no mark but a header that no
-/// text and no other picture has.
+/// Returns whether a file's header is that of a BMP, or a TGA, which has no mark but a header that
+/// no text and no other picture has.
 bool is_bmp(std::string_view contents) noexcept;
 bool is_tga(std::string_view contents) noexcept;
 

@@ -2,7 +2,6 @@
 
 #include <charconv>
 
-#include "render/picture_kind.hpp"
 #include "render/texture_image.hpp"
 
 namespace nendo::web {

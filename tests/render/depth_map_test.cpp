@@ -36,8 +36,8 @@ Surface two_plates(std::uint32_t cells) {
   return plates;
 }
 
-/// Whether the light reaches a place of the lower plate, by how far it passes the upper one. Nobody
-/// knows within `close` of the shadow's edge.
+/// Whether the light reaches a place of the lower plate, by how far it passes the upper one. No
+/// test knows within `close` of the shadow's edge.
 std::optional<bool> reached(const Vector3f& place, const Vector3f& toward, float close) {
   const Vector3f above = place - toward * (place.y() / toward.y());
   const float from_edge = std::max(std::abs(above.x()), std::abs(above.z())) - 1.0F;

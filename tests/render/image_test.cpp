@@ -69,7 +69,7 @@ TEST_SUITE("image") {
         CHECK((image.at(x, y) == Pixel{1, 2, 3}) == (x >= 2 && y < 2));
   }
 
-  TEST_CASE("words are as wide as they say, stand on their line, and stay in the picture") {
+  TEST_CASE("words are as wide as they say, are on their line, and stay in the picture") {
     const std::string words = "Before, After: 12.5 s (%) gjpqy";
     const double width = width_of_words(words, 20.0);
     Image image({static_cast<int>(width) + 40, 60});

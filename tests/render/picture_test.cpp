@@ -134,7 +134,7 @@ TEST_SUITE("picture") {
     CHECK(sum_of(30.0) == 0x5c42bedfaca4e89cU);
   }
 
-  TEST_CASE("light comes from the upper left, and what stands on the ground shades it") {
+  TEST_CASE("light comes from the upper left, and things on the ground shade it") {
     const auto mesh = test::sphere(48, 96, 1.0);
     const Scene scene = scene_of(mesh, moment_of(mesh));
     for (const double azimuth : {0.0, 130.0}) { // the lights go round with the camera

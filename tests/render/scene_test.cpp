@@ -19,7 +19,7 @@ Eigen::Vector3d in_scene(const SceneBuilder& builder, const Eigen::Vector3d& sta
 } // namespace
 
 TEST_SUITE("scene") {
-  TEST_CASE("the model stands on the ground in the middle, and polygons become triangles") {
+  TEST_CASE("the model is on the ground in the middle, and polygons become triangles") {
     auto mesh = test::sphere(7, 9, 2.0); // quads and triangles
     mesh.vertices.colwise() += Eigen::Vector3d(10, 20, 30);
     const SceneBuilder builder(mesh);
@@ -45,7 +45,7 @@ TEST_SUITE("scene") {
   }
 
   TEST_CASE(
-      "hands are where the loop has them, and arrows go from where they took hold to the tips") {
+      "hands are where the loop has them, and arrows go from where they grabbed to the tips") {
     LoopUnderTest test(flow::Mode::type1);
     HoldTracker holds;
     holds.follow(test.frame_after_tick(0));
@@ -84,7 +84,7 @@ TEST_SUITE("scene") {
     CHECK(scene.solids.size() + scene.veils.size() + scene.grounds.size() == 0);
   }
 
-  TEST_CASE("a new hold begins with a grab, a commit and an undo, and ends with letting go") {
+  TEST_CASE("a new hold begins with a grab, a commit and an undo, and ends with a release") {
     LoopUnderTest test(flow::Mode::type1);
     HoldTracker holds;
     std::uint64_t tick = 0;

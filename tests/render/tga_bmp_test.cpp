@@ -8,7 +8,6 @@
 
 #include <doctest/doctest.h>
 
-#include "render/picture_kind.hpp"
 #include "render/texture_image.hpp"
 
 namespace nendo::render {
