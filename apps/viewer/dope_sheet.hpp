@@ -48,8 +48,8 @@ public:
   /// Sets the strip's width in pixels and the timeline's duration. The visible part stays the same
   /// as far as it is within the duration. If all was visible, all stays visible.
   void fit(double width, double duration_s) noexcept;
-  double first_s() const noexcept { return first_s_; } ///< of the visible part
-  double last_s() const noexcept { return last_s_; }   ///< of the visible part
+  double first_s() const noexcept { return first_s_; } ///< the begin of the visible part
+  double last_s() const noexcept { return last_s_; }   ///< its end
   double x_of(double time_s) const noexcept;
   /// Returns the time at x, limited to 0 and the duration.
   double time_at(double x) const noexcept;
@@ -69,7 +69,7 @@ public:
   std::optional<std::size_t> mark_at(std::span<const StripMark> marks, std::size_t lanes, double x,
                                      double y) const;
   /// Returns the interval between the ruler's numbers: 1, 2 or 5 times a power of ten, so that the
-  /// numbers have room.
+  /// numbers do not overlap.
   double ruler_step_s() const noexcept;
 
 private:

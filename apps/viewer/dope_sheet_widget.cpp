@@ -148,7 +148,7 @@ private:
     list_.AddQuad(top, side, bottom, other, edge, 1.5F);
   }
 
-  // A name is written where it has room before the next.
+  // A name is written where it fits before the next.
   void marks() const {
     const double y = DopeSheet::middle_of(view_.lanes.size());
     double free_from = 0.0;
@@ -183,7 +183,7 @@ constexpr float controls_height = 36.0F;
 constexpr float margin = 6.0F;
 constexpr double drag_begins_px = 3.0;
 
-void tell_what_is_at(const TimelineView& view, const DopeSheet& strip, double x, double y) {
+void show_tooltip_at(const TimelineView& view, const DopeSheet& strip, double x, double y) {
   if (const auto key = strip.key_at(view.lanes, x, y))
     ImGui::SetTooltip("key %zu, %.3f s", key->key, view.lanes[key->lane].keys_s[key->key]);
   else if (const auto mark = strip.mark_at(view.marks, view.lanes.size(), x, y))
@@ -231,7 +231,7 @@ void DopeSheetWidget::draw(const TimelineView& view, const std::optional<Retimin
   StripLook look{corner, size, {}, shaded};
   if (ImGui::IsItemHovered()) {
     look.pointed_at = strip_.key_at(view.lanes, x, y);
-    if (!taken_) tell_what_is_at(view, strip_, x, y);
+    if (!taken_) show_tooltip_at(view, strip_, x, y);
   }
   StripDrawing(strip_, view, look).draw();
   ImGui::End();
@@ -256,7 +256,7 @@ void DopeSheetWidget::controls(const TimelineView& view, EditActions& actions) c
   if (view.computing)
     ImGui::TextDisabled("shapes made to %.2f s", view.computed_s);
   else if (view.shape_is_old)
-    ImGui::TextDisabled("the shape is of before the last edits");
+    ImGui::TextDisabled("the shape does not show the last edits");
 }
 
 void DopeSheetWidget::follow_mouse(const TimelineView& view, double x, double y,

@@ -9,7 +9,7 @@ namespace nendo::viewer {
 
 class DopeSheetWidget {
 public:
-  /// Returns the height in pixels of a strip with that many lanes, controls included.
+  /// Returns the height in pixels of a strip with this number of lanes, controls included.
   static int height_for(std::size_t lanes) noexcept;
   /// Draws the strip at the window's bottom, over its whole width. shaded: times to highlight.
   void draw(const TimelineView& view, const std::optional<Retiming>& shaded, EditActions& actions);

@@ -77,7 +77,7 @@ bool ShadowMap::begin(const AlignedBox3f& casting, const Vector3f& toward) {
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before_);
   glBindFramebuffer(GL_FRAMEBUFFER, frame_buffer_);
   glViewport(0, 0, side, side);
-  // What is nearly along the light is deeper within a sample than a slack can tell.
+  // A surface nearly along the light is deeper within a sample than any slack.
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(3.0F, 4.0F);
   glClear(GL_DEPTH_BUFFER_BIT);

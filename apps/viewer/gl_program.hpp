@@ -1,5 +1,5 @@
 #pragma once
-// OpenGL's programs and their uniforms, in fewer words. All calls belong to the thread that has the
+// OpenGL's programs and their uniforms. All calls belong to the thread that has the
 // OpenGL context.
 
 #include <cstddef>

@@ -261,7 +261,7 @@ void GlRenderer::for_each_program(const Sets& sets) {
   }
 }
 
-// Makes the map of what the key light does not reach. Returns false if nothing casts a shadow.
+// Makes the map of the key light's shadow. Returns false if nothing casts a shadow.
 bool GlRenderer::cast_shadows(const render::Scene& beside, const Vector3f& key) {
   Eigen::AlignedBox3f box = whole_ ? box_ : Eigen::AlignedBox3f();
   for (const auto* surfaces : {&beside.solids, &beside.veils})

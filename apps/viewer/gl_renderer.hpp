@@ -21,8 +21,8 @@ namespace nendo::viewer {
 
 class GlRenderer {
 public:
-  /// Needs a current context. Error: failed (no OpenGL 3.3; the message tells what there is
-  /// instead).
+  /// Needs a current context. Error: failed (no OpenGL 3.3; the message has the version that there
+  /// is instead).
   static Result<std::unique_ptr<GlRenderer>> make();
   ~GlRenderer();
   GlRenderer(const GlRenderer&) = delete;
@@ -59,11 +59,11 @@ private:
   void use_model();
   void draw_model() const;
 
-  std::array<unsigned, 3> programs_{}; ///< by Fragments
+  std::array<unsigned, 3> programs_{}; ///< index: Fragments
   unsigned program_ = 0;               ///< the one that is in use
   struct {
     bool white = false, facets = false, shadowed = false;
-  } next_; ///< of the surfaces that are drawn next
+  } next_; ///< how the next surfaces are drawn
   unsigned vertex_array_ = 0;
   unsigned model_indices_ = 0;
   std::array<unsigned, 3> model_buffers_{};  ///< positions, normals and colours, in blocks
@@ -74,7 +74,7 @@ private:
   deform::BlockShape shape_; ///< as the graphics card has it
   std::vector<Eigen::Vector3f> places_, normals_, new_normals_;
   std::vector<float> block_;
-  Eigen::AlignedBox3f box_; ///< of the whole model, in the scene
+  Eigen::AlignedBox3f box_; ///< the whole model, in the scene
   ModelTextures textures_;
   ShadowMap shadows_;
   Eigen::Vector3f offset_ = Eigen::Vector3f::Zero();

@@ -1,5 +1,6 @@
 #pragma once
-// Moves a hand with the mouse, for people whose gloves or simulated hands have no tracker.
+// Moves a hand with the mouse, for gloves and simulated hands without a tracker, or a fingertip of
+// a timeline's key.
 
 #include <cstddef>
 #include <optional>
@@ -20,7 +21,7 @@ public:
   static constexpr double reach = 60.0;
   void take(const render::Camera& camera, const flow::Frame& frame, const Eigen::Vector2d& pointer,
             render::Size size) noexcept;
-  void let_go() noexcept { slot_.reset(); }
+  void release() noexcept { slot_.reset(); }
   bool holds() const noexcept { return slot_.has_value(); }
 
   /// Moves the hand by the pixels that the pointer moved, in the picture's plane, so that the hand
@@ -42,6 +43,35 @@ private:
   Eigen::Isometry3d wrist_ = Eigen::Isometry3d::Identity(); ///< T_stage_wrist
   Eigen::Vector3d lowest_m_ = Eigen::Vector3d::Zero();      ///< where it may go, on the stage
   Eigen::Vector3d highest_m_ = Eigen::Vector3d::Zero();
+};
+
+/// Holds a fingertip from the moment the mouse button goes down until it comes up.
+class TipMover {
+public:
+  /// Returns the fingertip of a hand that is nearest to the pointer, which is in pixels from the
+  /// picture's top left corner. Returns nothing if none is within `reach` pixels.
+  static constexpr double reach = 14.0;
+  static std::optional<hand::Finger> tip_at(const render::Camera& camera,
+                                            const hand::HandPose& pose,
+                                            const Eigen::Vector2d& pointer,
+                                            render::Size size) noexcept;
+
+  void take(const hand::HandPose& pose, hand::Finger finger) noexcept;
+  void release() noexcept { finger_.reset(); }
+  std::optional<hand::Finger> finger() const noexcept { return finger_; } ///< that is held
+
+  /// As HandMover's.
+  void shift(const render::Camera& camera, double dx, double dy, double height) noexcept;
+  void push(const render::Camera& camera, double steps) noexcept;
+  /// Returns the place on the stage to which the held tip must go, in metres. Each coordinate is
+  /// within 2 m of the stage's middle.
+  const Eigen::Vector3d& target_m() const noexcept { return target_m_; }
+
+private:
+  void go_by(const Eigen::Vector3d& way_m) noexcept;
+
+  std::optional<hand::Finger> finger_;
+  Eigen::Vector3d target_m_ = Eigen::Vector3d::Zero();
 };
 
 } // namespace nendo::viewer

@@ -1,11 +1,11 @@
 #include "viewer/live_window.hpp"
 
+#include <initializer_list>
 #include <utility>
 
 #include <imgui.h>
 
 #include "viewer/panel.hpp"
-#include "viewer/puppet_marks.hpp"
 #include "viewer/puppet_tool.hpp"
 
 namespace nendo::viewer {
@@ -37,36 +37,24 @@ void use_page_style() {
   ImGui::StyleColorsLight();
   ImGuiStyle& style = ImGui::GetStyle();
   use_shapes(style);
-  const ImVec4 ink = page_colour(0x23282D); // these are page.css's
-  const ImVec4 soft = page_colour(0x5C656D);
-  const ImVec4 edge = page_colour(0xC9CFD4);
-  const ImVec4 accent = page_colour(0xB4532A);
-  const ImVec4 pale_accent = page_colour(0xB4532A, 0.25F);
-  const ImVec4 paper = page_colour(0xFFFFFF);
-  const ImVec4 faint = page_colour(0x000000, 0.045F);
-  auto& colours = style.Colors;
-  colours[ImGuiCol_Text] = ink;
-  colours[ImGuiCol_TextDisabled] = soft;
-  colours[ImGuiCol_WindowBg] = page_colour(0xFFFFFF, 0.90F);
-  colours[ImGuiCol_PopupBg] = paper;
-  colours[ImGuiCol_Border] = edge;
-  for (const int title : {ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TitleBgCollapsed})
-    colours[title] = page_colour(0xFFFFFF, 0.90F);
-  colours[ImGuiCol_Button] = paper;
-  colours[ImGuiCol_ButtonHovered] = pale_accent;
-  colours[ImGuiCol_ButtonActive] = accent;
-  colours[ImGuiCol_FrameBg] = faint;
-  colours[ImGuiCol_FrameBgHovered] = pale_accent;
-  colours[ImGuiCol_FrameBgActive] = pale_accent;
-  colours[ImGuiCol_CheckMark] = accent;
-  colours[ImGuiCol_SliderGrab] = accent;
-  colours[ImGuiCol_SliderGrabActive] = accent;
-  colours[ImGuiCol_Header] = faint;
-  colours[ImGuiCol_HeaderHovered] = pale_accent;
-  colours[ImGuiCol_HeaderActive] = pale_accent;
-  colours[ImGuiCol_PlotLines] = accent;
-  colours[ImGuiCol_PlotHistogram] = page_colour(0x34567A);
-  colours[ImGuiCol_ModalWindowDimBg] = page_colour(0x000000, 0.20F);
+  const auto paint = [&](const ImVec4& colour, std::initializer_list<int> items) {
+    for (const int item : items)
+      style.Colors[item] = colour;
+  };
+  paint(page_colour(0x23282D), {ImGuiCol_Text}); // these are page.css's
+  paint(page_colour(0x5C656D), {ImGuiCol_TextDisabled});
+  paint(page_colour(0xC9CFD4), {ImGuiCol_Border});
+  paint(page_colour(0xFFFFFF), {ImGuiCol_PopupBg, ImGuiCol_Button});
+  paint(page_colour(0xFFFFFF, 0.90F),
+        {ImGuiCol_WindowBg, ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TitleBgCollapsed});
+  paint(page_colour(0x000000, 0.045F), {ImGuiCol_FrameBg, ImGuiCol_Header});
+  paint(page_colour(0xB4532A, 0.25F),
+        {ImGuiCol_ButtonHovered, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive,
+         ImGuiCol_HeaderHovered, ImGuiCol_HeaderActive});
+  paint(page_colour(0xB4532A), {ImGuiCol_ButtonActive, ImGuiCol_CheckMark, ImGuiCol_SliderGrab,
+                                ImGuiCol_SliderGrabActive, ImGuiCol_PlotLines});
+  paint(page_colour(0x34567A), {ImGuiCol_PlotHistogram});
+  paint(page_colour(0x000000, 0.20F), {ImGuiCol_ModalWindowDimBg});
 }
 
 } // namespace
@@ -133,8 +121,8 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
   return commands;
 }
 
-const std::string& LiveWindow::told() const noexcept {
-  return panel_->told;
+const std::string& LiveWindow::message() const noexcept {
+  return panel_->message;
 }
 
 const flow::LoopSettings& LiveWindow::settings() const noexcept {
@@ -166,7 +154,7 @@ bool LiveWindow::move_hand(const flow::Frame& frame, Commands& commands) {
   if (io.WantCaptureMouse) return false;
   const render::Camera camera = window_->stage_camera();
   const render::Size size = window_->scene_size();
-  if (!ImGui::IsMouseDown(ImGuiMouseButton_Right)) hand_mover_.let_go();
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Right)) hand_mover_.release();
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Right))
     hand_mover_.take(camera, frame, {io.MousePos.x, io.MousePos.y}, size);
   if (!hand_mover_.holds()) return false;

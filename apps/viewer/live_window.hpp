@@ -32,12 +32,12 @@ class PuppetEditor;
 class PuppetMarks;
 class PuppetTool;
 
-/// The commands that a person has given since the last picture, in their order.
+/// The commands that the user has given since the last picture, in their order.
 using Commands = std::vector<flow::Command>;
 
 class LiveWindow {
 public:
-  /// Opens a window. Error: failed (no screen, no OpenGL 3.3); the message tells what to do
+  /// Opens a window. Error: failed (no screen, no OpenGL 3.3); the message says what to do
   /// instead.
   static Result<std::unique_ptr<LiveWindow>> open(const std::string& title, render::Size size);
   ~LiveWindow();
@@ -60,7 +60,7 @@ public:
   PuppetEditor& editor() noexcept { return *editor_; }
 
   /// Returns the line below the panel's buttons: the report, or why a command was not possible.
-  const std::string& told() const noexcept;
+  const std::string& message() const noexcept;
   /// Returns the settings that the panel shows.
   const flow::LoopSettings& settings() const noexcept;
 

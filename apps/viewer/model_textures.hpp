@@ -34,7 +34,7 @@ private:
 
   std::array<unsigned, 3> buffers_{};
   std::array<unsigned, 3> buffer_textures_{}; ///< 0 where corners have nothing of their own
-  std::vector<unsigned> pictures_;            ///< of each coat; 0 where it has none
+  std::vector<unsigned> pictures_;            ///< one for each coat; 0: none
 };
 
 } // namespace nendo::viewer

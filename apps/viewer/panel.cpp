@@ -91,18 +91,17 @@ void LiveWindow::Panel::follow(const flow::Frame& frame, double rate_hz) {
   late_ms.add(std::max(0.0F, ms(frame.woke - frame.scheduled)));
   gap_ms.add(
       static_cast<float>(std::abs(static_cast<double>(ms(frame.since_last)) - 1e3 / rate_hz)));
-  last_tick = frame.tick;
 }
 
 void LiveWindow::Panel::buttons(const commands::Situation& now, const Gauges& gauges,
                                 Commands& commands) {
-  ImGui::TextUnformatted(now.frame.held ? "The hands hold the model." : "The hands have let go.");
+  ImGui::TextUnformatted(now.frame.held ? "The hands hold the model." : "The hands hold nothing.");
   buttons_of(commands::Buttons::hands, 2, now, commands);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.0F, ImGui::GetStyle().FramePadding.y));
   buttons_of(commands::Buttons::model, 3, now, commands);
   ImGui::PopStyleVar();
-  told = note.empty() ? gauges.report : note;
-  if (!told.empty()) ImGui::TextWrapped("%s", told.c_str());
+  message = note.empty() ? gauges.report : note;
+  if (!message.empty()) ImGui::TextWrapped("%s", message.c_str());
 }
 
 void LiveWindow::Panel::buttons_of(commands::Buttons group, int in_line,
@@ -124,22 +123,23 @@ void LiveWindow::Panel::parts(SceneWindow& window) {
       std::pair{"hands", &shown.hands},      std::pair{"bones", &shown.bones},
       std::pair{"vectors", &shown.vectors},  std::pair{"radii", &shown.radii},
       std::pair{"contact", &shown.contacts}, std::pair{"facets", &window.facets()}};
-  constexpr std::size_t a_line = 3;
-  const float width = ImGui::GetContentRegionAvail().x / a_line;
+  constexpr std::size_t boxes_per_line = 3;
+  const float width = ImGui::GetContentRegionAvail().x / boxes_per_line;
   for (std::size_t at = 0; at < boxes.size(); ++at) {
-    if (at % a_line != 0)
-      ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + width * static_cast<float>(at % a_line));
+    if (at % boxes_per_line != 0)
+      ImGui::SameLine(ImGui::GetStyle().WindowPadding.x +
+                      width * static_cast<float>(at % boxes_per_line));
     ImGui::Checkbox(boxes[at].first, boxes[at].second);
   }
 }
 
-void LiveWindow::Panel::follow_settings(const flow::LoopSettings& in_force) {
-  if (!wanted.follow(in_force)) return;
+void LiveWindow::Panel::follow_settings(const flow::LoopSettings& current) {
+  if (!wanted.follow(current)) return;
   if (!wanted.has_one_radius()) one_radius = false;
   if (!wanted.has_one_brush()) one_brush = false;
 }
 
-/// One for all fingers, or one for each. Whoever chooses one wants type 2, which has them.
+/// One for all fingers, or one for each. A choice also chooses type 2, which has them.
 void LiveWindow::Panel::brushes(flow::LoopSettings& chosen) {
   ImGui::Checkbox("one brush for all fingers", &one_brush);
   const auto before = chosen.brushes;
@@ -336,9 +336,9 @@ void LiveWindow::Panel::ask(const commands::Row& row, const commands::Situation&
   note = answer.refusal != nullptr ? answer.refusal : "";
 }
 
-/// What the window obeys by itself.
-void LiveWindow::Panel::obey(std::string_view name, SceneWindow& window, PuppetEditor& editor,
-                             Commands& commands) {
+/// Executes a command that concerns the window alone.
+void LiveWindow::Panel::execute(std::string_view name, SceneWindow& window, PuppetEditor& editor,
+                                Commands& commands) {
   if (name == "list keys") keys_shown = !keys_shown;
   if (name == "frame all") window.frame_all();
   if (name == "fold panel") fold_asked = true;
@@ -366,14 +366,14 @@ void LiveWindow::Panel::keys(const commands::Situation& now, SceneWindow& window
       if (row.is_for_run())
         ask(row, now, commands);
       else
-        obey(row.name, window, editor, commands);
+        execute(row.name, window, editor, commands);
     }
   }
   if (keys_shown)
     draw_key_list(commands::in_window,
                   "right drag on a hand moves it, with shift turns it, with the wheel\n"
                   "pushes and pulls it; while a puppet is edited, a click places a point, a\n"
-                  "drag of a point tells where it goes, with shift how it turns, the wheel over\n"
+                  "drag of a point sets where it goes, with shift how it turns, the wheel over\n"
                   "one how far it reaches",
                   keys_shown);
 }

@@ -37,19 +37,18 @@ struct LiveWindow::Panel {
 
   flow::WantedSettings wanted;
   Strip late_ms, gap_ms, pictures_ms;
-  std::uint64_t last_tick = 0;
   bool keys_shown = false;
   bool one_radius = true;
   bool one_brush = true;
   std::uint64_t history_shown = 0; ///< the list's version
   bool fold_asked = false;
   bool folded = false;
-  std::string note; ///< takes the place of Gauges::report until the next command
-  std::string told; ///< the line that is shown below the buttons
+  std::string note;    ///< takes the place of Gauges::report until the next command
+  std::string message; ///< the line that is shown below the buttons
 
   /// Returns how much of the window's left the panel covers.
   int covered_px() const noexcept { return folded ? 0 : static_cast<int>(gap_px + width_px); }
-  void follow_settings(const flow::LoopSettings& in_force);
+  void follow_settings(const flow::LoopSettings& current);
   void follow(const flow::Frame& frame, double rate_hz);
   void buttons(const commands::Situation& now, const Gauges& gauges, Commands& commands);
   /// Draws the buttons of one group, with so many in a line.
@@ -73,7 +72,8 @@ struct LiveWindow::Panel {
 
 private:
   void ask(const commands::Row& row, const commands::Situation& now, Commands& commands);
-  void obey(std::string_view name, SceneWindow& window, PuppetEditor& editor, Commands& commands);
+  void execute(std::string_view name, SceneWindow& window, PuppetEditor& editor,
+               Commands& commands);
 };
 
 } // namespace nendo::viewer

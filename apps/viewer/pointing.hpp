@@ -17,7 +17,7 @@ namespace nendo::viewer {
 std::optional<Eigen::Vector2d> pixel_of(const render::Camera& camera, const Eigen::Vector3d& place,
                                         render::Size size) noexcept;
 
-/// Returns the displacement in metres that moves `place` by that many pixels in the picture while
+/// Returns the displacement in metres that moves `place` by these pixels in the picture while
 /// its depth stays the same. `height` is the picture's height in pixels.
 Eigen::Vector3d way_in_picture(const render::Camera& camera, const Eigen::Vector3d& place,
                                double dx, double dy, double height) noexcept;
@@ -38,8 +38,8 @@ Ray ray_at(const render::Camera& camera, const Eigen::Vector2d& pixel, render::S
 struct SurfaceHit {
   Eigen::Vector3d at;
   Eigen::Vector3d normal;
-  std::array<std::uint32_t, 3> corners{};          ///< of that triangle
-  Eigen::Vector3d parts = Eigen::Vector3d::Zero(); ///< of each corner, of which `at` is the sum
+  std::array<std::uint32_t, 3> corners{};          ///< the triangle's vertices
+  Eigen::Vector3d parts = Eigen::Vector3d::Zero(); ///< weights of the corners, whose sum `at` is
 };
 
 /// Returns the first place of the mesh's faces that the ray meets; nothing if it meets none. It

@@ -20,8 +20,8 @@ namespace {
 
 constexpr double radius_of_diagonal = 0.12; // of new points
 constexpr double brush_of_diagonal = 0.04;
-constexpr double way_of_radius = 0.35; // of new functions, along the surface's normal
-constexpr double a_step = 1.1;         // of the wheel
+constexpr double way_of_radius = 0.35;  // of new functions, along the surface's normal
+constexpr double factor_per_step = 1.1; // of the wheel
 constexpr HostClock::duration wheel_rest = std::chrono::milliseconds(350);
 constexpr double stroke_step = 0.3; // of the brush's radius, between places of a stroke
 
@@ -57,7 +57,7 @@ void PuppetEditor::begin(const deform::Mesh& loaded, const std::string& model_na
   new_radius_ = radius_of_diagonal * diagonal;
   brush_radius_ = brush_of_diagonal * diagonal;
   empty_ = std::make_shared<const Rig>(puppet::empty_puppet(model_name), deform::Points(3, 0));
-  in_force_ = rig;
+  current_ = rig;
   rig_ = rig ? rig : empty_;
   set_model(loaded);
 }
@@ -84,15 +84,15 @@ void PuppetEditor::set_rig(RigPointer rig, std::unique_ptr<RigShapes> shapes) {
   ++version_;
 }
 
-void PuppetEditor::follow(const RigPointer& in_force, const flow::Frame& frame) {
-  if (in_force != in_force_) {
-    in_force_ = in_force;
-    const auto known = std::find(sent_.begin(), sent_.end(), in_force);
+void PuppetEditor::follow(const RigPointer& current, const flow::Frame& frame) {
+  if (current != current_) {
+    current_ = current;
+    const auto known = std::find(sent_.begin(), sent_.end(), current);
     if (known != sent_.end()) {
       sent_.erase(sent_.begin(), known + 1);
-    } else { // somebody has undone an edit
+    } else { // an edit was undone
       sent_.clear();
-      set_rig(in_force ? in_force : empty_, nullptr);
+      set_rig(current ? current : empty_, nullptr);
     }
   }
   if (is_live()) follow_shape(frame);
@@ -145,9 +145,9 @@ void PuppetEditor::turn(bool on) {
   drag_.reset();
   brushes_ = only_masks_ = false;
   is_on_ = on;
-  told_ = on && rig_->puppet().points.empty()
-              ? "Click a place of the model that a finger shall move."
-              : "";
+  message_ = on && rig_->puppet().points.empty()
+                 ? "Click a place of the model that a finger shall move."
+                 : "";
   ++version_;
 }
 
@@ -175,7 +175,7 @@ const deform::BlockShape* PuppetEditor::shape() {
 /// Returns false, and changes nothing, if the edit is refused, or if no field can be made of it.
 bool PuppetEditor::apply(Result<Puppet> edited, const std::string& done) {
   const auto refuse = [&](const Error& error) {
-    told_ = error.message;
+    message_ = error.message;
     ++version_;
     return false;
   };
@@ -186,7 +186,7 @@ bool PuppetEditor::apply(Result<Puppet> edited, const std::string& done) {
   set_rig(rig, *std::move(shapes));
   sent_.push_back(rig);
   to_loop_ = std::move(rig);
-  told_ = done;
+  message_ = done;
   return true;
 }
 
@@ -236,13 +236,14 @@ void PuppetEditor::place(const SurfaceHit& hit) {
 }
 
 void PuppetEditor::ask_for_finger() {
-  told_ = "Bend the finger that shall move this place, or choose one below; then drag the place.";
+  message_ =
+      "Bend the finger that shall move this place, or choose one below; then drag the place.";
 }
 
 void PuppetEditor::forget_place() {
   if (!pending_) return;
   pending_.reset();
-  told_.clear();
+  message_.clear();
   ++version_;
 }
 
@@ -262,7 +263,7 @@ void PuppetEditor::choose_input(const HandSignal& input, double travel) {
   point_name_ = new_name(before->puppet().points, rig_->puppet().points, x);
   function_name_ = new_name(before->puppet().functions, rig_->puppet().functions, x);
   pending_.reset();
-  told_ = input.name() + " moves " + point_name_ + ". Drag it to where it shall go.";
+  message_ = input.name() + " moves " + point_name_ + ". Drag it to where it shall go.";
 }
 
 void PuppetEditor::toggle_pin() {
@@ -271,7 +272,7 @@ void PuppetEditor::toggle_pin() {
     if (!apply(puppet::with_pin(*rig_, {pending_->at, new_radius_}), "")) return;
     point_name_ = new_name(before->puppet().points, rig_->puppet().points, pending_->at.x());
     pending_.reset();
-    told_ = point_name_ + " stays where it is.";
+    message_ = point_name_ + " stays where it is.";
     return;
   }
   const std::size_t chosen = point();
@@ -299,7 +300,7 @@ void PuppetEditor::rename_function(const std::string& name) {
 
 void PuppetEditor::toggle_mirror() {
   if (rig_->puppet().points.empty()) {
-    told_ = "A puppet begins with a point that a finger moves; then it can be mirrored.";
+    message_ = "A puppet begins with a point that a finger moves; then it can be mirrored.";
     return;
   }
   const bool mirrors = !rig_->puppet().mirrors;
@@ -383,7 +384,7 @@ Vector3d PuppetEditor::way_of(std::size_t point) const {
 }
 
 void PuppetEditor::scale_radius(double steps) {
-  const double factor = std::pow(a_step, std::clamp(steps, -10.0, 10.0));
+  const double factor = std::pow(factor_per_step, std::clamp(steps, -10.0, 10.0));
   const double diagonal = deform::diagonal_of(loaded_.vertices);
   const auto within = [&](double radius) {
     return std::clamp(radius * factor, 0.003 * diagonal, 2.0 * diagonal);
@@ -422,10 +423,10 @@ void PuppetEditor::toggle_brush() {
   if (!rig_->puppet().is_played()) return toggle_masks();
   forget_place();
   brushes_ = !brushes_;
-  told_ = brushes_
-              ? "Drag over what shall stay as it is; with shift, over what may move again. The "
-                "wheel changes the brush."
-              : "";
+  message_ = brushes_
+                 ? "Drag over what shall stay as it is; with shift, over what may move again. The "
+                   "wheel changes the brush."
+                 : "";
   ++version_;
 }
 
@@ -435,8 +436,9 @@ void PuppetEditor::toggle_masks() {
   turn(begins);
   brushes_ = only_masks_ = begins;
   if (begins)
-    told_ = "Drag over what fingertips shall leave as it is; with shift, over what may move again. "
-            "The wheel changes the brush.";
+    message_ =
+        "Drag over what fingertips shall leave as it is; with shift, over what may move again. "
+        "The wheel changes the brush.";
 }
 
 /// Masks are of the model before it was shaped.

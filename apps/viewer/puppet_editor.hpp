@@ -1,5 +1,5 @@
 #pragma once
-// A puppet in the making: what a person does with the mouse and keys in a window, as edits of the
+// A puppet that is edited: what the user does with the mouse and keys in a window, as edits of the
 // puppet that the loop plays. It draws nothing and knows no window. All lengths are in model units.
 // For the main thread.
 
@@ -31,7 +31,7 @@ public:
   void set_model(const deform::Mesh& shown);
   /// Takes the puppet that the loop plays, which an undo may have changed, and looks at the hands:
   /// a finger that bends far enough moves the place that was clicked last.
-  void follow(const RigPointer& in_force, const flow::Frame& frame);
+  void follow(const RigPointer& current, const flow::Frame& frame);
   /// Returns, once, the puppet that the loop shall continue with; null: no other one.
   RigPointer take() { return std::exchange(to_loop_, nullptr); }
 
@@ -45,7 +45,7 @@ public:
   const deform::Mesh& model() const noexcept { return shown_; }
   /// The model as it is shown: at rest, or, with masks of fingertips, as it was a moment ago.
   const deform::Mesh& seen() const noexcept { return is_live() ? live_ : shown_; }
-  const std::string& told() const noexcept { return told_; } ///< for the person
+  const std::string& message() const noexcept { return message_; } ///< the latest, for the user
 
   // Points. A place that was clicked waits for the finger that shall move it.
 
@@ -61,7 +61,7 @@ public:
   void choose_point(std::size_t point);
   void choose_function(std::size_t function);
   std::size_t point() const noexcept;    ///< that is chosen; none
-  std::size_t function() const noexcept; ///< likewise; one that moves the chosen point, if any does
+  std::size_t function() const noexcept; ///< the chosen one, or one that moves the chosen point
   void remove_point();
   void rename_function(const std::string& name);
   void toggle_mirror();
@@ -70,8 +70,8 @@ public:
 
   void begin_drag(std::size_t point);
   void drag(const Eigen::Vector3d& way);
-  /// Likewise, of the turn of the chosen function: of all points that it turns. One that turns
-  /// none gets a turn about the line to the viewer through the nearest pin, or, without pins,
+  /// The same for the turn of the chosen function, that is, for all points that it turns. One that
+  /// turns none gets a turn about the line to the viewer through the nearest pin, or, without pins,
   /// through the middle of the model.
   void begin_turn(std::size_t point, const Eigen::Vector3d& to_viewer);
   void turn_by(double degrees);
@@ -85,8 +85,7 @@ public:
   /// Makes the radius of the chosen point, or of places to come, larger by so many tenths. The loop
   /// gets it when no further step has come for a while, so that it is one edit.
   void scale_radius(double steps);
-  double radius() const noexcept; ///< of the chosen point, or of places to come
-  double new_radius() const noexcept { return new_radius_; }
+  double radius() const noexcept; ///< the radius of the chosen point, or of places to come
 
   // The brush for masks.
 
@@ -106,7 +105,7 @@ public:
 
   /// Returns a number that changes when what is marked on the model does.
   std::uint64_t version() const noexcept { return version_; }
-  /// Likewise for the model.
+  /// The same for the model.
   std::uint64_t model_version() const noexcept { return model_version_; }
 
 private:
@@ -115,7 +114,7 @@ private:
     std::size_t function = none;
     Eigen::Vector3d way;
     std::optional<puppet::AxisTurn> turn{}; ///< in place of the way
-    deform::Points vectors{};               ///< by the turn
+    deform::Points vectors{};               ///< the displacements by the turn
   };
   struct Scaling {
     std::size_t point = none;
@@ -134,12 +133,13 @@ private:
 
   deform::Mesh loaded_, shown_;
   RigPointer rig_, empty_;
-  RigPointer in_force_;                       ///< in the loop, as follow() had it last
-  std::vector<RigPointer> sent_;              ///< to the loop, and not in effect yet
-  RigPointer to_loop_;                        ///< not taken yet
-  std::unique_ptr<puppet::RigShapes> shapes_; ///< of rig_ on shown_; null: none, or not made yet
+  RigPointer current_;           ///< in the loop, as follow() had it last
+  std::vector<RigPointer> sent_; ///< to the loop, and not in effect yet
+  RigPointer to_loop_;           ///< not taken yet
+  std::unique_ptr<puppet::RigShapes>
+      shapes_; ///< shapes of rig_ on shown_; null: none, or not made yet
   std::optional<deform::BlockShape> plain_;   ///< shown_ itself, where there is no puppet
-  std::optional<deform::BlockLayout> layout_; ///< of shown_, if it was needed
+  std::optional<deform::BlockLayout> layout_; ///< layout of shown_, if it was needed
   deform::Mesh live_;                         ///< shown_, as the hands have shaped it
   HostTime live_at_{};                        ///< when it was brought up to date
   std::string point_name_, function_name_;    ///< that are chosen
@@ -152,7 +152,7 @@ private:
   bool is_on_ = false, brushes_ = false, erases_ = false;
   bool only_masks_ = false; ///< it is on for them alone
   std::uint64_t version_ = 1, model_version_ = 1;
-  std::string told_;
+  std::string message_;
 };
 
 } // namespace nendo::viewer

@@ -8,8 +8,6 @@
 
 #include "viewer/command_widgets.hpp"
 #include "viewer/panel.hpp"
-#include "viewer/puppet_marks.hpp"
-#include "viewer/puppet_tool.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
@@ -93,7 +91,7 @@ void LiveWindow::Panel::masks(PuppetEditor& editor, const commands::Situation& n
   ImGui::SameLine();
   const commands::Row& invert = *commands::named("mask invert");
   if (row_button(invert, now, 0.0F)) ask(invert, now, commands);
-  if (editor.brushes()) ImGui::TextWrapped("%s", editor.told().c_str());
+  if (editor.brushes()) ImGui::TextWrapped("%s", editor.message().c_str());
 }
 
 void LiveWindow::Panel::puppet(PuppetEditor& editor, Commands& commands) {
@@ -103,7 +101,7 @@ void LiveWindow::Panel::puppet(PuppetEditor& editor, Commands& commands) {
     editor.turn(!is_on);
   show_help("edit puppet", "Click, bend a finger, drag: what each finger does.");
   if (!editor.is_on() || editor.paints_masks()) return;
-  if (!editor.told().empty()) ImGui::TextWrapped("%s", editor.told().c_str());
+  if (!editor.message().empty()) ImGui::TextWrapped("%s", editor.message().c_str());
   edit_buttons(editor, commands);
   ImGui::Text("%s, radius %.3g", editor.brushes() ? "brush" : "point",
               editor.brushes() ? editor.brush_radius() : editor.radius());

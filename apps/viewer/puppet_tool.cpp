@@ -1,5 +1,7 @@
 #include "viewer/puppet_tool.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <imgui.h>
@@ -10,8 +12,10 @@
 
 namespace nendo::viewer {
 
+using Eigen::Index;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using Eigen::Vector3f;
 
 namespace {
 
@@ -30,10 +34,69 @@ double turned_deg(const Vector2d& pivot, const Vector2d& from, const Vector2d& t
   return to_degrees(std::atan2(a.y() * b.x() - a.x() * b.y(), a.dot(b))); // y points down
 }
 
-} // namespace
+constexpr double above_m = 0.0015; // the surface, so that patches are seen
+constexpr double mark_px = 6.0;
+constexpr std::size_t max_named = 16; // points; of more, only those that a person points at
+constexpr double reach_px = 11.0;     // of the mouse, to a mark
 
-void PuppetTool::turn(const render::Camera& camera, render::Size size, double units_per_metre,
-                      PuppetEditor& editor) {
+render::Material patch(const Vector3f& colour, float opacity) {
+  render::Material material{colour, 0.0F, opacity, opacity};
+  material.shadowless = true;
+  return material;
+}
+
+const Vector3f reach_colour{0.02F, 0.30F, 0.75F};
+const Vector3f mask_colour{0.45F, 0.03F, 0.50F};
+const Vector3f erased_colour{0.90F, 0.90F, 0.90F};
+
+bool is_masked(const Vector3d& place, const std::vector<puppet::Mask>& masks) {
+  return std::any_of(masks.begin(), masks.end(), [&](const puppet::Mask& mask) {
+    return (mask.at - place).norm() < puppet::half_of_mask * mask.radius;
+  });
+}
+
+ImVec2 in_window(const Vector2d& pixel) {
+  return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
+}
+
+/// The shaft and two barbs.
+void draw_way(ImDrawList& list, const Vector2d& from, const Vector2d& to, ImU32 colour) {
+  const Vector2d way = to - from;
+  const double length = way.norm();
+  if (length < 3.0) return;
+  const Vector2d along = way / length, beside(-along.y(), along.x());
+  const double barb = std::min(9.0, 0.5 * length);
+  list.AddLine(in_window(from), in_window(to), colour, 2.5F);
+  list.AddTriangleFilled(in_window(to), in_window(to - barb * along + 0.5 * barb * beside),
+                         in_window(to - barb * along - 0.5 * barb * beside), colour);
+}
+
+/// Returns the point whose mark is under the pointer; PuppetEditor::none.
+std::size_t point_at(const PuppetEditor& editor, const render::Camera& stage_camera,
+                     render::Size size, double units_per_metre, const Vector2d& pointer) {
+  std::size_t nearest = PuppetEditor::none;
+  double least = reach_px;
+  const deform::Points& starts = editor.rig().starts();
+  for (Index at = 0; at < starts.cols(); ++at) {
+    const auto pixel = pixel_of(stage_camera, starts.col(at) / units_per_metre, size);
+    if (!pixel || (*pixel - pointer).norm() >= least) continue;
+    least = (*pixel - pointer).norm();
+    nearest = static_cast<std::size_t>(at);
+  }
+  return nearest;
+}
+
+/// Returns whether the mark of the place that waits for its finger is under the pointer.
+bool is_at_pending(const PuppetEditor& editor, const render::Camera& stage_camera,
+                   render::Size size, double units_per_metre, const Vector2d& pointer) {
+  if (!editor.pending()) return false;
+  const auto pixel = pixel_of(stage_camera, editor.pending()->at / units_per_metre, size);
+  return pixel && (*pixel - pointer).norm() < reach_px;
+}
+
+/// Turns the chosen function by the way of the mouse.
+void drag_turn(const render::Camera& camera, render::Size size, double units_per_metre,
+               PuppetEditor& editor) {
   const puppet::AxisTurn turn = *editor.dragged_turn();
   const ImVec2 moved = ImGui::GetIO().MouseDelta;
   const Vector2d to = pointer_now();
@@ -44,17 +107,155 @@ void PuppetTool::turn(const render::Camera& camera, render::Size size, double un
   editor.turn_by((away ? -1.0 : 1.0) * turned_deg(*pivot, from, to));
 }
 
-std::optional<SurfaceHit> PuppetTool::hit(const SceneWindow& window, double units_per_metre,
-                                          const PuppetEditor& editor) {
+/// The place of the model under the mouse.
+std::optional<SurfaceHit> hit_of_mouse(const SceneWindow& window, double units_per_metre,
+                                       const PuppetEditor& editor) {
   Ray ray = ray_at(window.stage_camera(), pointer_now(), window.scene_size());
   ray.from *= units_per_metre;
   return first_hit(editor.seen(), ray, &editor.model().vertices);
 }
 
+} // namespace
+
+const std::vector<render::Surface>& PuppetMarks::veils(const PuppetEditor& editor,
+                                                       const render::SceneBuilder& builder) {
+  if (version_ != editor.version()) make(editor, builder);
+  version_ = editor.version();
+  return veils_;
+}
+
+void PuppetMarks::make(const PuppetEditor& editor, const render::SceneBuilder& builder) {
+  if (model_version_ != editor.model_version()) {
+    model_version_ = editor.model_version();
+    const deform::Points& vertices = editor.seen().vertices;
+    corners_ = builder.corners();
+    places_.clear();
+    for (Index at = 0; at < vertices.cols(); ++at)
+      places_.push_back(
+          (vertices.col(at) / builder.units_per_metre() - builder.origin_m()).cast<float>());
+    std::vector<Vector3f> normals;
+    render::compute_normals(places_, corners_, normals);
+    for (std::size_t at = 0; at < places_.size(); ++at)
+      places_[at] += static_cast<float>(above_m) * normals[at];
+    graph_.reset();
+  }
+  veils_.clear();
+  add_reach(editor);
+  add_masks(editor);
+}
+
+/// Of the triangles whose corners it takes.
+template <class Takes>
+void PuppetMarks::add_veil(const render::Material& material, const Takes& takes) {
+  render::Surface veil{{}, {}, {}, material};
+  std::vector<std::uint32_t> numbers(places_.size(), 0xFFFFFFFF);
+  for (std::size_t at = 0; at + 2 < corners_.size(); at += 3) {
+    if (!takes(corners_[at]) || !takes(corners_[at + 1]) || !takes(corners_[at + 2])) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint32_t& number = numbers[corners_[at + k]];
+      if (number == 0xFFFFFFFF) {
+        number = static_cast<std::uint32_t>(veil.places.size());
+        veil.places.push_back(places_[corners_[at + k]]);
+      }
+      veil.corners.push_back(number);
+    }
+  }
+  if (veil.is_empty()) return;
+  render::compute_normals(veil.places, veil.corners, veil.normals);
+  veils_.push_back(std::move(veil));
+}
+
+void PuppetMarks::add_reach(const PuppetEditor& editor) {
+  const std::size_t chosen = editor.point();
+  if (!editor.pending() && chosen == PuppetEditor::none) return;
+  const Vector3d at = editor.pending() ? editor.pending()->at
+                                       : editor.rig().starts().col(static_cast<Index>(chosen));
+  const double radius = editor.radius();
+  const deform::Mesh& model = editor.model();
+  Eigen::VectorXd distances;
+  if (editor.rig().puppet().distance == puppet::Distance::surface) {
+    if (!graph_) graph_.emplace(model);
+    distances = graph_->distances(deform::nearest_place(model, at), radius);
+  } else {
+    distances = (model.vertices.colwise() - at).colwise().norm();
+  }
+  // Rings, each fainter than the one inside, as the functions fall off. Depth lets only the first
+  // be seen that is drawn at a place, so the inner ones come first.
+  constexpr std::array opacities{0.62F, 0.46F, 0.32F, 0.18F};
+  const auto ring_of = [&](std::uint32_t vertex) {
+    return static_cast<double>(opacities.size()) * distances[vertex] / radius;
+  };
+  for (std::size_t ring = 0; ring < opacities.size(); ++ring) {
+    const auto outer = static_cast<double>(ring + 1);
+    const auto takes = [&](std::uint32_t vertex) { return ring_of(vertex) < outer; };
+    add_veil(patch(reach_colour, opacities[ring]), takes);
+  }
+}
+
+void PuppetMarks::add_masks(const PuppetEditor& editor) {
+  const auto& masks = editor.rig().puppet().masks;
+  const deform::Points& vertices = editor.model().vertices;
+  const auto veil_of = [&](const std::vector<puppet::Mask>& balls, const Vector3f& colour,
+                           bool inverted = false) {
+    if (balls.empty() && !inverted) return;
+    std::vector<bool> takes(static_cast<std::size_t>(vertices.cols()));
+    for (std::size_t at = 0; at < takes.size(); ++at)
+      takes[at] = is_masked(vertices.col(static_cast<Index>(at)), balls) != inverted;
+    add_veil(patch(colour, 0.55F), [&](std::uint32_t vertex) { return takes[vertex]; });
+  };
+  std::vector<puppet::Mask> painted;
+  for (const Vector3d& at : editor.stroke())
+    painted.push_back({at, editor.brush_radius() / puppet::half_of_mask});
+  veil_of(painted, editor.erases() ? erased_colour : mask_colour);
+  veil_of(masks, mask_colour, editor.rig().puppet().inverted);
+}
+
+void draw_points(const PuppetEditor& editor, const render::Camera& stage_camera, render::Size size,
+                 double units_per_metre, std::size_t hovered) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const auto pixel = [&](const Vector3d& place) {
+    return pixel_of(stage_camera, place / units_per_metre, size);
+  };
+  constexpr ImU32 dark = IM_COL32(20, 20, 20, 230), white = IM_COL32(255, 255, 255, 255);
+  constexpr ImU32 moved = IM_COL32(240, 140, 20, 255), pinned = IM_COL32(120, 150, 190, 255);
+  constexpr ImU32 faint = IM_COL32(225, 225, 225, 220);
+  constexpr ImU32 fresh = IM_COL32(60, 190, 90, 255);
+  const auto& points = editor.rig().puppet().points;
+  const std::size_t chosen = editor.pending() ? PuppetEditor::none : editor.point();
+  constexpr auto mark = static_cast<float>(mark_px);
+  for (std::size_t at = 0; at < points.size(); ++at) {
+    const Vector3d start = editor.rig().starts().col(static_cast<Index>(at));
+    const auto place = pixel(start);
+    if (!place) continue;
+    const Vector3d way = editor.way_of(at);
+    if (!way.isZero(0.0))
+      if (const auto end = pixel(start + way))
+        draw_way(list, *place, *end, at == chosen ? white : IM_COL32(255, 255, 255, 150));
+    const ImVec2 middle = in_window(*place);
+    const ImU32 colour = points[at].is_pin ? pinned : moved;
+    if (points[at].is_pin)
+      list.AddRectFilled({middle.x - mark, middle.y - mark}, {middle.x + mark, middle.y + mark},
+                         colour, 1.5F);
+    else
+      list.AddCircleFilled(middle, mark, colour);
+    list.AddCircle(middle, mark + 1.5F, at == chosen || at == hovered ? white : dark, 0, 2.0F);
+    const bool is_meant = at == chosen || at == hovered;
+    if (!is_meant && points.size() > max_named) continue;
+    list.AddText({middle.x + 11.0F, middle.y - 15.0F}, dark, points[at].name.c_str());
+    list.AddText({middle.x + 10.0F, middle.y - 16.0F}, is_meant ? white : faint,
+                 points[at].name.c_str());
+  }
+  if (!editor.pending()) return;
+  if (const auto place = pixel(editor.pending()->at)) {
+    list.AddCircleFilled(in_window(*place), mark, fresh);
+    list.AddCircle(in_window(*place), mark + 1.5F, white, 0, 2.0F);
+  }
+}
+
 bool PuppetTool::brush(const SceneWindow& window, double units_per_metre, PuppetEditor& editor) {
   const bool begins = ImGui::IsMouseClicked(ImGuiMouseButton_Left);
   if (!paints_ && !begins) return false;
-  const auto place = hit(window, units_per_metre, editor);
+  const auto place = hit_of_mouse(window, units_per_metre, editor);
   if (begins) paints_ = place.has_value(); // beside the model, the mouse turns the camera
   if (!paints_) return false;
   if (place) editor.paint(*place, ImGui::GetIO().KeyShift);
@@ -69,7 +270,7 @@ bool PuppetTool::follow(const SceneWindow& window, double units_per_metre, Puppe
   const render::Camera camera = window.stage_camera();
   const render::Size size = window.scene_size();
   if (editor.dragged_turn() != nullptr) {
-    turn(camera, size, units_per_metre, editor);
+    drag_turn(camera, size, units_per_metre, editor);
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) editor.end_drag();
     return true;
   }
@@ -121,7 +322,7 @@ bool PuppetTool::follow(const SceneWindow& window, double units_per_metre, Puppe
     const bool is_click = (pointer_now() - *pressed_at_).norm() <= still_px;
     pressed_at_.reset();
     if (is_click)
-      if (const auto place = hit(window, units_per_metre, editor)) editor.place(*place);
+      if (const auto place = hit_of_mouse(window, units_per_metre, editor)) editor.place(*place);
   }
   return false;
 }

@@ -1,12 +1,46 @@
 #pragma once
-// The mouse on a model whose puppet is edited.
+// A puppet that is edited, in a window: its points, where they go, how far they reach along the
+// surface, its masks, and the mouse on the model.
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
-#include "viewer/puppet_marks.hpp"
+#include <nendo/deform/surface_graph.hpp>
+
+#include "render/scene.hpp"
+#include "viewer/puppet_editor.hpp"
 #include "viewer/scene_window.hpp"
 
 namespace nendo::viewer {
+
+class PuppetMarks {
+public:
+  /// Returns coloured patches of the model: the reach of the chosen point, or of the place that was
+  /// clicked, and the masks. They are made again when the editor's version changes.
+  const std::vector<render::Surface>& veils(const PuppetEditor& editor,
+                                            const render::SceneBuilder& builder);
+
+private:
+  void make(const PuppetEditor& editor, const render::SceneBuilder& builder);
+  void add_reach(const PuppetEditor& editor);
+  void add_masks(const PuppetEditor& editor);
+  template <class Takes>
+  void add_veil(const render::Material& material, const Takes& takes);
+
+  std::vector<render::Surface> veils_;
+  std::uint64_t version_ = 0;
+  std::uint64_t model_version_ = 0;
+  std::optional<deform::SurfaceGraph> graph_;
+  std::vector<Eigen::Vector3f> places_; ///< the model's vertices, a little above the surface
+  std::vector<std::uint32_t> corners_;
+};
+
+/// Draws the points as marks over the picture, with an arrow to where each goes in the chosen
+/// function, and with their names; of many points, only the chosen one and the one under the mouse
+/// (`hovered`, or none) have theirs.
+void draw_points(const PuppetEditor& editor, const render::Camera& stage_camera, render::Size size,
+                 double units_per_metre, std::size_t hovered);
 
 class PuppetTool {
 public:
@@ -17,11 +51,7 @@ public:
   std::size_t hovered() const noexcept { return hovered_; } ///< point under the mouse; none
 
 private:
-  static void turn(const render::Camera& camera, render::Size size, double units_per_metre,
-                   PuppetEditor& editor);
   bool brush(const SceneWindow& window, double units_per_metre, PuppetEditor& editor);
-  static std::optional<SurfaceHit> hit(const SceneWindow& window, double units_per_metre,
-                                       const PuppetEditor& editor);
 
   std::size_t hovered_ = PuppetEditor::none;
   std::optional<Eigen::Vector2d> pressed_at_; ///< not on a point

@@ -264,7 +264,7 @@ void SceneWindow::simulate(const SimulatedInput& input) {
   quick_->click();
 }
 
-// As the window's back end tells ImGui of those that are there.
+// As the window's back end passes the real ones to ImGui.
 void SceneWindow::put_simulated() const {
   put_pointer(static_cast<float>(simulated_->pointer.x()),
               static_cast<float>(simulated_->pointer.y()));
@@ -330,7 +330,7 @@ bool SceneWindow::Shown::is_of(const SceneWindow& window, render::Size wanted) c
          camera == window.camera_ && scene == window.scene_;
 }
 
-// A model that nobody touches is drawn once. Where there is no graphics card, most of the time goes
+// An unchanged picture is drawn once. Where there is no graphics card, most of the time goes
 // into the scene: there its edges are smoothed once it rests.
 void SceneWindow::draw_scene(render::Size size, bool finest) {
   const bool rests = target_->keeps() && shown_.is_of(*this, size);

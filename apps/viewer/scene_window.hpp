@@ -1,6 +1,6 @@
 #pragma once
-// A window with the scene, a camera that the mouse moves, and room for widgets. All calls belong to
-// the main thread, as window systems demand.
+// A window with the scene, a camera that the mouse moves, and space for widgets. All calls belong
+// to the main thread, as window systems demand.
 
 #include <array>
 #include <memory>
@@ -33,7 +33,7 @@ struct SimulatedInput {
 class SceneWindow {
 public:
   /// Opens a window. Error: failed (no screen, no OpenGL 3.3). The message ends with `instead`,
-  /// which must tell what to do without a window.
+  /// which must say what to do without a window.
   static Result<std::unique_ptr<SceneWindow>> open(const std::string& title, render::Size size,
                                                    const std::string& instead);
   ~SceneWindow();
@@ -64,12 +64,12 @@ public:
   /// Draws the picture and waits for the screen, or for at most 8 ms if there is none.
   void end_picture();
 
-  /// Returns whether the person has asked to close the window since the last call.
+  /// Returns whether the user has asked to close the window since the last call.
   bool take_close_request() noexcept;
-  /// Reserves that many pixels at the bottom of the window, which the scene does not use.
+  /// Reserves these pixels at the bottom of the window, which the scene does not use.
   void leave_below(int pixels) noexcept { below_ = pixels; }
-  /// Returns how many pixels at the left of the window something covers. The scene is behind it,
-  /// but its middle is the middle of what is free, as long as that is most of the window.
+  /// Sets how many pixels at the left of the window something covers. The scene is behind it, but
+  /// its middle is the middle of the free part, as long as that is most of the window.
   void leave_left(int pixels) noexcept { left_ = pixels; }
   render::Size scene_size() const noexcept; ///< from the window's top left corner
   const render::Camera& camera() const noexcept { return camera_; }
@@ -79,14 +79,14 @@ public:
   const render::Scene& scene() const noexcept { return scene_; } ///< without the model's positions
   std::uint64_t blocks_sent() const noexcept { return renderer_->blocks_sent(); }
 
-  render::Image screenshot(); ///< of what was shown last
+  render::Image screenshot(); ///< the picture that was shown last
   /// Does the same as render::silhouette() with OpenGL, for the scene that was shown last.
   render::Image silhouette(render::Size size);
   /// Replaces the real mouse and keyboard by `input` from the next picture on.
   void simulate(const SimulatedInput& input);
 
 private:
-  /// Decides the picture of a scene, with the model's blocks.
+  /// All that decides the picture of a scene, with the model's blocks.
   struct Shown {
     render::Scene scene;
     render::Camera camera;

@@ -1,5 +1,5 @@
 #pragma once
-// What a window for editing a timeline shows, and what a person wants to do there. These are plain
+// What a window for editing a timeline shows, and what the user wants to do there. These are plain
 // data: the window does not know timelines, and the editor does not know the window.
 
 #include <optional>
@@ -23,7 +23,7 @@ struct FunctionValue {
 struct TimelineView {
   std::string file; ///< where the timeline is saved
   double duration_s = 0.0;
-  double rate_hz = 90.0; ///< of the frames
+  double rate_hz = 90.0; ///< frames per second
   std::vector<StripLane> lanes;
   std::vector<StripMark> marks;
   std::vector<FunctionValue> functions; ///< at the play head; without a puppet there are none
@@ -51,11 +51,11 @@ struct KeyDrag {
   double to_s = 0.0;
   bool copy = false;
 };
-struct TipDrag { ///< of the selected key
+struct TipDrag { ///< a fingertip of the selected key
   hand::Finger finger = hand::Finger::index;
   Eigen::Vector3d target_m; ///< on the stage
 };
-struct KeyBlend { ///< of the selected key
+struct KeyBlend { ///< the selected key and its neighbours
   double factor = 0.0;
 };
 struct Retiming {
@@ -64,7 +64,7 @@ struct Retiming {
   double scale = 1.0;
 };
 
-/// What a person has done since the last picture. It must be applied in this order.
+/// What the user has done since the last picture. It must be applied in this order.
 struct EditActions {
   std::optional<StripKey> select;
   std::optional<double> seek_s;

@@ -1,6 +1,6 @@
 #pragma once
 // A window for editing a timeline. It has the scene at the play head's time and, below it, a strip
-// with the hands' keys. It only shows the timeline and returns what a person wants to do. All calls
+// with the hands' keys. It only shows the timeline and returns what the user wants to do. All calls
 // belong to the main thread, as window systems demand.
 
 #include <memory>
@@ -14,7 +14,7 @@ namespace nendo::viewer {
 class TimelineWindow {
 public:
   /// Opens a window. Error: failed (no screen, no OpenGL 3.3). The message ends with `instead`,
-  /// which must tell what to do without a window.
+  /// which must say what to do without a window.
   static Result<std::unique_ptr<TimelineWindow>> open(const std::string& title, render::Size size,
                                                       const std::string& instead);
   ~TimelineWindow();
@@ -27,12 +27,12 @@ public:
   /// Sets the shape of the model from the next picture on.
   void follow(const deform::BlockShape& shape) { window_->follow(shape); }
   /// Draws one picture and waits for the screen, or for at most 8 ms if there is none. The
-  /// vertices of `scene_frame` are not used. If a person wants to leave with unsaved changes, the
+  /// vertices of `scene_frame` are not used. If the user wants to leave with unsaved changes, the
   /// window asks first and then returns `quit`.
   EditActions show(const TimelineView& view, const render::SceneFrame& scene_frame);
 
   const SceneWindow& scene_window() const noexcept { return *window_; }
-  render::Image screenshot() { return window_->screenshot(); } ///< of what was shown last
+  render::Image screenshot() { return window_->screenshot(); } ///< the last picture
   void simulate(const SimulatedInput& input) { window_->simulate(input); }
 
 private:

@@ -122,7 +122,7 @@ TEST_SUITE("dope_sheet") {
     CHECK_FALSE(strip.key_at(lanes, on_key, DopeSheet::height_for(3) + 5.0));
   }
 
-  TEST_CASE("marks stand below the lanes and are found there alone") {
+  TEST_CASE("marks are below the lanes and are found there alone") {
     const DopeSheet strip = strip_of(4.0);
     const std::vector<StripMark> marks{{1.0, "grab"}, {1.01, "commit"}, {3.0, "let_go"}};
     const double y = DopeSheet::middle_of(2);
@@ -133,7 +133,7 @@ TEST_SUITE("dope_sheet") {
     CHECK_FALSE(strip.mark_at(marks, 2, strip.x_of(3.0), DopeSheet::middle_of(1)));
   }
 
-  TEST_CASE("the ruler's numbers are round and have room") {
+  TEST_CASE("the ruler's numbers are round and do not overlap") {
     for (const double duration_s : {0.1, 0.7, 3.0, 42.0, 999.0, 1e6}) {
       const DopeSheet strip = strip_of(duration_s);
       const double step_s = strip.ruler_step_s();

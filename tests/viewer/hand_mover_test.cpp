@@ -53,7 +53,7 @@ TEST_SUITE("hand_mover") {
         CHECK((place_of(mover.move()) - hand.T_stage_wrist.translation()).norm() < 1e-12);
       }
     }
-    mover.let_go();
+    mover.release();
     CHECK_FALSE(mover.holds());
     mover.take(camera, frame, Vector2d(-2000.0, -2000.0), size);
     CHECK_FALSE(mover.holds());

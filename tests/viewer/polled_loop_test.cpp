@@ -1,4 +1,4 @@
-// The loop is sacred, with somebody looking.
+// A window that shows the loop does not disturb it.
 
 #include <atomic>
 

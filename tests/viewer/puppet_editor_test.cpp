@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A person at a ball, whose hands do what they are told.
+/// A person at a ball, whose hands move as the test requests.
 struct Maker {
   deform::Mesh ball = test::ball(24);
   PuppetEditor editor;
@@ -78,7 +78,7 @@ TEST_SUITE("puppet editor") {
 
   TEST_CASE("click a place, bend a finger, drag: a puppet of two points") {
     Maker maker;
-    CHECK(maker.editor.told().find("Click") != std::string::npos);
+    CHECK(maker.editor.message().find("Click") != std::string::npos);
     maker.editor.place(Maker::place({0, 1, 0}));
     maker.look();
     CHECK_FALSE(maker.editor.take());
@@ -89,7 +89,7 @@ TEST_SUITE("puppet editor") {
     REQUIRE(maker.hand_over());
     REQUIRE(maker.puppet().functions.size() == 1);
     CHECK(maker.puppet().functions[0].input.name() == "right.index_flexion");
-    CHECK(maker.editor.told().find("right.index_flexion") != std::string::npos);
+    CHECK(maker.editor.message().find("right.index_flexion") != std::string::npos);
     CHECK(maker.moved() == 0.0);
 
     const std::size_t point = maker.editor.point();
@@ -125,7 +125,7 @@ TEST_SUITE("puppet editor") {
     maker.editor.drag({0.1, 0.0, 0.0});
     maker.editor.end_drag();
     CHECK_FALSE(maker.editor.take());
-    CHECK(maker.editor.told().find("shift") != std::string::npos);
+    CHECK(maker.editor.message().find("shift") != std::string::npos);
     maker.editor.begin_turn(point, {1, 0, 0}); // about its own axis, wherever one looks from
     maker.editor.turn_by(-50.0);
     maker.editor.end_drag();
@@ -176,7 +176,7 @@ TEST_SUITE("puppet editor") {
   TEST_CASE("what cannot be done is refused, says why, and reaches no loop") {
     Maker maker;
     maker.editor.toggle_mirror();
-    CHECK_FALSE(maker.editor.told().empty());
+    CHECK_FALSE(maker.editor.message().empty());
     maker.editor.toggle_brush(); // without a puppet, it paints masks of fingertips
     CHECK(maker.editor.brushes());
     maker.editor.paint(Maker::place({0, -1, 0}), false);
@@ -194,7 +194,7 @@ TEST_SUITE("puppet editor") {
     maker.editor.place(Maker::place({0, 1, 0}));
     maker.editor.toggle_pin(); // a puppet begins with a function
     CHECK_FALSE(maker.editor.take());
-    CHECK(maker.editor.told().find("pins come after") != std::string::npos);
+    CHECK(maker.editor.message().find("pins come after") != std::string::npos);
     maker.editor.choose_input(*puppet::HandSignal::named("left.thumb_flexion"), 0.7);
     REQUIRE(maker.hand_over());
     maker.editor.toggle_pin();   // it is moved
@@ -202,7 +202,7 @@ TEST_SUITE("puppet editor") {
     maker.editor.rename_function("no name");
     maker.editor.place(Maker::place({1e-4, 1, 0})); // too near
     maker.editor.choose_input(*puppet::HandSignal::named("left.index_flexion"), 0.7);
-    CHECK(maker.editor.told().find("too near") != std::string::npos);
+    CHECK(maker.editor.message().find("too near") != std::string::npos);
     CHECK_FALSE(maker.editor.take());
     CHECK(&maker.editor.rig() == maker.in_force.get());
   }

@@ -51,7 +51,7 @@ struct Seat {
     show();
   }
   EditActions show() { return window->show(view, scene_frame); }
-  /// The strip stands 6 pixels from the window's edges, below 36 of controls.
+  /// The strip is 6 pixels from the window's edges, below 36 of controls.
   Vector2d on_strip(double time_s, double y) const {
     return {6.0 + strip.x_of(time_s), window->scene_window().scene_size().height + 6.0 + 36.0 + y};
   }
@@ -93,11 +93,11 @@ struct Seat {
 };
 
 /// A seat at a screen, where there can be one.
-struct Room {
+struct Desk {
   test::MemoryScreen screen;
   std::unique_ptr<Seat> seat;
 
-  Room() {
+  Desk() {
     if (!test::restraint_is_counted) return; // Mesa's own memory is not for our sanitizers
     if (!screen.is_there()) {
       MESSAGE("no Xvfb here, so the window is not tested; tools/setup check installs it");
@@ -120,9 +120,9 @@ const KeyDrag& key_drag(const EditActions& actions) {
 
 TEST_SUITE("timeline_window") {
   TEST_CASE("a click selects a key, and a drag moves it to whole frames, or copies it") {
-    const Room room;
-    if (!room.seat) return;
-    Seat& seat = *room.seat;
+    const Desk desk;
+    if (!desk.seat) return;
+    Seat& seat = *desk.seat;
     const auto pressed = seat.press(seat.on_key(1, 2));
     REQUIRE(pressed.select);
     CHECK(*pressed.select == StripKey{1, 2});
@@ -147,9 +147,9 @@ TEST_SUITE("timeline_window") {
   }
 
   TEST_CASE("Esc gives a drag up, and without one selects nothing") {
-    const Room room;
-    if (!room.seat) return;
-    Seat& seat = *room.seat;
+    const Desk desk;
+    if (!desk.seat) return;
+    Seat& seat = *desk.seat;
     seat.press(seat.on_key(0, 1));
     seat.move(seat.on_strip(1.5, DopeSheet::middle_of(0)), true);
     seat.input.key = GLFW_KEY_ESCAPE;
@@ -162,9 +162,9 @@ TEST_SUITE("timeline_window") {
   }
 
   TEST_CASE("elsewhere on the strip the play head follows the mouse, at a mark exactly") {
-    const Room room;
-    if (!room.seat) return;
-    Seat& seat = *room.seat;
+    const Desk desk;
+    if (!desk.seat) return;
+    Seat& seat = *desk.seat;
     const auto pressed = seat.press(seat.on_strip(1.5, DopeSheet::middle_of(0)));
     REQUIRE(pressed.seek_s);
     CHECK(*pressed.seek_s == doctest::Approx(1.5).epsilon(0.01));
@@ -179,18 +179,18 @@ TEST_SUITE("timeline_window") {
   }
 
   TEST_CASE("what the panel covers does not count as the scene's middle") {
-    const Room room;
-    if (!room.seat) return;
-    const SceneWindow& scene = room.seat->window->scene_window();
-    const Vector2d middle = room.seat->seen_at(scene.stage_camera().target);
+    const Desk desk;
+    if (!desk.seat) return;
+    const SceneWindow& scene = desk.seat->window->scene_window();
+    const Vector2d middle = desk.seat->seen_at(scene.stage_camera().target);
     CHECK(middle.x() == doctest::Approx((310.0 + scene.scene_size().width) / 2.0).epsilon(1e-3));
     CHECK(middle.y() == doctest::Approx(scene.scene_size().height / 2.0).epsilon(1e-3));
   }
 
   TEST_CASE("the wheel zooms about the pointer") {
-    const Room room;
-    if (!room.seat) return;
-    Seat& seat = *room.seat;
+    const Desk desk;
+    if (!desk.seat) return;
+    Seat& seat = *desk.seat;
     const Vector2d pointer = seat.on_strip(2.0, DopeSheet::middle_of(1));
     seat.move(pointer, false);
     seat.input.wheel = 3.0;
@@ -202,9 +202,9 @@ TEST_SUITE("timeline_window") {
 
   TEST_CASE(
       "a fingertip of the selected key's hand follows the mouse, and without one the camera does") {
-    const Room room;
-    if (!room.seat) return;
-    Seat& seat = *room.seat;
+    const Desk desk;
+    if (!desk.seat) return;
+    Seat& seat = *desk.seat;
     const auto tips = seat.scene_frame.hands[1]->pose.fingertip_positions();
     Eigen::Index finger = 0; // one that the panel does not cover
     while (finger < 4 && seat.seen_at(tips.col(finger)).x() < 330.0)
@@ -231,22 +231,22 @@ TEST_SUITE("timeline_window") {
   }
 
   TEST_CASE("each key of the table asks for its row's command") {
-    const Room room;
-    if (!room.seat) return;
+    const Desk desk;
+    if (!desk.seat) return;
     for (const commands::Row& row : commands::table())
       for (const std::string_view key : row.keys) {
         if (!row.edit || key.empty()) continue;
         CAPTURE(key);
         const KeyStroke stroke = stroke_of(key);
-        const auto asked = room.seat->type(stroke.key, stroke.control, stroke.shift).commands;
+        const auto asked = desk.seat->type(stroke.key, stroke.control, stroke.shift).commands;
         CHECK(asked == std::vector{row.edit->command});
       }
   }
 
   TEST_CASE("Home has all of the model in the picture again, as in the window of a run") {
-    const Room room;
-    if (!room.seat) return;
-    Seat& seat = *room.seat;
+    const Desk desk;
+    if (!desk.seat) return;
+    Seat& seat = *desk.seat;
     seat.type(GLFW_KEY_HOME);
     const Camera framed = seat.window->scene_window().camera();
     seat.input.wheel = 3.0;
@@ -258,9 +258,9 @@ TEST_SUITE("timeline_window") {
   }
 
   TEST_CASE("the list of keys stays while Ctrl is down") {
-    const Room room;
-    if (!room.seat) return;
-    Seat& seat = *room.seat;
+    const Desk desk;
+    if (!desk.seat) return;
+    Seat& seat = *desk.seat;
     const Image without = seat.window->screenshot();
     seat.type(GLFW_KEY_SLASH);
     seat.show();
@@ -273,9 +273,9 @@ TEST_SUITE("timeline_window") {
   }
 
   TEST_CASE("a key that was down only between two pictures counts, and twice if it was twice") {
-    const Room room;
-    if (!room.seat) return;
-    Seat& seat = *room.seat;
+    const Desk desk;
+    if (!desk.seat) return;
+    Seat& seat = *desk.seat;
     seat.input.control = true;
     seat.input.taps = {GLFW_KEY_LEFT_CONTROL, GLFW_KEY_Z, GLFW_KEY_Z, GLFW_KEY_Y};
     seat.window->simulate(seat.input);
@@ -291,9 +291,9 @@ TEST_SUITE("timeline_window") {
   }
 
   TEST_CASE("a press is where the pointer was, though it has moved on before the picture") {
-    const Room room;
-    if (!room.seat) return;
-    Seat& seat = *room.seat;
+    const Desk desk;
+    if (!desk.seat) return;
+    Seat& seat = *desk.seat;
     const Vector2d key = seat.on_key(1, 1);
     seat.input.clicked_at = key;
     const Vector2d there = key + Vector2d(40.0, 0.0);
@@ -303,9 +303,9 @@ TEST_SUITE("timeline_window") {
   }
 
   TEST_CASE("who quits with unsaved changes is asked first") {
-    const Room room;
-    if (!room.seat) return;
-    Seat& seat = *room.seat;
+    const Desk desk;
+    if (!desk.seat) return;
+    Seat& seat = *desk.seat;
     seat.view.modified = true;
     CHECK_FALSE(seat.type(GLFW_KEY_Q).quit);
     CHECK(seat.type(GLFW_KEY_U).commands.empty()); // the question comes first
@@ -317,9 +317,9 @@ TEST_SUITE("timeline_window") {
   }
 
   TEST_CASE("the picture shows the selected key, and where the play head is") {
-    const Room room;
-    if (!room.seat) return;
-    Seat& seat = *room.seat;
+    const Desk desk;
+    if (!desk.seat) return;
+    Seat& seat = *desk.seat;
     const Image before = seat.window->screenshot();
     CHECK(before.size() == size);
     seat.view.selected = StripKey{0, 1};

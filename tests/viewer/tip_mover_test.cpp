@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "viewer/tip_mover.hpp"
+#include "viewer/hand_mover.hpp"
 
 namespace tip_mover_test {
 
@@ -75,7 +75,7 @@ TEST_SUITE("tip_mover") {
     mover.shift(camera, 1e12, -1e12, 0.0);
     CHECK(mover.target_m().allFinite());
     CHECK(mover.target_m().cwiseAbs().maxCoeff() <= 2.0);
-    mover.let_go();
+    mover.release();
     CHECK_FALSE(mover.finger());
   }
 }

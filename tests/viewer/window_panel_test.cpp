@@ -134,18 +134,18 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     CHECK(has(without, Request::commit));
     CHECK_FALSE(has(without, Request::undo));
     CHECK_FALSE(has(without, Request::redo));
-    CHECK(person.window->told() == person.gauges.report);
+    CHECK(person.window->message() == person.gauges.report);
     for (const int key : {GLFW_KEY_U, GLFW_KEY_Z}) {
       CHECK(person.type(key, key == GLFW_KEY_Z) ==
             Commands{Request::undo}); // the loop may be ahead
-      CHECK(person.window->told() == "There is nothing to undo.");
+      CHECK(person.window->message() == "There is nothing to undo.");
     }
     CHECK(person.type(GLFW_KEY_G) == Commands{Request::grab});
-    CHECK(person.window->told() == person.gauges.report);
+    CHECK(person.window->message() == person.gauges.report);
     for (const auto& [key, shift] :
          {std::pair{GLFW_KEY_R, false}, {GLFW_KEY_Y, false}, {GLFW_KEY_Z, true}}) {
       CHECK(person.type(key, key != GLFW_KEY_R, shift) == Commands{Request::redo});
-      CHECK(person.window->told() == "There is nothing to redo.");
+      CHECK(person.window->message() == "There is nothing to redo.");
       person.type(GLFW_KEY_G);
     }
 

@@ -40,7 +40,7 @@ struct Look {
   deform::BlockLayout layout;
   SceneBuilder builder;
   std::unique_ptr<SceneWindow> window;
-  SceneFrame nobody;
+  SceneFrame no_hands;
 
   explicit Look(const deform::Mesh& model) : mesh(model), layout(model.vertices), builder(model) {
     auto opened = SceneWindow::open("test", size, "nothing else");
@@ -52,7 +52,7 @@ struct Look {
   }
   Image picture(const SimulatedInput& input = {}) {
     window->simulate(input);
-    window->begin_picture(nobody);
+    window->begin_picture(no_hands);
     window->move_camera();
     window->follow_view_keys();
     window->end_picture();
@@ -107,7 +107,7 @@ deform::Mesh bumpy_ball() {
 }
 
 /// How far a pixel is above, or below, both of its neighbours in a row or a column.
-double stands_out(double before, double here, double after) {
+double contrast_of(double before, double here, double after) {
   return std::max({0.0, here - std::max(before, after), std::min(before, after) - here});
 }
 
@@ -119,8 +119,8 @@ int single_pixels(const Image& image, double steps) {
     for (int x = 3; x + 3 < size.width; ++x) {
       if (!is_within_clay(image, x, y)) continue;
       const auto of = [&](int dx, int dy) { return brightness(image.at(x + dx, y + dy)); };
-      const double aside = stands_out(of(-1, 0), of(0, 0), of(1, 0));
-      const double above = stands_out(of(0, -1), of(0, 0), of(0, 1));
+      const double aside = contrast_of(of(-1, 0), of(0, 0), of(1, 0));
+      const double above = contrast_of(of(0, -1), of(0, 0), of(0, 1));
       if (std::min(aside, above) > steps) ++found;
     }
   return found;
@@ -181,8 +181,7 @@ TEST_SUITE("window_picture" * doctest::skip(!test::restraint_is_counted)) {
     CHECK(between > 150); // a row in five is covered by more than 85 %, or by nearly nothing
   }
 
-  TEST_CASE(
-      "hardly a pixel stands out from its neighbours where one part of a model hides another") {
+  TEST_CASE("hardly a pixel differs from its neighbours where one part of a model hides another") {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
     Look look(bumpy_ball());
@@ -232,10 +231,10 @@ TEST_SUITE("window_picture" * doctest::skip(!test::restraint_is_counted)) {
     }
   }
 
-  TEST_CASE("a model lies in the shadow of what is above it") {
+  TEST_CASE("a model lies in the shadow of things above it") {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
-    // A ball above a plate, whose rim stands on the ground.
+    // A ball above a plate, whose rim is on the ground.
     deform::Mesh mesh = test::sphere(30, 60, 0.4);
     const auto ball = mesh.vertices.cols();
     deform::Mesh plate = test::grid(20, 4.0);

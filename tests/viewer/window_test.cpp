@@ -145,7 +145,7 @@ TEST_SUITE("window") {
     settings.radius_m.fill(1.1 * 0.1);
     CHECK(type(GLFW_KEY_RIGHT_BRACKET) == Commands{flow::ChangeSettings{settings}});
     CHECK(window.show(frame, false, {}).empty()); // once is enough
-    // What somebody else asks for is shown, and the next key continues from there.
+    // The request of another client is shown, and the next key continues from there.
     settings.mode = flow::Mode::type1;
     settings.radius_m = {0.1, 0.2, 0.3, 0.3, 0.2};
     frame.settings = settings;
@@ -250,7 +250,7 @@ TEST_SUITE("window") {
     drag(mark);
     REQUIRE(editor.pending());
     CHECK(editor.pending()->at == place);
-    CHECK(editor.told().starts_with("Bend the finger"));
+    CHECK(editor.message().starts_with("Bend the finger"));
     CHECK(window.camera().view.azimuth_deg == before.view.azimuth_deg);
     CHECK(window.camera().view.elevation_deg == before.view.elevation_deg);
     CHECK(window.camera().eye() == before.eye());
