@@ -104,7 +104,7 @@ std::string take(std::string_view name, std::string_view value, NamedSettings& n
     if (setting.name != name) return;
     is_known = true;
     if ((named.named & own) != 0)
-      why = std::string(name) + " stands twice; name each setting once";
+      why = std::string(name) + " is there twice; name each setting once";
     else if (const auto usable = ValueReader{value, named.values}(setting); !usable.empty())
       why = std::string(name) + ": use " + usable;
     named.named |= own;
@@ -145,6 +145,7 @@ private:
 };
 
 std::optional<flow::Command> wrist_in(Words words) noexcept {
+  constexpr double max_norm_error = 0.01; // six decimals for each part are precise enough
   const auto hand = words.next();
   flow::WristMove move;
   move.side = hand == "left" ? Side::left : Side::right;

@@ -34,9 +34,6 @@ Result<NamedSettings> parse_named_settings(std::string_view text);
 /// Returns such a text, which has all settings. Allocates.
 std::string text_of(const flow::LoopSettings& settings);
 
-/// How far the length of a quaternion may be from 1. Six decimals for each part are precise enough.
-inline constexpr double max_norm_error = 0.01;
-
 /// A command; or a row of the table, which a client gives by its name as a person does by its key:
 /// what becomes of it depends on the run (commands::press()); or the settings that a client
 /// changes.

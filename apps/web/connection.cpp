@@ -34,13 +34,13 @@ short Connection::events() const noexcept {
 
 bool Connection::receive(HostTime now) {
   const std::size_t most = stage_ == Stage::socket ? ClientReader::max_pending : max_head_bytes;
-  std::array<char, 4096> room;
+  std::array<char, 4096> buffer;
   for (;;) {
     const bool keeps = stage_ == Stage::head || (stage_ == Stage::socket && !closing_);
     const std::size_t space =
-        keeps ? std::min(room.size(), most - std::min(most, incoming_.size())) : room.size();
+        keeps ? std::min(buffer.size(), most - std::min(most, incoming_.size())) : buffer.size();
     if (space == 0) return true; // the rest is read when this has been parsed
-    const ssize_t got = ::recv(fd(), room.data(), space, 0);
+    const ssize_t got = ::recv(fd(), buffer.data(), space, 0);
     if (got < 0) {
       if (errno == EINTR) continue;
       if (errno == EAGAIN || errno == EWOULDBLOCK) return true;
@@ -56,7 +56,7 @@ bool Connection::receive(HostTime now) {
     }
     last_heard_ = now;
     if (!keeps) return true; // discarded, one piece a turn
-    incoming_.append(room.data(), static_cast<std::size_t>(got));
+    incoming_.append(buffer.data(), static_cast<std::size_t>(got));
   }
 }
 

@@ -10,7 +10,7 @@
 #include <nendo/base/unique_fd.hpp>
 
 #include "web/server.hpp"
-#include "web/socket_frames.hpp"
+#include "web/web_socket.hpp"
 
 namespace nendo::web {
 
@@ -43,9 +43,8 @@ public:
 
   int fd() const noexcept { return socket_.get(); }
   Stage stage() const noexcept { return stage_; }
-  /// Returns the events that poll() must wait for.
-  short events() const noexcept;
-  /// Appends what the socket has to incoming(), as far as there is room. Returns false if the
+  short events() const noexcept; ///< that poll() must wait for
+  /// Appends what the socket has to incoming(), as far as there is space. Returns false if the
   /// connection has ended. A client that has shut down its sending side may still get an answer.
   bool receive(HostTime now);
   std::string& incoming() noexcept { return incoming_; }
@@ -69,16 +68,14 @@ public:
   bool within_message_rate(HostTime now) noexcept;
   /// Returns false from the moment when the queue has become too long until it is empty.
   bool accepts_updates() const noexcept { return !catching_up_; }
-  /// Returns whether a shape is still in the queue.
   bool has_queued_shape() const noexcept { return queued_shapes_ > 0; }
-  /// Returns whether one of the time limits has passed.
-  bool is_expired(HostTime now) const noexcept;
+  bool is_expired(HostTime now) const noexcept; ///< one of the time limits has passed
   /// Sends a ping if it is time for one.
   void keep_alive(HostTime now);
 
   ClientReader reader;
   Feed feed;
-  Facts told; ///< the messages that it was sent last
+  Facts sent_facts; ///< the last messages that it was sent
 
 private:
   struct Part {
@@ -106,7 +103,7 @@ private:
   HostTime queue_empty_;     ///< when the queue was empty last
   HostTime last_heard_;      ///< when a WebSocket last gave a sign of life
   HostTime last_ping_;
-  double messages_left_; ///< of the client's allowance
+  double messages_left_; ///< the rest of the client's allowance
   HostTime last_message_;
 };
 

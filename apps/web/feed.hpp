@@ -25,7 +25,7 @@ using GloveStates = std::array<GloveState, 2>;
 
 /// What the server adds to an update message.
 struct FeedCounters {
-  std::uint64_t lost = 0; ///< frames that found no room in the ring
+  std::uint64_t lost = 0; ///< frames that came when the ring was full
   GloveStates gloves;
 };
 

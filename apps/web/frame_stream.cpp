@@ -9,7 +9,7 @@
 
 namespace nendo::web {
 
-/// Stands before each record in the ring. The update's head and hands follow, then its step.
+/// Precedes each record in the ring. The update's head and hands follow, then its step.
 struct FrameStream::RecordHead {
   std::uint32_t bytes = 0; ///< with this head
   std::uint32_t head_bytes = 0;

@@ -18,7 +18,7 @@ namespace nendo::web {
 
 /// One frame, encoded for clients.
 struct Record {
-  std::uint64_t number = 0; ///< of the frame, counted from 1
+  std::uint64_t number = 0; ///< the frame's, counted from 1
   /// The step does not continue the previous record, so a client needs the shape again.
   bool discontinuous = false;
   bool bakes = false; ///< the step changes the base, and is not only drawn over it
@@ -36,8 +36,8 @@ public:
   /// The most that a frame may have, whatever the settings become.
   struct Capacity {
     std::size_t fields = 0;
-    std::size_t functions = 0; ///< of each field
-    std::size_t vectors = 0;   ///< of deform::SurfaceMove
+    std::size_t functions = 0; ///< max per field
+    std::size_t vectors = 0;   ///< max of deform::SurfaceMove
   };
 
   /// layout: that of a loop that has not begun yet. Allocates all that show() needs.
@@ -63,7 +63,7 @@ public:
   /// Returns the requested shape, or nothing if it has not come yet. To be called after take().
   /// Allocates; does not block.
   std::optional<Shape> take_shape();
-  /// Returns how many frames found no room in the ring. Any thread may call it.
+  /// Returns how many frames came when the ring was full. Any thread may call it.
   std::uint64_t lost() const noexcept { return ring_.counters().refused; }
 
 private:

@@ -1,6 +1,7 @@
 #pragma once
 // A strict parser for the head of an HTTP/1.1 request (RFC 9112). It refuses all that can be read
-// in two ways. The result consists of views into the bytes that were parsed.
+// in two ways. The result consists of views into the bytes that were parsed. And the decision which
+// requests are granted: the defence against pages of other sites in the same browser.
 
 #include <cstddef>
 #include <optional>
@@ -11,7 +12,7 @@
 namespace nendo::web {
 
 inline constexpr std::size_t max_head_bytes =
-    16384; ///< room for the cookies of a host's other ports
+    16384; ///< includes the cookies of a host's other ports
 inline constexpr std::size_t max_headers = 64;
 
 struct HttpRequest {
@@ -23,8 +24,7 @@ struct HttpRequest {
   /// Returns the value of a header, whose name is compared without regard to case. Returns nothing
   /// if there is no such header or more than one.
   std::optional<std::string_view> header(std::string_view name) const noexcept;
-  /// Returns how many headers have that name.
-  std::size_t count(std::string_view name) const noexcept;
+  std::size_t count(std::string_view name) const noexcept; ///< number of headers of that name
   /// Returns whether one of the headers of that name is a comma-separated list with that word in
   /// it.
   bool lists(std::string_view name, std::string_view word) const noexcept;
@@ -44,5 +44,21 @@ struct HttpHead {
 
 /// Parses the head of a request. `bytes` must be everything that the client has sent so far.
 HttpHead parse_head(std::string_view bytes);
+
+enum class Resource { page, model, picture, socket };
+
+struct Admission {
+  int status = 200; ///< 200 if granted, otherwise the status of the refusal
+  Resource resource = Resource::page;
+  std::string_view why; ///< the reason of a refusal; a line for people
+};
+
+/// Decides about a request. Host must be a numeric address or localhost, against DNS rebinding.
+/// Origin, if there is one, must be the same host. All but the page need `?token=`. The
+/// request for a WebSocket must conform to RFC 6455, section 4.2.1.
+Admission admit(const HttpRequest& request, std::string_view token) noexcept;
+
+/// Compares two strings in a time that depends on their lengths only.
+bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept;
 
 } // namespace nendo::web

@@ -87,7 +87,7 @@ ModelPaint paint_of(const deform::Mesh& mesh, const deform::BlockLayout& layout)
   return paint;
 }
 
-using Hands = std::array<const flow::HandInput*, 2>; ///< by flow::Placement::index_of(side)
+using Hands = std::array<const flow::HandInput*, 2>; ///< index: flow::Placement::index_of(side)
 
 void write_bones(const hand::HandSkeleton& skeleton, WireWriter& out) {
   const hand::HandPose rest = skeleton.pose({}, Eigen::Isometry3d::Identity());

@@ -15,7 +15,7 @@
 namespace nendo::web {
 
 struct ModelFacts {
-  std::string name; ///< for display
+  std::string name; ///< is displayed
   double rate_hz = 0.0;
   double units_per_metre = 1.0;
 };

@@ -20,7 +20,8 @@ using Pictures = std::vector<std::shared_ptr<const std::string>>;
 /// takes its time. A file of another kind, which a model may name as well, is not sent to anyone.
 /// None if the model has no texture coordinates.
 Pictures pictures_of(const deform::Mesh& mesh);
-/// Tells by its first bytes alone whether a texture is among pictures_of(); a damaged one is not.
+/// Returns whether a texture, by its first bytes alone, is among pictures_of(); a damaged one is
+/// not.
 bool has_picture(const deform::Mesh& mesh, std::uint32_t texture) noexcept;
 
 /// Parses the number of a picture: up to six decimal digits.

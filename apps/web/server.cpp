@@ -7,9 +7,9 @@
 
 #include <sys/eventfd.h>
 
-#include "web/handshake.hpp"
 #include "web/page_commands.hpp"
 #include "web/server_work.hpp"
+#include "web/web_socket.hpp"
 #include "web/wire.hpp"
 
 namespace nendo::web {

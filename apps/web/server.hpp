@@ -34,9 +34,9 @@ struct ServerLimits {
   std::size_t send_buffer_bytes = std::size_t{256} << 10;
   std::chrono::milliseconds request_timeout{5000};  ///< from the connection to the whole request
   std::chrono::milliseconds stall_timeout{10000};   ///< without taking a byte of the queue
-  std::chrono::milliseconds lag_timeout{30000};     ///< of a WebSocket without an empty queue
-  std::chrono::milliseconds ping_period{10000};     ///< of a WebSocket
-  std::chrono::milliseconds silence_timeout{30000}; ///< of a WebSocket without a sign of life
+  std::chrono::milliseconds lag_timeout{30000};     ///< how long a WebSocket's queue may be in use
+  std::chrono::milliseconds ping_period{10000};     ///< between pings of a WebSocket
+  std::chrono::milliseconds silence_timeout{30000}; ///< how long a WebSocket may be silent
   /// Messages from a client, as a token bucket: its size, and how fast it fills. A client that
   /// sends more is closed.
   double message_burst = 512.0;
@@ -69,49 +69,42 @@ public:
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// Returns where the server listens. The port is the one that the system chose if 0 was asked
-  /// for.
+  /// Returns where the server listens, with the port that the system chose in place of 0.
   const Endpoint& endpoint() const noexcept;
-  /// Returns the token: 128 random bits in hexadecimal digits. Whoever has it may watch and send
-  /// commands.
+  /// Returns the token: 128 random bits in hexadecimal digits. A client that has it may watch and
+  /// send commands.
   const std::string& token() const noexcept;
-  /// Returns the address for a browser. The token stands behind "#", a part that browsers do not
-  /// send.
+  /// Returns the address for a browser. The token follows "#", a part that browsers do not send.
   std::string url() const;
+
+  // Any thread may call the following functions but next_command(). They do not wait for the
+  // network.
 
   /// Serves another loop, which must not have begun yet, by its frames, its model_message() and its
   /// pictures_of(). Clients of the previous loop are closed with code 1012 and may connect again.
-  /// Any thread may call it; does not wait for the network.
   void present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model,
                Pictures pictures = {});
   /// Adds a weights_message(), by its number (Record::weights). It keeps the last ones, and the one
-  /// that frames need. Any thread may call it; does not wait for the network.
+  /// that frames need.
   void add_weights(std::uint64_t number, std::vector<std::byte> message);
   /// Returns the next command of any client, in the order in which they came, or nothing if there
   /// is none now. Only one thread may call it; wait-free.
   std::optional<ClientCommand> next_command() noexcept;
-  /// Sends a text for people to all clients. Any thread may call it; does not wait for the network.
+  /// Sends a report to all clients.
   void report(std::string message);
-  /// Sets what the loop runs with. Notifies clients when they connect and when it changes. Any
-  /// thread may call it; does not wait for the network.
+  // The following functions notify clients when they connect and when the values change.
   void set_settings(const flow::LoopSettings& settings);
-  /// Sets which commands of the table are on, and which are not possible, with the reason. Clients
-  /// are told when they come and when it changes. Any thread may call it; does not wait for the
-  /// network.
+  /// Sets which commands of the table are on, and which are not possible, with the reason.
   void set_commands(const commands::Situation& now);
-  /// Sets the steps of the history. Notifies clients when they connect and when it changes. Any
-  /// thread may call it; does not wait for the network.
   void set_steps(const flow::StepList& steps);
-  /// Sets the puppet that is played, by the loop's number for it; null: none. Clients are told when
-  /// they come and when it changes. Any thread may call it; does not wait for the network.
+  /// Sets the puppet that is played, by the loop's number for it; null: none.
   void set_puppet(std::uint32_t number, const puppet::Rig* rig);
-  /// Sets what the page shows of clay. Clients are told when it changes, 30 times per second at
-  /// most. Any thread may call it; does not wait for the network.
+  /// Sets what the page shows of clay. Notifies clients at most 30 times per second.
   void set_clay(const flow::Frame& frame);
-  /// Sets what the page shows of each glove. Any thread may call it; wait-free.
+  /// Sets what the page shows of each glove. Wait-free.
   void set_gloves(const GloveStates& gloves) noexcept;
   /// Returns the counters. Each number is right by itself, but they are not all of the same moment.
-  /// Any thread may call it; wait-free.
+  /// Wait-free.
   ServerCounters counters() const noexcept;
 
 private:

@@ -4,12 +4,11 @@
 
 #include <poll.h>
 
-#include "web/admission.hpp"
 #include "web/client_commands.hpp"
-#include "web/handshake.hpp"
 #include "web/page_commands.hpp"
 #include "web/pictures.hpp"
 #include "web/server_work.hpp"
+#include "web/web_socket.hpp"
 
 namespace nendo::web {
 
@@ -162,7 +161,7 @@ void Server::Work::read_socket(Connection& connection, HostTime now) {
 
 void Server::Work::handle(Connection& connection, const std::string& text, HostTime now) {
   if (!connection.within_message_rate(now)) {
-    connection.close(CloseCode::policy, now, "more than 128 messages a second");
+    connection.close(CloseCode::policy, now, "more than 128 messages per second");
     return;
   }
   const auto command = parse_command(text);
@@ -170,7 +169,7 @@ void Server::Work::handle(Connection& connection, const std::string& text, HostT
     connection.close(CloseCode::policy, now, command.error().message);
     return;
   }
-  if (!commands.try_push(*command)) // the run stands still
+  if (!commands.try_push(*command)) // the run has stopped
     report("The run does not answer, and what was asked of it is dropped.");
 }
 

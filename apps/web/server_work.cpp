@@ -148,8 +148,8 @@ void Server::Work::send_facts(HostTime now) {
   for (Connection& client : connections_) {
     if (client.stage() != Connection::Stage::socket) continue;
     for (std::size_t at = 0; at < facts.size(); ++at) {
-      if (!facts[at] || client.told[at] == facts[at]) continue;
-      client.told[at] = facts[at];
+      if (!facts[at] || client.sent_facts[at] == facts[at]) continue;
+      client.sent_facts[at] = facts[at];
       client.send(Opcode::binary, facts[at], false, now);
     }
   }
@@ -162,13 +162,13 @@ void Server::Work::accept_all(HostTime now) {
   while (auto socket = accept_from(listener_, limits_.send_buffer_bytes)) {
     next_accept_ = now;
     ++counts.accepted;
-    if (connections_.size() >= limits_.max_connections) make_room();
+    if (connections_.size() >= limits_.max_connections) drop_oldest();
     connections_.emplace_back(*std::move(socket), now, limits_);
   }
 }
 
 // Clients with a WebSocket have shown the token, so they stay.
-void Server::Work::make_room() {
+void Server::Work::drop_oldest() {
   const auto oldest =
       std::find_if(connections_.begin(), connections_.end(), [](const Connection& connection) {
         return connection.stage() != Connection::Stage::socket;

@@ -39,7 +39,7 @@ public:
     std::atomic<std::uint64_t> delivered{0}, missed{0}, refused{0}, bad{0};
     std::atomic<bool> uncalibrated{false};
   };
-  std::array<SharedGloveState, 2> gloves; ///< by flow::Placement::index_of(side)
+  std::array<SharedGloveState, 2> gloves; ///< index: flow::Placement::index_of(side)
   struct Counts {
     std::atomic<std::uint64_t> clients{0}, accepted{0}, refused{0}, dropped{0}, updates{0},
         update_bytes{0}, shapes{0}, shape_bytes{0}, weights{0}, skipped{0};
@@ -80,7 +80,7 @@ private:
   void send_facts(HostTime now);
   void end();
   void accept_all(HostTime now);
-  void make_room();
+  void drop_oldest();
   void serve(Connection& connection, short events, HostTime now);
   void read_head(Connection& connection, HostTime now);
   void open_socket(Connection& connection, const HttpRequest& request, HostTime now);

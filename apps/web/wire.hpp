@@ -96,7 +96,7 @@ static_assert(sizeof(ModelHead) == 88);
 struct CoatHead {
   std::uint32_t triangles = 0;
   std::uint32_t texture = deform::no_index;
-  std::uint32_t has_colour = 0; ///< 0: `colour` is white because the material tells none
+  std::uint32_t has_colour = 0; ///< 0: `colour` is white because the material has none
   float colour[3]{1.0F, 1.0F, 1.0F};
 };
 static_assert(sizeof(CoatHead) == 24);
@@ -127,7 +127,7 @@ inline constexpr std::size_t text_head_bytes = 4; ///< the type, and three that 
 /// Of the history's message.
 inline constexpr std::size_t history_head_bytes = 8;
 inline constexpr std::size_t history_step_bytes = 8;
-inline constexpr std::size_t puppet_head_bytes = 8; ///< of the puppet's message
+inline constexpr std::size_t puppet_head_bytes = 8; ///< the puppet's message
 
 /// Returns whether a joint's rotation is sent with each frame. The other joints do not move
 /// relative to their parents.
@@ -151,7 +151,7 @@ constexpr std::size_t vectors_bytes(std::size_t vectors) noexcept {
   return 4 + vectors * 12;
 }
 
-/// Returns the most bytes that a field of that many functions takes.
+/// Returns the most bytes that a field of this number of functions takes.
 constexpr std::size_t field_bytes(std::size_t functions) noexcept {
   return 8 + 48 + functions * 28;
 }
@@ -159,18 +159,18 @@ constexpr std::size_t field_bytes(std::size_t functions) noexcept {
 /// Writes values one after another into a buffer, which must be large enough.
 class WireWriter {
 public:
-  explicit WireWriter(std::span<std::byte> room) noexcept : room_(room) {}
+  explicit WireWriter(std::span<std::byte> buffer) noexcept : buffer_(buffer) {}
 
   template <class T>
   void put(const T& value) noexcept {
-    assert(used_ + sizeof value <= room_.size());
-    std::memcpy(room_.data() + used_, &value, sizeof value);
+    assert(used_ + sizeof value <= buffer_.size());
+    std::memcpy(buffer_.data() + used_, &value, sizeof value);
     used_ += sizeof value;
   }
   std::size_t used() const noexcept { return used_; }
 
 private:
-  std::span<std::byte> room_;
+  std::span<std::byte> buffer_;
   std::size_t used_ = 0;
 };
 

@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "web/admission.hpp"
 #include "web/client_commands.hpp"
+#include "web/http_request.hpp"
 #include "web/pictures.hpp"
-#include "web/socket_frames.hpp"
+#include "web/web_socket.hpp"
 
 using namespace nendo::web;
 

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "web/admission.hpp"
+#include "web/http_request.hpp"
 
 namespace admission_test {
 
@@ -75,7 +75,7 @@ TEST_SUITE("admission") {
               .status == 403);
   }
 
-  TEST_CASE("model and socket are nobody's without the token") {
+  TEST_CASE("without the token, a client gets neither model nor socket") {
     for (const auto* path : {"/model", "/picture", "/ws"})
       for (const auto& given : {std::string(), std::string("x"), std::string(token) + "0",
                                 std::string(token).substr(1), std::string(32, '0')})

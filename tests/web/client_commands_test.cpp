@@ -6,7 +6,7 @@
 #include <nendo/flow/setting.hpp>
 
 #include "web/client_commands.hpp"
-#include "web/socket_frames.hpp"
+#include "web/web_socket.hpp"
 
 namespace client_commands_test {
 
@@ -135,7 +135,7 @@ TEST_SUITE("client_commands") {
       return asked ? std::string() : asked.error().message;
     };
     CHECK(refusal("colour=red") == "there is no setting 'colour'; message 4 names all settings");
-    CHECK(refusal("mode=type1 mode=type2") == "mode stands twice; name each setting once");
+    CHECK(refusal("mode=type1 mode=type2") == "mode is there twice; name each setting once");
     CHECK(refusal("keep_volume=1.5") == "keep_volume: use 0 to 1");
     CHECK(refusal("beta_hz_per_rad_s=-1") == "beta_hz_per_rad_s: use 0 to 1000 Hz per rad/s");
     CHECK(refusal("injective=on") == "injective: use true or false");

@@ -1,5 +1,5 @@
-// Whoever follows the steps has the loop's shape: the law that the page lives by, with a client
-// that was written from PROTOCOL.md alone.
+// A client that follows the steps has the loop's shape: the law that the page lives by, with a
+// client that was written from PROTOCOL.md alone.
 
 #include <map>
 #include <random>
@@ -33,14 +33,14 @@ struct Followed {
     streamed.stream->set_active(true);
   }
 
-  void pass(bool room = true) {
+  void pass(bool has_space = true) {
     std::vector<Record> records;
     streamed.stream->take(records);
     const auto shape = streamed.stream->take_shape();
     if (const auto& surface = streamed.test.loop->changes().sculptor_options().surface)
       weights.try_emplace(surface->number(), weights_message(*surface));
     feed.look_at(records);
-    if (!room) {
+    if (!has_space) {
       feed.skip(records);
       return;
     }
@@ -135,7 +135,7 @@ TEST_SUITE("follow") {
         bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
         if (random() % 6 == 0) {
           auto settings = test::any_settings(streamed.test.loop->changes().settings(), random);
-          settings.brushes = {}; // whose work no field tells, nor that of hands in clay
+          settings.brushes = {}; // whose work no field describes, nor that of hands in clay
           if (settings.mode == flow::Mode::clay) settings.mode = flow::Mode::type2;
           static_cast<void>(streamed.test.loop->changes().change_settings(settings));
         }
@@ -181,8 +181,8 @@ TEST_SUITE("follow") {
     }
   }
 
-  TEST_CASE(
-      "when nobody empties the ring, frames are lost and counted, and a fresh shape mends it") {
+  TEST_CASE("when no thread empties the ring, frames are lost and counted, and a fresh shape "
+            "repairs it") {
     StreamedLoop streamed(flow::Mode::type2);
     Followed followed(streamed);
     streamed.tick(0);
@@ -369,7 +369,7 @@ TEST_SUITE("follow") {
     CHECK(streamed.test.loop->stats().changes > 15);
   }
 
-  TEST_CASE("a puppet's follower goes on with each puppet that an edit or an undo brings") {
+  TEST_CASE("a puppet's follower continues with each puppet that an edit or an undo brings") {
     for (const bool begins_with_one : {true, false}) {
       CAPTURE(begins_with_one);
       StreamedLoop streamed =

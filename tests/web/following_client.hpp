@@ -129,7 +129,7 @@ public:
   int shapes = 0, updates = 0;
   int weights = 0;              ///< messages of them
   std::uint64_t vectors = 0;    ///< that came in steps
-  std::array<bool, 2> let_go{}; ///< of a puppet
+  std::array<bool, 2> let_go{}; ///< released hands of a puppet
   bool symmetric = false, is_puppet = false;
   std::string report;                ///< the last report of the server
   std::uint64_t implied_centres = 0; ///< centres that were left out
@@ -463,7 +463,7 @@ private:
   };
   Weights weights_;
   std::vector<float> pending_vectors_;
-  std::array<std::array<Skeleton, 2>, 2> bones_{}; ///< of the left, the right hand: first, other
+  std::array<std::array<Skeleton, 2>, 2> bones_{}; ///< left and right hand; first and other glove
   std::vector<float> base_;
   std::vector<Field> pending_;
 };

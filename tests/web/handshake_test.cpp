@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "web/handshake.hpp"
+#include "web/web_socket.hpp"
 
 namespace handshake_test {
 

@@ -38,7 +38,7 @@ TEST_SUITE("http_request") {
     CHECK_FALSE(head.request.header("Origin"));
   }
 
-  TEST_CASE("a header that stands twice is none") {
+  TEST_CASE("a header that is there twice is none") {
     const HttpHead head = parse_head("GET / HTTP/1.1\r\nHost: a\r\nhost: b\r\n\r\n");
     REQUIRE(head.status == 200);
     CHECK_FALSE(head.request.header("Host"));

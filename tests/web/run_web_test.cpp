@@ -79,21 +79,21 @@ struct Browser {
       if (frame->opcode == 2) REQUIRE(follower->take(frame->payload));
     }
   }
-  /// Sends a command when the run has continued for a while, and follows until it is obeyed.
-  void ask(const std::string& command, const std::function<bool(const FollowingClient&)>& obeyed) {
+  /// Sends a command when the run has continued for a while, and follows until it is executed.
+  void ask(const std::string& command, const std::function<bool(const FollowingClient&)>& done) {
     const int then = follower->updates + 30;
     follow_until([&] { return follower->follows() && follower->updates > then; });
-    REQUIRE_FALSE(obeyed(*follower));
+    REQUIRE_FALSE(done(*follower));
     REQUIRE(client->send_text(command));
-    follow_until([&] { return obeyed(*follower); });
+    follow_until([&] { return done(*follower); });
   }
 };
 
 } // namespace
 
 TEST_SUITE("run_web") {
-  TEST_CASE(
-      "a browser's client follows a run to the shape that it writes, and lets go on the way") {
+  TEST_CASE("a browser's client follows a run to the shape that it writes, and releases the model "
+            "in between") {
     for (const auto* mode : {"type1", "type2"}) {
       CAPTURE(mode);
       const test::TemporaryFolder folder;
@@ -249,7 +249,7 @@ TEST_SUITE("run_web") {
     CHECK(fs::exists(out));
   }
 
-  TEST_CASE("a browser's client gets a report of what keys in the terminal save") {
+  TEST_CASE("a browser's client gets a report of files that keys in the terminal save") {
     const test::TemporaryFolder folder;
     const auto out = folder.path() / "clay.ply";
     test::TerminalProgram program({"run", "--left", "sim:sculpt?seed=7", "--web", "0",

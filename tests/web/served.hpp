@@ -26,7 +26,7 @@ inline std::unique_ptr<web::Server> open_server(web::ServerLimits limits = {}) {
 struct Served {
   StreamedLoop streamed;
   std::unique_ptr<web::Server> server;
-  RestraintCounts counts; ///< of the loop's thread
+  RestraintCounts counts; ///< the loop's thread's
 
   explicit Served(flow::Mode mode, web::ServerLimits limits = {}, const char* puppet = nullptr)
       : streamed(mode, {.injective = deform::InjectiveOptions{}, .puppet = puppet}),

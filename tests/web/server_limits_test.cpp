@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 
 namespace {
 
-constexpr int small_buffer = 4096; ///< of the sockets at both ends, so that they are soon full
+constexpr int small_buffer = 4096; ///< size of the buffers at both ends, so that they are soon full
 
 /// Limits that no client reaches, except for those that a test sets afterwards.
 ServerLimits generous() {
@@ -55,7 +55,7 @@ TEST_SUITE("server_limits") {
     CHECK(viewer.skipped > 50);
   }
 
-  TEST_CASE("of a puppet, a client that does not read misses frames, and then goes on with the "
+  TEST_CASE("of a puppet, a client that does not read misses frames, and then continues with the "
             "weights that it has, without a shape") {
     ServerLimits limits;
     limits.max_queued_bytes = 8192;
@@ -100,7 +100,7 @@ TEST_SUITE("server_limits") {
     Served served(flow::Mode::type1, limits);
     served.begin();
     Viewer steady(served);
-    for (int n = 0; n < 60; ++n) { // more than at once, and 25 a second
+    for (int n = 0; n < 60; ++n) { // more than at once, and 25 per second
       CHECK(steady.client.send_text("wrist left 0 0 0 0 0 0 1"));
       std::this_thread::sleep_for(milliseconds(40));
     }
@@ -207,7 +207,7 @@ TEST_SUITE("server_limits") {
     }
     REQUIRE(eventually([&] { return served.server->counters().clients == 0; }));
     const auto lost = served.streamed.stream->lost();
-    const auto later = newest_frame(served).ticks_run + 3000; // more than find room in the ring
+    const auto later = newest_frame(served).ticks_run + 3000; // more than fit the ring
     CHECK(eventually([&] { return newest_frame(served).ticks_run > later; }));
     CHECK(served.streamed.stream->lost() == lost);
   }

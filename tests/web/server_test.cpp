@@ -199,7 +199,7 @@ TEST_SUITE("server") {
     CHECK_FALSE(server->next_command());
   }
 
-  TEST_CASE("over the network, too, a follower has the shape that the loop ends with") {
+  TEST_CASE("also over the network, a follower has the shape that the loop ends with") {
     for (const auto& way : {std::pair<flow::Mode, const char*>{flow::Mode::type1, nullptr},
                             {flow::Mode::type2, nullptr},
                             {flow::Mode::type1, test::ball_puppet},
@@ -234,7 +234,7 @@ TEST_SUITE("server") {
     }
   }
 
-  TEST_CASE("a client with the token gets the model's pictures, of what type they are, and nothing "
+  TEST_CASE("a client with the token gets the model's pictures, with their types, and nothing "
             "else of its folder") {
     const auto server = open_server();
     const auto text = [](const char* contents) {
@@ -285,7 +285,7 @@ TEST_SUITE("server") {
   }
 
   TEST_CASE(
-      "each client is told the settings when it comes, and each change once, before the frames") {
+      "each client gets the settings when it connects, and each change once, before the frames") {
     Served served(flow::Mode::type1);
     flow::LoopSettings settings{.mode = flow::Mode::type2,
                                 .kernel = deform::Wendland::c6,

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "web/socket_frames.hpp"
+#include "web/web_socket.hpp"
 #include "web_client.hpp"
 
 namespace socket_frames_test {

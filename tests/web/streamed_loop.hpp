@@ -12,7 +12,8 @@ namespace nendo::test {
 struct StreamedLoopOptions {
   std::optional<deform::InjectiveOptions> injective = std::nullopt;
   deform::Supports supports = deform::one_radius(0.5);
-  std::optional<double> swapped_length_m = std::nullopt; ///< of the hands that may be swapped in
+  std::optional<double> swapped_length_m =
+      std::nullopt;             ///< length of the hands that may be swapped in
   const char* puppet = nullptr; ///< the text of its file; its supports are used then
 };
 

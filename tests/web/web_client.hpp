@@ -122,12 +122,12 @@ public:
       if (frame->opcode == 8) code = frame->close_code();
     return code;
   }
-  /// Takes so many bytes at most of what has come by now; how many.
+  /// Takes at most this number of the bytes that have come, and returns their number.
   std::size_t take(std::size_t most) {
-    std::string room(most, '\0');
-    const ssize_t got = ::recv(socket_.get(), room.data(), room.size(), MSG_DONTWAIT);
+    std::string buffer(most, '\0');
+    const ssize_t got = ::recv(socket_.get(), buffer.data(), buffer.size(), MSG_DONTWAIT);
     if (got <= 0) return 0;
-    received_.append(room, 0, static_cast<std::size_t>(got));
+    received_.append(buffer, 0, static_cast<std::size_t>(got));
     return static_cast<std::size_t>(got);
   }
   /// Reads what is left, and says whether the other side has ended the connection.
@@ -143,10 +143,10 @@ private:
   bool receive(int wait_ms = patience_ms) {
     pollfd waiting{socket_.get(), POLLIN, 0};
     if (!connected_ || ::poll(&waiting, 1, wait_ms) != 1) return false;
-    char room[16384];
-    const ssize_t got = ::recv(socket_.get(), room, sizeof room, 0);
+    char buffer[16384];
+    const ssize_t got = ::recv(socket_.get(), buffer, sizeof buffer, 0);
     ended_ = got <= 0;
-    if (got > 0) received_.append(room, static_cast<std::size_t>(got));
+    if (got > 0) received_.append(buffer, static_cast<std::size_t>(got));
     return got > 0;
   }
   Answer parse_answer() const {

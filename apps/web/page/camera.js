@@ -72,7 +72,7 @@ class Camera {
     const [se, ce] = [Math.sin(this.elevation), Math.cos(this.elevation)]
     return [[ca, 0, -sa], [-sa * se, ce, -ca * se], [sa * ce, se, ca * ce]]
   }
-  // What of the world there is in the picture from top to bottom, so far from the eye.
+  // The height of the world that the picture shows at this distance from the eye.
   pictureHeight(depth) {
     const narrow = Math.min(1, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight))
     return 2 * Math.tan(FIELD_OF_VIEW / 2) * depth / narrow

@@ -1,4 +1,4 @@
-// Takes a vertex and its normal through the fields that stand in a texture: of each field a texel
+// Takes a vertex and its normal through the fields in a texture: of each field a texel
 // (functions, kernel, has a polynomial, share of clay and 2 more if it is halfway), three of the
 // polynomial's rows if it has one, and two a function (centre and 1 / radius; coefficient). A field
 // that is halfway says where the next is asked. Normals turn by the cofactors of the Jacobian.

@@ -51,16 +51,16 @@ function arrow(from, to, width, capsules) {
   capsules.add(neck, to, width, width / 20)
 }
 
-// Where the fingertips took hold: frames do not say, but when a hold begins.
+// Where the fingertips grabbed: frames do not say, but when a hold begins.
 class Holds {
   constructor() { this.begin() }
   // Of another loop.
   begin() { Object.assign(this, { starts: [null, null], before: null }) }
   follow(update) {
     const before = this.before
-    const anew = update.held &&
+    const begins = update.held &&
       (!before || !before.held || update.restChanges !== before.restChanges || update.jumps !== before.jumps)
-    if (anew) this.starts = update.hands.map(hand => hand && TIPS.map(tip => hand.joints[tip].place))
+    if (begins) this.starts = update.hands.map(hand => hand && TIPS.map(tip => hand.joints[tip].place))
     this.before = update
   }
 }

@@ -77,7 +77,7 @@ function open(model) {
   socket.onmessage = ({ data }) => {
     if (stale) return
     const type = new DataView(data).getUint8(0)
-    if (type === 3) panel.tell(textIn(data))
+    if (type === 3) panel.report(textIn(data))
     else if (type === 4) takeSettings(readSettings(data))
     else if (type === 5) panel.setHistory(readSteps(data))
     else if (type === 7) panel.setPuppet(readPuppet(data))
@@ -148,7 +148,7 @@ element('scene').addEventListener('webglcontextlost', event => {
   scene = null
   panel.say(trouble + ' Reload the page.')
 })
-// For whoever tests this page, or plays with it.
+// For tests of this page, and experiments with it.
 window.nendo = {
   ask, counts,
   vertices: () => Array.from(scene.shape.vertices()),

@@ -1,4 +1,4 @@
-// The mouse as what tells where a hand is, for gloves that have no tracker: the window's HandMover.
+// The mouse places a hand, for gloves that have no tracker: the window's HandMover.
 // From a right press near a hand to its release, which the camera then hears nothing of.
 const HAND_REACH = 60 // pixels from a joint
 const MAX_REACH = 2 // metres from the middle of the picture, on each axis: as far as arms reach
@@ -82,7 +82,7 @@ class HandMover {
     const { slot, place, turn } = this.held
     return `wrist ${slot === 0 ? 'left' : 'right'} ${[...place, ...turn].map(number => number.toFixed(6)).join(' ')}`
   }
-  // What to tell the loop since the last call; null: nothing.
+  // The message to the loop since the last call; null: nothing.
   next() {
     const words = this.held && this.moved ? this.words() : this.last
     Object.assign(this, { moved: false, last: null })

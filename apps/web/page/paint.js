@@ -1,5 +1,5 @@
 // The model's colours. Pictures come one after another, and the model is drawn without those that have not come.
-const MOST_PIXELS = 1 << 27 // of all pictures; a small file can be a large picture
+const MAX_PIXELS = 1 << 27 // of all pictures; a small file can be a large picture
 const WHITE = [1, 1, 1]
 
 class Paint {
@@ -11,7 +11,7 @@ class Paint {
 
   async load(fetchPicture, changed) {
     const numbers = new Set(this.coats.map(({ texture }) => texture).filter(texture => texture !== null))
-    let left = MOST_PIXELS
+    let left = MAX_PIXELS
     for (const number of numbers) {
       const image = await this.decoded(await fetchPicture(number))
       if (this.over) return

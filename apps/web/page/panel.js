@@ -21,7 +21,7 @@ const OWN = {
   'fold panel': panel => panel.fold(),
   'list keys': panel => panel.help(),
 }
-const MOST_UNDOABLE = 48 // that the server tells
+const MAX_UNDOABLE = 48 // that the server lists
 const helpOf = ({ help, keys }, refusal) => `${help}${refusal ? '\n' + refusal : ''} (${keys.join(', ')})`
 const element = id => document.getElementById(id)
 
@@ -29,7 +29,7 @@ class Panel {
   constructor(ask, shown) {
     Object.assign(this, { ask, camera: null, live: false, settings: null, history: null, puppet: null, states: new Map() })
     this.late = new Chart(element('chart-late'), 'late', 'ms')
-    this.rate = new Chart(element('chart-rate'), 'ticks a second', 'Hz')
+    this.rate = new Chart(element('chart-rate'), 'ticks per second', 'Hz')
     this.bytes = new Chart(element('chart-bytes'), 'a message', 'bytes')
     this.shaping = new Shaping(this.ask)
     this.buttons = new Map(COMMANDS.filter(({ button }) => button).map(command => [command, this.makeButton(command)]))
@@ -59,7 +59,7 @@ class Panel {
   give(command) {
     if (!command.isForRun) return OWN[command.name](this)
     const { refusal } = this.stateOf(command.name)
-    if (refusal) return this.tell(refusal)
+    if (refusal) return this.report(refusal)
     if (command.isSetting) this.shaping.giveWay()
     this.ask(command.name)
   }
@@ -110,7 +110,7 @@ class Panel {
     else dialog.showModal()
   }
 
-  tell(words) { element('told').textContent = words }
+  report(words) { element('message').textContent = words }
   say(words) {
     element('banner').textContent = words
     element('banner').hidden = words === ''
@@ -129,7 +129,7 @@ class Panel {
   setHistory(history) {
     this.history = history
     const words = history.steps.map(({ kind, at }) => `${Math.floor(at / 60)}:${String(Math.floor(at % 60)).padStart(2, '0')}  ${kind}`)
-    const lines = [history.undoable < MOST_UNDOABLE ? 'the beginning' : 'earlier', ...words].map((text, at) => {
+    const lines = [history.undoable < MAX_UNDOABLE ? 'the beginning' : 'earlier', ...words].map((text, at) => {
       const line = document.createElement('button')
       line.textContent = text
       line.className = at > history.undoable ? 'undone' : ''
@@ -145,7 +145,7 @@ class Panel {
     for (let step = undoable + (this.update && this.update.inHand ? 1 : 0); step > at; --step) this.ask('undo')
     for (let step = undoable; step < at; ++step) this.ask('redo')
   }
-  // What each function listens to; an edited puppet takes the place of the one before.
+  // What each function listens to; an edited puppet replaces the previous one.
   setPuppet(puppet) {
     this.puppet = puppet
     element('puppet').hidden = puppet.functions.length === 0
@@ -177,7 +177,7 @@ class Panel {
   draw() {
     const { update, model, settings } = this
     if (!update || !model || !settings) return
-    element('hold').textContent = update.held ? 'The hands hold the model.' : 'The hands have let go.'
+    element('hold').textContent = update.held ? 'The hands hold the model.' : 'The hands hold nothing.'
     const lost = update.lost + update.skipped
     element('timing').textContent = `${model.rate} Hz wanted, ${settings.mode}\n${update.ticks} ticks, ${update.missed} missed` +
       `${lost > 0 ? `, ${lost} not shown` : ''}\n${update.restChanges} changes of the rest shape`
@@ -190,7 +190,7 @@ class Panel {
     element('clay').hidden = !clay || settings.mode !== 'clay'
     if (element('clay').hidden) return
     const cm3 = volume => (volume * (100 / model.unitsPerMetre) ** 3).toFixed(1)
-    element('clay-told').textContent = `touches at ${clay.contacts.length} places, ${clay.penetration.toFixed(3)} mm deep\n` +
+    element('clay-state').textContent = `touches at ${clay.contacts.length} places, ${clay.penetration.toFixed(3)} mm deep\n` +
       (clay.first > 0 ? `volume ${cm3(clay.volume)} cm\u00b3, at first ${cm3(clay.first)}` : 'volume not kept: no closed surface')
   }
   drawGlove(hand, slot) {

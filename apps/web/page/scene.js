@@ -78,10 +78,10 @@ class Scene {
     this.shape = new Shape(this.gl, model)
     this.paint = new Paint(this.gl, model, fetchPicture, changed)
     this.scale = model.unit / model.unitsPerMetre
-    if (!this.origin) this.findPlace(model) // a connection that is made anew does not move the picture
+    if (!this.origin) this.findPlace(model) // a new connection does not move the picture
     this.offset = minus(times(model.origin, 1 / model.unitsPerMetre), this.origin)
   }
-  // The model stands on the ground about the middle, as large as on the stage.
+  // The model is on the ground about the middle, as large as on the stage.
   findPlace(model) {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity]
     model.places.forEach((number, at) => {

@@ -2,7 +2,7 @@
 // which the server fills in from their description (flow/setting.hpp). An input has the name of its setting, and its value; a
 // checkbox has the value of the setting when it is checked, and in data-off the value when it is not.
 const FINGERS = ['thumb', 'index', 'middle', 'ring', 'little']
-const PATIENCE = 1000 // ms, for which what was asked for is shown before what is in force
+const PATIENCE = 1000 // ms, for which what was asked for is shown before the current settings
 
 class Shaping {
   constructor(ask) {

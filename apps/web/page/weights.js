@@ -59,7 +59,7 @@ class Weights {
     return buffer
   }
 
-  // Makes a texture of these numbers, so many a texel.
+  // Makes a texture of these numbers, with this number of them per texel.
   fill(name, internal, format, type, numbers, size, wide) {
     const { gl } = this
     const rows = Math.max(1, Math.ceil(numbers.length / size / wide))

@@ -177,7 +177,7 @@ function taken(field, place) {
   return sum
 }
 
-// before: the step's field before this one. Where a flag says so, its functions go on from there.
+// before: the step's field before this one. Where a flag says so, its functions continue from there.
 function readField(view, at, before) {
   const flags = view.getUint8(at + 1), follows = (flags & 4) !== 0
   let from = at + 4

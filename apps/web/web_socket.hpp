@@ -1,7 +1,9 @@
 #pragma once
-// Frames of a WebSocket (RFC 6455, section 5). This is a parser for a client's frames and the
-// encoding of the server's frames. Nothing here reads or writes a socket.
+// A WebSocket (RFC 6455): the server's part of the handshake (section 4.2.2), which needs SHA-1 (RFC
+// 3174) and base64 (RFC 4648), a parser for a client's frames (section 5) and the encoding of the
+// server's. Nothing secret depends on SHA-1 here. Nothing here reads or writes a socket.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,6 +11,19 @@
 #include <string_view>
 
 namespace nendo::web {
+
+using Sha1Digest = std::array<std::byte, 20>;
+
+Sha1Digest sha1(std::span<const std::byte> bytes);
+std::string base64(std::span<const std::byte> bytes);
+/// Returns whether the text is a Sec-WebSocket-Key, which is 16 bytes in base64.
+bool is_socket_key(std::string_view text) noexcept;
+/// Returns the Sec-WebSocket-Accept that answers a Sec-WebSocket-Key.
+std::string accept_of(std::string_view key);
+
+/// Returns random bytes from the system in hexadecimal digits, or an empty string if the system has
+/// none. Tokens and nonces are made of them.
+std::string random_hex(std::size_t bytes);
 
 /// The longest message that a client may send, in bytes. Commands are far shorter.
 inline constexpr std::size_t max_client_message = 1024;
@@ -62,8 +77,8 @@ private:
   ClientEvent fault(CloseCode code);
   ClientEvent take(const Head& head, std::string payload);
 
-  std::string parts_;                  ///< of a message that is not complete yet
-  Opcode kind_ = Opcode::continuation; ///< of that message; `continuation` if there is none
+  std::string parts_;                  ///< the begin of an incomplete message
+  Opcode kind_ = Opcode::continuation; ///< its kind; `continuation` if there is none
   bool failed_ = false;
 };
 
