@@ -1,7 +1,7 @@
 #pragma once
-// A WebSocket (RFC 6455): the server's part of the handshake (section 4.2.2), which needs SHA-1 (RFC
-// 3174) and base64 (RFC 4648), a parser for a client's frames (section 5) and the encoding of the
-// server's. Nothing secret depends on SHA-1 here. Nothing here reads or writes a socket.
+// A WebSocket (RFC 6455): the server's part of the handshake (section 4.2.2), which needs SHA-1
+// (RFC 3174) and base64 (RFC 4648), a parser for a client's frames (section 5) and the encoding of
+// the server's. Nothing secret depends on SHA-1 here. Nothing here reads or writes a socket.
 
 #include <array>
 #include <cstddef>
