@@ -124,11 +124,11 @@ RealtimeProcess::RealtimeProcess(const RealtimeOptions& options) {
   }
   if (options.priority > 0) {
     constexpr const char* path = "/dev/cpu_dma_latency";
-    constexpr std::int32_t microseconds = 0;
+    constexpr std::int32_t latency_us = 0;
     latency_file_ = ::open(path, O_WRONLY | O_CLOEXEC);
     const bool written =
-        latency_file_ >= 0 && ::write(latency_file_, &microseconds, sizeof microseconds) ==
-                                  static_cast<ssize_t>(sizeof microseconds);
+        latency_file_ >= 0 && ::write(latency_file_, &latency_us, sizeof latency_us) ==
+                                  static_cast<ssize_t>(sizeof latency_us);
     grants_.push_back(judged("dma_latency", "no deep sleep of the processor", written ? 0 : errno,
                              "allow writing to /dev/cpu_dma_latency: `sudo chgrp audio "
                              "/dev/cpu_dma_latency && sudo chmod g+w /dev/cpu_dma_latency`"));
