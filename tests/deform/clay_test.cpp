@@ -49,9 +49,9 @@ Vector3d middle_of(const Mesh& mesh) {
 /// A ball of clay with a radius of 30 mm.
 struct Ball {
   explicit Ball(ClayOptions options = {}, std::size_t bodies = 1, int level = 4,
-                DeformerOptions history = {}, std::size_t parts_a_body = 1)
+                DeformerOptions history = {}, std::size_t parts_per_body = 1)
       : mesh(nendo::reference::icosphere(level, 30.0)), shape(mesh.vertices, history),
-        clay(shape, corners_of_triangles(mesh), bodies, parts_a_body, options) {}
+        clay(shape, corners_of_triangles(mesh), bodies, parts_per_body, options) {}
 
   /// Moves the body from where it is along a straight way, in `calls` calls.
   ClayReport go(Parts& parts, const Vector3d& by, int calls) {

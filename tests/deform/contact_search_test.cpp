@@ -118,7 +118,9 @@ TEST_SUITE("contact_search") {
       ContactPoints points(64);
       points.clear(0.7);
       const SpaceCells cells = points.cells();
-      const auto cell = [&](float x) { return static_cast<int>(x * cells.a_length + cells.shift); };
+      const auto cell = [&](float x) {
+        return static_cast<int>(x * cells.per_length + cells.shift);
+      };
       using Key = std::tuple<int, int, int, float>;
       std::map<Key, std::size_t> expected;
       for (std::size_t lane = 0; lane < block_size; ++lane) {

@@ -7,25 +7,25 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr std::array<std::string_view, brush_count> names{
+constexpr std::array<std::string_view, brush_count> brush_names{
     "pull", "none", "push", "inflate", "smooth", "flatten", "twist", "scale", "pinch"};
 
 } // namespace
 
 std::string_view name_of(Brush brush) noexcept {
-  return names[static_cast<std::size_t>(brush)];
+  return brush_names[static_cast<std::size_t>(brush)];
 }
 
 std::optional<Brush> brush_named(std::string_view name) noexcept {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<Brush>(found - names.begin());
+  const auto found = std::find(brush_names.begin(), brush_names.end(), name);
+  if (found == brush_names.end()) return std::nullopt;
+  return static_cast<Brush>(found - brush_names.begin());
 }
 
 std::string brush_words() {
-  std::string words(names.front());
-  for (std::size_t at = 1; at < names.size(); ++at)
-    words.append(at + 1 < names.size() ? ", " : " or ").append(names[at]);
+  std::string words(brush_names.front());
+  for (std::size_t at = 1; at < brush_names.size(); ++at)
+    words.append(at + 1 < brush_names.size() ? ", " : " or ").append(brush_names[at]);
   return words;
 }
 

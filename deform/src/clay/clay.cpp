@@ -74,9 +74,10 @@ void scale_about(const Eigen::Vector3d& middle, double factor, BoundedShape& sha
 } // namespace
 
 ClayDeformer::ClayDeformer(SculptedShape& shape, std::span<const std::uint32_t> triangles,
-                           std::size_t bodies, std::size_t parts_a_body, const ClayOptions& options)
+                           std::size_t bodies, std::size_t parts_per_body,
+                           const ClayOptions& options)
     : shape_(&shape),
-      work_(std::make_unique<Work>(shape, triangles, bodies, parts_a_body, options)) {}
+      work_(std::make_unique<Work>(shape, triangles, bodies, parts_per_body, options)) {}
 ClayDeformer::~ClayDeformer() = default;
 ClayDeformer::ClayDeformer(ClayDeformer&&) noexcept = default;
 ClayDeformer& ClayDeformer::operator=(ClayDeformer&&) noexcept = default;
@@ -164,7 +165,7 @@ bool ClayDeformer::Work::holds_any() const noexcept {
 }
 
 void ClayDeformer::Work::go_on_from(const Work& before, bool keeps_volume) noexcept {
-  if (before.from_.size() != from_.size() || before.parts_a_body_ != parts_a_body_ ||
+  if (before.from_.size() != from_.size() || before.parts_per_body_ != parts_per_body_ ||
       before.options_.units_per_mm != options_.units_per_mm)
     return;
   const double scale = before.layout_.unit() / layout_.unit();
@@ -200,7 +201,7 @@ void ClayDeformer::Work::go_on_from(const Work& before, bool keeps_volume) noexc
 /// Parts that hold do not press as well.
 void ClayDeformer::Work::leave_out_held(bool is_out) noexcept {
   for (std::size_t part = 0; part < from_.size(); ++part)
-    search_.leave_out(part, is_out && grips_[part / parts_a_body_].holds(part));
+    search_.leave_out(part, is_out && grips_[part / parts_per_body_].holds(part));
 }
 
 /// At the end of a call.

@@ -26,7 +26,7 @@ constexpr double max_straight_mm = 0.2; // a last push, which may fold
 // The least radius of functions, in radii of the thickest part. Clay that is softer is pressed into
 // layers thinner than any triangle before it gets round a part, and these cross.
 constexpr double min_softness = 1.2;
-constexpr double cells_a_radius = 3.0;
+constexpr double cells_per_radius = 3.0;
 constexpr double apart_in_cells = 0.6;
 constexpr int max_sub_step_passes = 40;
 constexpr double max_sub_steps = 1e6; // of a call; so a way of kilometres has larger ones
@@ -70,12 +70,13 @@ CsrbfField empty_field(int most, double radius, const BlockLayout& layout) {
 } // namespace
 
 ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32_t> triangles,
-                         std::size_t bodies, std::size_t parts_a_body, const ClayOptions& options)
+                         std::size_t bodies, std::size_t parts_per_body, const ClayOptions& options)
     : layout_(shape.layout()), options_(options), mm_(options.units_per_mm / layout_.unit()),
-      radius_(options.radius_mm * mm_), parts_a_body_(parts_a_body), from_(bodies * parts_a_body),
-      target_(from_), is_(from_), skins_(from_), skins_before_(from_),
-      ways_(from_.size(), Eigen::Isometry3d::Identity()), boxes_(bodies, BoxGate::shut()),
-      search_(bodies, parts_a_body), chosen_(static_cast<std::size_t>(options.max_constraints)),
+      radius_(options.radius_mm * mm_), parts_per_body_(parts_per_body),
+      from_(bodies * parts_per_body), target_(from_), is_(from_), skins_(from_),
+      skins_before_(from_), ways_(from_.size(), Eigen::Isometry3d::Identity()),
+      boxes_(bodies, BoxGate::shut()), search_(bodies, parts_per_body),
+      chosen_(static_cast<std::size_t>(options.max_constraints)),
       loads_(bodies, ContactLoad(layout_.block_count(), load_mm * mm_)),
       problem_(static_cast<std::size_t>(options.max_constraints)),
       frictions_(static_cast<std::size_t>(options.max_constraints)), pull_(bodies * Grip::max_held),
@@ -89,7 +90,7 @@ ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32
   assert(options.still_bodies <= bodies);
   assert(options.units_per_mm > 0.0 && options.radius_mm > 0.0 && options.max_constraints > 0);
   for (std::size_t body = 0; body < bodies; ++body)
-    grips_.emplace_back(body * parts_a_body, parts_a_body, mm_);
+    grips_.emplace_back(body * parts_per_body, parts_per_body, mm_);
   for (std::vector<std::uint32_t>& blocks : deep_)
     blocks.reserve(layout_.block_count());
   carriers_.reserve(static_cast<std::size_t>(options.max_constraints) + bodies * Grip::max_held);
@@ -157,8 +158,8 @@ double ClayDeformer::Work::way_to_target() const noexcept {
 bool ClayDeformer::Work::is_way_free(const BoundedShape& shape) noexcept {
   std::fill(boxes_.begin(), boxes_.end(), BoxGate::shut());
   for (std::size_t at = 0; at < from_.size(); ++at) {
-    boxes_[at / parts_a_body_].extend(BoxGate::of(from_[at]));
-    boxes_[at / parts_a_body_].extend(BoxGate::of(target_[at]));
+    boxes_[at / parts_per_body_].extend(BoxGate::of(from_[at]));
+    boxes_[at / parts_per_body_].extend(BoxGate::of(target_[at]));
   }
   return !search_.is_any_near(shape, {boxes_.data(), moving_bodies()}, margin_mm * mm_);
 }
@@ -293,12 +294,12 @@ const NearestLanes& ClayDeformer::Work::free_lanes(std::size_t block,
 }
 
 std::span<const ContactPoint> ClayDeformer::Work::choose() noexcept {
-  return chosen_.choose(apart_in_cells * radius_ / cells_a_radius);
+  return chosen_.choose(apart_in_cells * radius_ / cells_per_radius);
 }
 
 ClayDeformer::Work::Found ClayDeformer::Work::find(const BoundedShape& shape, bool loads) noexcept {
   Found found;
-  chosen_.clear(radius_ / cells_a_radius);
+  chosen_.clear(radius_ / cells_per_radius);
   for (std::size_t body = 0; body < search_.bodies(); ++body) {
     deep_[body].clear();
     search_.each_near(shape, body, margin_mm * mm_,
@@ -409,7 +410,7 @@ void ClayDeformer::Work::list_contacts() noexcept {
     contacts_.push_back({layout_.origin() + layout_.unit() * point.at, static_cast<float>(load),
                          static_cast<float>(static_cast<double>(pressed_[point.part]) / mm_),
                          point.body,
-                         point.part - point.body * static_cast<std::uint32_t>(parts_a_body_)});
+                         point.part - point.body * static_cast<std::uint32_t>(parts_per_body_)});
   }
 }
 

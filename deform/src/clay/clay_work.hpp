@@ -23,7 +23,7 @@ class ClayDeformer::Work {
 public:
   /// Allocates.
   Work(const SculptedShape& shape, std::span<const std::uint32_t> triangles, std::size_t bodies,
-       std::size_t parts_a_body, const ClayOptions& options);
+       std::size_t parts_per_body, const ClayOptions& options);
 
   /// Returns whether all numbers are usable. The number of parts must be the
   /// constructor's.
@@ -91,7 +91,7 @@ private:
   ClayOptions options_;
   double mm_; ///< a millimetre
   double radius_;
-  std::size_t parts_a_body_;
+  std::size_t parts_per_body_;
   bool holds_ = false;
   std::vector<ContactPart> from_, target_; ///< poses before and after a call
   std::vector<ContactPart> is_;            ///< poses in a sub-step
@@ -105,7 +105,7 @@ private:
   std::vector<ContactLoad> loads_;
   PressProblem problem_;
   std::vector<Friction> frictions_;
-  std::vector<Grip> grips_; ///< one a body
+  std::vector<Grip> grips_; ///< one per body
   std::vector<Carrier> carriers_;
   HeldField pull_;
   Eigen::Isometry3d rigid_ = Eigen::Isometry3d::Identity(); ///< the model's motion in a sub-step

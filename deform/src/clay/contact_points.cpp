@@ -9,11 +9,11 @@ namespace {
 
 constexpr float no_place = 1e18F; // its square is finite
 
-constexpr std::size_t slots_a_point = 16;
-constexpr std::size_t cells_a_point = 8;
+constexpr std::size_t slots_per_point = 16;
+constexpr std::size_t cells_per_point = 8;
 
 // Cells that are 2^18 apart share their keys, but no body is that large.
-constexpr int cells_a_side = 1 << 18;
+constexpr int cells_per_side = 1 << 18;
 
 std::size_t hash_of(std::uint64_t key) noexcept { // the finaliser of MurmurHash3
   key ^= key >> 33;
@@ -54,13 +54,13 @@ bool CrowdedPlaces::add(const Eigen::Vector3f& at, const Eigen::Vector3f& normal
 }
 
 ContactPoints::ContactPoints(std::size_t most)
-    : slots_(std::bit_ceil(slots_a_point * most)), places_(most) {
-  vertices_.reserve(cells_a_point * most);
+    : slots_(std::bit_ceil(slots_per_point * most)), places_(most) {
+  vertices_.reserve(cells_per_point * most);
   chosen_.reserve(most);
 }
 
 void ContactPoints::clear(double cell) noexcept {
-  constexpr float half = 0.5F * static_cast<float>(cells_a_side);
+  constexpr float half = 0.5F * static_cast<float>(cells_per_side);
   cells_ = {static_cast<float>(1.0 / cell), half, 2.0F * half - 1.0F};
   vertices_.clear();
   is_chosen_ = false;
@@ -72,7 +72,7 @@ void ContactPoints::clear(double cell) noexcept {
 void ContactPoints::offer(const NearVertex& vertex) noexcept {
   std::uint64_t key = vertex.part;
   for (const float coordinate : vertex.at) {
-    const float cell = coordinate * cells_.a_length + cells_.shift;
+    const float cell = coordinate * cells_.per_length + cells_.shift;
     key = key << 18 | static_cast<std::uint64_t>(std::clamp(cell, 0.0F, cells_.most));
   }
   const std::size_t mask = slots_.size() - 1; // a power of two

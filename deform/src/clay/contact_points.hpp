@@ -1,5 +1,5 @@
 #pragma once
-// The places at which a body pushes: the deepest vertex of each cell of space, one a part, and of
+// The places at which a body pushes: the deepest vertex of each cell of space, one per part, and of
 // those only such as do not crowd; and the pressure that each vertex remembers.
 
 #include <array>
@@ -80,7 +80,7 @@ private:
   SpaceCells cells_{};
   std::uint32_t round_ = 0;
   std::vector<Slot> slots_;          ///< an open hash table
-  std::vector<NearVertex> vertices_; ///< one a cell
+  std::vector<NearVertex> vertices_; ///< one per cell
   CrowdedPlaces places_;             ///< the chosen places
   std::vector<ContactPoint> chosen_;
   bool is_chosen_ = false; ///< since clear()

@@ -42,10 +42,10 @@ void BoxGate::extend(const BoxGate& other) noexcept {
     limits.sides[side] = std::max(limits.sides[side], other.limits.sides[side]);
 }
 
-ContactSearch::ContactSearch(std::size_t bodies, std::size_t parts_a_body)
-    : bodies_(bodies), parts_a_body_(parts_a_body), parts_(bodies * parts_a_body),
-      is_out_(parts_.size(), 0), body_boxes_(bodies, BoxGate::shut()), seen_(parts_a_body),
-      lists_(parts_a_body * block_size) {
+ContactSearch::ContactSearch(std::size_t bodies, std::size_t parts_per_body)
+    : bodies_(bodies), parts_per_body_(parts_per_body), parts_(bodies * parts_per_body),
+      is_out_(parts_.size(), 0), body_boxes_(bodies, BoxGate::shut()), seen_(parts_per_body),
+      lists_(parts_per_body * block_size) {
   cones_.reserve(3 * parts_.size());
   planes_.reserve(parts_.size());
 }
@@ -64,7 +64,7 @@ void ContactSearch::set_parts(std::span<const ContactPart> parts) noexcept {
       parts_[at].cone_count = 3;
       add_plane(part, parts_[at]);
     }
-    body_boxes_[at / parts_a_body_].extend(BoxGate::of(part));
+    body_boxes_[at / parts_per_body_].extend(BoxGate::of(part));
   }
 }
 
@@ -75,16 +75,9 @@ void ContactSearch::add_cone(const ContactPart& part, std::size_t first,
   const double length = way.norm();
   if (!(length > std::abs(growth))) { // one ball contains the other
     const std::size_t whole = growth > 0.0 ? second : first;
-    const auto middle = as_floats(part.corners[whole]);
-    cones_.push_back({middle[0],
-                      middle[1],
-                      middle[2],
-                      {},
-                      0.0F,
-                      0.0F,
-                      0.0F,
-                      static_cast<float>(part.radii[whole]),
-                      0.0F});
+    const auto [x, y, z] = as_floats(part.corners[whole]);
+    const auto radius = static_cast<float>(part.radii[whole]);
+    cones_.push_back({x, y, z, {}, 0.0F, 0.0F, 0.0F, radius, 0.0F});
     return;
   }
   const double slope = growth / length;
@@ -144,14 +137,14 @@ void ContactSearch::measure_boxes(std::size_t body, float margin) noexcept {
   boxes_.nearest.distance.fill(std::numeric_limits<float>::max());
   boxes_.nearest.to_centre.fill(1.0F);
   boxes_.list_sizes.fill(0);
-  const auto first = static_cast<std::uint32_t>(body * parts_a_body_);
-  for (std::uint32_t part = 0; part < parts_a_body_; ++part)
+  const auto first = static_cast<std::uint32_t>(body * parts_per_body_);
+  for (std::uint32_t part = 0; part < parts_per_body_; ++part)
     if (is_out_[first + part] == 0)
       part_from_boxes(boxes_.lanes, arrays(), first + part, seen_[part], boxes_.nearest);
-  for (std::uint32_t part = 0; part < parts_a_body_; ++part)
+  for (std::uint32_t part = 0; part < parts_per_body_; ++part)
     if (is_out_[first + part] == 0)
       list_part(first + part, near_in_boxes(boxes_.lanes, seen_[part], boxes_.nearest, margin));
-  distances_ += parts_a_body_ * boxes_.count;
+  distances_ += parts_per_body_ * boxes_.count;
 }
 
 /// Adds the part to the lists of these boxes, a bit each.
@@ -159,7 +152,7 @@ void ContactSearch::list_part(std::uint32_t part, std::uint64_t near) noexcept {
   const std::uint64_t all = ~std::uint64_t{0} >> (block_size - boxes_.count);
   for (std::uint64_t left = near & all; left != 0; left &= left - 1) {
     const auto box = static_cast<std::size_t>(std::countr_zero(left));
-    lists_[box * parts_a_body_ + boxes_.list_sizes[box]++] = part;
+    lists_[box * parts_per_body_ + boxes_.list_sizes[box]++] = part;
   }
 }
 

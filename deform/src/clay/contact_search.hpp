@@ -36,7 +36,7 @@ struct BoxGate {
 class ContactSearch {
 public:
   /// Allocates.
-  ContactSearch(std::size_t bodies, std::size_t parts_a_body);
+  ContactSearch(std::size_t bodies, std::size_t parts_per_body);
 
   /// Sets the parts of all bodies, in a layout's coordinates. Does not allocate.
   void set_parts(std::span<const ContactPart> parts) noexcept;
@@ -82,7 +82,7 @@ private:
   void visit_boxes(const BoundedShape& shape, std::size_t body, float margin, const Visit& visit);
 
   std::size_t bodies_;
-  std::size_t parts_a_body_;
+  std::size_t parts_per_body_;
   std::vector<ConeEntry> cones_;
   std::vector<PlaneEntry> planes_;
   std::vector<PartEntry> parts_;
@@ -135,7 +135,7 @@ void ContactSearch::visit_boxes(const BoundedShape& shape, std::size_t body, flo
     const std::size_t count = boxes_.list_sizes[box];
     if (count == 0) continue;
     const std::size_t block = boxes_.blocks[box];
-    nearest_in_block(shape.shape[block], arrays(), lists_.data() + box * parts_a_body_, count,
+    nearest_in_block(shape.shape[block], arrays(), lists_.data() + box * parts_per_body_, count,
                      nearest_);
     distances_ += count * block_size;
     visit(block, nearest_);

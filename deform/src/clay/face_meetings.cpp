@@ -18,7 +18,7 @@ namespace {
 /// surface without wrinkles that could be half a turn. At 2.8, wrinkles of a ball that is torn met
 /// unseen; at 2.2, no longer.
 constexpr float widest_cosine = -0.4161468F, widest_sine = 0.9092974F; // of the angle 2.0
-constexpr std::size_t pairs_a_block = 64;
+constexpr std::size_t pairs_per_block = 64;
 constexpr std::size_t max_met = 4096;
 constexpr std::size_t max_tests = 50'000;    // of two triangles
 constexpr std::size_t max_boxes = 8'000'000; // compared with others
@@ -116,7 +116,7 @@ FaceMeetings::FaceMeetings(const BlockLayout& layout, std::span<const std::uint3
     row.assign(blocks + 2 * block_size, std::numeric_limits<float>::infinity());
   hulls_.resize(blocks);
   triangle_boxes_.resize(corners_.size());
-  pairs_.reserve(pairs_a_block * blocks);
+  pairs_.reserve(pairs_per_block * blocks);
   is_folded_.assign(blocks, 0);
   some_.reserve(most);
   others_.reserve(most);

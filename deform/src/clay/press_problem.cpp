@@ -10,8 +10,8 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr double cells_a_radius_of_slopes = 2.5; // or fewer, where there would be too many
-constexpr double rounding_of_slopes = 1.0001;    // of sums in float
+constexpr double cells_per_radius_of_slopes = 2.5; // or fewer, where there would be too many
+constexpr double rounding_of_slopes = 1.0001;      // of sums in float
 
 } // namespace
 
@@ -31,7 +31,7 @@ void SlopeGrid::begin(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                       double radius) noexcept {
   const Eigen::Array3d extent = (high - low).array() + 2.0 * radius;
   const double size =
-      std::max(radius / cells_a_radius_of_slopes, extent.maxCoeff() / (slope_cells - 0.5));
+      std::max(radius / cells_per_radius_of_slopes, extent.maxCoeff() / (slope_cells - 0.5));
   low_ = low.array() - radius;
   radius_ = radius;
   for (std::size_t axis = 0; axis < 3; ++axis)

@@ -41,7 +41,7 @@ private:
   Eigen::Vector3d low_ = Eigen::Vector3d::Zero();
   double radius_ = 1.0;
   SlopeCells cells_{};
-  VectorArray<float> sums_; ///< one a cell
+  VectorArray<float> sums_; ///< one per cell
 };
 
 /// What a place's friction needs.
@@ -61,7 +61,7 @@ public:
   /// Finds l for these depths below `points`' own; `extra` is added to each. Returns the largest
   /// depth that is left at a place.
   double solve_pressure(double extra) noexcept;
-  /// Finds t, one Friction a place, in the order of the points; `coefficient` is Coulomb's. Slip
+  /// Finds t, one Friction per place, in the order of the points; `coefficient` is Coulomb's. Slip
   /// begins at the limit and ends below 0.8 of it, so that tremor does not flicker. Call it after
   /// solve_pressure().
   void solve_friction(std::span<const Friction> frictions, double coefficient) noexcept;
@@ -79,7 +79,7 @@ public:
   static constexpr int max_sweeps = 60;
 
 private:
-  using Three = std::array<VectorArray<double>, 3>; ///< an array an axis
+  using Three = std::array<VectorArray<double>, 3>; ///< an array per axis
 
   PressArrays arrays() const noexcept;
   double bound_of_slopes() noexcept;

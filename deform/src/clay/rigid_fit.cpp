@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int max_rounds = 12;
+constexpr int max_fit_rounds = 12;
 constexpr double inertia = 1e-6;       // resists motions that nothing determines
 constexpr double enough_change = 1e-3; // share of the yielding depth
 
@@ -48,7 +48,7 @@ double weight_of(double limit, double residue) noexcept {
 Eigen::Isometry3d fit_rigid_motion(std::span<const Carrier> carriers, const Vector3d& middle,
                                    double friction, double yields) noexcept {
   Vector6d motion = Vector6d::Zero();
-  for (int round = 0; round < max_rounds; ++round) {
+  for (int round = 0; round < max_fit_rounds; ++round) {
     Equations equations;
     for (const Carrier& one : carriers) {
       const Vector3d arm = one.at - middle;

@@ -46,7 +46,7 @@ RowsByKey<std::uint32_t> fans_of(const BlockLayout& layout,
   return fans;
 }
 
-constexpr std::size_t calls_a_direction = 4;
+constexpr std::size_t calls_per_direction = 4;
 // Of the directions, in the first call; one for a model so large that they would take several
 // ticks.
 constexpr int first_rounds = 4;
@@ -215,7 +215,8 @@ double VolumeKeeper::volume(const BoundedShape& shape) noexcept {
   ++calls_;
   double sum = 0.0;
   for (std::size_t block = 0; block < facts_.size(); ++block) {
-    if (has_changed(shape, block)) measure(shape, block, (block + calls_) % calls_a_direction == 0);
+    if (has_changed(shape, block))
+      measure(shape, block, (block + calls_) % calls_per_direction == 0);
     sum += facts_[block].volume;
   }
   for (std::size_t block = 0; block < facts_.size(); ++block)

@@ -132,9 +132,9 @@ private:
   std::size_t vertices_;
   std::optional<RingLayout> ring_layout_; ///< only for a closed surface
   std::vector<std::uint64_t> stamps_;     ///< the blocks' stamps when they were measured
-  std::vector<RingFacts> facts_;          ///< one a block
+  std::vector<RingFacts> facts_;          ///< one per block
   std::vector<std::uint8_t> is_turned_;   ///< its directions have changed since it was measured
-  std::vector<std::uint8_t> is_free_;     ///< one a block: some weight is not 0
+  std::vector<std::uint8_t> is_free_;     ///< one per block: some weight is not 0
   std::vector<RingBlock> measured_;
   std::vector<float> weights_;
   std::vector<RingTable> points_, directions_; ///< the tables of one block's parts

@@ -56,8 +56,6 @@ BlockEvaluator::BlockEvaluator(const BlockLayout& layout, Eigen::Index entries,
                                const EvaluationOptions& options)
     : parts_(std::make_unique<Parts>(layout, entries, options.threads)) {}
 BlockEvaluator::~BlockEvaluator() = default;
-BlockEvaluator::BlockEvaluator(BlockEvaluator&&) noexcept = default;
-BlockEvaluator& BlockEvaluator::operator=(BlockEvaluator&&) noexcept = default;
 
 bool BlockEvaluator::set_field(const CsrbfField& field) noexcept {
   for (auto& list : parts_->lists)
@@ -83,7 +81,6 @@ BlockPass pass_over(const BoundedShape& from, VertexBlock* to,
   return {.from = from.shape.data(),
           .to = to,
           .bounds = from.bounds.data(),
-          .new_bounds = nullptr,
           .reached = parts.reached.data(),
           .begin = 0,
           .end = blocks,

@@ -18,7 +18,7 @@ struct NENDO_API BoundedShape {
   void follow(const BoundedShape& other);
 
   BlockShape shape;
-  std::vector<BlockBounds> bounds; ///< one a block
+  std::vector<BlockBounds> bounds; ///< one per block
   double extent = 0.0;             ///< no coordinate is larger
 };
 
@@ -43,8 +43,6 @@ public:
   /// Allocates for fields of `entries` functions.
   BlockEvaluator(const BlockLayout& layout, Eigen::Index entries, const EvaluationOptions& options);
   ~BlockEvaluator();
-  BlockEvaluator(BlockEvaluator&&) noexcept;
-  BlockEvaluator& operator=(BlockEvaluator&&) noexcept;
 
   /// Allocates for fields that are halfway (CsrbfField::is_halfway).
   void reserve_halves(const BlockLayout& layout);

@@ -102,14 +102,10 @@ void BlockField::assign_entry(std::size_t at, const Eigen::Vector3d& centre, dou
   const double inner = keeps_volume ? 15.0 * field.keep_volume * inverse * inverse : 1.25 * r;
   precise_entries_[at] = {
       centre[0], centre[1], centre[2], r, inverse, inner, {scaled[0], scaled[1], scaled[2]}};
-  const FieldEntry<double>& entry = precise_entries_[at];
-  entries_[at] = {as_float(centre[0]),
-                  as_float(centre[1]),
-                  as_float(centre[2]),
-                  as_float(r),
-                  as_float(entry.inverse_radius),
-                  as_float(entry.inner),
-                  {as_float(scaled[0]), as_float(scaled[1]), as_float(scaled[2])}};
+  entries_[at] = {as_float(centre[0]), as_float(centre[1]), as_float(centre[2]),
+                  as_float(r),         as_float(inverse),   as_float(inner)};
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    entries_[at].coefficient[static_cast<std::size_t>(axis)] = as_float(scaled[axis]);
   // Powers of others, and what they are multiplied by, are not numbers that float holds.
   in_range_ = in_range_ && r >= min_float_radius && r <= max_float_radius &&
               scaled.cwiseAbs().maxCoeff() <= max_float;

@@ -75,7 +75,7 @@ void CardinalWeights::take_coefficients(Eigen::Index start, Eigen::Index axis) n
     polynomial_[4 * j + 1 + static_cast<std::size_t>(k)] = unit_ * slope[k];
 }
 
-bool CardinalWeights::build(CsrbfSolver& solver, const BoundedShape& rest,
+void CardinalWeights::build(CsrbfSolver& solver, const BoundedShape& rest,
                             BlockEvaluator& evaluator) noexcept {
   built_ = false;
   cache_.used_entries = 0;
@@ -83,15 +83,13 @@ bool CardinalWeights::build(CsrbfSolver& solver, const BoundedShape& rest,
   BlockEvaluator::Parts& parts = evaluator.parts();
   if (cache_.max_entries == 0 || !solve_units(solver) ||
       !parts.field.assign(unit_field_, BlockField::Zeros::kept))
-    return false;
+    return;
   FieldView view = parts.field.view();
   view.precise_entries = parts.field.precise_entries();
   const bool global =
       std::any_of(polynomial_.begin(), polynomial_.end(), [](double p) { return p != 0.0; });
   const BlockPass pass{.from = rest.shape.data(),
-                       .to = nullptr,
                        .bounds = rest.bounds.data(),
-                       .new_bounds = nullptr,
                        .reached = reached_.data(),
                        .begin = 0,
                        .end = rest.shape.block_count(),
@@ -103,7 +101,6 @@ bool CardinalWeights::build(CsrbfSolver& solver, const BoundedShape& rest,
                             kernel_scratch_.get(),
                             weight_scratch_.get()};
   built_ = build_weights(view, pass, source, cache_);
-  return built_;
 }
 
 /// No coordinate moves farther.
@@ -144,8 +141,8 @@ void CardinalWeights::apply(const Points& displacements, const BlockShape& rest,
   const std::size_t blocks = cache_.block_count;
   evaluator.parts().in_pieces(
       blocks, min_shared_pieces, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t at = begin; at < end; at += blocks_a_piece) {
-          const std::size_t until = std::min(at + blocks_a_piece, end);
+        for (std::size_t at = begin; at < end; at += blocks_per_piece) {
+          const std::size_t until = std::min(at + blocks_per_piece, end);
           back ? apply_piece(blocks - until, blocks - at) : apply_piece(at, until);
         }
       });

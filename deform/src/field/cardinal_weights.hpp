@@ -21,9 +21,9 @@ public:
   CardinalWeights(const BlockLayout& layout, Eigen::Index starts, CsrbfField field,
                   std::size_t weight_bytes);
 
-  /// Makes the weights of the rest shape for the start points of `solver`. Returns false if the
-  /// memory does not suffice, or there are too many start points.
-  bool build(CsrbfSolver& solver, const BoundedShape& rest, BlockEvaluator& evaluator) noexcept;
+  /// Makes the weights of the rest shape for the start points of `solver`, unless the memory does
+  /// not suffice, or there are too many start points.
+  void build(CsrbfSolver& solver, const BoundedShape& rest, BlockEvaluator& evaluator) noexcept;
   bool is_built() const noexcept { return built_; }
   std::size_t bytes_used() const noexcept {
     return cache_.used_bytes + cache_.used_entries * sizeof(WeightEntry);

@@ -93,7 +93,7 @@ private:
 };
 
 /// A thread takes this many blocks at a time, so that taking them costs little.
-inline constexpr std::size_t blocks_a_piece = 16;
+inline constexpr std::size_t blocks_per_piece = 16;
 
 struct BlockEvaluator::Parts {
   Parts(const BlockLayout& layout, Eigen::Index entries, int threads);
@@ -120,7 +120,7 @@ struct BlockEvaluator::Parts {
 template <class Range>
 void BlockEvaluator::Parts::in_pieces(std::size_t count, std::size_t min_shared,
                                       const Range& range) noexcept {
-  if (!worker || count < min_shared * blocks_a_piece) {
+  if (!worker || count < min_shared * blocks_per_piece) {
     range(std::size_t{0}, count, std::size_t{0});
     hwy::FlushStream();
     return;
@@ -132,12 +132,12 @@ void BlockEvaluator::Parts::in_pieces(std::size_t count, std::size_t min_shared,
 
     void work(std::size_t thread) noexcept {
       for (std::size_t own = 0; taken.fetch_add(1, std::memory_order_relaxed) < pieces; ++own) {
-        const std::size_t begin = (thread == 0 ? own : pieces - 1 - own) * blocks_a_piece;
-        range(begin, std::min(begin + blocks_a_piece, count), thread);
+        const std::size_t begin = (thread == 0 ? own : pieces - 1 - own) * blocks_per_piece;
+        range(begin, std::min(begin + blocks_per_piece, count), thread);
       }
       hwy::FlushStream();
     }
-  } shared{range, count, (count + blocks_a_piece - 1) / blocks_a_piece};
+  } shared{range, count, (count + blocks_per_piece - 1) / blocks_per_piece};
   worker->run({[](void* context) noexcept { static_cast<Shared*>(context)->work(1); }, &shared});
   shared.work(0);
   worker->end();

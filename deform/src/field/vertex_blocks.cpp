@@ -18,7 +18,7 @@ struct Place {
   Eigen::Vector3f at;
   std::uint32_t index;
 };
-using Places = std::vector<Place>::iterator;
+using PlaceIterator = std::vector<Place>::iterator;
 
 /// In shares of the model's largest side: numbers that float holds.
 std::vector<Place> places_of(const Points& points) {
@@ -34,10 +34,10 @@ std::vector<Place> places_of(const Points& points) {
   return places;
 }
 
-Eigen::Index longest_side(Places begin, Places end) noexcept {
+Eigen::Index longest_side(PlaceIterator begin, PlaceIterator end) noexcept {
   Eigen::Vector3f low = begin->at;
   Eigen::Vector3f high = low;
-  for (Places place = begin; place != end; ++place) {
+  for (PlaceIterator place = begin; place != end; ++place) {
     low = low.cwiseMin(place->at);
     high = high.cwiseMax(place->at);
   }
@@ -53,7 +53,7 @@ std::size_t left_blocks(std::size_t blocks) noexcept {
   return (blocks / 2 + group_size / 2) / group_size * group_size;
 }
 
-void halve(Places begin, Places end) {
+void halve(PlaceIterator begin, PlaceIterator end) {
   const auto count = static_cast<std::size_t>(end - begin);
   if (count <= block_size) {
     std::sort(begin, end, [](const Place& a, const Place& b) { return a.index < b.index; });
@@ -61,7 +61,7 @@ void halve(Places begin, Places end) {
   }
   const Eigen::Index axis = longest_side(begin, end);
   const std::size_t left = left_blocks(block_count_of(count)) * block_size;
-  const Places middle = begin + static_cast<std::ptrdiff_t>(left);
+  const PlaceIterator middle = begin + static_cast<std::ptrdiff_t>(left);
   // Equal coordinates by their indices: so the order is the same with every library.
   std::nth_element(begin, middle, end, [axis](const Place& a, const Place& b) {
     return std::tie(a.at[axis], a.index) < std::tie(b.at[axis], b.index);
@@ -78,7 +78,7 @@ void halve(Places begin, Places end) {
 /// not finite come last. Allocates.
 std::vector<std::uint32_t> block_order(const Points& points) {
   std::vector<Place> places = places_of(points);
-  const Places finite =
+  const PlaceIterator finite =
       std::stable_partition(places.begin(), places.end(), [&points](const Place& place) {
         return points.col(place.index).allFinite();
       });

@@ -6,7 +6,7 @@
 namespace nendo::deform {
 
 namespace {
-constexpr std::array<std::pair<Wendland, std::string_view>, 4> names{{
+constexpr std::array<std::pair<Wendland, std::string_view>, 4> wendland_names{{
     {Wendland::c0, "wendland-c0"},
     {Wendland::c2, "wendland-c2"},
     {Wendland::c4, "wendland-c4"},
@@ -15,13 +15,13 @@ constexpr std::array<std::pair<Wendland, std::string_view>, 4> names{{
 }
 
 std::string_view name_of(Wendland kernel) noexcept {
-  for (const auto& [candidate, name] : names)
+  for (const auto& [candidate, name] : wendland_names)
     if (candidate == kernel) return name;
   return {};
 }
 
 std::optional<Wendland> wendland_named(std::string_view name) noexcept {
-  for (const auto& [kernel, candidate] : names)
+  for (const auto& [kernel, candidate] : wendland_names)
     if (candidate == name) return kernel;
   return std::nullopt;
 }

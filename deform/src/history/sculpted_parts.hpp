@@ -44,13 +44,13 @@ struct SavedBlock {
 };
 
 class ShapeHistory {
+  friend class SculptedShape; // which has the functions for notes and fences
+
 public:
   /// Allocates about this many bytes, and one more shape like this one. Later it allocates nothing,
   /// but takes blocks from `more`, if that is not null; `more` must outlive this. Without `more`
   /// and with fewer bytes than a block needs, nothing is kept.
   ShapeHistory(const BlockShape& first, std::size_t bytes, UndoMemory* more);
-  ~ShapeHistory();
-  ShapeHistory(ShapeHistory&&) noexcept = default;
 
   /// Returns whether there is any memory, so that revert() can go back.
   bool is_kept() const noexcept { return kept_.block_count() > 0; }
@@ -66,50 +66,14 @@ public:
   void mark(const StepNote& note) noexcept;
   /// Makes `shape` again the shape that was kept last.
   void revert(BoundedShape& shape) const noexcept;
-  /// Undoes the last step. `shape` must be the shape that was kept last. Returns false if there is
-  /// no step, or none behind the fence.
-  bool undo(BoundedShape& shape) noexcept;
-  /// Does the last undone step again. `shape` must be the shape that was kept last. Returns false,
-  /// and changes nothing, if there is no undone step.
-  bool redo(BoundedShape& shape) noexcept;
-
-  /// Makes undo() stop here, and forgets the undone steps.
-  void fence() noexcept {
-    forget_undone();
-    fence_ = steps_;
-    ++version_;
-  }
-  void unfence() noexcept {
-    fence_ = 0;
-    ++version_;
-  }
-
-  /// Returns the note of the step that undo() or redo() would do next; null if there is none.
-  const StepNote* to_undo() const noexcept { return steps() > 0 ? &head_->of_step.note : nullptr; }
-  const StepNote* to_redo() const noexcept {
-    return undone_ > 0 ? &next_head()->of_step.note : nullptr;
-  }
-  /// Changes that note. There must be such a step.
-  void note_to_undo(const StepNote& note) noexcept {
-    head_->of_step.note = note;
-    ++version_;
-  }
-  void note_to_redo(const StepNote& note) noexcept {
-    next_head()->of_step.note = note;
-    ++version_;
-  }
-  /// Copies the notes of the last steps that can be undone, the last one first, and of the first of
-  /// those that were undone, the first one first. Returns how many there were to copy.
-  std::size_t copy_undoable(std::span<StepNote> notes) const noexcept;
-  std::size_t copy_undone(std::span<StepNote> notes) const noexcept;
-  /// Returns a number that changes whenever these lists do.
-  std::uint64_t version() const noexcept { return version_; }
+  /// Undoes the last step. `shape` must be the shape that was kept last. Does nothing if there is
+  /// no step, or none after the fence.
+  void undo(BoundedShape& shape) noexcept;
+  /// Does the last undone step again. `shape` must be the shape that was kept last. Does nothing
+  /// if there is no undone step.
+  void redo(BoundedShape& shape) noexcept;
 
   std::size_t steps() const noexcept { return steps_ - fence_; } ///< that undo() may undo
-  std::size_t undone() const noexcept { return undone_; }
-  std::size_t forgotten() const noexcept {
-    return forgotten_;
-  } ///< the steps dropped because memory ended
 
 private:
   std::size_t count_changed(const BlockShape& now) const noexcept;
@@ -150,8 +114,8 @@ struct SculptedShape::Parts {
   ShapeHistory history;
   StepNote note{}; ///< the note for the next step
   StepNote note_of_reset{};
-  /// Whether `now` may differ from the shape that was kept last. To find out reads a stamp a block,
-  /// which is too much for the tick that takes another version of a large model.
+  /// Whether `now` may differ from the shape that was kept last. To find out reads a stamp per
+  /// block, which is too much for the tick that takes another version of a large model.
   bool is_changed = false;
 
   /// Returns the present shape, for writing.

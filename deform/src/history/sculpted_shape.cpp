@@ -19,8 +19,6 @@ ShapeHistory::ShapeHistory(const BlockShape& first, std::size_t bytes, UndoMemor
   if (more_ != nullptr) more_->report_free(free_count_);
 }
 
-ShapeHistory::~ShapeHistory() = default;
-
 void ShapeHistory::own(std::size_t count) {
   if (count == 0) return;
   SavedChain chain;
@@ -134,22 +132,6 @@ SavedBlock* ShapeHistory::next_head() const noexcept {
   return head_ != nullptr ? head_->of_step.after : first_head_;
 }
 
-std::size_t ShapeHistory::copy_undoable(std::span<StepNote> notes) const noexcept {
-  const std::size_t count = std::min(notes.size(), steps());
-  const SavedBlock* head = head_;
-  for (std::size_t at = 0; at < count; ++at, head = head->of_step.before)
-    notes[at] = head->of_step.note;
-  return count;
-}
-
-std::size_t ShapeHistory::copy_undone(std::span<StepNote> notes) const noexcept {
-  const std::size_t count = std::min(notes.size(), undone_);
-  const SavedBlock* head = next_head();
-  for (std::size_t at = 0; at < count; ++at, head = head->of_step.after)
-    notes[at] = head->of_step.note;
-  return count;
-}
-
 void ShapeHistory::forget_undone() noexcept {
   if (undone_ == 0) return;
   add_free({present_ != nullptr ? present_->next : oldest_, newest_, undone_blocks_});
@@ -193,8 +175,8 @@ void ShapeHistory::revert(BoundedShape& shape) const noexcept {
   }
 }
 
-bool ShapeHistory::undo(BoundedShape& shape) noexcept {
-  if (steps() == 0) return false;
+void ShapeHistory::undo(BoundedShape& shape) noexcept {
+  if (steps() == 0) return;
   const std::uint64_t step = present_->step;
   for (; present_ != nullptr && present_->step == step; present_ = present_->previous) {
     if (present_->block != SavedBlock::head) exchange(*present_, shape);
@@ -204,11 +186,10 @@ bool ShapeHistory::undo(BoundedShape& shape) noexcept {
   ++undone_;
   head_ = steps_ > 0 ? head_->of_step.before : nullptr;
   ++version_;
-  return true;
 }
 
-bool ShapeHistory::redo(BoundedShape& shape) noexcept {
-  if (undone_ == 0) return false;
+void ShapeHistory::redo(BoundedShape& shape) noexcept {
+  if (undone_ == 0) return;
   SavedBlock* next = present_ != nullptr ? present_->next : oldest_;
   head_ = next;
   const std::uint64_t step = next->step;
@@ -220,7 +201,6 @@ bool ShapeHistory::redo(BoundedShape& shape) noexcept {
   ++steps_;
   --undone_;
   ++version_;
-  return true;
 }
 
 SculptedShape::SculptedShape(BlockLayout layout, const DeformerOptions& options,
@@ -244,11 +224,11 @@ std::size_t SculptedShape::undo_steps() const noexcept {
 }
 
 std::size_t SculptedShape::redo_steps() const noexcept {
-  return parts_->history.undone();
+  return parts_->history.undone_;
 }
 
 std::size_t SculptedShape::forgotten_steps() const noexcept {
-  return parts_->history.forgotten();
+  return parts_->history.forgotten_;
 }
 
 void SculptedShape::set_notes(const StepNote& note, const StepNote& of_reset) noexcept {
@@ -270,39 +250,57 @@ void SculptedShape::redo_mark() noexcept {
 }
 
 const StepNote* SculptedShape::to_undo() const noexcept {
-  return parts_->history.to_undo();
+  const ShapeHistory& history = parts_->history;
+  return history.steps() > 0 ? &history.head_->of_step.note : nullptr;
 }
 
 const StepNote* SculptedShape::to_redo() const noexcept {
-  return parts_->history.to_redo();
+  const ShapeHistory& history = parts_->history;
+  return history.undone_ > 0 ? &history.next_head()->of_step.note : nullptr;
 }
 
 void SculptedShape::note_to_undo(const StepNote& note) noexcept {
-  parts_->history.note_to_undo(note);
+  parts_->history.head_->of_step.note = note;
+  ++parts_->history.version_;
 }
 
 void SculptedShape::note_to_redo(const StepNote& note) noexcept {
-  parts_->history.note_to_redo(note);
+  parts_->history.next_head()->of_step.note = note;
+  ++parts_->history.version_;
 }
 
 std::size_t SculptedShape::copy_undoable(std::span<StepNote> notes) const noexcept {
-  return parts_->history.copy_undoable(notes);
+  const ShapeHistory& history = parts_->history;
+  const std::size_t count = std::min(notes.size(), history.steps());
+  const SavedBlock* head = history.head_;
+  for (std::size_t at = 0; at < count; ++at, head = head->of_step.before)
+    notes[at] = head->of_step.note;
+  return count;
 }
 
 std::size_t SculptedShape::copy_undone(std::span<StepNote> notes) const noexcept {
-  return parts_->history.copy_undone(notes);
+  const ShapeHistory& history = parts_->history;
+  const std::size_t count = std::min(notes.size(), history.undone_);
+  const SavedBlock* head = history.next_head();
+  for (std::size_t at = 0; at < count; ++at, head = head->of_step.after)
+    notes[at] = head->of_step.note;
+  return count;
 }
 
 std::uint64_t SculptedShape::history_version() const noexcept {
-  return parts_->history.version();
+  return parts_->history.version_;
 }
 
 void SculptedShape::fence() noexcept {
-  parts_->history.fence();
+  ShapeHistory& history = parts_->history;
+  history.forget_undone();
+  history.fence_ = history.steps_;
+  ++history.version_;
 }
 
 void SculptedShape::unfence() noexcept {
-  parts_->history.unfence();
+  parts_->history.fence_ = 0;
+  ++parts_->history.version_;
 }
 
 } // namespace nendo::deform

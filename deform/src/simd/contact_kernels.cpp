@@ -187,7 +187,7 @@ cell_keys(ContactTag d, const VertexBlock& block, std::size_t lane, const SpaceC
   const hn::RebindToSigned<ContactTag> di;
   const auto cell_of = [&](ContactV coordinate) HWY_ATTR {
     const ContactV cell =
-        hn::MulAdd(coordinate, hn::Set(d, cells.a_length), hn::Set(d, cells.shift));
+        hn::MulAdd(coordinate, hn::Set(d, cells.per_length), hn::Set(d, cells.shift));
     const ContactV inside = hn::Min(hn::Max(cell, hn::Zero(d)), hn::Set(d, cells.most));
     return hn::And(hn::ConvertTo(di, inside), hn::Set(di, 1023));
   };

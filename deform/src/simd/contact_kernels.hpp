@@ -55,10 +55,10 @@ struct alignas(64) NearestLanes {
 void nearest_in_block(const VertexBlock& block, const PartArrays& arrays, const std::uint32_t* list,
                       std::size_t count, NearestLanes& nearest) noexcept;
 
-/// Cells of space: a coordinate's cell is what is whole of coordinate * a_length + shift, from 0 to
-/// `most`.
+/// Cells of space: a coordinate's cell is what is whole of coordinate * per_length + shift, from 0
+/// to `most`.
 struct SpaceCells {
-  float a_length, shift, most;
+  float per_length, shift, most;
 };
 /// Of the vertices nearer than `margin`, lists the nearest of each cell and part, the nearest
 /// first, and of those that are equally near the first. Cells 1024 apart are taken for one. Returns

@@ -22,7 +22,7 @@ struct FieldEntry {
   Real radius;
   Real inverse_radius;
   Real inner; ///< 1.25 r; of fields that keep the volume 15 keep / r^2
-  std::array<Real, 3> coefficient;
+  std::array<Real, 3> coefficient{};
 };
 
 /// Returns the factor that the vector code leaves out: psi = factor * o^p * (polynomial in o) with
@@ -101,13 +101,13 @@ struct FieldView {
 /// nor written, and reached[block] = 0; otherwise it is 1.
 struct BlockPass {
   const VertexBlock* from;
-  VertexBlock* to;
+  VertexBlock* to = nullptr;
   /// What the field's displacements at `from` are added to; null: `from`. Only for fields that keep
   /// the volume.
   const VertexBlock* base = nullptr;
   const BlockBounds* bounds; ///< those of `from`
-  BlockBounds*
-      new_bounds; ///< those of `to`, where blocks were written; may be `bounds`, may be null
+  /// Those of `to`, where blocks were written; may be `bounds`, may be null.
+  BlockBounds* new_bounds = nullptr;
   std::uint8_t* reached;
   std::size_t begin, end;
   ListScratch scratch;

@@ -6,8 +6,8 @@
 
 namespace nendo::deform {
 
-/// Arrays of numbers, one a place, padded to `stride`, and matrices with a row of `stride` numbers
-/// a place. They are aligned for whole vectors.
+/// Arrays of numbers, one per place, padded to `stride`, and matrices with a row of `stride`
+/// numbers a place. They are aligned for whole vectors.
 struct PressArrays {
   std::size_t count, stride; ///< stride: a multiple of press_lanes
   const double* x;
@@ -36,7 +36,7 @@ inline constexpr std::size_t slope_cells = 32;
 struct SlopeCells {
   float size, radius; ///< a cell's size; the functions' radius
   std::array<std::size_t, 3> counts;
-  float* sums; ///< one a cell; rows along x
+  float* sums; ///< one per cell; rows along x
 };
 /// Adds to each cell coefficient * the steepest |psi'| of Wendland's C2 about `centre` in that
 /// cell.

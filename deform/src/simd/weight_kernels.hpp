@@ -53,7 +53,7 @@ struct WeightSource {
   /// Entry e's coefficient is sum_j map[e * starts + j] g_j, for each coordinate. The map contains
   /// the kernel's constant factor.
   const double* map;
-  /// The same for p(x), 4 numbers a start point; or null.
+  /// The same for p(x), 4 numbers per start point; or null.
   const double* polynomial;
   std::size_t starts;
   /// Where no weight of a start point in a block is larger than this, its weights are left out

@@ -91,7 +91,7 @@ public:
 private:
   using Systems = std::array<std::unique_ptr<KernelSystem>, 3>; ///< lean, dense, sparse
 
-  /// Of M: three a start point, where its entries are matrices.
+  /// Of M: three per start point, where its entries are matrices.
   Eigen::Index rows_of(Eigen::Index points) const noexcept {
     return options_.keeps_volume() ? 3 * points : points;
   }

@@ -7,13 +7,6 @@
 
 namespace nendo::deform {
 
-void OwnFunctions::add_function(Wendland kernel, const Points& starts, const OwnSupport& own,
-                                std::uint32_t point) {
-  const double distance = (starts.col(point) - starts.col(own.point)).norm();
-  if (!(distance < own.support.radius)) return;
-  values_.push_back({point, wendland(kernel, distance / own.support.radius)});
-}
-
 bool OwnFunctions::evaluate(Wendland kernel, const Points& starts, const Supports& supports) {
   const Eigen::Index n = starts.cols();
   begins_.assign(1, 0);
@@ -28,7 +21,11 @@ bool OwnFunctions::evaluate(Wendland kernel, const Points& starts, const Support
   const PointGrid grid(many ? starts : Points(3, 0), many ? edge : 1.0);
   for (const OwnSupport& own : supports.own) {
     assert(own.point >= 0 && own.point < n);
-    const auto visit = [&](std::uint32_t point) { add_function(kernel, starts, own, point); };
+    const auto visit = [&](std::uint32_t point) {
+      const double distance = (starts.col(point) - starts.col(own.point)).norm();
+      if (distance < own.support.radius)
+        values_.push_back({point, wendland(kernel, distance / own.support.radius)});
+    };
     const std::size_t begin = values_.size();
     if (many) {
       const Eigen::Vector3d centre = starts.col(own.point);

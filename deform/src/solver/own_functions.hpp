@@ -36,15 +36,12 @@ public:
   double pairs() const noexcept;
   /// Returns the trace of Psi W Psi^T.
   double trace() const noexcept;
-  /// Writes the diagonal of Psi W Psi^T, one entry a point.
+  /// Writes the diagonal of Psi W Psi^T, one entry per point.
   void diagonal(Eigen::VectorXd& out) const noexcept;
   /// Returns the function's coefficient w_e sum_i psi_e(c_i) a_i.
   Eigen::RowVector4d coefficient(std::size_t function, const Rows& a) const noexcept;
 
 private:
-  void add_function(Wendland kernel, const Points& starts, const OwnSupport& own,
-                    std::uint32_t point);
-
   std::vector<std::size_t> begins_{0};
   std::vector<Value> values_;
   std::vector<double> weights_;

@@ -1,5 +1,5 @@
 #pragma once
-// The equations of fields that keep the volume: three rows a start point, and one right side.
+// The equations of fields that keep the volume: three rows per start point, and one right side.
 
 #include <nendo/deform/csrbf.hpp>
 #include <nendo/deform/volume_kernel.hpp>
@@ -17,7 +17,7 @@ Eigen::Matrix3d volume_matrix(const CsrbfOptions& options, double radius,
 bool assemble_volume(const CsrbfOptions& options, const Points& starts, const Supports& supports,
                      Eigen::MatrixXd& lower);
 
-/// Returns the coefficient of an own function, from the solution a: three rows a start point, of
+/// Returns the coefficient of an own function, from the solution a: three rows per start point, of
 /// which the first column counts.
 Eigen::Vector3d own_volume_coefficient(const CsrbfOptions& options, const Points& starts,
                                        const OwnSupport& own, const Rows& a) noexcept;

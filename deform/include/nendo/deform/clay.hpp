@@ -20,7 +20,7 @@ namespace nendo::deform {
 /// Lengths in millimetres are those of the bodies.
 struct ClayOptions {
   double units_per_mm = 1.0; ///< model units per millimetre, > 0
-  double radius_mm = 25.0;   ///< how soft the clay is, > 0: about 2.5 fingers
+  double radius_mm = 25.0;   ///< the functions' radius, > 0: softness. About 2.5 fingers'.
   double friction = 0.5;     ///< Coulomb's coefficient, >= 0
   bool keeps_volume = true;  ///< only of closed, oriented surfaces
   /// Otherwise bodies carry, turn and roll the model by what sticks to them and presses it.
@@ -72,9 +72,9 @@ class NENDO_API ClayDeformer {
 public:
   /// Allocates. `triangles` are the vertices of all triangles, three each; without any, or where
   /// they are no closed surface, no volume is kept. Call release() before another deformer works on
-  /// `shape`, which must outlive this. `bodies` of `parts_a_body` parts each press.
+  /// `shape`, which must outlive this. `bodies` of `parts_per_body` parts each press.
   ClayDeformer(SculptedShape& shape, std::span<const std::uint32_t> triangles, std::size_t bodies,
-               std::size_t parts_a_body, const ClayOptions& options);
+               std::size_t parts_per_body, const ClayOptions& options);
   ~ClayDeformer();
   ClayDeformer(ClayDeformer&&) noexcept;
   ClayDeformer& operator=(ClayDeformer&&) noexcept;

@@ -14,7 +14,7 @@ namespace nendo::deform {
 struct ControlVectors {
   Points starts;                ///< 3 by #rows, the start points c_i
   Points displacements;         ///< 3 by #rows, the displacements g_i
-  std::vector<OwnSupport> own;  ///< one or more a row, or empty if the file has no radius column
+  std::vector<OwnSupport> own;  ///< one or more per row, or empty if the file has no radius column
   std::string columns_not_read; ///< other columns, such as "note, weight"; empty: there are none
 };
 

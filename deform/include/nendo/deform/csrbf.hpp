@@ -79,7 +79,7 @@ public:
   /// factor of more than `max_factor_entries`, which take 800 MB, is too_dense as well.
   static constexpr Eigen::Index max_dense_points = 4096;
   static constexpr Eigen::Index max_factor_entries = Eigen::Index{1} << 26;
-  /// With keep_volume, whose matrix has three rows a point, more points than this are too_dense.
+  /// With keep_volume, whose matrix has three rows per point, more points than this are too_dense.
   static constexpr Eigen::Index max_volume_points = 1024;
   /// More pairs of an own function and a start point in its reach than this are too_dense.
   static constexpr std::size_t max_own_values = std::size_t{1} << 23;

@@ -8,12 +8,12 @@
 #include <nendo/deform/brush.hpp>
 #include <nendo/deform/csrbf.hpp>
 #include <nendo/deform/injective_chain.hpp>
-#include <nendo/deform/midpoint_chain.hpp>
 #include <nendo/deform/supports.hpp>
-#include <nendo/deform/undo_memory.hpp>
 #include <nendo/deform/vertex_mask.hpp>
 
 namespace nendo::deform {
+
+class UndoMemory;
 
 struct EvaluationOptions {
   /// 1 or 2. The second thread spins from construction on and keeps a core busy; results are the

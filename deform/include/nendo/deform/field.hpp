@@ -16,7 +16,7 @@ namespace nendo::deform {
 struct NENDO_API CsrbfField {
   Wendland kernel = Wendland::c2;
   Points centres;        ///< c_i, 3 by #centres, in model units
-  Eigen::VectorXd radii; ///< r_i, one a centre, in model units
+  Eigen::VectorXd radii; ///< r_i, one per centre, in model units
   Points coefficients;   ///< a_i, 3 by #centres
   Eigen::Matrix<double, 3, 4> polynomial =
       Eigen::Matrix<double, 3, 4>::Zero(); ///< p(x) = P (1, x, y, z)

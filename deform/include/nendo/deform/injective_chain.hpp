@@ -33,13 +33,12 @@ struct InjectiveOptions {
 
 struct ChainReport {
   FieldStatus status = FieldStatus::ok;
-  int links = 0;            ///< how many links were made
-  double whole_bound = 0.0; ///< Lipschitz bound of the first link's field, had it not been cut
-  double bound = 0.0;       ///< the largest of the links'
-  double min_determinant =
-      1.0;            ///< the least of the chain's Jacobian, round the points; see DeterminantProbe
-  int held_pairs = 0; ///< pairs that are kept from their wanted places
-  bool reached = true; ///< false if `max_links` were not enough for the whole way
+  int links = 0;                ///< how many links were made
+  double whole_bound = 0.0;     ///< Lipschitz bound of the first link's field, had it not been cut
+  double bound = 0.0;           ///< the largest of the links'
+  double min_determinant = 1.0; ///< the chain's, round the points; see DeterminantProbe
+  int held_pairs = 0;           ///< pairs that are kept from their wanted places
+  bool reached = true;          ///< false if `max_links` were not enough for the whole way
 };
 
 /// Call one of the two ways of going, then apply field() to the shape as long as next() is true:

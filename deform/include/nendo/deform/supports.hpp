@@ -72,8 +72,8 @@ inline constexpr double default_common_weight = 0.01;
 /// default_common_weight, so that no finger reaches farther than its radius. Where all radii
 /// are equal, the result is that one radius, since the field would be the same.
 NENDO_API Supports with_common(std::vector<OwnSupport> own, std::optional<Support> common = {});
-/// Writes the same for one radius a start point. Does not allocate if `out` held as many before. An
-/// empty list gives one radius of 1.
+/// Writes the same for one radius per start point. Does not allocate if `out` held as many before.
+/// An empty list gives one radius of 1.
 NENDO_API void assign_radii(Supports& out, const Eigen::VectorXd& radii);
 
 /// Parses a radius like `10`, or several with weights like `10+40:0.5`: "+" separates supports,

@@ -9,6 +9,7 @@
 
 #include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/field_sequence.hpp>
+#include <nendo/deform/midpoint_chain.hpp>
 #include <nendo/deform/sculpted_shape.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-// How far each vertex follows what deforms the model: a weight a vertex, of 0 (nothing moves it,
+// How far each vertex follows what deforms the model: a weight per vertex, of 0 (nothing moves it,
 // bit for bit) to 1 (it is free). A masked displacement w(x) s(x) is still linear in the control
 // vectors. But it is no field of a place: the slope of w comes on top of that of s. So links that
 // are injective (InjectiveChain) promise nothing where 0 < w < 1, and a surface can fold there.

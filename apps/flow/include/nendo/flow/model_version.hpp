@@ -15,6 +15,7 @@
 #include <nendo/deform/refinement.hpp>
 #include <nendo/deform/sculpted_shape.hpp>
 #include <nendo/deform/subdivision.hpp>
+#include <nendo/deform/undo_memory.hpp>
 #include <nendo/deform/vertex_rings.hpp>
 #include <nendo/flow/clay_hands.hpp>
 #include <nendo/flow/command.hpp>
