@@ -179,7 +179,6 @@ void BrushDabs::keep_volume() noexcept {
   }
 }
 
-/// Returns false, and writes nothing, if a move is not finite.
 bool BrushDabs::write(BoundedShape& shape) const noexcept {
   for (const Reached& one : reached_)
     if (!one.move.allFinite()) return false;

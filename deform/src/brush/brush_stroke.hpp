@@ -27,22 +27,19 @@ struct Dab {
   double way = 0.0;    ///< the fingertip's way, times the strength; the sign is the direction
 };
 
-/// Belongs to one thread. dab() neither allocates nor waits. It looks at the bounds of all blocks,
-/// and at the triangles around each vertex within the radius.
+/// Belongs to one thread. After the constructor nothing allocates or waits. A dab looks at the
+/// bounds of all blocks, and at the triangles around each vertex within the radius.
 class BrushDabs {
 public:
   /// Allocates 32 bytes per vertex.
   BrushDabs(std::shared_ptr<const VertexRings> rings, Wendland kernel, double keep_volume,
-            std::shared_ptr<const VertexMask> mask = nullptr);
+            std::shared_ptr<const VertexMask> mask);
 
-  /// Changes the shape, with its bounds and stamps. Returns false, and changes nothing, if no
-  /// vertex is within reach or the result might not be finite.
-  bool dab(const Dab& dab, BoundedShape& shape) noexcept {
-    return find(dab, shape) && write(shape);
-  }
-  /// The two halves of dab(): finds the moves, and adds them to the shape, which may have changed
-  /// meanwhile. Both return false, and change nothing, as dab() does.
+  /// Finds the moves of a dab. Returns false if no vertex is within reach, or the result might not
+  /// be finite.
   bool find(const Dab& dab, const BoundedShape& shape) noexcept;
+  /// Adds the moves to the shape, which may have changed meanwhile, with its bounds and stamps.
+  /// Returns false, and changes nothing, if a move is not finite.
   bool write(BoundedShape& shape) const noexcept;
 
 private:

@@ -30,33 +30,11 @@ bool is_deeper(const NearVertex& a, const NearVertex& b) noexcept {
 
 } // namespace
 
-CrowdedPlaces::CrowdedPlaces(std::size_t most) {
-  for (auto& row : rows_)
-    row.assign((most + place_lanes - 1) / place_lanes * place_lanes, no_place);
-}
-
-void CrowdedPlaces::clear() noexcept {
-  for (auto& row : rows_)
-    std::fill_n(row.begin(), count_, no_place);
-  count_ = 0;
-}
-
-bool CrowdedPlaces::add(const Eigen::Vector3f& at, const Eigen::Vector3f& normal,
-                        float squared) noexcept {
-  const std::array<float, 6> place{at.x(), at.y(), at.z(), normal.x(), normal.y(), normal.z()};
-  const PlaceRows rows{rows_[0].data(), rows_[1].data(), rows_[2].data(),
-                       rows_[3].data(), rows_[4].data(), rows_[5].data()};
-  if (is_crowded(rows, count_, place, squared)) return false;
-  for (std::size_t row = 0; row < place.size(); ++row)
-    rows_[row][count_] = place[row];
-  ++count_;
-  return true;
-}
-
-ContactPoints::ContactPoints(std::size_t most)
-    : slots_(std::bit_ceil(slots_per_point * most)), places_(most) {
+ContactPoints::ContactPoints(std::size_t most) : slots_(std::bit_ceil(slots_per_point * most)) {
   vertices_.reserve(cells_per_point * most);
   chosen_.reserve(most);
+  for (auto& row : rows_)
+    row.assign((most + place_lanes - 1) / place_lanes * place_lanes, no_place);
 }
 
 void ContactPoints::clear(double cell) noexcept {
@@ -89,12 +67,24 @@ void ContactPoints::offer(const NearVertex& vertex) noexcept {
   if (vertex.depth > kept.depth) kept = vertex;
 }
 
+bool ContactPoints::add_place(const Eigen::Vector3f& at, const Eigen::Vector3f& normal,
+                              float squared) noexcept {
+  const std::array<float, 6> place{at.x(), at.y(), at.z(), normal.x(), normal.y(), normal.z()};
+  const PlaceRows rows{rows_[0].data(), rows_[1].data(), rows_[2].data(),
+                       rows_[3].data(), rows_[4].data(), rows_[5].data()};
+  if (is_crowded(rows, chosen_.size(), place, squared)) return false;
+  for (std::size_t row = 0; row < place.size(); ++row)
+    rows_[row][chosen_.size()] = place[row];
+  return true;
+}
+
 std::span<const ContactPoint> ContactPoints::choose(double apart) noexcept {
   if (is_chosen_) return chosen_;
   is_chosen_ = true;
   std::sort(vertices_.begin(), vertices_.end(), is_deeper);
+  for (auto& row : rows_)
+    std::fill_n(row.begin(), chosen_.size(), no_place);
   chosen_.clear();
-  places_.clear();
   for (const NearVertex& vertex : vertices_) {
     if (chosen_.size() == chosen_.capacity()) break;
     const Eigen::Vector3d at = vertex.at.cast<double>();
@@ -102,7 +92,7 @@ std::span<const ContactPoint> ContactPoints::choose(double apart) noexcept {
     const double length = way.norm();
     const Eigen::Vector3d normal =
         length > 0.0 ? Eigen::Vector3d(way / length) : Eigen::Vector3d::UnitZ();
-    if (!places_.add(vertex.at, normal.cast<float>(), static_cast<float>(apart * apart))) continue;
+    if (!add_place(vertex.at, normal.cast<float>(), static_cast<float>(apart * apart))) continue;
     chosen_.push_back(
         {vertex.place, vertex.body, vertex.part, static_cast<double>(vertex.depth), at, normal});
   }

@@ -16,23 +16,6 @@
 
 namespace nendo::deform {
 
-/// Places of which none is to crowd another.
-class CrowdedPlaces {
-public:
-  /// Allocates for so many places; nothing else does.
-  explicit CrowdedPlaces(std::size_t most);
-
-  void clear() noexcept;
-  /// Adds a place, unless one is nearer than the root of `squared` whose normal is within 60
-  /// degrees of its normal. Returns whether it did. Fewer places than allocated
-  /// must be there.
-  bool add(const Eigen::Vector3f& at, const Eigen::Vector3f& normal, float squared) noexcept;
-
-private:
-  std::size_t count_ = 0;
-  std::array<std::vector<float>, 6> rows_; ///< places and normals; beyond the last, far away
-};
-
 struct ContactPoint {
   std::uint32_t place = 0; ///< the vertex' place in block order
   std::uint32_t body = 0;
@@ -77,11 +60,16 @@ private:
     std::uint32_t vertex = 0;
   };
 
+  /// Adds a place, unless a chosen one is nearer than the root of `squared` whose normal is within
+  /// 60 degrees of its normal. Returns whether it did.
+  bool add_place(const Eigen::Vector3f& at, const Eigen::Vector3f& normal, float squared) noexcept;
+
   SpaceCells cells_{};
   std::uint32_t round_ = 0;
   std::vector<Slot> slots_;          ///< an open hash table
   std::vector<NearVertex> vertices_; ///< one per cell
-  CrowdedPlaces places_;             ///< the chosen places
+  /// Coordinates of the chosen places and their normals; beyond the last, far away.
+  std::array<std::vector<float>, 6> rows_;
   std::vector<ContactPoint> chosen_;
   bool is_chosen_ = false; ///< since clear()
 };

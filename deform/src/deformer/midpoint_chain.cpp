@@ -30,10 +30,6 @@ MidpointChain::MidpointChain(Eigen::Index points, Supports supports, CsrbfOption
     reserve_solver(solver, supports_, points);
 }
 
-MidpointChain::~MidpointChain() = default;
-MidpointChain::MidpointChain(MidpointChain&&) noexcept = default;
-MidpointChain& MidpointChain::operator=(MidpointChain&&) noexcept = default;
-
 FieldStatus MidpointChain::grab(const Points& starts) {
   assert(starts.cols() == starts_.cols());
   const FieldStatus status = solvers_[1 - kept_].build(starts, supports_);

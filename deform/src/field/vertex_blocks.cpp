@@ -46,7 +46,7 @@ Eigen::Index longest_side(PlaceIterator begin, PlaceIterator end) noexcept {
   return longest;
 }
 
-/// Half of the blocks, in whole groups of those that are asked for together while there are
+/// Half of the blocks, in whole groups of those that are evaluated together while there are
 /// several.
 std::size_t left_blocks(std::size_t blocks) noexcept {
   if (blocks < 2 * group_size) return blocks / 2;

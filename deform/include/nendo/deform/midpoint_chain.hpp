@@ -22,9 +22,6 @@ public:
   /// Steps are a twentieth of the least radius, and the last is what remains, so that the shape is
   /// continuous in the way. A way longer than `max_steps` of them is cut into so many longer ones.
   MidpointChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf, int max_steps);
-  ~MidpointChain();
-  MidpointChain(MidpointChain&&) noexcept;
-  MidpointChain& operator=(MidpointChain&&) noexcept;
 
   /// Freezes the start points (3 by points). On failure, the last good ones stay.
   FieldStatus grab(const Points& starts);
