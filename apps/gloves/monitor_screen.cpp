@@ -83,16 +83,16 @@ std::string losses(const driver::GloveInfo& info, const driver::GloveStats& stat
     if (count > 0) add(count, what);
   };
   const bool any_lost = counts.missed > 0 || counts.refused > 0 || counts.bad > 0;
-  const bool nothing_lost = !any_lost && counts.tells_missed;
-  if (any_lost && counts.tells_missed) add(counts.sent(), "sent");
+  const bool nothing_lost = !any_lost && counts.counts_missed;
+  if (any_lost && counts.counts_missed) add(counts.sent(), "sent");
   add(counts.delivered, nothing_lost ? "delivered, nothing lost" : "delivered");
-  if (any_lost && counts.tells_missed) add(counts.missed, "missed");
+  if (any_lost && counts.counts_missed) add(counts.missed, "missed");
   if (any_lost) {
     add(counts.refused, "refused");
     add_any(counts.bad, "bad");
   }
   add_any(counts.clamped, "values out of range");
-  if (!counts.tells_missed) {
+  if (!counts.counts_missed) {
     const bool slow = !driver::rate_shortfall(info, stats).empty();
     text += slow ? ", losses on the line: some" : ", losses on the line unknown";
   }

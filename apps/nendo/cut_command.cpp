@@ -191,9 +191,9 @@ Result<void> cut_file(const std::string& file, const AnyBlade& blade, const Opti
         cut.error().code == Errc::failed ? "; it fills " + box_text(*mesh) : "";
     return Error{cut.error().code, file + ": " + cut.error().message + where};
   }
-  if (cut->left_whole > 0)
-    cli::note(file + ": is not cut at " + std::to_string(cut->left_whole) +
-              (cut->left_whole == 1 ? " place" : " places") +
+  if (cut->uncut_loops > 0)
+    cli::note(file + ": is not cut at " + std::to_string(cut->uncut_loops) +
+              (cut->uncut_loops == 1 ? " place" : " places") +
               " where the wire does not pass through, or separates nothing");
   return write_parts(file, *cut, options);
 }

@@ -132,17 +132,17 @@ void print_head(const OpenRig& open) {
       puppet.distance == puppet::Distance::surface ? "along the surface" : "through the air");
 }
 
-std::string gesture_text(const puppet::ClutchOptions& clutch, puppet::ClutchMeans means) {
+std::string gesture_text(const puppet::ClutchOptions& clutch, puppet::ClutchTrigger means) {
   switch (means) {
-  case puppet::ClutchMeans::fist:
+  case puppet::ClutchTrigger::fist:
     return fmt::format("a fist (fingers bent by {:.0f} degrees, held for {:g} s)", clutch.fist_deg,
                        clutch.held_s);
-  case puppet::ClutchMeans::pinch:
+  case puppet::ClutchTrigger::pinch:
     return fmt::format("a pinch (tips within {:g} m, held for {:g} s)", clutch.pinch_m,
                        clutch.held_s);
-  case puppet::ClutchMeans::wrist_switch:
+  case puppet::ClutchTrigger::wrist_switch:
     return "the wrist switch";
-  case puppet::ClutchMeans::none:
+  case puppet::ClutchTrigger::none:
     break;
   }
   return {};

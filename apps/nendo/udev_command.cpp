@@ -56,7 +56,7 @@ Error foreign(const udev::RuleFile& file) {
 
 int install(const Options& options) {
   std::vector<udev::RuleChange> changes;
-  const auto rules = udev::rule_texts();
+  const auto rules = udev::shipped_rules();
   const auto current = udev::rules_in_force(options.root);
   for (std::size_t k = 0; k < rules.size(); ++k) {
     const udev::RuleFile& file = current[k];
@@ -92,7 +92,7 @@ int uninstall(const Options& options) {
 }
 
 int show(const Options& options) {
-  for (const udev::RuleText& file : udev::rule_texts()) {
+  for (const udev::RuleText& file : udev::shipped_rules()) {
     if (file.name != options.file) continue;
     std::cout << file.text;
     return 0;

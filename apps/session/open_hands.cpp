@@ -60,7 +60,7 @@ void note_missing_switches(const puppet::Puppet& puppet,
                            const std::vector<gloves::OpenHand>& hands) {
   for (const gloves::OpenHand& hand : hands) {
     const std::size_t slot = flow::Placement::index_of(hand.side);
-    if (puppet.clutch.means[slot] != puppet::ClutchMeans::wrist_switch ||
+    if (puppet.clutch.means[slot] != puppet::ClutchTrigger::wrist_switch ||
         hand.glove->info().abilities.wrist_switch)
       continue;
     cli::note("the puppet's [clutch] of the " + std::string(name_of(hand.side)) +

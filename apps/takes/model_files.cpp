@@ -56,7 +56,7 @@ Result<deform::ReadModel> read_alone(const std::string& file, const deform::Read
   auto model = deform::read_model(file, options);
   if (!model) return model;
   note_pictures(*model);
-  if (const auto remark = deform::remark_on(model->mesh); !remark.empty())
+  if (const auto remark = deform::warning_about(model->mesh); !remark.empty())
     model->notes.emplace_back(remark);
   return model;
 }

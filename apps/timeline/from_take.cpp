@@ -216,7 +216,7 @@ private:
       const std::size_t slot = flow::Placement::index_of(side);
       const bool used =
           std::exchange(switch_uses_[slot], stats.switch_uses[slot]) != stats.switch_uses[slot];
-      const auto by_switch = puppet::ClutchMeans::wrist_switch;
+      const auto by_switch = puppet::ClutchTrigger::wrist_switch;
       if (used && timeline_.rig && timeline_.rig->puppet().clutch.means[slot] == by_switch)
         puppet_commands_.emplace_back(
             flow::SetClutch{side, puppet::RigPlayer::all_fingers, !frame.let_go[slot]});

@@ -140,7 +140,7 @@ void Server::set_gloves(const GloveStates& gloves) noexcept {
     Work::SharedGloveState& shared = work_->gloves[slot];
     const auto& [counts, uncalibrated] = gloves[slot];
     shared.delivered = counts.delivered;
-    shared.missed = counts.tells_missed ? counts.missed : Work::unknown_count;
+    shared.missed = counts.counts_missed ? counts.missed : Work::unknown_count;
     shared.refused = counts.refused;
     shared.bad = counts.bad;
     shared.uncalibrated = uncalibrated;

@@ -35,12 +35,12 @@ void set_left_out(AngleSources& sources, SensorMask present, SensorMask left_out
   set(Angle::thumb_abduction, Sensor::thumb_abduction, AngleSource::at_rest);
   const bool any_gap = measured.has(Sensor::index_middle_abduction) ||
                        measured.has(Sensor::middle_ring_abduction) ||
-                       measured.has(Sensor::ring_pinky_abduction);
+                       measured.has(Sensor::ring_little_abduction);
   const auto by_gaps = any_gap ? AngleSource::from_gaps : AngleSource::at_rest;
   set(Angle::index_mcp_abduction, Sensor::index_middle_abduction, by_gaps);
   set(Angle::ring_mcp_abduction, Sensor::middle_ring_abduction, by_gaps);
   set(Angle::little_mcp_abduction, Sensor::middle_ring_abduction, by_gaps);
-  set(Angle::little_mcp_abduction, Sensor::ring_pinky_abduction, by_gaps);
+  set(Angle::little_mcp_abduction, Sensor::ring_little_abduction, by_gaps);
   set(Angle::palm_arch, Sensor::palm_arch, AngleSource::at_rest);
   set(Angle::wrist_pitch, Sensor::wrist_pitch, AngleSource::at_rest);
   set(Angle::wrist_yaw, Sensor::wrist_yaw, AngleSource::at_rest);
@@ -77,7 +77,7 @@ AngleSources angle_sources(SensorMask present, SensorMask left_out) noexcept {
   // and all others with it, by the two gaps beside it. The little finger needs two gaps.
   const bool index_middle = present.has(Sensor::index_middle_abduction);
   const bool middle_ring = present.has(Sensor::middle_ring_abduction);
-  const bool ring_pinky = present.has(Sensor::ring_pinky_abduction);
+  const bool ring_pinky = present.has(Sensor::ring_little_abduction);
   const auto of_middle = index_middle || middle_ring ? AngleSource::from_gaps : zero;
   source(Angle::middle_mcp_abduction) = of_middle;
   take(Angle::index_mcp_abduction, Sensor::index_middle_abduction, of_middle);

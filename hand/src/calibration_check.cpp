@@ -53,7 +53,7 @@ bool rises_with_angle(Sensor sensor) noexcept {
   const std::string_view name = name_of(sensor);
   return name.ends_with("_mcp") || name.ends_with("_pip") || name.ends_with("_dip") ||
          name.ends_with("_ip") || sensor == Sensor::index_middle_abduction ||
-         sensor == Sensor::middle_ring_abduction || sensor == Sensor::ring_pinky_abduction;
+         sensor == Sensor::middle_ring_abduction || sensor == Sensor::ring_little_abduction;
 }
 
 bool may_be_calibrated(Sensor sensor) noexcept {

@@ -36,11 +36,11 @@ public:
   }
   constexpr Described& finger(std::size_t number, Asked mcp, Asked pip, Asked dip) {
     constexpr std::array mcps{Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp,
-                              Sensor::pinky_mcp};
+                              Sensor::little_mcp};
     constexpr std::array pips{Sensor::index_pip, Sensor::middle_pip, Sensor::ring_pip,
-                              Sensor::pinky_pip};
+                              Sensor::little_pip};
     constexpr std::array dips{Sensor::index_dip, Sensor::middle_dip, Sensor::ring_dip,
-                              Sensor::pinky_dip};
+                              Sensor::little_dip};
     return of(mcps[number], mcp).of(pips[number], pip).of(dips[number], dip);
   }
   constexpr Described& fingers(Asked mcp, Asked pip, Asked dip) {
@@ -65,7 +65,7 @@ public:
   constexpr Described& gaps(Asked index_middle, Asked middle_ring, Asked ring_pinky) {
     return of(Sensor::index_middle_abduction, index_middle)
         .of(Sensor::middle_ring_abduction, middle_ring)
-        .of(Sensor::ring_pinky_abduction, ring_pinky);
+        .of(Sensor::ring_little_abduction, ring_pinky);
   }
   constexpr Described& closed(Asked asked) { return gaps(asked, asked, asked); }
   constexpr Described& thumb(Asked roll, Asked abduction) {

@@ -14,7 +14,7 @@ inline constexpr std::array<std::array<Sensor, 3>, 4> finger_sensors{{
     {Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip},
     {Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip},
     {Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip},
-    {Sensor::pinky_mcp, Sensor::pinky_pip, Sensor::pinky_dip},
+    {Sensor::little_mcp, Sensor::little_pip, Sensor::little_dip},
 }};
 
 inline constexpr double pip_of_mcp = 1.1;

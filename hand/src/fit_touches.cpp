@@ -41,7 +41,7 @@ JointAngles joints_of(const SensorAngles& angles, SensorMask sensors) {
   double middle_ring = 0.0, ring_little = 0.0;
   take(joints[Finger::index].mcp_abduction_rad, Sensor::index_middle_abduction);
   take(middle_ring, Sensor::middle_ring_abduction);
-  take(ring_little, Sensor::ring_pinky_abduction);
+  take(ring_little, Sensor::ring_little_abduction);
   joints[Finger::ring].mcp_abduction_rad = -middle_ring;
   joints[Finger::little].mcp_abduction_rad = -middle_ring - ring_little;
   return joints;
@@ -119,7 +119,7 @@ bool FitProblem::usable(const Touch& touch) const noexcept {
   case Joint::ring_tip:
     return whole && moving.has(Sensor::ring_mcp) && moving.has(Sensor::ring_pip);
   case Joint::little_tip:
-    return whole && moving.has(Sensor::pinky_mcp) && moving.has(Sensor::pinky_pip);
+    return whole && moving.has(Sensor::little_mcp) && moving.has(Sensor::little_pip);
   default:
     return whole;
   }

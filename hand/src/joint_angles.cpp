@@ -57,7 +57,7 @@ FingerAngles finger_angles(const Measured& measured, Sensor mcp, Sensor pip, Sen
 void set_abductions(JointAngles& angles, const Measured& measured, double middle_bias) noexcept {
   const double index_middle = measured.raw_angle(Sensor::index_middle_abduction);
   const double middle_ring = measured.raw_angle(Sensor::middle_ring_abduction);
-  const double ring_pinky = measured.raw_angle(Sensor::ring_pinky_abduction);
+  const double ring_pinky = measured.raw_angle(Sensor::ring_little_abduction);
   const double off_centre = index_middle - middle_ring;
   // Zero stays zero, whatever the other is: a broken gap must not turn all fingers.
   const bool straight = middle_bias == 0.0 || off_centre == 0.0;
@@ -140,7 +140,7 @@ JointAngles joint_angles(const GloveSample& sample, const Calibration& calibrati
   angles[Finger::ring] =
       finger_angles(measured, Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip);
   angles[Finger::little] =
-      finger_angles(measured, Sensor::pinky_mcp, Sensor::pinky_pip, Sensor::pinky_dip);
+      finger_angles(measured, Sensor::little_mcp, Sensor::little_pip, Sensor::little_dip);
   set_abductions(angles, measured, calibration.middle_bias);
   const auto set_or_zero = [&](Angle angle, Sensor sensor) {
     angles[angle] = measured.angle_or(sensor, limit_of(angle), 0.0);

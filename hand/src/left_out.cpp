@@ -10,7 +10,7 @@ namespace {
 // Indices in finger_sensors.
 constexpr std::size_t mcp_at = 0, pip_at = 1, dip_at = 2;
 constexpr std::array<Sensor, 3> gap_sensors{
-    Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_pinky_abduction};
+    Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_little_abduction};
 
 /// The angles of a hand at rest, for joints without an estimate.
 constexpr double resting_mcp = from_degrees(25), resting_pip = from_degrees(35);

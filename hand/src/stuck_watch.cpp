@@ -120,7 +120,7 @@ bool StuckWatch::is_shown(std::size_t slot, const GloveSample& sample) const noe
     return false;
   case Sensor::index_middle_abduction:
   case Sensor::middle_ring_abduction:
-  case Sensor::ring_pinky_abduction: {
+  case Sensor::ring_little_abduction: {
     const std::size_t finger = slot / 4 - 1;
     return swung(std::array{finger_sensors[finger - 1][0], finger_sensors[finger][0]}, slot, 4) ==
                2 &&

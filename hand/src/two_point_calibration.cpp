@@ -36,10 +36,10 @@ constexpr std::array<Place, 22> places{{
     {Sensor::middle_ring_abduction, 1.0},
     {Sensor::ring_pip, -1.0},
     {Sensor::ring_dip, -1.0},
-    {Sensor::pinky_mcp, -1.0},
-    {Sensor::ring_pinky_abduction, 1.0},
-    {Sensor::pinky_pip, -1.0},
-    {Sensor::pinky_dip, -1.0},
+    {Sensor::little_mcp, -1.0},
+    {Sensor::ring_little_abduction, 1.0},
+    {Sensor::little_pip, -1.0},
+    {Sensor::little_dip, -1.0},
 }};
 
 struct Point {

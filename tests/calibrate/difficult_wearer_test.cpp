@@ -165,8 +165,8 @@ private:
   SensorAngles relaxed() const {
     SensorAngles angles = flat_;
     for (const Sensor sensor :
-         {Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp, Sensor::pinky_mcp,
-          Sensor::index_pip, Sensor::middle_pip, Sensor::ring_pip, Sensor::pinky_pip})
+         {Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp, Sensor::little_mcp,
+          Sensor::index_pip, Sensor::middle_pip, Sensor::ring_pip, Sensor::little_pip})
       angles[static_cast<std::size_t>(sensor)] += 0.5;
     return stiff(angles);
   }

@@ -152,7 +152,7 @@ TEST_SUITE("stuck_sensor") {
     SUBCASE("two") {
       check(seed, {{Sensor::index_pip, 255}, {Sensor::ring_mcp, 1}}, without);
       check(seed, {{Sensor::index_pip, 0}, {Sensor::index_dip, 120}}, without);
-      check(seed, {{Sensor::middle_mcp, 90}, {Sensor::ring_pinky_abduction, 255}}, without);
+      check(seed, {{Sensor::middle_mcp, 90}, {Sensor::ring_little_abduction, 255}}, without);
       check(seed, {{Sensor::thumb_mcp, 255}, {Sensor::thumb_roll, 140}}, without);
     }
   }
@@ -215,9 +215,9 @@ TEST_SUITE("stuck_sensor") {
     auto readings = guided.guide.readings();
     CHECK(still_in(readings, CountScale{}).bits == 0);
     for (auto& reading : readings)
-      reading.held.mean_counts[static_cast<std::size_t>(Sensor::pinky_pip)] = 88.0;
+      reading.held.mean_counts[static_cast<std::size_t>(Sensor::little_pip)] = 88.0;
     SensorMask expected;
-    expected.add(Sensor::pinky_pip);
+    expected.add(Sensor::little_pip);
     CHECK(still_in(readings, CountScale{}) == expected);
   }
 }

@@ -151,7 +151,8 @@ TEST_SUITE("stuck_watch") {
     using Pair = std::pair<Sensor, Sensor>;
     for (const Pair& pair :
          {Pair{Sensor::index_pip, Sensor::index_dip}, Pair{Sensor::ring_mcp, Sensor::ring_pip},
-          Pair{Sensor::index_pip, Sensor::pinky_mcp}, Pair{Sensor::middle_mcp, Sensor::ring_mcp}}) {
+          Pair{Sensor::index_pip, Sensor::little_mcp},
+          Pair{Sensor::middle_mcp, Sensor::ring_mcp}}) {
       const Sensor a = pair.first, b = pair.second;
       WatchedHand hand(driver::Motion::grasp, 5);
       hand.pass(0.0, 60.0, {{a, 255, 4.0}, {b, {}, 10.0}});

@@ -200,7 +200,7 @@ TEST_SUITE("cut") {
       check_laws(mesh, *teeth);
       CHECK(teeth->parts == 3);
       CHECK(teeth->loops == 2);
-      CHECK(teeth->left_whole == 4);
+      CHECK(teeth->uncut_loops == 4);
     }
     SUBCASE("one that stops inside leaves the model whole") {
       const auto cut = cut_model(cube_of_cells(4), level_wire(-1.0, 0.6, -1.0, 2.0, 0.4));

@@ -140,7 +140,7 @@ TEST_SUITE("mesh_file") {
     const auto remark = [](std::string_view text) {
       const auto mesh = parse(text);
       REQUIRE_MESSAGE(mesh, mesh.error().message);
-      return std::string(remark_on(*mesh));
+      return std::string(warning_about(*mesh));
     };
     CHECK(remark("v 0 0 0\nv 1 0 0\nv 0 1 0\n").find("no faces") != std::string::npos);
     CHECK(remark("v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n").find("one place") != std::string::npos);

@@ -28,7 +28,7 @@ public:
     for (const char* const cpu : {"cpu0", "cpu1"})
       governor(cpu, "performance");
     fs::create_directories(folder_.path() / "run/udev");
-    for (const auto& file : nendo::udev::rule_texts())
+    for (const auto& file : nendo::udev::shipped_rules())
       write("usr/lib/udev/rules.d/" + std::string(file.name), file.text);
   }
   void write(const std::string& name, const std::string& text) const {

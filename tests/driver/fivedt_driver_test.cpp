@@ -150,10 +150,10 @@ TEST_SUITE("fivedt_driver") {
     };
     for (const Case& c :
          {Case{Side::right, "", false, "thumb first"},
-          Case{Side::right, "?left_first=pinky", false, "thumb first"},
+          Case{Side::right, "?left_first=little", false, "thumb first"},
           Case{Side::left, "", false, "thumb first; if that is the wrong way round"},
           Case{Side::left, "?left_first=thumb", false, "thumb first; if that is the wrong way"},
-          Case{Side::left, "?left_first=pinky", true, "pinky first"}}) {
+          Case{Side::left, "?left_first=little", true, "little finger first"}}) {
       CAPTURE(c.options);
       const PtyUnit port(std::make_unique<OneSample>(c.side));
       SampleRing ring(1U << 14U);
@@ -166,21 +166,21 @@ TEST_SUITE("fivedt_driver") {
       glove->stop();
       int place = c.reversed ? 14 : 10;
       for (const Sensor sensor : {Sensor::thumb_mcp, Sensor::index_mcp, Sensor::middle_mcp,
-                                  Sensor::ring_mcp, Sensor::pinky_mcp}) {
+                                  Sensor::ring_mcp, Sensor::little_mcp}) {
         CAPTURE(name_of(sensor));
         CHECK(sample[sensor].value == (c.reversed ? place-- : place++));
       }
     }
   }
 
-  TEST_CASE("an emulated left glove that begins with the pinky rests as any other") {
+  TEST_CASE("an emulated left glove that begins with the little finger rests as any other") {
     FiveDtUnitOptions options;
     options.side = Side::left;
     options.motion = Motion::rest;
-    options.left_pinky_first = true;
+    options.left_little_first = true;
     const PtyUnit port(std::make_unique<FiveDtUnit>(options));
     SampleRing ring(1U << 14U);
-    auto glove = required(open_glove("5dt:" + port.path() + "?left_first=pinky"));
+    auto glove = required(open_glove("5dt:" + port.path() + "?left_first=little"));
     test::require_ok(glove->start(ring));
     GloveSample sample;
     REQUIRE(eventually([&] { return ring.try_pop(sample); }));
@@ -191,7 +191,7 @@ TEST_SUITE("fivedt_driver") {
     wrong_options_are_usage_errors("5dt", {{"?rate=9", "baud"},
                                            {"?baud=115200", "19200, 9600"},
                                            {"?hand=up", "left"},
-                                           {"?left_first=ring", "thumb, pinky"}});
+                                           {"?left_first=ring", "thumb, little"}});
   }
 
   TEST_CASE("a hand at rest arrives in the slots of its knuckles") {

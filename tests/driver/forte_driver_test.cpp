@@ -100,7 +100,7 @@ TEST_SUITE("forte_driver") {
     for (const Sensor sensor :
          {Sensor::thumb_mcp, Sensor::thumb_ip, Sensor::index_mcp, Sensor::index_pip,
           Sensor::middle_mcp, Sensor::middle_pip, Sensor::ring_mcp, Sensor::ring_pip,
-          Sensor::pinky_mcp, Sensor::pinky_pip}) {
+          Sensor::little_mcp, Sensor::little_pip}) {
       CAPTURE(name_of(sensor));
       CHECK(sample[sensor].value == place++);
       CHECK(sample.present.has(sensor));

@@ -33,7 +33,7 @@ TEST_SUITE("hand_motion") {
       {{Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip},
        {Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip},
        {Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip},
-       {Sensor::pinky_mcp, Sensor::pinky_pip, Sensor::pinky_dip}}};
+       {Sensor::little_mcp, Sensor::little_pip, Sensor::little_dip}}};
 
   std::vector<double> times(double begin_s, double end_s, double step_s) {
     std::vector<double> all;
@@ -76,7 +76,7 @@ TEST_SUITE("hand_motion") {
     CHECK(most(Sensor::ring_mcp) == doctest::Approx(90));
     CHECK(most(Sensor::ring_pip) == doctest::Approx(105));
     CHECK(most(Sensor::ring_dip) == doctest::Approx(75));
-    CHECK(most(Sensor::ring_pinky_abduction) == doctest::Approx(25));
+    CHECK(most(Sensor::ring_little_abduction) == doctest::Approx(25));
     CHECK(least(Sensor::wrist_pitch) == doctest::Approx(-50));
     CHECK(least(Sensor::wrist_yaw) == doctest::Approx(-25));
     CHECK(most(Sensor::index_abduction) == 0.0);
@@ -186,8 +186,8 @@ TEST_SUITE("hand_motion") {
     double little_most = 0.0;
     for (const double t : times(2.0, 8.0, 0.01)) {
       const JointAngles now = hand.at(t);
-      if (angle(now, Sensor::pinky_pip) <= little_most) continue;
-      little_most = angle(now, Sensor::pinky_pip);
+      if (angle(now, Sensor::little_pip) <= little_most) continue;
+      little_most = angle(now, Sensor::little_pip);
       ring_when_little_bends_most = angle(now, Sensor::ring_pip);
     }
     CHECK(little_most > 45.0);

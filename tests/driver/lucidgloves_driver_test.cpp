@@ -168,8 +168,8 @@ TEST_SUITE("lucidgloves_driver") {
       CHECK(fact(info, "device_type") == "0");
       for (const Sensor sensor :
            {Sensor::thumb_mcp, Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp,
-            Sensor::pinky_mcp, Sensor::thumb_abduction, Sensor::index_middle_abduction,
-            Sensor::middle_ring_abduction, Sensor::ring_pinky_abduction}) {
+            Sensor::little_mcp, Sensor::thumb_abduction, Sensor::index_middle_abduction,
+            Sensor::middle_ring_abduction, Sensor::ring_little_abduction}) {
         CHECK(info.sensors.has(sensor));
       }
     }
@@ -318,7 +318,7 @@ TEST_SUITE("lucidgloves_driver") {
       glove->stop();
       CHECK(glove->stats().silences == 0);
       CHECK(glove->stats().bad_records == 0);
-      CHECK_FALSE(glove->stats().tells_missed);
+      CHECK_FALSE(glove->stats().counts_missed);
     }
   }
 
@@ -582,7 +582,7 @@ TEST_SUITE("lucidgloves_driver") {
     constexpr std::array splays{RestingJoint{Sensor::thumb_abduction, 30, 40},
                                 RestingJoint{Sensor::index_middle_abduction, 7, 20},
                                 RestingJoint{Sensor::middle_ring_abduction, 6, 20},
-                                RestingJoint{Sensor::ring_pinky_abduction, 8, 20}};
+                                RestingJoint{Sensor::ring_little_abduction, 8, 20}};
     check_at_rest(sample, splays, 4095.0, 2.0);
   }
 

@@ -307,13 +307,13 @@ TEST_SUITE("lucidgloves_parser") {
 
   TEST_CASE("a whole finger's curl counts as its knuckle unless the line has a value for that") {
     CHECK(written(sample_of("A1B2C3D4E5")) ==
-          "thumb_mcp=1 index_mcp=2 middle_mcp=3 ring_mcp=4 pinky_mcp=5");
+          "thumb_mcp=1 index_mcp=2 middle_mcp=3 ring_mcp=4 little_mcp=5");
     for (const char* text : {"B9(BAA)1(BAB)2(BAC)3(BAD)4", "(BAD)4(BAC)3(BAB)2(BAA)1B9"}) {
       CHECK(written(sample_of(text)) == "index_mcp=2 index_pip=3 index_dip=4");
     }
     CHECK(written(sample_of("B9(BAC)3")) == "index_mcp=9 index_pip=3");
     CHECK(written(sample_of("(AAA)1(AAB)2(AAC)3(AAD)4")) == "thumb_mcp=2 thumb_ip=3");
-    CHECK(written(sample_of("(EAB)5(EAC)6(EAD)7")) == "pinky_mcp=5 pinky_pip=6 pinky_dip=7");
+    CHECK(written(sample_of("(EAB)5(EAC)6(EAD)7")) == "little_mcp=5 little_pip=6 little_dip=7");
   }
 
   TEST_CASE("splays become the angles between neighbours, closed alike and spread alike") {
@@ -325,7 +325,7 @@ TEST_SUITE("lucidgloves_parser") {
     CHECK(written(sample_of("(BB)0(CB)1023", 1023)) == std::string(names) + "1023");
     CHECK(written(sample_of("(AB)77(BB)1(DB)2")) == "thumb_abduction=77"); // no two neighbours
     CHECK(written(sample_of("(CB)10(DB)20(EB)40")) ==
-          "middle_ring_abduction=20 ring_pinky_abduction=40");
+          "middle_ring_abduction=20 ring_little_abduction=40");
   }
 
   TEST_CASE("where a LucidGlove's stream is cut makes no difference") {

@@ -36,7 +36,7 @@ TEST_SUITE("record_counts") {
     stats.too_fast = 1000; // delivered, and nothing that was lost
     stats.unplugged = 2000;
     stats.clamped = 31;
-    stats.tells_missed = true;
+    stats.counts_missed = true;
     const RecordCounts counts = counts_of(stats);
     const std::map<std::string, std::uint64_t> expected{
         {"sent", 457},  {"delivered", 359},  {"missed", 98},
@@ -74,9 +74,9 @@ TEST_SUITE("record_counts") {
     GloveStats stats;
     stats.rate_hz = 72.0;
     CHECK(rate_shortfall(info, stats) == "72.0 records per second of the 90.0 that were asked for");
-    stats.tells_missed = true; // the counts show it already
+    stats.counts_missed = true; // the counts show it already
     CHECK(rate_shortfall(info, stats).empty());
-    stats.tells_missed = false;
+    stats.counts_missed = false;
     stats.rate_hz = 89.0;
     CHECK(rate_shortfall(info, stats).empty());
     stats.rate_hz = 0.0; // nothing was measured yet

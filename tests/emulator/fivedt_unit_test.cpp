@@ -87,7 +87,7 @@ TEST_SUITE("fivedt_unit") {
       FiveDtUnitOptions options;
       options.side = side;
       Bench usual(options);
-      options.left_pinky_first = true;
+      options.left_little_first = true;
       Bench reversed(options);
       Bytes sample = usual.ask("C");
       const Bytes other = reversed.ask("C");

@@ -90,7 +90,7 @@ TEST_SUITE("monitor_screen") {
     glove.picture.wearer.clear();
     glove.picture.stats.records = 359;
     CHECK(glove.lines()[1].find("359 delivered, losses on the line unknown") != std::string::npos);
-    glove.picture.stats.tells_missed = true;
+    glove.picture.stats.counts_missed = true;
     CHECK(glove.lines()[1].find("11 ms old, 359 delivered, nothing lost") == 0);
     CHECK(glove.lines()[1].ends_with("q quit, r ranges"));
     glove.sample.wrist_switch = WristSwitch::on;

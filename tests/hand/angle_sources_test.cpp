@@ -27,8 +27,8 @@ std::optional<Sensor> own_sensor(Angle angle) {
       Sensor::middle_pip, Sensor::middle_dip,
       Sensor::ring_mcp,   std::nullopt,
       Sensor::ring_pip,   Sensor::ring_dip,
-      Sensor::pinky_mcp,  std::nullopt,
-      Sensor::pinky_pip,  Sensor::pinky_dip,
+      Sensor::little_mcp, std::nullopt,
+      Sensor::little_pip, Sensor::little_dip,
       Sensor::palm_arch,  Sensor::wrist_pitch,
       Sensor::wrist_yaw};
   return own[index_of(angle)];
@@ -114,10 +114,10 @@ TEST_SUITE("angle_sources") {
     CHECK(source(Angle::thumb_ip_flexion, {Sensor::thumb_mcp}) == AngleSource::from_mcp);
     CHECK(source(Angle::thumb_roll, {Sensor::thumb_ip}) == AngleSource::opposition);
     CHECK(source(Angle::thumb_roll, {Sensor::index_mcp}) == AngleSource::zero);
-    CHECK(source(Angle::little_mcp_abduction, {Sensor::ring_pinky_abduction}) ==
+    CHECK(source(Angle::little_mcp_abduction, {Sensor::ring_little_abduction}) ==
           AngleSource::from_gaps);
     CHECK(source(Angle::little_mcp_abduction,
-                 {Sensor::ring_pinky_abduction, Sensor::middle_ring_abduction}) ==
+                 {Sensor::ring_little_abduction, Sensor::middle_ring_abduction}) ==
           AngleSource::measured);
   }
 

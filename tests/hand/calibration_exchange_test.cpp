@@ -331,8 +331,8 @@ TEST_SUITE("calibration exchange") {
         {"middle_pip", -1},      {"middle_dip", -1},
         {"ring_mcp", -1},        {"middle_ring_abduction", 1},
         {"ring_pip", -1},        {"ring_dip", -1},
-        {"pinky_mcp", -1},       {"ring_pinky_abduction", 1},
-        {"pinky_pip", -1},       {"pinky_dip", -1}};
+        {"little_mcp", -1},      {"ring_little_abduction", 1},
+        {"little_pip", -1},      {"little_dip", -1}};
     for (const auto* name : {"kit_left.cal", "kit_right.cal"}) {
       const std::string text = stored(name);
       CHECK(format_of(text) == CalibrationFormat::two_point);

@@ -79,7 +79,7 @@ TEST_SUITE("calibration_fit") {
     const auto fit = fit_calibration(readings, Side::right, sensors_22, options);
     REQUIRE(fit);
     const Calibration start = default_calibration();
-    for (const Sensor sensor : {Sensor::index_mcp, Sensor::ring_pip, Sensor::pinky_dip}) {
+    for (const Sensor sensor : {Sensor::index_mcp, Sensor::ring_pip, Sensor::little_dip}) {
       CHECK(fit->sensors[slot_of(sensor)].gain_determined);
       CHECK(fit->calibration[sensor].gain_rad_per_count ==
             doctest::Approx(truth[sensor].gain_rad_per_count).epsilon(0.02));
@@ -259,7 +259,7 @@ TEST_SUITE("calibration_fit") {
   TEST_CASE("gloves with fewer sensors, and those that know their range, are calibrated, too") {
     SensorMask curls;
     for (const Sensor sensor : {Sensor::thumb_mcp, Sensor::index_mcp, Sensor::middle_mcp,
-                                Sensor::ring_mcp, Sensor::pinky_mcp})
+                                Sensor::ring_mcp, Sensor::little_mcp})
       curls.add(sensor);
     FitOptions options;
     options.scale = {1000, true};

@@ -59,7 +59,7 @@ TEST_SUITE("calibration_poses") {
   TEST_CASE(
       "every PIP joint is bent once by something other than feel, and nothing straight is by it") {
     for (const Sensor pip :
-         {Sensor::index_pip, Sensor::middle_pip, Sensor::ring_pip, Sensor::pinky_pip}) {
+         {Sensor::index_pip, Sensor::middle_pip, Sensor::ring_pip, Sensor::little_pip}) {
       const auto full = full_poses();
       CHECK(std::count_if(full.begin(), full.end(), [&](PoseId id) {
               const AssumedAngle& assumed = pose_of(id).assumed[static_cast<std::size_t>(pip)];

@@ -64,7 +64,7 @@ TEST_SUITE("calibration_scatter") {
     const auto fit = fit_calibration(readings, Side::right, sensors_22);
     REQUIRE(fit);
     for (const Sensor sensor : {Sensor::index_middle_abduction, Sensor::middle_ring_abduction,
-                                Sensor::ring_pinky_abduction}) {
+                                Sensor::ring_little_abduction}) {
       CAPTURE(std::string(name_of(sensor)));
       CHECK(fit->undetermined.has(sensor));
       CHECK(fit->calibration[sensor].gain_rad_per_count ==

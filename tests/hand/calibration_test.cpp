@@ -35,9 +35,9 @@ TEST_SUITE("calibration") {
           doctest::Approx(line(Sensor::thumb_roll) + 0.1 * line(Sensor::thumb_abduction)));
     CHECK(angle(Sensor::thumb_abduction) ==
           doctest::Approx(line(Sensor::thumb_abduction) + 0.2 * line(Sensor::thumb_roll)));
-    CHECK(angle(Sensor::ring_pinky_abduction) ==
-          doctest::Approx(line(Sensor::ring_pinky_abduction) + 0.7 * line(Sensor::ring_mcp) +
-                          0.8 * line(Sensor::pinky_mcp)));
+    CHECK(angle(Sensor::ring_little_abduction) ==
+          doctest::Approx(line(Sensor::ring_little_abduction) + 0.7 * line(Sensor::ring_mcp) +
+                          0.8 * line(Sensor::little_mcp)));
     CHECK(angle(Sensor::index_dip) == line(Sensor::index_dip));
     CHECK(angle(Sensor::index_abduction) == 0.0); // no glove has it
   }
@@ -64,10 +64,10 @@ TEST_SUITE("calibration") {
     };
     CHECK(reaches(Sensor::index_mcp, -20, 90));
     CHECK(reaches(Sensor::middle_pip, 0, 105));
-    CHECK(reaches(Sensor::pinky_dip, 0, 80));
+    CHECK(reaches(Sensor::little_dip, 0, 80));
     CHECK(reaches(Sensor::thumb_roll, 0, 75));
     CHECK(reaches(Sensor::thumb_abduction, 0, 50));
-    CHECK(reaches(Sensor::ring_pinky_abduction, 0, 30));
+    CHECK(reaches(Sensor::ring_little_abduction, 0, 30));
     CHECK(reaches(Sensor::wrist_pitch, -70, 70));
     CHECK(reaches(Sensor::wrist_yaw, -30, 25));
   }
@@ -94,7 +94,7 @@ TEST_SUITE("calibration") {
       };
       spans(Sensor::index_mcp, 0, 90);
       spans(Sensor::middle_pip, 0, 100);
-      spans(Sensor::pinky_dip, 0, 80);
+      spans(Sensor::little_dip, 0, 80);
       spans(Sensor::thumb_mcp, 0, 55);
       spans(Sensor::thumb_ip, 0, 80);
       spans(Sensor::index_middle_abduction, 0, 25);
@@ -125,10 +125,10 @@ TEST_SUITE("calibration") {
 
   TEST_CASE("the little finger's sensors are also found by their older names") {
     const std::string older = "pinky";
-    CHECK(sensor_named(older + "_mcp") == Sensor::pinky_mcp);
-    CHECK(sensor_named(older + "_pip") == Sensor::pinky_pip);
-    CHECK(sensor_named(older + "_dip") == Sensor::pinky_dip);
-    CHECK(sensor_named("ring_" + older + "_abduction") == Sensor::ring_pinky_abduction);
+    CHECK(sensor_named(older + "_mcp") == Sensor::little_mcp);
+    CHECK(sensor_named(older + "_pip") == Sensor::little_pip);
+    CHECK(sensor_named(older + "_dip") == Sensor::little_dip);
+    CHECK(sensor_named("ring_" + older + "_abduction") == Sensor::ring_little_abduction);
     for (const char* const none : {"", "_", "_mc", "_mcp_", "_abduction"})
       CHECK_FALSE(sensor_named(older + none));
     CHECK_FALSE(sensor_named("index_" + older + "_abduction"));

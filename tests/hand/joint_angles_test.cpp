@@ -55,9 +55,9 @@ constexpr SensorMask mask_of(std::initializer_list<Sensor> sensors) {
 
 // Gloves with fewer sensors than a CyberGlove: one a finger, at either joint, and two a finger.
 constexpr SensorMask curls = mask_of({Sensor::thumb_mcp, Sensor::index_mcp, Sensor::middle_mcp,
-                                      Sensor::ring_mcp, Sensor::pinky_mcp});
-constexpr SensorMask pip_curls = mask_of(
-    {Sensor::thumb_ip, Sensor::index_pip, Sensor::middle_pip, Sensor::ring_pip, Sensor::pinky_pip});
+                                      Sensor::ring_mcp, Sensor::little_mcp});
+constexpr SensorMask pip_curls = mask_of({Sensor::thumb_ip, Sensor::index_pip, Sensor::middle_pip,
+                                          Sensor::ring_pip, Sensor::little_pip});
 constexpr SensorMask two_a_finger{curls.bits | pip_curls.bits};
 constexpr SensorMask spread_alone = mask_of({Sensor::thumb_mcp, Sensor::thumb_abduction});
 
@@ -115,7 +115,7 @@ TEST_SUITE("joint_angles") {
     CHECK(angle_after(Sensor::ring_pip, [](const JointAngles& a) {
             return a[Finger::ring].pip_flexion_rad;
           }) == doctest::Approx(step));
-    CHECK(angle_after(Sensor::pinky_dip, [](const JointAngles& a) {
+    CHECK(angle_after(Sensor::little_dip, [](const JointAngles& a) {
             return a[Finger::little].dip_flexion_rad;
           }) == doctest::Approx(step));
     CHECK(angle_after(Sensor::wrist_yaw, [](const JointAngles& a) { return a.wrist_yaw_rad; }) ==
@@ -126,7 +126,7 @@ TEST_SUITE("joint_angles") {
     GloveSample sample = flat_sample(sensors_22);
     set(sample, Sensor::index_middle_abduction, 20);
     set(sample, Sensor::middle_ring_abduction, 15);
-    set(sample, Sensor::ring_pinky_abduction, 10);
+    set(sample, Sensor::ring_little_abduction, 10);
     const JointAngles angles = joint_angles(sample, default_calibration());
     CHECK(angles[Finger::index].mcp_abduction_rad == doctest::Approx(0.20));
     CHECK(angles[Finger::middle].mcp_abduction_rad == 0.0);
@@ -138,7 +138,7 @@ TEST_SUITE("joint_angles") {
     GloveSample sample = flat_sample(sensors_22);
     set(sample, Sensor::index_middle_abduction, 20);
     set(sample, Sensor::middle_ring_abduction, 10);
-    set(sample, Sensor::ring_pinky_abduction, 10);
+    set(sample, Sensor::ring_little_abduction, 10);
     Calibration calibration = default_calibration();
     calibration.middle_bias = 0.5;
     const JointAngles angles = joint_angles(sample, calibration);
@@ -184,7 +184,7 @@ TEST_SUITE("joint_angles") {
       CHECK(shows(a.wrist_pitch_rad, angle(Sensor::wrist_pitch), {-75, -70, 80, 85}));
       const double index_middle = angle(Sensor::index_middle_abduction);
       const double middle_ring = angle(Sensor::middle_ring_abduction);
-      const double ring_pinky = angle(Sensor::ring_pinky_abduction);
+      const double ring_pinky = angle(Sensor::ring_little_abduction);
       CHECK(shows(a[Finger::index].mcp_abduction_rad, index_middle, {-15, -10, 30, 40}));
       CHECK(a[Finger::middle].mcp_abduction_rad == 0.0);
       CHECK(shows(a[Finger::little].mcp_abduction_rad, -middle_ring - ring_pinky,

@@ -112,7 +112,7 @@ TEST_SUITE("left_out") {
   TEST_CASE("a hand that closes evenly is estimated within twenty degrees, from any neighbour") {
     const Calibration calibration = default_calibration();
     for (const Sensor sensor : {Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip,
-                                Sensor::ring_mcp, Sensor::ring_pip, Sensor::pinky_pip}) {
+                                Sensor::ring_mcp, Sensor::ring_pip, Sensor::little_pip}) {
       CAPTURE(name_of(sensor));
       for (int step = 0; step <= 20; ++step) {
         const double part = 0.05 * step;

@@ -122,10 +122,10 @@ TEST_SUITE("ros_calibration") {
         {"G_RingPIJ", Sensor::ring_pip},
         {"G_RingDIJ", Sensor::ring_dip},
         {"G_RingMiddleAb", Sensor::middle_ring_abduction},
-        {"G_PinkieMPJ", Sensor::pinky_mcp},
-        {"G_PinkiePIJ", Sensor::pinky_pip},
-        {"G_PinkieDIJ", Sensor::pinky_dip},
-        {"G_PinkieRingAb", Sensor::ring_pinky_abduction},
+        {"G_PinkieMPJ", Sensor::little_mcp},
+        {"G_PinkiePIJ", Sensor::little_pip},
+        {"G_PinkieDIJ", Sensor::little_dip},
+        {"G_PinkieRingAb", Sensor::ring_little_abduction},
         {"G_PalmArch", Sensor::palm_arch},
         {"G_WristPitch", Sensor::wrist_pitch},
         {"G_WristYaw", Sensor::wrist_yaw}};
@@ -199,9 +199,9 @@ TEST_SUITE("ros_calibration") {
     joints.push_back({"G_Toe", {{0.1, 0.0}, {0.2, 9.0}}});
     const auto read = required(parse_ros_yaml(yaml_of(joints), "a"));
     CHECK(read.calibration[Sensor::index_dip].gain_rad_per_count == 0.0);
-    CHECK(read.calibration[Sensor::pinky_dip].gain_rad_per_count == 0.0);
+    CHECK(read.calibration[Sensor::little_dip].gain_rad_per_count == 0.0);
     CHECK(any_note_has(read, "G_IndexDIJ (index_dip) is left out"));
-    CHECK(any_note_has(read, "G_PinkieDIJ (pinky_dip) is left out"));
+    CHECK(any_note_has(read, "G_PinkieDIJ (little_dip) is left out"));
     CHECK(any_note_has(read, "not known and not read: 'G_Toe'"));
   }
 

@@ -102,7 +102,7 @@ TEST_SUITE("calibrate") {
       CHECK(written->side == wearer.side());
       CHECK(written->method == "full");
       for (const Sensor sensor : {Sensor::index_mcp, Sensor::middle_pip, Sensor::ring_pip,
-                                  Sensor::pinky_mcp, Sensor::wrist_pitch}) {
+                                  Sensor::little_mcp, Sensor::wrist_pitch}) {
         const double truth = wearer.truth()[sensor].gain_rad_per_count;
         CAPTURE(name_of(sensor));
         CHECK(written->calibration[sensor].gain_rad_per_count ==

@@ -52,7 +52,8 @@ TEST_SUITE("emulate") {
           Case{"lucidgloves", "--firmware", "streaming", "lucidgloves:%", "alpha"},
           Case{"lucidgloves", "--firmware", "waiting", "lucidgloves:%", "alpha"},
           Case{"lucidgloves", "--firmware", "legacy", "lucidgloves:%", "legacy"},
-          Case{"5dt", "--firmware", "pinky-first", "5dt:%?left_first=pinky", "pinky first"},
+          Case{"5dt", "--firmware", "little-first", "5dt:%?left_first=little",
+               "little finger first"},
           Case{"5dt", "--connection", "wireless", "5dt:%?baud=9600&hand=left", "wireless"},
           Case{"forte", "--connection", "usb", "forte:%", "usb"},
           Case{"forte", "--connection", "bluetooth", "forte:%?link=bluetooth", "bluetooth"}}) {

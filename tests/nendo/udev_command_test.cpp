@@ -59,7 +59,7 @@ TEST_SUITE("udev command") {
     ::umask(022);
     CHECK(first.exit_code == 0);
     CHECK(lines_of(first.out).size() == 2); // no word of udev: this is not its root
-    for (const auto& file : nendo::udev::rule_texts()) {
+    for (const auto& file : nendo::udev::shipped_rules()) {
       const auto path = root.etc(std::string(file.name));
       CHECK(contents(path) == file.text);
       CHECK(root.udev({"show", std::string(file.name)}).out == file.text);
@@ -88,7 +88,7 @@ TEST_SUITE("udev command") {
 
   TEST_CASE("a package's rules are enough, and are not touched") {
     const FakeRoot root;
-    for (const auto& file : nendo::udev::rule_texts())
+    for (const auto& file : nendo::udev::shipped_rules())
       write_file(root.package(std::string(file.name)), file.text);
     CHECK(says(root.udev({"install"}), "unchanged"));
     CHECK(root.files() == 2);

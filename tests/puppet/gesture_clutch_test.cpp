@@ -233,7 +233,7 @@ TEST_SUITE("gesture_clutch") {
   TEST_CASE("a pinch of a right hand's skeleton releases, an open hand and a fist do not") {
     const hand::HandSkeleton skeleton(Side::right);
     const auto strength = [&](const hand::JointAngles& angles) {
-      return gesture_strength(ClutchMeans::pinch,
+      return gesture_strength(ClutchTrigger::pinch,
                               {angles, skeleton.pose(angles, Eigen::Isometry3d::Identity()), {}});
     };
     hand::JointAngles flat{};

@@ -142,13 +142,13 @@ TEST_SUITE("puppet file") {
   TEST_CASE("clutches are chosen by hand, and hostile bounds are refused") {
     const auto none = parse_puppet(whole, "p.toml");
     REQUIRE(none);
-    CHECK(none->clutch.means == std::array<puppet::ClutchMeans, 2>{});
+    CHECK(none->clutch.means == std::array<puppet::ClutchTrigger, 2>{});
     const auto parsed = parse_puppet(
         whole + "[clutch]\nleft = \"fist\"\nright = \"switch\"\nheld_s = 1\nfist_deg = 180\n",
         "p.toml");
     REQUIRE(parsed);
     CHECK(parsed->clutch.means ==
-          std::array{puppet::ClutchMeans::fist, puppet::ClutchMeans::wrist_switch});
+          std::array{puppet::ClutchTrigger::fist, puppet::ClutchTrigger::wrist_switch});
     CHECK(parsed->clutch.held_s == 1.0);
     CHECK(parsed->clutch.fist_deg == 180.0);
     CHECK(parsed->clutch.pinch_m == 0.02);

@@ -87,7 +87,7 @@ struct TouchJoints {
 TouchJoints joints_for(PoseId id) {
   constexpr std::array<std::size_t, 4> firsts{
       slot_of(Sensor::index_mcp), slot_of(Sensor::middle_mcp), slot_of(Sensor::ring_mcp),
-      slot_of(Sensor::pinky_mcp)};
+      slot_of(Sensor::little_mcp)};
   const auto with_finger = [&](std::size_t finger, std::vector<double> liked_deg) {
     const std::size_t first = firsts[finger];
     return TouchJoints{{0, 1, 2, 3, first, first + 1, first + 2}, std::move(liked_deg)};
@@ -321,8 +321,9 @@ hand::JointAngles joints_of(const SensorAngles& angles_rad) noexcept {
                             of(Sensor::middle_dip)};
   joints[Finger::ring] = {of(Sensor::ring_mcp), -middle_ring, of(Sensor::ring_pip),
                           of(Sensor::ring_dip)};
-  joints[Finger::little] = {of(Sensor::pinky_mcp), -middle_ring - of(Sensor::ring_pinky_abduction),
-                            of(Sensor::pinky_pip), of(Sensor::pinky_dip)};
+  joints[Finger::little] = {of(Sensor::little_mcp),
+                            -middle_ring - of(Sensor::ring_little_abduction),
+                            of(Sensor::little_pip), of(Sensor::little_dip)};
   joints.palm_arch_rad = of(Sensor::palm_arch);
   joints.wrist_pitch_rad = of(Sensor::wrist_pitch);
   joints.wrist_yaw_rad = of(Sensor::wrist_yaw);

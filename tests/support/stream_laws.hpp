@@ -236,7 +236,7 @@ struct RestingJoint {
 inline constexpr std::array resting_knuckles{
     RestingJoint{Sensor::thumb_mcp, 15, 55}, RestingJoint{Sensor::index_mcp, 23, 90},
     RestingJoint{Sensor::middle_mcp, 25, 90}, RestingJoint{Sensor::ring_mcp, 26, 90},
-    RestingJoint{Sensor::pinky_mcp, 27, 90}};
+    RestingJoint{Sensor::little_mcp, 27, 90}};
 
 /// Returns the first sample of the glove that `unit` emulates, whose hand is at rest.
 inline GloveSample sample_at_rest(std::unique_ptr<emulator::EmulatedUnit> unit,

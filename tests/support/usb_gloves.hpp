@@ -132,7 +132,7 @@ protected:
     };
     put(1, 8);
     for (const Sensor finger : {Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp,
-                                Sensor::pinky_mcp, Sensor::thumb_mcp})
+                                Sensor::little_mcp, Sensor::thumb_mcp})
       put(static_cast<unsigned>(count_of(finger, angles, 63, counts)), 6);
     put(0, 2);
     put(buttons, 4);
@@ -160,7 +160,7 @@ protected:
     constexpr std::array order{
         thumb_mcp, thumb_ip,  thumb_abduction, //
         index_mcp, index_pip, index_middle_abduction, middle_mcp, middle_pip, middle_ring_abduction,
-        ring_mcp,  ring_pip,  ring_pinky_abduction,   pinky_mcp,  pinky_pip};
+        ring_mcp,  ring_pip,  ring_little_abduction,  little_mcp, little_pip};
     UsbBytes bytes(64, 0xEE);
     for (std::size_t k = 0; k < order.size(); ++k) {
       const bool measured = (product & 0x10U) == 0 || k % 3 == 0;

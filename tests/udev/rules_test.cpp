@@ -43,8 +43,8 @@ TEST_SUITE("udev rules") {
     std::size_t committed = 0;
     for (const auto& entry : std::filesystem::directory_iterator(NENDO_UDEV_FOLDER))
       committed += entry.path().extension() == ".rules" ? 1U : 0U;
-    CHECK(committed == rule_texts().size());
-    for (const RuleText& file : rule_texts()) {
+    CHECK(committed == shipped_rules().size());
+    for (const RuleText& file : shipped_rules()) {
       const std::string name(file.name);
       const auto text = read_file(NENDO_UDEV_FOLDER "/" + name, 1U << 20U, "udev rules");
       CHECK_MESSAGE((text && *text == file.text), "make it again: nendo udev show ", name,
@@ -57,7 +57,7 @@ TEST_SUITE("udev rules") {
       MESSAGE("not run: udevadm verifies rules since systemd 254");
       return;
     }
-    for (const RuleText& file : rule_texts()) {
+    for (const RuleText& file : shipped_rules()) {
       const auto judged =
           test::shell("udevadm verify '" NENDO_UDEV_FOLDER "/" + std::string(file.name) + "'");
       CHECK_MESSAGE(judged.exit_code == 0, judged.out);
@@ -65,7 +65,7 @@ TEST_SUITE("udev rules") {
   }
 
   TEST_CASE("no rule names an adapter that anything may hang on") {
-    for (const RuleText& file : rule_texts()) {
+    for (const RuleText& file : shipped_rules()) {
       CHECK(file.text.starts_with(rule_mark));
       std::string rules = file.text;
       for (std::size_t at = 0; (at = rules.find('#')) != std::string::npos;)
@@ -77,7 +77,7 @@ TEST_SUITE("udev rules") {
   }
 
   TEST_CASE("the grant comes before systemd turns tags into permissions") {
-    const auto files = rule_texts();
+    const auto files = shipped_rules();
     REQUIRE(files.size() == 2);
     CHECK(files[0].name < files[1].name);
     CHECK(files[1].name < std::string_view("73"));

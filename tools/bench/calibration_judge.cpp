@@ -150,7 +150,7 @@ double true_slot_rad(const JudgedMoment& moment, std::size_t slot) {
     return at(hand::Angle::index_mcp_abduction);
   case Sensor::middle_ring_abduction:
     return -at(hand::Angle::ring_mcp_abduction);
-  case Sensor::ring_pinky_abduction:
+  case Sensor::ring_little_abduction:
     return at(hand::Angle::ring_mcp_abduction) - at(hand::Angle::little_mcp_abduction);
   case Sensor::palm_arch:
     return at(hand::Angle::palm_arch);

@@ -289,7 +289,7 @@ private:
     deg[3] = at(Sensor::thumb_ip);
     const double middle_ring = at(Sensor::middle_ring_abduction);
     const double sideways[4] = {at(Sensor::index_middle_abduction), 0.0, -middle_ring,
-                                -middle_ring - at(Sensor::ring_pinky_abduction)};
+                                -middle_ring - at(Sensor::ring_little_abduction)};
     for (std::size_t f = 0; f < 4; ++f) {
       const std::size_t first = slot(Sensor::index_mcp) + 4 * f;
       deg[4 + 4 * f] = to_degrees(angles[first]);

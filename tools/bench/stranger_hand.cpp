@@ -161,7 +161,7 @@ Vector3d StrangerHand::pad(std::size_t digit, const SensorAngles& angles) const 
   const FingerShape& finger = fingers_[f];
   const double middle_ring = angles[slot_at(Sensor::middle_ring_abduction)];
   const double sideways[4] = {angles[slot_at(Sensor::index_middle_abduction)], 0.0, -middle_ring,
-                              -middle_ring - angles[slot_at(Sensor::ring_pinky_abduction)]};
+                              -middle_ring - angles[slot_at(Sensor::ring_little_abduction)]};
   const std::size_t mcp = slot_at(Sensor::index_mcp) + 4 * f;
   const Pad& pad = pads_[digit];
   Matrix3d axes = about_x(-finger.arch_share * angles[slot_at(Sensor::palm_arch)]) *

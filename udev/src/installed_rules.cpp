@@ -64,7 +64,7 @@ fs::path etc_rules(const fs::path& root) {
 
 std::vector<RuleFile> rules_in_etc(const fs::path& root) {
   std::vector<RuleFile> files;
-  for (const RuleText& file : rule_texts()) {
+  for (const RuleText& file : shipped_rules()) {
     const fs::path path = etc_rules(root) / file.name;
     files.push_back({std::string(file.name), path, state_of(path, file.text)});
   }
@@ -73,7 +73,7 @@ std::vector<RuleFile> rules_in_etc(const fs::path& root) {
 
 std::vector<RuleFile> rules_in_force(const fs::path& root) {
   std::vector<RuleFile> files;
-  for (const RuleText& file : rule_texts()) {
+  for (const RuleText& file : shipped_rules()) {
     RuleFile found{std::string(file.name), etc_rules(root) / file.name, RuleState::missing};
     for (const char* const folder : {"etc", "run", "usr/local/lib", "usr/lib"}) {
       const fs::path path = root / folder / "udev/rules.d" / file.name;

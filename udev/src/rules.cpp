@@ -103,7 +103,7 @@ std::string grant() {
 
 } // namespace
 
-std::vector<RuleText> rule_texts() {
+std::vector<RuleText> shipped_rules() {
   return {{"60-nendo.rules", identification()}, {"61-nendo-uaccess.rules", grant()}};
 }
 

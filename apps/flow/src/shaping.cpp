@@ -195,9 +195,9 @@ void Shaping::write_state(Frame& frame, LoopStats& stats) noexcept {
 
 /// Gives the frame space for the sculptor's fields and for the version's shape, if it has none.
 void Shaping::make_space(Frame& frame) noexcept {
-  if (!frame.fields.has_room_of(sculptor_->fields())) {
+  if (!frame.fields.can_hold_fields_of(sculptor_->fields())) {
     for (auto& spare : spare_fields_) {
-      if (!spare.has_room_of(sculptor_->fields())) continue;
+      if (!spare.can_hold_fields_of(sculptor_->fields())) continue;
       std::swap(spare, frame.fields);
       break;
     }

@@ -306,7 +306,7 @@ void ShapingCore::restart(LogChange& change, const Hands& hands, Frame& frame,
 
 bool ShapingCore::has_clutch(Side side) const noexcept {
   return puppet_ && puppet_->player().rig().puppet().clutch.means[Placement::index_of(side)] ==
-                        puppet::ClutchMeans::wrist_switch;
+                        puppet::ClutchTrigger::wrist_switch;
 }
 
 const WirePath& ShapingCore::completed_wire() const noexcept {

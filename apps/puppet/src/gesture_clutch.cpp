@@ -21,14 +21,14 @@ double smooth(double part) noexcept {
 
 } // namespace
 
-double gesture_strength(ClutchMeans means, const HandState& hand) noexcept {
-  if (means == ClutchMeans::fist) {
+double gesture_strength(ClutchTrigger means, const HandState& hand) noexcept {
+  if (means == ClutchTrigger::fist) {
     double least = flexion(hand.angles.fingers.front());
     for (const hand::FingerAngles& finger : hand.angles.fingers)
       least = std::min(least, flexion(finger));
     return least;
   }
-  if (means != ClutchMeans::pinch) return 0.0;
+  if (means != ClutchTrigger::pinch) return 0.0;
   const auto tips = hand.pose.fingertip_positions();
   return -(tips.col(0) - tips.col(1)).norm();
 }
@@ -42,8 +42,8 @@ GestureClutch::GestureClutch(const Rig& rig) : options_(rig.puppet().clutch) {
   }
 }
 
-double GestureClutch::bound(ClutchMeans means) const noexcept {
-  return means == ClutchMeans::fist ? from_degrees(options_.fist_deg) : -options_.pinch_m;
+double GestureClutch::bound(ClutchTrigger means) const noexcept {
+  return means == ClutchTrigger::fist ? from_degrees(options_.fist_deg) : -options_.pinch_m;
 }
 
 void GestureClutch::watch(RigPlayer& player, const RigPlayer::Hands& hands,
@@ -65,8 +65,9 @@ void GestureClutch::reset(RigPlayer& player) noexcept {
 void GestureClutch::look(RigPlayer& player, Side side, const RigPlayer::Hands& hands,
                          HostTime time) noexcept {
   const auto slot = static_cast<std::size_t>(side);
-  const ClutchMeans means = options_.means[slot];
-  if (hands[slot] == nullptr || (means != ClutchMeans::fist && means != ClutchMeans::pinch)) return;
+  const ClutchTrigger means = options_.means[slot];
+  if (hands[slot] == nullptr || (means != ClutchTrigger::fist && means != ClutchTrigger::pinch))
+    return;
   Watch& watch = watches_[slot];
   const double strength = gesture_strength(means, *hands[slot]);
   const double passed_s = watch.state == State::unknown ? 0.0 : to_seconds(time - watch.last);
@@ -82,8 +83,8 @@ void GestureClutch::look(RigPlayer& player, Side side, const RigPlayer::Hands& h
 /// Goes from a state to the next one.
 void GestureClutch::advance(Watch& watch, RigPlayer& player, Side side,
                             const RigPlayer::Hands& hands, double strength) noexcept {
-  const ClutchMeans means = options_.means[static_cast<std::size_t>(side)];
-  const double ends_at = means == ClutchMeans::fist ? fist_ends_at : pinch_ends_at;
+  const ClutchTrigger means = options_.means[static_cast<std::size_t>(side)];
+  const double ends_at = means == ClutchTrigger::fist ? fist_ends_at : pinch_ends_at;
   const bool begins = strength >= bound(means);
   const bool ends = strength < ends_at * bound(means);
   const bool has_let_go = player.has_let_go(side);
@@ -147,14 +148,14 @@ void GestureClutch::Watch::note(const RigPlayer& player, double strength, bool f
     moment.asked[at] = player.asked(at);
 }
 
-bool GestureClutch::rests(const Watch& watch, ClutchMeans means, double strength) const noexcept {
+bool GestureClutch::rests(const Watch& watch, ClutchTrigger means, double strength) const noexcept {
   if (watch.lasted_s() < rest_s) return false;
   double least = strength, most = strength;
   watch.each_since(watch.last - from_seconds(rest_s), [&](const Moment& moment) {
     least = std::min(least, moment.strength);
     most = std::max(most, moment.strength);
   });
-  return most - least < (means == ClutchMeans::fist ? still_rad : still_m) ||
+  return most - least < (means == ClutchTrigger::fist ? still_rad : still_m) ||
          watch.lasted_s() >= max_rest_s;
 }
 

@@ -153,13 +153,13 @@ std::string twin_of(const std::string& name) {
   return name;
 }
 
-std::string_view name_of(ClutchMeans means) noexcept {
+std::string_view name_of(ClutchTrigger means) noexcept {
   return means_names[static_cast<std::size_t>(means)];
 }
 
-std::optional<ClutchMeans> clutch_means_named(std::string_view name) noexcept {
+std::optional<ClutchTrigger> clutch_trigger_named(std::string_view name) noexcept {
   for (std::size_t at = 0; at < means_names.size(); ++at)
-    if (means_names[at] == name) return static_cast<ClutchMeans>(at);
+    if (means_names[at] == name) return static_cast<ClutchTrigger>(at);
   return std::nullopt;
 }
 

@@ -135,7 +135,7 @@ private:
     for (const auto& [side, key] : {std::pair{Side::left, "left"}, std::pair{Side::right, "right"}})
       if (table->get(key) != nullptr)
         clutch.means[static_cast<std::size_t>(side)] =
-            reader_.named(*table, key, clutch_means_named);
+            reader_.named(*table, key, clutch_trigger_named);
     clutch.held_s = number_within(*table, "held_s", clutch.held_s, 0.25, 5.0);
     clutch.fist_deg = number_within(*table, "fist_deg", clutch.fist_deg, 90.0, 250.0);
     clutch.pinch_m = number_within(*table, "pinch_m", clutch.pinch_m, 0.005, 0.04);

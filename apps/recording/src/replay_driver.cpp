@@ -132,7 +132,7 @@ public:
     stats.records = records_.load(std::memory_order_relaxed);
     stats.missed = missed_.load(std::memory_order_relaxed);
     stats.ring_refused = ring_refused_.load(std::memory_order_relaxed);
-    stats.tells_missed = true; // samples are numbered
+    stats.counts_missed = true; // samples are numbered
     return stats;
   }
 

@@ -200,7 +200,7 @@ void sent_fields(auto& fields, auto& gloves) {
     for (auto* const count : {&counts.delivered, &counts.missed, &counts.refused, &counts.bad})
       fields.u64(*count);
   for (auto& counts : gloves) {
-    fields.flag(counts.tells_missed);
+    fields.flag(counts.counts_missed);
     fields.u64(counts.clamped);
   }
 }

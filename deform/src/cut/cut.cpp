@@ -266,7 +266,7 @@ private:
       result_.added = std::move(assembly.added);
       result_.first_cut_face = assembly.first_cut_face;
       result_.loops = static_cast<std::uint32_t>(std::count(keeps_.begin(), keeps_.end(), 1));
-      result_.left_whole = to_index(keeps_.size()) - result_.loops;
+      result_.uncut_loops = to_index(keeps_.size()) - result_.loops;
       return Outcome::cut;
     }
     return Outcome::again;

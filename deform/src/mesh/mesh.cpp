@@ -46,7 +46,7 @@ double diagonal_of(const Points& points) noexcept {
   return (high - low).stableNorm();
 }
 
-std::string_view remark_on(const Mesh& mesh) noexcept {
+std::string_view warning_about(const Mesh& mesh) noexcept {
   if (mesh.face_count() == 0)
     return "has no faces, only vertices: it is a point cloud, of which there is no surface to see; "
            "make one in MeshLab or CloudCompare (Poisson surface reconstruction)";

@@ -134,7 +134,7 @@ struct HardwareCalibration {
   std::array<std::uint8_t, sensor_slots> gain{};
 };
 
-using Vibration = std::array<std::uint8_t, 6>; ///< thumb to pinky, palm
+using Vibration = std::array<std::uint8_t, 6>; ///< thumb to little finger, palm
 
 /// Each call waits for its reply, at most `timeout` unless stated otherwise.
 class Commands {

@@ -121,7 +121,7 @@ public:
 
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }
 
-  bool tells_missed() const noexcept override {
+  bool counts_missed() const noexcept override {
     if (identity_.hires) return hires_check_.counts_missed();
     return identity_.shape.time_stamp && check_.trusts_stamps();
   }

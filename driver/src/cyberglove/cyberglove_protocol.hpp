@@ -59,7 +59,7 @@ inline constexpr Query ask_period{'T', 4};        ///< two 16-bit words, byte or
 inline constexpr Query ask_parameters{'P', 3};    ///< flags, LSB first; bits below [V, two drivers]
 inline constexpr Query ask_firmware{'V', 4};      ///< two 16-bit words, meaning unknown [D]
 inline constexpr Query ask_baud{'B', 1};          ///< the baud register, see baud_of_register() [V]
-inline constexpr Query ask_vibration{'A', 6};     ///< thumb to pinky, palm [D]
+inline constexpr Query ask_vibration{'A', 6};     ///< thumb to little finger, palm [D]
 inline constexpr char ask_calibration = 'C';      ///< an offset a sensor, then a gain a sensor [D]
 inline constexpr char ask_information = 'i';      ///< text of several lines; NUL ends it [V, D]
 inline constexpr char ask_firmware_text = 'v';    ///< text [V]

@@ -23,21 +23,21 @@ constexpr auto quiet_time = 50ms; ///< longer than any gap within an answer
 constexpr auto max_drain = 300ms;
 
 constexpr std::array<Sensor, fingers> slots{
-    Sensor::thumb_mcp, Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp, Sensor::pinky_mcp};
+    Sensor::thumb_mcp, Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp, Sensor::little_mcp};
 
 constexpr SensorMask sensors = mask_of(slots);
 
 /// The user's options.
 struct Wishes {
   bool wireless = false;
-  bool left_pinky_first = false;
+  bool left_little_first = false;
   SideOptions hands;
 };
 
 class FiveDtProtocol final : public GloveProtocol {
 public:
   explicit FiveDtProtocol(const Wishes& wishes) noexcept
-      : wireless_(wishes.wireless), left_pinky_first_(wishes.left_pinky_first),
+      : wireless_(wishes.wireless), left_little_first_(wishes.left_little_first),
         hands_(wishes.hands) {}
 
   Result<GloveInfo> identify(Transport& transport, const std::string& source,
@@ -62,7 +62,7 @@ public:
     const auto take = [&](const Record& record) {
       GloveSample sample;
       for (std::size_t k = 0; k < fingers; ++k)
-        sample.set(slots[pinky_first() ? fingers - 1 - k : k], RawCount{record.flexion[k]});
+        sample.set(slots[little_first() ? fingers - 1 - k : k], RawCount{record.flexion[k]});
       sample.side = side_;
       sink.deliver(sample);
     };
@@ -170,12 +170,12 @@ private:
     return describe(choose_hand(std::nullopt, hands_));
   }
 
-  bool pinky_first() const noexcept { return left_pinky_first_ && side_ == Side::left; }
+  bool little_first() const noexcept { return left_little_first_ && side_ == Side::left; }
   /// For people: which finger comes first, and what to do if it is another one.
   std::string finger_order() const {
     if (side_ == Side::right) return "thumb first";
-    return pinky_first() ? "pinky first, as left_first=pinky says"
-                         : "thumb first; if that is the wrong way round, use left_first=pinky";
+    return little_first() ? "little finger first, as left_first=little says"
+                          : "thumb first; if that is the wrong way round, use left_first=little";
   }
 
   GloveInfo describe(const ChosenHand& hand) {
@@ -192,7 +192,7 @@ private:
   }
 
   const bool wireless_;
-  const bool left_pinky_first_;
+  const bool left_little_first_;
   const SideOptions hands_;
   Side side_ = Side::right;
   bool warned_of_hand_ = false;
@@ -208,11 +208,11 @@ Result<std::unique_ptr<Glove>> open_fivedt(const GloveSpec& spec, std::optional<
   if (!baud) return baud.error();
   const auto hand = hand_option(spec);
   if (!hand) return hand.error();
-  const auto left_first = word_option(spec, "left_first", {"thumb", "pinky"});
+  const auto left_first = word_option(spec, "left_first", {"thumb", "little"});
   if (!left_first) return left_first.error();
   if (auto named = require_port(spec, "5dt:/dev/ttyUSB0"); !named) return named.error();
   auto protocol = std::make_unique<FiveDtProtocol>(
-      Wishes{*baud == wireless_baud, *left_first == "pinky", SideOptions{*hand, side}});
+      Wishes{*baud == wireless_baud, *left_first == "little", SideOptions{*hand, side}});
   return open_stream_glove(spec.text, follow_port(spec.target, *baud), std::move(protocol),
                            HostClock::now() + open_budget);
 }

@@ -19,7 +19,7 @@
 namespace nendo::driver::fivedt {
 
 struct Record {
-  std::array<std::uint8_t, fingers> flexion{}; ///< thumb to pinky, 0 straight to 255 bent
+  std::array<std::uint8_t, fingers> flexion{}; ///< thumb to little finger, 0 straight to 255 bent
 };
 
 /// Decodes nine bytes. Returns nothing if header or checksum are wrong.

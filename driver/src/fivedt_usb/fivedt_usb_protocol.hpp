@@ -53,8 +53,8 @@ inline constexpr std::array value_sensors{
     Sensor::thumb_mcp,  Sensor::thumb_ip,   Sensor::thumb_abduction,
     Sensor::index_mcp,  Sensor::index_pip,  Sensor::index_middle_abduction,
     Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_ring_abduction,
-    Sensor::ring_mcp,   Sensor::ring_pip,   Sensor::ring_pinky_abduction,
-    Sensor::pinky_mcp,  Sensor::pinky_pip};
+    Sensor::ring_mcp,   Sensor::ring_pip,   Sensor::ring_little_abduction,
+    Sensor::little_mcp, Sensor::little_pip};
 inline constexpr std::size_t values_per_finger = 3;
 
 } // namespace nendo::driver::fivedt_usb

@@ -44,7 +44,8 @@ inline constexpr std::size_t record_bytes = 15;
 /// palm. The maker's Unity and Unreal kits list the knuckle first, so that order is likely, but not
 /// certain.
 inline constexpr std::array<Sensor, sensor_count> slots{
-    Sensor::thumb_mcp,  Sensor::thumb_ip, Sensor::index_mcp, Sensor::index_pip, Sensor::middle_mcp,
-    Sensor::middle_pip, Sensor::ring_mcp, Sensor::ring_pip,  Sensor::pinky_mcp, Sensor::pinky_pip};
+    Sensor::thumb_mcp,  Sensor::thumb_ip,   Sensor::index_mcp, Sensor::index_pip,
+    Sensor::middle_mcp, Sensor::middle_pip, Sensor::ring_mcp,  Sensor::ring_pip,
+    Sensor::little_mcp, Sensor::little_pip};
 
 } // namespace nendo::driver::forte

@@ -16,7 +16,8 @@ constexpr bool is_digit(char c) noexcept {
 constexpr bool is_upper(char c) noexcept {
   return c >= 'A' && c <= 'Z';
 }
-/// Thumb to pinky are A to E, and so are the joints of a finger; at least `count` for others.
+/// Thumb to little finger are A to E, and so are the joints of a finger; at least `count` for
+/// others.
 constexpr std::size_t index_of(char letter) noexcept {
   return static_cast<std::size_t>(static_cast<unsigned char>(letter)) - 'A';
 }
@@ -161,13 +162,13 @@ constexpr std::array<std::array<Sensor, joints>, fingers> joint_slots{
      {none, Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip},
      {none, Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip},
      {none, Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip},
-     {none, Sensor::pinky_mcp, Sensor::pinky_pip, Sensor::pinky_dip}}};
+     {none, Sensor::little_mcp, Sensor::little_pip, Sensor::little_dip}}};
 constexpr std::size_t mcp = 1;
 
 /// Between finger k and the next, from the index finger on.
 constexpr std::size_t index = 1;
 constexpr std::array<Sensor, fingers - 2> pair_slots{
-    Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_pinky_abduction};
+    Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_little_abduction};
 
 std::uint16_t apart(std::uint16_t one, std::uint16_t other, std::uint16_t range) noexcept {
   const int difference = one > other ? one - other : other - one;

@@ -17,7 +17,7 @@
 
 namespace nendo::driver::lucidgloves {
 
-/// The values of one line. Fingers go from thumb to pinky.
+/// The values of one line. Fingers go from thumb to little finger.
 struct Line {
   using Value = std::optional<std::uint16_t>;
   std::array<Value, fingers> curl;

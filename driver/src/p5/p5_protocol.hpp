@@ -29,7 +29,7 @@ inline constexpr std::uint16_t max_bend = 63; ///< a clenched finger; 0 is a str
 /// The sensors in the report's order. Each lies along a whole finger, and its curl counts as that
 /// of the knuckle, by which the hand's model bends the other joints.
 inline constexpr std::array bend_sensors{Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp,
-                                         Sensor::pinky_mcp, Sensor::thumb_mcp};
+                                         Sensor::little_mcp, Sensor::thumb_mcp};
 
 inline constexpr std::size_t buttons_at = 40;
 inline constexpr std::size_t buttons_bits = 4;

@@ -38,9 +38,9 @@ constexpr std::array<Finger, 4> fingers{
     {{Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip},
      {Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip},
      {Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip},
-     {Sensor::pinky_mcp, Sensor::pinky_pip, Sensor::pinky_dip}}};
+     {Sensor::little_mcp, Sensor::little_pip, Sensor::little_dip}}};
 constexpr std::array<Sensor, 3> finger_pairs{
-    Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_pinky_abduction};
+    Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_little_abduction};
 
 constexpr double& slot(Pose& pose, Sensor sensor) noexcept {
   return pose[static_cast<std::size_t>(sensor)];
@@ -248,8 +248,8 @@ void couple_ring_and_little(Pose& add) noexcept {
     ring += 0.15 * apart;
     little -= 0.3 * apart;
   };
-  mix(slot(add, Sensor::ring_mcp), slot(add, Sensor::pinky_mcp));
-  mix(slot(add, Sensor::ring_pip), slot(add, Sensor::pinky_pip));
+  mix(slot(add, Sensor::ring_mcp), slot(add, Sensor::little_mcp));
+  mix(slot(add, Sensor::ring_pip), slot(add, Sensor::little_pip));
 }
 
 Pose gesture(Motion motion, Side side, const Character& hand, double time_s) noexcept {

@@ -47,7 +47,7 @@ public:
     GloveStats stats;
     stats.records = records_.load(std::memory_order_relaxed);
     stats.ring_refused = ring_refused_.load(std::memory_order_relaxed);
-    stats.tells_missed = true; // there is no line on which records get lost
+    stats.counts_missed = true; // there is no line on which records get lost
     return stats;
   }
 

@@ -87,7 +87,7 @@ public:
   }
   virtual const StreamCounters& counters() const noexcept = 0;
   /// Returns true while StreamCounters::missed is all that was lost of the stream.
-  virtual bool tells_missed() const noexcept { return false; }
+  virtual bool counts_missed() const noexcept { return false; }
   /// Returns how long a working device may send no record, if it is one that takes its time.
   virtual HostClock::duration max_pause() const noexcept { return {}; }
 };

@@ -51,7 +51,7 @@ struct SharedStats {
   std::array<std::atomic<std::uint64_t>, counts.size()> counted{};
   std::atomic<std::uint64_t> ring_refused{0}, silences{0}, reopened{0};
   std::atomic<double> rate_hz{0.0};
-  std::atomic<bool> tells_missed{false};
+  std::atomic<bool> counts_missed{false};
 
   /// `now` and `then` are the protocol's counters, which outlive a stop() and another start().
   void store(const StreamCounters& now, const StreamCounters& then) noexcept {
@@ -66,7 +66,7 @@ struct SharedStats {
     stats.silences = silences;
     stats.reopened = reopened;
     stats.rate_hz = rate_hz;
-    stats.tells_missed = tells_missed;
+    stats.counts_missed = counts_missed;
     return stats;
   }
 };
@@ -224,7 +224,7 @@ void StreamGlove::deliver(GloveSample& sample) noexcept {
 
 void StreamGlove::store_counts() noexcept {
   stats_.store(protocol_->counters(), at_start_);
-  stats_.tells_missed = protocol_->tells_missed();
+  stats_.counts_missed = protocol_->counts_missed();
 }
 
 void StreamGlove::show_feedback(const std::stop_token& token) noexcept {

@@ -51,7 +51,7 @@ struct CutModel {
   std::uint32_t parts = 0;                   ///< those that the model had before included
   std::size_t first_cut_face = 0;            ///< from here on, faces close the cut
   std::uint32_t loops = 0;                   ///< rims that were cut and closed on both sides
-  std::uint32_t left_whole = 0;              ///< rims at which the blade does not go through
+  std::uint32_t uncut_loops = 0;             ///< rims at which the blade does not go through
   std::uint32_t attempts = 1;
   double give = 0.0; ///< how far the blade was displaced, in model units, at most 1e-6 of the
                      ///< diagonal in the first attempt and three times as much in each further one

@@ -36,7 +36,7 @@ public:
   /// Returns the largest number of fields.
   std::size_t capacity() const noexcept { return fields_.size(); }
   /// Returns whether follow() copies any fields of such a sequence without allocating.
-  bool has_room_of(const FieldSequence& other) const noexcept {
+  bool can_hold_fields_of(const FieldSequence& other) const noexcept {
     return capacity() >= other.capacity() &&
            (other.capacity() == 0 || fields_[0].centres.cols() == other.fields_[0].centres.cols());
   }

@@ -57,7 +57,7 @@ NENDO_API double diagonal_of(const Points& points) noexcept;
 
 /// Returns what is strange about a mesh, though it can be deformed: it has no faces, or all its
 /// vertices are in one place. The words go behind the mesh's name; empty if nothing is strange.
-NENDO_API std::string_view remark_on(const Mesh& mesh) noexcept;
+NENDO_API std::string_view warning_about(const Mesh& mesh) noexcept;
 
 /// Returns the normals of the vertices, 3 by #vertices, of unit length: the means of the faces'
 /// normals, weighted by area. A vertex without a face of any area has a normal of zero.

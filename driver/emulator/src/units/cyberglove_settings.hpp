@@ -43,7 +43,7 @@ struct Settings {
   Byte baud = 0;
   std::uint16_t period_ticks = 0; ///< the period is their product, in 1/115200 s
   std::uint16_t period_repeats = 1;
-  std::array<Byte, 6> vibration{};          ///< CyberTouch: thumb to pinky, palm
+  std::array<Byte, 6> vibration{};          ///< CyberTouch: thumb to little finger, palm
   std::array<Byte, sensor_slots> offsets{}; ///< offsets of the hardware calibration
   std::array<Byte, sensor_slots> gains{};   ///< the same, in 1/64
 

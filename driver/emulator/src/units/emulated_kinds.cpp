@@ -31,8 +31,8 @@ constexpr std::array variants{
     EmulatedVariant{"lucidgloves", "firmware", "legacy-unclamped",
                     "as legacy; numbers go beyond the range, and below 0"},
     EmulatedVariant{"5dt", "firmware", "thumb-first", "a sample begins with the thumb"},
-    EmulatedVariant{"5dt", "firmware", "pinky-first",
-                    "a left glove's sample begins with the pinky"},
+    EmulatedVariant{"5dt", "firmware", "little-first",
+                    "a left glove's sample begins with the little finger"},
     EmulatedVariant{"5dt", "connection", "wired", "answers, and streams by command"},
     EmulatedVariant{"5dt", "connection", "wireless", "streams by itself, and hears nothing"},
     EmulatedVariant{"forte", "connection", "usb", "sends after the command to use USB"},
@@ -75,7 +75,7 @@ double choose(const Chosen& chosen, LucidGlovesUnitOptions& unit) {
   return LucidGlovesUnit::max_rate_hz;
 }
 double choose(const Chosen& chosen, FiveDtUnitOptions& unit) {
-  unit.left_pinky_first = chosen.firmware == 1;
+  unit.left_little_first = chosen.firmware == 1;
   unit.wireless = chosen.connection == 1;
   return unit.wireless ? FiveDtUnit::max_wireless_rate_hz : FiveDtUnit::max_rate_hz;
 }

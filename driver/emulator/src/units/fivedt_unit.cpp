@@ -10,7 +10,7 @@ namespace nendo::emulator {
 namespace {
 
 constexpr std::array flexions{Sensor::thumb_mcp, Sensor::index_mcp, Sensor::middle_mcp,
-                              Sensor::ring_mcp, Sensor::pinky_mcp};
+                              Sensor::ring_mcp, Sensor::little_mcp};
 constexpr std::uint8_t acknowledge = 0x55;
 constexpr std::uint8_t level = 0x7F; // the hand is held level: the middle of a tilt sensor's range
 
@@ -91,7 +91,7 @@ std::vector<FiveDtUnit::Byte> FiveDtUnit::sample(Time now) const {
   std::vector<Byte> bytes{0x80};
   for (const Sensor sensor : flexions)
     bytes.push_back(flexion_count(angles, sensor));
-  if (options_.left_pinky_first && options_.side == Side::left)
+  if (options_.left_little_first && options_.side == Side::left)
     std::reverse(bytes.begin() + 1, bytes.end());
   bytes.insert(bytes.end(), {level, level});
   Byte sum = 0;

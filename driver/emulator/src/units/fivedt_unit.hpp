@@ -21,9 +21,9 @@ struct FiveDtUnitOptions {
   driver::Motion motion = driver::Motion::sculpt;
   double rate_hz = 100.0; ///< 1..max_rate_hz
   std::uint32_t seed = 1;
-  bool wireless = false;         ///< streams by itself and hears nothing; ten bytes per sample
-  bool ten_bytes = false;        ///< a wired unit of those that send 0x55 after each sample
-  bool left_pinky_first = false; ///< a left glove's samples begin with the pinky
+  bool wireless = false;          ///< streams by itself and hears nothing; ten bytes per sample
+  bool ten_bytes = false;         ///< a wired unit of those that send 0x55 after each sample
+  bool left_little_first = false; ///< a left glove's samples begin with the little finger
 };
 
 class FiveDtUnit final : public EmulatedUnit {

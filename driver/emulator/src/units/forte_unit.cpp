@@ -7,9 +7,10 @@
 namespace nendo::emulator {
 namespace {
 
-constexpr std::array joints{
-    Sensor::thumb_mcp,  Sensor::thumb_ip, Sensor::index_mcp, Sensor::index_pip, Sensor::middle_mcp,
-    Sensor::middle_pip, Sensor::ring_mcp, Sensor::ring_pip,  Sensor::pinky_mcp, Sensor::pinky_pip};
+constexpr std::array joints{Sensor::thumb_mcp, Sensor::thumb_ip,   Sensor::index_mcp,
+                            Sensor::index_pip, Sensor::middle_mcp, Sensor::middle_pip,
+                            Sensor::ring_mcp,  Sensor::ring_pip,   Sensor::little_mcp,
+                            Sensor::little_pip};
 constexpr std::uint8_t battery = 100;
 /// What a frame of motion holds is not known, but that it has twelve bytes.
 constexpr std::array<std::uint8_t, 16> motion_frame{0xF0, 2, 12, 0, 0, 0, 0, 0,

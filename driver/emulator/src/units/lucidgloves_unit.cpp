@@ -167,13 +167,13 @@ std::string LucidGlovesUnit::line(Time now) const {
   const auto curl_of = [&](Sensor sensor) { return number(driver::part_of_range(angles, sensor)); };
   const std::array curls{curl_of(Sensor::thumb_mcp), curl_of(Sensor::index_mcp),
                          curl_of(Sensor::middle_mcp), curl_of(Sensor::ring_mcp),
-                         curl_of(Sensor::pinky_mcp)};
+                         curl_of(Sensor::little_mcp)};
   if (is_legacy()) return legacy_line(curls);
   // The middle finger points straight ahead; its neighbours are as far from it as the motion says.
   const double ring_rad = -angle_rad(Sensor::middle_ring_abduction);
   const std::array splays_rad{angle_rad(Sensor::thumb_abduction) - splay_end_rad,
                               angle_rad(Sensor::index_middle_abduction), 0.0, ring_rad,
-                              ring_rad - angle_rad(Sensor::ring_pinky_abduction)};
+                              ring_rad - angle_rad(Sensor::ring_little_abduction)};
   std::string text;
   for (std::size_t finger = 0; finger < curls.size(); ++finger)
     text += static_cast<char>('A' + finger) + std::to_string(curls[finger]);

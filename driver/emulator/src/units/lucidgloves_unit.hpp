@@ -53,7 +53,8 @@ public:
   void advance(Time now) override; ///< the lines that are due
   std::optional<Time> next_due() const noexcept override;
 
-  /// Returns the resistances that the host asked for, thumb to pinky, 0 free to 1000 locked.
+  /// Returns the resistances that the host asked for, thumb to little finger, 0 free to 1000
+  /// locked.
   const std::array<int, 5>& brakes() const noexcept { return brakes_; }
 
 private:

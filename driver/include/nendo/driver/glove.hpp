@@ -16,7 +16,7 @@ namespace nendo::driver {
 struct Abilities {
   bool wrist_switch = false; ///< its samples have the switch's position
   bool light = false;        ///< a light at the wrist
-  bool vibration = false;    ///< six vibrators: thumb to pinky, palm (CyberTouch)
+  bool vibration = false;    ///< six vibrators: thumb to little finger, palm (CyberTouch)
   bool resistance = false;   ///< brakes on the five fingers (LucidGloves)
 };
 
@@ -24,7 +24,7 @@ struct Abilities {
 struct Feedback {
   bool light = false;
   std::array<std::uint8_t, 6> vibration{};   ///< 0 to 255
-  std::array<std::uint16_t, 5> resistance{}; ///< 0 (free) to 1000, thumb to pinky
+  std::array<std::uint16_t, 5> resistance{}; ///< 0 (free) to 1000, thumb to little finger
   friend bool operator==(const Feedback&, const Feedback&) = default;
 };
 
@@ -56,7 +56,7 @@ struct GloveInfo {
 };
 
 /// Monotonic counts since start(). bytes = record_bytes + discarded_bytes + a remainder shorter
-/// than one record. For a glove that tells_missed: records sent = records + missed, as soon as the
+/// than one record. For a glove that counts_missed: records sent = records + missed, as soon as the
 /// next good record has arrived (with 12-bit records: the next two).
 struct GloveStats {
   std::uint64_t bytes = 0;           ///< received from the device
@@ -76,7 +76,7 @@ struct GloveStats {
   std::uint64_t silences = 0;     ///< times the stream stopped and was started again
   std::uint64_t reopened = 0;     ///< times the device vanished and was opened again
   double rate_hz = 0.0;           ///< records per second over the last second or two; 0 at first
-  bool tells_missed = false;      ///< its records let `missed` be counted
+  bool counts_missed = false;     ///< its records let `missed` be counted
 };
 
 /// Asking thread, but for the functions that are thread-safe.

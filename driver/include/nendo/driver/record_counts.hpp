@@ -24,9 +24,9 @@ struct RecordCounts {
   /// Values in delivered records that were out of their range, and count as its nearer end.
   std::uint64_t clamped = 0;
   /// Losses can be counted. Otherwise the number of sent records is unknown, and `missed` is 0.
-  bool tells_missed = true;
+  bool counts_missed = true;
 
-  /// Meaningful only if tells_missed.
+  /// Meaningful only if counts_missed.
   std::uint64_t sent() const noexcept { return delivered + missed; }
   friend bool operator==(const RecordCounts&, const RecordCounts&) = default;
 };

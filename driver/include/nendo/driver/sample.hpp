@@ -38,10 +38,10 @@ enum class Sensor : std::uint8_t {
   ring_pip,
   ring_dip,
   middle_ring_abduction,
-  pinky_mcp,
-  pinky_pip,
-  pinky_dip,
-  ring_pinky_abduction,
+  little_mcp,
+  little_pip,
+  little_dip,
+  ring_little_abduction,
   palm_arch,
   wrist_pitch,
   wrist_yaw,
@@ -55,7 +55,7 @@ inline constexpr std::array<std::string_view, sensor_slots> sensor_names{
     "index_mcp",  "index_pip",   "index_dip",  "index_abduction",
     "middle_mcp", "middle_pip",  "middle_dip", "index_middle_abduction",
     "ring_mcp",   "ring_pip",    "ring_dip",   "middle_ring_abduction",
-    "pinky_mcp",  "pinky_pip",   "pinky_dip",  "ring_pinky_abduction",
+    "little_mcp", "little_pip",  "little_dip", "ring_little_abduction",
     "palm_arch",  "wrist_pitch", "wrist_yaw",  "unused",
 };
 
@@ -84,7 +84,7 @@ constexpr std::size_t index_of(Sensor sensor) noexcept {
 /// Returns whether the sensor measures the gap between two neighbouring fingers.
 constexpr bool is_gap(Sensor sensor) noexcept {
   return sensor == Sensor::index_middle_abduction || sensor == Sensor::middle_ring_abduction ||
-         sensor == Sensor::ring_pinky_abduction;
+         sensor == Sensor::ring_little_abduction;
 }
 
 /// A set of sensor slots; bit k is slot k, as in the glove's own masks.

@@ -36,8 +36,8 @@ inline constexpr std::array<Coupling, 8> couplings{{
     {Sensor::index_middle_abduction, Sensor::middle_mcp},
     {Sensor::middle_ring_abduction, Sensor::middle_mcp},
     {Sensor::middle_ring_abduction, Sensor::ring_mcp},
-    {Sensor::ring_pinky_abduction, Sensor::ring_mcp},
-    {Sensor::ring_pinky_abduction, Sensor::pinky_mcp},
+    {Sensor::ring_little_abduction, Sensor::ring_mcp},
+    {Sensor::ring_little_abduction, Sensor::little_mcp},
 }};
 
 struct NENDO_API Calibration {

@@ -25,7 +25,7 @@ struct RuleFile {
   RuleState state = RuleState::missing;
 };
 
-/// Returns the files of rule_texts() as udev finds them: the first of /etc, /run, /usr/local/lib
+/// Returns the files of shipped_rules() as udev finds them: the first of /etc, /run, /usr/local/lib
 /// and /usr/lib that has a file of that name hides the others.
 NENDO_API std::vector<RuleFile> rules_in_force(const std::filesystem::path& root);
 /// Returns the same for the administrator's folder alone, /etc/udev/rules.d.

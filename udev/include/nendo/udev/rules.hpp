@@ -19,7 +19,7 @@ struct RuleText {
 /// Returns 60-nendo.rules, which says which devices are gloves, and 61-nendo-uaccess.rules, which
 /// grants them to the user at the screen and to a group. Neither names USB-serial adapters, because
 /// anything may be connected to them.
-NENDO_API std::vector<RuleText> rule_texts();
+NENDO_API std::vector<RuleText> shipped_rules();
 
 /// The first line of these files begins with this mark; files without it are not nendo's.
 inline constexpr std::string_view rule_mark = "# Made by nendo: ";

@@ -17,7 +17,7 @@ namespace nendo::puppet {
 /// Returns how much of that gesture a hand shows: for a fist the least angle, in radians, by which
 /// one of four fingers is bent; for a pinch how near the tips are, in metres, negative. No gesture
 /// has 0. Wait-free; no allocation.
-NENDO_API double gesture_strength(ClutchMeans means, const HandState& hand) noexcept;
+NENDO_API double gesture_strength(ClutchTrigger means, const HandState& hand) noexcept;
 
 /// Watches both hands of a player. For one thread; only the constructor allocates. It depends on
 /// poses and times alone, so a replay of the same ticks does the same.
@@ -89,8 +89,8 @@ private:
   void look(RigPlayer& player, Side side, const RigPlayer::Hands& hands, HostTime time) noexcept;
   void advance(Watch& watch, RigPlayer& player, Side side, const RigPlayer::Hands& hands,
                double strength) noexcept;
-  bool rests(const Watch& watch, ClutchMeans means, double strength) const noexcept;
-  double bound(ClutchMeans means) const noexcept;
+  bool rests(const Watch& watch, ClutchTrigger means, double strength) const noexcept;
+  double bound(ClutchTrigger means) const noexcept;
 
   ClutchOptions options_;
   std::array<Watch, 2> watches_; ///< indexed by side

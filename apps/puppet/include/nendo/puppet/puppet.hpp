@@ -97,21 +97,21 @@ struct Mask {
 };
 
 /// What makes a hand release its functions and grab them again, besides keys.
-enum class ClutchMeans : std::uint8_t {
+enum class ClutchTrigger : std::uint8_t {
   none,
   fist,         ///< all four fingers bent
   pinch,        ///< the tips of thumb and index finger together
   wrist_switch, ///< the glove's, turned on
 };
 
-NENDO_API std::string_view name_of(ClutchMeans means) noexcept; ///< in the file
-NENDO_API std::optional<ClutchMeans> clutch_means_named(std::string_view name) noexcept;
+NENDO_API std::string_view name_of(ClutchTrigger means) noexcept; ///< in the file
+NENDO_API std::optional<ClutchTrigger> clutch_trigger_named(std::string_view name) noexcept;
 
 struct ClutchOptions {
-  std::array<ClutchMeans, 2> means{}; ///< the left hand's and the right hand's
-  double held_s = 0.5;                ///< how long a gesture must last
-  double fist_deg = 200.0;            ///< min bend of each finger in a fist
-  double pinch_m = 0.02;              ///< max distance of the tips in a pinch
+  std::array<ClutchTrigger, 2> means{}; ///< the left hand's and the right hand's
+  double held_s = 0.5;                  ///< how long a gesture must last
+  double fist_deg = 200.0;              ///< min bend of each finger in a fist
+  double pinch_m = 0.02;                ///< max distance of the tips in a pinch
 
   friend bool operator==(const ClutchOptions&, const ClutchOptions&) = default;
 };
