@@ -127,8 +127,9 @@ void print_report(const InjectiveChain& chain, double min_determinant) {
     if (wall.push > 0.0) pairs.push_back(fmt::format("{}-{}", wall.first + 1, wall.second + 1));
   std::cout << fmt::format(
       "injective: {}, bound {:.3g}{}, min determinant {:.3g}, {} held apart{}{}\n",
-      count_text(report.links, "link"), report.bound, whole, min_determinant,
-      count_text(report.held_pairs, "pair"), pairs.empty() ? "" : ": ", fmt::join(pairs, ", "));
+      count_text(static_cast<std::size_t>(report.links), "link"), report.bound, whole,
+      min_determinant, count_text(static_cast<std::size_t>(report.held_pairs), "pair"),
+      pairs.empty() ? "" : ": ", fmt::join(pairs, ", "));
 }
 
 Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vectors,
