@@ -14,7 +14,6 @@
 #include <nendo/flow/frame.hpp>
 
 #include "publish/frame_record.hpp"
-#include "publish/record_ring.hpp"
 #include "publish/target.hpp"
 
 namespace nendo::publish {

@@ -2,6 +2,8 @@
 // A strict parser for the commands that a client may send, and the settings as text in both
 // directions (PROTOCOL.md). The latter are made from the description of the settings
 // (flow/setting.hpp).
+// The table of commands and the description of the settings, as the page and other clients have
+// them.
 
 #include <cstdint>
 #include <string>
@@ -43,5 +45,18 @@ using ClientCommand = std::variant<flow::Command, const commands::Row*, NamedSet
 /// for an error. Error: bad_input (it is no command, or a number in it is out of range), in at most
 /// max_close_reason bytes.
 Result<ClientCommand> parse_command(std::string_view text);
+
+/// Returns the rows that the page has, as a list in JavaScript, of which each has name, keys, help,
+/// button, buttonOn, isForRun and isSetting.
+std::string page_commands();
+
+/// Returns an object in JavaScript with the settings by their names, of which each has label, and
+/// if it is chosen by a slider, min and max. The brushes have choices.
+std::string page_settings();
+
+/// Returns the text of the message about commands: a line for each that is on or not possible, in
+/// the order of the table. It has the command's name, "on" or "off", and why the command is not
+/// possible, with tabs between.
+std::string command_states(const commands::Situation& now);
 
 } // namespace nendo::web

@@ -12,6 +12,12 @@ char lower(char c) noexcept {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
+// Letters of ASCII alone.
+bool equal_ignoring_case(std::string_view a, std::string_view b) noexcept {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](char x, char y) { return lower(x) == lower(y); });
+}
+
 // RFC 9110, section 5.6.2.
 bool is_token(std::string_view text) noexcept {
   constexpr std::string_view marks = "!#$%&'*+-.^_`|~";
@@ -104,11 +110,6 @@ Admission admit_socket(const HttpRequest& request) noexcept {
 }
 
 } // namespace
-
-bool equal_ignoring_case(std::string_view a, std::string_view b) noexcept {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char x, char y) { return lower(x) == lower(y); });
-}
 
 std::size_t HttpRequest::count(std::string_view name) const noexcept {
   return static_cast<std::size_t>(std::count_if(headers.begin(), headers.end(), [&](const auto& h) {

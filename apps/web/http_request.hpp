@@ -32,9 +32,6 @@ struct HttpRequest {
   std::optional<std::string_view> parameter(std::string_view name) const noexcept;
 };
 
-/// Returns whether the strings are equal except for the case of ASCII letters.
-bool equal_ignoring_case(std::string_view a, std::string_view b) noexcept;
-
 struct HttpHead {
   /// 0 if the head is incomplete, 200 if it was parsed, otherwise the status of the refusal.
   int status = 0;

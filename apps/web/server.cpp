@@ -1,19 +1,27 @@
 #include "web/server.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <cstring>
 #include <utility>
 
+#include <poll.h>
 #include <sys/eventfd.h>
+#include <unistd.h>
 
-#include "web/page_commands.hpp"
 #include "web/server_work.hpp"
 #include "web/web_socket.hpp"
 #include "web/wire.hpp"
 
 namespace nendo::web {
+
 namespace {
+
+using std::chrono::milliseconds;
+
+/// Screens do not show more frames. The steps that a faster loop makes in between share a message.
+constexpr milliseconds frame_period(8);
+/// How often deadlines are looked at.
+constexpr milliseconds deadline_period(250);
 
 SharedBytes shared_message(std::vector<std::byte> message) {
   return std::make_shared<const std::vector<std::byte>>(std::move(message));
@@ -151,6 +159,236 @@ ServerCounters Server::counters() const noexcept {
   const auto& counts = work_->counts;
   return {counts.clients,      counts.accepted, counts.refused,     counts.dropped, counts.updates,
           counts.update_bytes, counts.shapes,   counts.shape_bytes, counts.weights, counts.skipped};
+}
+
+Server::Work::Work(Endpoint where, std::string secret, UniqueFd listener, UniqueFd waker,
+                   ServerLimits limits)
+    : endpoint(std::move(where)), token(std::move(secret)), limits_(limits),
+      listener_(std::move(listener)), waker_(std::move(waker)), thread_([this] { run(); }) {}
+
+Server::Work::~Work() {
+  over_ = true;
+  wake();
+  thread_.join();
+}
+
+void Server::Work::wake() noexcept {
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const ssize_t written = ::write(waker_.get(), &one, sizeof one);
+}
+
+void Server::Work::report(std::string message) {
+  {
+    const std::scoped_lock lock(inbox.mutex);
+    inbox.report = std::move(message);
+  }
+  wake();
+}
+
+std::size_t Server::Work::clients() const noexcept {
+  return static_cast<std::size_t>(
+      std::count_if(connections_.begin(), connections_.end(), [](const Connection& connection) {
+        return connection.stage() == Connection::Stage::socket;
+      }));
+}
+
+void Server::Work::run() {
+  while (!over_) {
+    wait();
+    const HostTime now = HostClock::now();
+    take_presented();
+    send_report(now);
+    send_facts(now);
+    std::size_t at = 2; // behind the listener and the waker
+    for (Connection& connection : connections_)
+      serve(connection, polled_[at++].revents, now);
+    if ((polled_[0].revents & POLLIN) != 0) accept_all(now);
+    if (now >= next_frames_) {
+      next_frames_ = now + frame_period;
+      send_frames(now);
+    }
+    drop_expired(now);
+    counts.clients = clients();
+    if (presented_.stream) presented_.stream->set_active(counts.clients > 0);
+  }
+  end();
+}
+
+// The last frame is sent, because it is the shape that the run leaves.
+void Server::Work::end() {
+  const HostTime now = HostClock::now();
+  send_frames(now);
+  if (presented_.stream) presented_.stream->set_active(false);
+  for (Connection& connection : connections_)
+    if (connection.stage() == Connection::Stage::socket)
+      connection.close(CloseCode::going_away, now);
+}
+
+void Server::Work::wait() {
+  polled_.clear();
+  const bool accepts = HostClock::now() >= next_accept_;
+  polled_.push_back({listener_.get(), static_cast<short>(accepts ? POLLIN : 0), 0});
+  polled_.push_back({waker_.get(), POLLIN, 0});
+  for (const Connection& connection : connections_)
+    polled_.push_back({connection.fd(), connection.events(), 0});
+  milliseconds most(-1);
+  if (!connections_.empty() || !accepts) most = deadline_period;
+  if (clients() > 0)
+    most = std::clamp(std::chrono::ceil<milliseconds>(next_frames_ - HostClock::now()),
+                      milliseconds(0), frame_period);
+  ::poll(polled_.data(), polled_.size(), static_cast<int>(most.count()));
+  std::uint64_t ignored = 0;
+  if ((polled_[1].revents & POLLIN) != 0) [[maybe_unused]]
+    const ssize_t got = ::read(waker_.get(), &ignored, sizeof ignored);
+}
+
+void Server::Work::take_presented() {
+  std::optional<Presented> next;
+  {
+    const std::scoped_lock lock(inbox.mutex);
+    next = std::exchange(inbox.next, std::nullopt);
+  }
+  if (!next) return;
+  if (presented_.stream) presented_.stream->set_active(false);
+  presented_ = *std::move(next);
+  for (Connection& connection : connections_)
+    if (connection.stage() == Connection::Stage::socket)
+      connection.close(CloseCode::service_restart, HostClock::now());
+}
+
+// A client whose queue is too long does not get the report at all.
+void Server::Work::send_report(HostTime now) {
+  std::string text;
+  {
+    const std::scoped_lock lock(inbox.mutex);
+    text.swap(inbox.report);
+  }
+  if (text.empty()) return;
+  const SharedBytes message = shared_message(text_message(MessageType::report, text));
+  for (Connection& client : connections_)
+    if (client.stage() == Connection::Stage::socket && client.accepts_updates())
+      client.send(Opcode::binary, message, false, now);
+}
+
+// Each client gets each message once, before the updates that follow it. They are small, so that
+// also a client whose queue is long gets them.
+void Server::Work::send_facts(HostTime now) {
+  Facts facts;
+  {
+    const std::scoped_lock lock(inbox.mutex);
+    facts = inbox.facts;
+  }
+  for (Connection& client : connections_) {
+    if (client.stage() != Connection::Stage::socket) continue;
+    for (std::size_t at = 0; at < facts.size(); ++at) {
+      if (!facts[at] || client.sent_facts[at] == facts[at]) continue;
+      client.sent_facts[at] = facts[at];
+      client.send(Opcode::binary, facts[at], false, now);
+    }
+  }
+}
+
+// When the system has no descriptor left, poll() would return at once, over and over. So the
+// listener is left alone for a while after each failure.
+void Server::Work::accept_all(HostTime now) {
+  next_accept_ = now + deadline_period;
+  while (auto socket = accept_from(listener_, limits_.send_buffer_bytes)) {
+    next_accept_ = now;
+    ++counts.accepted;
+    if (connections_.size() >= limits_.max_connections) drop_oldest();
+    connections_.emplace_back(*std::move(socket), now, limits_);
+  }
+}
+
+// Clients with a WebSocket have shown the token, so they stay.
+void Server::Work::drop_oldest() {
+  const auto oldest =
+      std::find_if(connections_.begin(), connections_.end(), [](const Connection& connection) {
+        return connection.stage() != Connection::Stage::socket;
+      });
+  if (oldest == connections_.end())
+    return; // the new one is answered with 503 if it asks for a WebSocket
+  connections_.erase(oldest);
+  ++counts.dropped;
+}
+
+void Server::Work::send_frames(HostTime now) {
+  if (!presented_.stream) return;
+  records_.clear();
+  presented_.stream->take(records_);
+  auto shape = presented_.stream->take_shape();
+  SharedBytes bytes;
+  if (shape) {
+    std::memcpy(shape->message.data() + offsetof(ShapeHead, loop), &presented_.loop,
+                sizeof presented_.loop);
+    bytes = shared_message(std::move(shape->message));
+  }
+  feed_counters_.lost = presented_.stream->lost();
+  if (!records_.empty() && records_.back().weights != 0) {
+    const std::scoped_lock lock(inbox.mutex);
+    inbox.weights_in_use = records_.back().weights;
+  }
+  for (std::size_t slot = 0; slot < gloves.size(); ++slot) {
+    const SharedGloveState& shared = gloves[slot];
+    feed_counters_.gloves[slot] = {{shared.delivered, shared.missed, shared.refused, shared.bad},
+                                   shared.uncalibrated};
+  }
+  bool shape_wanted = false;
+  for (Connection& client : connections_) {
+    if (client.stage() != Connection::Stage::socket) continue;
+    send_frames(client, shape, bytes, now);
+    client.keep_alive(now);
+    shape_wanted = shape_wanted || (client.feed.wants_shape() && client.accepts_updates() &&
+                                    !client.has_queued_shape());
+  }
+  if (shape_wanted) presented_.stream->request_shape();
+}
+
+// They are no longer than a shape or two, and count as one.
+void Server::Work::send_weights(Connection& client, HostTime now) {
+  const std::uint64_t wanted = client.feed.wanted_weights();
+  if (wanted == 0 || client.has_queued_shape()) return;
+  SharedBytes message;
+  {
+    const std::scoped_lock lock(inbox.mutex);
+    for (const Weights& some : inbox.weights)
+      if (some.number == wanted) message = some.message;
+  }
+  if (!message) return; // it is not there yet
+  client.send(Opcode::binary, message, true, now);
+  client.feed.weights_sent(wanted);
+  ++counts.weights;
+}
+
+void Server::Work::send_frames(Connection& client, const std::optional<FrameStream::Shape>& shape,
+                               const SharedBytes& bytes, HostTime now) {
+  client.feed.look_at(records_);
+  if (!client.accepts_updates()) {
+    client.feed.skip(records_);
+    counts.skipped += records_.size();
+    return;
+  }
+  send_weights(client, now);
+  if (shape && client.feed.wants_shape() && !client.has_queued_shape()) {
+    client.send(Opcode::binary, bytes, true, now);
+    client.feed.shape_sent(shape->number);
+    ++counts.shapes;
+    counts.shape_bytes += bytes->size();
+  }
+  const auto update = client.feed.update(records_, feed_counters_);
+  if (!update) return;
+  ++counts.updates;
+  counts.update_bytes += update->size();
+  client.send(Opcode::binary, shared_message(*std::move(update)), false, now);
+}
+
+void Server::Work::drop_expired(HostTime now) {
+  connections_.remove_if([&](const Connection& connection) {
+    const bool overdue =
+        connection.stage() != Connection::Stage::ended && connection.is_expired(now);
+    if (overdue && connection.stage() != Connection::Stage::linger) ++counts.dropped;
+    return overdue || connection.stage() == Connection::Stage::ended;
+  });
 }
 
 } // namespace nendo::web

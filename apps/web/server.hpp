@@ -17,8 +17,8 @@
 
 #include "web/client_commands.hpp"
 #include "web/endpoint.hpp"
-#include "web/feed.hpp"
-#include "web/pictures.hpp"
+#include "web/frame_stream.hpp"
+#include "web/model_message.hpp"
 
 namespace nendo::web {
 

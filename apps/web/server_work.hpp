@@ -3,17 +3,118 @@
 
 #include <array>
 #include <atomic>
+#include <deque>
 #include <list>
+#include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
+#include <vector>
 
-#include "web/connection.hpp"
+#include <nendo/base/unique_fd.hpp>
+
 #include "web/http_request.hpp"
 #include "web/server.hpp"
+#include "web/web_socket.hpp"
 
 struct pollfd;
 
 namespace nendo::web {
+
+using SharedBytes = std::shared_ptr<const std::vector<std::byte>>;
+SharedBytes shared_bytes(std::string_view text);
+
+/// The messages that each client gets when it comes and whenever they change.
+enum Fact : std::size_t {
+  settings_fact,
+  history_fact,
+  puppet_fact,
+  clay_fact,
+  commands_fact,
+  fact_count
+};
+using Facts = std::array<SharedBytes, fact_count>;
+
+/// The bytes that a client has sent, the queue of bytes that wait for it, and its deadlines. No
+/// call blocks.
+class Connection {
+public:
+  enum class Stage {
+    head,   ///< its HTTP request is coming in
+    answer, ///< it is sent an HTTP answer, after which the connection ends
+    socket, ///< it is a WebSocket
+    linger, ///< everything is sent; what it still sends is discarded until it closes
+    ended,  ///< it can be destroyed
+  };
+
+  /// `limits` must outlive the connection.
+  Connection(UniqueFd socket, HostTime now, const ServerLimits& limits);
+
+  int fd() const noexcept { return socket_.get(); }
+  Stage stage() const noexcept { return stage_; }
+  short events() const noexcept; ///< that poll() must wait for
+  /// Appends what the socket has to incoming(), as far as there is space. Returns false if the
+  /// connection has ended. A client that has shut down its sending side may still get an answer.
+  bool receive(HostTime now);
+  std::string& incoming() noexcept { return incoming_; }
+  /// Reports that the request is incomplete. Ends the connection if no more bytes can come.
+  void await_more() noexcept;
+  /// Sends from the queue. To be called when poll() reports that the socket takes bytes again.
+  void resume_sending(HostTime now);
+
+  /// Queues an HTTP answer, after which the connection ends. `body` may be null.
+  void answer(std::string head, SharedBytes body, HostTime now);
+  /// Queues the answer that makes the connection a WebSocket.
+  void upgrade(std::string head, HostTime now);
+  /// Queues a message of a WebSocket. Shapes are not counted against max_queued_bytes.
+  void send(Opcode opcode, const SharedBytes& payload, bool is_shape, HostTime now);
+  /// Queues a control frame, unless the queue is too long.
+  void send_control(std::string frame, HostTime now);
+  /// Queues a close frame, after which the connection ends.
+  void close(CloseCode code, HostTime now, std::string_view reason = {});
+
+  /// Takes one message from the client's allowance. Returns false if there was none left.
+  bool within_message_rate(HostTime now) noexcept;
+  /// Returns false from the moment when the queue has become too long until it is empty.
+  bool accepts_updates() const noexcept { return !catching_up_; }
+  bool has_queued_shape() const noexcept { return queued_shapes_ > 0; }
+  bool is_expired(HostTime now) const noexcept; ///< one of the time limits has passed
+  /// Sends a ping if it is time for one.
+  void keep_alive(HostTime now);
+
+  ClientReader reader;
+  Feed feed;
+  Facts sent_facts; ///< the last messages that it was sent
+
+private:
+  struct Part {
+    SharedBytes bytes;
+    bool is_shape = false;
+  };
+  void queue(SharedBytes bytes, bool is_shape, HostTime now);
+  /// Sends as much of the queue as the system takes.
+  void flush(HostTime now);
+  void end_sending(HostTime now);
+
+  UniqueFd socket_;
+  const ServerLimits& limits_;
+  Stage stage_ = Stage::head;
+  HostTime stage_since_;
+  std::string incoming_;
+  std::deque<Part> queue_;
+  std::size_t sent_of_first_ = 0; ///< bytes of the queue's first part
+  std::size_t queued_bytes_ = 0;  ///< without shapes
+  std::size_t queued_shapes_ = 0; ///< parts that belong to shapes
+  bool catching_up_ = false;
+  bool peer_closed_ = false; ///< the client has shut down its sending side
+  bool closing_ = false;     ///< the connection ends when the queue is empty
+  HostTime last_progress_;   ///< when the client last took a byte, or the queue was empty
+  HostTime queue_empty_;     ///< when the queue was empty last
+  HostTime last_heard_;      ///< when a WebSocket last gave a sign of life
+  HostTime last_ping_;
+  double messages_left_; ///< the rest of the client's allowance
+  HostTime last_message_;
+};
 
 class Server::Work {
 public:

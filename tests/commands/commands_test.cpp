@@ -16,7 +16,6 @@
 #include "commands/commands.hpp"
 #include "viewer/command_widgets.hpp"
 #include "web/client_commands.hpp"
-#include "web/page_commands.hpp"
 #include "web/wire.hpp"
 #ifdef NENDO_WINDOW
 #endif

@@ -8,7 +8,7 @@
 
 #include "web/client_commands.hpp"
 #include "web/http_request.hpp"
-#include "web/pictures.hpp"
+#include "web/model_message.hpp"
 #include "web/web_socket.hpp"
 
 using namespace nendo::web;

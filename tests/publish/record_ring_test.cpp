@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "publish/record_ring.hpp"
+#include "publish/frame_record.hpp"
 #include "support/parked.hpp"
 
 namespace record_ring_test {

@@ -14,7 +14,7 @@
 
 #include <nendo/base/units.hpp>
 
-#include "publish/shared_memory.hpp"
+#include "publish/segment.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace shared_memory_test {

@@ -9,7 +9,7 @@
 #include "following_client.hpp"
 #include "streamed_loop.hpp"
 #include "support/any_puppet.hpp"
-#include "web/feed.hpp"
+#include "web/frame_stream.hpp"
 #include "web/model_message.hpp"
 
 namespace follow_test {

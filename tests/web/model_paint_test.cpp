@@ -12,7 +12,6 @@
 #include "support/six_colours.hpp"
 #include "support/test_meshes.hpp"
 #include "web/model_message.hpp"
-#include "web/pictures.hpp"
 
 namespace model_paint_test {
 
