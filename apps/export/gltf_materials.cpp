@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "render/texture_image.hpp"
+#include "render/paint.hpp"
 
 namespace nendo::exporting {
 namespace {

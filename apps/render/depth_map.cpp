@@ -6,8 +6,6 @@
 
 #include <Eigen/Geometry>
 
-#include "render/raster.hpp"
-
 namespace nendo::render {
 
 using Eigen::Vector3f;

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "render/sample_grid.hpp"
+#include "render/raster.hpp"
 #include "render/surface.hpp"
 
 namespace nendo::render {

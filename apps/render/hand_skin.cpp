@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "render/skin_net.hpp"
 #include "render/skin_shape.hpp"
 
 namespace nendo::render {
@@ -256,8 +255,7 @@ hand::HandPose HandSkin::bind_pose(Side side) {
 // A left hand is the mirror image of a right one.
 HandSkin::HandSkin(Side side) : bind_(bind_pose(side)) {
   const HandFlesh flesh(bind_pose(Side::right));
-  SkinMesh mesh = net_about([&](const Vector3f& place) { return flesh(place); },
-                            {HandFlesh::steepness, HandFlesh::slack_m}, flesh.box(), cell_m);
+  SkinMesh mesh = net_about(flesh, cell_m);
   influences_ = weights_of(flesh, mesh);
   if (side == Side::left) {
     for (Vector3f& place : mesh.places)

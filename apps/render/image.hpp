@@ -1,5 +1,5 @@
 #pragma once
-// A picture in memory, and its PNG files.
+// A picture in memory, its PNG files, and TGA and BMP files by stb_image.
 
 #include <array>
 #include <cstdint>
@@ -66,6 +66,16 @@ Result<void> write_png(const std::filesystem::path& path, const Image& image);
 Result<Image> read_png(const std::filesystem::path& path);
 /// Does the same with the file's contents; `name` is what errors call it.
 Result<Image> decode_png(std::string_view contents, const std::string& name);
+
+/// Returns whether a file's header is that of a BMP, or a TGA, which has no mark but a header that
+/// no text and no other picture has.
+bool is_bmp(std::string_view contents) noexcept;
+bool is_tga(std::string_view contents) noexcept;
+
+/// Returns the picture of a file that is_bmp() or is_tga(), of at most Size::most pixels along each
+/// side. Errors: bad_input, with the end of a sentence that begins with the file's name.
+Result<Image> decode_bmp(std::string_view contents);
+Result<Image> decode_tga(std::string_view contents);
 
 /// Writes words in a plain upright stroke font. `height` is the height of capitals above the
 /// baseline in pixels, and (x, y) is where the baseline begins. A character that the font does not

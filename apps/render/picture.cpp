@@ -6,9 +6,9 @@
 #include <numeric>
 #include <span>
 
+#include "render/lights.hpp"
 #include "render/parallel.hpp"
 #include "render/raster.hpp"
-#include "render/shading.hpp"
 
 namespace nendo::render {
 

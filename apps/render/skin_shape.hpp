@@ -1,8 +1,12 @@
 #pragma once
-// The flesh of a right hand in one pose: flattened cones about its bones, joined smoothly.
+// The flesh of a right hand in one pose: flattened cones about its bones, joined smoothly; and
+// triangles about it.
 
 #include <array>
+#include <cstdint>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include <nendo/hand/joints.hpp>
 #include <nendo/hand/skeleton.hpp>
@@ -40,7 +44,7 @@ public:
   /// Returns the distance from the skin, negative inside. Its zero is a smooth, closed surface:
   /// each finger runs together with the palm, but never with another finger.
   float operator()(const Eigen::Vector3f& place) const noexcept;
-  /// No place is nearer to the skin than the distance divided by this, less `slack_m`.
+  /// |distance(a) - distance(b)| <= steepness * |a - b| + slack_m.
   static constexpr float steepness = 1.6F;
   static constexpr float slack_m = 0.008F;
 
@@ -64,5 +68,18 @@ private:
   std::array<Eigen::AlignedBox3f, 5> finger_boxes_;
   Eigen::Vector3f cut_place_, cut_normal_; ///< where the forearm ends
 };
+
+struct SkinMesh {
+  std::vector<Eigen::Vector3f> places;
+  std::vector<std::uint32_t> corners; ///< three for each triangle, counter-clockwise from outside
+};
+
+/// Returns the surface where the distance is zero, in cells that are thinner than the flesh. It is
+/// closed, has about 1.3 places for each square of a cell's side, and its triangles are nearly
+/// even. Allocates.
+SkinMesh net_about(const HandFlesh& flesh, float cell_m);
+
+/// Returns for each place those that it shares an edge with.
+std::vector<std::vector<std::uint32_t>> neighbours_in(const SkinMesh& mesh);
 
 } // namespace nendo::render

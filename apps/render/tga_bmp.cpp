@@ -1,7 +1,7 @@
 // stb_image trusts some numbers of a header, and reads memory that it has not filled where a file
 // is cut off or a palette is short. So headers are checked here, and palettes are made whole.
 
-#include "render/tga_bmp.hpp"
+#include "render/image.hpp"
 
 #include <cstdint>
 #include <cstdlib>

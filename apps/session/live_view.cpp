@@ -34,7 +34,7 @@ public:
     const PlacedLoop& placed = start.placed;
     const SceneBuilder builder(start.model, placed.setup.placement.units_per_metre);
     window_->begin(placed.loop->changes().layout(), builder, placed.loop->changes().settings());
-    window_->show_contacts(options_.contact);
+    window_->scene_window().parts().contacts = options_.contact;
     window_->editor().begin(start.model, model_name_, placed.loop->changes().puppet(0));
     if (edits_) window_->editor().turn(true);
   }
@@ -71,7 +71,7 @@ public:
       return Error{Errc::failed,
                    "--screenshot " + options_.screenshot +
                        ": the run ended before its first picture; let it last longer"};
-    return write_png(options_.screenshot, window_->screenshot());
+    return write_png(options_.screenshot, window_->scene_window().screenshot());
   }
 
 private:

@@ -13,7 +13,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/model_files.hpp"
-#include "render/texture_image.hpp"
+#include "render/paint.hpp"
 
 namespace nendo::takes {
 namespace {

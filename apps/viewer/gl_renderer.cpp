@@ -6,7 +6,7 @@
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
 
-#include "render/light_maps.hpp"
+#include "render/lights.hpp"
 
 namespace nendo::viewer {
 

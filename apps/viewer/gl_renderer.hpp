@@ -13,9 +13,7 @@
 #include "render/camera.hpp"
 #include "render/image.hpp"
 #include "render/scene.hpp"
-#include "viewer/frame_buffers.hpp"
-#include "viewer/gl_program.hpp"
-#include "viewer/model_textures.hpp"
+#include "viewer/gl_objects.hpp"
 
 namespace nendo::viewer {
 

@@ -170,8 +170,4 @@ bool LiveWindow::move_hand(const flow::Frame& frame, Commands& commands) {
   return true;
 }
 
-void LiveWindow::show_contacts(bool yes) noexcept {
-  window_->parts().contacts = yes;
-}
-
 } // namespace nendo::viewer

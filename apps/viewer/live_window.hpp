@@ -13,7 +13,7 @@
 #include <nendo/flow/frame.hpp>
 
 #include "commands/commands.hpp"
-#include "viewer/hand_mover.hpp"
+#include "viewer/pointing.hpp"
 #include "viewer/scene_window.hpp"
 
 namespace nendo::viewer {
@@ -53,9 +53,6 @@ public:
   /// is none. fresh: the frame differs from that of the previous call.
   Commands show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
 
-  /// Shows where hands touch clay, or not.
-  void show_contacts(bool yes) noexcept;
-
   /// Edits the puppet, if begin() has been called of it.
   PuppetEditor& editor() noexcept { return *editor_; }
 
@@ -64,13 +61,7 @@ public:
   /// Returns the settings that the panel shows.
   const flow::LoopSettings& settings() const noexcept;
 
-  /// The following functions are those of SceneWindow.
-  render::Image screenshot() { return window_->screenshot(); }
-  render::Image silhouette(render::Size size) { return window_->silhouette(size); }
-  const render::Camera& camera() const noexcept { return window_->camera(); }
-  const render::Scene& scene() const noexcept { return window_->scene(); }
-  std::uint64_t blocks_sent() const noexcept { return window_->blocks_sent(); }
-  void simulate(const SimulatedInput& input) { window_->simulate(input); }
+  SceneWindow& scene_window() noexcept { return *window_; }
 
 private:
   struct Panel;

@@ -1,11 +1,15 @@
 #pragma once
-// Relates pixels of the picture to places in the scene and on a model.
+// Relates pixels of the picture to places in the scene and on a model, and moves a hand or a
+// fingertip with the mouse.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
 #include <nendo/deform/mesh.hpp>
+#include <nendo/flow/frame.hpp>
+#include <nendo/flow/wrist_move.hpp>
 
 #include "render/camera.hpp"
 #include "render/image.hpp"
@@ -47,5 +51,66 @@ struct SurfaceHit {
 /// its triangles (triangles.hpp); null: as they are.
 std::optional<SurfaceHit> first_hit(const deform::Mesh& mesh, const Ray& ray,
                                     const deform::Points* rest = nullptr);
+
+/// Holds a hand, of a glove without a tracker or simulated, while the mouse button is down.
+class HandMover {
+public:
+  /// Takes the hand with the joint that is nearest to the pointer, which is in pixels from the
+  /// picture's top left corner. Takes no hand if no joint is within `reach` pixels.
+  static constexpr double reach = 60.0;
+  void take(const render::Camera& camera, const flow::Frame& frame, const Eigen::Vector2d& pointer,
+            render::Size size) noexcept;
+  void release() noexcept { slot_.reset(); }
+  bool holds() const noexcept { return slot_.has_value(); }
+
+  /// Moves the hand by the pixels that the pointer moved, in the picture's plane, so that the hand
+  /// stays under the pointer. `height` is the picture's height in pixels.
+  void shift(const render::Camera& camera, double dx, double dy, double height) noexcept;
+  /// Turns the hand about its wrist, around the picture's vertical and horizontal axes, by the
+  /// pixels that the pointer moved.
+  void turn(const render::Camera& camera, double dx, double dy) noexcept;
+  /// Moves the hand by steps of the wheel, 1 cm each. Positive steps go away from the viewer.
+  void push(const render::Camera& camera, double steps) noexcept;
+
+  /// Returns the pose that the held hand's wrist must take.
+  flow::WristMove move() const noexcept;
+
+private:
+  void go_by(const Eigen::Vector3d& way_m) noexcept;
+
+  std::optional<std::size_t> slot_;                         ///< flow::Placement::index_of(side)
+  Eigen::Isometry3d wrist_ = Eigen::Isometry3d::Identity(); ///< T_stage_wrist
+  Eigen::Vector3d lowest_m_ = Eigen::Vector3d::Zero();      ///< where it may go, on the stage
+  Eigen::Vector3d highest_m_ = Eigen::Vector3d::Zero();
+};
+
+/// Holds a fingertip of a timeline's key while the mouse button is down.
+class TipMover {
+public:
+  /// Returns the fingertip of a hand that is nearest to the pointer, which is in pixels from the
+  /// picture's top left corner. Returns nothing if none is within `reach` pixels.
+  static constexpr double reach = 14.0;
+  static std::optional<hand::Finger> tip_at(const render::Camera& camera,
+                                            const hand::HandPose& pose,
+                                            const Eigen::Vector2d& pointer,
+                                            render::Size size) noexcept;
+
+  void take(const hand::HandPose& pose, hand::Finger finger) noexcept;
+  void release() noexcept { finger_.reset(); }
+  std::optional<hand::Finger> finger() const noexcept { return finger_; } ///< that is held
+
+  /// As HandMover's.
+  void shift(const render::Camera& camera, double dx, double dy, double height) noexcept;
+  void push(const render::Camera& camera, double steps) noexcept;
+  /// Returns the place on the stage to which the held tip must go, in metres. Each coordinate is
+  /// within 2 m of the stage's middle.
+  const Eigen::Vector3d& target_m() const noexcept { return target_m_; }
+
+private:
+  void go_by(const Eigen::Vector3d& way_m) noexcept;
+
+  std::optional<hand::Finger> finger_;
+  Eigen::Vector3d target_m_ = Eigen::Vector3d::Zero();
+};
 
 } // namespace nendo::viewer

@@ -15,8 +15,7 @@
 
 #include "commands/commands.hpp"
 #include "viewer/command_widgets.hpp"
-#include "viewer/frame_buffers.hpp"
-#include "viewer/imgui_input.hpp"
+#include "viewer/gl_objects.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {

@@ -11,7 +11,6 @@
 #include "commands/commands.hpp"
 #include "viewer/command_widgets.hpp"
 #include "viewer/dope_sheet_widget.hpp"
-#include "viewer/hand_mover.hpp"
 #include "viewer/pointing.hpp"
 #include "viewer/widgets.hpp"
 

@@ -21,19 +21,12 @@ public:
   TimelineWindow(const TimelineWindow&) = delete;
   TimelineWindow& operator=(const TimelineWindow&) = delete;
 
-  void set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder) {
-    window_->set_model(layout, builder);
-  }
-  /// Sets the shape of the model from the next picture on.
-  void follow(const deform::BlockShape& shape) { window_->follow(shape); }
   /// Draws one picture and waits for the screen, or for at most 8 ms if there is none. The
   /// vertices of `scene_frame` are not used. If the user wants to leave with unsaved changes, the
   /// window asks first and then returns `quit`.
   EditActions show(const TimelineView& view, const render::SceneFrame& scene_frame);
 
-  const SceneWindow& scene_window() const noexcept { return *window_; }
-  render::Image screenshot() { return window_->screenshot(); } ///< the last picture
-  void simulate(const SimulatedInput& input) { window_->simulate(input); }
+  SceneWindow& scene_window() noexcept { return *window_; } ///< to be given a model, and its shapes
 
 private:
   struct Panel;

@@ -1,9 +1,117 @@
 #pragma once
 // Helpers for ImGui that every window uses.
+// Passes keys and the pointer to ImGui, with GLFW's numbers for keys. Before version 1.87, a
+// program writes their state into ImGuiIO. Since 1.87, ImGui has its own numbers for keys and takes
+// events, which NewFrame() applies. All calls belong to the main thread.
 
-#include "viewer/imgui_input.hpp"
+#include <array>
+#include <utility>
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
 
 namespace nendo::viewer {
+
+/// Since version 1.87, ImGui itself shows each event in a picture of its own, however short the key
+/// was down. Then the events of the window's back end need no help.
+inline constexpr bool imgui_queues_events = IMGUI_VERSION_NUM >= 18700;
+
+#if IMGUI_VERSION_NUM < 18700
+
+inline int imgui_key(int key) {
+  return key > 0 && key < IM_ARRAYSIZE(ImGui::GetIO().KeysDown) ? key : -1;
+}
+
+inline void put_key(int key, bool down) {
+  if (const int known = imgui_key(key); known >= 0) ImGui::GetIO().KeysDown[known] = down;
+}
+
+inline bool is_key_down(int key) {
+  const int known = imgui_key(key);
+  return known >= 0 && ImGui::GetIO().KeysDown[known];
+}
+
+inline void put_modifiers(bool control, bool shift) {
+  ImGui::GetIO().KeyCtrl = control;
+  ImGui::GetIO().KeyShift = shift;
+}
+
+inline void put_pointer(float x, float y) {
+  ImGui::GetIO().MousePos = {x, y};
+}
+
+inline void put_button(int button, bool down) {
+  ImGui::GetIO().MouseDown[button] = down;
+}
+
+inline void put_wheel(float turns) {
+  ImGui::GetIO().MouseWheel = turns;
+}
+
+#else
+
+/// Returns ImGuiKey_None for a key that no window here uses.
+inline ImGuiKey imgui_key(int key) {
+  if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z)
+    return static_cast<ImGuiKey>(ImGuiKey_A + (key - GLFW_KEY_A));
+  if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9)
+    return static_cast<ImGuiKey>(ImGuiKey_0 + (key - GLFW_KEY_0));
+  if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9)
+    return static_cast<ImGuiKey>(ImGuiKey_Keypad0 + (key - GLFW_KEY_KP_0));
+  constexpr std::array others{std::pair{GLFW_KEY_SPACE, ImGuiKey_Space},
+                              std::pair{GLFW_KEY_ESCAPE, ImGuiKey_Escape},
+                              std::pair{GLFW_KEY_ENTER, ImGuiKey_Enter},
+                              std::pair{GLFW_KEY_TAB, ImGuiKey_Tab},
+                              std::pair{GLFW_KEY_DELETE, ImGuiKey_Delete},
+                              std::pair{GLFW_KEY_BACKSPACE, ImGuiKey_Backspace},
+                              std::pair{GLFW_KEY_LEFT, ImGuiKey_LeftArrow},
+                              std::pair{GLFW_KEY_RIGHT, ImGuiKey_RightArrow},
+                              std::pair{GLFW_KEY_UP, ImGuiKey_UpArrow},
+                              std::pair{GLFW_KEY_DOWN, ImGuiKey_DownArrow},
+                              std::pair{GLFW_KEY_HOME, ImGuiKey_Home},
+                              std::pair{GLFW_KEY_END, ImGuiKey_End},
+                              std::pair{GLFW_KEY_MINUS, ImGuiKey_Minus},
+                              std::pair{GLFW_KEY_EQUAL, ImGuiKey_Equal},
+                              std::pair{GLFW_KEY_SLASH, ImGuiKey_Slash},
+                              std::pair{GLFW_KEY_COMMA, ImGuiKey_Comma},
+                              std::pair{GLFW_KEY_PERIOD, ImGuiKey_Period},
+                              std::pair{GLFW_KEY_APOSTROPHE, ImGuiKey_Apostrophe},
+                              std::pair{GLFW_KEY_SEMICOLON, ImGuiKey_Semicolon},
+                              std::pair{GLFW_KEY_LEFT_BRACKET, ImGuiKey_LeftBracket},
+                              std::pair{GLFW_KEY_RIGHT_BRACKET, ImGuiKey_RightBracket}};
+  for (const auto& [number, known] : others)
+    if (number == key) return known;
+  return ImGuiKey_None;
+}
+
+inline void put_key(int key, bool down) {
+  if (const ImGuiKey known = imgui_key(key); known != ImGuiKey_None)
+    ImGui::GetIO().AddKeyEvent(known, down);
+}
+
+inline bool is_key_down(int key) {
+  const ImGuiKey known = imgui_key(key);
+  return known != ImGuiKey_None && ImGui::IsKeyDown(known);
+}
+
+inline void put_modifiers(bool control, bool shift) {
+  ImGui::GetIO().AddKeyEvent(ImGuiMod_Ctrl, control);
+  ImGui::GetIO().AddKeyEvent(ImGuiMod_Shift, shift);
+}
+
+inline void put_pointer(float x, float y) {
+  ImGui::GetIO().AddMousePosEvent(x, y);
+}
+
+inline void put_button(int button, bool down) {
+  ImGui::GetIO().AddMouseButtonEvent(button, down);
+}
+
+inline void put_wheel(float turns) {
+  if (turns != 0.0F) ImGui::GetIO().AddMouseWheelEvent(0.0F, turns);
+}
+
+#endif
 
 /// Returns whether the key, by GLFW's number, has just gone down. With `repeats`, a key that is
 /// held down counts again at intervals.

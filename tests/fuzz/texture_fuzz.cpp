@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "render/texture_image.hpp"
+#include "render/paint.hpp"
 
 namespace {
 

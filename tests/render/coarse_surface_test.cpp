@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "render/sky_light.hpp"
+#include "render/lights.hpp"
 #include "support/test_meshes.hpp"
 
 namespace coarse_surface_test {

@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "render/light_maps.hpp"
+#include "render/lights.hpp"
 
 namespace depth_map_test {
 

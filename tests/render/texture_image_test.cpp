@@ -1,4 +1,4 @@
-#include "render/texture_image.hpp"
+#include "render/paint.hpp"
 
 #include <array>
 #include <cmath>

@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "render/texture_image.hpp"
+#include "render/paint.hpp"
 
 namespace nendo::render {
 namespace {

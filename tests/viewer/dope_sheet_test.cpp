@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "viewer/dope_sheet.hpp"
+#include "viewer/timeline_view.hpp"
 
 namespace dope_sheet_test {
 

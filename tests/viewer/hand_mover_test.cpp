@@ -3,7 +3,7 @@
 #include <nendo/base/units.hpp>
 
 #include "support/flow_fixtures.hpp"
-#include "viewer/hand_mover.hpp"
+#include "viewer/pointing.hpp"
 
 namespace hand_mover_test {
 

@@ -37,10 +37,10 @@ struct Seat {
     auto opened = TimelineWindow::open("test", size, "nothing else");
     REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
     window = *std::move(opened);
-    window->set_model(test.loop->changes().layout(),
-                      SceneBuilder(test.model, test.placement.units_per_metre));
+    window->scene_window().set_model(test.loop->changes().layout(),
+                                     SceneBuilder(test.model, test.placement.units_per_metre));
     const flow::Frame& frame = test.frame_after_tick(0);
-    window->follow(frame.shape);
+    window->scene_window().follow(frame.shape);
     set_hands(frame, {}, scene_frame);
     view.file = "take.timeline.toml";
     view.duration_s = 4.0;
@@ -61,7 +61,7 @@ struct Seat {
   EditActions move(const Vector2d& pointer, bool left) {
     input.pointer = pointer;
     input.buttons[0] = left;
-    window->simulate(input);
+    window->scene_window().simulate(input);
     return show();
   }
   EditActions press(const Vector2d& pointer) {
@@ -74,11 +74,11 @@ struct Seat {
     input.key = key;
     input.control = control;
     input.shift = shift;
-    window->simulate(input);
+    window->scene_window().simulate(input);
     auto actions = show();
     input.key = 0;
     input.control = input.shift = false;
-    window->simulate(input);
+    window->scene_window().simulate(input);
     show();
     return actions;
   }
@@ -261,15 +261,15 @@ TEST_SUITE("timeline_window") {
     const Desk desk;
     if (!desk.seat) return;
     Seat& seat = *desk.seat;
-    const Image without = seat.window->screenshot();
+    const Image without = seat.window->scene_window().screenshot();
     seat.type(GLFW_KEY_SLASH);
     seat.show();
-    const Image with = seat.window->screenshot();
+    const Image with = seat.window->scene_window().screenshot();
     CHECK(with.pixels() != without.pixels());
     seat.input.control = true;
-    seat.window->simulate(seat.input);
+    seat.window->scene_window().simulate(seat.input);
     seat.show();
-    CHECK(seat.window->screenshot().pixels() == with.pixels());
+    CHECK(seat.window->scene_window().screenshot().pixels() == with.pixels());
   }
 
   TEST_CASE("a key that was down only between two pictures counts, and twice if it was twice") {
@@ -278,13 +278,13 @@ TEST_SUITE("timeline_window") {
     Seat& seat = *desk.seat;
     seat.input.control = true;
     seat.input.taps = {GLFW_KEY_LEFT_CONTROL, GLFW_KEY_Z, GLFW_KEY_Z, GLFW_KEY_Y};
-    seat.window->simulate(seat.input);
+    seat.window->scene_window().simulate(seat.input);
     std::vector<EditCommand> commands;
     for (int picture = 0; picture < 4; ++picture) {
       const auto actions = seat.show();
       commands.insert(commands.end(), actions.commands.begin(), actions.commands.end());
       seat.input = {};
-      seat.window->simulate(seat.input);
+      seat.window->scene_window().simulate(seat.input);
     }
     using enum EditCommand;
     CHECK(commands == std::vector{undo, undo, redo});
@@ -320,11 +320,11 @@ TEST_SUITE("timeline_window") {
     const Desk desk;
     if (!desk.seat) return;
     Seat& seat = *desk.seat;
-    const Image before = seat.window->screenshot();
+    const Image before = seat.window->scene_window().screenshot();
     CHECK(before.size() == size);
     seat.view.selected = StripKey{0, 1};
     seat.show();
-    const Image after = seat.window->screenshot();
+    const Image after = seat.window->scene_window().screenshot();
     const Vector2d key = seat.on_key(0, 1);
     const auto colour = [&](const Image& image) {
       return image.at(static_cast<int>(key.x()), static_cast<int>(key.y()));

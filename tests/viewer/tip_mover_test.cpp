@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "viewer/hand_mover.hpp"
+#include "viewer/pointing.hpp"
 
 namespace tip_mover_test {
 

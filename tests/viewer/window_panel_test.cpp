@@ -42,9 +42,9 @@ struct Person {
     window->show(frame, false, gauges);
   }
   Commands give(const SimulatedInput& input) {
-    window->simulate(input);
+    window->scene_window().simulate(input);
     Commands commands = window->show(frame, false, gauges);
-    window->simulate({});
+    window->scene_window().simulate({});
     const Commands more = window->show(frame, false, gauges);
     commands.insert(commands.end(), more.begin(), more.end());
     return commands;
@@ -59,13 +59,13 @@ struct Person {
   Commands click(double x, double y) {
     SimulatedInput input;
     input.pointer = {x, y};
-    window->simulate(input); // a button is pressed where the pointer was before
+    window->scene_window().simulate(input); // a button is pressed where the pointer was before
     window->show(frame, false, gauges);
     input.buttons[0] = true;
-    window->simulate(input);
+    window->scene_window().simulate(input);
     Commands commands = window->show(frame, false, gauges);
     input.buttons[0] = false;
-    window->simulate(input);
+    window->scene_window().simulate(input);
     const Commands more = window->show(frame, false, gauges);
     commands.insert(commands.end(), more.begin(), more.end());
     return commands;
@@ -166,7 +166,7 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
     Person person;
-    const double distance_m = person.window->camera().distance_m;
+    const double distance_m = person.window->scene_window().camera().distance_m;
     struct Expected {
       int key;
       bool control;
@@ -179,7 +179,7 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
                                      Expected{GLFW_KEY_3, true, -Vector3d::UnitX()},
                                      Expected{GLFW_KEY_KP_7, true, -Vector3d::UnitY()}}) {
       CHECK(person.type(expected.key, expected.control).empty());
-      const Camera& camera = person.window->camera();
+      const Camera& camera = person.window->scene_window().camera();
       const Vector3d eye = (camera.eye() - camera.target) / distance_m;
       CHECK((eye - expected.eye).norm() < 1e-9);
     }
@@ -190,7 +190,7 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     if (!screen.is_there()) return;
     Person person;
     const auto columns = [&] { // the first and the last that show something
-      const Image image = person.window->silhouette(size);
+      const Image image = person.window->scene_window().silhouette(size);
       std::pair<int, int> range{size.width, -1};
       for (int x = 0; x < size.width; ++x)
         for (int y = 0; y < size.height; ++y)
@@ -207,20 +207,20 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     SimulatedInput drag; // away
     drag.pointer = {500.0, 300.0};
     drag.shift = true;
-    person.window->simulate(drag);
+    person.window->scene_window().simulate(drag);
     person.window->show(person.frame, false, {});
     drag.buttons[0] = true;
-    person.window->simulate(drag);
+    person.window->scene_window().simulate(drag);
     person.window->show(person.frame, false, {});
     drag.pointer.x() -= 300.0;
     drag.wheel = 4.0;
     person.give(drag);
     CHECK(columns().first < panel_right);
-    const View view = person.window->camera().view;
+    const View view = person.window->scene_window().camera().view;
     person.type(GLFW_KEY_HOME);
     is_framed(panel_right);
-    CHECK(person.window->camera().view.azimuth_deg == view.azimuth_deg);
-    CHECK(person.window->camera().view.elevation_deg == view.elevation_deg);
+    CHECK(person.window->scene_window().camera().view.azimuth_deg == view.azimuth_deg);
+    CHECK(person.window->scene_window().camera().view.elevation_deg == view.elevation_deg);
 
     person.type(GLFW_KEY_P); // folded, the panel covers nothing
     person.type(GLFW_KEY_HOME);
@@ -234,11 +234,11 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
     Person person;
-    const Image before = person.window->screenshot();
+    const Image before = person.window->scene_window().screenshot();
     person.type(GLFW_KEY_M);
     person.gauges.report = "saved as /a/very/long/path/that/is/longer/than/the/panel/is/wide.obj";
     person.type(GLFW_KEY_G);
-    const Image after = person.window->screenshot();
+    const Image after = person.window->scene_window().screenshot();
     bool beside_changed = false;
     int changed = 0;
     for (int y = 0; y < size.height; ++y)

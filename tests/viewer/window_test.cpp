@@ -67,12 +67,12 @@ TEST_SUITE("window") {
     for (std::uint64_t tick = 0; tick < 4; ++tick) {
       test.bend(static_cast<int>(8 * tick), HostClock::now());
       const flow::Frame& frame = test.frame_after_tick(tick);
-      const auto before = window.blocks_sent();
+      const auto before = window.scene_window().blocks_sent();
       CHECK(window.show(frame, true, {}).empty());
-      if (tick == 0) CHECK(window.blocks_sent() - before == blocks);
-      const auto sent = window.blocks_sent();
+      if (tick == 0) CHECK(window.scene_window().blocks_sent() - before == blocks);
+      const auto sent = window.scene_window().blocks_sent();
       window.show(frame, true, {}); // the same frame again: nothing has changed
-      CHECK(window.blocks_sent() == sent);
+      CHECK(window.scene_window().blocks_sent() == sent);
 
       holds.follow(frame);
       SceneFrame scene_frame;
@@ -80,18 +80,19 @@ TEST_SUITE("window") {
       test.loop->changes().layout().unpack(frame.shape, scene_frame.vertices);
       Scene scene;
       builder.build(scene_frame, {}, scene);
-      const Image by_processor = silhouette(scene, window.camera(), size);
-      CHECK(intersection_over_union(by_processor, window.silhouette(size)) > 0.97);
+      const Image by_processor = silhouette(scene, window.scene_window().camera(), size);
+      CHECK(intersection_over_union(by_processor, window.scene_window().silhouette(size)) > 0.97);
     }
     // And not the same whatever is drawn: the model before it was shaped, seen from elsewhere.
-    Camera other = window.camera();
+    Camera other = window.scene_window().camera();
     other.orbit(200.0, 0.0);
-    Scene scene = window.scene();
+    Scene scene = window.scene_window().scene();
     SceneFrame scene_frame;
     scene_frame.vertices = 0.7 * test.model.vertices;
     builder.build(scene_frame, {}, scene);
-    CHECK(intersection_over_union(silhouette(scene, other, size), window.silhouette(size)) < 0.9);
-    const Image shown = window.screenshot();
+    CHECK(intersection_over_union(silhouette(scene, other, size),
+                                  window.scene_window().silhouette(size)) < 0.9);
+    const Image shown = window.scene_window().screenshot();
     CHECK(shown.size() == size);
     CHECK_FALSE(shown == Image(size, shown.at(0, 0)));
   }
@@ -115,9 +116,9 @@ TEST_SUITE("window") {
     const auto type = [&](int key) {
       SimulatedInput input;
       input.taps = {key};
-      window.simulate(input);
+      window.scene_window().simulate(input);
       auto commands = window.show(frame, false, gauges);
-      window.simulate({});
+      window.scene_window().simulate({});
       window.show(frame, false, {});
       return commands;
     };
@@ -160,7 +161,7 @@ TEST_SUITE("window") {
       type(key);
       window.show(frame, false, {});
       std::size_t places = 0;
-      for (const Surface& solid : window.scene().solids)
+      for (const Surface& solid : window.scene_window().scene().solids)
         places += solid.places.size();
       return places;
     };
@@ -185,19 +186,20 @@ TEST_SUITE("window") {
     window.show(frame, true, {});
     SimulatedInput input;
     for (const auto& joint : frame.hands[1].pose.joints) { // the one that the panel covers least
-      const Eigen::Vector4d clip = window.camera().projection(1.0 * size.width / size.height) *
-                                   (joint.translation() - builder.origin_m()).homogeneous();
+      const Eigen::Vector4d clip =
+          window.scene_window().camera().projection(1.0 * size.width / size.height) *
+          (joint.translation() - builder.origin_m()).homogeneous();
       const Eigen::Vector2d pixel((1.0 + clip.x() / clip.w()) / 2 * size.width,
                                   (1.0 - clip.y() / clip.w()) / 2 * size.height);
       if (pixel.x() > input.pointer.x()) input.pointer = pixel;
     }
-    window.simulate(input);
+    window.scene_window().simulate(input);
     window.show(frame, false, {});
     input.buttons[1] = true;
-    window.simulate(input);
+    window.scene_window().simulate(input);
     window.show(frame, false, {});
     input.pointer.y() -= 10.0;
-    window.simulate(input);
+    window.scene_window().simulate(input);
     const Commands commands = window.show(frame, false, {});
     REQUIRE(commands.size() == 1);
     const auto* moved = std::get_if<flow::WristMove>(&commands.front());
@@ -226,7 +228,7 @@ TEST_SUITE("window") {
     const auto move = [&](const Eigen::Vector2d& pointer, bool left) {
       input.pointer = pointer;
       input.buttons[0] = left;
-      window.simulate(input);
+      window.scene_window().simulate(input);
       window.show(frame, false, {});
     };
     const auto drag = [&](const Eigen::Vector2d& from) {
@@ -238,7 +240,8 @@ TEST_SUITE("window") {
     };
     const Eigen::Vector3d middle_m = 0.5 * builder.size_m().y() * Eigen::Vector3d::UnitY();
     const Eigen::Vector4d clip =
-        window.camera().projection(1.0 * size.width / size.height) * middle_m.homogeneous();
+        window.scene_window().camera().projection(1.0 * size.width / size.height) *
+        middle_m.homogeneous();
     const Eigen::Vector2d mark((1.0 + clip.x() / clip.w()) / 2 * size.width,
                                (1.0 - clip.y() / clip.w()) / 2 * size.height);
     move(mark, false);
@@ -246,16 +249,16 @@ TEST_SUITE("window") {
     move(mark, false);
     REQUIRE(editor.pending());
     const Eigen::Vector3d place = editor.pending()->at;
-    const Camera before = window.camera();
+    const Camera before = window.scene_window().camera();
     drag(mark);
     REQUIRE(editor.pending());
     CHECK(editor.pending()->at == place);
     CHECK(editor.message().starts_with("Bend the finger"));
-    CHECK(window.camera().view.azimuth_deg == before.view.azimuth_deg);
-    CHECK(window.camera().view.elevation_deg == before.view.elevation_deg);
-    CHECK(window.camera().eye() == before.eye());
+    CHECK(window.scene_window().camera().view.azimuth_deg == before.view.azimuth_deg);
+    CHECK(window.scene_window().camera().view.elevation_deg == before.view.elevation_deg);
+    CHECK(window.scene_window().camera().eye() == before.eye());
     drag({780.0, 500.0}); // the control: beside the model, the same way turns the camera
-    CHECK(window.camera().view.elevation_deg != before.view.elevation_deg);
+    CHECK(window.scene_window().camera().view.elevation_deg != before.view.elevation_deg);
   }
 }
 

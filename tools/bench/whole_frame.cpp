@@ -6,7 +6,7 @@
 #include <nendo/deform/type1.hpp>
 
 #include "bench/deform_frames.hpp"
-#include "render/gouraud.hpp"
+#include "bench/gouraud.hpp"
 
 namespace nendo::bench {
 
@@ -57,7 +57,7 @@ struct WholeFrame::Parts {
   Strokes type2;
   BlockShape shape;
   render::Surface surface;
-  render::GouraudRenderer renderer;
+  GouraudRenderer renderer;
   render::Camera camera;
   const render::Image* last = nullptr;
 };
@@ -92,7 +92,7 @@ const render::Image* WholeFrame::picture() const noexcept {
 double WholeFrame::covered_share() const {
   const render::Image* const drawn = picture();
   if (drawn == nullptr) return 0.0;
-  render::GouraudRenderer other(frame_size);
+  GouraudRenderer other(frame_size);
   const render::Image& empty = other.draw({}, parts_->camera);
   std::size_t covered = 0;
   for (std::size_t at = 0; at < drawn->pixels().size(); ++at)

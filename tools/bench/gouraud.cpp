@@ -1,15 +1,16 @@
-#include "render/gouraud.hpp"
+#include "bench/gouraud.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "render/lights.hpp"
 #include "render/raster.hpp"
-#include "render/shading.hpp"
 
-namespace nendo::render {
+namespace nendo::bench {
 
 using Eigen::Vector3f;
+using namespace render;
 
 namespace {
 
@@ -104,4 +105,4 @@ const Image& GouraudRenderer::draw(const Surface& surface, const Camera& camera)
   return image_;
 }
 
-} // namespace nendo::render
+} // namespace nendo::bench

@@ -9,37 +9,37 @@
 
 #include "render/camera.hpp"
 #include "render/image.hpp"
-#include "render/sample_grid.hpp"
+#include "render/raster.hpp"
 #include "render/surface.hpp"
 
-namespace nendo::render {
+namespace nendo::bench {
 
 class GouraudRenderer {
 public:
   /// Allocates for pictures of that size.
-  explicit GouraudRenderer(Size size);
+  explicit GouraudRenderer(render::Size size);
 
   /// Draws the surface, which needs a normal for each place. Both sides of a triangle are lit.
   /// Triangles that reach behind the camera are left out. The image is valid until the next call.
   /// Allocates if the surface has more places than any before.
-  const Image& draw(const Surface& surface, const Camera& camera);
+  const render::Image& draw(const render::Surface& surface, const render::Camera& camera);
 
 private:
   /// A vertex as the camera sees it.
   struct Corner {
-    GridCorner at;
+    render::GridCorner at;
     float inverse_depth = 0.0F; ///< 0: behind the camera
     Eigen::Vector3f colour;     ///< encoded, 0 to 255
   };
 
   void clear();
-  void see(const Surface& surface, const Camera& camera);
+  void see(const render::Surface& surface, const render::Camera& camera);
   void fill(const std::array<const Corner*, 3>& corners);
 
-  Image image_;
-  std::vector<Pixel> empty_row_colours_; ///< the background, a colour for each row
-  std::vector<float> nearest_;           ///< inverse depths; 0 where there is nothing
+  render::Image image_;
+  std::vector<render::Pixel> empty_row_colours_; ///< the background, a colour for each row
+  std::vector<float> nearest_;                   ///< inverse depths; 0 where there is nothing
   std::vector<Corner> corners_;
 };
 
-} // namespace nendo::render
+} // namespace nendo::bench

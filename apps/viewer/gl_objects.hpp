@@ -1,13 +1,63 @@
 #pragma once
-// OpenGL's frame buffers: the shadow that a light casts, as the depth of all that casts, seen from
-// the light; and one with smooth edges. All calls belong to the thread that has the OpenGL context.
+// OpenGL's programs, a model's textures, and frame buffers. All calls belong to the thread that has
+// the OpenGL context.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include <nendo/base/result.hpp>
+
 #include "render/image.hpp"
+#include "render/paint.hpp"
 
 namespace nendo::viewer {
 
+/// The fragment shader of a program: for depths and silhouettes, for grounds, or for surfaces.
+enum class Fragments : std::size_t { white, ground, surface };
+
+/// Makes a program and returns its name. Error: failed (this OpenGL refuses the shaders; the
+/// message has its reason).
+Result<unsigned> make_program(Fragments kind);
+
+/// Sets a uniform of the program, which must be in use.
+void set(unsigned program, const char* name, const Eigen::Matrix4f& value);
+void set(unsigned program, const char* name, const Eigen::Vector3f& value);
+void set(unsigned program, const char* name, float value);
+void set(unsigned program, const char* name, int value);
+
+/// The textures of a model, and the texture coordinates and colours of its triangles' corners.
+class ModelTextures {
+public:
+  /// The units of the textures that the shaders read: corners, their texture coordinates, their
+  /// colours, picture.
+  static constexpr std::array<int, 4> units{4, 5, 6, 7};
+
+  ModelTextures() = default;
+  ~ModelTextures();
+  ModelTextures(const ModelTextures&) = delete;
+  ModelTextures& operator=(const ModelTextures&) = delete;
+
+  /// Sets the paint of another model. `corners` are the vertices' places in the blocks, three for
+  /// each triangle. A picture that is too large for the card is left out.
+  void set(const render::Paint& paint, const std::vector<std::uint32_t>& corners);
+  /// Prepares the program, which must be in use, for the next calls of use().
+  void bind(unsigned program) const;
+  /// Makes the coat's picture the one that is drawn. Returns false if it has none.
+  bool use(std::size_t coat) const;
+
+private:
+  void remove();
+
+  std::array<unsigned, 3> buffers_{};
+  std::array<unsigned, 3> buffer_textures_{}; ///< 0 where corners have nothing of their own
+  std::vector<unsigned> pictures_;            ///< one for each coat; 0: none
+};
+
+/// The shadow that a light casts, as the depth of all that casts, seen from the light.
 class ShadowMap {
 public:
   ShadowMap();

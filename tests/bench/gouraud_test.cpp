@@ -1,4 +1,4 @@
-#include "render/gouraud.hpp"
+#include "bench/gouraud.hpp"
 
 #include <cmath>
 
@@ -11,6 +11,7 @@ namespace gouraud_test {
 
 using namespace nendo;
 using namespace nendo::render;
+using bench::GouraudRenderer;
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "viewer/dope_sheet.hpp"
+#include "viewer/timeline_view.hpp"
 
 #include <algorithm>
 #include <cmath>
