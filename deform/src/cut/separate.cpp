@@ -1,8 +1,7 @@
-#include <numeric>
-
 #include <nendo/deform/cut.hpp>
 
 #include "cut/cut_assembly.hpp"
+#include "geometry/rows_by_key.hpp"
 #include "mesh/columns.hpp"
 
 namespace nendo::deform {
@@ -40,22 +39,12 @@ void take_columns(const Columns& from, const std::vector<std::uint32_t>& which, 
 }
 
 /// Vertices or faces of all parts, part after part.
-struct ByPart {
-  std::vector<std::uint32_t> starts, members;
-};
-
 template <class PartOf>
-ByPart by_part(std::size_t count, std::uint32_t parts, const PartOf& part_of) {
-  ByPart sorted;
-  sorted.starts.assign(parts + 1, 0);
-  for (std::uint32_t at = 0; at < count; ++at)
-    if (part_of(at) != no_index) ++sorted.starts[part_of(at) + 1];
-  std::partial_sum(sorted.starts.begin(), sorted.starts.end(), sorted.starts.begin());
-  sorted.members.resize(sorted.starts.back());
-  std::vector<std::uint32_t> filled(sorted.starts.begin(), sorted.starts.end() - 1);
-  for (std::uint32_t at = 0; at < count; ++at)
-    if (part_of(at) != no_index) sorted.members[filled[part_of(at)]++] = at;
-  return sorted;
+RowsByKey<std::uint32_t> by_part(std::size_t count, std::uint32_t parts, const PartOf& part_of) {
+  return rows_by_key<std::uint32_t>(parts, [&](const auto& visit) {
+    for (std::uint32_t at = 0; at < count; ++at)
+      if (part_of(at) != no_index) visit(part_of(at), at);
+  });
 }
 
 void copy_face(const Mesh& from, std::uint32_t face, Renumbered& vertices, Renumbered& texcoords,
@@ -73,8 +62,8 @@ void copy_face(const Mesh& from, std::uint32_t face, Renumbered& vertices, Renum
 std::vector<Mesh> separated(const Mesh& mesh, const std::vector<std::uint32_t>& part_of_vertex,
                             std::uint32_t count) {
   const auto part_of = [&](std::uint32_t vertex) { return part_of_vertex[vertex]; };
-  const ByPart vertices = by_part(mesh.vertex_count(), count, part_of);
-  const ByPart faces = by_part(mesh.face_count(), count, [&](std::uint32_t face) {
+  const auto vertices = by_part(mesh.vertex_count(), count, part_of);
+  const auto faces = by_part(mesh.face_count(), count, [&](std::uint32_t face) {
     return part_of(mesh.face_corners[mesh.face_starts[face]]);
   });
   Renumbered vertex(mesh.vertex_count());
@@ -84,10 +73,10 @@ std::vector<Mesh> separated(const Mesh& mesh, const std::vector<std::uint32_t>& 
     Mesh& own = parts[part];
     vertex.clear();
     texcoord.clear();
-    for (std::uint32_t at = vertices.starts[part]; at < vertices.starts[part + 1]; ++at)
-      vertex(vertices.members[at]);
-    for (std::uint32_t at = faces.starts[part]; at < faces.starts[part + 1]; ++at)
-      copy_face(mesh, faces.members[at], vertex, texcoord, own);
+    for (const std::uint32_t old : vertices[part])
+      vertex(old);
+    for (const std::uint32_t face : faces[part])
+      copy_face(mesh, face, vertex, texcoord, own);
     take_columns(mesh.vertices, vertex.used(), own.vertices);
     own.offset = mesh.offset;
     take_columns(mesh.texcoords, texcoord.used(), own.texcoords);

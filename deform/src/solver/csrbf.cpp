@@ -13,7 +13,6 @@
 #include "solver/polynomial_part.hpp"
 #include "solver/shared_kernel.hpp"
 #include "solver/solver_choices.hpp"
-#include "solver/volume_assembly.hpp"
 
 namespace nendo::deform {
 

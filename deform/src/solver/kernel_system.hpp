@@ -2,12 +2,53 @@
 // M of the equations (supports.hpp), with the ties in it, and its Cholesky factor. There are three
 // ways to store them, by the number of start points and of their neighbours.
 
+#include <cstdint>
 #include <memory>
+#include <span>
+#include <vector>
 
-#include "solver/own_functions.hpp"
 #include "solver/solver_choices.hpp"
 
 namespace nendo::deform {
+
+/// A row for each start point, with three coordinates and an unused number, or with the four terms
+/// of the polynomial. A row fills two SSE registers or one of AVX.
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+
+/// Psi of supports.hpp: the values of each own function at the start points within its radius, and
+/// what it adds to the matrix and to the field.
+class OwnFunctions {
+public:
+  struct Value {
+    std::uint32_t point;
+    double psi;
+  };
+
+  /// Evaluates the functions, with a grid if there are many points. Allocates unless as many values
+  /// fitted before. Returns false if there are more than CsrbfSolver::max_own_values.
+  bool evaluate(Wendland kernel, const Points& starts, const Supports& supports);
+
+  std::size_t size() const noexcept { return weights_.size(); }
+  /// Returns the values of one function, by ascending point.
+  std::span<const Value> values(std::size_t function) const noexcept {
+    return {values_.data() + begins_[function], begins_[function + 1] - begins_[function]};
+  }
+  double weight(std::size_t function) const noexcept { return weights_[function]; }
+  /// Returns a bound of the pairs of points that share a function, and so of the work and of the
+  /// entries.
+  double pairs() const noexcept;
+  /// Returns the trace of Psi W Psi^T.
+  double trace() const noexcept;
+  /// Writes the diagonal of Psi W Psi^T, one entry per point.
+  void diagonal(Eigen::VectorXd& out) const noexcept;
+  /// Returns the function's coefficient w_e sum_i psi_e(c_i) a_i.
+  Eigen::RowVector4d coefficient(std::size_t function, const Rows& a) const noexcept;
+
+private:
+  std::vector<std::size_t> begins_{0};
+  std::vector<Value> values_;
+  std::vector<double> weights_;
+};
 
 class KernelSystem {
 public:
@@ -41,5 +82,10 @@ std::unique_ptr<KernelSystem> make_dense_system();
 /// Returns a system that finds neighbours by a grid and uses Eigen's simplicial Cholesky. Its
 /// assemble() refuses a matrix that is so full that the dense way costs less, unless `must` is set.
 std::unique_ptr<KernelSystem> make_sparse_system(bool must);
+
+/// Returns the coefficient of an own function of a field that keeps the volume, from the solution
+/// a: three rows per start point, of which the first column counts.
+Eigen::Vector3d own_volume_coefficient(const CsrbfOptions& options, const Points& starts,
+                                       const OwnSupport& own, const Rows& a) noexcept;
 
 } // namespace nendo::deform

@@ -1,4 +1,4 @@
-#include "solver/own_functions.hpp"
+#include "solver/kernel_system.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -11,7 +11,6 @@
 #include "geometry/point_grid.hpp"
 #include "solver/kernel_system.hpp"
 #include "solver/shared_kernel.hpp"
-#include "solver/ties.hpp"
 
 namespace nendo::deform {
 

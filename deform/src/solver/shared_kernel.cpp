@@ -1,4 +1,4 @@
-#include "solver/ties.hpp"
+#include "solver/shared_kernel.hpp"
 
 #include <algorithm>
 #include <limits>
