@@ -85,7 +85,7 @@ ClayDeformer& ClayDeformer::operator=(ClayDeformer&&) noexcept = default;
 FieldStatus ClayDeformer::begin(std::span<const ContactPart> parts) {
   if (!work_->accepts(parts)) return FieldStatus::not_finite;
   shape_->parts().keep();
-  return take_hold(parts);
+  return grab(parts);
 }
 
 void ClayDeformer::go_on_from(const ClayDeformer& before, bool keeps_volume) noexcept {
@@ -117,7 +117,7 @@ double ClayDeformer::volume() const noexcept {
   return work_->volume();
 }
 
-FieldStatus ClayDeformer::take_hold(std::span<const ContactPart> parts) {
+FieldStatus ClayDeformer::grab(std::span<const ContactPart> parts) {
   if (!work_->accepts(parts)) return FieldStatus::not_finite;
   work_->take_hold(shape_->parts().now, parts);
   return FieldStatus::ok;
@@ -127,7 +127,7 @@ FieldStatus ClayDeformer::go(HistoryMove move, std::span<const ContactPart> part
   if (move == HistoryMove::redo && shape_->redo_steps() == 0) return FieldStatus::ok;
   if (!work_->accepts(parts)) return FieldStatus::not_finite;
   shape_->parts().go(move);
-  return take_hold(parts);
+  return grab(parts);
 }
 
 namespace {

@@ -16,17 +16,8 @@ namespace {
 /// -psi''(0): the squared norm, in the kernel's native space, of the functional that takes a
 /// function's derivative at a point, for r = 1. Infinite for c0.
 double derivative_norm_squared(Wendland kernel) noexcept {
-  switch (kernel) {
-  case Wendland::c0:
-    break;
-  case Wendland::c2:
-    return 20.0;
-  case Wendland::c4:
-    return 56.0 / 3.0;
-  case Wendland::c6:
-    return 22.0;
-  }
-  return std::numeric_limits<double>::infinity();
+  if (kernel == Wendland::c0) return std::numeric_limits<double>::infinity();
+  return -slope_factor(kernel); // the rest of psi' / t is 1 at t = 0
 }
 
 /// At least the largest eigenvalue, and at most 3^(1/8) of it, of a symmetric matrix without

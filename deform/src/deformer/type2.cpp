@@ -88,7 +88,7 @@ Type2Deformer& Type2Deformer::operator=(Type2Deformer&&) noexcept = default;
 
 FieldStatus Type2Deformer::begin(const Points& tips) {
   shape_->parts().keep();
-  return take_hold(tips);
+  return grab(tips);
 }
 
 void Type2Deformer::release(bool is_step) noexcept {
@@ -106,14 +106,14 @@ void Type2Deformer::forget_last() noexcept {
 
 FieldStatus Type2Deformer::go(HistoryMove move, const Points& tips) {
   if (move == HistoryMove::redo && shape_->redo_steps() == 0) return FieldStatus::ok;
-  const FieldStatus status = take_hold(tips);
+  const FieldStatus status = grab(tips);
   if (!is_solved(status)) return status;
   shape_->parts().go(move);
   forget_last();
   return status;
 }
 
-FieldStatus Type2Deformer::take_hold(const Points& tips) {
+FieldStatus Type2Deformer::grab(const Points& tips) {
   assert(tips.cols() == current_.cols());
   begun_ = false;
   if (!all_usable(tips)) return FieldStatus::not_finite;

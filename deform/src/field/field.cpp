@@ -1,6 +1,7 @@
 #include <nendo/deform/field.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -13,6 +14,13 @@
 namespace nendo::deform {
 
 namespace {
+
+constexpr std::array<std::pair<Wendland, std::string_view>, 4> wendland_names{{
+    {Wendland::c0, "wendland-c0"},
+    {Wendland::c2, "wendland-c2"},
+    {Wendland::c4, "wendland-c4"},
+    {Wendland::c6, "wendland-c6"},
+}};
 
 /// From here on, sorting costs less than asking every function about every point.
 constexpr Eigen::Index min_by_cells = 256;
@@ -85,6 +93,18 @@ void displace_by_cells(const CsrbfField& field, const Points& points, Points& ou
 }
 
 } // namespace
+
+std::string_view name_of(Wendland kernel) noexcept {
+  for (const auto& [candidate, name] : wendland_names)
+    if (candidate == kernel) return name;
+  return {};
+}
+
+std::optional<Wendland> wendland_named(std::string_view name) noexcept {
+  for (const auto& [kernel, candidate] : wendland_names)
+    if (candidate == name) return kernel;
+  return std::nullopt;
+}
 
 Eigen::Vector3d CsrbfField::displacement_at(const Eigen::Vector3d& x) const noexcept {
   Eigen::Vector3d sum = polynomial_at(*this, x);

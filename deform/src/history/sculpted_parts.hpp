@@ -8,7 +8,6 @@
 #include <memory>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include <nendo/deform/sculpted_shape.hpp>
 #include <nendo/deform/undo_memory.hpp>
@@ -84,13 +83,12 @@ private:
   void save(std::size_t block) noexcept;
   SavedBlock* next_head() const noexcept;
   void exchange(SavedBlock& saved, BoundedShape& shape) noexcept;
-  void own(std::size_t count);
   void add_free(const SavedChain& chain) noexcept;
   void forget_undone() noexcept;
   void drop_oldest() noexcept;
 
   BlockShape kept_;
-  std::vector<std::unique_ptr<SavedBlock[]>> own_;
+  std::unique_ptr<SavedBlock[]> own_;
   UndoMemory* more_;
   SavedBlock* free_ = nullptr; ///< a list by `next`
   std::size_t free_count_ = 0;

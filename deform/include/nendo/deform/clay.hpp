@@ -84,7 +84,7 @@ public:
   /// status is ok or not_finite, in which case nothing changes.
   FieldStatus begin(std::span<const ContactPart> parts);
   /// Does the same, but without ending the stroke before.
-  FieldStatus grab(std::span<const ContactPart> parts) { return take_hold(parts); }
+  FieldStatus grab(std::span<const ContactPart> parts);
   /// Call after begin() or grab(). Continues `before`'s contacts and grips for the same bodies; it
   /// was the previous deformer of this clay, perhaps with other triangles. The volume to keep is
   /// that of `before` if `keeps_volume`. Does nothing for other bodies. Does not allocate.
@@ -112,8 +112,6 @@ public:
 
 private:
   class Work;
-
-  FieldStatus take_hold(std::span<const ContactPart> parts);
 
   SculptedShape* shape_;
   std::unique_ptr<Work> work_;

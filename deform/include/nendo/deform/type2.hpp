@@ -61,7 +61,7 @@ public:
   /// `injective`, what building a field there gives.
   FieldStatus begin(const Points& tips);
   /// Does the same, but without ending the stroke before.
-  FieldStatus grab(const Points& tips) { return take_hold(tips); }
+  FieldStatus grab(const Points& tips);
   /// Releases the shape until the next begin() or grab(). With `is_step`, the stroke has ended.
   void release(bool is_step) noexcept;
   /// Changes the shape, and begins a new stroke at `tips`. On failure the shape stays.
@@ -100,7 +100,6 @@ private:
   Type2Deformer(std::unique_ptr<SculptedShape> own, Eigen::Index control_points,
                 double piece_length, const DeformerOptions& options);
   void forget_last() noexcept;
-  FieldStatus take_hold(const Points& tips);
   StrokeResult follow(const Points& tips, Lead lead);
   const Points& pulling(const Points& tips);
   void begin_piece();
