@@ -14,7 +14,7 @@
 
 #include <Eigen/Core>
 
-#include <nendo/base/file_replacement.hpp>
+#include <nendo/base/files.hpp>
 #include <nendo/base/result.hpp>
 
 #include "takes/frame_source.hpp"

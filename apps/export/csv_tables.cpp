@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include <nendo/base/file_replacement.hpp>
+#include <nendo/base/files.hpp>
 #include <nendo/base/units.hpp>
 #include <nendo/hand/joint_angles.hpp>
 

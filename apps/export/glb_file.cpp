@@ -7,7 +7,7 @@
 #include <string>
 
 #include <nendo/base/byte_writer.hpp>
-#include <nendo/base/file_replacement.hpp>
+#include <nendo/base/files.hpp>
 
 namespace nendo::exporting {
 namespace {

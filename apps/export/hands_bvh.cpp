@@ -3,7 +3,7 @@
 #include <cassert>
 #include <vector>
 
-#include <nendo/base/file_replacement.hpp>
+#include <nendo/base/files.hpp>
 #include <nendo/hand/bvh.hpp>
 
 namespace nendo::exporting {

@@ -8,8 +8,6 @@
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
-#include <nendo/base/file_replacement.hpp>
-
 #include "support/temporary_folder.hpp"
 
 namespace files_test {

@@ -117,19 +117,6 @@ TEST_SUITE("device_clock") {
     }
   }
 
-  TEST_CASE("the drift is known to 5 ppm after two minutes, also a large one") {
-    for (const double drift : {-200.0, -50.0, 0.0, 50.0, 200.0}) {
-      CAPTURE(drift);
-      DeviceClock clock;
-      Simulation simulation(drift, 100ms, 7);
-      run(clock, simulation, 2min, 2min);
-      for (int k = 0; k < 100; ++k) {
-        run(clock, simulation, 0s, simulation.now() + 1s);
-        CHECK(std::abs(clock.drift_ppm() - drift) < 5.0);
-      }
-    }
-  }
-
   TEST_CASE("stalls of several seconds, every twenty seconds or so, do not move it") {
     DeviceClock clock;
     Simulation simulation(50.0, 5s, 3);
@@ -221,12 +208,10 @@ TEST_SUITE("device_clock") {
     DeviceClock clock;
     Simulation simulation(50.0, 100ms);
     run(clock, simulation, 0s, 2min);
-    const double drift_ppm = clock.drift_ppm();
     for (nanoseconds sent = 1h; sent < 1h + 1min; sent += 10ms) {
       // It runs 50 ppm fast as before, and lost 50 ms meanwhile.
       const nanoseconds device = 5s + sent + sent / 20'000 - 50ms;
       CHECK(std::abs(ms(clock.to_host(device, host(sent)) - host(sent))) < 0.1);
-      if (sent == 1h) CHECK(clock.drift_ppm() == drift_ppm);
     }
   }
 
@@ -259,7 +244,6 @@ TEST_SUITE("device_clock") {
         const nanoseconds absurd(static_cast<std::int64_t>(random() >> (random() % 64)) *
                                  (k % 2 == 0 ? 1 : -1));
         CHECK(clock.to_host(absurd, arrival) <= arrival);
-        CHECK(std::isfinite(clock.drift_ppm()));
       }
       for (const nanoseconds extreme : {nanoseconds::max(), nanoseconds::min()})
         CHECK(clock.to_host(extreme, host(base + 2s)) == host(base + 2s));

@@ -10,7 +10,7 @@
 #include <nendo/udev/device_table.hpp>
 
 #include "discovery/programs.hpp"
-#include "fivedt_usb/fivedt_usb_protocol.hpp"
+#include "fivedt_usb/fivedt_usb_parser.hpp"
 #include "support/scripted_port.hpp"
 #include "support/temporary_folder.hpp"
 #include "transport/port_access.hpp"

@@ -71,7 +71,6 @@ struct Explored {
     T value_{};
   };
 
-  static void relax() {} // takes no part in the order of things
   static void fence(std::memory_order order, int line = __builtin_LINE(),
                     const char* file = __builtin_FILE(),
                     const char* function = __builtin_FUNCTION()) {

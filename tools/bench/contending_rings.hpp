@@ -10,6 +10,7 @@
 #include <nendo/base/spsc_ring.hpp>
 
 #include "bench/plain_ring.hpp"
+#include "bench/two_threads.hpp"
 
 #ifdef NENDO_READERWRITERQUEUE
 #include <readerwriterqueue/readerwriterqueue.h>
@@ -53,7 +54,7 @@ struct SingleContender {
   template <class Sink>
   std::size_t receive(const Sink& sink) noexcept {
     Element element;
-    if (!ring.try_pop_or_pause(element)) return 0;
+    if (!try_pop_or_pause(ring, element)) return 0;
     sink(element);
     return 1;
   }

@@ -14,6 +14,7 @@
 
 #include <nendo/base/unique_fd.hpp>
 
+#include "bench/two_threads.hpp"
 #include "cyberglove/cyberglove_driver.hpp"
 #include "transport/open_transport.hpp"
 #include "units/cyberglove_unit.hpp"
@@ -71,7 +72,7 @@ std::optional<HostClock::duration> time_one(SampleRing& ring, int fd,
   if (!write_record(fd, record)) return std::nullopt;
   GloveSample sample;
   for (;;) {
-    if (ring.try_pop_or_pause(sample)) return HostClock::now() - written;
+    if (try_pop_or_pause(ring, sample)) return HostClock::now() - written;
     if (HostClock::now() - written > 1s) return std::nullopt;
   }
 }

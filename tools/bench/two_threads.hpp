@@ -17,6 +17,16 @@ namespace nendo::bench {
 void run_on(const cli::TwoProcessors& processors, const std::function<void()>& on_first,
             const std::function<void()>& on_second);
 
+/// Takes the oldest element of a ring. Pauses for some 0.3 microseconds if there is none, so that a
+/// consumer that asks again at once does not take the producer's cache line away from it.
+template <class Ring, class Element>
+bool try_pop_or_pause(Ring& ring, Element& element) noexcept {
+  if (ring.try_pop(element)) return true;
+  for (int n = 0; n < 16; ++n)
+    relax();
+  return false;
+}
+
 /// One cache line that goes to and fro.
 class PingPong {
 public:

@@ -3,7 +3,7 @@
 #include <cassert>
 #include <utility>
 
-#include <nendo/base/relax.hpp>
+#include <nendo/base/atomics.hpp>
 #include <nendo/flow/compatible.hpp>
 #include <nendo/flow/rig_setup.hpp>
 #include <nendo/flow/setting.hpp>

@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include <nendo/base/relax.hpp>
+#include <nendo/base/atomics.hpp>
 
 namespace nendo::flow {
 

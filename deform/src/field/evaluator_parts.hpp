@@ -12,8 +12,8 @@
 
 #include <hwy/cache_control.h>
 
+#include <nendo/base/atomics.hpp>
 #include <nendo/base/job_offer.hpp>
-#include <nendo/base/relax.hpp>
 
 #include "field/block_evaluator.hpp"
 #include "field/block_field.hpp"

@@ -10,8 +10,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <nendo/base/file_replacement.hpp>
-
 namespace nendo {
 namespace {
 

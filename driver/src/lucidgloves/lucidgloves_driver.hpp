@@ -26,7 +26,7 @@ namespace nendo::driver::lucidgloves {
 ///
 /// While the glove streams, each line is answered, because firmwares with force feedback wait for
 /// that: by the brakes, once they were set, or else by an empty line. At the end they are freed.
-/// A legacy firmware gets only empty lines; its brakes are not used (lucidgloves_protocol.hpp). The
+/// A legacy firmware gets only empty lines; its brakes are not used (lucidgloves_parser.hpp). The
 /// switch at the wrist stays unknown, because the flag "grab" is not a switch but a gesture that
 /// the firmware finds in the curls.
 Result<std::unique_ptr<Glove>> open_lucidgloves(const GloveSpec& spec, std::optional<Side> side);

@@ -51,10 +51,6 @@ void DeviceClock::reset() noexcept {
   last_result_ = last_result; // the host's time continues
 }
 
-double DeviceClock::drift_ppm() const noexcept {
-  return -1e6 * slope_;
-}
-
 /// Relative to base_.offset.
 double DeviceClock::line_at(Nanoseconds device) const noexcept {
   return intercept_ + slope_ * static_cast<double>(device - base_.device);

@@ -46,9 +46,6 @@ public:
   HostTime to_host(std::chrono::nanoseconds device_time, HostTime arrival) noexcept;
   /// Starts again, because the device's clock began again.
   void reset() noexcept;
-  /// Returns by how many parts in a million the device's clock is fast. It is 0 for the first 4 s,
-  /// and at most 500.
-  double drift_ppm() const noexcept;
 
 private:
   using Nanoseconds = std::int64_t;

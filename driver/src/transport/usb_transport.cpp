@@ -62,18 +62,18 @@ unsigned to_timeout(std::chrono::milliseconds time) noexcept {
   return static_cast<unsigned>(std::clamp<long>(time.count(), 1, 60'000)); // 0 means: for ever
 }
 
-struct Endpoints {
-  std::uint8_t in = 0;
-  std::optional<std::uint8_t> out;
-  std::size_t packet_bytes = 0; ///< packet size of `in`
+/// The interrupt endpoint that sends reports.
+struct InputEndpoint {
+  std::uint8_t address = 0;
+  std::size_t packet_bytes = 0;
 };
 
 class LibusbTransport final : public UsbTransport {
 public:
   LibusbTransport(ContextHandle context, DeviceHandle device, UsbIdentity identity,
-                  int interface_number, const Endpoints& endpoints)
+                  int interface_number)
       : context_(std::move(context)), device_(std::move(device)), identity_(std::move(identity)),
-        interface_(interface_number), out_(endpoints.out) {}
+        interface_(interface_number) {}
   ~LibusbTransport() override {
     cancel_all();
     libusb_release_interface(device_.get(), interface_); // the kernel's driver gets it back
@@ -81,15 +81,17 @@ public:
     device_.reset();
   }
 
-  bool start(const Endpoints& endpoints, std::size_t report_bytes);
+  bool start(const InputEndpoint& endpoint, std::size_t report_bytes);
   void ask_for_repeats() noexcept {
     control(to_interface, set_idle, repeat_after_100_ms, {}, idle_budget); // it need not know it
   }
 
   ReadResult read_some(std::span<std::byte> buffer,
                        std::chrono::milliseconds timeout) noexcept override;
-  IoStatus write_all(std::span<const std::byte> bytes,
-                     std::chrono::milliseconds timeout) noexcept override;
+  IoStatus write_all(std::span<const std::byte> /*bytes*/,
+                     std::chrono::milliseconds /*timeout*/) noexcept override {
+    return gone_ ? IoStatus::gone : IoStatus::timeout;
+  }
   void discard_input() noexcept override;
   const UsbIdentity& identity() const noexcept override { return identity_; }
   ControlStatus get_feature(std::span<std::byte> report, std::size_t& received,
@@ -120,7 +122,6 @@ private:
   DeviceHandle device_;
   const UsbIdentity identity_;
   const int interface_;
-  const std::optional<std::uint8_t> out_;
   std::array<Slot*, transfers_under_way> arrived_{}; ///< oldest first, a ring
   std::size_t first_arrived_ = 0;
   std::size_t arrived_count_ = 0;
@@ -130,16 +131,16 @@ private:
   bool closing_ = false;
 };
 
-bool LibusbTransport::start(const Endpoints& endpoints, std::size_t report_bytes) {
+bool LibusbTransport::start(const InputEndpoint& endpoint, std::size_t report_bytes) {
   // Whole packets: a transfer ends with a short packet or when it is full, and a device that sends
   // more than was asked for in its last packet would be an error instead of a report to judge.
-  const std::size_t packets = (report_bytes + endpoints.packet_bytes - 1) / endpoints.packet_bytes;
+  const std::size_t packets = (report_bytes + endpoint.packet_bytes - 1) / endpoint.packet_bytes;
   for (Slot& slot : slots_) {
     slot.owner = this;
-    slot.data.resize(packets * endpoints.packet_bytes);
+    slot.data.resize(packets * endpoint.packet_bytes);
     slot.transfer.reset(libusb_alloc_transfer(0));
     if (!slot.transfer) return false;
-    libusb_fill_interrupt_transfer(slot.transfer.get(), device_.get(), endpoints.in,
+    libusb_fill_interrupt_transfer(slot.transfer.get(), device_.get(), endpoint.address,
                                    slot.data.data(), static_cast<int>(slot.data.size()),
                                    on_transfer, &slot, 0);
     submit(slot);
@@ -212,22 +213,6 @@ ReadResult LibusbTransport::read_some(std::span<std::byte> buffer,
     handle_events(left);
     if (left <= 0ms && arrived_count_ == 0 && !gone_) return {IoStatus::timeout, 0};
   }
-}
-
-IoStatus LibusbTransport::write_all(std::span<const std::byte> bytes,
-                                    std::chrono::milliseconds timeout) noexcept {
-  if (gone_) return IoStatus::gone;
-  if (!out_ || bytes.size() > max_usb_report_bytes) return IoStatus::timeout;
-  std::array<unsigned char, max_usb_report_bytes> data{}; // libusb takes no constant bytes
-  std::memcpy(data.data(), bytes.data(), bytes.size());
-  int sent = 0;
-  const int result =
-      libusb_interrupt_transfer(device_.get(), *out_, data.data(), static_cast<int>(bytes.size()),
-                                &sent, to_timeout(timeout));
-  if (result == LIBUSB_ERROR_NO_DEVICE) gone_ = true;
-  if (gone_) return IoStatus::gone;
-  const bool all = result == 0 && sent == static_cast<int>(bytes.size());
-  return all ? IoStatus::done : IoStatus::timeout;
 }
 
 void LibusbTransport::discard_input() noexcept {
@@ -310,32 +295,27 @@ Error open_failure(const UsbIdentity& identity, int result) {
   }
 }
 
-std::optional<Endpoints> endpoints_of(const libusb_interface_descriptor& setting) {
-  std::optional<Endpoints> found;
-  std::optional<std::uint8_t> out;
+std::optional<InputEndpoint> input_of(const libusb_interface_descriptor& setting) {
   for (std::uint8_t k = 0; k < setting.bNumEndpoints; ++k) {
     const libusb_endpoint_descriptor& endpoint = setting.endpoint[k];
-    if ((endpoint.bmAttributes & 3) != LIBUSB_TRANSFER_TYPE_INTERRUPT) continue;
     const std::size_t packet_bytes = endpoint.wMaxPacketSize & 0x7FFU; // above are other things
-    if ((endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) == 0) {
-      if (!out) out = endpoint.bEndpointAddress;
-    } else if (!found && packet_bytes > 0 && packet_bytes <= max_usb_report_bytes) {
-      found = Endpoints{endpoint.bEndpointAddress, std::nullopt, packet_bytes};
-    }
+    if ((endpoint.bmAttributes & 3) == LIBUSB_TRANSFER_TYPE_INTERRUPT &&
+        (endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0 && packet_bytes > 0 &&
+        packet_bytes <= max_usb_report_bytes)
+      return InputEndpoint{endpoint.bEndpointAddress, packet_bytes};
   }
-  if (found) found->out = out;
-  return found;
+  return std::nullopt;
 }
 
-/// The interrupt endpoints of an interface; nothing if it has no input.
-std::optional<Endpoints> find_endpoints(libusb_device* device, int number) {
+/// The input of an interface; nothing if it has none.
+std::optional<InputEndpoint> find_input(libusb_device* device, int number) {
   libusb_config_descriptor* raw = nullptr;
   if (libusb_get_active_config_descriptor(device, &raw) != 0) return std::nullopt;
   const std::unique_ptr<libusb_config_descriptor, Closer> config(raw);
   for (std::uint8_t k = 0; k < raw->bNumInterfaces; ++k) {
     const libusb_interface& interface = raw->interface[k];
     if (interface.num_altsetting > 0 && interface.altsetting[0].bInterfaceNumber == number) {
-      return endpoints_of(interface.altsetting[0]);
+      return input_of(interface.altsetting[0]);
     }
   }
   return std::nullopt;
@@ -345,18 +325,18 @@ Result<std::unique_ptr<UsbTransport>> open_device(const ContextHandle& context,
                                                   libusb_device* device,
                                                   const UsbIdentity& identity,
                                                   const UsbInterface& interface) {
-  const auto endpoints = find_endpoints(device, interface.number);
-  if (!endpoints) return open_failure(identity, LIBUSB_ERROR_NOT_FOUND);
+  const auto input = find_input(device, interface.number);
+  if (!input) return open_failure(identity, LIBUSB_ERROR_NOT_FOUND);
   libusb_device_handle* raw = nullptr;
   if (const int e = libusb_open(device, &raw); e != 0) return open_failure(identity, e);
   DeviceHandle handle(raw);
   libusb_set_auto_detach_kernel_driver(raw, 1); // and attach it again when it is released
   if (const int e = libusb_claim_interface(raw, interface.number); e != 0)
     return open_failure(identity, e);
-  auto transport = std::make_unique<LibusbTransport>(context, std::move(handle), identity,
-                                                     interface.number, *endpoints);
+  auto transport =
+      std::make_unique<LibusbTransport>(context, std::move(handle), identity, interface.number);
   transport->ask_for_repeats();
-  if (!transport->start(*endpoints, interface.report_bytes))
+  if (!transport->start(*input, interface.report_bytes))
     return open_failure(identity, LIBUSB_ERROR_NO_DEVICE);
   return std::unique_ptr<UsbTransport>(std::move(transport));
 }

@@ -50,8 +50,8 @@ public:
   virtual ControlStatus set_feature(std::span<const std::byte> report,
                                     std::chrono::milliseconds timeout) noexcept = 0;
   // read_some() returns one whole report in one call; its buffer must have 1024 bytes, the
-  // longest that an interrupt endpoint sends. write_all() sends one report to the interrupt output;
-  // where there is none, it does nothing and says `timeout`.
+  // longest that an interrupt endpoint sends. write_all() does nothing and returns `timeout`: no
+  // glove takes reports at an interrupt endpoint.
 };
 
 /// The longest packet of an interrupt endpoint (USB 2.0, 5.7.3).

@@ -2,15 +2,17 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include <nendo/udev/device_table.hpp>
 
 #include "drivers.hpp"
-#include "fivedt_usb/fivedt_usb_protocol.hpp"
-#include "p5/p5_protocol.hpp"
+#include "fivedt_usb/fivedt_usb_parser.hpp"
+#include "p5/p5_parser.hpp"
 #include "spec/number_in.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/usb_transport.hpp"
+#include "usb/usb_glove.hpp"
 
 namespace nendo::driver {
 namespace {
@@ -79,6 +81,26 @@ Result<std::unique_ptr<Glove>> open_usb_glove_by(const GloveSpec& spec, HostTime
 
 Result<std::unique_ptr<Glove>> open_usb_glove(const GloveSpec& spec, std::optional<Side> /*side*/) {
   return open_usb_glove_by(spec, HostClock::now() + open_budget);
+}
+
+OpenPort usb_opener(UsbWanted wanted, const UsbInterface& interface) {
+  return [last = std::move(wanted), interface]() mutable -> Result<std::unique_ptr<Transport>> {
+    auto opened = open_usb(last, interface);
+    if (!opened) return opened.error();
+    const UsbIdentity& identity = (*opened)->identity();
+    last.serial = identity.serial;
+    last.port = identity.serial.empty() ? identity.place : std::string{};
+    return std::unique_ptr<Transport>(*std::move(opened));
+  };
+}
+
+std::vector<GloveFact> facts_of(const UsbIdentity& identity) {
+  std::vector<GloveFact> facts{{"usb_id", to_string(id_of(identity))},
+                               {"usb_port", identity.place}};
+  if (!identity.manufacturer.empty()) facts.push_back({"manufacturer", identity.manufacturer});
+  if (!identity.product.empty()) facts.push_back({"product", identity.product});
+  if (!identity.serial.empty()) facts.push_back({"serial", identity.serial});
+  return facts;
 }
 
 } // namespace nendo::driver

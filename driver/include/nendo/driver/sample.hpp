@@ -192,7 +192,6 @@ public:
 
   // SpscRing's: for the consumer; size() and counters() are thread-safe.
   bool try_pop(GloveSample& sample) noexcept { return ring_.try_pop(sample); }
-  bool try_pop_or_pause(GloveSample& sample) noexcept { return ring_.try_pop_or_pause(sample); }
   template <class Sink>
   std::size_t drain(Sink&& sink) noexcept {
     return ring_.drain(sink);

@@ -12,9 +12,18 @@
 #include <utility>
 
 #include <nendo/base/atomics.hpp>
-#include <nendo/base/ring_counters.hpp>
 
 namespace nendo {
+
+/// The counts of an SpscRing: offered = consumed + refused + SpscRing::size(), once both sides are
+/// at rest. Each count only grows and is written by one thread; other threads may read it at any
+/// time.
+struct RingCounters {
+  std::uint64_t offered = 0;  ///< elements pushed, or tried to
+  std::uint64_t refused = 0;  ///< the offered elements that were refused because the ring was full
+  std::uint64_t consumed = 0; ///< elements taken out
+  std::uint64_t high_water = 0; ///< the most that were ever in it at once
+};
 
 template <class T, class Atomics = StdAtomics>
 class SpscRing {
@@ -87,15 +96,6 @@ public:
     element = slots_[head & mask_].element;
     head_.store(head + 1, std::memory_order_release);
     return true;
-  }
-
-  /// Consumer only. Like try_pop(), for a consumer that asks again at once: it pauses for some 0.3
-  /// microseconds if the ring is empty, so as not to take the producer's cache line away from it.
-  bool try_pop_or_pause(T& element) noexcept {
-    if (try_pop(element)) return true;
-    for (int n = 0; n < 16; ++n)
-      Atomics::relax();
-    return false;
   }
 
   [[nodiscard]] std::size_t capacity() const noexcept { return mask_ + 1; }
