@@ -160,7 +160,7 @@ TEST_SUITE("cyberglove_unit_commands") {
 
   TEST_CASE("a power cycle ends the stream without a word and undoes every setting") {
     UnitOptions options;
-    options.restart_time = 1750ms;
+    options.restart_s = 1.75;
     Bench bench(options);
     bench.ask("d 1\r");
     bench.ask("S");
@@ -177,7 +177,7 @@ TEST_SUITE("cyberglove_unit_commands") {
   TEST_CASE("options change what sources disagree about") {
     UnitOptions options;
     options.reply_bytes = 3;
-    options.period_order = nendo::emulator::unit::WordOrder::low_first;
+    options.period_low_first = true;
     options.stamp_bit7 = false;
     Bench bench(options);
     CHECK(bench.ask(Bytes{'F', 0}).size() == 3);
@@ -203,7 +203,7 @@ TEST_SUITE("cyberglove_unit_commands") {
 
   TEST_CASE("an old glove is its mask, and a stream can be on from the start") {
     UnitOptions options;
-    options.mask = 0x6333B7; // 14 sensors, one of them in slot 7
+    options.hardware_mask = 0x6333B7; // 14 sensors, one of them in slot 7
     options.streaming = true;
     Bench bench(options);
     bench.now = 0s;
@@ -303,7 +303,7 @@ TEST_SUITE("cyberglove_unit_commands") {
     for (const bool hardware : {true, false}) {
       CAPTURE(hardware);
       UnitOptions options = model(3);
-      if (!hardware) options.hires_form = unit::HiResForm::terminated;
+      options.hires_terminated = !hardware;
       Bench bench(options);
       bench.ask(Bytes{'1', 'm', 3});
       CHECK(bench.ask("1S") == (hardware ? Bytes{'1', 'S'} : Bytes{'1', 'S', 0}));

@@ -476,7 +476,7 @@ TEST_SUITE("cyberglove_unit") {
   TEST_CASE("a restart takes as long as it is set to") {
     for (const auto time : {0ms, 250ms, 5000ms}) {
       UnitOptions options;
-      options.restart_time = time;
+      options.restart_s = nendo::to_seconds(time);
       Bench bench(options);
       bench.ask(Bytes{'U', 1});
       bench.ask(Bytes{0x12});

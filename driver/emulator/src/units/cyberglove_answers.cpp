@@ -85,7 +85,7 @@ void CyberGloveUnit::answer(Byte letter) {
     append(message, *words);
   } else if (const auto values = numbers(letter)) {
     // The order of T's bytes is disputed, that of the others is not.
-    const bool high_first = letter == 'T' && options_.period_order == WordOrder::high_first;
+    const bool high_first = letter == 'T' && !options_.period_low_first;
     for (const unsigned value : *values) {
       Message bytes = low_first(value, static_cast<unsigned>(number_width(letter)));
       if (high_first) std::reverse(bytes.begin(), bytes.end());

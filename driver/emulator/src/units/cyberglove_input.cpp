@@ -50,7 +50,7 @@ void CyberGloveUnit::handle(Byte byte, Time now) {
 
 // Programs that read 12-bit records of a CyberGlove III get one byte when they end the stream.
 void CyberGloveUnit::stop() {
-  const bool bare = stream_.header == three_prefix && options_.hires_form == HiResForm::hardware;
+  const bool bare = stream_.header == three_prefix && !options_.hires_terminated;
   stream_ = {};
   settings_.binary_sync = settings_.text_sync = false;
   reply(bare ? Message{stop_byte} : Message{stop_byte, 0});
@@ -153,7 +153,7 @@ void CyberGloveUnit::collect_three(Byte byte, Time now) {
     echo.insert(echo.end(), argument_.begin(), argument_.end());
     // Programs that were written for the hardware read two bytes and then records.
     const bool starts = argument_[0] == 'S';
-    if (!starts || options_.hires_form == HiResForm::terminated) echo.push_back(0);
+    if (!starts || options_.hires_terminated) echo.push_back(0);
     reply(echo);
     if (starts) start_three(now);
   }
@@ -163,7 +163,7 @@ void CyberGloveUnit::set(Byte letter, const Message& argument, Time now) {
   const bool text = is_lower(letter);
   const Settings before = settings_;
   if (!unit::apply(settings_, letter == 'y' ? letter : to_upper(letter), argument,
-                   text ? WordOrder::high_first : options_.period_order, known_)) {
+                   !text && options_.period_low_first, known_)) {
     reply({'e', 'n', 0});
     return;
   }

@@ -1,4 +1,4 @@
-#include "units/cyberglove_records.hpp"
+#include "units/cyberglove_unit.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "units/cyberglove_settings.hpp"
+#include "units/cyberglove_unit.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -69,10 +69,8 @@ bool apply_vibration(Settings& settings, const Message& argument) {
   return true;
 }
 
-std::uint16_t word(Byte first, Byte second, WordOrder order) noexcept {
-  const unsigned high = order == WordOrder::high_first ? first : second;
-  const unsigned low = order == WordOrder::high_first ? second : first;
-  return static_cast<std::uint16_t>(high << 8U | low);
+std::uint16_t word(unsigned first, unsigned second, bool low_first) noexcept {
+  return static_cast<std::uint16_t>(low_first ? second << 8U | first : first << 8U | second);
 }
 
 // The glove is said to reach 120 records per second over USB.
@@ -154,7 +152,7 @@ std::size_t number_width(Byte letter) noexcept {
   return letter == 'T' || letter == 'V' ? 2 : 1;
 }
 
-bool apply(Settings& settings, Byte letter, const Message& argument, WordOrder order,
+bool apply(Settings& settings, Byte letter, const Message& argument, bool period_low_first,
            const PluggedGlove& glove) {
   switch (letter) {
   case 'A':
@@ -178,8 +176,8 @@ bool apply(Settings& settings, Byte letter, const Message& argument, WordOrder o
     return true;
   }
   case 'T':
-    settings.period_ticks = word(argument[0], argument[1], order);
-    settings.period_repeats = word(argument[2], argument[3], order);
+    settings.period_ticks = word(argument[0], argument[1], period_low_first);
+    settings.period_repeats = word(argument[2], argument[3], period_low_first);
     return true;
   default:
     break;

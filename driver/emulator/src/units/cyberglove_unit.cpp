@@ -30,7 +30,7 @@ constexpr std::chrono::nanoseconds to_time(std::uint64_t ticks) noexcept {
 
 PluggedGlove plugged_by(const UnitOptions& options) {
   const SensorMask usual = options.sensors == 18 ? sensors_18 : sensors_22;
-  return {options.side, options.mask != 0 ? options.mask : usual.bits};
+  return {options.side, options.hardware_mask != 0 ? options.hardware_mask : usual.bits};
 }
 
 } // namespace
@@ -106,7 +106,7 @@ void CyberGloveUnit::begin_restart(bool answers, Time now) {
   command_ = 0;
   poll_.reset();
   waiting_.clear();
-  restart_ends_ = now + options_.restart_time;
+  restart_ends_ = now + from_seconds(options_.restart_s);
   restart_answers_ = answers;
 }
 
@@ -212,7 +212,7 @@ bool CyberGloveUnit::send_next() {
                           static_cast<Byte>(parameters()),
                           stream_.too_fast,
                           three_.frames,
-                          options_.hires_form == HiResForm::hardware ? 0U : 1U};
+                          options_.hires_terminated ? 1U : 0U};
   ++stream_.next;
   const Message record = stream_.header == three_prefix
                              ? records_.fine_record(frame, plugged_)

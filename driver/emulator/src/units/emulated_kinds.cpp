@@ -1,9 +1,13 @@
 // The table of the gloves that can be emulated, and of their variants.
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <string>
+#include <utility>
 
+
+#include "units/capture.hpp"
 #include "units/cyberglove_unit.hpp"
 #include "units/emulated_unit.hpp"
 #include "units/fivedt_unit.hpp"
@@ -105,10 +109,58 @@ Result<std::unique_ptr<EmulatedUnit>> make_unit(const EmulatorOptions& options) 
   return std::unique_ptr<EmulatedUnit>(std::make_unique<Unit>(unit));
 }
 
+Error usage(const std::string& what) {
+  return {Errc::usage, what};
+}
+
+Result<void> check_cyberglove(const EmulatorOptions& options) {
+  const EmulatedCyberGlove& special = options.cyberglove;
+  if (options.sensors != 0 && options.sensors != 18 && options.sensors != 22) {
+    return usage("sensors " + std::to_string(options.sensors) +
+                 ": a CyberGlove has 18 or 22; give older ones by their mask");
+  }
+  if (special.hardware_mask > 0xFFFFFF) {
+    return usage("mask: it has 24 bits, e.g. 7fff7f for 22 sensors");
+  }
+  if (options.sensors != 0 && special.hardware_mask != 0 &&
+      std::popcount(special.hardware_mask) != static_cast<int>(options.sensors)) {
+    return usage("sensors " + std::to_string(options.sensors) + ": the mask has " +
+                 std::to_string(std::popcount(special.hardware_mask)) + "; leave one of them out");
+  }
+  if (special.model < 1 || special.model > 3) {
+    return usage("model " + std::to_string(special.model) + ": use 1, 2 or 3");
+  }
+  if (special.reply_bytes != 2 && special.reply_bytes != 3) {
+    return usage("reply-bytes " + std::to_string(special.reply_bytes) + ": use 2 or 3");
+  }
+  if (!(special.restart_s >= 0.0 && special.restart_s <= 60.0)) {
+    return usage("restart-time: use 0s to 60s");
+  }
+  if (!(options.rate_hz >= 1.0 && options.rate_hz <= CyberGloveUnit::max_rate_hz)) {
+    return usage("rate: use 1 to 480 records per second (what 115200 baud can carry)");
+  }
+  return {};
+}
+
 /// A CyberGlove's variants are options of its own.
 Result<std::unique_ptr<EmulatedUnit>> make_cyberglove(const EmulatorOptions& options) {
   if (const auto chosen = find_variants(options); !chosen) return chosen.error();
-  return make_cyberglove_unit(options);
+  if (auto checked = check_cyberglove(options); !checked) return checked.error();
+  const auto motion = driver::find_motion(options.motion);
+  if (!motion) return motion.error();
+  UnitOptions unit{options.cyberglove,
+                   options.side,
+                   options.sensors == 18 ? 18U : 22U,
+                   *motion,
+                   options.rate_hz,
+                   options.seed,
+                   {}};
+  if (!unit.replay.empty()) {
+    auto capture = read_capture(unit.replay);
+    if (!capture) return capture.error();
+    unit.capture = *std::move(capture);
+  }
+  return std::unique_ptr<EmulatedUnit>(std::make_unique<CyberGloveUnit>(unit));
 }
 
 constexpr std::array kinds{
