@@ -68,11 +68,79 @@ public:
   Interview(Dialogue& dialogue, Identity& identity)
       : commands_(dialogue, optional_answer), identity_(identity) {}
 
-  void ask_descriptions();
-  void ask_settings();
-  void ask_vibration();
-  void ask_baud_register();
-  void ask_calibration();
+  void ask_descriptions() {
+    const auto information = inquire_([this] { return commands_.information(); });
+    if (information) {
+      identity_.model = model_line(information.value);
+      add("information", one_line(information.value));
+    }
+    identity_.model += ", " + std::to_string(identity_.channels.count) + " sensors";
+    if (const auto text = inquire_([this] { return commands_.firmware_text(); })) {
+      add("firmware", one_line(text.value));
+    } else if (const auto bytes = inquire_([this] { return commands_.firmware(); })) {
+      // No source says what the four bytes mean.
+      const auto& [a, b, c, d] = bytes.value;
+      add("firmware", fmt::format("{}.{}.{}.{}", a, b, c, d));
+    }
+  }
+
+  /// All at once by ?P, or one by one.
+  void ask_settings() {
+    struct Known {
+      const char* name;
+      Setting setting;
+      unsigned flag;
+    };
+    constexpr std::array settings{
+        Known{"filter", Setting::filter, flag_filter},
+        Known{"time_stamp", Setting::time_stamp, flag_time_stamp},
+        Known{"status_byte", Setting::status_byte, flag_status_byte},
+        Known{"switch_drives_light", Setting::switch_drives_light, flag_switch_drives_light},
+        Known{"quantised", Setting::quantised, flag_quantised},
+        Known{"wrist_switch", Setting::wrist_switch, flag_wrist_switch},
+        Known{"light", Setting::light, flag_light},
+    };
+    Abilities& abilities = identity_.abilities;
+    abilities.wrist_switch = identity_.shape.status;
+    const auto flags = inquire_([this] { return commands_.parameters(); });
+    const auto flag = [&](unsigned bit) { return (flags.value >> bit & 1U) != 0; };
+    for (const Known& known : settings) {
+      const Reply<bool> reply = flags ? Reply<bool>{Answer::good, flag(known.flag)}
+                                      : inquire_([&] { return commands_.get(known.setting); });
+      if (!reply) continue;
+      add(known.name, reply.value ? "on" : "off");
+      if (known.setting == Setting::light) abilities.light = true;
+      if (known.setting == Setting::switch_drives_light)
+        identity_.switch_drives_light = reply.value;
+    }
+    if (!flags) return;
+    abilities.vibration = flag(flag_cybertouch);
+    add("cybertouch", abilities.vibration ? "yes" : "no");
+  }
+
+  void ask_vibration() {
+    if (!identity_.abilities.vibration) return;
+    if (const auto reply = inquire_([this] { return commands_.vibration(); }))
+      add("vibration", fmt::format("{}", fmt::join(reply.value, " ")));
+  }
+
+  void ask_baud_register() {
+    const auto reply = inquire_([this] { return commands_.baud_register(); });
+    if (!reply) return;
+    const auto baud = baud_of_register(reply.value);
+    add("baud_register", baud ? fmt::format("0x{:02X} ({} baud)", reply.value, *baud)
+                              : fmt::format("0x{:02X}", reply.value));
+  }
+
+  void ask_calibration() {
+    const auto reply =
+        inquire_([this] { return commands_.hardware_calibration(identity_.sensors); });
+    if (!reply) return;
+    const auto& [sensors, offsets, gains] = reply.value;
+    add("hardware_calibration",
+        fmt::format("offsets {}, gains {}", fmt::join(std::span(offsets).first(sensors), " "),
+                    fmt::join(std::span(gains).first(sensors), " ")));
+  }
 
 private:
   void add(const char* name, std::string value) {
@@ -83,78 +151,6 @@ private:
   Identity& identity_;
   Inquiry inquire_;
 };
-
-void Interview::ask_descriptions() {
-  const auto information = inquire_([this] { return commands_.information(); });
-  if (information) {
-    identity_.model = model_line(information.value);
-    add("information", one_line(information.value));
-  }
-  identity_.model += ", " + std::to_string(identity_.channels.count) + " sensors";
-  if (const auto text = inquire_([this] { return commands_.firmware_text(); })) {
-    add("firmware", one_line(text.value));
-  } else if (const auto bytes = inquire_([this] { return commands_.firmware(); })) {
-    // No source says what the four bytes mean.
-    const auto& [a, b, c, d] = bytes.value;
-    add("firmware", fmt::format("{}.{}.{}.{}", a, b, c, d));
-  }
-}
-
-/// All at once by ?P, or one by one.
-void Interview::ask_settings() {
-  struct Known {
-    const char* name;
-    Setting setting;
-    unsigned flag;
-  };
-  constexpr std::array settings{
-      Known{"filter", Setting::filter, flag_filter},
-      Known{"time_stamp", Setting::time_stamp, flag_time_stamp},
-      Known{"status_byte", Setting::status_byte, flag_status_byte},
-      Known{"switch_drives_light", Setting::switch_drives_light, flag_switch_drives_light},
-      Known{"quantised", Setting::quantised, flag_quantised},
-      Known{"wrist_switch", Setting::wrist_switch, flag_wrist_switch},
-      Known{"light", Setting::light, flag_light},
-  };
-  Abilities& abilities = identity_.abilities;
-  abilities.wrist_switch = identity_.shape.status;
-  const auto flags = inquire_([this] { return commands_.parameters(); });
-  const auto flag = [&](unsigned bit) { return (flags.value >> bit & 1U) != 0; };
-  for (const Known& known : settings) {
-    const Reply<bool> reply = flags ? Reply<bool>{Answer::good, flag(known.flag)}
-                                    : inquire_([&] { return commands_.get(known.setting); });
-    if (!reply) continue;
-    add(known.name, reply.value ? "on" : "off");
-    if (known.setting == Setting::light) abilities.light = true;
-    if (known.setting == Setting::switch_drives_light) identity_.switch_drives_light = reply.value;
-  }
-  if (!flags) return;
-  abilities.vibration = flag(flag_cybertouch);
-  add("cybertouch", abilities.vibration ? "yes" : "no");
-}
-
-void Interview::ask_vibration() {
-  if (!identity_.abilities.vibration) return;
-  if (const auto reply = inquire_([this] { return commands_.vibration(); }))
-    add("vibration", fmt::format("{}", fmt::join(reply.value, " ")));
-}
-
-void Interview::ask_baud_register() {
-  const auto reply = inquire_([this] { return commands_.baud_register(); });
-  if (!reply) return;
-  const auto baud = baud_of_register(reply.value);
-  add("baud_register", baud ? fmt::format("0x{:02X} ({} baud)", reply.value, *baud)
-                            : fmt::format("0x{:02X}", reply.value));
-}
-
-void Interview::ask_calibration() {
-  const auto reply = inquire_([this] { return commands_.hardware_calibration(identity_.sensors); });
-  if (!reply) return;
-  const auto& [sensors, offsets, gains] = reply.value;
-  add("hardware_calibration",
-      fmt::format("offsets {}, gains {}", fmt::join(std::span(offsets).first(sensors), " "),
-                  fmt::join(std::span(gains).first(sensors), " ")));
-}
 
 } // namespace
 

@@ -118,15 +118,169 @@ public:
   }
 
 private:
-  Result<void> set_mask(SensorMask hardware);
-  Result<void> ask_channels();
-  Result<void> ask_hand();
-  Result<void> set_switches();
-  Result<void> set_records();
-  Result<void> set_hires();
-  Result<void> set_period(Period period);
-  Result<bool> set_stamp(Setting setting, bool on);
-  double ask_present_rate();
+  Result<void> set_mask(SensorMask hardware) {
+    if (!options_.mask) return {};
+    const std::string text = "mask=" + hexadecimal(*options_.mask);
+    const unsigned sent = hardware.bits & options_.mask->bits;
+    if (sent == 0) {
+      return Error{Errc::usage, source_ + ": " + text +
+                                    ": the glove has none of these sensors; it has " +
+                                    hexadecimal(hardware)};
+    }
+    if (auto done = apply(text, [&] { return commands_.set_software_mask(*options_.mask); }); !done)
+      return done;
+    // Otherwise the count of an earlier, smaller mask would cut this one. ?N reports the result.
+    const auto count = static_cast<std::uint8_t>(std::popcount(sent));
+    const Answer answer = commands_.set_value_count(count);
+    return answer == Answer::gone ? Result<void>(bad_answer(source_, answer, text))
+                                  : Result<void>();
+  }
+
+  Result<void> ask_channels() {
+    using Count = std::uint8_t;
+    const auto count = needed<Count>("?S", {}, [&] { return commands_.sensor_count(); });
+    if (!count) return count.error();
+    if (*count == 0 || *count > sensor_slots) {
+      return no_device(source_, "says that it has " + std::to_string(*count) +
+                                    " sensors; no CyberGlove has");
+    }
+    const auto hardware = needed<SensorMask>("?K", *count == 18 ? sensors_18 : sensors_22,
+                                             [&] { return commands_.hardware_mask(); });
+    if (!hardware) return hardware.error();
+    if (auto done = set_mask(*hardware); !done) return done;
+    const auto software =
+        needed<SensorMask>("?M", SensorMask{0xFFFFFF}, [&] { return commands_.software_mask(); });
+    if (!software) return software.error();
+    const auto values =
+        needed<Count>("?N", Count{sensor_slots}, [&] { return commands_.value_count(); });
+    if (!values) return values.error();
+    const ChannelMap map = make_channel_map(*hardware, *software, *values);
+    if (map.count == 0) {
+      return no_device(source_,
+                       "all its sensors are masked off; switch its interface unit off and on");
+    }
+    identity_.sensors = *count;
+    identity_.channels = map;
+    add("sensors", std::to_string(*count));
+    add("hardware_mask", hexadecimal(*hardware));
+    add("software_mask", hexadecimal(*software));
+    add("values", std::to_string(map.count));
+    return {};
+  }
+
+  Result<void> ask_hand() {
+    const auto side = needed<Side>("?R", Side::right, [&] { return commands_.side(); });
+    if (!side) return side.error();
+    const SideOptions wishes{options_.hand, std::nullopt};
+    const ChosenHand chosen = choose_hand(*side, wishes);
+    identity_.side = chosen.side;
+    add("hand", std::string(name_of(*side)));
+    add("hand_source", std::string(chosen.source));
+    if (auto note = hand_override(*side, wishes); !note.empty())
+      identity_.notes.push_back(std::move(note));
+    return {};
+  }
+
+  Result<void> set_switches() {
+    struct Switch {
+      const char* name;
+      Setting setting;
+      const std::optional<bool>& wanted;
+    };
+    for (const Switch& one : {Switch{"filter=", Setting::filter, options_.filter},
+                              Switch{"quantised=", Setting::quantised, options_.quantised}}) {
+      if (!one.wanted) continue;
+      const bool on = *one.wanted;
+      if (auto done = apply(std::string(one.name) + (on ? "on" : "off"),
+                            [&] { return commands_.set(one.setting, on); });
+          !done) {
+        return done;
+      }
+    }
+    return {};
+  }
+
+  Result<void> set_records() {
+    identity_.word_order = request_.word_order;
+    identity_.sync = options_.sync;
+    if (options_.hires) return set_hires();
+    if (!options_.rate_hz) identity_.rate_hz = ask_present_rate();
+    const auto plan =
+        plan_records(options_, identity_.channels.count, request_.baud, identity_.rate_hz);
+    if (!plan) return Error{plan.error().code, source_ + ": " + plan.error().message};
+    if (plan->stamps_dropped) {
+      identity_.notes.push_back("records come without time stamp and status byte, with which the "
+                                "line at " +
+                                std::to_string(request_.baud) + " baud would be too slow");
+    }
+    const auto time_stamp = set_stamp(Setting::time_stamp, plan->stamps);
+    if (!time_stamp) return time_stamp.error();
+    const auto status = set_stamp(Setting::status_byte, plan->stamps);
+    if (!status) return status.error();
+    identity_.shape = {identity_.channels.count, *time_stamp, *status};
+    if (plan->period) {
+      if (auto done = set_period(*plan->period); !done) return done;
+    }
+    if (options_.sync) identity_.rate_hz = 0.0; // the pulses determine it
+    add("rate_hz", text_of(identity_.rate_hz));
+    return {};
+  }
+
+  Result<void> set_hires() {
+    if (identity_.sensors != hi_res_values) {
+      return Error{Errc::usage, source_ +
+                                    ": hires=on: these records carry 22 sensors, the glove has " +
+                                    std::to_string(identity_.sensors) + "; leave the option out"};
+    }
+    const auto steps = plan_hires(options_, request_.baud);
+    if (!steps) return Error{steps.error().code, source_ + ": " + steps.error().message};
+    if (auto done = apply("hires=on", [&] { return commands_.enable_hires(); }); !done) return done;
+    if (*steps) {
+      identity_.rate_hz = **steps * third_frame_step_hz;
+      if (auto done = apply("rate=" + text_of(identity_.rate_hz),
+                            [&] { return commands_.set_frame_rate(**steps); });
+          !done) {
+        return done;
+      }
+      add("rate_hz", text_of(identity_.rate_hz));
+    }
+    identity_.hires = true;
+    identity_.channels = hi_res_channels;
+    identity_.shape = {hi_res_values, false, false, RecordForm::hi_res};
+    return {};
+  }
+
+  Result<void> set_period(Period period) {
+    Reply<std::optional<WordOrder>> reply;
+    const std::string text = "rate=" + text_of(*options_.rate_hz);
+    auto done = apply(text, [&] { return (reply = commands_.set_period(period)).answer; });
+    if (!done) return done;
+    if (reply.value) identity_.word_order = reply.value;
+    identity_.rate_hz = rate_of(period);
+    add("period_ticks", std::to_string(period.ticks) + " " + std::to_string(period.times));
+    return {};
+  }
+
+  /// Returns whether records carry it now. A unit that does not know it sends records without.
+  Result<bool> set_stamp(Setting setting, bool on) {
+    Answer answer = Answer::silent;
+    for (int k = 0; k < tries && !is_final(answer); ++k)
+      answer = commands_.set(setting, on);
+    if (answer == Answer::good) return on;
+    if (answer == Answer::unknown || answer == Answer::bad_number) return false;
+    return bad_answer(source_, answer, std::string("the setting ") + static_cast<char>(setting));
+  }
+
+  /// Records per second by the unit's present settings; 0: as fast as it can, or unknown.
+  double ask_present_rate() {
+    const auto bytes = commands_.period_bytes();
+    if (!bytes) return 0.0;
+    const auto period = request_.word_order ? decode_period(bytes.value, *request_.word_order)
+                                            : guess_period(bytes.value);
+    if (!period) return 0.0;
+    add("period_ticks", std::to_string(period->ticks) + " " + std::to_string(period->times));
+    return rate_of(*period);
+  }
 
   void add(const char* name, std::string value) {
     identity_.facts.push_back({name, std::move(value)});
@@ -162,169 +316,6 @@ private:
   const Options& options_;
   Identity identity_;
 };
-
-Result<void> SetUp::set_mask(SensorMask hardware) {
-  if (!options_.mask) return {};
-  const std::string text = "mask=" + hexadecimal(*options_.mask);
-  const unsigned sent = hardware.bits & options_.mask->bits;
-  if (sent == 0) {
-    return Error{Errc::usage, source_ + ": " + text +
-                                  ": the glove has none of these sensors; it has " +
-                                  hexadecimal(hardware)};
-  }
-  if (auto done = apply(text, [&] { return commands_.set_software_mask(*options_.mask); }); !done)
-    return done;
-  // Otherwise the count of an earlier, smaller mask would cut this one. ?N reports the result.
-  const auto count = static_cast<std::uint8_t>(std::popcount(sent));
-  const Answer answer = commands_.set_value_count(count);
-  return answer == Answer::gone ? Result<void>(bad_answer(source_, answer, text)) : Result<void>();
-}
-
-Result<void> SetUp::ask_channels() {
-  using Count = std::uint8_t;
-  const auto count = needed<Count>("?S", {}, [&] { return commands_.sensor_count(); });
-  if (!count) return count.error();
-  if (*count == 0 || *count > sensor_slots) {
-    return no_device(source_,
-                     "says that it has " + std::to_string(*count) + " sensors; no CyberGlove has");
-  }
-  const auto hardware = needed<SensorMask>("?K", *count == 18 ? sensors_18 : sensors_22,
-                                           [&] { return commands_.hardware_mask(); });
-  if (!hardware) return hardware.error();
-  if (auto done = set_mask(*hardware); !done) return done;
-  const auto software =
-      needed<SensorMask>("?M", SensorMask{0xFFFFFF}, [&] { return commands_.software_mask(); });
-  if (!software) return software.error();
-  const auto values =
-      needed<Count>("?N", Count{sensor_slots}, [&] { return commands_.value_count(); });
-  if (!values) return values.error();
-  const ChannelMap map = make_channel_map(*hardware, *software, *values);
-  if (map.count == 0) {
-    return no_device(source_,
-                     "all its sensors are masked off; switch its interface unit off and on");
-  }
-  identity_.sensors = *count;
-  identity_.channels = map;
-  add("sensors", std::to_string(*count));
-  add("hardware_mask", hexadecimal(*hardware));
-  add("software_mask", hexadecimal(*software));
-  add("values", std::to_string(map.count));
-  return {};
-}
-
-Result<void> SetUp::ask_hand() {
-  const auto side = needed<Side>("?R", Side::right, [&] { return commands_.side(); });
-  if (!side) return side.error();
-  const SideOptions wishes{options_.hand, std::nullopt};
-  const ChosenHand chosen = choose_hand(*side, wishes);
-  identity_.side = chosen.side;
-  add("hand", std::string(name_of(*side)));
-  add("hand_source", std::string(chosen.source));
-  if (auto note = hand_override(*side, wishes); !note.empty())
-    identity_.notes.push_back(std::move(note));
-  return {};
-}
-
-Result<void> SetUp::set_switches() {
-  struct Switch {
-    const char* name;
-    Setting setting;
-    const std::optional<bool>& wanted;
-  };
-  for (const Switch& one : {Switch{"filter=", Setting::filter, options_.filter},
-                            Switch{"quantised=", Setting::quantised, options_.quantised}}) {
-    if (!one.wanted) continue;
-    const bool on = *one.wanted;
-    if (auto done = apply(std::string(one.name) + (on ? "on" : "off"),
-                          [&] { return commands_.set(one.setting, on); });
-        !done) {
-      return done;
-    }
-  }
-  return {};
-}
-
-/// Returns whether records carry it now. A unit that does not know it sends records without.
-Result<bool> SetUp::set_stamp(Setting setting, bool on) {
-  Answer answer = Answer::silent;
-  for (int k = 0; k < tries && !is_final(answer); ++k)
-    answer = commands_.set(setting, on);
-  if (answer == Answer::good) return on;
-  if (answer == Answer::unknown || answer == Answer::bad_number) return false;
-  return bad_answer(source_, answer, std::string("the setting ") + static_cast<char>(setting));
-}
-
-/// Records per second by the unit's present settings; 0: as fast as it can, or unknown.
-double SetUp::ask_present_rate() {
-  const auto bytes = commands_.period_bytes();
-  if (!bytes) return 0.0;
-  const auto period = request_.word_order ? decode_period(bytes.value, *request_.word_order)
-                                          : guess_period(bytes.value);
-  if (!period) return 0.0;
-  add("period_ticks", std::to_string(period->ticks) + " " + std::to_string(period->times));
-  return rate_of(*period);
-}
-
-Result<void> SetUp::set_period(Period period) {
-  Reply<std::optional<WordOrder>> reply;
-  const std::string text = "rate=" + text_of(*options_.rate_hz);
-  auto done = apply(text, [&] { return (reply = commands_.set_period(period)).answer; });
-  if (!done) return done;
-  if (reply.value) identity_.word_order = reply.value;
-  identity_.rate_hz = rate_of(period);
-  add("period_ticks", std::to_string(period.ticks) + " " + std::to_string(period.times));
-  return {};
-}
-
-Result<void> SetUp::set_records() {
-  identity_.word_order = request_.word_order;
-  identity_.sync = options_.sync;
-  if (options_.hires) return set_hires();
-  if (!options_.rate_hz) identity_.rate_hz = ask_present_rate();
-  const auto plan =
-      plan_records(options_, identity_.channels.count, request_.baud, identity_.rate_hz);
-  if (!plan) return Error{plan.error().code, source_ + ": " + plan.error().message};
-  if (plan->stamps_dropped) {
-    identity_.notes.push_back("records come without time stamp and status byte, with which the "
-                              "line at " +
-                              std::to_string(request_.baud) + " baud would be too slow");
-  }
-  const auto time_stamp = set_stamp(Setting::time_stamp, plan->stamps);
-  if (!time_stamp) return time_stamp.error();
-  const auto status = set_stamp(Setting::status_byte, plan->stamps);
-  if (!status) return status.error();
-  identity_.shape = {identity_.channels.count, *time_stamp, *status};
-  if (plan->period) {
-    if (auto done = set_period(*plan->period); !done) return done;
-  }
-  if (options_.sync) identity_.rate_hz = 0.0; // the pulses determine it
-  add("rate_hz", text_of(identity_.rate_hz));
-  return {};
-}
-
-Result<void> SetUp::set_hires() {
-  if (identity_.sensors != hi_res_values) {
-    return Error{Errc::usage, source_ +
-                                  ": hires=on: these records carry 22 sensors, the glove has " +
-                                  std::to_string(identity_.sensors) + "; leave the option out"};
-  }
-  const auto steps = plan_hires(options_, request_.baud);
-  if (!steps) return Error{steps.error().code, source_ + ": " + steps.error().message};
-  if (auto done = apply("hires=on", [&] { return commands_.enable_hires(); }); !done) return done;
-  if (*steps) {
-    identity_.rate_hz = **steps * third_frame_step_hz;
-    if (auto done = apply("rate=" + text_of(identity_.rate_hz),
-                          [&] { return commands_.set_frame_rate(**steps); });
-        !done) {
-      return done;
-    }
-    add("rate_hz", text_of(identity_.rate_hz));
-  }
-  identity_.hires = true;
-  identity_.channels = hi_res_channels;
-  identity_.shape = {hi_res_values, false, false, RecordForm::hi_res};
-  return {};
-}
 
 } // namespace
 

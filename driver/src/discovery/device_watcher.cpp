@@ -70,7 +70,26 @@ public:
 
   const std::vector<GloveCandidate>& present() const noexcept override { return present_; }
   bool sees_usb() const noexcept override { return monitor_ != nullptr; }
-  std::optional<DeviceEvent> next(std::chrono::milliseconds timeout) override;
+  std::optional<DeviceEvent> next(std::chrono::milliseconds timeout) override {
+    const HostTime deadline = HostClock::now() + timeout;
+    while (!stopped_) {
+      if (!events_.empty()) {
+        DeviceEvent event = std::move(events_.front());
+        events_.pop_front();
+        return event;
+      }
+      const HostTime now = HostClock::now();
+      if (now >= deadline && timeout > 0ms) return std::nullopt;
+      const bool settling = now < look_until_ || !arriving_.empty();
+      const Woken woken = wait(settling ? std::min(deadline, now + settling_look) : deadline);
+      if (woken == Woken::by_signal) return std::nullopt;
+      if (woken == Woken::by_change) look_until_ = HostClock::now() + max_settling;
+      if (woken == Woken::by_change || settling) look();
+      if (timeout <= 0ms && events_.empty()) return std::nullopt;
+    }
+    return std::nullopt;
+  }
+
   void stop() noexcept override {
     stopped_ = true;
     const std::uint64_t one = 1;
@@ -79,8 +98,44 @@ public:
 
 private:
   enum class Woken : std::uint8_t { by_change, by_time, by_signal };
-  Woken wait(HostTime until);
-  void look();
+  Woken wait(HostTime until) {
+    const int events = monitor_ ? udev_monitor_get_fd(monitor_.get()) : -1; // poll() leaves -1 out
+    std::array<pollfd, 3> entries{
+        pollfd{events, POLLIN, 0}, {nodes_, POLLIN, 0}, {stop_event_, POLLIN, 0}};
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - HostClock::now());
+    const int wait_ms = static_cast<int>(std::clamp<long>(left.count(), 0, 60'000));
+    if (::poll(entries.data(), entries.size(), wait_ms) < 0)
+      return errno == EINTR ? Woken::by_signal : Woken::by_time;
+    if (entries[0].revents == 0 && entries[1].revents == 0) return Woken::by_time;
+    // What they say does not matter: look() compares what is there with what was.
+    while (monitor_ && UdevDevice(udev_monitor_receive_device(monitor_.get()))) {
+    }
+    for (std::array<char, 4096> unread{}; ::read(nodes_, unread.data(), unread.size()) > 0;) {
+    }
+    return Woken::by_change;
+  }
+
+  /// Announces the differences between what is there and what was.
+  void look() {
+    std::map<std::string, GloveCandidate> there;
+    for (GloveCandidate& candidate : list_candidates())
+      there.emplace(key_of(candidate), std::move(candidate));
+    for (auto at = known_.begin(); at != known_.end();) {
+      const bool gone = !there.contains(at->first);
+      if (gone) events_.push_back({false, std::move(at->second)});
+      at = gone ? known_.erase(at) : std::next(at);
+    }
+    std::erase_if(arriving_, [&](const auto& arrival) { return !there.contains(arrival.first); });
+    const HostTime now = HostClock::now();
+    for (auto& [key, candidate] : there) {
+      if (known_.contains(key)) continue;
+      const HostTime since = arriving_.try_emplace(key, now).first->second;
+      if (!is_settled(candidate) && now - since < max_settling) continue;
+      arriving_.erase(key);
+      known_.emplace(key, candidate);
+      events_.push_back({true, std::move(candidate)});
+    }
+  }
 
   const UdevContext context_{udev_new()};
   const UdevMonitor monitor_ = watch_devices(context_.get());
@@ -93,65 +148,6 @@ private:
   HostTime look_until_{};                       ///< something changed shortly before
   std::deque<DeviceEvent> events_;
 };
-
-std::optional<DeviceEvent> EventWatcher::next(std::chrono::milliseconds timeout) {
-  const HostTime deadline = HostClock::now() + timeout;
-  while (!stopped_) {
-    if (!events_.empty()) {
-      DeviceEvent event = std::move(events_.front());
-      events_.pop_front();
-      return event;
-    }
-    const HostTime now = HostClock::now();
-    if (now >= deadline && timeout > 0ms) return std::nullopt;
-    const bool settling = now < look_until_ || !arriving_.empty();
-    const Woken woken = wait(settling ? std::min(deadline, now + settling_look) : deadline);
-    if (woken == Woken::by_signal) return std::nullopt;
-    if (woken == Woken::by_change) look_until_ = HostClock::now() + max_settling;
-    if (woken == Woken::by_change || settling) look();
-    if (timeout <= 0ms && events_.empty()) return std::nullopt;
-  }
-  return std::nullopt;
-}
-
-EventWatcher::Woken EventWatcher::wait(HostTime until) {
-  const int events = monitor_ ? udev_monitor_get_fd(monitor_.get()) : -1; // poll() leaves -1 out
-  std::array<pollfd, 3> entries{
-      pollfd{events, POLLIN, 0}, {nodes_, POLLIN, 0}, {stop_event_, POLLIN, 0}};
-  const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - HostClock::now());
-  const int wait_ms = static_cast<int>(std::clamp<long>(left.count(), 0, 60'000));
-  if (::poll(entries.data(), entries.size(), wait_ms) < 0)
-    return errno == EINTR ? Woken::by_signal : Woken::by_time;
-  if (entries[0].revents == 0 && entries[1].revents == 0) return Woken::by_time;
-  // What they say does not matter: look() compares what is there with what was.
-  while (monitor_ && UdevDevice(udev_monitor_receive_device(monitor_.get()))) {
-  }
-  for (std::array<char, 4096> unread{}; ::read(nodes_, unread.data(), unread.size()) > 0;) {
-  }
-  return Woken::by_change;
-}
-
-/// Announces the differences between what is there and what was.
-void EventWatcher::look() {
-  std::map<std::string, GloveCandidate> there;
-  for (GloveCandidate& candidate : list_candidates())
-    there.emplace(key_of(candidate), std::move(candidate));
-  for (auto at = known_.begin(); at != known_.end();) {
-    const bool gone = !there.contains(at->first);
-    if (gone) events_.push_back({false, std::move(at->second)});
-    at = gone ? known_.erase(at) : std::next(at);
-  }
-  std::erase_if(arriving_, [&](const auto& arrival) { return !there.contains(arrival.first); });
-  const HostTime now = HostClock::now();
-  for (auto& [key, candidate] : there) {
-    if (known_.contains(key)) continue;
-    const HostTime since = arriving_.try_emplace(key, now).first->second;
-    if (!is_settled(candidate) && now - since < max_settling) continue;
-    arriving_.erase(key);
-    known_.emplace(key, candidate);
-    events_.push_back({true, std::move(candidate)});
-  }
-}
 
 } // namespace
 

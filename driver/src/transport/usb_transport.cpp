@@ -81,23 +81,77 @@ public:
     device_.reset();
   }
 
-  bool start(const InputEndpoint& endpoint, std::size_t report_bytes);
+  bool start(const InputEndpoint& endpoint, std::size_t report_bytes) {
+    // Whole packets: a transfer ends with a short packet or when it is full, and a device that
+    // sends more than was asked for in its last packet would be an error instead of a report to
+    // judge.
+    const std::size_t packets = (report_bytes + endpoint.packet_bytes - 1) / endpoint.packet_bytes;
+    for (Slot& slot : slots_) {
+      slot.owner = this;
+      slot.data.resize(packets * endpoint.packet_bytes);
+      slot.transfer.reset(libusb_alloc_transfer(0));
+      if (!slot.transfer) return false;
+      libusb_fill_interrupt_transfer(slot.transfer.get(), device_.get(), endpoint.address,
+                                     slot.data.data(), static_cast<int>(slot.data.size()),
+                                     on_transfer, &slot, 0);
+      submit(slot);
+    }
+    return !gone_;
+  }
+
   void ask_for_repeats() noexcept {
     control(to_interface, set_idle, repeat_after_100_ms, {}, idle_budget); // it need not know it
   }
 
   ReadResult read_some(std::span<std::byte> buffer,
-                       std::chrono::milliseconds timeout) noexcept override;
+                       std::chrono::milliseconds timeout) noexcept override {
+    const HostTime deadline = HostClock::now() + timeout;
+    for (;;) {
+      if (Slot* const slot = take_arrived()) {
+        const auto count = static_cast<std::size_t>(slot->transfer->actual_length);
+        assert(count <= buffer.size());
+        std::memcpy(buffer.data(), slot->data.data(), std::min(count, buffer.size()));
+        submit(*slot);
+        return {IoStatus::done, std::min(count, buffer.size())};
+      }
+      if (gone_) return {IoStatus::gone, 0};
+      const auto left = deadline - HostClock::now();
+      handle_events(left);
+      if (left <= 0ms && arrived_count_ == 0 && !gone_) return {IoStatus::timeout, 0};
+    }
+  }
+
   IoStatus write_all(std::span<const std::byte> /*bytes*/,
                      std::chrono::milliseconds /*timeout*/) noexcept override {
     return gone_ ? IoStatus::gone : IoStatus::timeout;
   }
-  void discard_input() noexcept override;
+  void discard_input() noexcept override {
+    handle_events({});
+    // Only those that are here now: what each of them is submitted for is to come.
+    for (std::size_t count = arrived_count_; count > 0; --count)
+      submit(*take_arrived());
+  }
+
   const UsbIdentity& identity() const noexcept override { return identity_; }
   ControlStatus get_feature(std::span<std::byte> report, std::size_t& received,
-                            std::chrono::milliseconds timeout) noexcept override;
+                            std::chrono::milliseconds timeout) noexcept override {
+    assert(!report.empty());
+    const auto value = static_cast<std::uint16_t>(feature | std::to_integer<unsigned>(report[0]));
+    const std::span data(reinterpret_cast<unsigned char*>(report.data()), report.size());
+    const int result = control(from_interface, get_report, value, data, timeout);
+    received = result > 0 ? static_cast<std::size_t>(result) : 0;
+    return status_of(result);
+  }
+
   ControlStatus set_feature(std::span<const std::byte> report,
-                            std::chrono::milliseconds timeout) noexcept override;
+                            std::chrono::milliseconds timeout) noexcept override {
+    assert(!report.empty() && report.size() <= max_usb_report_bytes);
+    const auto value = static_cast<std::uint16_t>(feature | std::to_integer<unsigned>(report[0]));
+    std::array<unsigned char, max_usb_report_bytes> copy{};
+    const std::span data = std::span(copy).first(std::min(report.size(), copy.size()));
+    std::memcpy(data.data(), report.data(), data.size());
+    return status_of(control(to_interface, set_report, value, data, timeout));
+  }
 
 private:
   /// One transfer for ever: under way, or in `arrived_`, or given up.
@@ -107,15 +161,80 @@ private:
     std::vector<unsigned char> data;
   };
 
-  static void on_transfer(libusb_transfer* transfer) noexcept;
-  void finish(Slot& slot) noexcept;
-  void submit(Slot& slot) noexcept;
-  void handle_events(HostClock::duration longest) noexcept;
-  void cancel_all() noexcept;
-  Slot* take_arrived() noexcept;
+  static void on_transfer(libusb_transfer* transfer) noexcept {
+    Slot& slot = *static_cast<Slot*>(transfer->user_data);
+    slot.owner->finish(slot);
+  }
+
+  void finish(Slot& slot) noexcept {
+    --under_way_;
+    switch (slot.transfer->status) {
+    case LIBUSB_TRANSFER_COMPLETED:
+      errors_in_a_row_ = 0;
+      if (slot.transfer->actual_length > 0) {
+        arrived_[(first_arrived_ + arrived_count_++) % arrived_.size()] = &slot;
+      } else {
+        submit(slot);
+      }
+      break;
+    case LIBUSB_TRANSFER_NO_DEVICE:
+      gone_ = true;
+      break;
+    case LIBUSB_TRANSFER_CANCELLED:
+      break;
+    default: // one damaged on the bus, or refused by the device
+      if (++errors_in_a_row_ >= max_errors_in_a_row) gone_ = true;
+      submit(slot);
+    }
+  }
+
+  void submit(Slot& slot) noexcept {
+    if (gone_ || closing_) return;
+    if (libusb_submit_transfer(slot.transfer.get()) == 0) {
+      ++under_way_;
+    } else {
+      gone_ = true;
+    }
+  }
+
+  void handle_events(HostClock::duration longest) noexcept {
+    timeval time = to_timeval(longest);
+    libusb_handle_events_timeout_completed(context_.get(), &time, nullptr);
+  }
+
+  /// A transfer may be freed when its callback has run; each runs once, cancelled or not.
+  void cancel_all() noexcept {
+    closing_ = true;
+    for (Slot& slot : slots_) {
+      if (slot.transfer) libusb_cancel_transfer(slot.transfer.get()); // if it is under way
+    }
+    const HostTime deadline = HostClock::now() + close_budget;
+    while (under_way_ > 0 && HostClock::now() < deadline)
+      handle_events(10ms);
+  }
+
+  Slot* take_arrived() noexcept {
+    if (arrived_count_ == 0) return nullptr;
+    --arrived_count_;
+    Slot* const slot = arrived_[first_arrived_];
+    first_arrived_ = (first_arrived_ + 1) % arrived_.size();
+    return slot;
+  }
+
   int control(std::uint8_t type, std::uint8_t request, std::uint16_t value,
-              std::span<unsigned char> data, std::chrono::milliseconds timeout) noexcept;
-  ControlStatus status_of(int result) noexcept;
+              std::span<unsigned char> data, std::chrono::milliseconds timeout) noexcept {
+    if (gone_ || data.size() > std::numeric_limits<std::uint16_t>::max()) return LIBUSB_ERROR_IO;
+    const int result = libusb_control_transfer(
+        device_.get(), type, request, value, static_cast<std::uint16_t>(interface_), data.data(),
+        static_cast<std::uint16_t>(data.size()), to_timeout(timeout));
+    if (result == LIBUSB_ERROR_NO_DEVICE) gone_ = true;
+    return result;
+  }
+
+  ControlStatus status_of(int result) noexcept {
+    if (gone_) return ControlStatus::gone;
+    return result < 0 ? ControlStatus::refused : ControlStatus::done;
+  }
 
   const ContextHandle context_;
   std::array<Slot, transfers_under_way> slots_; // outlives device_, see the destructor
@@ -130,144 +249,6 @@ private:
   bool gone_ = false;
   bool closing_ = false;
 };
-
-bool LibusbTransport::start(const InputEndpoint& endpoint, std::size_t report_bytes) {
-  // Whole packets: a transfer ends with a short packet or when it is full, and a device that sends
-  // more than was asked for in its last packet would be an error instead of a report to judge.
-  const std::size_t packets = (report_bytes + endpoint.packet_bytes - 1) / endpoint.packet_bytes;
-  for (Slot& slot : slots_) {
-    slot.owner = this;
-    slot.data.resize(packets * endpoint.packet_bytes);
-    slot.transfer.reset(libusb_alloc_transfer(0));
-    if (!slot.transfer) return false;
-    libusb_fill_interrupt_transfer(slot.transfer.get(), device_.get(), endpoint.address,
-                                   slot.data.data(), static_cast<int>(slot.data.size()),
-                                   on_transfer, &slot, 0);
-    submit(slot);
-  }
-  return !gone_;
-}
-
-void LibusbTransport::submit(Slot& slot) noexcept {
-  if (gone_ || closing_) return;
-  if (libusb_submit_transfer(slot.transfer.get()) == 0) {
-    ++under_way_;
-  } else {
-    gone_ = true;
-  }
-}
-
-void LibusbTransport::on_transfer(libusb_transfer* transfer) noexcept {
-  Slot& slot = *static_cast<Slot*>(transfer->user_data);
-  slot.owner->finish(slot);
-}
-
-void LibusbTransport::finish(Slot& slot) noexcept {
-  --under_way_;
-  switch (slot.transfer->status) {
-  case LIBUSB_TRANSFER_COMPLETED:
-    errors_in_a_row_ = 0;
-    if (slot.transfer->actual_length > 0) {
-      arrived_[(first_arrived_ + arrived_count_++) % arrived_.size()] = &slot;
-    } else {
-      submit(slot);
-    }
-    break;
-  case LIBUSB_TRANSFER_NO_DEVICE:
-    gone_ = true;
-    break;
-  case LIBUSB_TRANSFER_CANCELLED:
-    break;
-  default: // one damaged on the bus, or refused by the device
-    if (++errors_in_a_row_ >= max_errors_in_a_row) gone_ = true;
-    submit(slot);
-  }
-}
-
-void LibusbTransport::handle_events(HostClock::duration longest) noexcept {
-  timeval time = to_timeval(longest);
-  libusb_handle_events_timeout_completed(context_.get(), &time, nullptr);
-}
-
-LibusbTransport::Slot* LibusbTransport::take_arrived() noexcept {
-  if (arrived_count_ == 0) return nullptr;
-  --arrived_count_;
-  Slot* const slot = arrived_[first_arrived_];
-  first_arrived_ = (first_arrived_ + 1) % arrived_.size();
-  return slot;
-}
-
-ReadResult LibusbTransport::read_some(std::span<std::byte> buffer,
-                                      std::chrono::milliseconds timeout) noexcept {
-  const HostTime deadline = HostClock::now() + timeout;
-  for (;;) {
-    if (Slot* const slot = take_arrived()) {
-      const auto count = static_cast<std::size_t>(slot->transfer->actual_length);
-      assert(count <= buffer.size());
-      std::memcpy(buffer.data(), slot->data.data(), std::min(count, buffer.size()));
-      submit(*slot);
-      return {IoStatus::done, std::min(count, buffer.size())};
-    }
-    if (gone_) return {IoStatus::gone, 0};
-    const auto left = deadline - HostClock::now();
-    handle_events(left);
-    if (left <= 0ms && arrived_count_ == 0 && !gone_) return {IoStatus::timeout, 0};
-  }
-}
-
-void LibusbTransport::discard_input() noexcept {
-  handle_events({});
-  // Only those that are here now: what each of them is submitted for is to come.
-  for (std::size_t count = arrived_count_; count > 0; --count)
-    submit(*take_arrived());
-}
-
-int LibusbTransport::control(std::uint8_t type, std::uint8_t request, std::uint16_t value,
-                             std::span<unsigned char> data,
-                             std::chrono::milliseconds timeout) noexcept {
-  if (gone_ || data.size() > std::numeric_limits<std::uint16_t>::max()) return LIBUSB_ERROR_IO;
-  const int result = libusb_control_transfer(
-      device_.get(), type, request, value, static_cast<std::uint16_t>(interface_), data.data(),
-      static_cast<std::uint16_t>(data.size()), to_timeout(timeout));
-  if (result == LIBUSB_ERROR_NO_DEVICE) gone_ = true;
-  return result;
-}
-
-ControlStatus LibusbTransport::status_of(int result) noexcept {
-  if (gone_) return ControlStatus::gone;
-  return result < 0 ? ControlStatus::refused : ControlStatus::done;
-}
-
-ControlStatus LibusbTransport::get_feature(std::span<std::byte> report, std::size_t& received,
-                                           std::chrono::milliseconds timeout) noexcept {
-  assert(!report.empty());
-  const auto value = static_cast<std::uint16_t>(feature | std::to_integer<unsigned>(report[0]));
-  const std::span data(reinterpret_cast<unsigned char*>(report.data()), report.size());
-  const int result = control(from_interface, get_report, value, data, timeout);
-  received = result > 0 ? static_cast<std::size_t>(result) : 0;
-  return status_of(result);
-}
-
-ControlStatus LibusbTransport::set_feature(std::span<const std::byte> report,
-                                           std::chrono::milliseconds timeout) noexcept {
-  assert(!report.empty() && report.size() <= max_usb_report_bytes);
-  const auto value = static_cast<std::uint16_t>(feature | std::to_integer<unsigned>(report[0]));
-  std::array<unsigned char, max_usb_report_bytes> copy{};
-  const std::span data = std::span(copy).first(std::min(report.size(), copy.size()));
-  std::memcpy(data.data(), report.data(), data.size());
-  return status_of(control(to_interface, set_report, value, data, timeout));
-}
-
-/// A transfer may be freed when its callback has run; each runs once, cancelled or not.
-void LibusbTransport::cancel_all() noexcept {
-  closing_ = true;
-  for (Slot& slot : slots_) {
-    if (slot.transfer) libusb_cancel_transfer(slot.transfer.get()); // if it is under way
-  }
-  const HostTime deadline = HostClock::now() + close_budget;
-  while (under_way_ > 0 && HostClock::now() < deadline)
-    handle_events(10ms);
-}
 
 UsbIdentity identify(libusb_device* device, UsbId id) {
   std::array<std::uint8_t, max_usb_ports> ports{};

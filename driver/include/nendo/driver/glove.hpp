@@ -55,23 +55,33 @@ struct GloveInfo {
   std::string recording; ///< the recording's path, if it is `recorded`
 };
 
-/// Monotonic counts since start(). bytes = record_bytes + discarded_bytes + a remainder shorter
-/// than one record. For a glove that counts_missed: records sent = records + missed, as soon as the
-/// next good record has arrived (with 12-bit records: the next two).
-struct GloveStats {
+/// Monotonic counts of a stream of bytes. bytes = record_bytes + discarded_bytes + a remainder
+/// shorter than the longest record.
+struct StreamCounters {
   std::uint64_t bytes = 0;           ///< received from the device
   std::uint64_t record_bytes = 0;    ///< that were part of a delivered record
   std::uint64_t discarded_bytes = 0; ///< that were not: noise, damaged records, replies
-  std::uint64_t records = 0;         ///< whole, valid records
+  std::uint64_t records = 0;         ///< delivered: whole, valid records
   std::uint64_t bad_records = 0;     ///< framed, but of wrong length, header, checksum or content
   std::uint64_t implausible =
-      0; ///< those that are well formed, but whose time stamp or status contradicts
+      0; ///< the bad ones that are well formed, but whose time stamp or status contradicts
   std::uint64_t missed = 0;    ///< sent, by the glove's own clock, and not delivered; the bad
                                ///< ones among them
   std::uint64_t too_fast = 0;  ///< delivered, but sampled off the period, as the glove says (`es`)
   std::uint64_t unplugged = 0; ///< records without a glove (`eg`), not delivered
   std::uint64_t clamped = 0;   ///< values in delivered records that were out of range, and count as
                                ///< the nearer end of it
+
+  /// Counts bytes that were read from the same stream elsewhere and that were no records.
+  void count_discarded(std::uint64_t count) noexcept {
+    bytes += count;
+    discarded_bytes += count;
+  }
+};
+
+/// The counts since start(). For a glove that counts_missed: records sent = records + missed, as
+/// soon as the next good record has arrived (with 12-bit records: the next two).
+struct GloveStats : StreamCounters {
   std::uint64_t ring_refused = 0; ///< samples that found the ring full
   std::uint64_t silences = 0;     ///< times the stream stopped and was started again
   std::uint64_t reopened = 0;     ///< times the device vanished and was opened again
