@@ -20,7 +20,6 @@ using nlohmann::ordered_json;
 
 constexpr std::uintmax_t max_bytes = 1U << 30U;
 
-/// Returns the number of that key, or nothing if it is not within the range.
 std::optional<double> number(const json& object, const char* key, double least, double most) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_number()) return std::nullopt;
@@ -54,7 +53,6 @@ bool read_sample(const json& line, GloveSample& sample) {
   });
 }
 
-/// Returns false if the line has no largest count.
 bool read_scale(const json& line, CountScale& counts) {
   const auto max = number(line, "counts_most", 1.0, 65535.0);
   if (!max) return false;
@@ -93,7 +91,6 @@ bool read_free_motion(const json& line, hand::CountRanges& motion, CountScale& c
          high == motion.present;
 }
 
-/// Returns the hand that a line names, or nothing.
 std::optional<Side> hand_of(const json& line) {
   const auto found = line.find("hand");
   for (const Side side : {Side::left, Side::right})

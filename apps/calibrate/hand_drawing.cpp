@@ -55,25 +55,17 @@ Vector2d LimbCanvas::place_m(int column, int row) const noexcept {
   return {(column - 0.5 * width_) * metres_a_dot_, (0.5 * height_ - row) * metres_a_dot_};
 }
 
-// The ranges have a dot more at either end, because of rounding.
-LimbCanvas::DotRange LimbCanvas::columns_within(double left_m, double right_m) const noexcept {
-  const auto dot = [&](double x_m) { return x_m / metres_a_dot_ + 0.5 * width_; };
-  return {dot_of(dot(left_m) - 1.0, width_), dot_of(dot(right_m) + 2.0, width_ - 1)};
-}
-
-LimbCanvas::DotRange LimbCanvas::rows_within(double low_m, double high_m) const noexcept {
-  const auto dot = [&](double y_m) { return 0.5 * height_ - y_m / metres_a_dot_; };
-  return {dot_of(dot(high_m) - 1.0, height_), dot_of(dot(low_m) + 2.0, height_ - 1)};
-}
-
 void LimbCanvas::draw(const Limb& limb) {
   const double radius = std::max(limb.begin_radius, limb.end_radius);
   const auto low = limb.begin.cwiseMin(limb.end).eval();
   const auto high = limb.begin.cwiseMax(limb.end).eval();
-  const DotRange columns = columns_within(low.x() - radius, high.x() + radius);
-  const DotRange rows = rows_within(low.y() - radius, high.y() + radius);
-  for (int row = rows.first; row <= rows.last; ++row)
-    for (int column = columns.first; column <= columns.last; ++column)
+  // The ranges have a dot more at either end, because of rounding.
+  const auto column_of = [&](double x_m) { return x_m / metres_a_dot_ + 0.5 * width_; };
+  const auto row_of = [&](double y_m) { return 0.5 * height_ - y_m / metres_a_dot_; };
+  const int right = dot_of(column_of(high.x() + radius) + 2.0, width_ - 1);
+  const int bottom = dot_of(row_of(low.y() - radius) + 2.0, height_ - 1);
+  for (int row = dot_of(row_of(high.y() + radius) - 1.0, height_); row <= bottom; ++row)
+    for (int column = dot_of(column_of(low.x() - radius) - 1.0, width_); column <= right; ++column)
       draw_dot(limb, column, row);
 }
 

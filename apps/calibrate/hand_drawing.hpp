@@ -33,17 +33,11 @@ public:
   /// Returns the part that is seen at a dot, counted from the upper left; `nothing` also outside of
   /// the canvas.
   std::uint8_t part(int column, int row) const noexcept;
-  /// Returns where a dot is, in metres.
   Eigen::Vector2d place_m(int column, int row) const noexcept;
   /// Returns the printable character that most resembles the outlines within a cell.
   char character(int column, int row) const;
 
 private:
-  struct DotRange {
-    int first, last;
-  };
-  DotRange columns_within(double left_m, double right_m) const noexcept;
-  DotRange rows_within(double low_m, double high_m) const noexcept;
   void draw_dot(const Limb& limb, int column, int row);
   bool is_edge(int column, int row) const noexcept;
 

@@ -66,18 +66,10 @@ public:
     return node->as_array();
   }
   std::string text(const toml::table& table, std::string_view key) {
-    const toml::node* node = find(table, key);
-    if (node == nullptr) return {};
-    const auto value = node->value_exact<std::string>();
-    if (!value) complain(*node, std::string(key) + " must be a text in quotes");
-    return value.value_or("");
+    return value<std::string>(table, key, " must be a text in quotes");
   }
   bool truth(const toml::table& table, std::string_view key) {
-    const toml::node* node = find(table, key);
-    if (node == nullptr) return false;
-    const auto value = node->value_exact<bool>();
-    if (!value) complain(*node, std::string(key) + " must be true or false");
-    return value.value_or(false);
+    return value<bool>(table, key, " must be true or false");
   }
   double number(const toml::node& node, std::string_view what) {
     const auto value = node.value<double>();
@@ -125,6 +117,15 @@ public:
   }
 
 private:
+  template <class Value>
+  Value value(const toml::table& table, std::string_view key, const char* must) {
+    const toml::node* node = find(table, key);
+    if (node == nullptr) return {};
+    const auto found = node->value_exact<Value>();
+    if (!found) complain(*node, std::string(key) + must);
+    return found.value_or(Value{});
+  }
+
   std::string name_;
   std::optional<Error> error_;
 };

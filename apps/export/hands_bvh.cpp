@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <nendo/base/files.hpp>
-#include <nendo/hand/bvh.hpp>
+#include <nendo/hand/bvh_file.hpp>
 
 namespace nendo::exporting {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-// Exports the hands as BVH (nendo/hand/bvh.hpp), one file for each hand, because the format has a
+// Exports the hands as BVH (nendo/hand/bvh_file.hpp), one file for each hand, because the format has a
 // single root.
 
 #include <array>

@@ -17,7 +17,6 @@ namespace nendo::gloves {
 /// estimates it, or "zero". Some of the sensors may be left out.
 nlohmann::ordered_json angle_sources_json(SensorMask sensors, SensorMask left_out = {});
 
-/// Returns an array with the names of the sensors.
 nlohmann::ordered_json sensors_json(SensorMask sensors);
 
 /// Adds the counts to an object, under the names of driver::by_name().

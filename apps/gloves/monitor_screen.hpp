@@ -14,7 +14,6 @@
 
 namespace nendo::gloves {
 
-/// The least and the greatest count that each sensor has shown.
 class SeenCounts {
 public:
   struct Range {

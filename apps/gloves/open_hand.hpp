@@ -7,13 +7,36 @@
 #include <span>
 #include <string>
 
+#include <nendo/base/result.hpp>
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/hand/skeleton.hpp>
+#include <nendo/sculpting/find_wearer.hpp>
 #include <nendo/sculpting/open_hand.hpp>
 
-#include "gloves/glove_calibration.hpp"
+#include "cli/command.hpp"
 #include "motions/planned_hand.hpp"
 
 namespace nendo::gloves {
+
+// The options by which a command chooses the calibration of a glove and the size of the hand.
+using sculpting::CalibrationOptions;
+
+/// Adds the options --user, --calibration and --adapt; for commands that take two gloves also
+/// --left-user and --right-user.
+void add_calibration_options(cli::Command& command, CalibrationOptions& options, bool two_gloves);
+
+/// Fails with usage if the options contradict each other. Call it before a glove is opened.
+Result<void> check(const CalibrationOptions& options);
+
+struct HandLength {
+  std::optional<double> length_mm; ///< nullopt: not given
+
+  Result<void> check() const;
+  /// Returns a hand of the length that was given, with the proportions of `known`. Without a
+  /// length it returns `known`.
+  hand::HandSize size(const hand::HandSize& known) const noexcept;
+};
+void add_hand_length(cli::Command& command, HandLength& length);
 
 using sculpting::begin_again;
 using sculpting::have_ended;

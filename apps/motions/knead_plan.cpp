@@ -1,4 +1,4 @@
-#include "motions/knead_plan.hpp"
+#include "motions/kneading_hand.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,6 @@
 #include <numbers>
 
 #include <nendo/hand/hand_body.hpp>
-
-#include "motions/plan_hands.hpp"
 
 namespace nendo::motions {
 namespace {

@@ -12,9 +12,6 @@
 #include <nendo/deform/cut.hpp>
 #include <nendo/deform/triangles.hpp>
 
-#include "motions/knead_plan.hpp"
-#include "motions/plan_hands.hpp"
-
 namespace nendo::motions {
 namespace {
 
@@ -59,7 +56,6 @@ Eigen::Vector3d neck_of(const deform::Mesh& model, const Eigen::Vector3d& low,
   return middle;
 }
 
-/// A model on the stage, of `scale` metres a unit.
 KneadedModel kneaded(const deform::Mesh& model, double scale) {
   const Eigen::Vector3d low = model.vertices.rowwise().minCoeff();
   const Eigen::Vector3d high = model.vertices.rowwise().maxCoeff();

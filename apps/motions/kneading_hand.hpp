@@ -5,8 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include <nendo/base/result.hpp>
 #include <nendo/deform/mesh.hpp>
@@ -54,6 +57,75 @@ private:
 
   std::shared_ptr<const std::vector<hand::JointAngles>> keys_;
   std::shared_ptr<const flow::WristPath> wrist_;
+};
+
+// The motion of a kneading hand: its wrist's pose and its fingers' angles over time.
+/// The model on the stage, in metres.
+struct KneadedModel {
+  static constexpr double upper = 0.85; ///< where hands take its upper part, relative to its height
+  static constexpr double neck_at = 0.57; ///< where it is cut, relative to its height
+
+  Eigen::Vector3d low, high;   ///< corners of its box
+  double upper_radius_m = 0.0; ///< how far it reaches to its sides there
+  Eigen::Vector3d neck;        ///< the middle of the cut; there its upper part is turned
+
+  /// Of one of several models side by side: where its upper part reaches the farthest to the hand's
+  /// side. All else is that model's.
+  std::optional<Eigen::Vector3d> taken_at{};
+
+  Eigen::Vector3d middle() const { return 0.5 * (low + high); }
+  double height() const { return high.y() - low.y(); }
+  double radius() const { return 0.25 * (high.x() - low.x() + high.z() - low.z()); }
+};
+
+class KneadPlan {
+public:
+  struct Pose {
+    hand::JointAngles angles;
+    Eigen::Isometry3d T_stage_wrist = Eigen::Isometry3d::Identity();
+  };
+
+  virtual ~KneadPlan() = default;
+  virtual double length_s() const noexcept = 0;
+  /// Returns the pose at a time from 0 to length_s().
+  virtual Pose at(double time_s) const noexcept = 0;
+};
+
+std::unique_ptr<KneadPlan> plan_of(KneadTask task, const KneadedModel& model,
+                                   const hand::HandSkeleton& skeleton);
+
+// Common parts of the plans of kneading hands.
+inline constexpr double away_m = 0.05;       ///< from the model, where a motion begins and ends
+inline constexpr double pinch_gap_m = 0.011; ///< between the tips of thumb and index finger
+
+double ease(double time_s, double begin_s, double end_s) noexcept;
+/// Returns a wrist's axes, with the fingers along `fingers` and the back of the hand towards
+/// `back`.
+Eigen::Matrix3d axes_of(const Eigen::Vector3d& fingers, const Eigen::Vector3d& back) noexcept;
+hand::JointAngles flat_hand() noexcept;
+/// Bent fingers that are out of the way of a thumb or of a pinch.
+hand::JointAngles fist() noexcept;
+
+/// Interpolates between two hands' angles: 0 is `from`, and 1 is `to`.
+hand::JointAngles blended(const hand::JointAngles& from, const hand::JointAngles& to,
+                          double part) noexcept;
+
+/// Thumb and index finger at a side of the model, from above.
+class PinchingFingers {
+public:
+  PinchingFingers(const hand::HandSkeleton& skeleton, double open_gap_m, double closed_gap_m);
+
+  Eigen::Vector3d outwards() const noexcept { return stage_.col(0); }
+  /// With the middle between the tips there, and fingers that are closed by so much, 0 to 1.
+  KneadPlan::Pose at(const Eigen::Vector3d& tips, double closed) const noexcept;
+
+private:
+  Eigen::Isometry3d wrist_at(const Eigen::Vector3d& tips) const noexcept;
+  hand::JointAngles pinched(const hand::HandSkeleton& skeleton, const hand::JointAngles& start,
+                            double gap_m) const;
+
+  hand::JointAngles open_, closed_;
+  Eigen::Matrix3d stage_; ///< outwards, from the thumb to the index finger, across; left: mirrored
 };
 
 } // namespace nendo::motions

@@ -1,4 +1,4 @@
-#include "motions/plan_hands.hpp"
+#include "motions/kneading_hand.hpp"
 
 #include <cmath>
 
@@ -80,7 +80,6 @@ Isometry3d PinchingFingers::wrist_at(const Vector3d& tips) const noexcept {
   return wrist;
 }
 
-/// With both fingertips that far apart.
 JointAngles PinchingFingers::pinched(const hand::HandSkeleton& skeleton, const JointAngles& start,
                                      double gap_m) const {
   hand::FingertipTargets targets;

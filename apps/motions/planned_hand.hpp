@@ -14,7 +14,6 @@
 
 namespace nendo::motions {
 
-/// A hand that does something to a model.
 struct PlannedHand {
   const deform::Mesh& model;
   double model_size_m = 0.8; ///< its longest side, on the stage

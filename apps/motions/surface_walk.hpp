@@ -11,7 +11,6 @@
 
 namespace nendo::motions {
 
-/// A triangle with the normals of its corners' vertices.
 struct SurfaceTriangle {
   std::array<Eigen::Vector3d, 3> corners;
   std::array<Eigen::Vector3d, 3> normals;

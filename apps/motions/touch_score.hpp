@@ -16,13 +16,11 @@ namespace nendo::motions {
 /// a polynomial of time.
 double min_jerk(double part) noexcept;
 
-/// Goes from 0 to `depth`, stays, and comes back.
 struct TouchStroke {
   double begin_s, rise_s, hold_s, fall_s;
   double depth; ///< 1: as deep in as the finger presses; -1: as far out as it pulls
 
   double end_s() const noexcept { return begin_s + rise_s + hold_s + fall_s; }
-  /// The middle of the time in which it stays.
   double apex_s() const noexcept { return begin_s + rise_s + 0.5 * hold_s; }
 };
 

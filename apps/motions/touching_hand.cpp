@@ -27,10 +27,8 @@ using hand::finger_count;
 using hand::JointAngles;
 
 struct TouchPlan {
-  /// The angles of the joints, by index_of(Angle).
   using Row = std::array<double, hand::angle_count>;
 
-  /// One finger's part of the motion.
   struct FingerPlan {
     bool touches = false;
     double press_m = 0.0;            ///< where the score says 1
@@ -172,16 +170,153 @@ private:
     JointAngles angles;
   };
 
-  void take_hold();
-  hand::FingertipTargets targets(double time_s) const noexcept;
-  double carried_rad(double time_s) const noexcept;
-  hand::InverseSolution freely(double time_s) const noexcept;
-  void find_postures();
-  void solve_keys(double step_s);
-  hand::InverseSolution solve(double time_s, const JointAngles& from) const noexcept;
+  void take_hold() {
+    const flow::Fingertips tips_wrist =
+        skeleton_.pose(grip_, Eigen::Isometry3d::Identity()).fingertip_positions();
+    std::array<std::optional<flow::Fingertips>, 2> tips;
+    tips[flow::Placement::index_of(skeleton_.side())] = tips_wrist;
+    const flow::Placement placement =
+        flow::place_hands(model_, tips, {.model_size_m = options_.model_size_m});
+    plan_.T_stage_wrist = placement.T_stage_wrist[flow::Placement::index_of(skeleton_.side())];
+
+    std::mt19937 random(options_.seed);
+    const double turn_rad = 2.0 * std::numbers::pi * static_cast<double>(random()) / 4294967296.0;
+    // Along the palm: to the fingertips, to the side, and between.
+    const Vector3d direction =
+        plan_.T_stage_wrist.linear() * Vector3d(std::sin(turn_rad), 0.0, std::cos(turn_rad));
+    const deform::Points normals = deform::vertex_normals(model_);
+    for (const Finger finger : all_fingers) {
+      const auto at = static_cast<std::size_t>(finger);
+      auto& plan = plan_.fingers[at];
+      const Vector3d tip =
+          plan_.T_stage_wrist * Vector3d(tips_wrist.col(static_cast<Eigen::Index>(at)));
+      const SurfacePatch patch(model_, normals, placement.units_per_metre, tip,
+                               2.0 * TouchOptions::glide_m);
+      plan.way = walk(patch, tip, direction, TouchOptions::glide_m, way_step_m);
+      plan.touches = !plan.way.empty();
+      plan.press_m = TouchOptions::press_m;
+      plan.pull_m = TouchOptions::pull_m;
+    }
+    // Fingers that cannot touch from there stay off.
+    for (std::size_t tries = 0; tries < finger_count; ++tries) {
+      const auto solution = freely(0.0);
+      const auto worst = std::max_element(solution.residual_m.begin(), solution.residual_m.end());
+      if (*worst <= reached_m) {
+        grip_ = solution.angles;
+        return;
+      }
+      plan_.fingers[static_cast<std::size_t>(worst - solution.residual_m.begin())].touches = false;
+    }
+  }
+  hand::FingertipTargets targets(double time_s) const noexcept {
+    hand::FingertipTargets targets;
+    for (const Finger finger : all_fingers) {
+      const auto at = static_cast<std::size_t>(finger);
+      if (plan_.fingers[at].touches) targets[at] = {plan_.target(finger, time_s).place_m(), 1.0};
+    }
+    return targets;
+  }
+  /// How far the wrist is stretched for what all fingers pull together, on average: fingers alone
+  /// do not reach far out.
+  double carried_rad(double time_s) const noexcept {
+    constexpr double tip_reach_m = 0.16; // from the wrist to the fingertips
+    double sum_m = 0.0;
+    int count = 0;
+    for (const Finger finger : all_fingers) {
+      if (!plan_.fingers[static_cast<std::size_t>(finger)].touches) continue;
+      sum_m += std::max(0.0, -plan_.target(finger, time_s).depth_m);
+      ++count;
+    }
+    return count == 0 ? 0.0 : -sum_m / (count * tip_reach_m);
+  }
+  hand::InverseSolution freely(double time_s) const noexcept {
+    JointAngles start = grip_;
+    start.wrist_pitch_rad += carried_rad(time_s);
+    return hand::inverse_kinematics(skeleton_, plan_.T_stage_wrist, targets(time_s), start,
+                                    inverse_);
+  }
+  void find_postures() {
+    constexpr double min_apart_s = 0.25; // the open angles do not hurry
+    const double period_s = plan_.score.period_s();
+    postures_.assign(1, {0.0, grip_});
+    for (const double time_s : plan_.score.extremes_s()) {
+      if (time_s - postures_.back().time_s < min_apart_s || period_s - time_s < min_apart_s)
+        continue;
+      const auto solution = freely(time_s);
+      judge(time_s, solution, solution.angles, 1.0);
+      postures_.push_back({time_s, solution.angles});
+    }
+    postures_.push_back({period_s, grip_});
+  }
+  void solve_keys(double step_s) {
+    const auto count = static_cast<std::size_t>(std::ceil(plan_.score.period_s() / step_s));
+    constexpr int enough_missed = 5; // to be the next round's task; they take long
+    int missed = 0;
+    plan_.keys.clear();
+    JointAngles last = grip_;
+    for (std::size_t n = 0; n < count; ++n) {
+      const double time_s =
+          plan_.score.period_s() * static_cast<double>(n) / static_cast<double>(count);
+      const auto solution = solve(time_s, last);
+      if (!judge(time_s, solution, last, step_s) && ++missed == enough_missed) return;
+      last = solution.angles;
+      plan_.keys.push_back(row_of(last));
+    }
+  }
+  hand::InverseSolution solve(double time_s, const JointAngles& from) const noexcept {
+    const auto after =
+        std::upper_bound(postures_.begin(), postures_.end(), time_s,
+                         [](double at_s, const Posture& p) { return at_s < p.time_s; });
+    const Posture& a = *(after - 1);
+    const Posture& b = *after;
+    const double part = min_jerk((time_s - a.time_s) / (b.time_s - a.time_s));
+    hand::InverseOptions options = inverse_;
+    for (const Angle angle : open_angles) {
+      options.limits.low[angle] = options.limits.high[angle] =
+          a.angles[angle] + part * (b.angles[angle] - a.angles[angle]);
+    }
+    const double before_rad = carried_rad(a.time_s);
+    const double carried =
+        carried_rad(time_s) - before_rad - part * (carried_rad(b.time_s) - before_rad);
+    options.limits.low.wrist_pitch_rad += carried;
+    options.limits.high.wrist_pitch_rad += carried;
+    return hand::inverse_kinematics(skeleton_, plan_.T_stage_wrist, targets(time_s), from, options);
+  }
+  /// A finger that does not reach its target, or reaches it too fast, must do less at that time.
+  /// Returns whether none has to.
   bool judge(double time_s, const hand::InverseSolution& solution, const JointAngles& before,
-             double step_s) noexcept;
-  bool shorten() noexcept;
+             double step_s) noexcept {
+    bool fine = true;
+    for (const Finger finger : all_fingers) {
+      const auto at = static_cast<std::size_t>(finger);
+      double way_rad = 0.0;
+      for (std::size_t k = 4 * at; k < 4 * at + 4; ++k) {
+        const Angle angle = hand::angle_at(k);
+        way_rad = std::max(way_rad, std::abs(solution.angles[angle] - before[angle]));
+      }
+      if (solution.residual_m[at] <= reached_m && way_rad <= max_speed_rad_s * step_s) continue;
+      fine = false;
+      const double depth = plan_.score.depth(finger, time_s);
+      Missed& missed = missed_[at];
+      (depth > 0.1 ? missed.press : depth < -0.1 ? missed.pull : missed.glide) = true;
+    }
+    return fine;
+  }
+  bool shorten() noexcept {
+    bool any = false;
+    for (std::size_t at = 0; at < finger_count; ++at) {
+      const auto reduce = [&](bool missed, double& amount) {
+        if (missed) amount *= 0.85;
+        any = any || missed;
+      };
+      auto& plan = plan_.fingers[at];
+      reduce(missed_[at].press, plan.press_m);
+      reduce(missed_[at].pull, plan.pull_m);
+      reduce(missed_[at].glide, plan.glide);
+      missed_[at] = {};
+    }
+    return any;
+  }
 
   const deform::Mesh& model_;
   const hand::HandSkeleton& skeleton_;
@@ -193,178 +328,12 @@ private:
   TouchPlan plan_;
 };
 
-void Planner::take_hold() {
-  const flow::Fingertips tips_wrist =
-      skeleton_.pose(grip_, Eigen::Isometry3d::Identity()).fingertip_positions();
-  std::array<std::optional<flow::Fingertips>, 2> tips;
-  tips[flow::Placement::index_of(skeleton_.side())] = tips_wrist;
-  const flow::Placement placement =
-      flow::place_hands(model_, tips, {.model_size_m = options_.model_size_m});
-  plan_.T_stage_wrist = placement.T_stage_wrist[flow::Placement::index_of(skeleton_.side())];
-
-  std::mt19937 random(options_.seed);
-  const double turn_rad = 2.0 * std::numbers::pi * static_cast<double>(random()) / 4294967296.0;
-  // Along the palm: to the fingertips, to the side, and between.
-  const Vector3d direction =
-      plan_.T_stage_wrist.linear() * Vector3d(std::sin(turn_rad), 0.0, std::cos(turn_rad));
-  const deform::Points normals = deform::vertex_normals(model_);
-  for (const Finger finger : all_fingers) {
-    const auto at = static_cast<std::size_t>(finger);
-    auto& plan = plan_.fingers[at];
-    const Vector3d tip =
-        plan_.T_stage_wrist * Vector3d(tips_wrist.col(static_cast<Eigen::Index>(at)));
-    const SurfacePatch patch(model_, normals, placement.units_per_metre, tip,
-                             2.0 * options_.glide_m);
-    plan.way = walk(patch, tip, direction, options_.glide_m, way_step_m);
-    plan.touches = !plan.way.empty();
-    plan.press_m = options_.press_m;
-    plan.pull_m = options_.pull_m;
-  }
-  // Fingers that cannot touch from there stay off.
-  for (std::size_t tries = 0; tries < finger_count; ++tries) {
-    const auto solution = freely(0.0);
-    const auto worst = std::max_element(solution.residual_m.begin(), solution.residual_m.end());
-    if (*worst <= reached_m) {
-      grip_ = solution.angles;
-      return;
-    }
-    plan_.fingers[static_cast<std::size_t>(worst - solution.residual_m.begin())].touches = false;
-  }
-}
-
-/// How far the wrist is stretched for what all fingers pull together, on average: fingers alone do
-/// not reach far out.
-double Planner::carried_rad(double time_s) const noexcept {
-  constexpr double tip_reach_m = 0.16; // from the wrist to the fingertips
-  double sum_m = 0.0;
-  int count = 0;
-  for (const Finger finger : all_fingers) {
-    if (!plan_.fingers[static_cast<std::size_t>(finger)].touches) continue;
-    sum_m += std::max(0.0, -plan_.target(finger, time_s).depth_m);
-    ++count;
-  }
-  return count == 0 ? 0.0 : -sum_m / (count * tip_reach_m);
-}
-
-hand::InverseSolution Planner::freely(double time_s) const noexcept {
-  JointAngles start = grip_;
-  start.wrist_pitch_rad += carried_rad(time_s);
-  return hand::inverse_kinematics(skeleton_, plan_.T_stage_wrist, targets(time_s), start, inverse_);
-}
-
-hand::FingertipTargets Planner::targets(double time_s) const noexcept {
-  hand::FingertipTargets targets;
-  for (const Finger finger : all_fingers) {
-    const auto at = static_cast<std::size_t>(finger);
-    if (plan_.fingers[at].touches) targets[at] = {plan_.target(finger, time_s).place_m(), 1.0};
-  }
-  return targets;
-}
-
-hand::InverseSolution Planner::solve(double time_s, const JointAngles& from) const noexcept {
-  const auto after =
-      std::upper_bound(postures_.begin(), postures_.end(), time_s,
-                       [](double at_s, const Posture& p) { return at_s < p.time_s; });
-  const Posture& a = *(after - 1);
-  const Posture& b = *after;
-  const double part = min_jerk((time_s - a.time_s) / (b.time_s - a.time_s));
-  hand::InverseOptions options = inverse_;
-  for (const Angle angle : open_angles) {
-    options.limits.low[angle] = options.limits.high[angle] =
-        a.angles[angle] + part * (b.angles[angle] - a.angles[angle]);
-  }
-  const double before_rad = carried_rad(a.time_s);
-  const double carried =
-      carried_rad(time_s) - before_rad - part * (carried_rad(b.time_s) - before_rad);
-  options.limits.low.wrist_pitch_rad += carried;
-  options.limits.high.wrist_pitch_rad += carried;
-  return hand::inverse_kinematics(skeleton_, plan_.T_stage_wrist, targets(time_s), from, options);
-}
-
-/// A finger that does not reach its target, or reaches it too fast, must do less at that time.
-/// Returns whether none has to.
-bool Planner::judge(double time_s, const hand::InverseSolution& solution, const JointAngles& before,
-                    double step_s) noexcept {
-  bool fine = true;
-  for (const Finger finger : all_fingers) {
-    const auto at = static_cast<std::size_t>(finger);
-    double way_rad = 0.0;
-    for (std::size_t k = 4 * at; k < 4 * at + 4; ++k) {
-      const Angle angle = hand::angle_at(k);
-      way_rad = std::max(way_rad, std::abs(solution.angles[angle] - before[angle]));
-    }
-    if (solution.residual_m[at] <= reached_m && way_rad <= max_speed_rad_s * step_s) continue;
-    fine = false;
-    const double depth = plan_.score.depth(finger, time_s);
-    Missed& missed = missed_[at];
-    (depth > 0.1 ? missed.press : depth < -0.1 ? missed.pull : missed.glide) = true;
-  }
-  return fine;
-}
-
-bool Planner::shorten() noexcept {
-  bool any = false;
-  for (std::size_t at = 0; at < finger_count; ++at) {
-    const auto reduce = [&](bool missed, double& amount) {
-      if (missed) amount *= 0.85;
-      any = any || missed;
-    };
-    auto& plan = plan_.fingers[at];
-    reduce(missed_[at].press, plan.press_m);
-    reduce(missed_[at].pull, plan.pull_m);
-    reduce(missed_[at].glide, plan.glide);
-    missed_[at] = {};
-  }
-  return any;
-}
-
-void Planner::find_postures() {
-  constexpr double min_apart_s = 0.25; // the open angles do not hurry
-  const double period_s = plan_.score.period_s();
-  postures_.assign(1, {0.0, grip_});
-  for (const double time_s : plan_.score.extremes_s()) {
-    if (time_s - postures_.back().time_s < min_apart_s || period_s - time_s < min_apart_s) continue;
-    const auto solution = freely(time_s);
-    judge(time_s, solution, solution.angles, 1.0);
-    postures_.push_back({time_s, solution.angles});
-  }
-  postures_.push_back({period_s, grip_});
-}
-
-void Planner::solve_keys(double step_s) {
-  const auto count = static_cast<std::size_t>(std::ceil(plan_.score.period_s() / step_s));
-  constexpr int enough_missed = 5; // to be the next round's task; they take long
-  int missed = 0;
-  plan_.keys.clear();
-  JointAngles last = grip_;
-  for (std::size_t n = 0; n < count; ++n) {
-    const double time_s =
-        plan_.score.period_s() * static_cast<double>(n) / static_cast<double>(count);
-    const auto solution = solve(time_s, last);
-    if (!judge(time_s, solution, last, step_s) && ++missed == enough_missed) return;
-    last = solution.angles;
-    plan_.keys.push_back(row_of(last));
-  }
-}
-
-Result<TouchPlan> plan_touch(const deform::Mesh& model, const hand::HandSkeleton& skeleton,
-                             const TouchOptions& options) {
-  // Hands that are larger than any hand, lengths that are none: what can be touched is found out.
-  const auto usable_length = [](double length_m) {
-    return length_m > 0.0 ? std::min(length_m, 0.1) : 0.0;
-  };
-  const TouchOptions fine{options.seed, usable_length(options.press_m),
-                          usable_length(options.pull_m), usable_length(options.glide_m),
-                          options.model_size_m};
-  return Planner(model, skeleton, fine).make();
-}
-
 } // namespace
 
 Result<TouchingHand> TouchingHand::make(const deform::Mesh& model,
                                         const hand::HandSkeleton& skeleton,
                                         const TouchOptions& options) {
-  auto plan = plan_touch(model, skeleton, options);
+  auto plan = Planner(model, skeleton, options).make();
   if (!plan) return plan.error();
   return TouchingHand(std::make_shared<const TouchPlan>(*std::move(plan)));
 }

@@ -19,13 +19,12 @@ namespace nendo::motions {
 /// The depths are upper bounds: a finger that cannot reach so far goes as far as it can.
 struct TouchOptions {
   std::uint32_t seed = 1; ///< determines the order of fingers, the tempo and the glides
-  double press_m = 0.020;
-  double pull_m = 0.090;
-  double glide_m = 0.012;
+  static constexpr double press_m = 0.020;
+  static constexpr double pull_m = 0.090;
+  static constexpr double glide_m = 0.012;
   double model_size_m = flow::PlacementOptions{}.model_size_m;
 };
 
-/// The place on the stage that a fingertip is to reach.
 struct TouchTarget {
   Eigen::Vector3d contact_m = Eigen::Vector3d::Zero(); ///< on the surface, as it is undeformed
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< the surface's normal there, outwards

@@ -18,14 +18,12 @@
 #include <nendo/driver/open_glove.hpp>
 #include <nendo/hand/calibration_file.hpp>
 #include <nendo/hand/calibration_store.hpp>
-#include <nendo/sculpting/calibration_names.hpp>
 #include <nendo/sculpting/find_wearer.hpp>
 
 #include "calibrate/capture_file.hpp"
 #include "calibrate/report.hpp"
 #include "calibrate/session.hpp"
 #include "cli/cli.hpp"
-#include "gloves/glove_calibration.hpp"
 #include "gloves/open_hand.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"

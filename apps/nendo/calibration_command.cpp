@@ -11,7 +11,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <nendo/base/text.hpp>
-#include <nendo/sculpting/calibration_names.hpp>
+#include <nendo/sculpting/find_wearer.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
@@ -150,14 +150,14 @@ Result<void> show(const std::string& name, bool json) {
   }
   line["left_out"] = gloves::sensors_json(wearer.left_out);
   line["middle_bias"] = wearer.calibration.middle_bias;
-  ordered_json mixed_in = ordered_json::array();
+  ordered_json coupling_gains = ordered_json::array();
   for (std::size_t k = 0; k < hand::couplings.size(); ++k) {
     const auto [of, by] = hand::couplings[k];
     const double rad_per_rad = wearer.calibration.coupling_gains[k];
     if (rad_per_rad == 0.0) continue;
-    mixed_in.push_back({{"of", name_of(of)}, {"by", name_of(by)}, {"rad_per_rad", rad_per_rad}});
+    coupling_gains.push_back({{"of", name_of(of)}, {"by", name_of(by)}, {"rad_per_rad", rad_per_rad}});
   }
-  line["mixed_in"] = std::move(mixed_in);
+  line["coupling_gains"] = std::move(coupling_gains);
   line["sensors"] = sensors_json(wearer);
   cli::print_line(line);
   return {};

@@ -10,7 +10,7 @@
 
 #include <nendo/base/text.hpp>
 #include <nendo/hand/calibration_exchange.hpp>
-#include <nendo/sculpting/calibration_names.hpp>
+#include <nendo/sculpting/find_wearer.hpp>
 
 #include "cli/cli.hpp"
 #include "nendo/commands.hpp"

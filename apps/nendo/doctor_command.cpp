@@ -13,7 +13,7 @@
 #include <nendo/base/advised_command.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/driver/devices.hpp>
-#include <nendo/sculpting/calibration_names.hpp>
+#include <nendo/sculpting/find_wearer.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"

@@ -12,12 +12,11 @@
 
 #include <nendo/driver/open_glove.hpp>
 #include <nendo/driver/record_counts.hpp>
-#include <nendo/hand/active_calibration.hpp>
+#include <nendo/hand/wearer.hpp>
 #include <nendo/sculpting/find_wearer.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/terminal.hpp"
-#include "gloves/glove_calibration.hpp"
 #include "gloves/glove_feedback.hpp"
 #include "gloves/glove_json.hpp"
 #include "gloves/monitor_screen.hpp"

@@ -18,10 +18,10 @@
 
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/tick_grid.hpp>
-#include <nendo/hand/active_calibration.hpp>
-#include <nendo/hand/angle_deviations.hpp>
+#include <nendo/hand/angle_sources.hpp>
 #include <nendo/hand/bvh_file.hpp>
 #include <nendo/hand/sensor_gate.hpp>
+#include <nendo/hand/wearer.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"

@@ -9,7 +9,7 @@
 #include <nendo/flow/deform_loop.hpp>
 #include <nendo/flow/realtime.hpp>
 
-#include "gloves/glove_calibration.hpp"
+#include "gloves/open_hand.hpp"
 #include "session/overdub.hpp"
 #include "session/run_recording.hpp"
 

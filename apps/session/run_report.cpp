@@ -14,7 +14,7 @@
 
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/setting.hpp>
-#include <nendo/sculpting/calibration_names.hpp>
+#include <nendo/sculpting/find_wearer.hpp>
 
 #include "cli/terminal.hpp"
 

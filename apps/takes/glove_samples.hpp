@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <nendo/base/result.hpp>
-#include <nendo/hand/active_calibration.hpp>
+#include <nendo/hand/wearer.hpp>
 #include <nendo/recording/take_reader.hpp>
 
 namespace nendo::takes {

@@ -80,17 +80,14 @@ bounded_step(const Eigen::Matrix<double, N, N>& matrix, const Eigen::Matrix<doub
 }
 
 /// Goes downhill from `at`, which must lie in the box, and stays in the box. `model(place)` returns
-/// the NormalEquations at a place. Returns the number of iterations; `at` and `here` become the
-/// last place and its equations.
+/// the NormalEquations at a place. `at` and `here` become the last place and its equations.
 template <int N, class Model>
-int minimise(const Model& model, const Box<N>& box, const Effort& effort,
-             Eigen::Matrix<double, N, 1>& at, NormalEquations<N>& here) noexcept {
+void minimise(const Model& model, const Box<N>& box, const Effort& effort,
+              Eigen::Matrix<double, N, 1>& at, NormalEquations<N>& here) noexcept {
   here = model(at);
   double damping = 1e-3;
   double growth = 2.0;
-  int iteration = 0;
-  while (iteration < effort.max_iterations && here.farthest_m > effort.enough_m) {
-    ++iteration;
+  for (int k = 0; k < effort.max_iterations && here.farthest_m > effort.enough_m; ++k) {
     Eigen::Matrix<double, N, N> damped = here.matrix;
     damped.diagonal().array() += damping * here.matrix.diagonal().maxCoeff() + 1e-12;
     const auto step = bounded_step<N>(damped, here.gradient, at, box);
@@ -113,7 +110,6 @@ int minimise(const Model& model, const Box<N>& box, const Effort& effort,
     }
     if (!(step_rad > effort.min_step_rad)) break;
   }
-  return iteration;
 }
 
 } // namespace nendo::hand

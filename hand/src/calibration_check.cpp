@@ -1,6 +1,8 @@
 #include "calibration_check.hpp"
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include <nendo/base/text.hpp>
 
@@ -47,13 +49,49 @@ std::string complaint_about_sensors(const WearerCalibration& wearer) {
   return {};
 }
 
+enum class Group : std::uint8_t { bend, pair, other };
+
+Group group_of(Sensor sensor) noexcept {
+  if (!rises_with_angle(sensor)) return Group::other;
+  return is_gap(sensor) ? Group::pair : Group::bend;
+}
+
+/// Returns whether some gains of the group are negative, and none is positive.
+bool are_negative(const ReadLines& lines, Group group) noexcept {
+  bool any = false;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const double gain = lines.sensors[slot].gain_rad_per_count;
+    if (group_of(static_cast<Sensor>(slot)) != group) continue;
+    if (gain > 0.0) return false;
+    any = any || gain < 0.0;
+  }
+  return any;
+}
+
+void turn(ReadLines& lines, Group group) noexcept {
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    auto& gain = lines.sensors[slot].gain_rad_per_count;
+    if (group_of(static_cast<Sensor>(slot)) == group) gain = -gain;
+  }
+}
+
+// The others' signs are free, so they are turned only where all of the text is in the other frame.
+void turn_other_frames(ReadLines& lines, std::vector<std::string>& notes) {
+  const bool bend = are_negative(lines, Group::bend);
+  const bool pair = !lines.gaps_may_fall && are_negative(lines, Group::pair);
+  if (bend) turn(lines, Group::bend);
+  if (pair) turn(lines, Group::pair);
+  if (bend && are_negative(lines, Group::other)) turn(lines, Group::other);
+  if (bend) notes.emplace_back("its flexion is negative; turned, since ours is positive");
+  if (pair) notes.emplace_back("its spreading is negative; turned, since ours is positive");
+}
+
 } // namespace
 
 bool rises_with_angle(Sensor sensor) noexcept {
   const std::string_view name = name_of(sensor);
   return name.ends_with("_mcp") || name.ends_with("_pip") || name.ends_with("_dip") ||
-         name.ends_with("_ip") || sensor == Sensor::index_middle_abduction ||
-         sensor == Sensor::middle_ring_abduction || sensor == Sensor::ring_little_abduction;
+         name.ends_with("_ip") || is_gap(sensor);
 }
 
 bool may_be_calibrated(Sensor sensor) noexcept {
@@ -137,6 +175,26 @@ std::string complaint_about(const WearerCalibration& wearer) {
     if (complaint.empty()) complaint = complaint_about_coupling(gain);
   }
   return complaint;
+}
+
+Result<ImportedCalibration> imported(ReadLines lines, std::string_view name, bool complete) {
+  ImportedCalibration result;
+  turn_other_frames(lines, result.notes);
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    const SensorCalibration& line = lines.sensors[slot];
+    const bool needed = complete && sensors_18.has(sensor);
+    if (line.gain_rad_per_count == 0.0 && !needed) continue;
+    std::string complaint = complaint_about(sensor, line, CountScale{});
+    if (complaint.empty() && !lines.gaps_may_fall && line.gain_rad_per_count < 0.0 &&
+        is_gap(sensor))
+      complaint = "a gain of " + decimal_text(line.gain_rad_per_count) +
+                  " has the wrong sign; the other gaps' rise when the fingers spread";
+    if (!complaint.empty())
+      return bad_line(name, lines.line[slot], std::string(name_of(sensor)) + ": " + complaint);
+    result.calibration.sensors[slot] = line;
+  }
+  return result;
 }
 
 } // namespace nendo::hand

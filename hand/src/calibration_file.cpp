@@ -63,10 +63,9 @@ std::string mixed_in_lines(const Calibration& calibration) {
             std::string(name_of(couplings[k].by)) +
             "\", rad_per_rad = " + decimal_text(calibration.coupling_gains[k]) + " },\n";
   }
-  return text.empty() ? "" : "mixed_in = [\n" + text + "]\n";
+  return text.empty() ? "" : "coupling_gains = [\n" + text + "]\n";
 }
 
-/// Empty where no sensor was stuck.
 std::string left_out_line(SensorMask left_out) {
   std::string names;
   for (const Sensor sensor : left_out)
@@ -74,7 +73,6 @@ std::string left_out_line(SensorMask left_out) {
   return names.empty() ? "" : "# stuck when it was made\nleft_out = [" + names + "\"]\n";
 }
 
-/// Empty for an average hand.
 std::string shape_lines(const WearerShape& shape) {
   if (shape.is_average()) return "";
   std::string text = "\n[hand_shape]\n";
@@ -126,7 +124,6 @@ std::string compact(sys_seconds time) {
 
 using Versions = std::vector<std::pair<Version, fs::path>>;
 
-/// The earlier versions of a file, the oldest first.
 Versions versions_of(const fs::path& target) {
   const std::string stem = target.stem().string();
   Versions versions;

@@ -12,7 +12,6 @@
 #include "dense.hpp"
 #include "fit_priors.hpp"
 #include "fit_problem.hpp"
-#include "fit_solver.hpp"
 
 namespace nendo::hand {
 namespace {

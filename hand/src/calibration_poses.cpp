@@ -4,6 +4,8 @@
 
 #include <nendo/base/units.hpp>
 
+#include "finger_rules.hpp"
+
 namespace nendo::hand {
 namespace {
 
@@ -35,13 +37,8 @@ public:
     return *this;
   }
   constexpr Described& finger(std::size_t number, Asked mcp, Asked pip, Asked dip) {
-    constexpr std::array mcps{Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp,
-                              Sensor::little_mcp};
-    constexpr std::array pips{Sensor::index_pip, Sensor::middle_pip, Sensor::ring_pip,
-                              Sensor::little_pip};
-    constexpr std::array dips{Sensor::index_dip, Sensor::middle_dip, Sensor::ring_dip,
-                              Sensor::little_dip};
-    return of(mcps[number], mcp).of(pips[number], pip).of(dips[number], dip);
+    const auto& sensors = finger_sensors[number];
+    return of(sensors[0], mcp).of(sensors[1], pip).of(sensors[2], dip);
   }
   constexpr Described& fingers(Asked mcp, Asked pip, Asked dip) {
     for (std::size_t number = 0; number < 4; ++number)

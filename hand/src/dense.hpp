@@ -10,7 +10,6 @@ namespace nendo::hand {
 /// used. `right` becomes x, and `matrix` its Cholesky factor. No allocation.
 void solve_positive_definite(Eigen::Ref<Eigen::MatrixXd> matrix, Eigen::Ref<Eigen::VectorXd> right);
 
-/// Returns the inverse of a symmetric positive definite matrix.
 Eigen::MatrixXd inverse_of_positive_definite(const Eigen::MatrixXd& matrix);
 
 /// Returns the eigenvalues of a symmetric matrix, which is not empty, in ascending order.

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "hand_shape.hpp"
 #include "turns.hpp"
 
 namespace nendo::hand {

@@ -31,7 +31,7 @@ inline constexpr double palm_depth_deviation_m = 0.003;
 // axes of the thumb differ by 5 to 10 degrees between specimens (W. P. Cooney and others, 1981; A.
 // Hollister and others, 1992). Models of the thumb differ more than specimens of one study do,
 // above all in how a thumb turns about itself as it opposes: axes that are square and fixed turn it
-// twice as far as those of hand_shape.hpp. The deviations of its turn cover both, for a touch that
+// twice as far as those of turns.hpp. The deviations of its turn cover both, for a touch that
 // is believed as if the thumb were better known pulls roll and abduction off. All but ANSUR's are
 // quoted from memory.
 inline constexpr double length_deviation = 0.06; ///< the logarithm's

@@ -43,12 +43,13 @@ public:
              const FitOptions& options);
 
   Calibration calibration(const Unknowns& at) const;
-  /// The wearer's hand.
   HandSize size(const Unknowns& at) const;
 
   /// Lets the assumption count no more; `number` is its place among assumptions(reading).
-  void set_aside(std::size_t reading, std::size_t number);
-  void set_aside_touch(std::size_t reading);
+  void set_aside(std::size_t reading, std::size_t number) {
+    assumptions_[reading][number].is_set_aside = true;
+  }
+  void set_aside_touch(std::size_t reading) { touch_is_set_aside_[reading] = true; }
   bool touch_is_set_aside(std::size_t reading) const { return touch_is_set_aside_[reading]; }
 
   /// Computes all residuals, each divided by its deviation, and unless `jacobian` is null their
@@ -70,7 +71,6 @@ public:
     Eigen::Index begin, touch, end;
   };
   const Rows& rows(std::size_t reading) const { return rows_[reading]; }
-  /// The slot of an assumed angle, and the angle with its deviation.
   struct Assumption {
     std::size_t slot;
     AssumedAngle assumed;
@@ -91,8 +91,6 @@ public:
 private:
   bool usable(const Touch& touch) const noexcept;
   static double palm_m(const Unknowns& at) noexcept;
-  Eigen::Vector3d gap_m(const SensorAngles& angles, const Touch& touch, double palm_m,
-                        const HandSkeleton& skeleton) const;
   Eigen::Vector3d gap_m(const JointAngles& joints, const Touch& touch, double palm_m,
                         const HandSkeleton& skeleton) const;
   bool fits_hand(Eigen::Index unknown) const noexcept;
@@ -155,5 +153,32 @@ private:
   std::vector<RangeEnd> range_ends_;
   Eigen::Index height_ = 0;
 };
+
+// Solves the least-squares problem of a calibration.
+/// Indices of unknowns that are not fixed; those of the calibration come first.
+using FreeUnknowns = std::vector<Eigen::Index>;
+
+struct Solution {
+  Unknowns at = Unknowns::Zero();
+  FreeUnknowns free;
+  Eigen::MatrixXd information;
+  Eigen::MatrixXd covariance; ///< the free unknowns of the calibration only
+};
+
+Eigen::Index lines_in(const FreeUnknowns& free);
+
+template <class Matrix>
+Eigen::MatrixXd columns_of(const Matrix& matrix, const FreeUnknowns& free) {
+  Eigen::MatrixXd chosen(matrix.rows(), static_cast<Eigen::Index>(free.size()));
+  for (std::size_t at = 0; at < free.size(); ++at)
+    chosen.col(static_cast<Eigen::Index>(at)) = matrix.col(free[at]);
+  return chosen;
+}
+
+/// Finds the likeliest unknowns, and fixes at the default those of the calibration that the poses
+/// do not determine. The search begins at `start`.
+Solution solve(const FitProblem& problem, FreeUnknowns free, const Unknowns& start);
+/// Finds the likeliest values of exactly these unknowns. The others stay.
+void refine(const FitProblem& problem, const FreeUnknowns& free, Unknowns& at);
 
 } // namespace nendo::hand

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "finger_rules.hpp"
 #include "fit_priors.hpp"
 #include "fit_problem.hpp"
 
@@ -31,12 +32,10 @@ JointAngles joints_of(const SensorAngles& angles, SensorMask sensors) {
   take(joints.thumb_abduction_rad, Sensor::thumb_abduction);
   take(joints.palm_arch_rad, Sensor::palm_arch);
   for (std::size_t f = 0; f < joints.fingers.size(); ++f) {
-    const auto sensor = [&](Sensor of_index) {
-      return static_cast<Sensor>(index_of(of_index) + 4 * f);
-    };
-    take(joints.fingers[f].mcp_flexion_rad, sensor(Sensor::index_mcp));
-    take(joints.fingers[f].pip_flexion_rad, sensor(Sensor::index_pip));
-    take(joints.fingers[f].dip_flexion_rad, sensor(Sensor::index_dip));
+    const auto& own = finger_sensors[f];
+    take(joints.fingers[f].mcp_flexion_rad, own[0]);
+    take(joints.fingers[f].pip_flexion_rad, own[1]);
+    take(joints.fingers[f].dip_flexion_rad, own[2]);
   }
   double middle_ring = 0.0, ring_little = 0.0;
   take(joints[Finger::index].mcp_abduction_rad, Sensor::index_middle_abduction);
@@ -111,27 +110,14 @@ bool FitProblem::usable(const Touch& touch) const noexcept {
   const SensorMask moving{sensors_.bits & ~stiff_.bits};
   const bool whole = moving.has(Sensor::thumb_roll) && moving.has(Sensor::thumb_abduction) &&
                      moving.has(Sensor::thumb_mcp) && moving.has(Sensor::thumb_ip);
-  switch (touch.with) {
-  case Joint::index_tip:
-    return whole && moving.has(Sensor::index_mcp) && moving.has(Sensor::index_pip);
-  case Joint::middle_tip:
-    return whole && moving.has(Sensor::middle_mcp) && moving.has(Sensor::middle_pip);
-  case Joint::ring_tip:
-    return whole && moving.has(Sensor::ring_mcp) && moving.has(Sensor::ring_pip);
-  case Joint::little_tip:
-    return whole && moving.has(Sensor::little_mcp) && moving.has(Sensor::little_pip);
-  default:
-    return whole;
-  }
+  const auto tip = std::find(fingertips.begin() + 1, fingertips.end(), touch.with);
+  if (tip == fingertips.end()) return whole;
+  const auto& own = finger_sensors[static_cast<std::size_t>(tip - fingertips.begin()) - 1];
+  return whole && moving.has(own[0]) && moving.has(own[1]);
 }
 
 double FitProblem::palm_m(const Unknowns& at) noexcept {
   return palm_depth_m + palm_depth_deviation_m * at[palm_unknown];
-}
-
-Eigen::Vector3d FitProblem::gap_m(const SensorAngles& angles, const Touch& touch, double palm_m,
-                                  const HandSkeleton& skeleton) const {
-  return gap_m(joints_of(angles, sensors_), touch, palm_m, skeleton);
 }
 
 Eigen::Vector3d FitProblem::gap_m(const JointAngles& joints, const Touch& touch, double palm_m,
@@ -148,8 +134,8 @@ Eigen::Vector3d FitProblem::gap_m(const JointAngles& joints, const Touch& touch,
 double FitProblem::gap_m(const Unknowns& at, std::size_t reading) const {
   const auto [begin, touch, end] = rows_[reading];
   if (end == touch) return 0.0;
-  return gap_m(angles_rad(at, reading, nullptr), *pose_of(readings_[reading].pose).touch,
-               palm_m(at), hands(at, false).now)
+  return gap_m(joints_of(angles_rad(at, reading, nullptr), sensors_),
+               *pose_of(readings_[reading].pose).touch, palm_m(at), hands(at, false).now)
       .norm();
 }
 
@@ -175,10 +161,10 @@ void FitProblem::add_touch(std::size_t reading, const Unknowns& at, SensorAngles
     const std::size_t slot = index_of(sensor);
     const double angle = angles[slot];
     angles[slot] = angle + step_rad;
-    const Eigen::Vector3d above = gap_m(angles, touch, palm, hands.now);
+    const Eigen::Vector3d above = gap_m(joints_of(angles, sensors_), touch, palm, hands.now);
     angles[slot] = angle - step_rad;
     const Eigen::Vector3d slope =
-        (above - gap_m(angles, touch, palm, hands.now)) / (2.0 * step_rad);
+        (above - gap_m(joints_of(angles, sensors_), touch, palm, hands.now)) / (2.0 * step_rad);
     angles[slot] = angle;
     jacobian->block<3, line_unknowns>(row, 0) +=
         slopes.cwiseProduct(slope) * by_unknowns.row(static_cast<Eigen::Index>(slot));

@@ -45,7 +45,6 @@ BallNear ball_of_cone(const BodyPart& part, std::size_t first, std::size_t secon
   return ball(from_m + share * way_m, part.radii_m[first] + share * growth_m, place_m);
 }
 
-/// A triangle's plane, and the slope of the radius in it.
 struct Facet {
   Vector3d normal, slope;
   bool is_plane;

@@ -105,7 +105,6 @@ constexpr double worth_a_jump_m = 5e-5; ///< how much nearer another pose must b
 struct Reached {
   FourAngles angles;
   double residual_m = 0.0;
-  int iterations = 0;
 };
 
 /// One finger of a hand that keeps still: four unknowns.
@@ -177,13 +176,13 @@ Reached reach(const FingerChain& chain, bool thumb, const Vector3d& target_m, do
   FingerProblem problem{chain, thumb, target_m, palm_arch_rad, start, forming};
   NormalEquations<4> here;
   Reached best{start};
-  best.iterations = minimise<4>(problem, box, to_form, best.angles, here);
+  minimise<4>(problem, box, to_form, best.angles, here);
   problem.posture = reaching;
-  best.iterations += minimise<4>(problem, box, to_reach(enough_m), best.angles, here);
+  minimise<4>(problem, box, to_reach(enough_m), best.angles, here);
   best.residual_m = here.farthest_m;
   for (std::size_t number = 0; number < other_starts && best.residual_m > enough_m; ++number) {
     FourAngles at = angles_at_parts(box, other_start(number, thumb));
-    best.iterations += minimise<4>(problem, box, to_reach(enough_m), at, here);
+    minimise<4>(problem, box, to_reach(enough_m), at, here);
     const bool better =
         here.farthest_m <= enough_m || here.farthest_m < best.residual_m - worth_a_jump_m;
     if (!better) continue;
@@ -193,7 +192,6 @@ Reached reach(const FingerChain& chain, bool thumb, const Vector3d& target_m, do
   return best;
 }
 
-/// Returns the rotation of the palm that the wrist's two angles make.
 Matrix3d wrist_turn(double pitch_rad, double yaw_rad) noexcept {
   const double sp = std::sin(pitch_rad);
   const double cp = std::cos(pitch_rad);
@@ -206,14 +204,12 @@ Matrix3d wrist_turn(double pitch_rad, double yaw_rad) noexcept {
 
 using Chains = std::array<FingerChain, finger_count>;
 
-/// The wanted position of a fingertip, in metres.
 struct Aim {
   Vector3d place_m = Vector3d::Zero();
   double weight = 0.0; ///< 1 at most; 0: none
 };
 using Aims = std::array<Aim, finger_count>;
 
-/// The whole hand with its wrist and its palm.
 struct HandProblem {
   const Chains& chains;
   const Aims& aims;
@@ -261,18 +257,16 @@ private:
 };
 
 /// Moves `at`, within `box`, until the fingertips are within `enough_m` of their aims, or no nearer
-/// pose is found. Returns the number of iterations.
-int solve_hand(const Chains& chains, const Aims& aims, const Box<row_size>& box, double enough_m,
-               AllAngles& at) noexcept {
+/// pose is found.
+void solve_hand(const Chains& chains, const Aims& aims, const Box<row_size>& box, double enough_m,
+                AllAngles& at) noexcept {
   HandProblem problem{chains, aims, at, forming};
   NormalEquations<row_size> here;
-  int iterations = minimise<row_size>(problem, box, to_form, at, here);
+  minimise<row_size>(problem, box, to_form, at, here);
   problem.posture = reaching;
-  iterations += minimise<row_size>(problem, box, to_reach(enough_m), at, here);
-  return iterations;
+  minimise<row_size>(problem, box, to_reach(enough_m), at, here);
 }
 
-/// Palm and wrist stay where they are unless they are to be solved.
 Box<row_size> freed(Box<row_size> box, const AllAngles& at, bool wrist, bool arch) noexcept {
   const auto hold = [&](int k) { box.low[k] = box.high[k] = at[k]; };
   if (!arch) hold(arch_at);
@@ -312,7 +306,6 @@ struct Attempt {
   std::array<double, finger_count> residual_m{};
   double farthest_m = 0.0;
   double badness = 0.0; ///< weighted squares; what attempts are compared by
-  int iterations = 0;
 };
 
 /// Fingers one by one, with palm and wrist where they are.
@@ -330,7 +323,6 @@ Attempt reach_all(const Chains& chains, const Aims& aims, const Box<row_size>& b
     attempt.residual_m[f] = reached.residual_m;
     attempt.farthest_m = std::max(attempt.farthest_m, reached.residual_m);
     attempt.badness += aims[f].weight * reached.residual_m * reached.residual_m;
-    attempt.iterations += reached.iterations;
   }
   return attempt;
 }
@@ -340,13 +332,10 @@ Attempt reach_with_hand(const Chains& chains, const Aims& aims, const Box<row_si
                         const Box<row_size>& free, const AllAngles& start,
                         double enough_m) noexcept {
   const auto try_from = [&](AllAngles at) {
-    const int iterations = solve_hand(chains, aims, free, enough_m, at);
-    Attempt attempt = reach_all(chains, aims, box, at, enough_m);
-    attempt.iterations += iterations;
-    return attempt;
+    solve_hand(chains, aims, free, enough_m, at);
+    return reach_all(chains, aims, box, at, enough_m);
   };
   Attempt best = try_from(start);
-  int iterations = best.iterations;
   for (std::size_t number = 0; number < other_starts && best.farthest_m > enough_m; ++number) {
     AllAngles at = best.at;
     for (std::size_t f = 0; f < finger_count; ++f) {
@@ -356,11 +345,9 @@ Attempt reach_with_hand(const Chains& chains, const Aims& aims, const Box<row_si
         at.segment<4>(block) = angles_at_parts(own, other_start(number, f == 0));
     }
     const Attempt next = try_from(at);
-    iterations += next.iterations;
     const double gain_m = std::sqrt(best.badness) - std::sqrt(next.badness);
     if (next.farthest_m <= enough_m || gain_m > worth_a_jump_m) best = next;
   }
-  best.iterations = iterations;
   return best;
 }
 
@@ -392,7 +379,6 @@ InverseSolution inverse_kinematics(const HandSkeleton& skeleton, const Isometry3
   InverseSolution solution;
   solution.angles = angles_in(reached.at);
   solution.residual_m = reached.residual_m;
-  solution.iterations = static_cast<unsigned>(reached.iterations);
   solution.converged = reached.farthest_m <= enough_m;
   return solution;
 }

@@ -29,18 +29,18 @@ struct Measured {
   SensorAngles angles_rad;
 
   bool has(Sensor sensor) const noexcept { return present.has(sensor); }
-  /// The calibration's angle, without soft stops.
   double raw_angle(Sensor sensor) const noexcept { return angles_rad[index_of(sensor)]; }
   double angle(Sensor sensor, const JointLimit& limit) const noexcept {
     return limit.soften(raw_angle(sensor));
   }
-  /// `estimate` where there is no such sensor.
   double angle_or(Sensor sensor, const JointLimit& limit, double estimate) const noexcept {
     return has(sensor) ? angle(sensor, limit) : limit.soften(estimate);
   }
 };
 
-FingerAngles finger_angles(const Measured& measured, Sensor mcp, Sensor pip, Sensor dip) noexcept {
+FingerAngles finger_angles(const Measured& measured,
+                           const std::array<Sensor, 3>& sensors) noexcept {
+  const auto [mcp, pip, dip] = sensors;
   FingerAngles angles;
   const double mcp_guess =
       measured.has(pip) ? measured.angle(pip, finger_pip_limit) / pip_of_mcp : 0.0;
@@ -91,31 +91,154 @@ void set_thumb(JointAngles& angles, const Measured& measured) noexcept {
   set(Angle::thumb_ip_flexion, Sensor::thumb_ip, thumb_ip_of_mcp * bent(mcp));
 }
 
-// The member that is named.
 const double& angle_in(const JointAngles& angles, Angle angle) noexcept {
-  switch (angle) {
-  case Angle::thumb_roll:
-    return angles.thumb_roll_rad;
-  case Angle::thumb_abduction:
-    return angles.thumb_abduction_rad;
-  case Angle::thumb_mcp_flexion:
-    return angles.thumb_mcp_flexion_rad;
-  case Angle::thumb_ip_flexion:
-    return angles.thumb_ip_flexion_rad;
-  case Angle::palm_arch:
-    return angles.palm_arch_rad;
-  case Angle::wrist_pitch:
-    return angles.wrist_pitch_rad;
-  case Angle::wrist_yaw:
-    return angles.wrist_yaw_rad;
-  default:
-    break;
-  }
+  constexpr std::array<double JointAngles::*, 4> of_thumb{
+      &JointAngles::thumb_roll_rad, &JointAngles::thumb_abduction_rad,
+      &JointAngles::thumb_mcp_flexion_rad, &JointAngles::thumb_ip_flexion_rad};
   constexpr std::array<double FingerAngles::*, 4> of_finger{
       &FingerAngles::mcp_flexion_rad, &FingerAngles::mcp_abduction_rad,
       &FingerAngles::pip_flexion_rad, &FingerAngles::dip_flexion_rad};
-  const std::size_t at = index_of(angle) - index_of(Angle::index_mcp_flexion);
-  return angles.fingers[at / 4].*of_finger[at % 4];
+  constexpr std::array<double JointAngles::*, 3> of_hand{
+      &JointAngles::palm_arch_rad, &JointAngles::wrist_pitch_rad, &JointAngles::wrist_yaw_rad};
+  const std::size_t at = index_of(angle);
+  if (at < 4) return angles.*of_thumb[at];
+  if (angle < Angle::palm_arch) return angles.fingers[at / 4 - 1].*of_finger[at % 4];
+  return angles.*of_hand[at - index_of(Angle::palm_arch)];
+}
+
+constexpr std::size_t mcp_at = 0, pip_at = 1, dip_at = 2;
+constexpr std::array<Sensor, 3> gap_sensors{
+    Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_little_abduction};
+
+constexpr double resting_mcp = from_degrees(25), resting_pip = from_degrees(35);
+constexpr double resting_thumb_mcp = from_degrees(15), resting_thumb_ip = from_degrees(20);
+constexpr double opposed_at_rest = from_degrees(25);
+constexpr double resting_gap = from_degrees(6), resting_arch = from_degrees(6);
+
+/// A mean of estimates that are there.
+class Mean {
+public:
+  void add(double value, double weight) noexcept {
+    sum_ += weight * value;
+    weight_ += weight;
+  }
+  double or_else(double otherwise) const noexcept {
+    return weight_ > 0.0 ? sum_ / weight_ : otherwise;
+  }
+
+private:
+  double sum_ = 0.0, weight_ = 0.0;
+};
+
+class Filling {
+public:
+  Filling(const GloveSample& sample, const Calibration& calibration, SensorMask left_out) noexcept
+      : calibration_(calibration), measured_{sample.present.bits & ~left_out.bits},
+        missing_{sample.present.bits & left_out.bits} {
+    for (const Sensor sensor : measured_) {
+      const std::size_t slot = index_of(sensor);
+      angles_[slot] = calibration.sensors[slot].angle_rad(sample.raw[slot]);
+    }
+  }
+
+  SensorAngles filled() noexcept {
+    // MCP joints first: the others follow from them as well.
+    for (std::size_t f = 0; f < finger_sensors.size(); ++f)
+      fill(finger_sensors[f][mcp_at], [&] { return mcp(f); });
+    for (std::size_t f = 0; f < finger_sensors.size(); ++f)
+      fill(finger_sensors[f][pip_at], [&] { return pip(f); });
+    for (std::size_t f = 0; f < finger_sensors.size(); ++f)
+      fill(finger_sensors[f][dip_at], [&] { return dip(f); });
+    fill_thumb();
+    couple();
+    fill_gaps();
+    fill(Sensor::palm_arch, [] { return resting_arch; });
+    // The wrist is straight: its angles stay 0.
+    return angles_;
+  }
+
+private:
+  double& at(Sensor sensor) noexcept { return angles_[index_of(sensor)]; }
+  bool is_measured(Sensor sensor) const noexcept { return measured_.has(sensor); }
+  template <class Estimate>
+  void fill(Sensor sensor, Estimate&& estimate) noexcept {
+    if (missing_.has(sensor)) at(sensor) = estimate();
+  }
+  /// Adds the same joint of the fingers beside this one, if measured.
+  void add_beside(Mean& mean, std::size_t f, std::size_t joint, double weight) noexcept {
+    for (const std::size_t beside : {f - 1, f + 1})
+      if (beside < finger_sensors.size() && is_measured(finger_sensors[beside][joint]))
+        mean.add(at(finger_sensors[beside][joint]), weight);
+  }
+
+  double mcp(std::size_t f) noexcept {
+    Mean mean;
+    add_beside(mean, f, mcp_at, 1.0);
+    if (is_measured(finger_sensors[f][pip_at]))
+      mean.add(bent(at(finger_sensors[f][pip_at])) / pip_of_mcp, 0.7);
+    return mean.or_else(resting_mcp);
+  }
+  double pip(std::size_t f) noexcept {
+    Mean mean;
+    add_beside(mean, f, pip_at, 0.7);
+    if (is_measured(finger_sensors[f][dip_at]))
+      mean.add(1.5 * bent(at(finger_sensors[f][dip_at])), 2.0);
+    if (is_measured(finger_sensors[f][mcp_at]))
+      mean.add(pip_of_mcp * bent(at(finger_sensors[f][mcp_at])), 0.4);
+    return mean.or_else(resting_pip);
+  }
+  double dip(std::size_t f) noexcept {
+    Mean mean;
+    add_beside(mean, f, dip_at, 0.7);
+    mean.add(estimated_dip(at(finger_sensors[f][pip_at])), 1.0);
+    return mean.or_else(0.0);
+  }
+
+  void fill_thumb() noexcept {
+    const bool mcp = is_measured(Sensor::thumb_mcp), ip = is_measured(Sensor::thumb_ip);
+    fill(Sensor::thumb_mcp,
+         [&] { return ip ? 0.7 * bent(at(Sensor::thumb_ip)) : resting_thumb_mcp; });
+    fill(Sensor::thumb_ip,
+         [&] { return mcp ? 0.9 * bent(at(Sensor::thumb_mcp)) : resting_thumb_ip; });
+  }
+  /// As Calibration::angles_rad() does, with what the estimated joints do to the others. Of thumb
+  /// roll and abduction, one that is left out is taken to be as at rest.
+  void couple() noexcept {
+    const SensorAngles lines = angles_;
+    const auto line = [&](Sensor sensor) { return lines[index_of(sensor)]; };
+    fill(Sensor::thumb_roll, [] { return opposed_at_rest; });
+    fill(Sensor::thumb_abduction, [] { return opposed_at_rest; });
+    for (std::size_t k = 0; k < couplings.size(); ++k) {
+      const auto [of, by] = couplings[k];
+      if (!is_measured(of)) continue;
+      // The line of a coupled sensor is its angle without what is mixed into it.
+      const double by_rad = missing_.has(by) && by == Sensor::thumb_roll
+                                ? opposed_at_rest - calibration_.coupling_gains[0] * line(of)
+                            : missing_.has(by) && by == Sensor::thumb_abduction
+                                ? opposed_at_rest - calibration_.coupling_gains[1] * line(of)
+                                : line(by);
+      at(of) += calibration_.coupling_gains[k] * by_rad;
+    }
+  }
+  void fill_gaps() noexcept {
+    Mean mean;
+    for (const Sensor gap : gap_sensors)
+      if (is_measured(gap)) mean.add(at(gap), 1.0);
+    for (const Sensor gap : gap_sensors)
+      fill(gap, [&] { return mean.or_else(resting_gap); });
+  }
+
+  const Calibration& calibration_;
+  SensorMask measured_, missing_;
+  SensorAngles angles_{};
+};
+
+// How far into a stop of this width an angle goes that is `excess` beyond its beginning: w e / (w +
+// e), of slope 1 at the beginning, 1/4 where e = w, and the inverse square of e far out, so that
+// more than with an exponential is left of a badly calibrated joint's motion. Written so that each
+// step is monotone, rounding included, and that infinity gives w.
+double into_stop(double excess, double width) noexcept {
+  return width * (1.0 - width / (width + excess));
 }
 
 } // namespace
@@ -133,14 +256,8 @@ JointAngles joint_angles(const GloveSample& sample, const Calibration& calibrati
   const Measured measured{sample.present, filled_angles_rad(sample, calibration, left_out)};
   JointAngles angles;
   set_thumb(angles, measured);
-  angles[Finger::index] =
-      finger_angles(measured, Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip);
-  angles[Finger::middle] =
-      finger_angles(measured, Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip);
-  angles[Finger::ring] =
-      finger_angles(measured, Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip);
-  angles[Finger::little] =
-      finger_angles(measured, Sensor::little_mcp, Sensor::little_pip, Sensor::little_dip);
+  for (std::size_t f = 0; f < finger_sensors.size(); ++f)
+    angles.fingers[f] = finger_angles(measured, finger_sensors[f]);
   set_abductions(angles, measured, calibration.middle_bias);
   const auto set_or_zero = [&](Angle angle, Sensor sensor) {
     angles[angle] = measured.angle_or(sensor, limit_of(angle), 0.0);
@@ -171,6 +288,25 @@ SensorAngles sensor_angles_of(const JointAngles& joints) noexcept {
   at(Sensor::wrist_pitch) = joints.wrist_pitch_rad;
   at(Sensor::wrist_yaw) = joints.wrist_yaw_rad;
   return angles;
+}
+
+SensorAngles filled_angles_rad(const GloveSample& sample, const Calibration& calibration,
+                               SensorMask left_out) noexcept {
+  if ((sample.present.bits & left_out.bits) == 0) return calibration.angles_rad(sample);
+  return Filling(sample, calibration, left_out).filled();
+}
+
+double JointLimit::soften(double angle_rad) const noexcept {
+  if (angle_rad > soft_max_rad) {
+    const double into = into_stop(angle_rad - soft_max_rad, max_rad - soft_max_rad);
+    return std::min(soft_max_rad + into, max_rad);
+  }
+  if (angle_rad >= soft_min_rad) return angle_rad;
+  if (angle_rad < soft_min_rad) {
+    const double into = into_stop(soft_min_rad - angle_rad, soft_min_rad - min_rad);
+    return std::max(soft_min_rad - into, min_rad);
+  }
+  return min_rad; // NaN, of a broken calibration
 }
 
 } // namespace nendo::hand

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <nendo/hand/angle_deviations.hpp>
+#include <nendo/hand/angle_sources.hpp>
 #include <nendo/hand/joint_limits.hpp>
 
 #include "dense.hpp"
@@ -54,7 +54,6 @@ double weight_of(const Fingertip& thumb, const Fingertip& finger) noexcept {
   return 1.0 - smooth_step(closed_pinch_m, open_pinch_m, apart_m);
 }
 
-/// The pinches of a moment, and the turns of the joints that close them.
 class Pinches {
 public:
   Pinches(const HandSkeleton& skeleton, const JointAngles& angles) noexcept

@@ -9,13 +9,6 @@ namespace {
 /// How long the measure of noise remembers.
 constexpr double noise_memory_s = 0.3;
 
-template <class Function>
-void for_each(SensorMask mask, Function&& function) {
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    if (mask.has(static_cast<Sensor>(slot))) function(slot);
-  }
-}
-
 } // namespace
 
 PoseCapture::PoseCapture(CountScale scale) noexcept
@@ -25,88 +18,89 @@ void PoseCapture::begin_window(const GloveSample& sample, HostTime now) noexcept
   begun_ = now;
   samples_ = 0;
   progress_ = 0.0;
-  for_each(present_, [&](std::size_t slot) {
-    Watched& sensor = watched_[slot];
-    sensor.low_counts = sensor.high_counts = sample.raw[slot].value;
-    sensor.mean_counts = sensor.squares = 0.0;
-    sensor.at_end = 0;
-  });
+  for (const Sensor sensor : present_) {
+    Watched& watched = watched_[index_of(sensor)];
+    watched.low_counts = watched.high_counts = sample.raw[index_of(sensor)].value;
+    watched.mean_counts = watched.squares = 0.0;
+    watched.at_end = 0;
+  }
 }
 
 void PoseCapture::watch_noise(const GloveSample& sample, double elapsed_s) noexcept {
   const double share = 1.0 - std::exp(-std::max(elapsed_s, 0.001) / noise_memory_s);
-  for_each(present_, [&](std::size_t slot) {
-    Watched& sensor = watched_[slot];
-    const double counts = sample.raw[slot].value;
+  for (const Sensor sensor : present_) {
+    Watched& watched = watched_[index_of(sensor)];
+    const double counts = sample.raw[index_of(sensor)].value;
     // The second difference of white noise has six times its variance.
-    const double second = counts - 2.0 * sensor.before_counts + sensor.earlier_counts;
+    const double second = counts - 2.0 * watched.before_counts + watched.earlier_counts;
     if (seen_ >= 2)
-      sensor.noise_variance += share * (second * second / 6.0 - sensor.noise_variance);
-    sensor.earlier_counts = seen_ >= 1 ? sensor.before_counts : counts;
-    sensor.before_counts = counts;
-  });
+      watched.noise_variance += share * (second * second / 6.0 - watched.noise_variance);
+    watched.earlier_counts = seen_ >= 1 ? watched.before_counts : counts;
+    watched.before_counts = counts;
+  }
   seen_ = std::min(seen_ + 1, 3U);
 }
 
 void PoseCapture::add(const GloveSample& sample) noexcept {
   ++samples_;
-  for_each(present_, [&](std::size_t slot) {
-    Watched& sensor = watched_[slot];
-    const double counts = sample.raw[slot].value;
-    sensor.low_counts = std::min(sensor.low_counts, counts);
-    sensor.high_counts = std::max(sensor.high_counts, counts);
-    const double off = counts - sensor.mean_counts;
-    sensor.mean_counts += off / samples_;
-    sensor.squares += off * (counts - sensor.mean_counts);
+  for (const Sensor sensor : present_) {
+    Watched& watched = watched_[index_of(sensor)];
+    const double counts = sample.raw[index_of(sensor)].value;
+    watched.low_counts = std::min(watched.low_counts, counts);
+    watched.high_counts = std::max(watched.high_counts, counts);
+    const double off = counts - watched.mean_counts;
+    watched.mean_counts += off / samples_;
+    watched.squares += off * (counts - watched.mean_counts);
     // 8-bit gloves never send 0. Gloves that know their whole range may well be at its end.
     const bool end = counts <= 1.0 || counts >= scale_.most;
-    if (end && !scale_.whole_range) ++sensor.at_end;
-  });
+    if (end && !scale_.whole_range) ++watched.at_end;
+  }
 }
 
 SensorMask PoseCapture::restless() const noexcept {
   SensorMask mask;
   const double most = still_range_counts * unit_;
-  for_each(present_, [&](std::size_t slot) {
-    if (watched_[slot].high_counts - watched_[slot].low_counts > most)
-      mask.add(static_cast<Sensor>(slot));
-  });
+  for (const Sensor sensor : present_) {
+    if (watched_[index_of(sensor)].high_counts - watched_[index_of(sensor)].low_counts > most)
+      mask.add(sensor);
+  }
   return mask;
 }
 
 SensorMask PoseCapture::at_ends() const noexcept {
   SensorMask mask;
-  for_each(present_, [&](std::size_t slot) {
-    if (2 * watched_[slot].at_end > samples_) mask.add(static_cast<Sensor>(slot));
-  });
+  for (const Sensor sensor : present_) {
+    if (2 * watched_[index_of(sensor)].at_end > samples_) mask.add(sensor);
+  }
   return mask;
 }
 
 bool PoseCapture::differs_from_last() const noexcept {
   if (!(last_.present == present_)) return true;
   bool differs = false;
-  for_each(present_, [&](std::size_t slot) {
-    const double change = std::abs(watched_[slot].mean_counts - last_.mean_counts[slot]);
+  for (const Sensor sensor : present_) {
+    const double change =
+        std::abs(watched_[index_of(sensor)].mean_counts - last_.mean_counts[index_of(sensor)]);
     differs = differs || change >= min_change_counts * unit_;
-  });
+  }
   return differs;
 }
 
 void PoseCapture::fill_held() noexcept {
   held_ = {};
   held_.present = present_;
-  for_each(present_, [&](std::size_t slot) {
-    held_.mean_counts[slot] = watched_[slot].mean_counts;
-    held_.noise_counts[slot] = std::sqrt(watched_[slot].squares / samples_);
-  });
+  for (const Sensor sensor : present_) {
+    held_.mean_counts[index_of(sensor)] = watched_[index_of(sensor)].mean_counts;
+    held_.noise_counts[index_of(sensor)] = std::sqrt(watched_[index_of(sensor)].squares / samples_);
+  }
 }
 
 CaptureState PoseCapture::state_in_movement(SensorMask moved) noexcept {
   SensorMask jumping;
-  for_each(moved, [&](std::size_t slot) {
-    if (watched_[slot].noise_variance > std::pow(max_noise_counts * unit_, 2))
-      jumping.add(static_cast<Sensor>(slot));
-  });
+  for (const Sensor sensor : moved) {
+    if (watched_[index_of(sensor)].noise_variance > std::pow(max_noise_counts * unit_, 2))
+      jumping.add(sensor);
+  }
   troubled_ = jumping.bits != 0 ? jumping : moved;
   return jumping.bits != 0 ? CaptureState::noisy : CaptureState::moving;
 }

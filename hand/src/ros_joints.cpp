@@ -12,7 +12,6 @@
 #include <nendo/base/units.hpp>
 
 #include "calibration_check.hpp"
-#include "imported_gains.hpp"
 
 namespace nendo::hand {
 namespace {
@@ -163,24 +162,26 @@ private:
   std::vector<std::string> notes_;
 };
 
-// Written are two points of each sensor's line.
-struct TwoPoints {
-  std::string_view name;
-  std::array<RosPoint, 2> points;
-};
+std::string number_text(double value) {
+  std::array<char, 400> digits{}; // the largest double has 309 before the point
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
+                                 std::chars_format::fixed, 9)
+                       .ptr;
+  return {digits.data(), end};
+}
 
-struct WrittenJoints {
-  std::vector<TwoPoints> joints;
-  std::vector<std::string> notes;
-};
-
-Result<WrittenJoints> joints_for(const Calibration& calibration, CountScale counts) {
+/// Writes `text`, two points of each sensor's line as `joint_text` writes them, and `end`.
+template <class JointText>
+Result<ExportedCalibration> written(const Calibration& calibration, CountScale counts,
+                                    std::string text, const JointText& joint_text,
+                                    std::string_view end) {
   if (counts.whole_range || counts.most == 0)
     return Error{Errc::bad_input,
                  "the ROS forms are for a CyberGlove's bare counts, and this glove "
                  "calibrates itself; export as toml or csv"};
   const double scale = 255.0 / counts.most;
-  WrittenJoints written;
+  ExportedCalibration result{std::move(text), {}};
+  bool any = false;
   std::string missing;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     if (ros_names[slot].empty()) continue;
@@ -189,32 +190,23 @@ Result<WrittenJoints> joints_for(const Calibration& calibration, CountScale coun
       missing.append(missing.empty() ? "" : ", ").append(sensor_names[slot]);
       continue;
     }
-    TwoPoints joint{ros_names[slot], {}};
-    for (std::size_t at = 0; at < 2; ++at) { // where the sensor's range begins and ends
-      const double raw = at == 0 ? 0.0 : 1.0;
+    const auto angle_text = [&](double raw) { // where the sensor's range begins and ends
       const double count = (ros_first_count + ros_counts * raw) / scale;
-      joint.points[at] = {raw, to_degrees(line.gain_rad_per_count * (count - line.offset_counts))};
-    }
-    written.joints.push_back(joint);
+      return number_text(to_degrees(line.gain_rad_per_count * (count - line.offset_counts)));
+    };
+    result.text += joint_text(std::string(ros_names[slot]), angle_text(0.0), angle_text(1.0));
+    any = true;
   }
-  if (written.joints.empty())
-    return Error{Errc::bad_input, "no sensor is calibrated; `nendo calibrate` does it"};
+  if (!any) return Error{Errc::bad_input, "no sensor is calibrated; `nendo calibrate` does it"};
   if (!missing.empty())
-    written.notes.push_back("not calibrated, so left out: " + missing +
-                            "; a ROS driver that needs them stops");
+    result.notes.push_back("not calibrated, so left out: " + missing +
+                           "; a ROS driver that needs them stops");
   if (calibration.has_couplings())
-    written.notes.emplace_back("the couplings (mixed_in) are lost: the ROS forms have none");
+    result.notes.emplace_back("the couplings (coupling_gains) are lost: the ROS forms have none");
   if (calibration.middle_bias != 0.0)
-    written.notes.emplace_back("the middle bias is lost: the ROS forms have none");
-  return written;
-}
-
-std::string number_text(double value) {
-  std::array<char, 400> digits{}; // the largest double has 309 before the point
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
-                                 std::chars_format::fixed, 9)
-                       .ptr;
-  return {digits.data(), end};
+    result.notes.emplace_back("the middle bias is lost: the ROS forms have none");
+  result.text += end;
+  return result;
 }
 
 } // namespace
@@ -243,31 +235,22 @@ Result<ImportedCalibration> imported_joints(std::vector<RosJoint> joints, std::s
 }
 
 Result<ExportedCalibration> ros_yaml_text(const Calibration& calibration, CountScale counts) {
-  auto written = joints_for(calibration, counts);
-  if (!written) return written.error();
-  std::string text = "{'cyberglove_calibration': [\n";
-  for (const TwoPoints& joint : written->joints) {
-    text.append("['").append(joint.name).append("', [");
-    for (const RosPoint& point : joint.points)
-      text += std::string(&point == joint.points.data() ? "" : ",") + "[" + number_text(point.raw) +
-              "," + number_text(point.angle_deg) + "]";
-    text += "]],\n";
-  }
-  return ExportedCalibration{text + "]}\n", std::move(written->notes)};
+  const auto joint_text = [](const std::string& name, const std::string& at_0,
+                             const std::string& at_1) {
+    return "['" + name + "', [[0.000000000," + at_0 + "],[1.000000000," + at_1 + "]]],\n";
+  };
+  return written(calibration, counts, "{'cyberglove_calibration': [\n", joint_text, "]}\n");
 }
 
 Result<ExportedCalibration> ros_xml_text(const Calibration& calibration, CountScale counts) {
-  auto written = joints_for(calibration, counts);
-  if (!written) return written.error();
-  std::string text = "<?xml version=\"1.0\" ?>\n<Cyberglove_calibration>\n";
-  for (const TwoPoints& joint : written->joints) {
-    text.append("<Joint name=\"").append(joint.name).append("\">\n");
-    for (const RosPoint& point : joint.points)
-      text += "<calib raw_value=\"" + number_text(point.raw) + "\" calibrated_value=\"" +
-              number_text(point.angle_deg) + "\"/>\n";
-    text += "</Joint>\n";
-  }
-  return ExportedCalibration{text + "</Cyberglove_calibration>\n", std::move(written->notes)};
+  const auto joint_text = [](const std::string& name, const std::string& at_0,
+                             const std::string& at_1) {
+    return "<Joint name=\"" + name + "\">\n<calib raw_value=\"0.000000000\" calibrated_value=\"" +
+           at_0 + "\"/>\n<calib raw_value=\"1.000000000\" calibrated_value=\"" + at_1 +
+           "\"/>\n</Joint>\n";
+  };
+  return written(calibration, counts, "<?xml version=\"1.0\" ?>\n<Cyberglove_calibration>\n",
+                 joint_text, "</Cyberglove_calibration>\n");
 }
 
 } // namespace nendo::hand

@@ -6,10 +6,10 @@
 
 #include <doctest/doctest.h>
 
-#include "calibrate/demonstration.hpp"
 #include "calibrate/guide.hpp"
 #include "calibrate/hand_drawing.hpp"
-#include "calibrate/screen.hpp"
+#include "calibrate/practice_hand.hpp"
+#include "calibrate/session.hpp"
 #include "reference/wearers.hpp"
 
 namespace calibration_guide_test {

@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/hand/angle_deviations.hpp>
+#include <nendo/hand/angle_sources.hpp>
 #include <nendo/hand/calibration_fit.hpp>
 
 #include "calibrate/guide.hpp"

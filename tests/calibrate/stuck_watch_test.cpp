@@ -7,8 +7,8 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/hand/active_calibration.hpp>
 #include <nendo/hand/stuck_watch.hpp>
+#include <nendo/hand/wearer.hpp>
 
 #include "reference/wearers.hpp"
 #include "simulated/hand_motion.hpp"

@@ -1,4 +1,4 @@
-#include <nendo/hand/active_calibration.hpp>
+#include <nendo/hand/wearer.hpp>
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include <nendo/hand/angle_deviations.hpp>
+#include <nendo/hand/angle_sources.hpp>
 
 #include <cmath>
 #include <limits>

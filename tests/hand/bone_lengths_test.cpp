@@ -1,5 +1,3 @@
-#include <nendo/hand/bone_lengths.hpp>
-
 #include <limits>
 #include <random>
 #include <string>

@@ -1,4 +1,4 @@
-#include <nendo/hand/bvh.hpp>
+#include <nendo/hand/bvh_file.hpp>
 
 #include <limits>
 #include <set>

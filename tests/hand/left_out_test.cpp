@@ -8,7 +8,6 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/hand/angle_deviations.hpp>
 #include <nendo/hand/angle_sources.hpp>
 #include <nendo/hand/calibration_file.hpp>
 #include <nendo/hand/joint_angles.hpp>

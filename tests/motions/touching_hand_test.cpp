@@ -259,14 +259,13 @@ TEST_SUITE("touching_hand") {
     }
   }
 
-  TEST_CASE("absurd lengths and models do no harm") {
+  TEST_CASE("absurd times and models do no harm") {
     const deform::Mesh ball = test::sphere(8, 12, 1.0);
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    const auto still = hand_on(ball, Side::right, {1, nan, -1.0, 0.0});
-    CHECK(tips_at(still, Side::right, 5.0).isApprox(tips_at(still, Side::right, 0.0), 1e-4));
+    const auto hand = hand_on(ball, Side::right);
     for (const double time_s : {nan, -1.0, 1e300, std::numeric_limits<double>::infinity()}) {
-      CHECK(tips_at(still, Side::right, time_s).allFinite());
-      CHECK(still.target(Finger::index, time_s).place_m().allFinite());
+      CHECK(tips_at(hand, Side::right, time_s).allFinite());
+      CHECK(hand.target(Finger::index, time_s).place_m().allFinite());
     }
     deform::Mesh points;
     points.vertices = ball.vertices;

@@ -1,10 +1,13 @@
 #include <nendo/sculpting/find_wearer.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include <nendo/base/advised_command.hpp>
+#include <nendo/base/endings.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/recording/take_reader.hpp>
 #include <nendo/sculpting/kept_learning.hpp>
@@ -23,20 +26,17 @@ void report_choice(const driver::GloveInfo& glove, const hand::StoredCalibration
          "is repaired, calibrate it again");
 }
 
-void report_none(const driver::GloveInfo& glove, Side side, const Note& note) {
-  const std::string source = printable(glove.source);
-  note(source + ": not calibrated for this " + std::string(name_of(side)) +
-       " hand, so angles are an average hand's; `nendo calibrate " + shell_word(source) +
-       " --user NAME` makes them the wearer's");
-}
-
-/// Of a user who has calibrations, but none for this glove and hand.
-void report_none_of(const driver::GloveInfo& glove, Side side, const std::string& user,
-                    const Note& note) {
-  const std::string source = printable(glove.source);
-  note(source + ": " + printable(user) + " has no calibration of a " + std::string(name_of(side)) +
-       " hand for this glove, so angles are an average hand's; `nendo calibrate " +
-       shell_word(source) + " --user " + shell_word(printable(user)) + "` makes one");
+/// `user` has calibrations, but none for this glove and hand; empty: any wearer.
+void report_none(const driver::GloveInfo& glove, Side side, const std::string& user,
+                 const Note& note) {
+  const std::string source = printable(glove.source), name = printable(user);
+  const std::string hand(name_of(side));
+  const std::string lacks =
+      user.empty() ? "not calibrated for this " + hand + " hand"
+                   : name + " has no calibration of a " + hand + " hand for this glove";
+  note(source + ": " + lacks + ", so angles are an average hand's; `nendo calibrate " +
+       shell_word(source) + " --user " +
+       (user.empty() ? "NAME` makes them the wearer's" : shell_word(name) + "` makes one"));
 }
 
 /// Fails if nothing at all is stored for the user, and names the users that there are.
@@ -131,7 +131,6 @@ FoundCalibration found_in(const hand::StoredCalibration& file) {
   return {FoundCalibration::Kind::stored, file.wearer.user, file.path};
 }
 
-/// Returns `wearer` with the best calibration that is stored for either side.
 Result<hand::Wearer> stored_wearer(const driver::GloveInfo& glove, Side side, hand::Wearer wearer,
                                    const CalibrationOptions& options, const Note& note,
                                    FoundCalibration& found) {
@@ -147,9 +146,9 @@ Result<hand::Wearer> stored_wearer(const driver::GloveInfo& glove, Side side, ha
     const std::string option =
         own_user.empty() ? "--user" : "--" + std::string(name_of(side)) + "-user";
     if (auto known = check_user(stored, option, user); !known) return known.error();
-    report_none_of(glove, side, user, note);
+    report_none(glove, side, user, note);
   } else if (is_uncalibrated(glove, wearer, side)) {
-    report_none(glove, side, note);
+    report_none(glove, side, user, note);
   }
   if (glove.kind == driver::GloveKind::simulated) return wearer; // its hand does not change
   const auto other = set_other(glove, side, options.user_of(opposite(side)), stored, wearer);
@@ -191,6 +190,12 @@ Result<hand::Wearer> adapting_wearer(const driver::GloveInfo& glove, Side side, 
   wearer.learned = *learned;
   found = {FoundCalibration::Kind::learned, user, {}};
   return wearer;
+}
+
+using hand::StoredCalibration;
+
+std::string stem_of(const StoredCalibration& file) {
+  return file.path.stem().string();
 }
 
 } // namespace
@@ -263,6 +268,57 @@ Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
 bool is_uncalibrated(const driver::GloveInfo& glove, const hand::Wearer& wearer, Side side) {
   return glove.kind == driver::GloveKind::device && !wearer.adapt &&
          wearer.of(side).calibration == hand::default_calibration(glove.counts);
+}
+
+hand::CalibrationList stored_calibrations(const Note& note) {
+  auto list = hand::list_calibrations(hand::calibration_folders());
+  for (const auto& error : list.unreadable)
+    note(printable(error.message));
+  return list;
+}
+
+Result<StoredCalibration> named_calibration(const std::string& name, const Note& note) {
+  if (name.find('/') != std::string::npos || ends_in(name, ".toml")) {
+    auto wearer = hand::read_calibration(name);
+    if (!wearer) return wearer.error();
+    return StoredCalibration{name, false, *std::move(wearer)};
+  }
+  const auto list = stored_calibrations(note);
+  std::vector<const StoredCalibration*> meant;
+  for (const auto& file : list.files) {
+    if (stem_of(file) == name) return file; // the user's own comes first
+    if (file.wearer.user == name && is_in_force(file, list.files)) meant.push_back(&file);
+  }
+  if (meant.size() == 1) return *meant.front();
+  if (meant.empty()) {
+    return Error{Errc::bad_input, printable(name) + ": no such calibration is stored; "
+                                                    "`nendo calibration list` shows them"};
+  }
+  std::string several;
+  for (const auto* file : meant)
+    several.append(several.empty() ? "" : " or ").append(stem_of(*file));
+  return Error{Errc::usage, printable(name + ": several are meant; name " + several)};
+}
+
+std::string title_of(const hand::WearerCalibration& wearer) {
+  return printable(wearer.user + ", " + std::string(name_of(wearer.side)) + " hand, " +
+                   (wearer.glove_serial.empty() ? "any glove" : "glove " + wearer.glove_serial));
+}
+
+bool is_one(SensorMask sensors) noexcept {
+  return std::popcount(sensors.bits) == 1;
+}
+
+std::string sensors_in_words(SensorMask sensors) {
+  std::string text;
+  int left = std::popcount(sensors.bits);
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    if (!sensors.has(static_cast<Sensor>(slot))) continue;
+    text.append(name_of(static_cast<Sensor>(slot)));
+    --left;
+    if (left > 0) text += left == 1 ? " and " : ", ";
+  }
+  return text;
 }
 
 } // namespace nendo::sculpting

@@ -28,7 +28,6 @@ std::uint64_t turns_of(double confidence) noexcept {
   return static_cast<std::uint64_t>(std::llround(half_sure_turns * confidence / left));
 }
 
-/// Reads the kept calibration, if there is one.
 Result<std::optional<hand::WearerCalibration>> kept(const std::filesystem::path& path,
                                                     CountScale counts) {
   std::error_code error;

@@ -29,10 +29,68 @@ struct LiveLoop::Parts {
       note(line);
   }
 
-  Result<OpenHand> open(const std::string& glove, Side side);
-  Result<void> open_hands();
-  Result<void> place_loop();
-  Result<void> run();
+  Result<OpenHand> open(const std::string& glove, Side side) {
+    driver::GloveContext context = options.context;
+    context.drivers.push_back(recording::replay_driver());
+    auto opened = driver::open_glove(glove, side, context);
+    if (!opened) return opened.error();
+    const bool is_woken = options.pace.policy == flow::OverrunPolicy::sample;
+    return hand_of(*std::move(opened), side, is_woken ? &event_count : nullptr,
+                   [this](std::string_view text) { note(text); });
+  }
+  Result<void> open_hands() {
+    const Note noted = [this](std::string_view text) { note(text); };
+    const auto open_one = [this](const std::string& glove, Side side) { return open(glove, side); };
+    if (options.left.empty() && options.right.empty()) {
+      auto found = open_found(std::array{Side::left, Side::right}, "sim", open_one, noted);
+      if (!found) return found.error();
+      hands = *std::move(found);
+    }
+    for (const Side side : {Side::left, Side::right}) {
+      const std::string& glove = side == Side::left ? options.left : options.right;
+      if (glove.empty()) continue;
+      auto hand = open(glove, side);
+      if (!hand) return hand.error();
+      hands.push_back(*std::move(hand));
+    }
+    const flow::InheritedPriority readers(flow::reader_priority(options.realtime.priority));
+    if (const auto started = start(hands); !started) return started;
+    if (const auto come = wait_for_samples(hands); !come) return come;
+    return find_wearers(hands, options.calibration, noted);
+  }
+  Result<void> place_loop() {
+    std::vector<flow::HandInput> inputs;
+    for (const OpenHand& hand : hands) {
+      inputs.push_back({hand.ring.get(), hand.side, hand.wearer, hand.first});
+      inputs.back().filter = options.filter;
+    }
+    const double size_m = options.model_size_m.value_or(usual_size_m(options.mode));
+    const auto placement = place(model, inputs, {options.mode, size_m});
+    flow::LoopOptions made;
+    static_cast<flow::PaceOptions&>(made) = options.pace;
+    made.commands = &commands;
+    if (options.pace.policy == flow::OverrunPolicy::sample) made.event_count = &event_count;
+    made.sculptor.mode = options.mode;
+    set_supports(options.radius_m
+                     ? deform::one_radius(*options.radius_m * placement.units_per_metre)
+                     : usual_supports(model, options.mode),
+                 made.sculptor);
+    set_undo_space(model, options.undo_bytes.value_or(deform::half_of_memory()), made);
+    auto ready = make_loop(model, placement, inputs, made);
+    if (!ready) return ready.error();
+    loop = *std::move(ready);
+    return {};
+  }
+  Result<void> run() {
+    {
+      const flow::InheritedPriority readers(flow::reader_priority(options.realtime.priority));
+      if (const auto begun = begin_again(hands); !begun) return begun;
+    }
+    note_refusals(process.grants());
+    thread = std::make_unique<LoopThread>(*loop, options.realtime);
+    note_refusals(thread->grants());
+    return {};
+  }
   void stop() {
     thread.reset();
     for (const OpenHand& hand : hands)
@@ -69,71 +127,6 @@ Result<void> check(const LiveOptions& options) {
 }
 
 } // namespace
-
-Result<OpenHand> LiveLoop::Parts::open(const std::string& glove, Side side) {
-  driver::GloveContext context = options.context;
-  context.drivers.push_back(recording::replay_driver());
-  auto opened = driver::open_glove(glove, side, context);
-  if (!opened) return opened.error();
-  const bool is_woken = options.pace.policy == flow::OverrunPolicy::sample;
-  return hand_of(*std::move(opened), side, is_woken ? &event_count : nullptr,
-                 [this](std::string_view text) { note(text); });
-}
-
-Result<void> LiveLoop::Parts::open_hands() {
-  const Note noted = [this](std::string_view text) { note(text); };
-  const auto open_one = [this](const std::string& glove, Side side) { return open(glove, side); };
-  if (options.left.empty() && options.right.empty()) {
-    auto found = open_found(std::array{Side::left, Side::right}, "sim", open_one, noted);
-    if (!found) return found.error();
-    hands = *std::move(found);
-  }
-  for (const Side side : {Side::left, Side::right}) {
-    const std::string& glove = side == Side::left ? options.left : options.right;
-    if (glove.empty()) continue;
-    auto hand = open(glove, side);
-    if (!hand) return hand.error();
-    hands.push_back(*std::move(hand));
-  }
-  const flow::InheritedPriority readers(flow::reader_priority(options.realtime.priority));
-  if (const auto started = start(hands); !started) return started;
-  if (const auto come = wait_for_samples(hands); !come) return come;
-  return find_wearers(hands, options.calibration, noted);
-}
-
-Result<void> LiveLoop::Parts::place_loop() {
-  std::vector<flow::HandInput> inputs;
-  for (const OpenHand& hand : hands) {
-    inputs.push_back({hand.ring.get(), hand.side, hand.wearer, hand.first});
-    inputs.back().filter = options.filter;
-  }
-  const double size_m = options.model_size_m.value_or(usual_size_m(options.mode));
-  const auto placement = place(model, inputs, {options.mode, size_m});
-  flow::LoopOptions made;
-  static_cast<flow::PaceOptions&>(made) = options.pace;
-  made.commands = &commands;
-  if (options.pace.policy == flow::OverrunPolicy::sample) made.event_count = &event_count;
-  made.sculptor.mode = options.mode;
-  set_supports(options.radius_m ? deform::one_radius(*options.radius_m * placement.units_per_metre)
-                                : usual_supports(model, options.mode),
-               made.sculptor);
-  set_undo_space(model, options.undo_bytes.value_or(deform::half_of_memory()), made);
-  auto ready = make_loop(model, placement, inputs, made);
-  if (!ready) return ready.error();
-  loop = *std::move(ready);
-  return {};
-}
-
-Result<void> LiveLoop::Parts::run() {
-  {
-    const flow::InheritedPriority readers(flow::reader_priority(options.realtime.priority));
-    if (const auto begun = begin_again(hands); !begun) return begun;
-  }
-  note_refusals(process.grants());
-  thread = std::make_unique<LoopThread>(*loop, options.realtime);
-  note_refusals(thread->grants());
-  return {};
-}
 
 Result<LiveLoop> LiveLoop::begin(deform::Mesh model, const LiveOptions& options) {
   if (const auto fine = check(options); !fine) return fine.error();

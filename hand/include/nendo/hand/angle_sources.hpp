@@ -9,6 +9,7 @@
 
 #include <nendo/driver/sample.hpp>
 #include <nendo/hand/angle.hpp>
+#include <nendo/hand/joint_angles.hpp>
 
 namespace nendo::hand {
 
@@ -27,7 +28,6 @@ enum class AngleSource : std::uint8_t {
 
 inline constexpr std::size_t angle_source_count = 9;
 
-/// Returns "measured", "from_mcp" and so on.
 constexpr std::string_view name_of(AngleSource source) noexcept {
   constexpr std::array<std::string_view, angle_source_count> names{
       "measured",  "from_mcp", "from_pip",        "from_ip", "opposition",
@@ -46,5 +46,21 @@ using AngleSources = std::array<AngleSource, angle_count>;
 /// sensors: GloveInfo::sensors, or any sample's `present`, of which some may be `left_out`. The
 /// result is constant for a glove and what is left out of it. Wait-free.
 NENDO_API AngleSources angle_sources(SensorMask present, SensorMask left_out = {}) noexcept;
+
+// How far off the angles of a calibrated glove are likely to be, so that users of a pose know
+// how accurate it is. What is measured is off by a few degrees, always alike. What is estimated can
+// be far off: an estimate of a DIP joint knows how far the PIP joint bends, and not whether the
+// finger makes a hook.
+/// One standard deviation of each angle, by index_of(Angle), in radians; 0 where nothing is known,
+/// because the angle is only assumed.
+using AngleDeviations = std::array<double, angle_count>;
+
+/// Returns what to expect of `angles`, which joint_angles() has made of a calibrated glove that has
+/// these sensors, some of them perhaps `left_out`. The figures are those of strangers for tuning
+/// (CALIBRATION-EVIDENCE.md): the median error of each group, as that of a normal distribution; a
+/// DIP joint's by how far its PIP joint bends, least at 40 to 65 degrees; of other estimates by
+/// those of the joint that they rest on, and assumed. Finite. Wait-free.
+NENDO_API AngleDeviations angle_deviations(const JointAngles& angles, SensorMask present,
+                                           SensorMask left_out = {}) noexcept;
 
 } // namespace nendo::hand

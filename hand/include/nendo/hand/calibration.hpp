@@ -24,7 +24,6 @@ struct SensorCalibration {
   friend constexpr bool operator==(const SensorCalibration&, const SensorCalibration&) = default;
 };
 
-/// Says that the angle of sensor `of` also depends on what sensor `by` reads.
 struct Coupling {
   Sensor of;
   Sensor by;

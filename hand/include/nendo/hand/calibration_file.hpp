@@ -17,7 +17,6 @@
 
 namespace nendo::hand {
 
-/// Returns how well one sensor's line is known.
 struct SensorQuality {
   double residual_rad = 0.0; ///< root mean square distance of the poses from the line
   double min_counts = 0.0;   ///< the least that this wearer reached
@@ -60,7 +59,6 @@ NENDO_API Result<std::string> calibration_text(const WearerCalibration& wearer);
 /// than 1 MiB.
 NENDO_API Result<WearerCalibration> read_calibration(const std::filesystem::path& path);
 
-/// How many earlier versions stay beside a calibration file.
 inline constexpr std::size_t max_earlier_versions = 20;
 
 /// Writes a temporary file beside `path`, syncs and renames it, so that `path` is always the old

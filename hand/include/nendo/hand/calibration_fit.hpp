@@ -67,7 +67,6 @@ struct FitOptions {
   CountRanges free_motion{};
 };
 
-/// What the fit found out about a sensor.
 struct SensorFit {
   bool gain_determined = false;
   bool offset_determined = false;
@@ -80,7 +79,6 @@ struct SensorFit {
   double deviation_rad = 0.0;
 };
 
-/// How well one reading agrees with the calibration.
 struct ReadingFit {
   double misfit = 0.0; ///< root mean square of residuals over their deviations; about 1 is usual
   double gap_m = 0.0;  ///< between the pads that should touch; 0 in poses without touch

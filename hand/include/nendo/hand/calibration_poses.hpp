@@ -76,7 +76,6 @@ struct CalibrationPose {
   std::optional<Touch> touch{};
 };
 
-/// Returns the description of a pose. Wait-free.
 NENDO_API const CalibrationPose& pose_of(PoseId id) noexcept;
 NENDO_API std::optional<PoseId> pose_named(std::string_view name) noexcept;
 

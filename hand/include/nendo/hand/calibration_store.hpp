@@ -49,7 +49,6 @@ struct CalibrationList {
 /// empty. Blocks.
 NENDO_API CalibrationList list_calibrations(const CalibrationFolders& folders);
 
-/// Identifies a glove.
 struct GloveIdentity {
   std::string user; ///< empty: any
   std::string model;

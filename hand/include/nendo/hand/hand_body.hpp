@@ -19,7 +19,6 @@ struct BodyPart {
   Joint carrier = Joint::wrist;             ///< the joint with which its surface turns and slides
 };
 
-/// The closest point of a surface.
 struct ClosestPoint {
   double distance_m = 0.0; ///< negative inside
   Eigen::Vector3d normal;  ///< unit, outwards: the gradient of the distance
@@ -58,7 +57,6 @@ private:
   std::array<BodyPart, part_count> parts_;
 };
 
-/// The radii of a finger's flesh at its joints, in millimetres.
 struct FingerRadii {
   float knuckle_mm, middle_mm, end_mm, tip_mm; ///< from the knuckle to the tip
 };

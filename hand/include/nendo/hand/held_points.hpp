@@ -9,7 +9,6 @@
 
 namespace nendo::hand {
 
-/// A place on the straight line between two joints.
 struct HeldPoint {
   Joint from = Joint::wrist;
   Joint to = Joint::wrist;

@@ -34,7 +34,6 @@ struct FingertipTarget {
   static constexpr double farthest_m = 1e3;
 };
 
-/// The targets from the thumb to the little finger.
 using FingertipTargets = std::array<FingertipTarget, finger_count>;
 
 struct InverseOptions {
@@ -48,8 +47,7 @@ struct InverseSolution {
   JointAngles angles;
   /// The distance from each target to its fingertip; 0 without a target.
   std::array<double, finger_count> residual_m{};
-  unsigned iterations = 0; ///< the sum over all fingers
-  bool converged = false;  ///< every fingertip is within the tolerance of its target
+  bool converged = false; ///< every fingertip is within the tolerance of its target
 };
 
 /// Returns angles within the limits that bring each fingertip to its target. A target out of reach

@@ -17,7 +17,6 @@ namespace nendo::hand {
 
 enum class FilterKind : std::uint8_t { off, one_euro };
 
-/// Returns "off" or "one-euro".
 NENDO_API std::string_view name_of(FilterKind kind) noexcept;
 NENDO_API std::optional<FilterKind> filter_named(std::string_view name) noexcept;
 

@@ -46,7 +46,6 @@ constexpr std::size_t index_of(Joint joint) noexcept {
   return static_cast<std::size_t>(joint);
 }
 
-/// Returns "thumb_metacarpal" and so on.
 NENDO_API std::string_view name_of(Joint joint) noexcept;
 
 /// Returns the joint that carries this one, or nullopt for the wrist, which is the root. The wrist
@@ -57,7 +56,6 @@ enum class Finger : std::uint8_t { thumb, index, middle, ring, little };
 
 inline constexpr std::size_t finger_count = 5;
 
-/// Returns "thumb" to "little".
 NENDO_API std::string_view name_of(Finger finger) noexcept;
 
 inline constexpr std::array<Joint, finger_count> fingertips{

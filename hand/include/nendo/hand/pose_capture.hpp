@@ -9,7 +9,6 @@
 
 namespace nendo::hand {
 
-/// The counts of the sensors while a pose was held.
 struct HeldPose {
   std::array<double, sensor_slots> mean_counts{};
   std::array<double, sensor_slots> noise_counts{}; ///< standard deviation of one sample

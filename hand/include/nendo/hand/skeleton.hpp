@@ -12,12 +12,26 @@
 #include <Eigen/Geometry>
 
 #include <nendo/base/result.hpp>
-#include <nendo/hand/bone_lengths.hpp>
 #include <nendo/hand/joint_angles.hpp>
 #include <nendo/hand/joints.hpp>
 #include <nendo/hand/wearer_shape.hpp>
 
 namespace nendo::hand {
+
+// The bones of one wearer's hand, as a ruler or a scan gives them.
+/// Lengths in metres. A bone runs from joint to joint, a distal bone from its joint to the tip of
+/// the finger.
+struct NENDO_API BoneLengths {
+  static constexpr double min_m = 0.001;
+  static constexpr double max_m = 0.200;
+
+  std::array<double, 3> thumb_m{}; ///< metacarpal, proximal, distal
+  /// Index, middle, ring, little: metacarpal, proximal, intermediate, distal.
+  std::array<std::array<double, 4>, 4> fingers_m{};
+
+  /// Fails with bad_input, naming the bone, if a length is not a number from min_m to max_m.
+  Result<void> check() const;
+};
 
 /// The two external measures from which all bones are scaled, and what the hand differs by from an
 /// average hand of these measures. The defaults lie between the means of women and men in the ANSUR

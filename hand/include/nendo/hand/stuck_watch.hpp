@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include <nendo/driver/sample.hpp>
-#include <nendo/hand/swing_finder.hpp>
+#include <nendo/hand/range_capture.hpp>
 
 namespace nendo::hand {
 
@@ -27,7 +27,6 @@ public:
 
   /// Returns the sensors that are stuck. One that moves again is none for long.
   SensorMask stuck() const noexcept { return stuck_; }
-  /// Returns the glove's hand, by the last sample.
   Side side() const noexcept { return side_; }
 
 private:

@@ -10,7 +10,6 @@
 
 namespace nendo::hand {
 
-/// The terms of a shape, in its order.
 enum class ShapeTerm : std::uint8_t {
   thumb_metacarpal, ///< how much longer a bone is: the natural logarithm of the factor
   thumb_proximal,

@@ -10,11 +10,11 @@
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/placement.hpp>
 #include <nendo/flow/wrist_switch.hpp>
-#include <nendo/hand/active_calibration.hpp>
 #include <nendo/hand/joint_angles.hpp>
 #include <nendo/hand/joint_filter.hpp>
 #include <nendo/hand/sensor_gate.hpp>
 #include <nendo/hand/skeleton.hpp>
+#include <nendo/hand/wearer.hpp>
 
 namespace nendo::flow {
 

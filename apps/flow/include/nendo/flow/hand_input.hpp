@@ -10,9 +10,9 @@
 #include <nendo/driver/sample.hpp>
 #include <nendo/flow/layer.hpp>
 #include <nendo/flow/wrist_path.hpp>
-#include <nendo/hand/active_calibration.hpp>
 #include <nendo/hand/joint_filter.hpp>
 #include <nendo/hand/skeleton.hpp>
+#include <nendo/hand/wearer.hpp>
 
 namespace nendo::flow {
 

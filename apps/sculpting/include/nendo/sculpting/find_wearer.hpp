@@ -5,17 +5,41 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include <nendo/base/result.hpp>
 #include <nendo/driver/glove.hpp>
+#include <nendo/driver/sample.hpp>
 #include <nendo/hand/calibration_store.hpp>
 #include <nendo/hand/wearer.hpp>
-#include <nendo/sculpting/calibration_names.hpp>
 
 namespace nendo::sculpting {
+
+// Finds calibrations as users name them: by a path, by a stored file's name without .toml, or by a
+// wearer.
+/// Receives a notice for the user in one line. It is called on the thread
+/// of the function that it is given to.
+using Note = std::function<void(std::string_view)>;
+
+/// Returns the calibrations in the folders that the environment gives. Notes which files cannot be
+/// read. Blocks.
+NENDO_API hand::CalibrationList stored_calibrations(const Note& note);
+
+/// Returns the calibration that `name` means. A text with a slash or the ending .toml is a path. A
+/// wearer's name means those of the wearer's calibrations that are in effect. Blocks. Errors:
+/// bad_input (there is none, or it cannot be read), usage (several are meant).
+NENDO_API Result<hand::StoredCalibration> named_calibration(const std::string& name,
+                                                            const Note& note);
+
+/// Returns a text such as "Anna, right hand, glove A1".
+NENDO_API std::string title_of(const hand::WearerCalibration& wearer);
+
+/// Returns "index_pip", or "index_pip and ring_mcp", and so on.
+NENDO_API std::string sensors_in_words(SensorMask sensors);
+NENDO_API bool is_one(SensorMask sensors) noexcept;
 
 struct NENDO_API CalibrationOptions {
   std::string user;         ///< empty: any
@@ -24,13 +48,11 @@ struct NENDO_API CalibrationOptions {
   std::string left_user{};  ///< the left hand's, in place of `user`
   std::string right_user{}; ///< the right hand's, in place of `user`
 
-  /// The wearer of that hand; empty: any.
   const std::string& user_of(Side side) const noexcept;
   /// All that were given, as "anna", or "left anna, right bob"; empty: none.
   std::string users() const;
 };
 
-/// Whose hand a glove shows.
 struct FoundCalibration {
   enum class Kind : std::uint8_t {
     average,  ///< the calibration of an average hand
@@ -42,7 +64,6 @@ struct FoundCalibration {
   std::filesystem::path path; ///< the file's
 };
 
-/// Returns "average", "stored", "recorded" or "learned".
 constexpr std::string_view name_of(FoundCalibration::Kind kind) noexcept {
   constexpr std::array<std::string_view, 4> names{"average", "stored", "recorded", "learned"};
   return names[static_cast<std::size_t>(kind)];

@@ -11,7 +11,6 @@
 #include <nendo/hand/calibration_file.hpp>
 #include <nendo/hand/calibration_store.hpp>
 #include <nendo/hand/range_adaptation.hpp>
-#include <nendo/hand/slip_adaptation.hpp>
 
 namespace nendo::sculpting {
 
@@ -35,7 +34,6 @@ NENDO_API Result<std::filesystem::path> keep_ranges(const driver::GloveInfo& glo
 NENDO_API Result<hand::CalibratedRange> ends_of(const hand::StoredCalibration& file,
                                                 const driver::GloveInfo& glove);
 
-/// The result of keep_slips().
 struct KeptSlips {
   std::filesystem::path path; ///< the calibration's file
   bool is_changed = false;    ///< false: no sensor has slipped by hand::min_slip_counts()

@@ -32,7 +32,6 @@ struct OpenHand {
 NENDO_API OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
                            EventCount* event_count, const Note& note);
 
-/// Opens the glove of this name for that hand.
 using OpenNamed = std::function<Result<OpenHand>(const std::string& glove, Side side)>;
 
 /// Opens the gloves that this machine has, one for each of these hands, by `open`. A glove that is
