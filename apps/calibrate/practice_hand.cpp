@@ -156,12 +156,6 @@ hand::SensorAngles PracticeHand::free_motion(double time_s) const {
   return angles;
 }
 
-hand::SensorAngles PracticeHand::as_worn(hand::SensorAngles angles) const {
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
-    angles[slot] = gains_[slot] * angles[slot] + offsets_rad_[slot];
-  return angles;
-}
-
 int PracticeHand::wanted(double time_s) noexcept {
   int step = asked_.load();
   if (hold_s_) {
@@ -186,7 +180,10 @@ hand::SensorAngles PracticeHand::at(double time_s) {
   const double part = turned_s_ == 0.0 && step == 0 ? 1.0 : smooth((time_s - turned_s_) / turn_s);
   for (std::size_t slot = 0; slot < sensor_slots; ++slot)
     now_[slot] = from_[slot] + part * (to[slot] - from_[slot]);
-  return as_worn(now_);
+  hand::SensorAngles worn{};
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    worn[slot] = gains_[slot] * now_[slot] + offsets_rad_[slot];
+  return worn;
 }
 
 std::string PracticeHand::in_words(int step) const {

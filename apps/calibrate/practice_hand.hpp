@@ -51,7 +51,6 @@ public:
 private:
   void keep_from_ends();
   hand::SensorAngles free_motion(double time_s) const;
-  hand::SensorAngles as_worn(hand::SensorAngles angles) const;
   int wanted(double time_s) noexcept;
 
   std::optional<double> hold_s_;

@@ -25,9 +25,8 @@ enum class SessionEnd : std::uint8_t {
 Result<SessionEnd> run_calibration_session(driver::Glove& glove, const std::string& user,
                                            const hand::FitOptions& fit, CalibrationGuide& guide);
 
-// The picture of nendo calibrate in a terminal: what to do, a drawing of the pose from two sides,
-// and the present counts of the sensors.
-/// The contents of a picture. Everything that is pointed to must outlive the picture.
+/// What the terminal shows: what to do, a drawing of the pose from two sides, and the counts of the
+/// sensors. Everything that is pointed to must outlive the picture.
 struct CalibrationPicture {
   const driver::GloveInfo* info = nullptr;
   const std::string* user = nullptr;

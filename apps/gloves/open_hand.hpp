@@ -18,7 +18,6 @@
 
 namespace nendo::gloves {
 
-// The options by which a command chooses the calibration of a glove and the size of the hand.
 using sculpting::CalibrationOptions;
 
 /// Adds the options --user, --calibration and --adapt; for commands that take two gloves also
@@ -65,10 +64,9 @@ Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = s
 /// be the other hand's.
 Error same_hand(const OpenHand& one, const OpenHand& other);
 
-/// Takes the first sample of each started glove out of its ring, and finds the wearer. Both hands
-/// of the wearer get `length` if it is given. Waits for a sample for 2 s, or longer if its rate is
-/// low or unknown. Errors: no_device
-/// if no sample comes, failed if a stop signal comes, and those of find_wearer().
+/// Waits for the first samples (sculpting::wait_for_samples()), and finds the wearers. Both hands
+/// of a wearer get `length` if it is given. Errors: those of these two, failed if a stop signal
+/// comes.
 Result<void> calibrate(std::span<OpenHand> hands, const CalibrationOptions& options,
                        const HandLength& length);
 

@@ -59,7 +59,6 @@ private:
   std::shared_ptr<const flow::WristPath> wrist_;
 };
 
-// The motion of a kneading hand: its wrist's pose and its fingers' angles over time.
 /// The model on the stage, in metres.
 struct KneadedModel {
   static constexpr double upper = 0.85; ///< where hands take its upper part, relative to its height
@@ -94,7 +93,6 @@ public:
 std::unique_ptr<KneadPlan> plan_of(KneadTask task, const KneadedModel& model,
                                    const hand::HandSkeleton& skeleton);
 
-// Common parts of the plans of kneading hands.
 inline constexpr double away_m = 0.05;       ///< from the model, where a motion begins and ends
 inline constexpr double pinch_gap_m = 0.011; ///< between the tips of thumb and index finger
 

@@ -10,10 +10,6 @@
 namespace nendo::hand {
 namespace {
 
-AngleSource measured_or(SensorMask present, Sensor sensor, AngleSource otherwise) noexcept {
-  return present.has(sensor) ? AngleSource::measured : otherwise;
-}
-
 void set_left_out(AngleSources& sources, SensorMask present, SensorMask left_out) noexcept {
   const SensorMask measured{present.bits & ~left_out.bits};
   const auto is_out = [&](Sensor sensor) { return present.has(sensor) && left_out.has(sensor); };
@@ -91,7 +87,7 @@ AngleSources angle_sources(SensorMask present, SensorMask left_out) noexcept {
   sources.fill(AngleSource::zero);
   const auto source = [&](Angle angle) -> AngleSource& { return sources[index_of(angle)]; };
   const auto take = [&](Angle angle, Sensor sensor, AngleSource otherwise) {
-    source(angle) = measured_or(present, sensor, otherwise);
+    source(angle) = present.has(sensor) ? AngleSource::measured : otherwise;
   };
   constexpr auto zero = AngleSource::zero;
 

@@ -33,13 +33,6 @@ bool write_all(int fd, std::string_view rest, std::uint64_t at) noexcept {
   return true;
 }
 
-bool is_finite(const HandPose& pose) {
-  bool finite = true;
-  for (const auto& joint : pose.joints)
-    finite = finite && joint.matrix().allFinite();
-  return finite;
-}
-
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
@@ -103,7 +96,9 @@ Result<BvhFile> BvhFile::create(const fs::path& path, const HandSkeleton& skelet
     return Error{Errc::usage, path.string() + ": use a rate above 0 and up to 1000000 frames a "
                                               "second"};
   }
-  if (!is_finite(skeleton.pose({}, Eigen::Isometry3d::Identity()))) {
+  const HandPose flat = skeleton.pose({}, Eigen::Isometry3d::Identity());
+  if (!std::all_of(flat.joints.begin(), flat.joints.end(),
+                   [](const auto& joint) { return joint.matrix().allFinite(); })) {
     return Error{Errc::usage, path.string() + ": the hand's size is not finite; use one in metres"};
   }
   const auto failed = [&](const std::string& what) {

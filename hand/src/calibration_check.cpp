@@ -51,9 +51,17 @@ std::string complaint_about_sensors(const WearerCalibration& wearer) {
 
 enum class Group : std::uint8_t { bend, pair, other };
 
+/// Counts of these, and mostly of gaps, rise with the joint's angle. For the sensors of the wrist,
+/// of the arch and the other ones of the thumb, the sign depends on how a glove is sewn.
+bool measures_bending(Sensor sensor) noexcept {
+  const std::string_view name = name_of(sensor);
+  return name.ends_with("_mcp") || name.ends_with("_pip") || name.ends_with("_dip") ||
+         name.ends_with("_ip");
+}
+
 Group group_of(Sensor sensor) noexcept {
-  if (!rises_with_angle(sensor)) return Group::other;
-  return is_gap(sensor) ? Group::pair : Group::bend;
+  if (is_gap(sensor)) return Group::pair;
+  return measures_bending(sensor) ? Group::bend : Group::other;
 }
 
 /// Returns whether some gains of the group are negative, and none is positive.
@@ -88,16 +96,6 @@ void turn_other_frames(ReadLines& lines, std::vector<std::string>& notes) {
 
 } // namespace
 
-bool rises_with_angle(Sensor sensor) noexcept {
-  const std::string_view name = name_of(sensor);
-  return name.ends_with("_mcp") || name.ends_with("_pip") || name.ends_with("_dip") ||
-         name.ends_with("_ip") || is_gap(sensor);
-}
-
-bool may_be_calibrated(Sensor sensor) noexcept {
-  return sensor != Sensor::unused;
-}
-
 std::string complaint_about_text(std::string_view text, bool may_be_empty) {
   if (text.empty()) return may_be_empty ? "" : "must not be empty; give a name";
   if (text.size() > max_text_bytes) return "is longer than 200 bytes; shorten it";
@@ -109,27 +107,20 @@ std::string complaint_about_text(std::string_view text, bool may_be_empty) {
   return {};
 }
 
-std::string complaint_about_gain(Sensor sensor, double gain, CountScale counts) {
+std::string complaint_about(Sensor sensor, const SensorCalibration& line, CountScale counts) {
+  // Slot 23 has a place in the protocol.
+  if (sensor == Sensor::unused) return "no glove has this sensor; leave it out";
+  const double gain = line.gain_rad_per_count;
   if (gain == 0.0) return "a gain of 0 measures nothing; calibrate it or leave the sensor out";
   const double most = 255.0 / counts.most; // 1 rad a count of 8 bits
   if (!lies_within(std::abs(gain), 0.0, most))
     return "a gain of " + decimal_text(gain) + " is absurd; it must lie within " +
            decimal_text(most) + " rad a count";
-  if (gain < 0.0 && rises_with_angle(sensor) && !is_gap(sensor))
+  if (gain < 0.0 && measures_bending(sensor))
     return "a gain of " + decimal_text(gain) +
            " has the wrong sign; counts rise when the joint bends";
-  return {};
-}
-
-std::string complaint_about_offset(double offset_counts) {
-  if (lies_within(offset_counts, -max_offset_counts, max_offset_counts)) return {};
+  if (lies_within(line.offset_counts, -max_offset_counts, max_offset_counts)) return {};
   return "the offset is absurd; give counts";
-}
-
-std::string complaint_about(Sensor sensor, const SensorCalibration& line, CountScale counts) {
-  if (!may_be_calibrated(sensor)) return "no glove has this sensor; leave it out";
-  std::string complaint = complaint_about_gain(sensor, line.gain_rad_per_count, counts);
-  return complaint.empty() ? complaint_about_offset(line.offset_counts) : complaint;
 }
 
 std::string complaint_about(const SensorQuality& quality) {

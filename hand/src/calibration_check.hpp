@@ -16,18 +16,7 @@ namespace nendo::hand {
 /// No calibration file of any format may be larger.
 inline constexpr std::uint64_t max_calibration_bytes = std::uint64_t{1} << 20;
 
-/// Returns whether counts usually rise with the joint's angle: the sensor measures bending, or lies
-/// between two fingers. For the sensors of the wrist, of the arch and the other ones of the thumb,
-/// the sign depends on how a glove is sewn. Those between fingers are known with both signs,
-/// so that only a bending sensor's falling line is complained about.
-bool rises_with_angle(Sensor sensor) noexcept;
-/// Returns whether this slot may be calibrated. Slot 23 has a place in the protocol, but no glove
-/// has a sensor for it.
-bool may_be_calibrated(Sensor sensor) noexcept;
-
 std::string complaint_about_text(std::string_view text, bool may_be_empty);
-std::string complaint_about_gain(Sensor sensor, double gain_rad_per_count, CountScale counts);
-std::string complaint_about_offset(double offset_counts);
 /// Checks a calibrated sensor's line: here a gain of 0 is an error.
 std::string complaint_about(Sensor sensor, const SensorCalibration& line, CountScale counts);
 std::string complaint_about(const SensorQuality& quality);
@@ -37,8 +26,6 @@ std::string complaint_about_bias(double middle_bias);
 /// Checks everything; a sensor of gain 0 is left out.
 std::string complaint_about(const WearerCalibration& wearer);
 
-// Makes a calibration of the lines that another program wrote: corrects signs, and checks that
-// required sensors are there.
 /// Lines as they were read, in counts of 0 to 255.
 struct ReadLines {
   std::array<SensorCalibration, sensor_slots> sensors{};

@@ -137,11 +137,6 @@ Versions versions_of(const fs::path& target) {
   return versions;
 }
 
-/// Adds another name, which must be free, to a file. Returns 0 or the error number.
-int add_name(const fs::path& path, const fs::path& second) noexcept {
-  return ::link(path.c_str(), second.c_str()) == 0 ? 0 : errno;
-}
-
 /// Gives the file of today a second name, after those of all its versions, even if the clock was
 /// put back or old ones of this second are gone. Empty if there is no file.
 Result<fs::path> keep_as_earlier(const fs::path& path) {
@@ -155,8 +150,8 @@ Result<fs::path> keep_as_earlier(const fs::path& path) {
   }
   for (; version.number < max_version_number; ++version.number) {
     fs::path kept = target.parent_path() / version_name(target.stem().string(), version);
-    const int error_number = add_name(target, kept);
-    if (error_number == 0) return kept;
+    if (::link(target.c_str(), kept.c_str()) == 0) return kept;
+    const int error_number = errno;
     if (error_number == ENOENT) return fs::path{};
     if (error_number == EEXIST) continue;
     return Error{Errc::failed, path.string() + ": the earlier version cannot be kept: " +

@@ -81,10 +81,6 @@ hand::WearerHand hand_of(const hand::WearerCalibration& wearer, CountScale count
   return {hand::calibration_for(wearer, counts), wearer.size, wearer.left_out};
 }
 
-hand::WearerHand average_hand(CountScale counts) {
-  return {hand::default_calibration(counts), {}};
-}
-
 Result<hand::StoredCalibration> asked_for(const driver::GloveInfo& glove, Side side,
                                           const std::string& name, const Note& note) {
   auto file = named_calibration(name, note);
@@ -232,7 +228,8 @@ namespace {
 Result<hand::Wearer> chosen_wearer(const driver::GloveInfo& glove, Side side,
                                    const CalibrationOptions& options, const Note& note,
                                    FoundCalibration& result) {
-  hand::Wearer wearer{average_hand(glove.counts), average_hand(glove.counts)};
+  const hand::WearerHand average{hand::default_calibration(glove.counts), {}};
+  hand::Wearer wearer{average, average};
   if (options.adapt) return adapting_wearer(glove, side, wearer, options, note, result);
   if (options.calibration == "none") return wearer;
   if (!options.calibration.empty()) {

@@ -31,11 +31,6 @@ void place_beside(std::span<const flow::HandInput> hands, const deform::Mesh& mo
   }
 }
 
-double longest_side(const deform::Mesh& model) {
-  const deform::Box box = deform::box_of_faces(model);
-  return (box.highest - box.lowest).maxCoeff();
-}
-
 } // namespace
 
 double usual_size_m(flow::Mode mode) noexcept {
@@ -49,7 +44,8 @@ double usual_size_m(flow::Mode mode) noexcept {
 deform::Supports usual_supports(const deform::Mesh& model, flow::Mode mode) {
   constexpr double fraction = 0.2;       // 16 cm on the stage
   constexpr double clay_fraction = 0.32; // a ball of 7.5 cm yields within 2.4 cm of a hand
-  const double size = longest_side(model);
+  const deform::Box box = deform::box_of_faces(model);
+  const double size = (box.highest - box.lowest).maxCoeff();
   return deform::one_radius((mode == flow::Mode::clay ? clay_fraction : fraction) *
                             (size > 0.0 ? size : 1.0));
 }

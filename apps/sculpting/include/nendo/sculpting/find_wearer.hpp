@@ -18,10 +18,7 @@
 
 namespace nendo::sculpting {
 
-// Finds calibrations as users name them: by a path, by a stored file's name without .toml, or by a
-// wearer.
-/// Receives a notice for the user in one line. It is called on the thread
-/// of the function that it is given to.
+/// Receives a notice for the user in one line, on the thread of the function that it is given to.
 using Note = std::function<void(std::string_view)>;
 
 /// Returns the calibrations in the folders that the environment gives. Notes which files cannot be
