@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <variant>
 
-#include "commands/edit_rows.hpp"
 #include "commands/run_rows.hpp"
 
 namespace nendo::commands {

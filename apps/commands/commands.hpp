@@ -12,7 +12,6 @@
 
 #include <nendo/flow/command.hpp>
 #include <nendo/flow/frame.hpp>
-#include <nendo/flow/wanted_settings.hpp>
 
 #include "commands/edit_command.hpp"
 

@@ -5,7 +5,10 @@
 #include <optional>
 #include <string>
 
+#include <nendo/base/result.hpp>
+
 #include "cli/command.hpp"
+#include "timeline/reduce.hpp"
 #include "timeline/timeline.hpp"
 
 namespace nendo::edit {
@@ -39,5 +42,17 @@ int play_timeline(const PlayOptions& options);
 
 /// Adds the command `nendo edit view`, which opens the window.
 void add_timeline_view(cli::Command& edit);
+
+Result<Side> parse_hand(const std::string& text);
+Result<hand::Finger> parse_finger(const std::string& text);
+/// Parses three numbers after --to, such as "1,-2.5,0".
+Result<Eigen::Vector3d> parse_place(const std::string& text);
+/// Formats a number with the given count of decimals.
+std::string fixed(double number, int decimals);
+/// Returns the path to which an edited timeline is written: `out`, or `file` itself if `out` is
+/// empty. Errors: those of check_place(); usage if `file` is not named like a timeline.
+Result<std::string> edited_file(const std::string& file, const std::string& out);
+/// Parses a length or an angle: "1mm", "0.02rad" or "1deg".
+Result<timeline::Tolerance> parse_tolerance(const std::string& text);
 
 } // namespace nendo::edit

@@ -14,12 +14,12 @@
 #include <nendo/version.hpp>
 
 #include "commands/commands.hpp"
-#include "edit/edit_words.hpp"
+#include "edit/edit_actions.hpp"
 #include "export/chosen_frames.hpp"
 #include "export/gltf_export.hpp"
 #include "takes/timeline_frames.hpp"
 #include "timeline/edit.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::edit {
 using namespace timeline;

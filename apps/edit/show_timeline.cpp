@@ -17,9 +17,8 @@
 
 #include "cli/cli.hpp"
 #include "edit/edit_actions.hpp"
-#include "edit/edit_words.hpp"
-#include "timeline/function_values.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/hand_curve.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::edit {
 namespace {

@@ -12,9 +12,8 @@
 #include "commands/commands.hpp"
 #include "edit/edit_actions.hpp"
 #include "edit/edit_session.hpp"
-#include "edit/edit_words.hpp"
 #include "takes/timeline_frames.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/timeline.hpp"
 #include "viewer/timeline_window.hpp"
 
 namespace nendo::edit {

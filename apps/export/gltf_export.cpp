@@ -11,7 +11,6 @@
 
 #include "export/exact_morphs.hpp"
 #include "export/gltf_animation.hpp"
-#include "export/key_shapes.hpp"
 
 namespace nendo::exporting {
 namespace {

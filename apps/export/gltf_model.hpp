@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <nendo/deform/mesh.hpp>
@@ -10,9 +11,27 @@
 #include "export/chosen_frames.hpp"
 #include "export/exact_morphs.hpp"
 #include "export/glb_file.hpp"
-#include "export/gltf_materials.hpp"
 
 namespace nendo::exporting {
+
+/// Returns the one with the most materials. Versions of a model add theirs behind those before.
+const deform::Appearance& richest_of(std::span<const deform::Appearance* const> looks) noexcept;
+
+class GltfMaterials {
+public:
+  /// Adds all materials of `look` to `file`, and one of clay for faces that have none. Textures
+  /// that are neither PNG nor JPEG are left out, for glTF has no others.
+  GltfMaterials(const deform::Appearance& look, GlbFile& file);
+
+  /// Returns the index in the file of a material of the look; of deform::no_index, that of clay.
+  GlbFile::Index index_of(std::uint32_t material) const noexcept {
+    return material == deform::no_index ? plain_ : indices_[material];
+  }
+
+private:
+  GlbFile::Index plain_ = 0; ///< material of faces without one
+  std::vector<GlbFile::Index> indices_;
+};
 
 /// The faces of one material, which are a primitive. glTF has one texture coordinate for each
 /// vertex, so vertices are split where several meet. Readers copy all vertices that a primitive

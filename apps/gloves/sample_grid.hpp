@@ -8,7 +8,7 @@
 #include <optional>
 
 #include <nendo/driver/sample.hpp>
-#include <nendo/flow/tick_grid.hpp>
+#include <nendo/flow/pacer.hpp>
 
 namespace nendo::gloves {
 

@@ -13,7 +13,7 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/deform/mesh.hpp>
-#include <nendo/flow/wrist_path.hpp>
+#include <nendo/flow/wrist.hpp>
 #include <nendo/hand/calibration.hpp>
 #include <nendo/hand/joint_angles.hpp>
 #include <nendo/hand/skeleton.hpp>

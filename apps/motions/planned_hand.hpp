@@ -9,7 +9,7 @@
 
 #include <nendo/deform/mesh.hpp>
 #include <nendo/driver/open_glove.hpp>
-#include <nendo/flow/wrist_path.hpp>
+#include <nendo/flow/wrist.hpp>
 #include <nendo/hand/skeleton.hpp>
 
 namespace nendo::motions {

@@ -15,7 +15,7 @@
 #include <nendo/deform/csrbf.hpp>
 #include <nendo/deform/injective_chain.hpp>
 #include <nendo/deform/midpoint_chain.hpp>
-#include <nendo/flow/compatible.hpp>
+#include <nendo/flow/setting.hpp>
 
 #include "cli/cli.hpp"
 #include "nendo/commands.hpp"

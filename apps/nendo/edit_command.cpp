@@ -7,11 +7,10 @@
 
 #include "cli/cli.hpp"
 #include "edit/edit_actions.hpp"
-#include "edit/edit_words.hpp"
 #include "nendo/commands.hpp"
 #include "takes/timeline_frames.hpp"
 #include "timeline/edit.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::app::edit_command {
 namespace {

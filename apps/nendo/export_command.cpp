@@ -19,16 +19,14 @@
 #include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "cli/quantities.hpp"
-#include "export/csv_tables.hpp"
 #include "export/gltf_export.hpp"
-#include "export/hands_bvh.hpp"
+#include "export/motion_files.hpp"
 #include "export/shape_files.hpp"
 #include "nendo/commands.hpp"
-#include "takes/glove_samples.hpp"
+#include "takes/model_files.hpp"
 #include "takes/recorded_frames.hpp"
-#include "takes/recorded_model.hpp"
 #include "takes/timeline_frames.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::app::export_command {
 namespace {

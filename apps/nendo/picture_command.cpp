@@ -20,8 +20,8 @@
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"
 #include "render/picture.hpp"
-#include "takes/key_poses.hpp"
 #include "takes/model_files.hpp"
+#include "takes/take.hpp"
 
 namespace nendo::app::picture_command {
 namespace {

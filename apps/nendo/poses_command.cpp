@@ -17,8 +17,9 @@
 #include <nlohmann/json.hpp>
 
 #include <nendo/driver/record_counts.hpp>
-#include <nendo/flow/tick_grid.hpp>
-#include <nendo/hand/angle_sources.hpp>
+#include <nendo/flow/pacer.hpp>
+#include <nendo/hand/active_calibration.hpp>
+#include <nendo/hand/angle_deviations.hpp>
 #include <nendo/hand/bvh_file.hpp>
 #include <nendo/hand/sensor_gate.hpp>
 #include <nendo/hand/wearer.hpp>
@@ -26,7 +27,7 @@
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
 #include "cli/quantities.hpp"
-#include "export/hands_bvh.hpp"
+#include "export/motion_files.hpp"
 #include "gloves/glove_json.hpp"
 #include "gloves/open_hand.hpp"
 #include "gloves/sample_grid.hpp"

@@ -9,7 +9,7 @@
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
 #include "takes/joint_study.hpp"
-#include "takes/recorded_model.hpp"
+#include "takes/model_files.hpp"
 #include "takes/recording_report.hpp"
 
 namespace nendo::app::recording_command {

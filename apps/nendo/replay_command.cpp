@@ -21,7 +21,6 @@
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"
 #include "takes/model_files.hpp"
-#include "takes/recorded_model.hpp"
 
 namespace nendo::app::replay_command {
 namespace {

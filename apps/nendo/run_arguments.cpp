@@ -12,9 +12,8 @@
 #include <nendo/base/text.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/refinement.hpp>
-#include <nendo/flow/compatible.hpp>
+#include <nendo/flow/pacer.hpp>
 #include <nendo/flow/setting.hpp>
-#include <nendo/flow/tick_grid.hpp>
 #include <nendo/puppet/puppet.hpp>
 #include <nendo/sculpting/placing.hpp>
 
@@ -24,7 +23,6 @@
 #include "cli/quantities.hpp"
 #include "nendo/model_output.hpp"
 #include "takes/model_files.hpp"
-#include "takes/recorded_model.hpp"
 
 namespace nendo::app::run_command {
 namespace {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include <nendo/flow/hold_watch.hpp>
+#include <nendo/flow/frame.hpp>
 
 namespace nendo::render {
 

@@ -6,7 +6,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <nendo/flow/rig_setup.hpp>
+#include <nendo/flow/sculptor.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
 #include "cli/cli.hpp"

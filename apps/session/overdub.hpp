@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <nendo/flow/layer.hpp>
-#include <nendo/recording/take_input.hpp>
+#include <nendo/recording/loop_replay.hpp>
 
 #include "cli/command.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <nendo/deform/midpoint_chain.hpp>
 #include <nendo/flow/finger_supports.hpp>
-#include <nendo/flow/rig_setup.hpp>
+#include <nendo/flow/sculptor.hpp>
 #include <nendo/flow/setting.hpp>
 #include <nendo/hand/held_points.hpp>
 #include <nendo/puppet/puppet_edit.hpp>

@@ -9,8 +9,8 @@
 
 #include <nendo/base/files.hpp>
 #include <nendo/deform/mesh_file.hpp>
-#include <nendo/flow/compatible.hpp>
-#include <nendo/flow/rig_setup.hpp>
+#include <nendo/flow/sculptor.hpp>
+#include <nendo/flow/setting.hpp>
 #include <nendo/puppet/puppet_edit.hpp>
 
 #include "cli/cli.hpp"

@@ -11,8 +11,8 @@
 
 #include <nendo/deform/triangles.hpp>
 #include <nendo/deform/undo_memory.hpp>
+#include <nendo/flow/command.hpp>
 #include <nendo/flow/setting.hpp>
-#include <nendo/flow/wanted_settings.hpp>
 #include <nendo/sculpting/loop_thread.hpp>
 #include <nendo/sculpting/placing.hpp>
 

@@ -15,7 +15,6 @@
 
 #include <nendo/flow/histogram.hpp>
 #include <nendo/flow/pacer.hpp>
-#include <nendo/flow/tick_record.hpp>
 
 namespace nendo::stress {
 

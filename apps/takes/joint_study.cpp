@@ -14,7 +14,7 @@
 #include <nendo/hand/joint_limits.hpp>
 
 #include "cli/json_line.hpp"
-#include "takes/glove_samples.hpp"
+#include "takes/recorded_frames.hpp"
 
 namespace nendo::takes {
 namespace {

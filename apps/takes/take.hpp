@@ -2,9 +2,11 @@
 // A take that can be drawn at any time, read from a mesh, a recording or a timeline. A mesh is a
 // take of one moment.
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include <nendo/base/result.hpp>
 #include <nendo/deform/mesh_file.hpp>
@@ -33,5 +35,12 @@ struct Take {
 /// and TimelineFrames::open().
 Result<Take> read_take(const std::filesystem::path& path, const deform::ReadOptions& reading = {},
                        const std::string& model = {});
+
+/// Returns the times of the first frame, and of those that differ the most from all that were
+/// chosen before, and that the hands hold for 0.2 s, if there are such: in the values of a puppet's
+/// functions, or else in the hands' joint angles (farthest-point sampling, Gonzalez 1985). At most
+/// `count` times, in their order; fewer if no other frame differs. Reads `frames` to the end.
+/// Blocks and allocates.
+std::vector<double> key_poses(FrameSource& frames, std::size_t count);
 
 } // namespace nendo::takes

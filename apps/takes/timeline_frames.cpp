@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "takes/recorded_model.hpp"
-#include "timeline/timeline_file.hpp"
+#include "takes/model_files.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::takes {
 

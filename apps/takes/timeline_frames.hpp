@@ -11,7 +11,7 @@
 #include <nendo/base/result.hpp>
 
 #include "takes/frame_source.hpp"
-#include "takes/recorded_model.hpp"
+#include "takes/model_files.hpp"
 #include "timeline/player.hpp"
 
 namespace nendo::takes {

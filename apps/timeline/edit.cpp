@@ -11,7 +11,6 @@
 #include <nendo/hand/inverse_kinematics.hpp>
 #include <nendo/hand/joint_limits.hpp>
 
-#include "timeline/function_values.hpp"
 #include "timeline/hand_curve.hpp"
 
 namespace nendo::timeline {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include <nendo/flow/rig_setup.hpp>
-#include <nendo/hand/wearer.hpp>
+#include <nendo/flow/sculptor.hpp>
+#include <nendo/hand/active_calibration.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
 namespace nendo::timeline {

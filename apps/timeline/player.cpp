@@ -4,7 +4,7 @@
 #include <utility>
 
 #include <nendo/deform/undo_memory.hpp>
-#include <nendo/flow/rig_setup.hpp>
+#include <nendo/flow/sculptor.hpp>
 
 namespace nendo::timeline {
 namespace {

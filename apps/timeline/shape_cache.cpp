@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <nendo/flow/hold_watch.hpp>
+#include <nendo/flow/frame.hpp>
 
 #include "timeline/hand_curve.hpp"
 

@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <numbers>
 
-#include <nendo/flow/rig_setup.hpp>
+#include <nendo/flow/pacer.hpp>
+#include <nendo/flow/sculptor.hpp>
 #include <nendo/flow/setting.hpp>
-#include <nendo/flow/tick_grid.hpp>
 
 namespace nendo::timeline {
 namespace {

@@ -9,7 +9,7 @@
 #include <nendo/base/text.hpp>
 #include <nendo/flow/setting.hpp>
 
-#include "timeline/timeline_file.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::timeline {
 namespace {

@@ -10,7 +10,7 @@
 #include <nendo/flow/setting.hpp>
 
 #include "config/toml_reader.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::timeline {
 

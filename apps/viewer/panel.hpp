@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include <nendo/flow/wanted_settings.hpp>
+#include <nendo/flow/command.hpp>
 
 #include "commands/commands.hpp"
 #include "viewer/live_window.hpp"

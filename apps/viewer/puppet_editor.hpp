@@ -10,9 +10,8 @@
 
 #include <nendo/base/units.hpp>
 #include <nendo/flow/frame.hpp>
-#include <nendo/puppet/bend_watch.hpp>
 #include <nendo/puppet/puppet_edit.hpp>
-#include <nendo/puppet/rig_shapes.hpp>
+#include <nendo/puppet/rig_check.hpp>
 
 #include "viewer/pointing.hpp"
 

@@ -11,8 +11,8 @@
 #include "support/test_meshes.hpp"
 #include "support/text_files.hpp"
 #include "support/timelines.hpp"
-#include "timeline/function_values.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/hand_curve.hpp"
+#include "timeline/timeline.hpp"
 
 namespace edit_session_test {
 

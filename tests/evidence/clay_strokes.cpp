@@ -20,7 +20,7 @@
 #include <nendo/deform/clay.hpp>
 #include <nendo/deform/refinement.hpp>
 #include <nendo/deform/triangles.hpp>
-#include <nendo/flow/hand_contact.hpp>
+#include <nendo/flow/clay_hands.hpp>
 
 #include "bench/refined_clay.hpp"
 #include "evidence/intersection_count.hpp"

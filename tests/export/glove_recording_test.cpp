@@ -10,9 +10,8 @@
 
 #include <nendo/recording/recorder.hpp>
 
-#include "export/csv_tables.hpp"
 #include "export/gltf_export.hpp"
-#include "export/hands_bvh.hpp"
+#include "export/motion_files.hpp"
 #include "support/bvh_reader.hpp"
 #include "support/csv_table.hpp"
 #include "support/glb_reader.hpp"

@@ -1,4 +1,4 @@
-#include "export/hands_bvh.hpp"
+#include "export/motion_files.hpp"
 
 #include <doctest/doctest.h>
 

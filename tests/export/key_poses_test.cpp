@@ -1,4 +1,4 @@
-#include "takes/key_poses.hpp"
+#include "takes/take.hpp"
 
 #include <algorithm>
 #include <cmath>

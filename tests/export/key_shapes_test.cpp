@@ -1,4 +1,4 @@
-#include "export/key_shapes.hpp"
+#include "export/exact_morphs.hpp"
 
 #include <random>
 

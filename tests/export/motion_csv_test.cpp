@@ -1,4 +1,4 @@
-#include "export/csv_tables.hpp"
+#include "export/motion_files.hpp"
 
 #include <limits>
 

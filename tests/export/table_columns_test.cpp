@@ -15,7 +15,7 @@
 #include <nendo/hand/joints.hpp>
 #include <nendo/recording/recorder.hpp>
 
-#include "export/csv_tables.hpp"
+#include "export/motion_files.hpp"
 #include "support/csv_table.hpp"
 #include "support/recorded_motion.hpp"
 #include "support/takes.hpp"

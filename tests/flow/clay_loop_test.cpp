@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/flow/hand_contact.hpp>
+#include <nendo/flow/clay_hands.hpp>
 
 #include "support/flow_fixtures.hpp"
 

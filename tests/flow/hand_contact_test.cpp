@@ -1,4 +1,4 @@
-#include <nendo/flow/hand_contact.hpp>
+#include <nendo/flow/clay_hands.hpp>
 
 #include <random>
 #include <vector>

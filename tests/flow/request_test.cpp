@@ -1,4 +1,4 @@
-#include <nendo/flow/request.hpp>
+#include <nendo/flow/command.hpp>
 
 #include <atomic>
 #include <thread>

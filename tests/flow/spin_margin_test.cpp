@@ -1,4 +1,4 @@
-#include <nendo/flow/spin_margin.hpp>
+#include <nendo/flow/pacer.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <nendo/flow/tick_grid.hpp>
+#include <nendo/flow/pacer.hpp>
 
 #include <random>
 

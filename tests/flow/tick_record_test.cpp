@@ -1,4 +1,4 @@
-#include <nendo/flow/tick_record.hpp>
+#include <nendo/flow/pacer.hpp>
 
 #include <thread>
 

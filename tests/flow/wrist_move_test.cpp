@@ -1,4 +1,4 @@
-#include <nendo/flow/wrist_move.hpp>
+#include <nendo/flow/wrist.hpp>
 
 #include <limits>
 #include <random>

@@ -1,4 +1,4 @@
-#include <nendo/flow/wrist_switch.hpp>
+#include <nendo/flow/wrist.hpp>
 
 #include <doctest/doctest.h>
 

@@ -9,7 +9,7 @@
 
 #include "support/test_meshes.hpp"
 #include "timeline/player.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/timeline.hpp"
 
 namespace {
 

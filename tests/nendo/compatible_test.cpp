@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/flow/compatible.hpp>
+#include <nendo/flow/setting.hpp>
 
 #include "support/flow_fixtures.hpp"
 #include "support/program.hpp"

@@ -10,7 +10,7 @@
 #include "support/memory_screen.hpp"
 #include "support/program.hpp"
 #include "support/restraint.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/timeline.hpp"
 
 namespace edit_command_test {
 

@@ -14,7 +14,7 @@
 #include "support/nasty_meshes.hpp"
 #include "support/placed_meshes.hpp"
 #include "support/program.hpp"
-#include "takes/recorded_model.hpp"
+#include "takes/model_files.hpp"
 
 namespace repair_command_test {
 

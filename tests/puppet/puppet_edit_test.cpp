@@ -8,7 +8,6 @@
 
 #include <nendo/base/units.hpp>
 #include <nendo/deform/mesh_file.hpp>
-#include <nendo/puppet/bend_watch.hpp>
 #include <nendo/puppet/puppet_edit.hpp>
 
 #include "support/test_meshes.hpp"

@@ -8,7 +8,6 @@
 #include <doctest/doctest.h>
 
 #include <nendo/recording/loop_replay.hpp>
-#include <nendo/recording/take_input.hpp>
 #include <nendo/recording/take_tools.hpp>
 
 #include "setup_parts.hpp"

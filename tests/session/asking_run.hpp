@@ -20,7 +20,7 @@
 #include "session/run_session.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
-#include "takes/recorded_model.hpp"
+#include "takes/model_files.hpp"
 
 namespace nendo::session::asking {
 

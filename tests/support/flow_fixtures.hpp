@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <nendo/flow/deform_loop.hpp>
-#include <nendo/flow/rig_setup.hpp>
+#include <nendo/flow/sculptor.hpp>
 
 #include "support/test_meshes.hpp"
 

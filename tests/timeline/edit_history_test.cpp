@@ -4,7 +4,7 @@
 #include "support/timelines.hpp"
 #include "timeline/edit.hpp"
 #include "timeline/edit_history.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/timeline.hpp"
 
 namespace edit_history_test {
 

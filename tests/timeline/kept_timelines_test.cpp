@@ -10,7 +10,7 @@
 
 #include "support/recorded_rounding.hpp"
 #include "timeline/player.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/timeline.hpp"
 
 namespace kept_timelines_test {
 

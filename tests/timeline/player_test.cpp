@@ -9,7 +9,7 @@
 #include "timeline/edit.hpp"
 #include "timeline/from_take.hpp"
 #include "timeline/player.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/timeline.hpp"
 
 namespace player_test {
 

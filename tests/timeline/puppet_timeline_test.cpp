@@ -14,10 +14,10 @@
 #include "timeline/edit.hpp"
 #include "timeline/edit_history.hpp"
 #include "timeline/from_take.hpp"
-#include "timeline/function_values.hpp"
+#include "timeline/hand_curve.hpp"
 #include "timeline/player.hpp"
 #include "timeline/shape_cache.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/timeline.hpp"
 
 namespace puppet_timeline_test {
 

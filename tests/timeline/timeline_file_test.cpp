@@ -5,7 +5,7 @@
 #include "support/takes.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/timelines.hpp"
-#include "timeline/timeline_file.hpp"
+#include "timeline/timeline.hpp"
 
 namespace timeline_file_test {
 

@@ -8,7 +8,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <nendo/flow/hand_contact.hpp>
+#include <nendo/flow/clay_hands.hpp>
 #include <nendo/hand/inverse_kinematics.hpp>
 
 #include "bench/clay_trial.hpp"

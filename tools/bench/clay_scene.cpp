@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <nendo/flow/hand_contact.hpp>
+#include <nendo/flow/clay_hands.hpp>
 
 namespace nendo::bench {
 

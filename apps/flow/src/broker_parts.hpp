@@ -91,11 +91,10 @@ struct ChangeBroker::Parts {
   void end_log();
   Result<void> change_settings(const LoopSettings& settings);
   Result<SculptorSetup> setup_for(const SculptorSetup& before, const LoopSettings& settings) const;
-  // In change_puppet.cpp:
+  // In change_model.cpp:
   Result<void> change_puppet(std::uint32_t number);
   Result<SculptorSetup> setup_with(std::uint32_t puppet) const;
   Result<void> set_surface(SculptorOptions& sculptor, const ModelVersion& version) const;
-  // In change_model.cpp:
   void offer_model(ModelVersion& version, const ChangeModel& model);
   void go_back();
   Result<void> set_model(SculptorOptions& sculptor, const ModelVersion& version) const;

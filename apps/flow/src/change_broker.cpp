@@ -3,9 +3,8 @@
 #include <cassert>
 #include <utility>
 
-#include <nendo/base/atomics.hpp>
-#include <nendo/flow/compatible.hpp>
-#include <nendo/flow/rig_setup.hpp>
+#include <nendo/base/relax.hpp>
+#include <nendo/flow/sculptor.hpp>
 #include <nendo/flow/setting.hpp>
 
 #include "broker_parts.hpp"

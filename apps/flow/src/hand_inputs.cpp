@@ -1,10 +1,79 @@
+#include "ticker.hpp"
+#include <nendo/flow/hand_input.hpp>
+
 #include <algorithm>
 #include <cassert>
+#include <string>
 #include <utility>
 
-#include "ticker.hpp"
+#include <nendo/flow/input_script.hpp>
+#include <nendo/hand/pinch_closing.hpp>
 
 namespace nendo::flow {
+
+Result<void> check_inputs(std::span<const HandInput> inputs) {
+  if (inputs.empty() || inputs.size() > max_inputs)
+    return Error{Errc::bad_input, std::to_string(inputs.size()) + " inputs of a loop: use 1 to " +
+                                      std::to_string(max_inputs)};
+  for (auto input = inputs.begin(); input != inputs.end(); ++input)
+    if (!input->layer && std::any_of(inputs.begin(), input, [&](const HandInput& before) {
+          return before.side == input->side;
+        }))
+      return Error{Errc::bad_input,
+                   "input " + std::to_string(input - inputs.begin()) + " of a loop: the " +
+                       std::string(name_of(input->side)) +
+                       " hand has an input before; make this a layer, or leave it out"};
+  return {};
+}
+
+std::size_t count_hands(std::span<const HandInput> inputs) noexcept {
+  const bool has_other = std::any_of(inputs.begin(), inputs.end(), [&](const HandInput& input) {
+    return input.side != inputs.front().side;
+  });
+  return inputs.empty() ? 0 : 1 + static_cast<std::size_t>(has_other);
+}
+
+GloveHand::GloveHand(HandInput hand_input, const Placement& placement, bool closes)
+    : input(std::move(hand_input)), slot(Placement::index_of(input.side)),
+      T_stage_wrist(placement.T_stage_wrist[slot]),
+      skeletons{input.skeleton(Side::left), input.skeleton(Side::right)}, calibration(input.wearer),
+      filter(input.filter), closes_pinches(closes) {
+  follow(input.first);
+}
+
+bool GloveHand::update(const GloveSample& sample) noexcept {
+  follow(sample);
+  return wrist_switch.turned_on(sample.wrist_switch, sample.arrival);
+}
+
+void GloveHand::follow(const GloveSample& sample) noexcept {
+  const hand::Calibration& active = calibration.follow(sample);
+  latest = input.gated ? gate.pass(sample, active) : sample;
+  pose_by(active);
+}
+
+void GloveHand::pose_by(const hand::Calibration& active) noexcept {
+  angles = filter.pass(hand::joint_angles(latest, active, left_out()), latest.time());
+  if (closes_pinches) angles = hand::close_pinches(angles, skeleton(), latest.present, left_out());
+}
+
+void GloveHand::change_filter(const hand::FilterOptions& options, bool closes) noexcept {
+  if (filter.options() == options && closes_pinches == closes) return;
+  if (filter.options() != options) filter = hand::JointFilter(options);
+  closes_pinches = closes;
+  pose_by(calibration.of(latest.side));
+}
+
+void GloveHand::restart() noexcept {
+  input.first = latest;
+  if (input.wearer.adapt) input.wearer.learned = calibration.learned();
+  if (const auto* stuck = calibration.stuck()) input.wearer.stuck = stuck->stuck();
+  calibration = hand::ActiveCalibration(input.wearer);
+  gate = {};
+  filter = hand::JointFilter(filter.options());
+  wrist_switch = {};
+  follow(input.first);
+}
 
 HandInputs::HandInputs(std::vector<HandInput> inputs, const Placement& placement,
                        const LoopSettings& settings) {
@@ -143,6 +212,96 @@ void HandInputs::record_latencies(HostTime done, LoopStats& stats) const noexcep
     stats.filter_moving.record(from_seconds(latency.moving_s));
     stats.filter_worst.record(from_seconds(latency.worst_s));
   }
+}
+
+void DeformLoop::Ticker::take_input(TickRecord& record) noexcept {
+  take_commands(record.scheduled);
+  take_script(record.scheduled);
+  take_samples(record);
+}
+
+void DeformLoop::Ticker::take_commands(HostTime scheduled) noexcept {
+  if (const auto& wire = options_.wire_time) {
+    const double now_s = stats_.ticks == 0 ? 0.0 : seconds_between(first_due_, scheduled);
+    const bool draws = now_s >= wire->from_s && now_s < wire->to_s;
+    if (std::exchange(draws_in_time_, draws) != draws) apply(DrawWire{draws, wire->blade});
+  }
+  if (options_.commands == nullptr) return;
+  options_.commands->drain([this](const Command& command) noexcept { apply(command); });
+}
+
+void DeformLoop::Ticker::take_script(HostTime scheduled) noexcept {
+  if (options_.script == nullptr) return;
+  const HostClock::duration since_first =
+      stats_.ticks == 0 ? HostClock::duration::zero() : scheduled - first_due_;
+  options_.script->play(since_first, [this](const InputLogEntry& entry) noexcept {
+    if (const auto* taken = std::get_if<TakenSample>(&entry)) {
+      if (taken->hand >= inputs_.count()) return;
+      take(taken->hand, taken->sample);
+      const GloveHand& hand = inputs_[taken->hand];
+      if (hand.is_topmost) ++stats_.samples[hand.slot];
+    } else if (const auto* command = std::get_if<Command>(&entry)) {
+      apply(*command);
+    }
+  });
+}
+
+void DeformLoop::Ticker::take_samples(TickRecord& record) noexcept {
+  HostTime newest{};
+  for (std::uint8_t number = 0; number < inputs_.count(); ++number) {
+    GloveHand& hand = inputs_[number];
+    const std::size_t count = hand.input.ring == nullptr
+                                  ? 0
+                                  : hand.input.ring->drain([&](const GloveSample& sample) noexcept {
+                                      take(number, sample);
+                                    });
+    hand.fresh = count > 0;
+    if (hand.fresh) {
+      if (hand.input.wrist_path)
+        apply(WristMove::to(hand.input.side,
+                            hand.input.wrist_path->at(to_seconds(hand.latest.device_time))));
+      const HostTime arrival = hand.latest.arrival;
+      newest = std::max(newest, arrival);
+      record.input = record.samples == 0 ? arrival : std::min(record.input, arrival);
+      record.samples += static_cast<std::uint32_t>(count);
+    }
+    inputs_.count_samples(number, count, record.woke, options_.silent_after, stats_);
+  }
+  if (options_.policy == OverrunPolicy::sample && record.samples > 0) record.scheduled = newest;
+  update_switches();
+}
+
+/// Takes a sample of that input.
+void DeformLoop::Ticker::take(std::uint8_t number, const GloveSample& sample) noexcept {
+  GloveHand& hand = inputs_[number];
+  if (options_.input_log != nullptr) options_.input_log->sample(number, sample);
+  if (!hand.update(sample)) return;
+  ++stats_.switch_uses[hand.slot];
+  if (core_.has_clutch(hand.input.side))
+    return core_.toggle_clutch(hand.input.side, inputs_.pose());
+  if (options_.switch_action == SwitchAction::toggle) core_.toggle_hold();
+  if (options_.switch_action == SwitchAction::commit) core_.commit_when_held();
+}
+
+void DeformLoop::Ticker::apply(const Command& command) noexcept {
+  const auto* const move = std::get_if<WristMove>(&command);
+  if (!is_for_loop(command) || (move != nullptr && !move->is_usable())) return;
+  if (is_for_puppet(command) && core_.puppet() == nullptr) return;
+  if (options_.input_log != nullptr) options_.input_log->command(command); // a Mark is only logged
+  if (move != nullptr) return inputs_.move_wrist(*move);
+  if (const auto* layer = std::get_if<SetLayer>(&command)) return inputs_.set_layer(*layer);
+  core_.apply(command, inputs_.pose());
+}
+
+void DeformLoop::Ticker::update_switches() noexcept {
+  if (options_.switch_action != SwitchAction::grab) return;
+  const auto hands = inputs_.all();
+  const bool on = std::any_of(hands.begin(), hands.end(), [this](const GloveHand& hand) {
+    return hand.wrist_switch.is_on() && !core_.has_clutch(hand.input.side);
+  });
+  if (on != switch_on_) // in between, requests are heard
+    core_.ask(on ? Request::grab : Request::let_go);
+  switch_on_ = on;
 }
 
 } // namespace nendo::flow

@@ -4,10 +4,13 @@
 #include <array>
 #include <charconv>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include <nendo/flow/finger_supports.hpp>
 
 namespace nendo::flow {
+
 namespace {
 
 template <class T>
@@ -33,6 +36,111 @@ constexpr std::array<std::string_view, 21> step_names{
     "settings", "subdivide", "brush", "puppet", "volume", "hold",    "mask",
     "symmetry", "refine",    "cut",   "join",   "copy",   "remove",  "topology"};
 constexpr std::array<std::string_view, 2> pinches_names{"measured", "closed"};
+
+enum class Party : std::uint8_t { mode, hold, brushes, volume, injective, puppet };
+
+bool is_chosen(Party party, const LoopSettings& settings, Played played) noexcept {
+  switch (party) {
+  case Party::mode:
+    return true;
+  case Party::hold:
+    return settings.hold == Hold::hand;
+  case Party::brushes:
+    return setting::has_brush(settings);
+  case Party::volume:
+    return setting::keep_volume.of(settings) > 0.0;
+  case Party::injective:
+    return settings.injective;
+  case Party::puppet:
+    return played != Played::nothing;
+  }
+  return false;
+}
+
+std::string words_for(Party party, const LoopSettings& settings, Naming naming) {
+  const bool is_option = naming == Naming::options;
+  const auto named = [&](const SettingText& setting, std::string_view value = {}) {
+    return std::string(is_option ? setting.option : setting.words) + (value.empty() ? "" : " ") +
+           std::string(value);
+  };
+  switch (party) {
+  case Party::mode:
+    return named(setting::mode, name_of(settings.mode));
+  case Party::hold:
+    return named(setting::hold, is_option ? name_of(settings.hold) : "");
+  case Party::brushes:
+    return named(setting::brushes, in_words(settings.brushes));
+  case Party::volume:
+    return named(setting::keep_volume);
+  case Party::injective:
+    return named(setting::injective);
+  case Party::puppet:
+    return is_option ? "--puppet" : "the puppet";
+  }
+  return {};
+}
+
+/// Both are chosen, and the rest of `applies` is true.
+struct Exclusion {
+  Party one, other;
+  bool (*applies)(Mode mode, Played played);
+  std::string_view reason;
+  bool has_no_effect = true; ///< one of them; otherwise a loop cannot shape with both
+};
+
+constexpr bool always(Mode /*mode*/, Played /*played*/) {
+  return true;
+}
+constexpr bool by_hands(Mode mode, Played /*played*/) {
+  return is_by_hands(mode);
+}
+constexpr bool in_type2(Mode mode, Played /*played*/) {
+  return mode == Mode::type2;
+}
+constexpr bool in_another_type(Mode mode, Played /*played*/) {
+  return mode != Mode::type2;
+}
+constexpr bool on_surface(Mode /*mode*/, Played played) {
+  return played == Played::along_surface;
+}
+
+constexpr std::array exclusions{
+    Exclusion{Party::mode, Party::puppet, by_hands,
+              "whole hands press clay and move parts, and a puppet has points", false},
+    Exclusion{Party::mode, Party::hold, by_hands, "hands hold clay or a part by closing on it"},
+    Exclusion{Party::mode, Party::volume, by_hands,
+              "clay keeps its volume by itself, and parts move as they are"},
+    Exclusion{Party::puppet, Party::hold, always, "a puppet's own points hold the model"},
+    Exclusion{Party::puppet, Party::brushes, always,
+              "fingertips have brushes, and a puppet's points pull"},
+    Exclusion{Party::puppet, Party::injective, always,
+              "fold prevention does not cover the surface of a puppet"},
+    Exclusion{Party::puppet, Party::volume, on_surface,
+              "a puppet's distances go along the surface, where no kernel is known that keeps the "
+              "volume, but distance = \"air\" in its file allows both",
+              false},
+    Exclusion{Party::mode, Party::brushes, in_another_type, "only type 2 has brushes"},
+    Exclusion{Party::mode, Party::hold, in_type2, "type 2 needs fingertip paths"},
+    Exclusion{Party::hold, Party::volume, always,
+              "90 points that keep the volume take longer than a tick"},
+    Exclusion{Party::volume, Party::injective, always,
+              "moves that keep the volume cannot be split for fold prevention; their steps are so "
+              "short that a single finger does not fold the surface"},
+};
+
+Result<void> first_exclusion(const LoopSettings& settings, Played played, Naming naming,
+                             bool with_effects) {
+  const auto* const found =
+      std::find_if(exclusions.begin(), exclusions.end(), [&](const Exclusion& one) {
+        return (with_effects || !one.has_no_effect) && is_chosen(one.one, settings, played) &&
+               is_chosen(one.other, settings, played) && one.applies(settings.mode, played);
+      });
+  if (found == exclusions.end()) return {};
+  return Error{naming == Naming::options ? Errc::usage : Errc::bad_input,
+               words_for(found->one, settings, naming) + " cannot be combined with " +
+                   words_for(found->other, settings, naming) + ": " + std::string(found->reason) +
+                   "; choose one of them"};
+}
 
 } // namespace
 
@@ -94,6 +202,23 @@ StepKind kind_of_change(const LoopSettings& before, const LoopSettings& after) n
     kind = kind && *kind != setting.step ? StepKind::settings : setting.step;
   });
   return kind.value_or(StepKind::mode);
+}
+
+Played played_by(const puppet::Puppet& puppet) noexcept {
+  if (!puppet.is_played()) return Played::nothing;
+  return puppet.distance == puppet::Distance::surface ? Played::along_surface : Played::through_air;
+}
+
+Played played_by(const puppet::Rig* rig) noexcept {
+  return rig == nullptr ? Played::nothing : played_by(rig->puppet());
+}
+
+Result<void> compatible(const LoopSettings& settings, Played played, Naming naming) {
+  return first_exclusion(settings, played, naming, false);
+}
+
+Result<void> all_effective(const LoopSettings& settings, Played played, Naming naming) {
+  return first_exclusion(settings, played, naming, true);
 }
 
 } // namespace nendo::flow

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include <nendo/flow/command.hpp>
-#include <nendo/flow/rig_setup.hpp>
+#include <nendo/flow/sculptor.hpp>
 #include <nendo/flow/wire_path.hpp>
 #include <nendo/hand/held_points.hpp>
 

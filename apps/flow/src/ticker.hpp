@@ -8,12 +8,12 @@
 
 #include <nendo/flow/deform_loop.hpp>
 #include <nendo/flow/frame.hpp>
-#include <nendo/flow/glove_hand.hpp>
+#include <nendo/flow/hand_input.hpp>
 #include <nendo/flow/loop_stats.hpp>
+#include <nendo/flow/pacer.hpp>
 #include <nendo/flow/prepared_change.hpp>
 #include <nendo/flow/shaping_core.hpp>
-#include <nendo/flow/tick_record.hpp>
-#include <nendo/flow/wrist_move.hpp>
+#include <nendo/flow/wrist.hpp>
 #include <nendo/puppet/rig.hpp>
 
 namespace nendo::flow {
@@ -77,7 +77,7 @@ public:
   ShapingCore& core() noexcept { return core_; }
 
 private:
-  // In take_input.cpp:
+  // In hand_inputs.cpp:
   void take_input(TickRecord& record) noexcept;
   void take_commands(HostTime scheduled) noexcept;
   void take_script(HostTime scheduled) noexcept;
@@ -85,7 +85,7 @@ private:
   void take(std::uint8_t number, const GloveSample& sample) noexcept;
   void apply(const Command& command) noexcept;
   void update_switches() noexcept;
-  // In ticker.cpp:
+  // In deform_loop.cpp:
   void begin_change() noexcept;
   void finish_change(Frame& frame) noexcept;
   void end_change() noexcept;

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include <nendo/flow/wrist_move.hpp>
-#include <nendo/flow/wrist_path.hpp>
-#include <nendo/flow/wrist_switch.hpp>
+#include <nendo/flow/wrist.hpp>
 
 namespace nendo::flow {
 

@@ -15,7 +15,7 @@
 
 #include <unistd.h>
 
-#include <nendo/flow/wrist_switch.hpp>
+#include <nendo/flow/wrist.hpp>
 
 #include "last_minute.hpp"
 #include "take_file.hpp"

@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <nendo/flow/pacer.hpp>
 #include <nendo/flow/setting.hpp>
-#include <nendo/flow/tick_grid.hpp>
 #include <nendo/recording/sample_record.hpp>
 
 namespace nendo::recording {

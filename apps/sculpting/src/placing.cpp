@@ -7,8 +7,8 @@
 #include <utility>
 
 #include <nendo/deform/face_box.hpp>
-#include <nendo/flow/hand_contact.hpp>
-#include <nendo/flow/rig_setup.hpp>
+#include <nendo/flow/clay_hands.hpp>
+#include <nendo/flow/sculptor.hpp>
 #include <nendo/hand/joint_angles.hpp>
 
 namespace nendo::sculpting {

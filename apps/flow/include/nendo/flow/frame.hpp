@@ -16,7 +16,6 @@
 #include <nendo/driver/sample.hpp>
 #include <nendo/flow/clay_hands.hpp>
 #include <nendo/flow/loop_settings.hpp>
-#include <nendo/flow/part_hands.hpp>
 #include <nendo/flow/placement.hpp>
 #include <nendo/flow/step.hpp>
 #include <nendo/flow/wire_path.hpp>
@@ -132,6 +131,26 @@ public:
   /// Takes a frame. Loop's thread: it is a part of the tick, so it must be wait-free, without
   /// allocation, lock or system call.
   virtual void show(const Frame& frame) noexcept = 0;
+};
+
+/// Follows a loop's frames, one after another. A hold begins where `held` becomes true, or where a
+/// change of the rest shape or a jump of the shape is counted. Wait-free.
+class HoldWatch {
+public:
+  /// Returns true if the fingertips grabbed in this frame.
+  bool follow(const Frame& frame) noexcept {
+    const bool has_grabbed = frame.held && (!held_ || frame.rest_changes != rest_changes_ ||
+                                            frame.shape_jumps != jumps_);
+    held_ = frame.held;
+    rest_changes_ = frame.rest_changes;
+    jumps_ = frame.shape_jumps;
+    return has_grabbed;
+  }
+
+private:
+  std::uint64_t rest_changes_ = 0;
+  std::uint64_t jumps_ = 0;
+  bool held_ = false;
 };
 
 } // namespace nendo::flow

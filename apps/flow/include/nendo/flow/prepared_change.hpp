@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include <nendo/flow/input_log.hpp>
+#include <nendo/flow/input_script.hpp>
 #include <nendo/flow/layer.hpp>
 #include <nendo/flow/placement.hpp>
 #include <nendo/flow/puppet_player.hpp>

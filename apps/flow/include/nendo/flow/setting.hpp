@@ -2,16 +2,160 @@
 // The one description of each setting: names, range, help. Options, timelines, reports and widgets
 // are made from it by for_each_setting().
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
 
 #include <nendo/base/result.hpp>
 #include <nendo/deform/brush.hpp>
-#include <nendo/flow/filter_setting.hpp>
-#include <nendo/flow/setting_kinds.hpp>
+#include <nendo/flow/loop_settings.hpp>
+#include <nendo/flow/step.hpp>
+#include <nendo/hand/joint_filter.hpp>
+#include <nendo/puppet/rig.hpp>
 
 namespace nendo::flow {
+
+/// The strings about a setting for messages, files and widgets.
+struct SettingText {
+  std::string_view name;              ///< in timelines and JSON
+  std::string_view option;            ///< the option of the command line; empty: none
+  std::string_view words;             ///< its name in messages about a run
+  std::string_view label;             ///< beside a widget
+  std::string_view help;              ///< the option's help
+  StepKind step = StepKind::settings; ///< a change of it alone
+};
+
+template <class T>
+struct Setting : SettingText {
+  T LoopSettings::* member = nullptr;
+  T hand::FilterOptions::* filter_member =
+      nullptr; ///< a member of LoopSettings::filter, without `member`
+
+  const T& of(const LoopSettings& settings) const noexcept {
+    return member != nullptr ? settings.*member : settings.filter.*filter_member;
+  }
+  T& of(LoopSettings& settings) const noexcept {
+    return member != nullptr ? settings.*member : settings.filter.*filter_member;
+  }
+  // For the description of a filter's setting.
+  const T& of(const hand::FilterOptions& filter) const noexcept { return filter.*filter_member; }
+  T& of(hand::FilterOptions& filter) const noexcept { return filter.*filter_member; }
+};
+
+struct Range {
+  double min = 0.0;
+  double max = 0.0;
+
+  constexpr bool has(double value) const noexcept { // false for NaN
+    return value >= min && value <= max;
+  }
+  constexpr double nearest(double value) const noexcept { return std::clamp(value, min, max); }
+};
+
+using SwitchSetting = Setting<bool>;
+/// A choice for each finger, thumb to little finger.
+using BrushesSetting = Setting<std::array<deform::Brush, 5>>;
+struct NumberSetting : Setting<double> {
+  Range range;             ///< the values that a loop accepts
+  std::string_view unit{}; ///< empty: it has none
+  /// Whether other settings give it an effect; null: it always has one.
+  bool (*has_effect)(const LoopSettings& settings) noexcept = nullptr;
+  std::string_view remedy{}; ///< an option that gives it an effect, with an example
+};
+/// A length for each finger, thumb to little finger, in metres on the stage.
+struct FingersSetting : Setting<std::array<double, 5>> {
+  Range range; ///< the values that a loop accepts
+  std::string_view unit{};
+  Range handy; ///< that keys and widgets choose from
+};
+/// One of several, which have names.
+template <class T>
+struct ChoiceSetting : Setting<T> {
+  std::string_view choices; ///< all names for messages, in the order of their numbers
+  std::string_view (*name_of)(T choice) noexcept = nullptr;
+  std::optional<T> (*named)(std::string_view name) noexcept = nullptr;
+};
+
+/// Returns "measured" or "closed".
+NENDO_API std::string_view name_of_pinches(bool are_closed) noexcept;
+NENDO_API std::optional<bool> pinches_named(std::string_view name) noexcept;
+
+namespace setting {
+
+constexpr bool is_filtered(const LoopSettings& settings) noexcept {
+  return settings.filter.kind != hand::FilterKind::off;
+}
+
+inline constexpr ChoiceSetting<hand::FilterKind> filter{
+    {{"filter", "--filter", "smooth hands", "smooth hands",
+      "off, or one-euro: smooths the joint angles, at rest more than in motion; the summary shows "
+      "the "
+      "delay",
+      StepKind::filter},
+     nullptr,
+     &hand::FilterOptions::kind},
+    "off or one-euro",
+    hand::name_of,
+    hand::filter_named};
+inline constexpr NumberSetting min_cutoff{
+    {{"min_cutoff_hz", "--filter-min-cutoff", "min cutoff", "cutoff at rest",
+      "The filter's cutoff for a joint at rest; a lower one is smoother, with more delay",
+      StepKind::filter},
+     nullptr,
+     &hand::FilterOptions::min_cutoff_hz},
+    {0.01, 1000.0}, // wider than any use: below, a hand is minutes late; above, nothing is smoothed
+    "Hz",
+    is_filtered,
+    "--filter one-euro"};
+inline constexpr NumberSetting beta{
+    {{"beta_hz_per_rad_s", "--filter-beta", "beta", "cutoff in motion",
+      "The increase of the cutoff with a joint's speed; a higher one has less delay in motion",
+      StepKind::filter},
+     nullptr,
+     &hand::FilterOptions::beta_hz_per_rad_s},
+    {0.0, 1000.0},
+    "Hz per rad/s",
+    is_filtered,
+    "--filter one-euro"};
+inline constexpr NumberSetting derivative_cutoff{
+    {{"derivative_cutoff_hz", "", "derivative cutoff", "cutoff of the speed", "", StepKind::filter},
+     nullptr,
+     &hand::FilterOptions::derivative_cutoff_hz},
+    {0.01, 1000.0},
+    "Hz",
+    is_filtered};
+inline constexpr ChoiceSetting<bool> pinches{
+    {{"pinches", "--pinches", "pinches", "closed pinches",
+      "closed: pads of thumb and finger that are nearly together meet, but not in clay; or "
+      "measured: they keep the measured distance, to the millimetre",
+      StepKind::filter},
+     nullptr,
+     &hand::FilterOptions::close_pinches},
+    "measured or closed",
+    name_of_pinches,
+    pinches_named};
+} // namespace setting
+
+/// Calls see(setting) with the numbers of the filter, in the order of files.
+template <class See>
+constexpr void for_each_filter_number(const See& see) {
+  see(setting::min_cutoff);
+  see(setting::beta);
+  see(setting::derivative_cutoff);
+}
+
+/// Calls see(setting) with each description of LoopSettings::filter. Timelines have none of them:
+/// their keys are poses that were filtered.
+template <class See>
+constexpr void for_each_filter_setting(const See& see) {
+  see(setting::filter);
+  for_each_filter_number(see);
+  see(setting::pinches);
+}
 
 namespace setting {
 
@@ -142,5 +286,24 @@ NENDO_API Result<void> check_ranges(const LoopSettings& settings);
 /// Returns their description for messages: "type1, wendland-c2, never folds, radius 13.2 cm
 /// (0.248)".
 NENDO_API std::string in_words(const LoopSettings& settings, double units_per_metre);
+
+/// What a puppet measures its distances along. Without a puppet, fingertips and hands touch.
+enum class Played : std::uint8_t { nothing, through_air, along_surface };
+
+NENDO_API Played played_by(const puppet::Puppet& puppet) noexcept;
+/// The same; null: nothing is played.
+NENDO_API Played played_by(const puppet::Rig* rig) noexcept;
+
+/// How a message names a setting: as the command line has it, or in words.
+enum class Naming : std::uint8_t { options, words };
+
+/// Returns whether a loop can shape with all of these. Error, in one line: which two exclude each
+/// other, why, and what to do; usage where it names options, otherwise bad_input. Allocates.
+NENDO_API Result<void> compatible(const LoopSettings& settings, Played played,
+                                  Naming naming = Naming::words);
+/// Checks the same, and whether each setting has an effect. A loop takes settings of which one has
+/// none, so that users choose them in any order; on the command line they are an error.
+NENDO_API Result<void> all_effective(const LoopSettings& settings, Played played,
+                                     Naming naming = Naming::words);
 
 } // namespace nendo::flow

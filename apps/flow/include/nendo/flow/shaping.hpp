@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
+#include <nendo/flow/command.hpp>
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/loop_stats.hpp>
 #include <nendo/flow/model_version.hpp>
-#include <nendo/flow/request.hpp>
 #include <nendo/flow/sculptor.hpp>
 
 namespace nendo::flow {

@@ -10,8 +10,8 @@
 
 #include <nendo/deform/mesh.hpp>
 #include <nendo/flow/change_broker.hpp>
+#include <nendo/flow/clay_hands.hpp>
 #include <nendo/flow/frame.hpp>
-#include <nendo/flow/hand_contact.hpp>
 #include <nendo/flow/loop_stats.hpp>
 #include <nendo/flow/prepared_change.hpp>
 #include <nendo/flow/puppet_player.hpp>

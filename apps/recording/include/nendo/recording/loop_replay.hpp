@@ -2,11 +2,14 @@
 // Feeds a loop from a recording, tick by tick and without a clock. The same recording gives the
 // same shape, bit for bit, on the same build and the same kind of processor.
 
+#include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string_view>
 #include <vector>
 
+#include <nendo/flow/input_script.hpp>
 #include <nendo/recording/take_reader.hpp>
 
 namespace nendo::recording {
@@ -49,5 +52,21 @@ private:
   std::map<std::uint32_t, std::uint32_t> puppets_; ///< indexed by recorded numbers
   bool exact_ = true;
 };
+
+struct TakeInput {
+  Setup setup;
+  /// What the loop took: all samples, and of the commands all but those that the next loop makes
+  /// itself (HoldStill, and a ChangeModel to a version that was there).
+  std::unique_ptr<flow::InputScript> script;
+  /// The puppets to which it changes (flow::ChangePuppet), by their numbers. One that is not here
+  /// is that with which the recording began.
+  std::map<std::uint32_t, std::shared_ptr<const RecordedPuppet>> puppets{};
+  std::vector<driver::RecordCounts> sent; ///< one per glove
+  bool is_exact = true;                   ///< nothing is missing
+};
+
+/// Reads a recording of a loop. Blocks, and takes 160 bytes for each sample. Errors: bad_input (as
+/// from TakeReader::open(); or no loop was recorded, or it has no tick).
+NENDO_API Result<TakeInput> read_take_input(const std::filesystem::path& path);
 
 } // namespace nendo::recording

@@ -12,7 +12,7 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/driver/record_counts.hpp>
-#include <nendo/flow/input_log.hpp>
+#include <nendo/flow/input_script.hpp>
 #include <nendo/recording/take_reader.hpp>
 
 namespace nendo::recording {

@@ -17,7 +17,7 @@
 #include <nendo/base/byte_writer.hpp>
 #include <nendo/deform/mesh.hpp>
 #include <nendo/driver/record_counts.hpp>
-#include <nendo/flow/input_log.hpp>
+#include <nendo/flow/input_script.hpp>
 #include <nendo/recording/chunk_file.hpp>
 #include <nendo/recording/sample_record.hpp>
 #include <nendo/recording/setup.hpp>

@@ -11,7 +11,7 @@
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/supports.hpp>
 #include <nendo/flow/deform_loop.hpp>
-#include <nendo/flow/setting_kinds.hpp>
+#include <nendo/flow/setting.hpp>
 
 namespace nendo::sculpting {
 

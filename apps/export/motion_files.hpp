@@ -1,8 +1,10 @@
 #pragma once
-// Exports tables for plots. README.md describes the columns, whose names end with their units. All
-// cells are numbers; values that are not finite or not known are nan.
+// Exports tables for plots, and the hands as BVH. README.md describes the columns, whose names end
+// with their units. All cells are numbers; values that are not finite or not known are nan.
 
+#include <array>
 #include <filesystem>
+#include <optional>
 
 #include "export/chosen_frames.hpp"
 
@@ -22,5 +24,18 @@ Result<Exported> export_motion_csv(ChosenFrames& frames, const std::filesystem::
 /// set).
 Result<Exported> export_samples_csv(const std::filesystem::path& take, const Choice& choice,
                                     const std::filesystem::path& path);
+
+/// Indexed by flow::Placement::index_of(side). An empty element means that there is no such hand.
+using Skeletons = std::array<std::optional<hand::HandSkeleton>, 2>;
+
+/// Returns NAME-left.bvh or NAME-right.bvh for NAME.bvh.
+std::filesystem::path path_of_hand(const std::filesystem::path& path, Side side);
+
+/// `frames` must be at an even rate. One hand is written to `path`. Two hands are written to
+/// NAME-left.bvh and NAME-right.bvh, of which neither appears before both are complete. Blocks.
+/// Errors: those of ChosenFrames::next(); failed (a file cannot be written), bad_input (no hand, or
+/// a pose that is not finite).
+Result<Exported> export_hands_bvh(ChosenFrames& frames, const Skeletons& skeletons,
+                                  const std::filesystem::path& path);
 
 } // namespace nendo::exporting
