@@ -43,6 +43,9 @@ int play_timeline(const PlayOptions& options);
 /// Adds the command `nendo edit view`, which opens the window.
 void add_timeline_view(cli::Command& edit);
 
+// These parse the arguments of the commands. All errors are usage errors that name the option and
+// its possible values.
+
 Result<Side> parse_hand(const std::string& text);
 Result<hand::Finger> parse_finger(const std::string& text);
 /// Parses three numbers after --to, such as "1,-2.5,0".

@@ -11,6 +11,7 @@
 namespace nendo::exporting {
 
 using deform::CsrbfField;
+using deform::Points;
 using Eigen::Index;
 
 namespace {
@@ -128,8 +129,6 @@ std::vector<float> ControlMorphs::vectors() const {
   all.insert(all.end(), vectors_.begin(), vectors_.end());
   return all;
 }
-
-using deform::Points;
 
 namespace {
 

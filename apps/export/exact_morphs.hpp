@@ -129,6 +129,8 @@ private:
   double greatest_error_ = 0.0;
 };
 
+/// Reduces a motion of many vertices to a few key shapes, between which vertices are interpolated
+/// linearly. A shape becomes a key where interpolation without it would exceed the tolerance.
 class KeyShapes {
 public:
   using Shape = Eigen::Matrix3Xf; ///< 3 by #vertices, places or displacements

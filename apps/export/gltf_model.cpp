@@ -17,7 +17,6 @@
 #include "render/texture_image.hpp"
 
 namespace nendo::exporting {
-
 namespace {
 
 using Json = GlbFile::Json;

@@ -17,6 +17,7 @@ namespace nendo::exporting {
 /// Returns the one with the most materials. Versions of a model add theirs behind those before.
 const deform::Appearance& richest_of(std::span<const deform::Appearance* const> looks) noexcept;
 
+/// Puts a model's materials, and the textures of their base colours, into a glTF document.
 class GltfMaterials {
 public:
   /// Adds all materials of `look` to `file`, and one of clay for faces that have none. Textures

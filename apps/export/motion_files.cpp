@@ -22,7 +22,6 @@
 #include "takes/recorded_frames.hpp"
 
 namespace nendo::exporting {
-
 namespace {
 
 /// A row of a CSV table, cell by cell. All cells are numbers, so that numpy and others read the

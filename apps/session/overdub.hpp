@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <nendo/flow/layer.hpp>
+#include <nendo/flow/hand_input.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
 #include "cli/command.hpp"

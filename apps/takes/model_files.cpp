@@ -19,7 +19,6 @@
 #include "render/paint.hpp"
 
 namespace nendo::takes {
-
 namespace {
 
 double size_of(const deform::Mesh& model) {

@@ -11,7 +11,6 @@
 #include <nendo/hand/calibration.hpp>
 
 namespace nendo::takes {
-
 namespace {
 
 bool is_of_simulated(std::string_view source) {

@@ -20,7 +20,6 @@
 #include "timeline/timeline.hpp"
 
 namespace nendo::takes {
-
 namespace {
 
 using OpenFrames = decltype(Take::open);

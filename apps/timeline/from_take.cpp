@@ -1,4 +1,4 @@
-#include "timeline/from_take.hpp"
+#include "timeline/reduce.hpp"
 
 #include <algorithm>
 #include <utility>

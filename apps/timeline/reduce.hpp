@@ -1,9 +1,12 @@
 #pragma once
 // Reduces a pose for each frame to a few keys.
 
+#include <filesystem>
 #include <limits>
 #include <span>
 #include <vector>
+
+#include <nendo/base/result.hpp>
 
 #include "timeline/timeline.hpp"
 
@@ -62,5 +65,25 @@ struct Reduction {
 /// those before them, stay keys.
 Reduction reduce_keys(const hand::HandSkeleton& skeleton, std::span<const Key> frames,
                       const Tolerance& tolerance, const PointSway* sway = nullptr);
+
+struct MadeTimeline {
+  Timeline timeline;
+  std::vector<Reduction> hands; ///< in the order of the timeline's hands, without their keys
+  bool exact = false;           ///< nothing was missing in the recording
+  bool has_last_puppet = false; ///< the puppet was edited on the way; the timeline has the last one
+};
+
+/// Runs the recorded loop again over `model`, which should be the recorded one. The hands' angles
+/// become keys; requests, what the wrist switch did, commands of a puppet, and marks become
+/// events. The points of a puppet are off by the tolerance at most, by both hands together. The key
+/// at 0 s is the pose in which a hand grabbed, one period before the first tick. Blocks. Errors:
+/// those of TakeReader::open() and LoopReplay::make(); bad_input (no tick, or more than `most`
+/// frames or events; a puppet that was begun on the way).
+/// A timeline has one puppet. Where a take has several, because one was edited on the way, it is
+/// the last one, from the beginning on. Functions that it has not are left out, and so are undos
+/// and redos of edits.
+Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const deform::Mesh& model,
+                                      const Tolerance& tolerance, std::size_t most = max_keys);
+static_assert(max_keys == max_events);
 
 } // namespace nendo::timeline

@@ -16,7 +16,7 @@
 #include "support/recorded_motion.hpp"
 #include "takes/timeline_frames.hpp"
 #include "timeline/edit.hpp"
-#include "timeline/from_take.hpp"
+#include "timeline/reduce.hpp"
 
 namespace puppet_export_test {
 

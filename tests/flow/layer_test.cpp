@@ -9,7 +9,7 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/flow/layer.hpp>
+#include <nendo/flow/hand_input.hpp>
 
 #include "support/layered_loop.hpp"
 #include "support/restraint.hpp"

@@ -8,7 +8,6 @@
 #include <string>
 
 #include <nendo/deform/mesh_file.hpp>
-#include <nendo/puppet/face_landmarks.hpp>
 #include <nendo/puppet/make_puppet.hpp>
 #include <nendo/puppet/rig_check.hpp>
 

@@ -7,8 +7,8 @@
 #include "support/rounds.hpp"
 #include "support/takes.hpp"
 #include "timeline/edit.hpp"
-#include "timeline/from_take.hpp"
 #include "timeline/player.hpp"
+#include "timeline/reduce.hpp"
 #include "timeline/timeline.hpp"
 
 namespace player_test {

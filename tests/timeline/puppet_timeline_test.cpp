@@ -13,9 +13,9 @@
 #include "support/timelines.hpp"
 #include "timeline/edit.hpp"
 #include "timeline/edit_history.hpp"
-#include "timeline/from_take.hpp"
 #include "timeline/hand_curve.hpp"
 #include "timeline/player.hpp"
+#include "timeline/reduce.hpp"
 #include "timeline/shape_cache.hpp"
 #include "timeline/timeline.hpp"
 

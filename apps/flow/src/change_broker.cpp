@@ -10,7 +10,6 @@
 #include "broker_parts.hpp"
 
 namespace nendo::flow {
-
 namespace {
 
 SculptorSetup first_setup(const CoreOptions& options, const ModelVersion& version) {

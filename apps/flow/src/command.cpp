@@ -6,7 +6,6 @@
 #include <nendo/flow/setting.hpp>
 
 namespace nendo::flow {
-
 namespace {
 
 constexpr std::array<std::string_view, 4> mask_edit_names{"hold", "free", "clear", "invert"};

@@ -8,7 +8,6 @@
 #include <sys/prctl.h>
 
 namespace nendo::flow {
-
 namespace {
 
 /// Returns the first input of each hand.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <nendo/flow/layer.hpp>
+#include <nendo/flow/hand_input.hpp>
 
 namespace nendo::flow {
 namespace {

@@ -16,7 +16,6 @@
 #include <nendo/deform/triangles.hpp>
 
 namespace nendo::flow {
-
 namespace {
 
 // Some whole shapes ahead, so that refills may be seldom.

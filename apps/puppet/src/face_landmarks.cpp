@@ -1,4 +1,4 @@
-#include <nendo/puppet/face_landmarks.hpp>
+#include <nendo/puppet/make_puppet.hpp>
 
 #include <algorithm>
 #include <array>

@@ -12,7 +12,6 @@
 
 #include <nendo/base/text.hpp>
 #include <nendo/deform/surface_graph.hpp>
-#include <nendo/puppet/face_landmarks.hpp>
 #include <nendo/puppet/rig_check.hpp>
 
 namespace nendo::puppet {

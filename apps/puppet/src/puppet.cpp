@@ -13,7 +13,6 @@
 #include <nendo/hand/angle.hpp>
 
 namespace nendo::puppet {
-
 namespace {
 
 constexpr std::size_t first_tip = hand::finger_count + hand::angle_count;

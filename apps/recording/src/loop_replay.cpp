@@ -11,7 +11,6 @@
 #include <nendo/flow/sculptor.hpp>
 
 namespace nendo::recording {
-
 namespace {
 
 // As many as may wait for a live loop, or more.

@@ -18,6 +18,10 @@
 
 namespace nendo::flow {
 
+// The input log has the loop's input in the order in which the loop took it: samples, commands, and
+// after them the tick that used them. Another loop of the same options makes the same shape of the
+// same input, bit for bit.
+
 struct TakenSample {
   std::uint8_t hand = 0; ///< the index of the loop's input
   GloveSample sample;

@@ -17,6 +17,8 @@
 
 namespace nendo::flow {
 
+/// Tick k is due at start + k / rate. That is computed from the start each time, so that rounding
+/// errors never add up to drift, also where the period is no whole number of nanoseconds (90 Hz).
 class NENDO_API TickGrid {
 public:
   static constexpr double min_rate_hz = 1.0;
@@ -38,6 +40,7 @@ private:
 /// call of a tick.
 NENDO_API void sleep_until(HostTime deadline) noexcept;
 
+/// Chooses how long before a deadline the loop wakes and spins, which takes processor time.
 /// The margin is the lateness that 99.9 % of the last second's wake-ups did not exceed, plus 5
 /// microseconds. It is at most 100 microseconds, at most a fifth of the period, and no more than
 /// would have spun for a 25th of that second. It begins with a 25th of the period. It costs an
@@ -130,6 +133,7 @@ private:
   std::optional<SpinMargin> margin_;
 };
 
+/// The times of one tick.
 struct alignas(cache_line_bytes) TickRecord {
   std::uint64_t tick = 0; ///< Pacer::Due::number
   HostTime scheduled{};   ///< the deadline; paced by samples, when the newest of them arrived

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include <nendo/flow/hand_input.hpp>
 #include <nendo/flow/input_script.hpp>
-#include <nendo/flow/layer.hpp>
 #include <nendo/flow/placement.hpp>
 #include <nendo/flow/puppet_player.hpp>
 #include <nendo/flow/shaping.hpp>

@@ -38,6 +38,7 @@ struct NENDO_API WristMove {
   friend bool operator==(const WristMove&, const WristMove&) = default;
 };
 
+/// Where a simulated hand's wrist is at each time.
 class NENDO_API WristPath {
 public:
   /// Poses on the stage, evenly in time, at least two.

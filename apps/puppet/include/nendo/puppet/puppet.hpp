@@ -31,7 +31,8 @@ struct HandState {
   Eigen::Isometry3d T_world_wrist = Eigen::Isometry3d::Identity();
 };
 
-/// One number of a hand's pose. Its name is the hand, a point, and one of
+/// One number of a hand's pose, the input of a puppet. Angles are steadier than places, because a
+/// fingertip's place mixes three joints and the wrist. Its name is the hand, a point, and one of
 /// - thumb_flexion to little_flexion: what all joints of the finger are bent by, radians;
 /// - a joint angle (hand::Angle): thumb_roll, index_mcp_abduction, wrist_yaw and so on, radians;
 /// - thumb_tip_x to little_tip_z: the fingertip's place along an axis of the wrist, metres. x goes

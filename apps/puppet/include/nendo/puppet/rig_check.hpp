@@ -15,7 +15,8 @@
 
 namespace nendo::puppet {
 
-/// For one thread.
+/// The shapes of a puppet at given values of its functions, without hands and without a loop. They
+/// are made by the deformers that the loop has, so a check sees what a run shows. For one thread.
 class NENDO_API RigShapes {
 public:
   /// Solves for the field. Error: bad_input (points are too near to each other for their radii; it
