@@ -3,6 +3,7 @@
 #include <csignal>
 #include <iostream>
 
+#include <nlohmann/json.hpp>
 #include <sched.h>
 
 namespace nendo::cli {
@@ -24,6 +25,14 @@ int report(const Error& error) {
 
 void note(std::string_view text) {
   std::cerr << "nendo: " << text << std::endl;
+}
+
+std::string json_text(const nlohmann::ordered_json& object) {
+  return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+void print_line(const nlohmann::ordered_json& object) {
+  std::cout << json_text(object) << std::endl;
 }
 
 const std::atomic<bool>& stop_requested() noexcept {

@@ -1,11 +1,13 @@
 #pragma once
-// Functions that all commands share: errors and notes on standard error, the stop signals, the
-// shipped models.
+// Functions that all commands share: errors and notes on standard error, JSON lines on standard
+// output, the stop signals, the shipped models.
 
 #include <atomic>
 #include <filesystem>
 #include <string>
 #include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <nendo/base/result.hpp>
 
@@ -15,6 +17,12 @@ namespace nendo::cli {
 int report(const Error& error);
 /// Prints a line on standard error that is not an error.
 void note(std::string_view text);
+
+/// Returns the object in one line. Bytes that are no UTF-8, as names of files and devices may have,
+/// become U+FFFD.
+std::string json_text(const nlohmann::ordered_json& object);
+/// Prints that line and flushes it, so that a program at a pipe gets it at once.
+void print_line(const nlohmann::ordered_json& object);
 
 /// Returns a flag that becomes true at SIGINT, SIGTERM or SIGHUP. A second such signal ends the
 /// program at once.

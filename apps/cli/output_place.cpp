@@ -45,6 +45,14 @@ Result<void> check_place(std::string_view option, const std::string& path,
   return check_place(option, path, std::span(endings.begin(), endings.size()));
 }
 
+Result<void> check_new_recording(std::string_view option, const std::string& path) {
+  std::error_code ignored;
+  if (path.empty() || !std::filesystem::exists(path, ignored)) return {};
+  return Error{Errc::failed, std::string(option) + " " + path +
+                                 ": exists, and recordings are never overwritten; name another "
+                                 "file or move it away"};
+}
+
 Result<void>
 check_distinct(std::initializer_list<std::pair<std::string_view, std::string_view>> outputs) {
   const auto place = [](std::string_view path) {

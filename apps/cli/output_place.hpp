@@ -19,6 +19,9 @@ Result<void> check_place(std::string_view option, const std::string& path,
                          std::span<const std::string_view> endings);
 Result<void> check_place(std::string_view option, const std::string& path,
                          std::initializer_list<std::string_view> endings = {});
+/// Checks that the recording given with `option` is a new file; an empty path is none. Error:
+/// failed.
+Result<void> check_new_recording(std::string_view option, const std::string& path);
 
 /// Checks that all wanted outputs, given with their options, are different files. Error: usage.
 Result<void>

@@ -1,10 +1,9 @@
 #include "cli/quantities.hpp"
 
-#include <array>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
-#include <span>
 #include <system_error>
 
 namespace nendo::cli {
@@ -18,7 +17,7 @@ struct Unit {
 };
 
 // Not strtod, whose decimal point is a matter of the locale.
-std::optional<double> in_units(std::string_view text, std::span<const Unit> units) noexcept {
+std::optional<double> in_units(std::string_view text, std::initializer_list<Unit> units) noexcept {
   double number = 0.0;
   const char* const end = text.data() + text.size();
   const auto [stopped, error] = std::from_chars(text.data(), end, number);
@@ -32,24 +31,20 @@ std::optional<double> in_units(std::string_view text, std::span<const Unit> unit
 } // namespace
 
 std::optional<double> seconds_of(std::string_view text) noexcept {
-  constexpr std::array<Unit, 6> units{
-      {{"", 1.0}, {"ms", 1e-3}, {"s", 1.0}, {"m", 60.0}, {"h", 3600.0}, {"d", 86'400.0}}};
-  return in_units(text, units);
+  return in_units(
+      text, {{"", 1.0}, {"ms", 1e-3}, {"s", 1.0}, {"m", 60.0}, {"h", 3600.0}, {"d", 86'400.0}});
 }
 
 std::optional<double> microseconds_of(std::string_view text) noexcept {
-  constexpr std::array<Unit, 4> units{{{"", 1.0}, {"us", 1.0}, {"ms", 1e3}, {"s", 1e6}}};
-  return in_units(text, units);
+  return in_units(text, {{"", 1.0}, {"us", 1.0}, {"ms", 1e3}, {"s", 1e6}});
 }
 
 std::optional<double> hertz_of(std::string_view text) noexcept {
-  constexpr std::array<Unit, 3> units{{{"", 1.0}, {"Hz", 1.0}, {"kHz", 1e3}}};
-  return in_units(text, units);
+  return in_units(text, {{"", 1.0}, {"Hz", 1.0}, {"kHz", 1e3}});
 }
 
 std::optional<double> number_of(std::string_view text) noexcept {
-  constexpr std::array<Unit, 1> none{{{"", 1.0}}};
-  return in_units(text, none);
+  return in_units(text, {{"", 1.0}});
 }
 
 Result<void> check_duration(double seconds, End end) {

@@ -21,7 +21,6 @@
 
 #include "cli/cli.hpp"
 #include "cli/command.hpp"
-#include "cli/json_line.hpp"
 #include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "commands/commands.hpp"

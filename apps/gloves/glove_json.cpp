@@ -7,7 +7,7 @@
 #include <nendo/hand/angle_sources.hpp>
 #include <nendo/hand/joint_angles.hpp>
 
-#include "cli/json_line.hpp"
+#include "cli/cli.hpp"
 
 namespace nendo::gloves {
 namespace {

@@ -100,15 +100,14 @@ hand::FitOptions fit_options(const Options& options, CountScale counts,
                              const std::optional<hand::WearerCalibration>& known) {
   hand::FitOptions fitting;
   fitting.stiff = options.stiff_sensors;
+  fitting.scale = counts;
   if (known) {
-    fitting.scale = counts;
     fitting.mode = hand::FitMode::touch_up;
     fitting.size = known->size;
     fitting.start = hand::calibration_for(*known, counts);
     fitting.start_ends = hand::reached_ends(*known);
     return fitting;
   }
-  fitting.scale = counts;
   fitting.mode = options.quick ? hand::FitMode::quick : hand::FitMode::full;
   fitting.size = size_of(options);
   const hand::HandSize average;
@@ -342,8 +341,10 @@ int calibrate(Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::calibrate_command
 
-void add(cli::Command& program) {
+void nendo::app::add_calibrate(cli::Command& program) {
+  using namespace calibrate_command;
   auto options = std::make_shared<Options>();
   cli::Command command =
       program.add_command("calibrate", "Calibrates a glove to a wearer's hand, by guided poses");
@@ -375,7 +376,5 @@ void add(cli::Command& program) {
     footer += " " + std::string(hand::pose_of(id).name);
   command.set_footer(footer + ".\nThe other commands use the calibration automatically; `nendo "
                               "calibration` lists, compares and exports calibrations.");
-  command.on_chosen([options] { return calibrate(*options); });
+  command.on_chosen([options] { return calibrate_command::calibrate(*options); });
 }
-
-} // namespace nendo::app::calibrate_command

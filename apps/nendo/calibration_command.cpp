@@ -14,7 +14,6 @@
 #include <nendo/sculpting/find_wearer.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/json_line.hpp"
 #include "gloves/glove_json.hpp"
 #include "nendo/commands.hpp"
 
@@ -24,6 +23,12 @@ namespace {
 using hand::StoredCalibration;
 using hand::WearerCalibration;
 using nlohmann::ordered_json;
+
+struct Options {
+  std::string name;
+  std::string other;
+  bool json = false;
+};
 
 ordered_json summary_json(const StoredCalibration& file) {
   const WearerCalibration& wearer = file.wearer;
@@ -75,13 +80,13 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
   }
 }
 
-Result<void> list(bool json) {
+Result<void> list(const Options& options) {
   const auto stored = sculpting::stored_calibrations(cli::note);
   std::vector<std::vector<std::string>> rows{
       {"user", "hand", "glove", "made", "method", "in use", "path"}};
   for (const auto& file : stored.files) {
     const bool in_force = is_in_force(file, stored.files);
-    if (json) {
+    if (options.json) {
       ordered_json line = summary_json(file);
       line["shared"] = file.shared;
       line["in_force"] = in_force;
@@ -94,13 +99,12 @@ Result<void> list(bool json) {
                     hand::rfc3339(wearer.made), wearer.method, in_force ? "yes" : "no",
                     file.path.string()});
   }
-  if (json) return {};
-  if (rows.size() > 1) {
+  if (options.json) return {};
+  if (rows.size() > 1)
     print_table(rows);
-  } else {
+  else
     cli::note("no calibration is stored; `nendo calibrate GLOVE --user NAME` makes one, and `nendo "
               "calibration import` reads one of another program");
-  }
   return {};
 }
 
@@ -131,10 +135,10 @@ void show_text(const StoredCalibration& file) {
               << '\n';
 }
 
-Result<void> show(const std::string& name, bool json) {
-  const auto file = sculpting::named_calibration(name, cli::note);
+Result<void> show(const Options& options) {
+  const auto file = sculpting::named_calibration(options.name, cli::note);
   if (!file) return file.error();
-  if (!json) {
+  if (!options.json) {
     show_text(*file);
     return {};
   }
@@ -189,10 +193,10 @@ ordered_json change_json(const std::string& sensor, const std::vector<double>& d
           {"change_at_full_deg", deg[5]}};
 }
 
-Result<void> diff(const std::string& name_a, const std::string& name_b, bool json) {
-  const auto a = sculpting::named_calibration(name_a, cli::note);
+Result<void> diff(const Options& options) {
+  const auto a = sculpting::named_calibration(options.name, cli::note);
   if (!a) return a.error();
-  const auto b = sculpting::named_calibration(name_b, cli::note);
+  const auto b = sculpting::named_calibration(options.other, cli::note);
   if (!b) return b.error();
   if (a->wearer.side != b->wearer.side)
     cli::note("A is of one hand and B of the other: the left and the right");
@@ -204,7 +208,7 @@ Result<void> diff(const std::string& name_a, const std::string& name_b, bool jso
       continue;
     const std::string name(sensor_names[slot]);
     const auto deg = changes_deg(a->wearer, b->wearer, slot);
-    if (json) {
+    if (options.json) {
       cli::print_line(change_json(name, deg));
       continue;
     }
@@ -212,23 +216,23 @@ Result<void> diff(const std::string& name_a, const std::string& name_b, bool jso
     for (const double angle_deg : deg)
       rows.back().push_back(fixed(angle_deg, 1));
   }
-  if (!json) print_table(rows);
+  if (!options.json) print_table(rows);
   return {};
 }
 
-Result<void> path(const std::string& name) {
-  if (name.empty()) {
+Result<void> path(const Options& options) {
+  if (options.name.empty()) {
     std::cout << hand::calibration_folders().own.string() << '\n';
     return {};
   }
-  const auto file = sculpting::named_calibration(name, cli::note);
+  const auto file = sculpting::named_calibration(options.name, cli::note);
   if (!file) return file.error();
   std::cout << file->path.string() << '\n';
   return {};
 }
 
-Result<void> remove(const std::string& name) {
-  const auto file = sculpting::named_calibration(name, cli::note);
+Result<void> remove(const Options& options) {
+  const auto file = sculpting::named_calibration(options.name, cli::note);
   if (!file) return file.error();
   const auto kept = hand::retire_calibration(file->path);
   if (!kept) return kept.error();
@@ -238,45 +242,35 @@ Result<void> remove(const std::string& name) {
 }
 
 } // namespace
+} // namespace nendo::app::calibration_command
 
-void add(cli::Command& program) {
-  struct Options {
-    std::string name;
-    std::string other;
-    bool json = false;
-  };
+void nendo::app::add_calibration(cli::Command& program) {
+  using namespace calibration_command;
   auto options = std::make_shared<Options>();
   cli::Command command =
       program.add_command("calibration", "Lists, shows, compares and exchanges calibrations");
   command.set_footer("A NAME is a path, a stored file's name without .toml, or a wearer.");
   command.require_command();
 
-  cli::Command listing =
-      command.add_command("list", "The stored calibrations, and which are in use");
-  listing.add_flag("--json", options->json, "One JSON object per line");
-  listing.on_chosen([options] { return list(options->json); });
-
-  cli::Command showing = command.add_command("show", "One calibration, sensor by sensor");
-  showing.add_option("NAME", options->name, "Path, stored name or wearer").required();
+  const auto add = [&](const char* name, const char* summary, Result<void> (*run)(const Options&)) {
+    cli::Command added = command.add_command(name, summary);
+    added.on_chosen([options, run] { return run(*options); });
+    return added;
+  };
+  const char* const named = "Path, stored name or wearer";
+  add("list", "The stored calibrations, and which are in use", list)
+      .add_flag("--json", options->json, "One JSON object per line");
+  cli::Command showing = add("show", "One calibration, sensor by sensor", show);
+  showing.add_option("NAME", options->name, named).required();
   showing.add_flag("--json", options->json, "One JSON object");
-  showing.on_chosen([options] { return show(options->name, options->json); });
-
-  cli::Command comparing = command.add_command("diff", "Two calibrations' angles, in degrees");
-  comparing.add_option("A", options->name, "Path, stored name or wearer").required();
-  comparing.add_option("B", options->other, "Path, stored name or wearer").required();
+  cli::Command comparing = add("diff", "Two calibrations' angles, in degrees", diff);
+  comparing.add_option("A", options->name, named).required();
+  comparing.add_option("B", options->other, named).required();
   comparing.add_flag("--json", options->json, "One JSON object per sensor");
-  comparing.on_chosen([options] { return diff(options->name, options->other, options->json); });
-
-  calibration_exchange::add(command);
-
-  cli::Command locating =
-      command.add_command("path", "Prints the path of a calibration, or the folder of yours");
-  locating.add_option("NAME", options->name, "Stored name or wearer");
-  locating.on_chosen([options] { return path(options->name); });
-
-  cli::Command removing = command.add_command("remove", "Removes a calibration, and keeps a copy");
-  removing.add_option("NAME", options->name, "Path, stored name or wearer").required();
-  removing.on_chosen([options] { return remove(options->name); });
+  add_calibration_exchange(command);
+  add("path", "Prints the path of a calibration, or the folder of yours", path)
+      .add_option("NAME", options->name, "Stored name or wearer");
+  add("remove", "Removes a calibration, and keeps a copy", remove)
+      .add_option("NAME", options->name, named)
+      .required();
 }
-
-} // namespace nendo::app::calibration_command

@@ -179,8 +179,10 @@ Result<void> export_calibration(const ExportOptions& options) {
 }
 
 } // namespace
+} // namespace nendo::app::calibration_exchange
 
-void add(cli::Command& calibration) {
+void nendo::app::add_calibration_exchange(cli::Command& calibration) {
+  using namespace calibration_exchange;
   auto in = std::make_shared<ImportOptions>();
   cli::Command importing =
       calibration.add_command("import", "Stores another program's calibration");
@@ -208,5 +210,3 @@ void add(cli::Command& calibration) {
   exporting.add_option("--out", out->out, "Where to write it; without it, standard output");
   exporting.on_chosen([out] { return export_calibration(*out); });
 }
-
-} // namespace nendo::app::calibration_exchange

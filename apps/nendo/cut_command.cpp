@@ -214,8 +214,10 @@ int cut_files(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::cut_command
 
-void add(cli::Command& program) {
+void nendo::app::add_cut(cli::Command& program) {
+  using namespace cut_command;
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "cut", "Cuts closed models apart by a plane or a wire; the parts are closed again");
@@ -235,5 +237,3 @@ void add(cli::Command& program) {
                    "Repair a model that is not closed before the cut, as `nendo repair` does");
   command.on_chosen([options] { return cut_files(*options); });
 }
-
-} // namespace nendo::app::cut_command

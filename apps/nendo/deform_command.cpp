@@ -113,10 +113,6 @@ Result<FieldStatus> deform_keeping_volume(Points& vertices, const ControlVectors
 /// Ordinary strokes need ten; thousands mean displacements of thousands of radii.
 constexpr int max_links = 2000;
 
-std::string count_text(std::size_t count, const char* one) {
-  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
-}
-
 /// Prints one line: links, bound, min determinant at the vertices, and the pairs held apart.
 void print_report(const InjectiveChain& chain, double min_determinant) {
   const ChainReport& report = chain.report();
@@ -206,8 +202,10 @@ Result<void> deform_file(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::deform_command
 
-void add(cli::Command& program) {
+void nendo::app::add_deform(cli::Command& program) {
+  using namespace deform_command;
   auto options = std::make_shared<Options>();
   cli::Command command =
       program.add_command("deform", "Deforms a mesh by control vectors of a file");
@@ -230,5 +228,3 @@ void add(cli::Command& program) {
   options->output.add_to(command, "Where to write the result, .obj, .ply or .stl");
   command.on_chosen([options] { return deform_file(*options); });
 }
-
-} // namespace nendo::app::deform_command

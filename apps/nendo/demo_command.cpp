@@ -22,7 +22,6 @@
 #include "nendo/picture.hpp"
 #include "render/picture.hpp"
 #include "session/open_hands.hpp"
-#include "session/run_report.hpp"
 #include "session/run_session.hpp"
 #include "takes/model_files.hpp"
 #include "takes/take.hpp"
@@ -93,8 +92,7 @@ Result<session::RunOptions> run_options(const Options& options) {
   if (options.duration_s > max_s) return Error{Errc::usage, "--duration: use at most 1h"};
   if (options.what != "face" && options.what != "moai" && options.what != "clay")
     return Error{Errc::usage, options.what + ": no such demo; use face, moai or clay"};
-  if (!options.record.empty())
-    if (auto fine = cli::check_place("--record", options.record); !fine) return fine.error();
+  if (auto fine = cli::check_place("--record", options.record); !fine) return fine.error();
   if (auto fine = cli::check_place("--out", options.out, deform::mesh_endings); !fine)
     return fine.error();
   if (auto fine = cli::check_place("--picture", options.picture, {".png"}); !fine)
@@ -207,7 +205,8 @@ std::string named(const std::string& out, const char* name) {
   return (path.parent_path() / path.stem()).string() + "-" + name + path.extension().string();
 }
 
-session::RunOptions clay_options(const Work& work, const std::string& out) {
+/// Runs one session and returns the final shape.
+Result<deform::Mesh> shape_of(const Work& work, const std::string& out) {
   session::RunOptions run;
   run.mesh = cli::shipped_model("clay.ply").string();
   run.left = run.right = work.glove;
@@ -215,14 +214,8 @@ session::RunOptions clay_options(const Work& work, const std::string& out) {
   run.duration_s = work.duration_s;
   run.model_size_m = sculpting::usual_size_m(flow::Mode::clay);
   run.calibration.calibration = "none"; // what is stored is a real hand's
-  run.loop.rate_hz = 90.0;
+  run.loop.rate_hz = rate_hz;
   run.loop.sculptor.mode = flow::Mode::clay;
-  return run;
-}
-
-/// Runs one session and returns the final shape.
-Result<deform::Mesh> shape_of(const Work& work, const std::string& out) {
-  session::RunOptions run = clay_options(work, out);
   if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine.error();
   auto model = takes::read_model(run.mesh);
   if (!model) return model.error();
@@ -231,12 +224,12 @@ Result<deform::Mesh> shape_of(const Work& work, const std::string& out) {
   return deform::read_mesh(run.out);
 }
 
-render::Panel panel_of(const deform::Mesh& shape, double units_per_metre, const char* caption) {
+render::Panel panel_of(const deform::Mesh& shape, const char* caption) {
   using namespace nendo::render;
   SceneFrame frame;
   frame.vertices = shape.vertices;
   Scene scene;
-  SceneBuilder(shape, units_per_metre).build(frame, {}, scene);
+  SceneBuilder(shape, 1.0).build(frame, {}, scene); // the ball's units are metres
   const Camera camera = framing(scene.outline(), view, 1.0 * panel_size.width / panel_size.height);
   return {draw(Lighting(scene, view.azimuth_deg), camera, panel_size), caption};
 }
@@ -250,7 +243,7 @@ Result<void> demonstrate_clay(const std::string& out, const std::string& picture
     if (cli::stop_requested()) break;
     const auto shape = shape_of(work, out);
     if (!shape) return shape.error();
-    panels.push_back(panel_of(*shape, 1.0, work.caption)); // the ball's units are metres
+    panels.push_back(panel_of(*shape, work.caption));
   }
   const auto sheet = render::contact_sheet(panels, static_cast<int>(panels.size()));
   if (auto drawn = render::write_png(picture, sheet); !drawn) return drawn;
@@ -285,8 +278,10 @@ Result<void> demonstrate(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::demo_command
 
-void add(cli::Command& program) {
+void nendo::app::add_demo(cli::Command& program) {
+  using namespace demo_command;
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "demo", "Two emulated CyberGloves play a face, or shape a Moai, through the real driver, or "
@@ -306,5 +301,3 @@ void add(cli::Command& program) {
       "Where the recording goes; without it, beside --out, replacing that of an earlier demo");
   command.on_chosen([options] { return demonstrate(*options); });
 }
-
-} // namespace nendo::app::demo_command

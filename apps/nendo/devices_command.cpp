@@ -3,20 +3,18 @@
 
 #include <array>
 #include <chrono>
-#include <cstdio>
 #include <ctime>
 #include <iostream>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
 
 #include <nendo/driver/device_watcher.hpp>
 #include <nendo/driver/devices.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/json_line.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::devices_command {
@@ -25,15 +23,9 @@ namespace {
 using driver::GloveCandidate;
 using nlohmann::ordered_json;
 
-std::string hex(std::uint16_t number) {
-  std::array<char, 8> text{};
-  std::snprintf(text.data(), text.size(), "%04x", unsigned{number});
-  return text.data();
-}
-
 ordered_json json_of(const driver::UsbIdentity& usb) {
-  return {{"vendor_id", hex(usb.vendor_id)},
-          {"product_id", hex(usb.product_id)},
+  return {{"vendor_id", fmt::format("{:04x}", usb.vendor_id)},
+          {"product_id", fmt::format("{:04x}", usb.product_id)},
           {"manufacturer", usb.manufacturer},
           {"product", usb.product},
           {"serial", usb.serial},
@@ -148,8 +140,10 @@ Result<void> watch_devices(bool json) {
 }
 
 } // namespace
+} // namespace nendo::app::devices_command
 
-void add(cli::Command& program) {
+void nendo::app::add_devices(cli::Command& program) {
+  using namespace devices_command;
   struct Options {
     bool json = false;
     bool watch = false;
@@ -164,5 +158,3 @@ void add(cli::Command& program) {
     return options->watch ? watch_devices(options->json) : list_devices(options->json);
   });
 }
-
-} // namespace nendo::app::devices_command

@@ -16,7 +16,6 @@
 #include <nendo/sculpting/find_wearer.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/json_line.hpp"
 #include "doctor/doctor.hpp"
 #include "gloves/open_hand.hpp"
 #include "gloves/stuck_sensors.hpp"
@@ -127,8 +126,10 @@ int examine(const std::string& glove, bool json) {
 }
 
 } // namespace
+} // namespace nendo::app::doctor_command
 
-void add(cli::Command& program) {
+void nendo::app::add_doctor(cli::Command& program) {
+  using namespace doctor_command;
   auto json = std::make_shared<bool>(false);
   auto glove = std::make_shared<std::string>();
   cli::Command command = program.add_command(
@@ -141,5 +142,3 @@ void add(cli::Command& program) {
   command.set_footer("Exit code 1 if there is a failure, 0 if there are only warnings.");
   command.on_chosen([json, glove] { return examine(*glove, *json); });
 }
-
-} // namespace nendo::app::doctor_command

@@ -230,17 +230,14 @@ void add_key_edits(cli::Command& edit, const std::shared_ptr<Options>& options) 
   setting.add_option("--to", options->place, "X,Y,Z in the model's units").required();
   setting.add_millimetres("--within", options->within_mm, "Max distance from it, in millimetres");
   setting.on_chosen([options] { return set_tip(*options); });
-}
-
-void add_value_edit(cli::Command& edit_command, const std::shared_ptr<Options>& options) {
-  cli::Command setting = add_edit_of(
-      edit_command, "set-value",
+  cli::Command setting_value = add_edit_of(
+      edit, "set-value",
       "Bends the finger that plays a function of the puppet until it has a value", options);
-  setting.add_option("--function", options->function, "Its name, such as jawOpen").required();
-  setting.add_option("--key", options->key, "Number of the key of the hand that plays it")
+  setting_value.add_option("--function", options->function, "Its name, such as jawOpen").required();
+  setting_value.add_option("--key", options->key, "Number of the key of the hand that plays it")
       .required();
-  setting.add_option("--to", options->value, "The value at that key").required();
-  setting.on_chosen([options] { return set_value(*options); });
+  setting_value.add_option("--to", options->value, "The value at that key").required();
+  setting_value.on_chosen([options] { return set_value(*options); });
 }
 
 void add_whole_edits(cli::Command& edit_command, const std::shared_ptr<Options>& options) {
@@ -272,8 +269,10 @@ void add_whole_edits(cli::Command& edit_command, const std::shared_ptr<Options>&
 }
 
 } // namespace
+} // namespace nendo::app::edit_command
 
-void add(cli::Command& program) {
+void nendo::app::add_edit(cli::Command& program) {
+  using namespace edit_command;
   auto options = std::make_shared<Options>();
   cli::Command command =
       program.add_command("edit", "Key poses of a recorded run: make, change, play");
@@ -281,8 +280,5 @@ void add(cli::Command& program) {
   add_reading(command, options);
   edit::add_timeline_view(command);
   add_key_edits(command, options);
-  add_value_edit(command, options);
   add_whole_edits(command, options);
 }
-
-} // namespace nendo::app::edit_command

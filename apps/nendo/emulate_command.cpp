@@ -1,6 +1,5 @@
 // nendo emulate: emulates a data glove's electronics on a pseudo-terminal, with chosen faults.
 
-#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -9,6 +8,8 @@
 #include <optional>
 #include <thread>
 #include <utility>
+
+#include <spdlog/fmt/fmt.h>
 
 #include <nendo/driver/simulated_glove.hpp>
 #include <nendo/emulator/emulator.hpp>
@@ -40,31 +41,19 @@ struct Options {
 /// The motion that is not in driver::motion_names(), because it needs a hand.
 constexpr std::string_view practice_name = "poses";
 
-std::string list_of(const std::vector<std::string_view>& names) {
-  std::string list;
-  for (const auto name : names)
-    list += (list.empty() ? "" : ", ") + std::string(name);
-  return list;
-}
-
 std::string faults_explained() {
   std::string text = "Faults (--fault, may be repeated; times in s or ms since the start):\n";
-  for (const emulator::FaultForm& fault : emulator::fault_forms()) {
-    std::string form(fault.form);
-    form.resize(std::max<std::size_t>(form.size() + 1, 24), ' ');
-    text += "  " + form + std::string(fault.effect) + "\n";
-  }
+  for (const emulator::FaultForm& fault : emulator::fault_forms())
+    text += fmt::format("  {:<23} {}\n", fault.form, fault.effect);
   return text + "Example: nendo emulate --link /tmp/glove --fault flip=0.1% --fault unplug@5s+2s";
 }
 
 std::string variants_explained() {
   std::string text = "Variants of gloves; the first of each is the default:\n";
-  for (const emulator::EmulatedVariant& variant : emulator::emulated_variants()) {
-    std::string form = std::string(variant.glove) + " --" + std::string(variant.option) + " " +
-                       std::string(variant.name);
-    form.resize(std::max<std::size_t>(form.size() + 1, 36), ' ');
-    text += "  " + form + std::string(variant.effect) + "\n";
-  }
+  for (const emulator::EmulatedVariant& variant : emulator::emulated_variants())
+    text += fmt::format("  {:<35} {}\n",
+                        fmt::format("{} --{} {}", variant.glove, variant.option, variant.name),
+                        variant.effect);
   return text + "\n";
 }
 
@@ -103,32 +92,21 @@ Result<void> practise(Options& options) {
   return {};
 }
 
-/// Follows the keys of the terminal, and says what the hand does.
-class PracticeLine {
-public:
-  explicit PracticeLine(const Options& options) : practice_(options.practice), keys_(options.keys) {
-    if (keys_ == nullptr || !keys_->are_available()) return;
-    std::cout << "SPACE: next pose   b: previous pose   q: quit" << std::endl;
+/// Follows the keys of the terminal for 20 ms at most, and prints what the hand does, if that is
+/// not `shown`. Returns false if the user quits.
+bool follow_keys(const Options& options, int& shown) {
+  constexpr std::chrono::milliseconds time(20);
+  if (options.practice == nullptr) {
+    std::this_thread::sleep_for(time);
+    return true;
   }
-  /// Waits at most this time. Returns false if the user quits.
-  bool follow(std::chrono::milliseconds time) {
-    if (practice_ == nullptr) {
-      std::this_thread::sleep_for(time);
-      return true;
-    }
-    const auto key = keys_->next(time);
-    if (key == ' ') practice_->go_on();
-    if (key == 'b') practice_->go_back();
-    if (const int step = practice_->step(); std::exchange(shown_, step) != step)
-      std::cout << practice_->in_words(step) << std::endl;
-    return key != 'q';
-  }
-
-private:
-  std::shared_ptr<calibrate::PracticeHand> practice_;
-  std::shared_ptr<cli::Keys> keys_;
-  int shown_ = -1;
-};
+  const auto key = options.keys->next(time);
+  if (key == ' ') options.practice->go_on();
+  if (key == 'b') options.practice->go_back();
+  if (const int step = options.practice->step(); std::exchange(shown, step) != step)
+    std::cout << options.practice->in_words(step) << std::endl;
+  return key != 'q';
+}
 
 Result<void> complete(Options& options) {
   if (options.hand != "left" && options.hand != "right") {
@@ -179,9 +157,10 @@ int emulate(Options& options) {
   emulator::ServedEmulator server(**emulator);
   const auto start = std::chrono::steady_clock::now();
   const std::chrono::duration<double> duration(options.duration_s);
-  PracticeLine practice(options);
-  while (!cli::stop_requested() && !server.is_over() &&
-         practice.follow(std::chrono::milliseconds(20))) {
+  if (options.keys && options.keys->are_available())
+    std::cout << "SPACE: next pose   b: previous pose   q: quit" << std::endl;
+  int shown = -1; // the step that was printed
+  while (!cli::stop_requested() && !server.is_over() && follow_keys(options, shown)) {
     if (options.duration_s > 0.0 && std::chrono::steady_clock::now() - start >= duration) break;
   }
   const auto served = server.finish();
@@ -192,16 +171,18 @@ int emulate(Options& options) {
 
 void add_glove_options(cli::Command command, Options& options) {
   emulator::EmulatorOptions& emulator = options.emulator;
-  command.add_option("--glove", emulator.glove,
-                     "Its kind: " + list_of(emulator::emulated_glove_names()));
+  command.add_option(
+      "--glove", emulator.glove,
+      fmt::format("Its kind: {}", fmt::join(emulator::emulated_glove_names(), ", ")));
   command.add_option("--firmware", emulator.firmware, "Its firmware, see below");
   command.add_option("--connection", emulator.connection, "Its connection, see below");
   command.add_option("--hand", options.hand, "left or right");
   command.add_option("--sensors", emulator.sensors,
                      "Number of sensors; a CyberGlove has 22 (default) or 18");
   command.add_option("--motion", emulator.motion,
-                     "What the hand does: " + list_of(driver::motion_names()) +
-                         ", or poses: those of nendo calibrate, in its order");
+                     fmt::format("What the hand does: {}, or poses: those of nendo calibrate, in "
+                                 "its order",
+                                 fmt::join(driver::motion_names(), ", ")));
   command.add_duration(
       "--hold", options.hold_s,
       "With --motion poses: how long each pose is held, after a free motion of 8 s, "
@@ -250,8 +231,10 @@ void add_cyberglove_options(cli::Command command, Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::emulate_command
 
-void add(cli::Command& program) {
+void nendo::app::add_emulate(cli::Command& program) {
+  using namespace emulate_command;
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "emulate", "Emulates a glove's electronics on a pseudo-terminal, for tests");
@@ -269,5 +252,3 @@ void add(cli::Command& program) {
   command.set_footer(variants_explained() + faults_explained());
   command.on_chosen([options] { return emulate(*options); });
 }
-
-} // namespace nendo::app::emulate_command

@@ -1,7 +1,6 @@
 // nendo export: writes a recorded run as files for animators and for plots.
 
 #include <array>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -15,7 +14,6 @@
 #include <nendo/version.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/json_line.hpp"
 #include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "cli/quantities.hpp"
@@ -129,6 +127,12 @@ bool wants_samples(const Options& options, const std::string& format, bool has_l
   return format == "csv" && (options.samples || !has_loop);
 }
 
+template <class Frames>
+Result<std::unique_ptr<takes::FrameSource>> source_of(Result<std::unique_ptr<Frames>> frames) {
+  if (!frames) return frames.error();
+  return std::unique_ptr<takes::FrameSource>(*std::move(frames));
+}
+
 /// Gloves without a loop: their hands can be shown, and no model.
 Result<Take> read_gloves(const Options& options, const std::string& format, Take take) {
   if (!options.mesh.empty() || options.no_hands || !(format == "glb" || format == "bvh")) {
@@ -136,11 +140,7 @@ Result<Take> read_gloves(const Options& options, const std::string& format, Take
                                       ": has only gloves, which .csv, .bvh and .glb can store; "
                                       "shape a model with `nendo run --right replay:FILE`"};
   }
-  take.open = [path = options.file]() -> Result<std::unique_ptr<takes::FrameSource>> {
-    auto frames = takes::GloveFrames::open(path);
-    if (!frames) return frames.error();
-    return std::unique_ptr<takes::FrameSource>(*std::move(frames));
-  };
+  take.open = [path = options.file] { return source_of(takes::GloveFrames::open(path)); };
   return take;
 }
 
@@ -163,12 +163,10 @@ Result<Take> read_recorded(const Options& options, const std::string& format) {
   }
   auto model = takes::recorded_model(options.file, setup, options.mesh);
   if (!model) return model.error();
-  take.open = [path = options.file, mesh = std::move(model->mesh),
-               up = model->up()]() -> Result<std::unique_ptr<takes::FrameSource>> {
+  take.open = [path = options.file, mesh = std::move(model->mesh), up = model->up()] {
     auto frames = takes::RecordedFrames::open(path, mesh);
-    if (!frames) return frames.error();
-    (*frames)->set_up(up);
-    return std::unique_ptr<takes::FrameSource>(*std::move(frames));
+    if (frames) (*frames)->set_up(up);
+    return source_of(std::move(frames));
   };
   return take;
 }
@@ -181,11 +179,8 @@ Result<Take> read_edited(const Options& options) {
   Take take;
   for (const auto& hand : timeline->hands)
     take.skeletons[flow::Placement::index_of(hand.side)].emplace(hand.skeleton());
-  take.open = [path = options.file,
-               mesh = options.mesh]() -> Result<std::unique_ptr<takes::FrameSource>> {
-    auto frames = takes::TimelineFrames::open(path, mesh);
-    if (!frames) return frames.error();
-    return std::unique_ptr<takes::FrameSource>(*std::move(frames));
+  take.open = [path = options.file, mesh = options.mesh] {
+    return source_of(takes::TimelineFrames::open(path, mesh));
   };
   return take;
 }
@@ -341,8 +336,10 @@ Result<void> export_command(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::export_command
 
-void add(cli::Command& program) {
+void nendo::app::add_export(cli::Command& program) {
+  using namespace export_command;
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "export", "Writes a recording as animation or tables: glTF, point caches, meshes, BVH, CSV");
@@ -378,7 +375,5 @@ void add(cli::Command& program) {
       "like 1mm, or a fraction of the model's diagonal like 0.01 or 1%");
   command.add_flag("--no-hands", options->no_hands, ".glb: only the model");
   command.add_flag("--json", options->json, "A summary as JSON");
-  command.on_chosen([options] { return export_command(*options); });
+  command.on_chosen([options] { return export_command::export_command(*options); });
 }
-
-} // namespace nendo::app::export_command

@@ -1,7 +1,6 @@
 // nendo info: queries a glove.
 
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -9,13 +8,13 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
 
 #include <nendo/base/text.hpp>
 #include <nendo/driver/open_glove.hpp>
 #include <nendo/hand/angle_sources.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/json_line.hpp"
 #include "gloves/glove_json.hpp"
 #include "gloves/open_hand.hpp"
 #include "gloves/stuck_sensors.hpp"
@@ -78,13 +77,11 @@ std::vector<std::string> wrapped(const std::vector<std::string>& words, std::siz
 
 std::string abilities_text(const driver::Abilities& can) {
   std::string text;
-  const auto add = [&](bool ability, const char* what) {
-    if (ability) text.append(text.empty() ? "" : ", ").append(what);
-  };
-  add(can.wrist_switch, "wrist switch");
-  add(can.light, "light");
-  add(can.vibration, "vibration");
-  add(can.resistance, "resistance");
+  for (const auto& [ability, name] : {std::pair{can.wrist_switch, "wrist switch"},
+                                      {can.light, "light"},
+                                      {can.vibration, "vibration"},
+                                      {can.resistance, "resistance"}})
+    if (ability) text.append(text.empty() ? "" : ", ").append(name);
   return text.empty() ? "none" : text;
 }
 
@@ -145,17 +142,15 @@ void print_angles(const Columns& columns, SensorMask sensors) {
 
 void print_text(const driver::GloveInfo& info, const std::vector<gloves::SensorAtEnd>& at_end) {
   const Columns columns(info);
-  char rate[32];
-  std::snprintf(rate, sizeof rate, "%.6g Hz", info.rate_hz);
   const auto sensors = names_of(info.sensors);
 
   columns.print("source", info.source);
   columns.print("model", info.model);
   columns.print("hand", std::string(name_of(info.side)));
-  columns.print("rate", info.rate_hz > 0.0 ? rate : "unknown");
+  columns.print("rate", info.rate_hz > 0.0 ? fmt::format("{:.6g} Hz", info.rate_hz) : "unknown");
   columns.print("counts",
-                "0 to " + std::to_string(info.counts.most) +
-                    (info.counts.whole_range ? ", straight to fully bent" : ", uncalibrated"));
+                fmt::format("0 to {}, {}", info.counts.most,
+                            info.counts.whole_range ? "straight to fully bent" : "uncalibrated"));
   columns.print("abilities", abilities_text(info.abilities));
   columns.print("sensors", std::to_string(sensors.size()));
   columns.print_list("", sensors);
@@ -176,8 +171,10 @@ Result<void> info(const std::string& spec, bool json) {
 }
 
 } // namespace
+} // namespace nendo::app::info_command
 
-void add(cli::Command& program) {
+void nendo::app::add_info(cli::Command& program) {
+  using namespace info_command;
   struct Options {
     std::string glove;
     bool json = false;
@@ -188,5 +185,3 @@ void add(cli::Command& program) {
   command.add_flag("--json", options->json, "One JSON object");
   command.on_chosen([options] { return info(options->glove, options->json); });
 }
-
-} // namespace nendo::app::info_command

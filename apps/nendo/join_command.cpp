@@ -93,8 +93,10 @@ Result<void> join_files(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::join_command
 
-void add(cli::Command& program) {
+void nendo::app::add_join(cli::Command& program) {
+  using namespace join_command;
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command("join", "Joins models that overlap into one, exactly");
   command
@@ -107,5 +109,3 @@ void add(cli::Command& program) {
   options->output.add_to(command, "Where to write the result, .obj, .ply or .stl");
   command.on_chosen([options] { return join_files(*options); });
 }
-
-} // namespace nendo::app::join_command

@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <nendo/deform/face_box.hpp>
 #include <nendo/deform/mesh.hpp>
@@ -31,6 +32,8 @@ struct ModelOutput {
 
 /// Reports on standard output that a model was written, with its sizes. `more` follows them.
 void report_model(const std::string& file, const deform::Mesh& mesh, const std::string& more = {});
+/// Returns "1 link" or "2 links".
+std::string count_text(std::size_t count, std::string_view word);
 /// Returns ", volume 12.5".
 std::string volume_text(const deform::Mesh& mesh);
 

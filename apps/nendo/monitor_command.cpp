@@ -195,8 +195,10 @@ Result<void> monitor(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::monitor_command
 
-void add(cli::Command& program) {
+void nendo::app::add_monitor(cli::Command& program) {
+  using namespace monitor_command;
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "monitor",
@@ -218,5 +220,3 @@ void add(cli::Command& program) {
   command.add_option("--count", options->count, "End after this number of samples");
   command.on_chosen([options] { return monitor(*options); });
 }
-
-} // namespace nendo::app::monitor_command

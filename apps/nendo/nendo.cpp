@@ -28,7 +28,7 @@ bool works_without_a_clock(std::string_view command) {
 int run(int argc, char** argv) {
   using namespace nendo;
   using namespace nendo::app;
-  if (argc > 1 && std::string_view(argv[1]) == "bench") return bench_command::start(argv + 1);
+  if (argc > 1 && std::string_view(argv[1]) == "bench") return start_bench(argv + 1);
   // A command whose reader has gone finishes its work: the shape of `nendo run` is still written.
   std::signal(SIGPIPE, SIG_IGN);
   // The drivers' log lines must not mix with what a command prints.

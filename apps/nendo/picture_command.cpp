@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -282,7 +281,10 @@ Result<void> draw_picture(const PictureOptions& options, const takes::Take& take
   return {};
 }
 
-void add(cli::Command& program) {
+} // namespace nendo::app::picture_command
+
+void nendo::app::add_picture(cli::Command& program) {
+  using namespace picture_command;
   auto options = std::make_shared<Options>();
   cli::Command command =
       program.add_command("picture", "Draws a model or a recording as a PNG, without a screen");
@@ -321,5 +323,3 @@ void add(cli::Command& program) {
   command.add_flag("--no-hands", options->no_hands, "Recordings: do not draw the hands");
   command.on_chosen([options] { return make_picture(*options); });
 }
-
-} // namespace nendo::app::picture_command

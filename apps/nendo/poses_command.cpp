@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -25,7 +26,6 @@
 #include <nendo/hand/wearer.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/json_line.hpp"
 #include "cli/quantities.hpp"
 #include "export/motion_files.hpp"
 #include "gloves/glove_json.hpp"
@@ -64,9 +64,7 @@ Result<void> check(const Options& options) {
     return Error{Errc::usage, "--rate: use 1 to 10000 poses per second, or leave it out"};
   }
   if (auto fine = cli::check_duration(options.duration_s); !fine) return fine.error();
-  if (options.gloves.size() > 2)
-    return Error{Errc::usage,
-                 "GLOVE: takes 1 or 2 gloves, got " + std::to_string(options.gloves.size())};
+  if (auto fine = session::check_count(options.gloves); !fine) return fine;
   if (auto fine = options.length.check(); !fine) return fine;
   return gloves::check(options.calibration);
 }
@@ -223,13 +221,10 @@ private:
     const GloveSample passed = gate_.pass(sample, calibration_.follow(sample));
     for (const std::string& sentence : stuck_.changes(calibration_.left_out(sample), &sample))
       cli::note(hand_.glove->info().source + ": " + sentence);
-    return grid_.take(
-        passed, [this](HostTime time, const GloveSample& newest) { return put(time, newest); });
+    return grid_.take(passed, std::bind_front(&PoseStream::put, this));
   }
   bool pass_time(HostTime now) {
-    const bool continues = grid_.pass_time(
-        now, [this](HostTime time, const GloveSample& newest) { return put(time, newest); });
-    return continues && !is_over(now);
+    return grid_.pass_time(now, std::bind_front(&PoseStream::put, this)) && !is_over(now);
   }
   bool is_over(HostTime time) const {
     return options_.duration_s > 0.0 && time - start_ >= from_seconds(options_.duration_s);
@@ -331,8 +326,10 @@ Result<void> poses(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::poses_command
 
-void add(cli::Command& program) {
+void nendo::app::add_poses(cli::Command& program) {
+  using namespace poses_command;
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "poses", "Writes hands' poses: OpenXR's 26 joints as JSON lines, or a BVH file");
@@ -359,5 +356,3 @@ void add(cli::Command& program) {
   gloves::add_calibration_options(command, options->calibration, true);
   command.on_chosen([options] { return poses(*options); });
 }
-
-} // namespace nendo::app::poses_command

@@ -1,7 +1,6 @@
 // nendo puppet: shows, checks and makes puppet files.
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -75,11 +74,6 @@ std::string place_text(const Eigen::Vector3d& place, const Eigen::Vector3d& offs
   return fmt::format("{:9.10g} {:9.10g} {:9.10g}", in_file.x(), in_file.y(), in_file.z());
 }
 
-std::string limits_text(const Function& function) {
-  return fmt::format("{:g} to {:g}{}", function.least, function.most,
-                     function.eases ? ", eased" : "");
-}
-
 std::string travel_text(const Function& function) {
   if (function.input.is_angle()) return fmt::format("{:g} degrees", to_degrees(function.travel));
   return fmt::format("{:g} m", function.travel);
@@ -87,8 +81,8 @@ std::string travel_text(const Function& function) {
 
 void print_function(const OpenRig& open, std::size_t at) {
   const Function& function = open.functions()[at];
-  fmt::print("{}: {}, {} for 1; values {}\n", function.name, function.input.name(),
-             travel_text(function), limits_text(function));
+  fmt::print("{}: {}, {} for 1; values {:g} to {:g}{}\n", function.name, function.input.name(),
+             travel_text(function), function.least, function.most, function.eases ? ", eased" : "");
   const Points& vectors = open.rig().vectors_of(at);
   for (std::size_t point = 0; point < open.rig().puppet().points.size(); ++point) {
     const Eigen::Vector3d vector = vectors.col(static_cast<Eigen::Index>(point));
@@ -119,15 +113,11 @@ void print_points(const OpenRig& open) {
   }
 }
 
-std::string count_text(std::size_t count, std::string_view word) {
-  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
-}
-
 void print_head(const OpenRig& open) {
   const auto& puppet = open.rig().puppet();
   fmt::print(
-      "{} on {}: {}, {}, {}, distances {}\n", printable(open.file.path), printable(puppet.model),
-      fmt::format("{} vertices", open.model.vertices.cols()),
+      "{} on {}: {} vertices, {}, {}, distances {}\n", printable(open.file.path),
+      printable(puppet.model), open.model.vertices.cols(),
       count_text(puppet.points.size(), "point"), count_text(puppet.functions.size(), "function"),
       puppet.distance == puppet::Distance::surface ? "along the surface" : "through the air");
 }
@@ -153,8 +143,7 @@ void print_clutches(const OpenRig& open) {
   for (const Side side : {Side::left, Side::right}) {
     const std::string words = gesture_text(clutch, clutch.means[static_cast<std::size_t>(side)]);
     if (!words.empty())
-      fmt::print("the {} hand releases and grabs again by {}\n",
-                 side == Side::left ? "left" : "right", words);
+      fmt::print("the {} hand releases and grabs again by {}\n", name_of(side), words);
   }
 }
 
@@ -343,41 +332,38 @@ Result<void> make(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::puppet_command
 
-void add(cli::Command& program) {
+void nendo::app::add_puppet(cli::Command& program) {
+  using namespace puppet_command;
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "puppet", "Shows, checks and makes puppets: what each finger does to a model");
   command.set_footer("A FILE is a path, or the name of a shipped puppet, such as face.");
   command.require_command();
 
-  cli::Command showing = command.add_command("show", "A puppet's functions and points");
-  showing.add_option("FILE", options->file, "Puppet file, or the name of a shipped one").required();
-  takes::add_up_option(showing, options->up);
+  const auto add = [&](const char* name, const char* summary, const char* argument,
+                       const char* argument_summary, Result<void> (*run)(const Options&)) {
+    cli::Command added = command.add_command(name, summary);
+    added.add_option(argument, options->file, argument_summary).required();
+    takes::add_up_option(added, options->up);
+    added.on_chosen([options, run] { return run(*options); });
+    return added;
+  };
+  const char* const puppet = "Puppet file, or the name of a shipped one";
+  cli::Command showing = add("show", "A puppet's functions and points", "FILE", puppet, show);
   showing.add_option("--picture", options->picture,
                      "Where to draw the model at rest and each function at its limits, .png");
   showing.add_option("--camera", options->view,
                      "front, back, left, right, side, top, or AZIMUTH,ELEVATION in degrees");
   showing.add_option("--pixels", options->size, "WIDTHxHEIGHT in pixels, of each picture");
-  showing.on_chosen([options] { return show(*options); });
-
-  cli::Command checking = command.add_command(
-      "check", "Checks for reversed triangles at the functions' limits, and for symmetry");
-  checking.add_option("FILE", options->file, "Puppet file, or the name of a shipped one")
-      .required();
-  takes::add_up_option(checking, options->up);
-  checking.on_chosen([options] { return check(*options); });
-
-  cli::Command making =
-      command.add_command("make", "Makes a puppet for a face from the shape of the model");
+  add("check", "Checks for reversed triangles at the functions' limits, and for symmetry", "FILE",
+      puppet, check);
+  cli::Command making = add("make", "Makes a puppet for a face from the shape of the model",
+                            "MODEL", "OBJ, PLY, STL or glTF file", make);
   making.set_footer("The face must look along +z, with y up (--up z lays a model with z up), and "
                     "be symmetric about x = 0.");
-  making.add_option("MODEL", options->file, "OBJ, PLY, STL or glTF file").required();
-  takes::add_up_option(making, options->up);
   making.add_option("--out", options->out, "Where to write the puppet, .toml, beside the model")
       .required();
   making.add_flag("--force", options->force, cli::force_summary);
-  making.on_chosen([options] { return make(*options); });
 }
-
-} // namespace nendo::app::puppet_command

@@ -1,6 +1,5 @@
 // nendo record: records what gloves send.
 
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <thread>
@@ -11,7 +10,7 @@
 #include <nendo/driver/record_counts.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/json_line.hpp"
+#include "cli/output_place.hpp"
 #include "cli/quantities.hpp"
 #include "gloves/glove_json.hpp"
 #include "nendo/commands.hpp"
@@ -31,19 +30,11 @@ struct Options {
 };
 
 Result<void> check(Options& options) {
-  if (options.gloves.size() > 2)
-    return Error{Errc::usage,
-                 "GLOVE: takes 1 or 2 gloves, got " + std::to_string(options.gloves.size())};
+  if (auto fine = session::check_count(options.gloves); !fine) return fine;
   if (auto fine = cli::check_duration(options.duration_s); !fine) return fine;
   if (auto fine = options.length.check(); !fine) return fine;
   if (auto fine = gloves::check(options.calibration); !fine) return fine;
-  std::error_code ignored;
-  if (std::filesystem::exists(options.out, ignored)) {
-    return Error{Errc::failed, "--out " + options.out +
-                                   ": exists, and recordings are never overwritten; name another "
-                                   "file or move it away"};
-  }
-  return {};
+  return cli::check_new_recording("--out", options.out);
 }
 
 Result<std::vector<gloves::OpenHand>> open_gloves(const Options& options) {
@@ -135,8 +126,10 @@ int record(Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::record_command
 
-void add(cli::Command& program) {
+void nendo::app::add_record(cli::Command& program) {
+  using namespace record_command;
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command("record", "Records what gloves send");
   command.set_footer(
@@ -154,5 +147,3 @@ void add(cli::Command& program) {
   command.add_flag("--json", options->json, "A summary as one JSON object");
   command.on_chosen([options] { return record(*options); });
 }
-
-} // namespace nendo::app::record_command

@@ -109,8 +109,10 @@ Result<void> shapes(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::recording_command
 
-void add(cli::Command& program) {
+void nendo::app::add_recording(cli::Command& program) {
+  using namespace recording_command;
   auto options = std::make_shared<Options>();
   cli::Command command =
       program.add_command("recording", "Shows, checks, repairs and cuts recordings");
@@ -134,7 +136,7 @@ void add(cli::Command& program) {
       .add_option("--out", options->out, "The new file")
       .required();
 
-  cli::Command cutting = add("cut", "Makes a new file of a part", kept, cut);
+  cli::Command cutting = add("cut", "Makes a new file of a part", kept, recording_command::cut);
   cutting.add_duration("--from", options->from_s, "Seconds from the beginning");
   cutting.add_duration("--to", options->to_s, "Seconds from the beginning; without it, the end");
   cutting.add_option("--out", options->out, "The new file").required();
@@ -145,5 +147,3 @@ void add(cli::Command& program) {
   shaping.add_option("--mesh", options->mesh, "The model, if it has been moved");
   shaping.add_option("--out", options->out, "The new file").required();
 }
-
-} // namespace nendo::app::recording_command

@@ -13,7 +13,7 @@
 #include <nendo/deform/cut.hpp>
 #include <nendo/deform/repair.hpp>
 
-#include "cli/json_line.hpp"
+#include "cli/cli.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"
 
@@ -83,8 +83,10 @@ Result<void> repair_file(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::repair_command
 
-void add(cli::Command& program) {
+void nendo::app::add_repair(cli::Command& program) {
+  using namespace repair_command;
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "repair", "Makes a model closed, so that it can be cut, joined and refined: joins, removes, "
@@ -97,5 +99,3 @@ void add(cli::Command& program) {
   command.add_flag("--json", options->json, "Report as one JSON object");
   command.on_chosen([options] { return repair_file(*options); });
 }
-
-} // namespace nendo::app::repair_command

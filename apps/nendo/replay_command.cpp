@@ -15,7 +15,6 @@
 #include <nendo/recording/take_tools.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/json_line.hpp"
 #include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
@@ -209,8 +208,10 @@ Result<void> replay(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::app::replay_command
 
-void add(cli::Command& program) {
+void nendo::app::add_replay(cli::Command& program) {
+  using namespace replay_command;
   auto options = std::make_shared<Options>();
   cli::Command command =
       program.add_command("replay", "Replays a recorded run: the same shape, bit for bit");
@@ -227,5 +228,3 @@ void add(cli::Command& program) {
   command.add_flag("--json", options->json, "A summary as JSON");
   command.on_chosen([options] { return replay(*options); });
 }
-
-} // namespace nendo::app::replay_command

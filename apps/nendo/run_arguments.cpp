@@ -138,7 +138,11 @@ Result<void> check_settings(RunArguments& options) {
   if (!run.puppet && !run.puppet_file.empty()) // a new one
     if (auto fine = flow::compatible(asked, flow::Played::through_air, naming); !fine) return fine;
   const auto played = run.puppet ? flow::played_by(*run.puppet) : flow::Played::nothing;
-  return flow::all_effective(asked, played, naming);
+  if (auto fine = flow::all_effective(asked, played, naming); !fine) return fine;
+  if (run.changes_topology && run.puppet)
+    return Error{Errc::usage,
+                 "--topology: cannot be combined with --puppet, with which key O does the same"};
+  return {};
 }
 
 Result<void> set_size(RunArguments& options) {
@@ -245,13 +249,6 @@ Result<void> check_recording(RunArguments& options) {
   return run.recording.check(run.out, run.loop.switch_action);
 }
 
-Result<void> check_topology(RunArguments& options) {
-  if (options.run.changes_topology && options.run.puppet)
-    return Error{Errc::usage,
-                 "--topology: cannot be combined with --puppet, with which key O does the same"};
-  return {};
-}
-
 /// Chooses the files that have no option.
 Result<void> choose_files(RunArguments& options) {
   session::RunOptions& run = options.run;
@@ -270,10 +267,10 @@ Result<void> choose_files(RunArguments& options) {
 Result<void> check(RunArguments& options) {
   options.run.mesh = cli::name_of_files(options.models);
   options.run.reading = takes::reading(options.up);
-  constexpr std::array steps{set_shaping, set_size,       set_wire,       set_switch,
-                             set_refine,  set_pace,       check_gloves,   check_recording,
-                             read_puppet, check_settings, check_topology, read_masks,
-                             read_take,   choose_files,   check_outputs};
+  constexpr std::array steps{set_shaping,  set_size,       set_wire,     set_switch,
+                             set_refine,   set_pace,       check_gloves, check_recording,
+                             read_puppet,  check_settings, read_masks,   read_take,
+                             choose_files, check_outputs};
   for (const auto step : steps)
     if (auto fine = step(options); !fine) return fine;
   return {};

@@ -25,7 +25,7 @@
 #include "service/service_notice.hpp"
 #include "session/open_hands.hpp"
 #include "session/run_publishing.hpp"
-#include "session/run_report.hpp"
+#include "session/run_session.hpp"
 #include "takes/model_files.hpp"
 
 namespace nendo::app::run_command {
@@ -318,20 +318,21 @@ void add_run_options(cli::Command& command, const std::shared_ptr<RunArguments>&
 }
 
 } // namespace
+} // namespace nendo::app::run_command
 
-void add(cli::Command& program) {
+void nendo::app::add_run(cli::Command& program) {
+  using namespace run_command;
   auto options = std::make_shared<RunArguments>();
   cli::Command command = program.add_command("run", "Shapes a model with one or two gloves");
   command.add_flag("--view", options->view.window, "Open the live window, as `nendo view` does");
   add_run_options(command, options);
 }
 
-void add_view(cli::Command& program) {
+void nendo::app::add_view(cli::Command& program) {
+  using namespace run_command;
   auto options = std::make_shared<RunArguments>();
   options->view.window = true;
   cli::Command command = program.add_command(
       "view", "Runs as `nendo run`, in a window with the model, the hands and a panel");
   add_run_options(command, options);
 }
-
-} // namespace nendo::app::run_command

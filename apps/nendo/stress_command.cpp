@@ -10,7 +10,6 @@
 #include <nendo/base/text.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/json_line.hpp"
 #include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
 #include "cli/terminal.hpp"
@@ -132,8 +131,10 @@ void add_reports(cli::Command command, stress::StressArguments& arguments) {
 }
 
 } // namespace
+} // namespace nendo::app::stress_command
 
-void add(cli::Command& program) {
+void nendo::app::add_stress(cli::Command& program) {
+  using namespace stress_command;
   auto arguments = std::make_shared<stress::StressArguments>();
   cli::Command command = program.add_command(
       "stress",
@@ -173,5 +174,3 @@ void add(cli::Command& program) {
   add_reports(command.under("Report"), *arguments);
   command.on_chosen([arguments] { return run(*arguments); });
 }
-
-} // namespace nendo::app::stress_command

@@ -172,8 +172,10 @@ cli::Command add(cli::Command& udev, const std::shared_ptr<Options>& options,
 }
 
 } // namespace
+} // namespace nendo::app::udev_command
 
-void add(cli::Command& program) {
+void nendo::app::add_udev(cli::Command& program) {
+  using namespace udev_command;
   auto options = std::make_shared<Options>();
   cli::Command udev =
       program.add_command("udev", "Makes gloves usable without root, and gives them stable names");
@@ -195,5 +197,3 @@ void add(cli::Command& program) {
   cli::Command unbound = add(udev, options, "unbind", "Removes a hand's binding", unbind);
   unbound.add_option("HAND", options->hand, "left or right").required().one_of({"left", "right"});
 }
-
-} // namespace nendo::app::udev_command

@@ -94,6 +94,11 @@ Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
   return opened;
 }
 
+Result<void> check_count(const std::vector<std::string>& specs) {
+  if (specs.size() <= 2) return {};
+  return Error{Errc::usage, "GLOVE: takes 1 or 2 gloves, got " + std::to_string(specs.size())};
+}
+
 Result<std::vector<gloves::OpenHand>> open_each(const std::vector<std::string>& specs) {
   std::vector<gloves::OpenHand> hands;
   for (const std::string& spec : specs) {

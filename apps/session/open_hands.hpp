@@ -25,6 +25,8 @@ struct RunHands {
 Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
                             EventCount& event_count);
 
+/// Checks that these are one or two. Error: usage.
+Result<void> check_count(const std::vector<std::string>& specs);
 /// Opens each of these gloves, one or two. Errors: those of gloves::open_hand(), and usage (two
 /// gloves of one hand).
 Result<std::vector<gloves::OpenHand>> open_each(const std::vector<std::string>& specs);

@@ -2,7 +2,6 @@
 // Makes other versions of the model while a run continues, and hands them over to the loop.
 
 #include <future>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>

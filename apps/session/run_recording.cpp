@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <utility>
 
-#include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/simd.hpp>
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/version.hpp>
@@ -29,13 +28,7 @@ Result<void> RecordingOptions::check(const std::string& out, flow::SwitchAction 
   kept_stem = std::filesystem::path(out).replace_extension().string();
   if (action == flow::SwitchAction::keep && keep_last_s <= 0.0)
     return Error{Errc::usage, "--switch keep: needs --keep-last, e.g. --keep-last 60s"};
-  std::error_code ignored;
-  if (on && std::filesystem::exists(file, ignored)) {
-    return Error{Errc::failed, "--record " + file +
-                                   ": exists, and recordings are never overwritten; name another "
-                                   "file or move it away"};
-  }
-  return {};
+  return cli::check_new_recording("--record", file);
 }
 
 void add_recording_options(const cli::Command& whole, RecordingOptions& options) {

@@ -1,4 +1,4 @@
-#include "session/run_report.hpp"
+#include "session/run_session.hpp"
 
 #include <algorithm>
 #include <array>

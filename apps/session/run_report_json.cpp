@@ -1,11 +1,11 @@
-#include "session/run_report.hpp"
+#include "session/run_session.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/setting.hpp>
 
-#include "cli/json_line.hpp"
+#include "cli/cli.hpp"
 #include "cli/model_files.hpp"
 #include "gloves/glove_json.hpp"
 #include "session/setting_options.hpp"
@@ -16,14 +16,12 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json percentiles(const flow::Histogram& histogram) {
-  ordered_json line;
-  line["count"] = histogram.count();
-  line["min"] = to_milliseconds(histogram.min());
-  line["p50"] = to_milliseconds(histogram.percentile(0.50));
-  line["p90"] = to_milliseconds(histogram.percentile(0.90));
-  line["p99"] = to_milliseconds(histogram.percentile(0.99));
-  line["max"] = to_milliseconds(histogram.max());
-  return line;
+  return {{"count", histogram.count()},
+          {"min", to_milliseconds(histogram.min())},
+          {"p50", to_milliseconds(histogram.percentile(0.50))},
+          {"p90", to_milliseconds(histogram.percentile(0.90))},
+          {"p99", to_milliseconds(histogram.percentile(0.99))},
+          {"max", to_milliseconds(histogram.max())}};
 }
 
 // Contains only the sensors that had spikes.

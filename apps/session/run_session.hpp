@@ -1,6 +1,6 @@
 #pragma once
-// Runs from open gloves to a shape. The loop has a thread of its own. The main thread watches it,
-// takes commands, and makes ready what they need.
+// Runs from open gloves to a shape, and reports. The loop has a thread of its own. The main thread
+// watches it, takes commands, and makes ready what they need.
 
 #include <functional>
 #include <string>
@@ -56,5 +56,17 @@ struct RunParticipants {
 Result<RunOutcome> run_session(RunOptions options, std::vector<gloves::OpenHand>& hands,
                                deform::Mesh model, const RunParticipants& participants,
                                std::vector<flow::Grant> grants = {});
+
+/// Returns the function that reports the progress of a run with these hands. In a terminal it
+/// rewrites one line of standard error, and elsewhere it prints a line every two seconds. With
+/// `options.json` it prints an object a second on standard output.
+Progress progress_for(const RunOptions& options, const std::vector<gloves::OpenHand>& hands);
+/// Prints the summary on standard output: a table, or with `options.json` one object.
+void print_summary(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
+                   const RunOutcome& outcome);
+/// The JSON forms of both. Each prints one line on standard output.
+void print_progress_json(const flow::Frame& frame, double elapsed_s);
+void print_summary_json(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
+                        const RunOutcome& outcome);
 
 } // namespace nendo::session

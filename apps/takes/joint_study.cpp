@@ -13,7 +13,7 @@
 #include <nendo/base/units.hpp>
 #include <nendo/hand/joint_limits.hpp>
 
-#include "cli/json_line.hpp"
+#include "cli/cli.hpp"
 #include "takes/recorded_frames.hpp"
 
 namespace nendo::takes {

@@ -9,7 +9,7 @@
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/hand/calibration_file.hpp>
 
-#include "cli/json_line.hpp"
+#include "cli/cli.hpp"
 
 namespace nendo::takes {
 namespace {
