@@ -17,20 +17,83 @@ public:
   WebView(std::unique_ptr<web::Server> server, std::string model_name) noexcept
       : server_(std::move(server)), model_name_(std::move(model_name)) {}
 
-  Result<void> begin(const LoopStart& start) override;
+  Result<void> begin(const LoopStart& start) override {
+    placed_ = &start.placed;
+    const deform::BlockLayout& layout = placed_->loop->changes().layout();
+    if (auto fine = check(layout); !fine) return fine;
+    streams_.begin(stream_for(layout));
+    server_->set_settings(placed_->loop->changes().settings());
+    pictures_ = web::pictures_of(start.model);
+    server_->present(streams_.now(), message_for(layout, start.model), pictures_);
+    update_weights();
+    return {};
+  }
   void show(const flow::Frame& frame) noexcept override { streams_.of(frame).show(frame); }
-  Result<void> prepare(const flow::ModelVersion& version) override;
-  Result<void> settle() override;
-  void update(const RunStatus& status, Asks& asks) override;
+  Result<void> prepare(const flow::ModelVersion& version) override {
+    if (auto fine = check(version.layout()); !fine) return fine;
+    streams_.prepare(stream_for(version.layout()));
+    next_model_ = message_for(version.layout(), version.mesh);
+    return {};
+  }
+  Result<void> settle() override {
+    if (streams_.settle()) server_->present(streams_.now(), std::move(next_model_), pictures_);
+    return {};
+  }
+  void update(const RunStatus& status, Asks& asks) override {
+    web::GloveStates gloves;
+    for (std::size_t slot = 0; slot < gloves.size(); ++slot)
+      gloves[slot] = {status.gloves[slot].counts, status.gloves[slot].uncalibrated};
+    server_->set_gloves(gloves);
+    server_->set_settings(status.frame.settings);
+    server_->set_commands(status.situation());
+    server_->set_steps(status.frame.steps);
+    server_->set_puppet(status.frame.puppet, status.puppet.get());
+    server_->set_clay(status.frame);
+    update_weights();
+    wanted_.follow(status.frame.settings);
+    while (auto asked = server_->next_command()) {
+      if (const auto* const row = std::get_if<const commands::Row*>(&*asked)) {
+        const commands::Answer answer = commands::press(**row, status.situation(), wanted_);
+        if (answer.command) asks.emplace_back(*answer.command);
+        if (answer.refusal != nullptr) server_->report(answer.refusal);
+      } else if (const auto* const settings = std::get_if<web::NamedSettings>(&*asked)) {
+        settings->apply_to(wanted_.now);
+        if (const auto change = wanted_.ask()) asks.emplace_back(*change);
+      } else {
+        asks.emplace_back(std::get<flow::Command>(*asked));
+      }
+    }
+  }
   void report(const std::string& message) override { server_->report(message); }
 
 private:
-  Result<void> check(const deform::BlockLayout& layout) const;
-  std::shared_ptr<web::FrameStream> stream_for(const deform::BlockLayout& layout) const;
+  Result<void> check(const deform::BlockLayout& layout) const {
+    if (layout.vertex_count() <= web::max_vertices) return {};
+    return Error{Errc::bad_input, "--web: the model has " + std::to_string(layout.vertex_count()) +
+                                      " vertices, and a browser takes at "
+                                      "most " +
+                                      std::to_string(web::max_vertices) +
+                                      "; run it without --web, or reduce the model"};
+  }
+  std::shared_ptr<web::FrameStream> stream_for(const deform::BlockLayout& layout) const {
+    const FrameCapacity most = frame_capacity(*placed_);
+    return std::make_shared<web::FrameStream>(
+        layout, web::FrameStream::Capacity{most.fields, most.functions, most.vectors});
+  }
   std::vector<std::byte> message_for(const deform::BlockLayout& layout,
-                                     const deform::Mesh& mesh) const;
-
-  void update_weights();
+                                     const deform::Mesh& mesh) const {
+    const PlacedSetup& setup = placed_->setup;
+    return web::model_message(
+        layout, mesh, setup.inputs,
+        {model_name_, setup.options.rate_hz, setup.placement.units_per_metre});
+  }
+  // The loop makes another field of a puppet when radii, kernel or model change.
+  void update_weights() {
+    const auto& surface = placed_->loop->changes().sculptor_options().surface;
+    if (!surface || surface->number() == weights_) return;
+    weights_ = surface->number();
+    server_->add_weights(weights_, web::weights_message(*surface));
+  }
 
   std::unique_ptr<web::Server> server_;
   VersionTarget<web::FrameStream> streams_;
@@ -41,86 +104,6 @@ private:
   const PlacedLoop* placed_ = nullptr;
   std::string model_name_; ///< the name on the page
 };
-
-Result<void> WebView::begin(const LoopStart& start) {
-  placed_ = &start.placed;
-  const deform::BlockLayout& layout = placed_->loop->changes().layout();
-  if (auto fine = check(layout); !fine) return fine;
-  streams_.begin(stream_for(layout));
-  server_->set_settings(placed_->loop->changes().settings());
-  pictures_ = web::pictures_of(start.model);
-  server_->present(streams_.now(), message_for(layout, start.model), pictures_);
-  update_weights();
-  return {};
-}
-
-Result<void> WebView::prepare(const flow::ModelVersion& version) {
-  if (auto fine = check(version.layout()); !fine) return fine;
-  streams_.prepare(stream_for(version.layout()));
-  next_model_ = message_for(version.layout(), version.mesh);
-  return {};
-}
-
-Result<void> WebView::settle() {
-  if (streams_.settle()) server_->present(streams_.now(), std::move(next_model_), pictures_);
-  return {};
-}
-
-Result<void> WebView::check(const deform::BlockLayout& layout) const {
-  if (layout.vertex_count() <= web::max_vertices) return {};
-  return Error{Errc::bad_input, "--web: the model has " + std::to_string(layout.vertex_count()) +
-                                    " vertices, and a browser takes at "
-                                    "most " +
-                                    std::to_string(web::max_vertices) +
-                                    "; run it without --web, or reduce the model"};
-}
-
-std::shared_ptr<web::FrameStream> WebView::stream_for(const deform::BlockLayout& layout) const {
-  const FrameCapacity most = frame_capacity(*placed_);
-  return std::make_shared<web::FrameStream>(
-      layout, web::FrameStream::Capacity{most.fields, most.functions, most.vectors});
-}
-
-std::vector<std::byte> WebView::message_for(const deform::BlockLayout& layout,
-                                            const deform::Mesh& mesh) const {
-  const PlacedSetup& setup = placed_->setup;
-  return web::model_message(layout, mesh, setup.inputs,
-                            {model_name_, setup.options.rate_hz, setup.placement.units_per_metre});
-}
-
-void WebView::update(const RunStatus& status, Asks& asks) {
-  web::GloveStates gloves;
-  for (std::size_t slot = 0; slot < gloves.size(); ++slot)
-    gloves[slot] = {status.gloves[slot].counts, status.gloves[slot].uncalibrated};
-  server_->set_gloves(gloves);
-  server_->set_settings(status.frame.settings);
-  server_->set_commands(status.situation());
-  server_->set_steps(status.frame.steps);
-  server_->set_puppet(status.frame.puppet, status.puppet.get());
-  server_->set_clay(status.frame);
-  update_weights();
-  wanted_.follow(status.frame.settings);
-  while (auto asked = server_->next_command()) {
-    if (const auto* const row = std::get_if<const commands::Row*>(&*asked)) {
-      const commands::Answer answer = commands::press(**row, status.situation(), wanted_);
-      if (answer.command) asks.emplace_back(*answer.command);
-      if (answer.refusal != nullptr) server_->report(answer.refusal);
-    } else if (const auto* const settings = std::get_if<web::NamedSettings>(&*asked)) {
-      settings->apply_to(wanted_.now);
-      if (const auto change = wanted_.ask()) asks.emplace_back(*change);
-    } else {
-      asks.emplace_back(std::get<flow::Command>(*asked));
-    }
-  }
-}
-
-// The loop makes another field of a puppet when radii, kernel or model change.
-void WebView::update_weights() {
-  const auto& surface = placed_->loop->changes().sculptor_options().surface;
-  if (!surface || surface->number() == weights_) return;
-  weights_ = surface->number();
-  server_->add_weights(weights_, web::weights_message(*surface));
-}
 
 } // namespace
 

@@ -46,11 +46,6 @@ Result<void> set_round(const std::string& text, flow::InputScript& script) {
   return {};
 }
 
-bool has_hand(const recording::Setup& setup, Side side) {
-  return std::any_of(setup.hands.begin(), setup.hands.end(),
-                     [side](const flow::HandInput& hand) { return hand.side == side; });
-}
-
 std::array<bool, 2> sides_without_layer(const RunOptions& options) {
   if (!options.left.empty() || !options.right.empty())
     return {!options.left.empty(), !options.right.empty()};
@@ -109,6 +104,11 @@ void add_overdub_options(const cli::Command& whole, OverdubArguments& arguments)
       "--loop", arguments.loop,
       "A:B, times of the recording: repeats this part until the run ends; : is the whole "
       "recording");
+}
+
+bool has_hand(const recording::Setup& take, Side side) {
+  return std::any_of(take.hands.begin(), take.hands.end(),
+                     [side](const flow::HandInput& hand) { return hand.side == side; });
 }
 
 Result<std::shared_ptr<Overdub>> read_overdub(const OverdubArguments& arguments) {

@@ -42,6 +42,9 @@ struct Overdub {
   bool begins_on() const noexcept { return !punch || punch->from == HostClock::duration::zero(); }
 };
 
+/// Returns whether the take has that hand.
+bool has_hand(const recording::Setup& take, Side side);
+
 /// What live gloves play, of both hands by flow::Placement::index_of(side). Nothing: whole hands.
 using LivePart = std::optional<std::array<flow::AngleSet, 2>>;
 

@@ -127,10 +127,8 @@ Result<PlacedLoop> place_over(const RunOptions& options, const std::vector<glove
     setup.spare_points = std::max(setup.spare_points, puppet->starts.cols() - points);
   for (const auto& hand : hands) {
     const std::size_t slot = flow::Placement::index_of(hand.side);
-    const bool was_there =
-        std::any_of(take.hands.begin(), take.hands.end(),
-                    [&](const flow::HandInput& input) { return input.side == hand.side; });
-    if (!was_there) setup.placement.T_stage_wrist[slot] = joining.T_stage_wrist[slot];
+    if (!has_hand(take, hand.side))
+      setup.placement.T_stage_wrist[slot] = joining.T_stage_wrist[slot];
   }
   const puppet::Rig* const rig = setup.options.rig.get();
   if (!flow::is_played(rig) && flow::count_hands(setup.inputs) > flow::count_hands(take.hands)) {

@@ -14,15 +14,13 @@ publish::LoopOutline outline_of(const PlacedLoop& placed, const deform::Mesh& mo
                                 const deform::BlockLayout& layout) {
   const auto& options = placed.setup.options;
   const FrameCapacity most = frame_capacity(placed);
-  publish::LoopOutline outline;
-  outline.model = &model;
-  outline.layout = &layout;
-  outline.mode = options.sculptor.mode;
-  outline.rate_hz = options.rate_hz;
-  outline.units_per_metre = placed.setup.placement.units_per_metre;
-  outline.max_fields = most.fields;
-  outline.functions = most.functions;
-  return outline;
+  return {&model,
+          &layout,
+          options.sculptor.mode,
+          options.rate_hz,
+          placed.setup.placement.units_per_metre,
+          most.fields,
+          most.functions};
 }
 
 publish::LoopOutline outline_of(const LoopStart& start) {
@@ -94,12 +92,12 @@ public:
   PublishedTo end() override {
     datagrams_.end();
     const auto counts = datagrams_.counts();
-    PublishedTo result{.target = text_, .records = counts.records};
-    result.bytes = counts.bytes;
-    result.datagrams = counts.datagrams;
-    result.lost_records = counts.lost;
-    result.refused_datagrams = counts.refused;
-    return result;
+    return {.target = text_,
+            .records = counts.records,
+            .bytes = counts.bytes,
+            .datagrams = counts.datagrams,
+            .lost_records = counts.lost,
+            .refused_datagrams = counts.refused};
   }
 
 private:

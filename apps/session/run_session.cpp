@@ -38,10 +38,20 @@ constexpr render::Size panel_size{408, 392};
 class RunPicture {
 public:
   /// Does nothing, and writes nothing, if `path` is empty.
-  RunPicture(std::filesystem::path path, const deform::Mesh& model);
+  RunPicture(std::filesystem::path path, const deform::Mesh& model) : path_(std::move(path)) {
+    if (!path_.empty()) before_ = model;
+  }
 
   /// Call it for each frame that the main thread gets, from the beginning on. Allocates.
-  void add(const flow::Frame& frame);
+  void add(const flow::Frame& frame) {
+    if (path_.empty()) return;
+    holds_.follow(frame);
+    render::set_hands(frame, holds_, last_);
+    if (units_per_metre_ > 0.0) return;
+    units_per_metre_ = frame.units_per_metre;
+    first_ = last_;
+    first_.radius_m = frame.settings.radius_m;
+  }
   /// Sets the rest shape of the last frame's model, which decides the triangles of the final shape
   /// (triangles.hpp).
   void set_rest(const deform::Points& rest) {
@@ -49,7 +59,28 @@ public:
   }
   /// Draws and writes the picture. Call it after the last frame. Blocks for some seconds. Error:
   /// failed.
-  Result<void> write(const deform::Mesh& final_shape);
+  Result<void> write(const deform::Mesh& final_shape) {
+    using namespace nendo::render;
+    if (path_.empty()) return {};
+    first_.vertices = before_.vertices;
+    last_.vertices = final_shape.vertices;
+    Scene before, after;
+    SceneBuilder(before_, units_per_metre_).build(first_, {}, before);
+    const bool has_rest = last_rest_.cols() == final_shape.vertices.cols();
+    SceneBuilder(has_rest ? deform::with_triangles_of(final_shape, last_rest_) : final_shape,
+                 units_per_metre_)
+        .build(last_, {}, after);
+    auto points = before.outline();
+    const auto more = after.outline();
+    points.insert(points.end(), more.begin(), more.end());
+    const Camera camera =
+        framing(points, picture_view, 1.0 * panel_size.width / panel_size.height, 0.04);
+    const auto panel = [&](const Scene& scene, const char* caption) {
+      return Panel{draw(Lighting(scene, picture_view.azimuth_deg), camera, panel_size), caption};
+    };
+    return write_png(
+        path_, contact_sheet({panel(before, "Before: both hands grab"), panel(after, "After")}, 2));
+  }
 
 private:
   std::filesystem::path path_;
@@ -59,46 +90,6 @@ private:
   render::SceneFrame first_, last_;
   double units_per_metre_ = 0.0; ///< 0: no frame was added
 };
-
-RunPicture::RunPicture(std::filesystem::path path, const deform::Mesh& model)
-    : path_(std::move(path)) {
-  if (!path_.empty()) before_ = model;
-}
-
-void RunPicture::add(const flow::Frame& frame) {
-  if (path_.empty()) return;
-  holds_.follow(frame);
-  render::set_hands(frame, holds_, last_);
-  if (units_per_metre_ > 0.0) return;
-  units_per_metre_ = frame.units_per_metre;
-  first_ = last_;
-  first_.radius_m = frame.settings.radius_m;
-}
-
-Result<void> RunPicture::write(const deform::Mesh& final_shape) {
-  using namespace nendo::render;
-  if (path_.empty()) return {};
-  const SceneBuilder builder(before_, units_per_metre_);
-  first_.vertices = before_.vertices;
-  last_.vertices = final_shape.vertices;
-  Scene before;
-  Scene after;
-  builder.build(first_, {}, before);
-  const bool has_rest = last_rest_.cols() == final_shape.vertices.cols();
-  SceneBuilder(has_rest ? deform::with_triangles_of(final_shape, last_rest_) : final_shape,
-               units_per_metre_)
-      .build(last_, {}, after);
-  auto points = before.outline();
-  const auto more = after.outline();
-  points.insert(points.end(), more.begin(), more.end());
-  const Camera camera =
-      framing(points, picture_view, 1.0 * panel_size.width / panel_size.height, 0.04);
-  const auto panel = [&](const Scene& scene, const char* caption) {
-    return Panel{draw(Lighting(scene, picture_view.azimuth_deg), camera, panel_size), caption};
-  };
-  return write_png(
-      path_, contact_sheet({panel(before, "Before: both hands grab"), panel(after, "After")}, 2));
-}
 
 /// The keys of a run, in its terminal.
 class RunKeys final : public Observer {
@@ -278,7 +269,10 @@ private:
   void run_loop(RunPicture& picture) {
     flow::DeformLoop& loop = *placed_.loop;
     sculpting::LoopThread thread(loop, options_.realtime, ticks_for(options_));
-    report_refusals(thread.grants());
+    for (flow::Grant& grant : thread.grants())
+      grants_.push_back(std::move(grant));
+    for (const auto& line : flow::refusals(grants_))
+      cli::note(line);
     watch(thread, picture);
     if (commands_.ends()) wait_until_taken();
     if (saving_.is_due()) save(); // asked for just before the end
@@ -290,12 +284,6 @@ private:
     if (loop.frames().update()) picture.add(loop.frames().front());
     if (const auto last = loop.changes().model(loop.frames().front().model))
       picture.set_rest(last->mesh.vertices);
-  }
-
-  void report_refusals(std::vector<flow::Grant> of_thread) {
-    std::move(of_thread.begin(), of_thread.end(), std::back_inserter(grants_));
-    for (const auto& line : flow::refusals(grants_))
-      cli::note(line);
   }
 
   // Returns whether all gloves have ended, and the loop has taken all of their samples. Its present
