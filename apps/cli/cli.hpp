@@ -36,6 +36,15 @@ void install_stop_signals() noexcept;
 /// (../share/nendo/models).
 std::filesystem::path shipped_model(std::string_view file_name);
 
+/// For what fills large memory once, and may spend more time on pages of 4 KiB than on the model
+/// (../../deform/CUTTING.md has figures). Lets the C library ask the kernel for huge pages, if the
+/// kernel gives them only on request (transparent_hugepage/enabled is "madvise"). The library reads
+/// that option at a program's start (GLIBC_TUNABLES, glibc.malloc.hugetlb=1, glibc 2.35 and newer),
+/// so this starts the program once more, in the same process. An existing value of
+/// glibc.malloc.hugetlb, such as 0, is kept. If it cannot be done, it returns, and the program
+/// continues as it is. Call it first in main().
+void use_huge_pages(char** argv) noexcept;
+
 struct TwoProcessors {
   int first = 0;
   int second = 0;

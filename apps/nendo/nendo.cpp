@@ -12,7 +12,7 @@
 
 #include <nendo/base/result.hpp>
 
-#include "cli/huge_pages.hpp"
+#include "cli/cli.hpp"
 #include "nendo/commands.hpp"
 
 namespace {

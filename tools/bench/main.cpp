@@ -11,7 +11,7 @@
 #include <nendo/base/result.hpp>
 
 #include "bench/bench.hpp"
-#include "cli/huge_pages.hpp"
+#include "cli/cli.hpp"
 
 namespace {
 
