@@ -19,7 +19,6 @@
 #include "files/number_text.hpp"
 #include "files/text_scanner.hpp"
 #include "geometry/usable.hpp"
-#include "mesh/columns.hpp"
 #include "repair/weld.hpp"
 
 namespace nendo::deform {
@@ -47,79 +46,31 @@ bool has_three_corners(CornerSpan corners) noexcept {
                      [&](std::uint32_t corner) { return corner != one && corner != *other; });
 }
 
-/// Copies what is kept of a mesh's faces to the front of their lists.
-class FaceTidier {
-public:
-  explicit FaceTidier(Mesh& mesh) noexcept : mesh_(mesh) {}
-
-  void tidy(std::vector<std::string>& notes) {
-    const std::size_t faces = mesh_.face_count();
-    std::uint32_t begin = 0;
-    for (std::size_t face = 0; face < faces; ++face) {
-      const std::uint32_t end = mesh_.face_starts[face + 1];
-      const CornerSpan corners = CornerSpan(mesh_.face_corners).subspan(begin, end - begin);
-      if (!has_three_corners(corners)) {
-        left_out_.add(face + 1);
-      } else {
-        if (repeats_corner(corners)) fixed_.add(face + 1);
-        keep_corners(begin, end);
-        keep_names(face);
-        mesh_.face_starts[++faces_kept_] = corners_kept_;
-      }
-      begin = end;
-    }
-    shrink();
-    if (left_out_.count > 0) notes.push_back(left_out_.without_three_corners("face"));
-    if (fixed_.count > 0)
-      notes.push_back(fixed_.words("face", "names", "name") +
-                      " a corner twice in a row, which is taken once");
-  }
-
-private:
-  void keep_corners(std::uint32_t begin, std::uint32_t end) {
-    const std::uint32_t first = corners_kept_;
-    const auto is_last_kept = [&](std::uint32_t vertex) {
-      return corners_kept_ > first && mesh_.face_corners[corners_kept_ - 1] == vertex;
-    };
-    for (std::uint32_t at = begin; at < end; ++at) {
-      const std::uint32_t vertex = mesh_.face_corners[at];
-      if (is_last_kept(vertex)) continue;
-      mesh_.face_corners[corners_kept_] = vertex;
-      if (!mesh_.corner_texcoords.empty())
-        mesh_.corner_texcoords[corners_kept_] = mesh_.corner_texcoords[at];
-      ++corners_kept_;
-    }
-    while (is_last_kept(mesh_.face_corners[first]) && corners_kept_ > first + 1)
-      --corners_kept_;
-  }
-  void keep_names(std::size_t face) {
-    for (auto* of_face : face_columns(mesh_.look))
-      if (!of_face->empty()) (*of_face)[faces_kept_] = (*of_face)[face];
-  }
-  void shrink() {
-    mesh_.face_starts.resize(faces_kept_ + 1);
-    mesh_.face_corners.resize(corners_kept_);
-    if (!mesh_.corner_texcoords.empty()) mesh_.corner_texcoords.resize(corners_kept_);
-    for (auto* of_face : face_columns(mesh_.look))
-      if (!of_face->empty()) of_face->resize(faces_kept_);
-  }
-
-  Mesh& mesh_;
-  std::uint32_t corners_kept_ = 0;
-  std::size_t faces_kept_ = 0;
-  Tally left_out_, fixed_;
-};
-
 /// Takes a corner that a face names twice in a row once only, and leaves out faces with fewer than
 /// three different corners. Adds a note for each of both, if there are any. Other faces, and all
 /// vertices, stay as they are.
-void tidy_faces(Mesh& mesh, std::vector<std::string>& notes) {
+void tidy_faces(Mesh& mesh, ReadNotes& notes) {
+  Tally left_out, fixed;
+  std::vector<std::uint8_t> keeps(mesh.face_corners.size(), 1);
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const CornerSpan corners = span_of(mesh, face);
-    if (!repeats_corner(corners) && has_three_corners(corners)) continue;
-    FaceTidier(mesh).tidy(notes);
-    return;
+    const auto own = std::span(keeps).subspan(mesh.face_starts[face], corners.size());
+    if (!has_three_corners(corners)) {
+      left_out.add(face + 1);
+      std::ranges::fill(own, std::uint8_t{0});
+    } else if (repeats_corner(corners)) {
+      fixed.add(face + 1);
+      for (std::size_t at = 1; at < corners.size(); ++at)
+        if (corners[at] == corners[at - 1]) own[at] = 0;
+      for (std::size_t at = corners.size(); corners[--at] == corners[0];)
+        own[at] = 0;
+    }
   }
+  if (left_out.count + fixed.count > 0) keep_corners(mesh, keeps);
+  if (left_out.count > 0) notes.push_back(left_out.without_three_corners("face"));
+  if (fixed.count > 0)
+    notes.push_back(fixed.words("face", "names", "name") +
+                    " a corner twice in a row, which is taken once");
 }
 
 Error bad_file(std::string_view name, const std::string& what) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <nendo/deform/mesh.hpp>
@@ -35,6 +36,22 @@ inline std::array<std::vector<std::uint32_t>*, 3> face_columns(Appearance& look)
 inline std::array<const std::vector<std::uint32_t>*, 3>
 face_columns(const Appearance& look) noexcept {
   return {&look.face_materials, &look.groups.of_face, &look.objects.of_face};
+}
+
+/// Returns 1 for each vertex that a face has, and 0 for the others. Allocates.
+std::vector<std::uint8_t> vertices_of_faces(const Mesh& mesh);
+
+/// Keeps the vertices for which `keeps` is not 0. No face may have another one.
+void keep_vertices(Mesh& mesh, std::span<const std::uint8_t> keeps);
+
+/// Keeps the values for which `keeps` is not 0. A column without values stays empty.
+template <class Values>
+void keep_values(Values& values, std::span<const std::uint8_t> keeps) {
+  if (values.empty()) return;
+  std::size_t kept = 0;
+  for (std::size_t at = 0; at < keeps.size(); ++at)
+    if (keeps[at] != 0) values[kept++] = values[at];
+  values.resize(kept);
 }
 
 inline void append_corner(const Mesh& from, std::uint32_t corner, Mesh& to) {

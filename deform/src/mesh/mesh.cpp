@@ -8,6 +8,8 @@
 #include <nendo/deform/face_box.hpp>
 #include <nendo/deform/vertex_areas.hpp>
 
+#include "mesh/columns.hpp"
+
 namespace nendo::deform {
 namespace {
 
@@ -22,7 +24,17 @@ void add_finite(const Eigen::Vector3d& point, Box& box) noexcept {
   box.highest = box.highest.cwiseMax(point);
 }
 
-/// 1 for each vertex that a face has.
+template <class Columns>
+void keep_columns(Columns& columns, std::span<const std::uint8_t> keeps) {
+  if (columns.cols() == 0) return;
+  Eigen::Index kept = 0;
+  for (std::size_t at = 0; at < keeps.size(); ++at)
+    if (keeps[at] != 0) columns.col(kept++) = columns.col(static_cast<Eigen::Index>(at)).eval();
+  columns.conservativeResize(columns.rows(), kept);
+}
+
+} // namespace
+
 std::vector<std::uint8_t> vertices_of_faces(const Mesh& mesh) {
   std::vector<std::uint8_t> has_face(mesh.vertex_count(), 0);
   for (const std::uint32_t corner : mesh.face_corners)
@@ -30,7 +42,18 @@ std::vector<std::uint8_t> vertices_of_faces(const Mesh& mesh) {
   return has_face;
 }
 
-} // namespace
+void keep_vertices(Mesh& mesh, std::span<const std::uint8_t> keeps) {
+  std::vector<std::uint32_t> number(keeps.size(), no_index);
+  std::uint32_t kept = 0;
+  for (std::size_t at = 0; at < keeps.size(); ++at)
+    if (keeps[at] != 0) number[at] = kept++;
+  if (kept == keeps.size()) return;
+  for (std::uint32_t& corner : mesh.face_corners)
+    corner = number[corner];
+  keep_columns(mesh.vertices, keeps);
+  keep_values(mesh.detail, keeps);
+  keep_columns(mesh.look.vertex_colours, keeps);
+}
 
 Box finite_box_of(const Points& points) noexcept {
   Box box = empty_box();
@@ -106,21 +129,13 @@ std::vector<std::uint32_t> stray_vertices(const Mesh& mesh) {
 std::optional<Mesh> without_stray_vertices(const Mesh& mesh) {
   if (mesh.face_count() == 0) return std::nullopt;
   const auto has_face = vertices_of_faces(mesh);
-  const auto kept = std::count(has_face.begin(), has_face.end(), 1);
-  if (kept == mesh.vertices.cols()) return std::nullopt;
+  if (std::find(has_face.begin(), has_face.end(), 0) == has_face.end()) return std::nullopt;
   Mesh faces;
+  faces.vertices = mesh.vertices;
   faces.face_starts = mesh.face_starts;
+  faces.face_corners = mesh.face_corners;
   faces.offset = mesh.offset;
-  faces.vertices.resize(3, kept);
-  std::vector<std::uint32_t> number(has_face.size());
-  std::uint32_t next = 0;
-  for (std::size_t vertex = 0; vertex < has_face.size(); ++vertex) {
-    if (has_face[vertex] == 0) continue;
-    faces.vertices.col(next) = mesh.vertices.col(static_cast<Eigen::Index>(vertex));
-    number[vertex] = next++;
-  }
-  for (const std::uint32_t corner : mesh.face_corners)
-    faces.face_corners.push_back(number[corner]);
+  keep_vertices(faces, has_face);
   return faces;
 }
 

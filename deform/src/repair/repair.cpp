@@ -14,6 +14,7 @@
 #include <nendo/deform/triangles.hpp>
 
 #include "cut/cut_assembly.hpp"
+#include "mesh/columns.hpp"
 #include "repair/steps.hpp"
 #include "repair/stitch.hpp"
 #include "repair/weld.hpp"
@@ -139,7 +140,7 @@ private:
   void join_places() {
     const std::vector<std::uint32_t> place =
         near_places(mesh_.vertices, open_vertices(), result_.tolerance);
-    const std::vector<std::uint8_t> used = used_vertices();
+    const std::vector<std::uint8_t> used = vertices_of_faces(mesh_);
     const Eigen::Matrix4Xf& colours = mesh_.look.vertex_colours;
     bool differ = false;
     for (std::uint32_t vertex = 0; vertex < place.size(); ++vertex)
@@ -217,7 +218,7 @@ private:
   /// Vertices that became one with another one, or whose faces were left out, also go, but are not
   /// counted again.
   void drop_strays() {
-    const std::vector<std::uint8_t> keeps = used_vertices();
+    const std::vector<std::uint8_t> keeps = vertices_of_faces(mesh_);
     const auto gone = static_cast<std::size_t>(std::count(keeps.begin(), keeps.end(), 0));
     keep_vertices(mesh_, keeps);
     result_.stray = gone - std::min(gone, result_.joined + left_out_vertices_);
@@ -259,7 +260,7 @@ private:
   /// What was separated from them was not, as far as users see.
   void drop_left_out_vertices() {
     if (result_.left_out.empty()) return;
-    const std::vector<std::uint8_t> used = used_vertices();
+    const std::vector<std::uint8_t> used = vertices_of_faces(mesh_);
     const std::vector<std::uint32_t> place = exact_places(mesh_.vertices);
     std::vector<std::uint8_t> stays(place.size(), 0);
     for (std::size_t vertex = 0; vertex < used.size(); ++vertex)
@@ -268,12 +269,6 @@ private:
       if (used[vertex] == 0 && stays[place[vertex]] != 0 && result_.separated > 0)
         --result_.separated;
     keep_vertices(mesh_, used);
-  }
-  std::vector<std::uint8_t> used_vertices() const {
-    std::vector<std::uint8_t> used(mesh_.vertex_count(), 0);
-    for (const std::uint32_t corner : mesh_.face_corners)
-      used[corner] = 1;
-    return used;
   }
   /// A model of which only trifles would be left is none.
   Result<void> check_rest() const {
@@ -313,20 +308,12 @@ private:
     known->faces += faces.size();
   }
   void drop_left_out_faces() {
-    if (place_of_.size() == mesh_.face_corners.size()) {
-      std::vector<std::uint32_t> places;
-      for (std::size_t face = 0; face < mesh_.face_count(); ++face)
-        if (keeps_[face] != 0)
-          places.insert(places.end(), place_of_.begin() + mesh_.face_starts[face],
-                        place_of_.begin() + mesh_.face_starts[face + 1]);
-      place_of_ = std::move(places);
-    }
     const auto count_used = [&] {
-      const std::vector<std::uint8_t> used = used_vertices();
+      const std::vector<std::uint8_t> used = vertices_of_faces(mesh_);
       return static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
     };
     left_out_vertices_ += count_used();
-    keep_faces(mesh_, keeps_);
+    keep_faces(mesh_, keeps_, place_of_);
     left_out_vertices_ -= count_used();
     keeps_.clear();
   }

@@ -386,11 +386,7 @@ std::size_t drop_double_faces(Mesh& mesh, std::vector<std::uint32_t>& place_of) 
     keeps[face] = 0;
     ++dropped;
   }
-  std::vector<std::uint32_t> places;
-  for (std::size_t face = 0; face < mesh.face_count(); ++face)
-    if (keeps[face] != 0) places.insert(places.end(), own(face).begin(), own(face).end());
-  keep_faces(mesh, keeps);
-  place_of = std::move(places);
+  keep_faces(mesh, keeps, place_of);
   return dropped;
 }
 

@@ -75,65 +75,38 @@ void join_repeats(const Mesh& mesh, std::span<const std::uint32_t> place, UnionF
   }
 }
 
-template <class Values>
-void keep_values(Values& values, std::span<const std::uint8_t> keeps) {
-  if (values.empty()) return;
-  std::size_t kept = 0;
-  for (std::size_t at = 0; at < keeps.size(); ++at)
-    if (keeps[at] != 0) values[kept++] = values[at];
-  values.resize(kept);
-}
+} // namespace
 
-template <class Columns>
-void keep_columns(Columns& columns, std::span<const std::uint8_t> keeps) {
-  Eigen::Index kept = 0;
-  for (std::size_t at = 0; at < keeps.size(); ++at)
-    if (keeps[at] != 0) columns.col(kept++) = columns.col(static_cast<Eigen::Index>(at)).eval();
-  columns.conservativeResize(columns.rows(), kept);
-}
-
-/// Keeps these faces, which have these corners and then begin there.
-void keep_faces_with(Mesh& mesh, std::span<const std::uint8_t> faces,
-                     std::span<const std::uint8_t> corners, std::vector<std::uint32_t> starts) {
-  keep_values(mesh.face_corners, corners);
-  keep_values(mesh.corner_texcoords, corners);
+void keep_corners(Mesh& mesh, std::span<const std::uint8_t> keeps) {
+  std::vector<std::uint8_t> faces;
+  std::vector<std::uint32_t> starts{0};
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::uint32_t begin = mesh.face_starts[face], end = mesh.face_starts[face + 1];
+    const auto gone = std::count(keeps.begin() + begin, keeps.begin() + end, 0);
+    const std::uint32_t kept = end - begin - static_cast<std::uint32_t>(gone);
+    faces.push_back(kept > 0 ? 1 : 0);
+    if (kept > 0) starts.push_back(starts.back() + kept);
+  }
+  keep_values(mesh.face_corners, keeps);
+  keep_values(mesh.corner_texcoords, keeps);
   for (auto* column : face_columns(mesh.look))
     keep_values(*column, faces);
   mesh.face_starts = std::move(starts);
 }
 
-} // namespace
-
-void keep_faces(Mesh& mesh, std::span<const std::uint8_t> keeps) {
+void keep_faces(Mesh& mesh, std::span<const std::uint8_t> keeps,
+                std::vector<std::uint32_t>& of_corner) {
   std::vector<std::uint8_t> corners;
-  std::vector<std::uint32_t> starts{0};
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t count = mesh.face_starts[face + 1] - mesh.face_starts[face];
-    corners.insert(corners.end(), count, keeps[face]);
-    if (keeps[face] != 0) starts.push_back(starts.back() + count);
-  }
-  keep_faces_with(mesh, keeps, corners, std::move(starts));
-}
-
-void keep_vertices(Mesh& mesh, std::span<const std::uint8_t> keeps) {
-  std::vector<std::uint32_t> number(keeps.size(), no_index);
-  std::uint32_t kept = 0;
-  for (std::size_t at = 0; at < keeps.size(); ++at)
-    if (keeps[at] != 0) number[at] = kept++;
-  if (kept == keeps.size()) return;
-  for (std::uint32_t& corner : mesh.face_corners)
-    corner = number[corner];
-  keep_columns(mesh.vertices, keeps);
-  keep_values(mesh.detail, keeps);
-  if (mesh.look.vertex_colours.cols() > 0) keep_columns(mesh.look.vertex_colours, keeps);
+  for (std::size_t face = 0; face < mesh.face_count(); ++face)
+    corners.insert(corners.end(), mesh.face_starts[face + 1] - mesh.face_starts[face], keeps[face]);
+  if (of_corner.size() == corners.size()) keep_values(of_corner, corners);
+  keep_corners(mesh, corners);
 }
 
 DroppedCorners renumber_corners(Mesh& mesh, std::span<const std::uint32_t> vertex_of) {
   for (std::uint32_t& corner : mesh.face_corners)
     corner = vertex_of[corner];
-  std::vector<std::uint8_t> corners(mesh.face_corners.size(), 1);
-  std::vector<std::uint8_t> faces(mesh.face_count(), 1);
-  std::vector<std::uint32_t> starts{0};
+  std::vector<std::uint8_t> keeps(mesh.face_corners.size(), 1);
   DroppedCorners dropped;
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const std::uint32_t begin = mesh.face_starts[face], end = mesh.face_starts[face + 1];
@@ -141,22 +114,20 @@ DroppedCorners renumber_corners(Mesh& mesh, std::span<const std::uint32_t> verte
     for (std::uint32_t at = begin; at < end; ++at) {
       const std::uint32_t next = at + 1 < end ? at + 1 : begin;
       if (mesh.face_corners[at] == mesh.face_corners[next])
-        corners[at] = 0;
+        keeps[at] = 0;
       else
         own.push_back(mesh.face_corners[at]);
     }
     const auto left = to_index(own.size());
     std::sort(own.begin(), own.end());
     if (std::unique(own.begin(), own.end()) - own.begin() < 3) {
-      std::fill(corners.begin() + begin, corners.begin() + end, std::uint8_t{0});
-      faces[face] = 0;
+      std::fill(keeps.begin() + begin, keeps.begin() + end, std::uint8_t{0});
       ++dropped.faces;
       continue;
     }
     dropped.corners += end - begin - left;
-    starts.push_back(starts.back() + left);
   }
-  keep_faces_with(mesh, faces, corners, std::move(starts));
+  keep_corners(mesh, keeps);
   return dropped;
 }
 

@@ -33,10 +33,13 @@ struct DroppedCorners {
 /// Vertices that only dropped faces had stay.
 DroppedCorners renumber_corners(Mesh& mesh, std::span<const std::uint32_t> vertex_of);
 
-/// Keeps the faces for which `keeps` is not 0, with all that belongs to them.
-void keep_faces(Mesh& mesh, std::span<const std::uint8_t> keeps);
+/// Keeps the corners for which `keeps` is not 0, and the faces that have one of them, with all that
+/// belongs to them.
+void keep_corners(Mesh& mesh, std::span<const std::uint8_t> keeps);
 
-/// Keeps the vertices for which `keeps` is not 0. No face may have another one.
-void keep_vertices(Mesh& mesh, std::span<const std::uint8_t> keeps);
+/// Keeps the faces for which `keeps` is not 0. Each face must have a corner. `of_corner` loses the
+/// entries of the other faces, if it has one for each corner.
+void keep_faces(Mesh& mesh, std::span<const std::uint8_t> keeps,
+                std::vector<std::uint32_t>& of_corner);
 
 } // namespace nendo::deform
