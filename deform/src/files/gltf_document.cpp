@@ -122,8 +122,7 @@ Layout layout_of(std::uint64_t component, std::size_t width, std::uint64_t offse
   const bool fits = offset <= view.size() && view.size() - offset >= element &&
                     count - 1 <= (view.size() - offset - element) / stride;
   if (!fits) refuse("an accessor reaches beyond the end of its bufferView");
-  return {static_cast<Component>(component), width, static_cast<std::size_t>(offset),
-          static_cast<std::size_t>(stride)};
+  return {static_cast<Component>(component), width, offset, stride};
 }
 
 } // namespace
@@ -167,6 +166,17 @@ std::string gltf_text(const Json& object, const char* name) {
   return member != nullptr && member->is_string() ? member->get<std::string>() : std::string();
 }
 
+const Json::array_t& gltf_list(const Json& object, const char* name) {
+  static const Json::array_t none;
+  const Json* const member = gltf_member(object, name);
+  return member != nullptr && member->is_array() ? member->get_ref<const Json::array_t&>() : none;
+}
+
+bool gltf_flag(const Json& object, const char* name) {
+  const Json* const member = gltf_member(object, name);
+  return member != nullptr && *member == true;
+}
+
 namespace {
 
 /// What JSON without an asset is, which each glTF has.
@@ -189,6 +199,24 @@ std::string foreign_json(const Json& root) {
   if (version.empty()) refuse("does not say its version of glTF; export it once more as glTF 2");
   refuse("is glTF of version " + in_quotes(version) +
          ", and only version 2 is read; export it once more as glTF 2");
+}
+
+[[noreturn]] void refuse_meshopt(const std::string& extension) {
+  refuse("is compressed by meshopt (" + extension.substr(0, 60) +
+         "), which is not read; export it without compression (gltfpack without -c and -cc), or "
+         "run: gltf-transform copy IN.glb OUT.glb");
+}
+
+/// Refuses a document that needs an extension that is not known here.
+void require_readable(const Json& root) {
+  for (const Json& extension : gltf_list(root, "extensionsRequired")) {
+    const std::string name = extension.is_string() ? extension.get<std::string>() : std::string();
+    if (is_known(name)) continue;
+    if (is_meshopt(name)) refuse_meshopt(name);
+    if (name == draco) refuse_draco();
+    refuse("needs glTF's extension '" + name.substr(0, 60) +
+           "', which is not known here; export the model without it");
+  }
 }
 
 } // namespace
@@ -241,16 +269,15 @@ void GltfDocument::read_json(std::string_view text) {
 }
 
 const Json& GltfDocument::item(const char* list, std::uint64_t index) const {
-  const Json* const items = gltf_member(root_, list);
-  if (items == nullptr || !items->is_array() || index >= items->size())
+  const Json::array_t& items = gltf_list(root_, list);
+  if (index >= items.size())
     refuse(std::string("names number ") + std::to_string(index) + " of \"" + list + "\", of " +
-           std::to_string(size_of(list)));
-  return (*items)[static_cast<std::size_t>(index)];
+           std::to_string(items.size()));
+  return items[index];
 }
 
 std::size_t GltfDocument::size_of(const char* list) const {
-  const Json* const items = gltf_member(root_, list);
-  return items != nullptr && items->is_array() ? items->size() : 0;
+  return gltf_list(root_, list).size();
 }
 
 FolderFile GltfDocument::file_named(const std::string& uri, std::uint64_t max_bytes) const {
@@ -277,13 +304,13 @@ void GltfDocument::read_buffers() {
     if (!uri.empty()) bytes = bytes_of(own_[at]);
     left -= own_[at].size();
     if (bytes.size() < length && !uri.empty() && !is_data_uri(uri))
-      refuse("needs the file '" + printable_uri(uri) + "' of " + std::to_string(length) +
+      refuse("needs the file '" + printable(uri.substr(0, 40)) + "' of " + std::to_string(length) +
              " bytes beside it");
     for (const char* const meshopt : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
       if (bytes.size() < length && gltf_extension(buffer, meshopt) != nullptr)
         refuse_meshopt(meshopt);
     if (bytes.size() < length) refuse("has fewer bytes than its buffers should have");
-    buffers_.push_back(bytes.first(static_cast<std::size_t>(length)));
+    buffers_.push_back(bytes.first(length));
   }
 }
 
@@ -291,12 +318,12 @@ Bytes GltfDocument::view(std::uint64_t buffer_view) const {
   const Json& view = item("bufferViews", buffer_view);
   const std::uint64_t buffer = gltf_count(view, "buffer", 0);
   item("buffers", buffer);
-  const Bytes bytes = buffers_[static_cast<std::size_t>(buffer)];
+  const Bytes bytes = buffers_[buffer];
   const std::uint64_t offset = gltf_count(view, "byteOffset", 0);
   const std::uint64_t length = gltf_count(view, "byteLength", 0);
   if (offset > bytes.size() || length > bytes.size() - offset)
     refuse("a bufferView reaches beyond the end of its buffer");
-  return bytes.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
+  return bytes.subspan(offset, length);
 }
 
 GltfNumbers GltfDocument::numbers(std::uint64_t index) const {
@@ -308,7 +335,7 @@ GltfNumbers GltfDocument::numbers(std::uint64_t index) const {
     refuse("an accessor has " + std::to_string(count) +
            " elements; from 1 to 2^28 numbers can be "
            "read");
-  numbers.count = static_cast<std::size_t>(count);
+  numbers.count = count;
   if (gltf_member(accessor, "bufferView") == nullptr) {
     // Zeros cost a file nothing, so they are bounded by what it has otherwise.
     std::uint64_t bytes = 0;
@@ -333,8 +360,7 @@ void GltfDocument::fill(const Json& accessor, GltfNumbers& numbers) const {
                 gltf_count(accessor, "byteOffset", 0),
                 gltf_count(item("bufferViews", number), "byteStride", 0), numbers.count, bytes);
   const std::size_t size = size_of_component(static_cast<std::uint64_t>(layout.component));
-  const Json* const normalized = gltf_member(accessor, "normalized");
-  const bool is_normalized = normalized != nullptr && *normalized == true;
+  const bool is_normalized = gltf_flag(accessor, "normalized");
   numbers.values.reserve(numbers.count * numbers.width);
   for (std::size_t row = 0; row < numbers.count; ++row)
     for (std::size_t column = 0; column < numbers.width; ++column)
@@ -390,33 +416,14 @@ FolderFile GltfDocument::image(const Json& image) const {
   return file;
 }
 
-void refuse_meshopt(const std::string& extension) {
-  throw GltfRefusal{"is compressed by meshopt (" + extension.substr(0, 60) +
-                    "), which is not read; export it without compression (gltfpack without -c and "
-                    "-cc), or run: gltf-transform copy IN.glb OUT.glb"};
-}
-
 void refuse_draco() {
-  throw GltfRefusal{
-      "is compressed by Draco (KHR_draco_mesh_compression), which is not read; export "
-      "it without compression, or run: gltf-transform copy IN.glb OUT.glb"};
+  refuse(
+      "is compressed by Draco (KHR_draco_mesh_compression), which is not read; export it without "
+      "compression, or run: gltf-transform copy IN.glb OUT.glb");
 }
 
-void require_readable(const GltfDocument::Json& root) {
-  const GltfDocument::Json* const required = gltf_member(root, "extensionsRequired");
-  if (required == nullptr || !required->is_array()) return;
-  for (const GltfDocument::Json& extension : *required) {
-    const std::string name = extension.is_string() ? extension.get<std::string>() : std::string();
-    if (is_known(name)) continue;
-    if (is_meshopt(name)) refuse_meshopt(name);
-    if (name == draco) refuse_draco();
-    throw GltfRefusal{"needs glTF's extension '" + name.substr(0, 60) +
-                      "', which is not known here; export the model without it"};
-  }
-}
-
-const GltfDocument::Json* gltf_extension(const GltfDocument::Json& item, const char* name) {
-  const GltfDocument::Json* const extensions = gltf_member(item, "extensions");
+const Json* gltf_extension(const Json& item, const char* name) {
+  const Json* const extensions = gltf_member(item, "extensions");
   return extensions == nullptr ? nullptr : gltf_member(*extensions, name);
 }
 

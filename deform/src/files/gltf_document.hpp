@@ -84,11 +84,11 @@ std::vector<double> gltf_numbers(const GltfDocument::Json& object, const char* n
 /// Returns a member if it is a text, or an empty one.
 std::string gltf_text(const GltfDocument::Json& object, const char* name);
 
-/// Throws GltfRefusal, with the extension's name and the remedy, if the document needs one that is
-/// not known here.
-void require_readable(const GltfDocument::Json& root);
-/// The refusals of the two extensions that compress the numbers of a model.
-[[noreturn]] void refuse_meshopt(const std::string& extension);
+/// Returns a member if it is a list, or an empty one.
+const GltfDocument::Json::array_t& gltf_list(const GltfDocument::Json& object, const char* name);
+/// Returns whether a member is true.
+bool gltf_flag(const GltfDocument::Json& object, const char* name);
+
 [[noreturn]] void refuse_draco();
 
 /// Returns the extension of an item of the document, or null.
@@ -103,8 +103,5 @@ std::string percent_decoded(std::string_view uri);
 bool is_data_uri(std::string_view uri) noexcept;
 /// Returns the data of a data URI in base64, or nothing if it is damaged.
 std::optional<std::string> data_of_uri(std::string_view uri);
-
-/// Returns a URI for a message: printable, and cut after 40 characters.
-std::string printable_uri(std::string_view uri);
 
 } // namespace nendo::deform

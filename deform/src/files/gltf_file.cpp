@@ -23,20 +23,6 @@ namespace {
 
 using Json = GltfDocument::Json;
 
-/// Calls `visit` with each item of a list that an object may have.
-template <class Visit>
-void visit_list(const Json& object, const char* name, const Visit& visit) {
-  const Json* const list = gltf_member(object, name);
-  if (list == nullptr || !list->is_array()) return;
-  for (const Json& item : *list)
-    visit(item);
-}
-
-std::size_t list_length(const Json& object, const char* name) {
-  const Json* const list = gltf_member(object, name);
-  return list != nullptr && list->is_array() ? list->size() : 0;
-}
-
 std::string in_one_list(const std::vector<std::string>& parts) {
   std::string text;
   for (std::size_t at = 0; at < parts.size(); ++at)
@@ -52,29 +38,29 @@ struct PrimitiveCounts {
 
 PrimitiveCounts primitives_of(const Json& root) {
   PrimitiveCounts sum;
-  visit_list(root, "meshes", [&](const Json& mesh) {
+  for (const Json& mesh : gltf_list(root, "meshes")) {
     std::size_t targets = 0; // all primitives of a mesh have the same
-    visit_list(mesh, "primitives", [&](const Json& primitive) {
-      targets = std::max(targets, list_length(primitive, "targets"));
+    for (const Json& primitive : gltf_list(mesh, "primitives")) {
+      targets = std::max(targets, gltf_list(primitive, "targets").size());
       const Json* const mode = gltf_member(primitive, "mode");
       if (mode != nullptr && *mode == 0) ++sum.points;
       if (mode != nullptr && (*mode == 1 || *mode == 2 || *mode == 3)) ++sum.lines;
       const Json* const attributes = gltf_member(primitive, "attributes");
-      if (attributes == nullptr || !attributes->is_object()) return;
+      if (attributes == nullptr || !attributes->is_object()) continue;
       for (const auto& [name, accessor] : attributes->items())
         if (name.starts_with("COLOR_") && name != "COLOR_0") sum.further.insert(name);
-    });
+    }
     sum.targets += targets;
-  });
+  }
   return sum;
 }
 
 void note_motion(const Json& root, std::size_t targets, NoteSum& notes) {
   std::vector<std::string> parts;
   if (targets > 0) parts.push_back(count_words(targets, "morph target", "morph targets"));
-  if (const std::size_t count = list_length(root, "animations"); count > 0)
+  if (const std::size_t count = gltf_list(root, "animations").size(); count > 0)
     parts.push_back(count_words(count, "animation", "animations"));
-  if (const std::size_t count = list_length(root, "skins"); count > 0)
+  if (const std::size_t count = gltf_list(root, "skins").size(); count > 0)
     parts.push_back(count_words(count, "skeleton", "skeletons"));
   if (!parts.empty())
     notes.add(in_one_list(parts) + " left out; the model is read in its default shape and pose");
@@ -82,7 +68,7 @@ void note_motion(const Json& root, std::size_t targets, NoteSum& notes) {
 
 void note_further_textures(const Json& root, NoteSum& notes) {
   std::set<std::string> kinds;
-  visit_list(root, "materials", [&](const Json& material) {
+  for (const Json& material : gltf_list(root, "materials")) {
     for (const auto& [member, kind] : {std::pair{"normalTexture", "normal"},
                                        {"emissiveTexture", "emissive"},
                                        {"occlusionTexture", "occlusion"}})
@@ -90,7 +76,7 @@ void note_further_textures(const Json& root, NoteSum& notes) {
     const Json* const pbr = gltf_member(material, "pbrMetallicRoughness");
     if (pbr != nullptr && gltf_member(*pbr, "metallicRoughnessTexture") != nullptr)
       kinds.insert("metallic-roughness");
-  });
+  }
   if (!kinds.empty())
     notes.add("of materials, base colours and their textures are read; left out: " +
               in_one_list({kinds.begin(), kinds.end()}) + " textures");
@@ -99,10 +85,10 @@ void note_further_textures(const Json& root, NoteSum& notes) {
 void note_variants(const Json& root, NoteSum& notes) {
   const Json* const variants = gltf_extension(root, "KHR_materials_variants");
   if (variants == nullptr) return;
-  visit_list(*variants, "variants", [&](const Json& variant) {
+  for (const Json& variant : gltf_list(*variants, "variants")) {
     notes.add("variant of materials", gltf_text(variant, "name"),
               ": is left out; the default materials are read");
-  });
+  }
 }
 
 /// Notes what is not read of the document: what moves it, further scenes, variants, textures that
@@ -125,11 +111,11 @@ void note_left_out(const GltfDocument& document, NoteSum& notes) {
   if (const std::size_t scenes = document.size_of("scenes"); scenes > 1)
     notes.add(count_words(scenes - 1, "scene", "scenes") +
               " left out; the default scene is read, so export each by itself if it is wanted");
-  visit_list(root, "extensionsUsed", [&](const Json& extension) {
+  for (const Json& extension : gltf_list(root, "extensionsUsed")) {
     const std::string name = extension.is_string() ? extension.get<std::string>() : std::string();
     if (!name.empty() && !is_harmless_extension(name))
       notes.add("glTF's extension", name, ": is not known here, so what it adds is left out");
-  });
+  }
 }
 
 // Nodes may show a mesh again and again, so a small file can be a model without end.
@@ -175,13 +161,11 @@ private:
 
   void add_mesh(const GltfPlacedMesh& placed) {
     const Json& mesh = document_.item("meshes", placed.mesh);
-    const Json* const primitives = gltf_member(mesh, "primitives");
-    if (primitives == nullptr || !primitives->is_array()) return;
     known_.clear();
     vertices_of_.clear();
     const auto object = to_index(mesh_.look.objects.names.size());
     const std::size_t faces_before = mesh_.face_count();
-    for (const Json& primitive : *primitives)
+    for (const Json& primitive : gltf_list(mesh, "primitives"))
       add_primitive(primitive, placed);
     group_of_vertex_.resize(vertices_.size() / 3, object);
     if (mesh_.face_count() == faces_before) return;
@@ -222,8 +206,7 @@ private:
   /// normalized, or of floats up to 255.
   void settle_colours(std::uint64_t accessor, GltfNumbers& colours) {
     const Json& given = document_.item("accessors", accessor);
-    const Json* const normalized = gltf_member(given, "normalized");
-    if (normalized != nullptr && *normalized == true) return;
+    if (gltf_flag(given, "normalized")) return;
     ColourRange range(gltf_colour_numbers(gltf_count(given, "componentType", 0)));
     for (const double part : colours.values)
       range.see(part);
@@ -383,19 +366,13 @@ private:
     }
     if (!colours_.empty()) {
       colours_.resize(4 * mesh_.vertex_count(), 1.0F);
-      look.vertex_colours =
-          Eigen::Map<const Eigen::Matrix4Xf>(colours_.data(), 4, mesh_.vertices.cols());
+      look.vertex_colours = columns_of<4>(colours_);
     }
     if (texcoords_.empty()) {
       mesh_.corner_texcoords.clear();
       return;
     }
-    const auto extra = static_cast<std::uint32_t>(texcoords_.size() / 2);
-    const auto missing =
-        std::count(mesh_.corner_texcoords.begin(), mesh_.corner_texcoords.end(), no_index);
-    std::replace(mesh_.corner_texcoords.begin(), mesh_.corner_texcoords.end(), no_index, extra);
-    if (missing > 0) texcoords_.insert(texcoords_.end(), {0.0, 0.0});
-    mesh_.texcoords = columns_of<2>(texcoords_);
+    set_texcoords(texcoords_, mesh_);
   }
 
   GltfDocument document_;

@@ -13,9 +13,7 @@ using Json = GltfDocument::Json;
 
 std::vector<double> weights_in(const Json& item) {
   std::vector<double> weights;
-  const Json* const list = gltf_member(item, "weights");
-  if (list == nullptr || !list->is_array()) return weights;
-  for (const Json& number : *list) {
+  for (const Json& number : gltf_list(item, "weights")) {
     if (!number.is_number() || !is_usable(number.get<double>()))
       throw GltfRefusal{"a weight of a morph target is not a finite number"};
     weights.push_back(number.get<double>());
@@ -87,9 +85,7 @@ public:
   }
 
   const std::vector<std::uint64_t>& order() const noexcept { return order_; }
-  const Eigen::Affine3d& transform(std::uint64_t node) const {
-    return T_world_node_[static_cast<std::size_t>(node)];
-  }
+  const Eigen::Affine3d& transform(std::uint64_t node) const { return T_world_node_[node]; }
 
 private:
   std::vector<std::uint64_t> roots() const {
@@ -100,7 +96,7 @@ private:
     for (std::size_t node = 0; node < is_child.size(); ++node)
       for (const std::uint64_t child :
            numbers_in(document_, document_.item("nodes", node), "children"))
-        is_child[static_cast<std::size_t>(child)] = true;
+        is_child[child] = true;
     std::vector<std::uint64_t> roots;
     for (std::size_t node = 0; node < is_child.size(); ++node)
       if (!is_child[node]) roots.push_back(node);
@@ -111,18 +107,16 @@ private:
   void walk(std::vector<std::uint64_t> waiting) {
     std::reverse(waiting.begin(), waiting.end());
     for (const std::uint64_t root : waiting)
-      T_world_node_[static_cast<std::size_t>(root)] = own_transform(document_.item("nodes", root));
+      T_world_node_[root] = own_transform(document_.item("nodes", root));
     while (!waiting.empty()) {
       const std::uint64_t node = waiting.back();
       waiting.pop_back();
-      if (seen_[static_cast<std::size_t>(node)])
-        throw GltfRefusal{"node " + std::to_string(node) + " is in the scene twice"};
-      seen_[static_cast<std::size_t>(node)] = true;
+      if (seen_[node]) throw GltfRefusal{"node " + std::to_string(node) + " is in the scene twice"};
+      seen_[node] = true;
       order_.push_back(node);
       auto children = numbers_in(document_, document_.item("nodes", node), "children");
       for (auto child = children.rbegin(); child != children.rend(); ++child) {
-        T_world_node_[static_cast<std::size_t>(*child)] =
-            transform(node) * own_transform(document_.item("nodes", *child));
+        T_world_node_[*child] = transform(node) * own_transform(document_.item("nodes", *child));
         waiting.push_back(*child);
       }
     }
@@ -187,7 +181,7 @@ std::vector<Eigen::Affine3d> instances_of(const GltfDocument& document, const Js
 class GltfTextures {
 public:
   GltfTextures(const GltfDocument& document, Appearance& look, NoteSum& notes)
-      : document_(document), look_(look), notes_(notes) {}
+      : document_(document), look_(look), files_(notes) {}
 
   /// The number, in the look, of the texture that a textureInfo names.
   std::uint32_t number_of(const Json& info) {
@@ -216,18 +210,9 @@ private:
   void add(const Json& image, std::uint64_t source) {
     FolderFile file = document_.image(image);
     Texture texture{name_of(image, source, file), nullptr};
-    if (file.contents && file.contents->size() > left_) {
-      file.contents.reset();
-      file.lack = too_large_lack;
-    }
-    if (file.contents) {
-      left_ -= file.contents->size();
-      texture.contents = std::make_shared<const std::string>(*std::move(file.contents));
-    } else {
-      const std::string uri = gltf_text(image, "uri");
-      notes_.add("texture", uri.empty() || is_data_uri(uri) ? texture.file : percent_decoded(uri),
-                 file.lack);
-    }
+    const std::string uri = gltf_text(image, "uri");
+    const bool is_within = uri.empty() || is_data_uri(uri);
+    files_.take(std::move(file), is_within ? texture.file : percent_decoded(uri), texture);
     look_.textures.push_back(std::move(texture));
   }
 
@@ -245,9 +230,8 @@ private:
 
   const GltfDocument& document_;
   Appearance& look_;
-  NoteSum& notes_;
+  TextureFiles files_; // many images could be one view
   std::map<std::uint64_t, std::uint32_t> numbers_;
-  std::uint64_t left_ = ModelFolder::max_texture_bytes; // many images could be one view
 };
 
 Eigen::Affine2d transform_of(const Json& info) {
@@ -377,11 +361,10 @@ std::vector<GltfPlacedMesh> placed_meshes(const GltfDocument& document) {
 
 std::size_t apply_targets(const GltfDocument& document, const Json& primitive,
                           const std::vector<double>& weights, GltfNumbers& places) {
-  const Json* const targets = gltf_member(primitive, "targets");
-  if (targets == nullptr || !targets->is_array()) return 0;
+  const Json::array_t& targets = gltf_list(primitive, "targets");
   std::size_t read = 0;
-  for (std::size_t at = 0; at < std::min(weights.size(), targets->size()); ++at) {
-    const Json& target = (*targets)[at];
+  for (std::size_t at = 0; at < std::min(weights.size(), targets.size()); ++at) {
+    const Json& target = targets[at];
     if (weights[at] == 0.0 || gltf_member(target, "POSITION") == nullptr) continue;
     const GltfNumbers moved = document.numbers(gltf_count(target, "POSITION", 0));
     if (moved.width != 3 || moved.count != places.count)

@@ -2,6 +2,7 @@
 // Converts meshes from and to the contents of files. mesh_file.hpp says what is kept and which
 // errors there are.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -55,10 +56,21 @@ struct HighestIndex {
 };
 
 /// Returns the numbers as columns of `rows` numbers each.
-template <int rows>
-Eigen::Matrix<double, rows, Eigen::Dynamic> columns_of(const std::vector<double>& numbers) {
-  return Eigen::Map<const Eigen::Matrix<double, rows, Eigen::Dynamic>>(
+template <int rows, class Number>
+Eigen::Matrix<Number, rows, Eigen::Dynamic> columns_of(const std::vector<Number>& numbers) {
+  return Eigen::Map<const Eigen::Matrix<Number, rows, Eigen::Dynamic>>(
       numbers.data(), rows, static_cast<Eigen::Index>(numbers.size()) / rows);
+}
+
+/// Gives the mesh these texture coordinates, two numbers each. Corners that have none (no_index)
+/// share one more at (0, 0).
+inline void set_texcoords(std::vector<double>& numbers, Mesh& mesh) {
+  auto& of_corner = mesh.corner_texcoords;
+  const auto extra = static_cast<std::uint32_t>(numbers.size() / 2);
+  if (std::find(of_corner.begin(), of_corner.end(), no_index) != of_corner.end())
+    numbers.insert(numbers.end(), {0.0, 0.0});
+  std::replace(of_corner.begin(), of_corner.end(), no_index, extra);
+  mesh.texcoords = columns_of<2>(numbers);
 }
 
 /// Returns the file's format and what to do with it, as words after the file's name; nothing if its

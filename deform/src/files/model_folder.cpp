@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::size_t max_listed_files = 50'000; // of one folder
 constexpr std::size_t max_listed_folders = 64;
+constexpr std::string_view too_large_lack =
+    ": is too large; at most 256 MiB are read of all textures together, and 16 MiB of a file of "
+    "materials";
 
 /// Names that a person takes for the same: capitals and repeated blanks count for nothing.
 std::string folded(std::string_view name) {
@@ -184,13 +187,19 @@ FolderFile ModelFolder::read(const std::string& name, std::uint64_t max_bytes) c
   return file;
 }
 
-void TextureFiles::read(Texture& texture, std::string_view named, std::string_view beside) {
-  FolderFile file = folder_.find(named, left_, beside);
-  if (!file.name.empty()) texture.file = std::move(file.name);
-  if (!file.contents) {
-    notes_.add("texture", named, file.lack);
-    return;
+void TextureFiles::read(const ModelFolder& folder, Texture& texture, std::string_view named,
+                        std::string_view beside) {
+  FolderFile file = folder.find(named, left_, beside);
+  if (!file.name.empty()) texture.file = file.name;
+  take(std::move(file), named, texture);
+}
+
+void TextureFiles::take(FolderFile file, std::string_view named, Texture& texture) {
+  if (file.contents && file.contents->size() > left_) {
+    file.contents.reset();
+    file.lack = too_large_lack;
   }
+  if (!file.contents) return notes_.add("texture", named, file.lack);
   left_ -= file.contents->size();
   texture.contents = std::make_shared<const std::string>(*std::move(file.contents));
 }
@@ -206,9 +215,9 @@ void note_unplaced_textures(const Mesh& mesh, NoteSum& notes) {
 void read_textures(const ModelFolder& folder, const std::vector<std::string>& named, Mesh& mesh,
                    ReadNotes& notes) {
   NoteSum sum;
-  TextureFiles files(folder, sum);
+  TextureFiles files(sum);
   for (std::size_t at = 0; at < named.size(); ++at)
-    files.read(mesh.look.textures[at], named[at]);
+    files.read(folder, mesh.look.textures[at], named[at]);
   note_unplaced_textures(mesh, sum);
   sum.append_to(notes);
 }

@@ -30,11 +30,6 @@ struct FolderFile {
   std::string lack;
 };
 
-/// FolderFile::lack of a file that is too large.
-inline constexpr std::string_view too_large_lack =
-    ": is too large; at most 256 MiB are read of all textures together, and 16 MiB of a file of "
-    "materials";
-
 class ModelFolder {
 public:
   /// The largest material file, and the largest texture, that is read.
@@ -65,15 +60,17 @@ private:
 /// Reads textures' contents, of all together at most ModelFolder::max_texture_bytes.
 class TextureFiles {
 public:
-  /// Both must outlive this.
-  TextureFiles(const ModelFolder& folder, NoteSum& notes) : folder_(folder), notes_(notes) {}
+  /// `notes` must outlive this.
+  explicit TextureFiles(NoteSum& notes) : notes_(notes) {}
 
   /// Gives a texture, which a file in the folder `beside` names so, the name that it has there and
   /// its contents, or notes what is missing. Blocks.
-  void read(Texture& texture, std::string_view named, std::string_view beside = {});
+  void read(const ModelFolder& folder, Texture& texture, std::string_view named,
+            std::string_view beside = {});
+  /// Gives a texture the contents of a file, or notes what is missing.
+  void take(FolderFile file, std::string_view named, Texture& texture);
 
 private:
-  const ModelFolder& folder_;
   NoteSum& notes_;
   std::uint64_t left_ = ModelFolder::max_texture_bytes;
 };

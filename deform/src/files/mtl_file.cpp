@@ -8,14 +8,15 @@
 #include <nendo/base/text.hpp>
 #include <nendo/deform/drawn_faces.hpp>
 
-#include "files/model_folder.hpp"
 #include "files/number_text.hpp"
-#include "files/text_scanner.hpp"
 
 namespace nendo::deform {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// How material files of this program begin. Others are never replaced.
+constexpr std::string_view mtl_mark = "# nendo\n";
 
 std::optional<std::string> contents_of(const fs::path& path) {
   std::error_code unknown;
@@ -125,13 +126,34 @@ MapStatement map_statement(TextScanner& scanner) {
   return statement;
 }
 
-} // namespace
+/// The materials, under the names that unique_names() gives them.
+std::string mtl_text(const Appearance& look) {
+  std::string text(mtl_mark);
+  const std::vector<std::string> names = unique_names(look.materials);
+  for (std::size_t at = 0; at < names.size(); ++at) {
+    const Material& material = look.materials[at];
+    text += "\nnewmtl " + names[at] + "\n";
+    if (material.colour) {
+      text += "Kd";
+      for (const float channel : material.colour->head<3>()) {
+        text += ' ';
+        append_number(text, channel);
+      }
+      text += '\n';
+    }
+    if (material.colour || !material.drawn) {
+      text += "d ";
+      append_number(text, material.drawn ? (*material.colour)[3] : 0.0F);
+      text += '\n';
+    }
+    const bool has_texture =
+        material.texture != no_index && look.textures[material.texture].contents;
+    if (has_texture) text += "map_Kd " + line_name(look.textures[material.texture].file) + "\n";
+  }
+  return text;
+}
 
-struct MtlReader::Line {
-  TextScanner& scanner;
-  std::string_view file;
-  std::string keyword;
-};
+} // namespace
 
 MtlReader::MtlReader(Appearance& look, NoteSum& notes)
     : look_(look), notes_(notes), stated_(look.materials.size()),
@@ -142,12 +164,12 @@ MtlReader::MtlReader(Appearance& look, NoteSum& notes)
 
 void MtlReader::read(std::string_view text, std::string_view file) {
   has_read_ = true;
+  file_ = file;
   material_ = stated_.size();
   TextScanner scanner(without_mark(text), TextScanner::Dialect::obj);
-  do {
-    Line line{scanner, file, in_small_letters(scanner.field())};
-    statement(line);
-  } while (scanner.next_line());
+  do
+    statement(scanner);
+  while (scanner.next_line());
 }
 
 void MtlReader::begin_material(std::string name) {
@@ -156,37 +178,37 @@ void MtlReader::begin_material(std::string name) {
   if (material_ < stated_.size()) stated_[material_].described = true;
 }
 
-void MtlReader::statement(Line& line) {
-  if (line.keyword == "newmtl") return begin_material(joined_fields(line.scanner));
+void MtlReader::statement(TextScanner& line) {
+  const std::string keyword = in_small_letters(line.field());
+  if (keyword == "newmtl") return begin_material(joined_fields(line));
   if (material_ == stated_.size()) return;
   Stated& stated = stated_[material_];
-  if (line.keyword == "kd") {
+  if (keyword == "kd") {
     std::array<double, 3> kd{};
     for (double& channel : kd) {
-      const auto number = to_finite_number(line.scanner.field());
+      const auto number = to_finite_number(line.field());
       if (!number && &channel == kd.data()) return;
       channel = number.value_or(kd[0]); // one number is all three
       colours_.see(channel);
     }
     stated.kd = kd;
-  } else if (line.keyword == "d" || line.keyword == "tr") {
-    std::string_view field = line.scanner.field();
-    if (field == "-halo") field = line.scanner.field();
-    if (const auto number = part_of_one(field))
-      (line.keyword == "d" ? stated.d : stated.tr) = number;
-  } else if (line.keyword == "map_kd") {
+  } else if (keyword == "d" || keyword == "tr") {
+    std::string_view field = line.field();
+    if (field == "-halo") field = line.field();
+    if (const auto number = part_of_one(field)) (keyword == "d" ? stated.d : stated.tr) = number;
+  } else if (keyword == "map_kd") {
     add_texture(line);
-  } else if (line.keyword == "map_d") {
-    notes_.add("opacity texture", map_statement(line.scanner).file,
+  } else if (keyword == "map_d") {
+    notes_.add("opacity texture", map_statement(line).file,
                ": is left out, so what it cuts away is seen");
-  } else if (line.keyword.starts_with("map_") || line.keyword == "bump" || line.keyword == "norm" ||
-             line.keyword == "disp") {
-    notes_.add("texture statement", line.keyword, ": is left out; of textures, map_Kd is read");
+  } else if (keyword.starts_with("map_") || keyword == "bump" || keyword == "norm" ||
+             keyword == "disp") {
+    notes_.add("texture statement", keyword, ": is left out; of textures, map_Kd is read");
   }
 }
 
-void MtlReader::add_texture(Line& line) {
-  MapStatement statement = map_statement(line.scanner);
+void MtlReader::add_texture(TextScanner& line) {
+  MapStatement statement = map_statement(line);
   auto name = name_in_folder(statement.file);
   if (!name) {
     if (!statement.file.empty())
@@ -197,7 +219,7 @@ void MtlReader::add_texture(Line& line) {
     notes_.add("texture", statement.file,
                ": its options -o, -s and -t are left out, so it is neither moved nor scaled");
   const auto next = to_index(look_.textures.size());
-  Named named{std::move(statement.file), std::string(line.file)};
+  Named named{std::move(statement.file), file_};
   const auto [place, is_new] = textures_.emplace(named, next);
   if (is_new) {
     look_.textures.push_back({*std::move(name), nullptr});
@@ -251,10 +273,10 @@ void MtlReader::settle_opacity(std::size_t at) {
 }
 
 void MtlReader::read_textures(const ModelFolder& folder) {
-  TextureFiles files(folder, notes_);
+  TextureFiles files(notes_);
   for (std::size_t at = first_texture_; at < look_.textures.size(); ++at) {
     const Named& named = named_[at - first_texture_];
-    files.read(look_.textures[at], named.name, named.file);
+    files.read(folder, look_.textures[at], named.name, named.file);
   }
 }
 
@@ -303,32 +325,6 @@ std::vector<std::string> unique_names(const std::vector<Material>& materials) {
     names.push_back(std::move(name));
   }
   return names;
-}
-
-std::string mtl_text(const Appearance& look) {
-  std::string text(mtl_mark);
-  const std::vector<std::string> names = unique_names(look.materials);
-  for (std::size_t at = 0; at < names.size(); ++at) {
-    const Material& material = look.materials[at];
-    text += "\nnewmtl " + names[at] + "\n";
-    if (material.colour) {
-      text += "Kd";
-      for (const float channel : material.colour->head<3>()) {
-        text += ' ';
-        append_number(text, channel);
-      }
-      text += '\n';
-    }
-    if (material.colour || !material.drawn) {
-      text += "d ";
-      append_number(text, material.drawn ? (*material.colour)[3] : 0.0F);
-      text += '\n';
-    }
-    const bool has_texture =
-        material.texture != no_index && look.textures[material.texture].contents;
-    if (has_texture) text += "map_Kd " + line_name(look.textures[material.texture].file) + "\n";
-  }
-  return text;
 }
 
 void read_materials(const ModelFolder& folder, const std::vector<std::string>& libraries,

@@ -19,11 +19,9 @@
 
 #include "files/colour_range.hpp"
 #include "files/model_folder.hpp"
+#include "files/text_scanner.hpp"
 
 namespace nendo::deform {
-
-/// How material files of this program begin. Others are never replaced.
-inline constexpr std::string_view mtl_mark = "# nendo\n";
 
 /// Fills in a look's materials from the strings of material files: Kd (taken as linear, as Blender
 /// writes it), d or Tr, and map_Kd. It never fails: a model can do without its materials, so lines
@@ -52,11 +50,10 @@ private:
     std::string name, file;
     auto operator<=>(const Named&) const = default;
   };
-  struct Line;
 
   void begin_material(std::string name);
-  void statement(Line& line);
-  void add_texture(Line& line);
+  void statement(TextScanner& line);
+  void add_texture(TextScanner& line);
   void settle_colour(std::size_t material);
   void settle_opacity(std::size_t material);
 
@@ -67,6 +64,7 @@ private:
   std::map<Named, std::uint32_t> textures_;
   std::vector<Named> named_; ///< one per texture
   bool has_read_ = false;
+  std::string file_;              ///< that is read
   std::size_t first_texture_ = 0; ///< those before are not from these files
   std::size_t material_ = 0;      ///< beyond the materials: lines are of none of them
   ColourRange colours_{ColourNumbers::factors};
@@ -76,9 +74,6 @@ private:
 /// modeller's intention, and notes that and materials whose faces are left out of pictures because
 /// one sees through them.
 void settle_hidden(Appearance& look, NoteSum& notes);
-
-/// Returns the materials as a text, under the names that unique_names() gives them.
-std::string mtl_text(const Appearance& look);
 
 /// Returns the materials' names as an OBJ can hold them: none is empty, spans lines or has blanks
 /// at its ends, and no two are alike.

@@ -161,7 +161,10 @@ public:
     } while (scanner_.next_line());
     if (const auto good = check_indices(); !good) return good.error();
     mesh_.vertices = columns_of<3>(vertices_);
-    finish_texcoords();
+    if (highest_texcoord_.place == 0)
+      mesh_.corner_texcoords.clear();
+    else
+      set_texcoords(texcoords_, mesh_);
     finish_look();
     if (!vertices_.empty()) left_out_.add_to(notes_);
     return ObjModel{std::move(mesh_), std::move(libraries_)};
@@ -278,22 +281,6 @@ private:
       return beyond(highest_texcoord_, texcoords, "a face names texture coordinate");
     return {};
   }
-  /// Corners without a texture coordinate share one more at (0, 0), if others have one.
-  void finish_texcoords() {
-    if (highest_texcoord_.place == 0) {
-      mesh_.corner_texcoords.clear();
-      return;
-    }
-    const auto extra = static_cast<std::uint32_t>(texcoords_.size() / 2);
-    bool used = false;
-    for (auto& index : mesh_.corner_texcoords) {
-      if (index != no_index) continue;
-      index = extra;
-      used = true;
-    }
-    if (used) texcoords_.insert(texcoords_.end(), {0.0, 0.0});
-    mesh_.texcoords = columns_of<2>(texcoords_);
-  }
   void finish_look() {
     Appearance& look = mesh_.look;
     auto materials = std::move(material_).take();
@@ -309,8 +296,7 @@ private:
     for (float& channel : colours_)
       channel = linear_of(colour_range_.part_of(static_cast<double>(channel)));
     if (auto note = colour_range_.note(); !note.empty()) notes_.push_back(std::move(note));
-    look.vertex_colours =
-        Eigen::Map<const Eigen::Matrix4Xf>(colours_.data(), 4, mesh_.vertices.cols());
+    look.vertex_colours = columns_of<4>(colours_);
   }
 
   Error bad(const std::string& what) const { return bad_line(name_, scanner_.line(), what); }

@@ -237,8 +237,7 @@ public:
                                                 std::to_string(highest_.index) +
                                                 ", counted from 0, of " + std::to_string(vertices));
     finish_colours();
-    mesh_.look.vertex_colours = Eigen::Map<const Eigen::Matrix4Xf>(
-        colours_.data(), 4, static_cast<Eigen::Index>(colours_.size() / 4));
+    mesh_.look.vertex_colours = columns_of<4>(colours_);
     look_.finish(header_.textures, mesh_, notes_);
     return PlyModel{std::move(mesh_), header_.textures};
   }
@@ -283,7 +282,8 @@ private:
       coordinates_.reserve(3 * element.count);
       has_colours_ = has_colours(*uses);
       look_.has_vertices = has_once(*uses, Use::across) && has_once(*uses, Use::up);
-      colour_.fill(std::numeric_limits<float>::infinity()); // full, in every range
+      for (std::size_t channel = 0; channel < 4; ++channel)
+        row_[red + channel] = std::numeric_limits<double>::infinity(); // full, in every range
       for (std::size_t at = 0; at < uses->size(); ++at)
         if (is_channel((*uses)[at]))
           colour_numbers_[channel_of((*uses)[at])] = colour_numbers_of(element.properties[at].type);
@@ -379,32 +379,25 @@ private:
   Result<void> read_value(const PlyProperty& property, Use use) {
     const auto value = body_.number(property.type);
     if (!value) return body_.no_number();
-    if (use == Use::skip) return {};
-    if (use == Use::across || use == Use::up) {
-      texcoord_[use == Use::across ? 0 : 1] = *value;
-      return {};
-    }
     if (use == Use::texcoords) look_.add_number(*value);
-    if (use == Use::texture) look_.set_texture(*value);
-    if (use == Use::texcoords || use == Use::texture) return {};
-    if (is_channel(use)) {
-      colour_[channel_of(use)] = static_cast<float>(std::clamp(*value, -1e30, 1e30));
-      return {};
-    }
-    if (!is_usable(*value)) return body_.bad("a coordinate is not finite or beyond 1e100");
-    vertex_[static_cast<int>(use) - static_cast<int>(Use::x)] = *value;
+    if (use >= Use::x && use <= Use::z && !is_usable(*value))
+      return body_.bad("a coordinate is not finite or beyond 1e100");
+    row_[static_cast<std::size_t>(use)] =
+        is_channel(use) ? std::clamp(*value, -1e30, 1e30) : *value;
     return {};
   }
+  double value(Use use) const noexcept { return row_[static_cast<std::size_t>(use)]; }
   void keep_vertex() {
-    coordinates_.insert(coordinates_.end(), vertex_, vertex_ + 3);
-    if (has_colours_) colours_.insert(colours_.end(), colour_.begin(), colour_.end());
-    if (look_.has_vertices) look_.add_vertex(texcoord_[0], texcoord_[1]);
+    coordinates_.insert(coordinates_.end(), {value(Use::x), value(Use::y), value(Use::z)});
+    for (std::size_t channel = 0; has_colours_ && channel < 4; ++channel)
+      colours_.push_back(static_cast<float>(row_[red + channel]));
+    if (look_.has_vertices) look_.add_vertex(value(Use::across), value(Use::up));
   }
   void end_row(const PlyElement& element) {
     if (element.name == "vertex") keep_vertex();
     if (element.name != "face") return;
     const std::size_t faces = mesh_.face_count();
-    look_.end_face(mesh_.face_starts[faces] - mesh_.face_starts[faces - 1]);
+    look_.end_face(mesh_.face_starts[faces] - mesh_.face_starts[faces - 1], value(Use::texture));
   }
   /// Makes parts of 1 of them, linear. Colours are encoded as on screens, opacity is not. Red,
   /// green and blue have one range, unless they are of different types.
@@ -426,18 +419,18 @@ private:
     if (auto note = ranges[0].note(); !note.empty()) notes_.push_back(std::move(note));
   }
 
+  static constexpr auto red = static_cast<std::size_t>(Use::red);
+
   const PlyHeader& header_;
   std::string_view name_;
   ReadNotes& notes_;
   PlyBody body_;
   std::vector<double> coordinates_;
-  double vertex_[3] = {};
+  std::array<double, static_cast<std::size_t>(Use::texture) + 1> row_{}; ///< by their uses
   std::vector<float> colours_; ///< four numbers each, as they are in the file
   bool has_colours_ = false;
   std::array<ColourNumbers, 4> colour_numbers_{};
-  std::array<float, 4> colour_{};
   HighestIndex highest_;
-  std::array<double, 2> texcoord_{};
   PlyLook look_;
   TriangleStrip strip_;
   Mesh mesh_;

@@ -1,13 +1,13 @@
 #include "files/ply_look.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 #include "files/mesh_formats.hpp"
 #include "files/model_folder.hpp"
 #include "files/number_text.hpp"
 #include "geometry/usable.hpp"
+#include "mesh/columns.hpp"
 
 namespace nendo::deform {
 
@@ -19,8 +19,8 @@ void PlyLook::add(std::vector<double>& to, double across, double up) {
 }
 
 /// Faces without a texture have an empty list, or one that does not fit.
-void PlyLook::end_face(std::size_t corners) {
-  if (has_numbers) numbers_.push_back(number_);
+void PlyLook::end_face(std::size_t corners, double texture) {
+  if (has_numbers) numbers_.push_back(texture);
   if (!has_faces) return list_.clear();
   const bool fits = list_.size() == 2 * corners;
   faces_without_ += fits ? 0 : 1;
@@ -33,18 +33,11 @@ void PlyLook::end_face(std::size_t corners) {
 /// island ends.
 void PlyLook::finish_corners(Mesh& mesh) const {
   const std::size_t count = mesh.face_corners.size();
-  std::vector<std::uint32_t> order(count);
-  std::iota(order.begin(), order.end(), std::uint32_t{0});
-  const auto key = [&](std::uint32_t at) {
+  const std::vector<std::uint32_t> first = first_alike(count, [&](std::uint32_t at) {
     return std::tuple(mesh.face_corners[at], of_corners_[2 * std::size_t{at}],
                       of_corners_[2 * std::size_t{at} + 1]);
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-  std::vector<std::uint32_t> first(count), number(count, no_index);
-  for (std::size_t at = 0; at < count; ++at)
-    first[order[at]] =
-        at > 0 && key(order[at]) == key(order[at - 1]) ? first[order[at - 1]] : order[at];
+  });
+  std::vector<std::uint32_t> number(count, no_index);
   std::vector<double> columns;
   mesh.corner_texcoords.reserve(count);
   for (std::uint32_t at = 0; at < count; ++at) {

@@ -25,10 +25,8 @@ public:
   void add_vertex(double across, double up) { add(of_vertices_, across, up); }
   /// The next number of a face's list.
   void add_number(double number) { list_.push_back(number); }
-  /// The number of a face's texture.
-  void set_texture(double number) { number_ = number; }
-  /// All of a face was read: it has so many corners.
-  void end_face(std::size_t corners);
+  /// All of a face was read: it has so many corners, and the texture of this number.
+  void end_face(std::size_t corners, double texture);
 
   /// Which of these the body has.
   bool has_vertices = false, has_faces = false, has_numbers = false;
@@ -44,9 +42,8 @@ private:
 
   std::vector<double> of_vertices_, of_corners_; ///< two numbers each
   std::vector<double> list_;                     ///< numbers of the face that is read
-  double number_ = 0.0;
-  std::vector<double> numbers_; ///< one per face
-  std::size_t unusable_ = 0;    ///< texture coordinates that are no number
+  std::vector<double> numbers_;                  ///< one per face
+  std::size_t unusable_ = 0;                     ///< texture coordinates that are no number
   std::size_t faces_without_ = 0;
 };
 

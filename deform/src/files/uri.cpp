@@ -1,7 +1,5 @@
 #include "files/gltf_document.hpp"
 
-#include <nendo/base/text.hpp>
-
 namespace nendo::deform {
 namespace {
 
@@ -62,10 +60,6 @@ std::optional<std::string> data_of_uri(std::string_view uri) {
     data += static_cast<char>(bits >> count & 0xFF);
   }
   return data;
-}
-
-std::string printable_uri(std::string_view uri) {
-  return printable(uri.substr(0, 40));
 }
 
 } // namespace nendo::deform

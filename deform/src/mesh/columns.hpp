@@ -2,8 +2,10 @@
 // The columns of a mesh, as algorithms read and copy them: points as plain numbers, and what each
 // corner and each face has.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -36,6 +38,19 @@ inline std::array<std::vector<std::uint32_t>*, 3> face_columns(Appearance& look)
 inline std::array<const std::vector<std::uint32_t>*, 3>
 face_columns(const Appearance& look) noexcept {
   return {&look.face_materials, &look.groups.of_face, &look.objects.of_face};
+}
+
+/// Returns of each of `count` entries the first one with the same key(entry). Allocates.
+template <class Key>
+std::vector<std::uint32_t> first_alike(std::size_t count, const Key& key) {
+  std::vector<std::uint32_t> order(count), first(count);
+  std::iota(order.begin(), order.end(), std::uint32_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  for (std::size_t at = 0; at < count; ++at)
+    first[order[at]] =
+        at > 0 && key(order[at]) == key(order[at - 1]) ? first[order[at - 1]] : order[at];
+  return first;
 }
 
 /// Returns 1 for each vertex that a face has, and 0 for the others. Allocates.

@@ -356,18 +356,14 @@ std::size_t drop_double_faces(Mesh& mesh, std::vector<std::uint32_t>& place_of) 
   std::vector<FacePlaces> keys;
   for (std::size_t face = 0; face < mesh.face_count(); ++face)
     keys.push_back(whichever_way(turned_to_least(own(face))));
-  std::vector<std::uint32_t> order(keys.size());
-  std::iota(order.begin(), order.end(), std::uint32_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
+  const auto key = [&](std::uint32_t face) -> const FacePlaces& { return keys[face]; };
+  const std::vector<std::uint32_t> alike = first_alike(keys.size(), key);
   // Of each face that is there more than once, the first.
   std::vector<std::uint32_t> first_of(keys.size(), no_index);
   bool any = false;
-  for (std::size_t at = 1; at < order.size(); ++at) {
-    if (keys[order[at]] != keys[order[at - 1]]) continue;
-    std::uint32_t& before = first_of[order[at - 1]];
-    if (before == no_index) before = order[at - 1];
-    first_of[order[at]] = before;
+  for (std::uint32_t face = 0; face < keys.size(); ++face) {
+    if (alike[face] == face) continue;
+    first_of[face] = first_of[alike[face]] = alike[face];
     any = true;
   }
   if (!any) return 0;

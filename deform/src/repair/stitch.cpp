@@ -149,20 +149,10 @@ private:
 } // namespace
 
 std::vector<std::uint32_t> exact_places(const Points& points) {
-  const auto count = static_cast<std::uint32_t>(points.cols());
-  std::vector<std::uint32_t> order(count), place(count);
-  std::iota(order.begin(), order.end(), std::uint32_t{0});
-  const auto key = [&](std::uint32_t at) {
+  return first_alike(static_cast<std::size_t>(points.cols()), [&](std::uint32_t at) {
     const double* const of = points.data() + 3 * std::size_t{at};
     return std::tuple(of[0] + 0.0, of[1] + 0.0, of[2] + 0.0);
-  };
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::pair(key(a), a) < std::pair(key(b), b);
   });
-  for (std::size_t at = 0; at < order.size(); ++at)
-    place[order[at]] =
-        at > 0 && key(order[at]) == key(order[at - 1]) ? place[order[at - 1]] : order[at];
-  return place;
 }
 
 std::vector<PlacedEdge> placed_edges(const Mesh& mesh, std::span<const std::uint32_t> place_of) {
