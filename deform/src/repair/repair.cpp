@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -127,8 +128,7 @@ private:
   /// Faces with fewer than three corners, and corners that repeat the previous one.
   void drop_thin_faces() {
     std::vector<std::uint32_t> same(mesh_.vertex_count());
-    for (std::uint32_t at = 0; at < same.size(); ++at)
-      same[at] = at;
+    std::iota(same.begin(), same.end(), std::uint32_t{0});
     const DroppedCorners dropped = renumber_corners(mesh_, same);
     result_.dropped += dropped.faces;
     result_.repeated = dropped.corners;
@@ -181,8 +181,7 @@ private:
   void separate() {
     const auto corners = to_index(place_of_.size());
     std::vector<std::uint32_t> each(corners);
-    for (std::uint32_t at = 0; at < corners; ++at)
-      each[at] = at;
+    std::iota(each.begin(), each.end(), std::uint32_t{0});
     UnionFind sets(corners);
     stitch(mesh_, place_of_, each, sets);
     std::vector<std::uint32_t> owner(mesh_.vertex_count(), no_index);
@@ -204,16 +203,15 @@ private:
     result_.separated = copied.size();
     if (copied.empty()) return;
     mesh_.detail.clear();
-    const bool coloured = mesh_.look.vertex_colours.cols() > 0;
-    const auto more = static_cast<Eigen::Index>(copied.size());
-    mesh_.vertices.conservativeResize(3, before + more);
-    if (coloured) mesh_.look.vertex_colours.conservativeResize(4, before + more);
-    for (Eigen::Index at = 0; at < more; ++at) {
-      const std::uint32_t from = copied[static_cast<std::size_t>(at)];
-      mesh_.vertices.col(before + at) = mesh_.vertices.col(from).eval();
-      if (coloured)
-        mesh_.look.vertex_colours.col(before + at) = mesh_.look.vertex_colours.col(from).eval();
-    }
+    const auto append_copies = [&](auto& columns) {
+      if (columns.cols() == 0) return;
+      Eigen::Index at = before;
+      columns.conservativeResize(columns.rows(), at + static_cast<Eigen::Index>(copied.size()));
+      for (const std::uint32_t from : copied)
+        columns.col(at++) = columns.col(from).eval();
+    };
+    append_copies(mesh_.vertices);
+    append_copies(mesh_.look.vertex_colours);
   }
   /// Vertices that became one with another one, or whose faces were left out, also go, but are not
   /// counted again.
