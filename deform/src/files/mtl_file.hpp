@@ -64,7 +64,7 @@ private:
   std::map<Named, std::uint32_t> textures_;
   std::vector<Named> named_; ///< one per texture
   bool has_read_ = false;
-  std::string file_;              ///< that is read
+  std::string file_;              ///< the name of the file that is read
   std::size_t first_texture_ = 0; ///< those before are not from these files
   std::size_t material_ = 0;      ///< beyond the materials: lines are of none of them
   ColourRange colours_{ColourNumbers::factors};

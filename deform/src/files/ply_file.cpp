@@ -426,7 +426,7 @@ private:
   ReadNotes& notes_;
   PlyBody body_;
   std::vector<double> coordinates_;
-  std::array<double, static_cast<std::size_t>(Use::texture) + 1> row_{}; ///< by their uses
+  std::array<double, static_cast<std::size_t>(Use::texture) + 1> row_{}; ///< numbers by their uses
   std::vector<float> colours_; ///< four numbers each, as they are in the file
   bool has_colours_ = false;
   std::array<ColourNumbers, 4> colour_numbers_{};
