@@ -149,7 +149,8 @@ Result<void> edit_in(viewer::TimelineWindow& window, EditSession& session, const
     const auto found = session.shape();
     if (found.shape && found.shape->model != model) {
       model = found.shape->model;
-      window.scene_window().set_model(model->layout(), render::SceneBuilder(model->mesh, units_per_metre));
+      window.scene_window().set_model(model->layout(),
+                                      render::SceneBuilder(model->mesh, units_per_metre));
     }
     if (found.shape) window.scene_window().follow(found.shape->shape);
     const viewer::TimelineView& view = session.view();
@@ -179,7 +180,8 @@ int view_timeline(const Options& options) {
       "on a box without a screen `nendo picture` draws a timeline, `nendo export` animates it, and "
       "the other commands of `nendo edit` change it");
   if (!window) return cli::report(window.error());
-  (*window)->scene_window().set_model((*frames)->layout(0), render::SceneBuilder(model, timeline.units_per_metre));
+  (*window)->scene_window().set_model((*frames)->layout(0),
+                                      render::SceneBuilder(model, timeline.units_per_metre));
   const auto done = edit_in(**window, session, options);
   if (session.history().is_modified()) cli::note(*out + ": not saved; the changes are lost");
   return done ? 0 : cli::report(done.error());

@@ -14,7 +14,7 @@
 #include <nendo/deform/triangles.hpp>
 #include <nendo/deform/vertex_areas.hpp>
 
-#include "render/texture_image.hpp"
+#include "render/paint.hpp"
 
 namespace nendo::exporting {
 namespace {

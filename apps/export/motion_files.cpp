@@ -15,7 +15,7 @@
 
 #include <nendo/base/files.hpp>
 #include <nendo/base/units.hpp>
-#include <nendo/hand/bvh.hpp>
+#include <nendo/hand/bvh_file.hpp>
 #include <nendo/hand/joint_angles.hpp>
 
 #include "export/chosen_frames.hpp"

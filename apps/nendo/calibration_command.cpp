@@ -159,7 +159,8 @@ Result<void> show(const Options& options) {
     const auto [of, by] = hand::couplings[k];
     const double rad_per_rad = wearer.calibration.coupling_gains[k];
     if (rad_per_rad == 0.0) continue;
-    coupling_gains.push_back({{"of", name_of(of)}, {"by", name_of(by)}, {"rad_per_rad", rad_per_rad}});
+    coupling_gains.push_back(
+        {{"of", name_of(of)}, {"by", name_of(by)}, {"rad_per_rad", rad_per_rad}});
   }
   line["coupling_gains"] = std::move(coupling_gains);
   line["sensors"] = sensors_json(wearer);

@@ -19,8 +19,7 @@
 
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/pacer.hpp>
-#include <nendo/hand/active_calibration.hpp>
-#include <nendo/hand/angle_deviations.hpp>
+#include <nendo/hand/angle_sources.hpp>
 #include <nendo/hand/bvh_file.hpp>
 #include <nendo/hand/sensor_gate.hpp>
 #include <nendo/hand/wearer.hpp>

@@ -10,7 +10,7 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/flow/hand_input.hpp>
-#include <nendo/hand/active_calibration.hpp>
+#include <nendo/hand/wearer.hpp>
 #include <nendo/recording/loop_replay.hpp>
 #include <nendo/recording/take_reader.hpp>
 

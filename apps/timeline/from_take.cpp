@@ -4,7 +4,7 @@
 #include <utility>
 
 #include <nendo/flow/sculptor.hpp>
-#include <nendo/hand/active_calibration.hpp>
+#include <nendo/hand/wearer.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
 namespace nendo::timeline {

@@ -9,7 +9,7 @@
 
 #include <nendo/deform/mesh.hpp>
 #include <nendo/flow/frame.hpp>
-#include <nendo/flow/wrist_move.hpp>
+#include <nendo/flow/wrist.hpp>
 
 #include "render/camera.hpp"
 #include "render/image.hpp"

@@ -51,8 +51,8 @@ Result<std::unique_ptr<Glove>> open_fivedt_usb(const GloveSpec& spec, const UsbW
 
 namespace fivedt {
 
-/// Opens `5dt:PATH?baud=19200|9600&hand=left|right&left_first=thumb|little`, a 5DT Data Glove 5 at a
-/// serial port. `left_first` is the finger with which the samples of left gloves begin, see
+/// Opens `5dt:PATH?baud=19200|9600&hand=left|right&left_first=thumb|little`, a 5DT Data Glove 5 at
+/// a serial port. `left_first` is the finger with which the samples of left gloves begin, see
 /// fivedt_parser.hpp; those of right ones begin with the thumb. At 19200 baud the glove is asked
 /// for its hand and its name. At 9600 it is a wireless one, to which nothing is ever sent: it is
 /// recognised by its samples, and `hand`, or else `side`, determines the hand. Each finger has one

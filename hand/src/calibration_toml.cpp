@@ -86,7 +86,8 @@ void read_coupling(TomlReader& reader, const toml::node& node, WearerCalibration
                    std::array<bool, couplings.size()>& seen) {
   const toml::table* table = node.as_table();
   if (table == nullptr)
-    return reader.complain(node, "coupling_gains must hold { of = ..., by = ..., rad_per_rad = ... }");
+    return reader.complain(node,
+                           "coupling_gains must hold { of = ..., by = ..., rad_per_rad = ... }");
   reader.allow_only(*table, {"of", "by", "rad_per_rad"});
   const std::string of = reader.text(*table, "of");
   const std::string by = reader.text(*table, "by");
@@ -174,8 +175,9 @@ void read_hand(TomlReader& reader, const toml::table& root, WearerCalibration& w
 }
 
 void read_wearer(TomlReader& reader, const toml::table& root, WearerCalibration& wearer) {
-  reader.allow_only(root, {"version", "user", "hand", "made", "method", "middle_bias", "coupling_gains",
-                           "left_out", "glove", "hand_size", "hand_shape", "sensors"});
+  reader.allow_only(root,
+                    {"version", "user", "hand", "made", "method", "middle_bias", "coupling_gains",
+                     "left_out", "glove", "hand_size", "hand_shape", "sensors"});
   wearer.user = reader.text(root, "user");
   complain_if(reader, root, "user", complaint_about_text(wearer.user, false));
   wearer.method = reader.text(root, "method");

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "render/lights.hpp"
 #include "render/raster.hpp"
-#include "render/shading.hpp"
 
 namespace nendo::bench {
 

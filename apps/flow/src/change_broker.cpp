@@ -3,7 +3,7 @@
 #include <cassert>
 #include <utility>
 
-#include <nendo/base/relax.hpp>
+#include <nendo/base/atomics.hpp>
 #include <nendo/flow/sculptor.hpp>
 #include <nendo/flow/setting.hpp>
 

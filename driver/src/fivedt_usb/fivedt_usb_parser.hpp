@@ -61,7 +61,7 @@ inline constexpr std::array value_sensors{
     Sensor::index_mcp,  Sensor::index_pip,  Sensor::index_middle_abduction,
     Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_ring_abduction,
     Sensor::ring_mcp,   Sensor::ring_pip,   Sensor::ring_little_abduction,
-    Sensor::little_mcp,  Sensor::little_pip};
+    Sensor::little_mcp, Sensor::little_pip};
 inline constexpr std::size_t values_per_finger = 3;
 
 struct Report {

@@ -52,8 +52,9 @@ inline constexpr std::size_t record_bytes = 15;
 /// palm. The maker's Unity and Unreal kits list the knuckle first, so that order is likely, but not
 /// certain.
 inline constexpr std::array<Sensor, sensor_count> slots{
-    Sensor::thumb_mcp,  Sensor::thumb_ip, Sensor::index_mcp, Sensor::index_pip, Sensor::middle_mcp,
-    Sensor::middle_pip, Sensor::ring_mcp, Sensor::ring_pip,  Sensor::little_mcp, Sensor::little_pip};
+    Sensor::thumb_mcp,  Sensor::thumb_ip,   Sensor::index_mcp, Sensor::index_pip,
+    Sensor::middle_mcp, Sensor::middle_pip, Sensor::ring_mcp,  Sensor::ring_pip,
+    Sensor::little_mcp, Sensor::little_pip};
 
 struct Record {
   std::array<std::uint8_t, sensor_count> flexion{}; ///< in the order of `slots`, 0 to max_count

@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-
 #include "units/capture.hpp"
 #include "units/cyberglove_unit.hpp"
 #include "units/emulated_unit.hpp"

@@ -21,7 +21,6 @@
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/placement.hpp>
 #include <nendo/flow/wrist.hpp>
-#include <nendo/hand/active_calibration.hpp>
 #include <nendo/hand/joint_angles.hpp>
 #include <nendo/hand/joint_filter.hpp>
 #include <nendo/hand/sensor_gate.hpp>
