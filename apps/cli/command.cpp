@@ -22,6 +22,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -401,6 +402,7 @@ void Command::require_command() {
 CommandModel describe_program(const std::string& summary,
                               const std::function<void(Command&)>& add_commands) {
   CLI::App app{summary};
+  app.set_version_flag("--version", NENDO_VERSION);
   std::function<int()> chosen;
   Command program(app, chosen);
   add_commands(program);

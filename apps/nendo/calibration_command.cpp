@@ -162,7 +162,7 @@ Result<void> show(const Options& options) {
     coupling_gains.push_back(
         {{"of", name_of(of)}, {"by", name_of(by)}, {"rad_per_rad", rad_per_rad}});
   }
-  line["coupling_gains"] = std::move(coupling_gains);
+  line["mixed_in"] = std::move(coupling_gains);
   line["sensors"] = sensors_json(wearer);
   cli::print_line(line);
   return {};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 
 #include <nendo/deform/control_vectors.hpp>
 #include <nendo/deform/csrbf.hpp>

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 
 #include <nendo/driver/simulated_glove.hpp>
 #include <nendo/emulator/emulator.hpp>

@@ -11,6 +11,7 @@
 
 #include <nendo/driver/record_counts.hpp>
 
+#include "cli/print.hpp"
 #include "stress/report.hpp"
 
 namespace nendo::stress {
@@ -43,47 +44,47 @@ void print_row(std::FILE* out, std::string_view name, const flow::Histogram& his
                const ordered_json& earlier) {
   const auto figures = figures_of(histogram);
   if (!figures) return;
-  fmt::print(out, "  {:<26}", name);
+  cli::print(out, "  {:<26}", name);
   for (const double us : figures->us)
-    fmt::print(out, " {:>9}", shown(us));
-  fmt::print(out, "\n");
+    cli::print(out, " {:>9}", shown(us));
+  cli::print(out, "\n");
   if (!earlier.is_object()) return;
-  fmt::print(out, "  {:<26}", "    earlier");
+  cli::print(out, "  {:<26}", "    earlier");
   for (const auto column : Figures::names) {
     const ordered_json value = part(earlier, std::string(column));
-    fmt::print(out, " {:>9}", value.is_number() ? shown(value.get<double>()) : "-");
+    cli::print(out, " {:>9}", value.is_number() ? shown(value.get<double>()) : "-");
   }
-  fmt::print(out, "\n");
+  cli::print(out, "\n");
 }
 
 void print_table(std::FILE* out, const StressOutcome& outcome, const ordered_json& earlier) {
   const TickTally& tally = outcome.tally;
-  fmt::print(out, "\n  p50: half of the values are no greater; p99: 99 % of them, and so on. The "
+  cli::print(out, "\n  p50: half of the values are no greater; p99: 99 % of them, and so on. The "
                   "first row counts the ticks\n  that ran, \"per scheduled tick\" each tick that "
                   "was due, so that a long stall counts for all it prevented.\n");
-  fmt::print(out, "\n  {:<26}", "microseconds");
+  cli::print(out, "\n  {:<26}", "microseconds");
   for (const auto column : Figures::names) {
     std::string heading(column);
     std::replace(heading.begin(), heading.end(), '_', '.');
-    fmt::print(out, " {:>9}", heading);
+    cli::print(out, " {:>9}", heading);
   }
-  fmt::print(out, "\n");
+  cli::print(out, "\n");
   for (std::size_t k = 0; k < measure_names.size(); ++k) {
     const Distribution& of = tally[static_cast<Measure>(k)];
     const std::string key = std::string(measure_names[k]) + "_us";
     const std::string name = words(measure_names[k]);
-    fmt::print(out, "  {}: {}\n", name, meanings[k]);
+    cli::print(out, "  {}: {}\n", name, meanings[k]);
     print_row(out, name, of.raw, part(earlier, key));
     print_row(out, "  per scheduled tick", of.corrected, part(part(earlier, "corrected"), key));
   }
-  fmt::print(out, "  the work, by stage of the tick:\n");
+  cli::print(out, "  the work, by stage of the tick:\n");
   for (std::size_t k = 1; k < phase_names.size(); ++k) {
     const std::string stage(phase_names[k]);
     print_row(out, "  " + stage, tally.stage(static_cast<Phase>(k)),
               part(part(earlier, "stages_us"), stage));
   }
   if (outcome.floor.spun_s <= 0.0) return;
-  fmt::print(out, "  the machine's own gaps: those of a thread that only reads the clock; no "
+  cli::print(out, "  the machine's own gaps: those of a thread that only reads the clock; no "
                   "program can be better\n");
   print_row(out, "the machine's own gaps", outcome.floor.gaps,
             part(part(earlier, "floor"), "gaps_us"));
@@ -99,56 +100,56 @@ std::string joined(const std::vector<std::string>& words) {
 void print_environment(std::FILE* out, const StressOptions& options, const StressOutcome& outcome) {
   const Environment& machine = outcome.environment;
   const flow::LoopOptions& loop = options.run.loop;
-  fmt::print(out, "nendo stress: {:.1f} s at {:g} Hz, policy {}{}{}\n", outcome.elapsed_s,
+  cli::print(out, "nendo stress: {:.1f} s at {:g} Hz, policy {}{}{}\n", outcome.elapsed_s,
              loop.rate_hz, flow::describe_policy(loop),
              outcome.spins ? ", spinning to each deadline" : "",
              loop.sculptor.deformer.evaluation.threads == 2 ? ", two threads" : "");
-  fmt::print(out, "  {:<14} Linux {}{}{}, {} CPUs{}\n", "machine", machine.kernel,
+  cli::print(out, "  {:<14} Linux {}{}{}, {} CPUs{}\n", "machine", machine.kernel,
              machine.preemption.empty() ? "" : " ", machine.preemption, machine.cpus,
              machine.hypervisor ? ", virtual: the host may stop it at any time" : "");
-  fmt::print(out, "  {:<14} {}, governor {}, clock {}\n", "", machine.processor,
+  cli::print(out, "  {:<14} {}, governor {}, clock {}\n", "", machine.processor,
              machine.governor.empty() ? "none" : machine.governor, machine.clock_source);
-  fmt::print(out, "  {:<14} {}; {} vertices, {}{}{}\n", "ticks", joined(stage_names(loop.stages)),
+  cli::print(out, "  {:<14} {}; {} vertices, {}{}{}\n", "ticks", joined(stage_names(loop.stages)),
              outcome.vertices, flow::name_of(loop.sculptor.mode),
              options.load.empty() ? "" : "; own load ", joined(options.load));
   if (outcome.pictures > 0)
-    fmt::print(out, "  {:<14} {} pictures in the live window\n", "observer", outcome.pictures);
+    cli::print(out, "  {:<14} {} pictures in the live window\n", "observer", outcome.pictures);
   for (const auto& grant : outcome.grants) {
     const std::string how = " (" + grant.why + "); to have it, " + grant.remedy;
-    fmt::print(out, "  {:<14} {}{}\n", grant.granted ? "granted" : "REFUSED", grant.wanted,
+    cli::print(out, "  {:<14} {}{}\n", grant.granted ? "granted" : "REFUSED", grant.wanted,
                grant.granted ? "" : how);
   }
 }
 
 void print_counts(std::FILE* out, const StressOutcome& outcome) {
   const TickTally& tally = outcome.tally;
-  fmt::print(out,
+  cli::print(out,
              "\n  {} ticks, {} overruns (ticks after which a deadline had passed), {} deadlines "
              "missed\n  (at which no tick began); longest from tick to tick {} us\n",
              tally.ticks(), outcome.overruns, outcome.missed,
              shown(to_microseconds(tally.longest_outage())));
   for (std::size_t at = 0; at < outcome.glove_records.size(); ++at)
-    fmt::print(out, "  {}: {}\n", outcome.gloves[at], driver::in_words(outcome.glove_records[at]));
-  fmt::print(out,
+    cli::print(out, "  {}: {}\n", outcome.gloves[at], driver::in_words(outcome.glove_records[at]));
+  cli::print(out,
              "  {} page faults: memory that had to be fetched ({} from disk); {} involuntary "
              "switches: other\n  threads took the CPU; {:.1f} % of a CPU used",
              outcome.costs.minor_faults + outcome.costs.major_faults, outcome.costs.major_faults,
              outcome.costs.involuntary_switches,
              100.0 * outcome.costs.cpu_s / std::max(outcome.elapsed_s, 1e-9));
-  if (outcome.stolen_s) fmt::print(out, ", {:.2f} s stolen by the host", *outcome.stolen_s);
-  fmt::print(out, "\n");
+  if (outcome.stolen_s) cli::print(out, ", {:.2f} s stolen by the host", *outcome.stolen_s);
+  cli::print(out, "\n");
   if (outcome.floor.spun_s > 0.0)
-    fmt::print(
+    cli::print(
         out, "  this machine stopped a thread that only read the clock for {:.2f} % of {:.1f} s\n",
         100.0 * outcome.floor.stalled_s / outcome.floor.spun_s, outcome.floor.spun_s);
   if (outcome.records_refused > 0)
-    fmt::print(out, "  {} ticks are not in these figures: this program was too busy to read them\n",
+    cli::print(out, "  {} ticks are not in these figures: this program was too busy to read them\n",
                outcome.records_refused);
 }
 
 void print_changes(std::FILE* out, const StressOptions& options, const StressOutcome& outcome) {
   if (!outcome.by_changes) return;
-  fmt::print(out, "\n  {} changes of the radius, {:g} per minute in every other second:\n",
+  cli::print(out, "\n  {} changes of the radius, {:g} per minute in every other second:\n",
              outcome.changes, options.changes_per_minute);
   const auto figures = [](const flow::Histogram& of) {
     const auto at = [&](double fraction) {
@@ -158,7 +159,7 @@ void print_changes(std::FILE* out, const StressOptions& options, const StressOut
   };
   for (const bool with : {false, true}) {
     const ChangeTally& tally = (*outcome.by_changes)[with ? 1 : 0];
-    fmt::print(out, "  {:<10} {} ticks, {} deadlines missed; late {}; work {}\n",
+    cli::print(out, "  {:<10} {} ticks, {} deadlines missed; late {}; work {}\n",
                with ? "with" : "without", tally.ticks, tally.missed, figures(tally.lateness),
                figures(tally.work));
   }
@@ -171,16 +172,16 @@ void print_incidents(std::FILE* out, const StressOutcome& outcome) {
     if (const std::uint64_t incidents = tally.causes()[k].incidents; incidents > 0)
       line += fmt::format("{}{} {}", line.empty() ? "" : ", ", incidents, cause_names[k]);
   if (!line.empty())
-    fmt::print(
+    cli::print(
         out,
         "\n  later than 1 ms: {}; {:.1f} % of that lateness is explained\n  (host gap: nothing "
         "here ran; own work: the tick's; input: the gloves'; preemption: another thread "
         "ran)\n",
         line, 100.0 * tally.explained());
-  fmt::print(out, "\n  the worst\n  {:<28} {:>10} {:>7}  {:<8} {:<10}\n", "time (UTC)", "late us",
+  cli::print(out, "\n  the worst\n  {:<28} {:>10} {:>7}  {:<8} {:<10}\n", "time (UTC)", "late us",
              "missed", "phase", "cause");
   for (const Incident& worst : tally.worst())
-    fmt::print(out, "  {:<28} {:>10} {:>7}  {:<8} {:<10}\n", wall_time(outcome, worst.due),
+    cli::print(out, "  {:<28} {:>10} {:>7}  {:<8} {:<10}\n", wall_time(outcome, worst.due),
                shown(to_microseconds(worst.lateness)), worst.missed,
                phase_names[static_cast<std::size_t>(worst.phase)],
                cause_names[static_cast<std::size_t>(worst.cause)]);
@@ -206,10 +207,10 @@ void print_histogram(const flow::Histogram& lateness, unsigned max_us) {
     const auto us = static_cast<std::uint64_t>(value.count()) / 1000;
     us < max_us ? counts[us] += count : beyond += count;
   });
-  fmt::print("\n# Histogram\n");
+  cli::print(stdout, "\n# Histogram\n");
   for (std::size_t us = 0; us < counts.size(); ++us)
-    fmt::print("{:06} {:06}\n", us, counts[us]);
-  fmt::print("# Histogram Overflows: {}\n", beyond);
+    cli::print(stdout, "{:06} {:06}\n", us, counts[us]);
+  cli::print(stdout, "# Histogram Overflows: {}\n", beyond);
 }
 
 std::string hgrm(const flow::Histogram& lateness) {

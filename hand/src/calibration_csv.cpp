@@ -176,7 +176,7 @@ Result<ExportedCalibration> calibration_csv_text(const Calibration& calibration)
                    "," + decimal_text(line.offset_counts) + "\n";
   }
   if (calibration.has_couplings())
-    result.notes.emplace_back("the couplings (coupling_gains) are lost: a CSV file has none");
+    result.notes.emplace_back("the couplings (mixed_in) are lost: a CSV file has none");
   if (calibration.middle_bias != 0.0)
     result.notes.emplace_back("the middle bias is lost: a CSV file has none");
   return result;

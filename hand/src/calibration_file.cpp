@@ -63,7 +63,7 @@ std::string mixed_in_lines(const Calibration& calibration) {
             std::string(name_of(couplings[k].by)) +
             "\", rad_per_rad = " + decimal_text(calibration.coupling_gains[k]) + " },\n";
   }
-  return text.empty() ? "" : "coupling_gains = [\n" + text + "]\n";
+  return text.empty() ? "" : "mixed_in = [\n" + text + "]\n";
 }
 
 std::string left_out_line(SensorMask left_out) {

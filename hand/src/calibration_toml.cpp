@@ -76,9 +76,14 @@ void read_sensor(TomlReader& reader, Sensor sensor, const toml::node& node,
 void read_sensors(TomlReader& reader, const toml::table& root, WearerCalibration& wearer) {
   const toml::table* sensors = reader.table(root, "sensors");
   if (sensors == nullptr || reader.error()) return;
+  SensorMask seen; // the older name of a sensor is another key
   for (const auto& [key, node] : *sensors) {
-    if (const auto sensor = read_sensor_name(reader, node, key.str()))
-      read_sensor(reader, *sensor, node, wearer);
+    const auto sensor = read_sensor_name(reader, node, key.str());
+    if (!sensor) continue;
+    if (seen.has(*sensor))
+      reader.complain(node, std::string(name_of(*sensor)) + " is here twice; leave one out");
+    seen.add(*sensor);
+    read_sensor(reader, *sensor, node, wearer);
   }
 }
 
@@ -86,28 +91,27 @@ void read_coupling(TomlReader& reader, const toml::node& node, WearerCalibration
                    std::array<bool, couplings.size()>& seen) {
   const toml::table* table = node.as_table();
   if (table == nullptr)
-    return reader.complain(node,
-                           "coupling_gains must hold { of = ..., by = ..., rad_per_rad = ... }");
+    return reader.complain(node, "mixed_in must hold { of = ..., by = ..., rad_per_rad = ... }");
   reader.allow_only(*table, {"of", "by", "rad_per_rad"});
   const std::string of = reader.text(*table, "of");
   const std::string by = reader.text(*table, "by");
   const double rad_per_rad = reader.number(*table, "rad_per_rad");
-  complain_if(reader, node, "coupling_gains", complaint_about_coupling(rad_per_rad));
+  complain_if(reader, node, "mixed_in", complaint_about_coupling(rad_per_rad));
   for (std::size_t k = 0; k < couplings.size(); ++k) {
     if (sensor_named(of) != couplings[k].of || sensor_named(by) != couplings[k].by) continue;
     if (std::exchange(seen[k], true)) break;
     wearer.calibration.coupling_gains[k] = rad_per_rad;
     return;
   }
-  reader.complain(node, "coupling_gains: nothing of " + in_quotes(by) + " is mixed into " +
+  reader.complain(node, "mixed_in: nothing of " + in_quotes(by) + " is mixed into " +
                             in_quotes(of) + " (or it is here twice); leave it out");
 }
 
 void read_mixed_in(TomlReader& reader, const toml::table& root, WearerCalibration& wearer) {
-  const toml::node* node = root.get("coupling_gains");
+  const toml::node* node = root.get("mixed_in");
   if (node == nullptr) return;
   const toml::array* list = node->as_array();
-  if (list == nullptr) return reader.complain(*node, "coupling_gains must be a list in brackets");
+  if (list == nullptr) return reader.complain(*node, "mixed_in must be a list in brackets");
   std::array<bool, couplings.size()> seen{};
   for (const toml::node& entry : *list)
     read_coupling(reader, entry, wearer, seen);
@@ -175,9 +179,8 @@ void read_hand(TomlReader& reader, const toml::table& root, WearerCalibration& w
 }
 
 void read_wearer(TomlReader& reader, const toml::table& root, WearerCalibration& wearer) {
-  reader.allow_only(root,
-                    {"version", "user", "hand", "made", "method", "middle_bias", "coupling_gains",
-                     "left_out", "glove", "hand_size", "hand_shape", "sensors"});
+  reader.allow_only(root, {"version", "user", "hand", "made", "method", "middle_bias", "mixed_in",
+                           "left_out", "glove", "hand_size", "hand_shape", "sensors"});
   wearer.user = reader.text(root, "user");
   complain_if(reader, root, "user", complaint_about_text(wearer.user, false));
   wearer.method = reader.text(root, "method");

@@ -202,7 +202,7 @@ Result<ExportedCalibration> written(const Calibration& calibration, CountScale c
     result.notes.push_back("not calibrated, so left out: " + missing +
                            "; a ROS driver that needs them stops");
   if (calibration.has_couplings())
-    result.notes.emplace_back("the couplings (coupling_gains) are lost: the ROS forms have none");
+    result.notes.emplace_back("the couplings (mixed_in) are lost: the ROS forms have none");
   if (calibration.middle_bias != 0.0)
     result.notes.emplace_back("the middle bias is lost: the ROS forms have none");
   result.text += end;

@@ -173,7 +173,7 @@ Result<void> check_offsets(const std::array<SensorCalibration, sensor_slots>& li
 std::vector<std::string> losses(const Calibration& calibration, double scale) {
   std::vector<std::string> notes;
   if (calibration.has_couplings())
-    notes.emplace_back("the couplings (coupling_gains) are lost: a .cal file has none");
+    notes.emplace_back("the couplings (mixed_in) are lost: a .cal file has none");
   for (const auto& line : calibration.sensors) {
     const double offset = line.offset_counts * scale;
     if (line.gain_rad_per_count == 0.0 || offset == std::round(offset)) continue;

@@ -49,7 +49,9 @@ TEST_SUITE("monitor_screen") {
     for (const std::uint32_t sensors : {0x0U, 0x1U, 0x11U, 0x7BBB3FU, 0x7FFF7FU, 0xFFFFFFU}) {
       Glove glove(SensorMask{sensors});
       glove.info.abilities.light = true;
-      glove.picture.stats = {.bad_records = ~0ULL, .missed = 123456, .ring_refused = 1};
+      glove.picture.stats.bad_records = ~0ULL;
+      glove.picture.stats.missed = 123456;
+      glove.picture.stats.ring_refused = 1;
       glove.picture.age_s = 1e12;
       for (int columns = 1; columns <= 200; columns += columns < 90 ? 1 : 37) {
         for (const int rows : {1, 2, 3, 5, 13, 14, 23, 24, 25, 60}) {

@@ -169,6 +169,9 @@ TEST_SUITE("calibration file") {
         {with("breadth_m = 0.08\n", ""), 0, "breadth_m"},
         {sensor("index_mpc = { gain_rad_per_count = 0.0125, offset_counts = 60 }"), 20,
          "index_mpc"},
+        {sensor("little_pip = { gain_rad_per_count = 0.0125, offset_counts = 60 }\n"
+                "pinky_pip = { gain_rad_per_count = 0.0125, offset_counts = 60 }"),
+         0, "little_pip is here twice"},
         {sensor("unused = { gain_rad_per_count = 0.0125, offset_counts = 60 }"), 20, "unused"},
         {sensor("index_mcp = 0.0125"), 20, "index_mcp"},
         {sensor("index_mcp = { gain_rad_per_count = 0.0, offset_counts = 60 }"), 20, "index_mcp"},

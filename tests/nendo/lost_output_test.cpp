@@ -130,6 +130,7 @@ std::vector<Arguments> printing_commands(const Workshop& shop) {
       {"run", "--left", "sim", "--duration", "0.2", "--out", at("b.obj")},
       {"stress", "--json", "--duration", "0.3"},
       {"stress", "--duration", "0.3"},
+      {"stress", "--duration", "0.3", "--histogram", "2000"}, // more than a buffer
       {"record", "sim", "--duration", "0.2", "--out", at("r.nendo")},
       {"record", "sim", "--duration", "0.2", "--out", at("q.nendo"), "--json"},
       {"recording", "info", at("run.nendo")},

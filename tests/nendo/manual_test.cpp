@@ -147,6 +147,7 @@ TEST_SUITE("manual") {
 
   TEST_CASE("bash completes commands, options and values") {
     const Manual manual;
+    CHECK(manual.bash("nendo --v") == std::set<std::string>{"--version"});
     CHECK(manual.bash("nendo ru") == std::set<std::string>{"run"});
     CHECK(manual.bash("nendo udev bind /dev/ttyUSB0 --as \"\"") ==
           std::set<std::string>{"left", "right"});

@@ -168,7 +168,7 @@ void print(std::size_t frame_bytes, std::size_t publishes, const Cost& exchanged
 
 Result<void> measure_handoff(const RtOptions& options) {
   const auto processors = cli::two_processors();
-  if (!processors) return processors.error();
+  if (!processors) return Error{Errc::failed, "the hand-off " + processors.error().message};
   // Of 778 vertices, and of 10 000.
   for (const std::size_t frame_bytes : {std::size_t{9336}, std::size_t{120'000}}) {
     const std::size_t words = frame_bytes / sizeof(std::uint64_t);

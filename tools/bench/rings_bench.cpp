@@ -173,7 +173,7 @@ void print(const Row& row, const Row& plain, double round_trip_ns, bool json) {
 
 Result<void> measure_rings(const RtOptions& options) {
   const auto processors = cli::two_processors();
-  if (!processors) return processors.error();
+  if (!processors) return Error{Errc::failed, "the rings' benchmark " + processors.error().message};
   auto rings = contenders();
   for (std::uint64_t round = 0; round < options.rounds; ++round) {
     for (std::size_t n = 0; n < rings.size(); ++n) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 
 namespace nendo::driver::cyberglove {
 namespace {

@@ -108,7 +108,7 @@ public:
 
   /// Takes the next bytes of the stream, cut anywhere. Each well-formed record is passed to
   /// `check(Record&) -> Verdict` and, if plausible, to `sink(const Record&)`. The sink also
-  /// receives each BadRecord and Unplugged .
+  /// receives each BadRecord and Unplugged.
   template <class Check, class Sink>
   void push(std::span<const std::byte> chunk, Check&& check, Sink&& sink) {
     for (const std::byte byte : chunk) {

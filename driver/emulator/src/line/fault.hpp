@@ -31,7 +31,7 @@ enum class FaultKind : std::uint8_t {
   swap,    ///< another glove is plugged in: `value` is 18, 22, left or right
   restart, ///< the unit's power fails for a moment
   stick,   ///< a sensor stops: `value` is its name or slot, and a count after a colon
-  press,   ///< no fault: the switch at the wrist is pressed at the wrist
+  press,   ///< no fault: the switch at the wrist is pressed
 };
 inline constexpr std::size_t fault_kinds = 13;
 

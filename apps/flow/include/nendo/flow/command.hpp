@@ -253,7 +253,7 @@ constexpr bool is_for_loop(const Command& command) noexcept {
 }
 
 /// Shows the requested settings until a loop has had time to take them, and then those in effect,
-/// the caller has requested it. Asking thread; does not allocate.
+/// by whichever client they were requested. Asking thread; does not allocate.
 class NENDO_API WantedSettings {
 public:
   static constexpr std::array kernels{deform::Wendland::c0, deform::Wendland::c2,
