@@ -215,7 +215,7 @@ TEST_SUITE("difficult_wearer") {
     }
   }
 
-  TEST_CASE("a stiff thumb is noticed; with --stiff, only its flat hand is used") {
+  TEST_CASE("a stiff thumb is noticed, and with --stiff, only its flat hand is used") {
     int noticed = 0;
     for (std::uint64_t seed = 4001; seed <= 4008; ++seed) {
       CAPTURE(seed);

@@ -12,7 +12,7 @@ import csv
 import math
 import sys
 
-FINGERS = ["index", "middle", "ring", "pinky"]
+FINGERS = ["index", "middle", "ring", "little"]
 
 
 def sub(a, b):
@@ -47,7 +47,8 @@ def angles_of(row):
     to_thumb = hinge if row["hand"] == "right" else [-p for p in hinge]
     bones = {}
     for finger in ["thumb"] + FINGERS:
-        joints = [place(f"{finger}_{joint}") for joint in ("mcp", "pip", "dip", "tip")]
+        seen = "pinky" if finger == "little" else finger  # the camera's name
+        joints = [place(f"{seen}_{joint}") for joint in ("mcp", "pip", "dip", "tip")]
         bones[finger] = [unit(sub(b, a)) for a, b in zip(joints, joints[1:])]
     angles, spread = {}, {}
     for finger, (first, middle, last) in bones.items():

@@ -145,7 +145,7 @@ TEST_SUITE("calibrate") {
     const auto done = nendo::test::nendo(
         {"calibrate", "--from", capture, "--user", "anna", "--out", folder.path() / "anna.toml"});
     REQUIRE_MESSAGE(done.exit_code == 0, done.err);
-    CHECK(is_one_line_about(done.err, "ends before the pose flat was held once more"));
+    CHECK(is_one_line_about(done.err, "ends before the pose flat was held again"));
     CHECK(done.out.find("28 poses") != std::string::npos);
   }
 

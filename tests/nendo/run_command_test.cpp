@@ -187,7 +187,7 @@ TEST_SUITE("run") {
     };
     const auto bare = run({"--size", "20", "--radius", "3cm", "--json"});
     CHECK(last_object(bare)["radius"].get<double>() == doctest::Approx(0.15 * side));
-    CHECK(bare.err.find("--size 20: is in centimetres") != std::string::npos);
+    CHECK(bare.err.find("--size 20: has no unit, so it is in centimetres") != std::string::npos);
     const std::string radius = std::to_string(0.15 * side);
     const auto plain = run({"--size", "20cm", "--radius", radius});
     CHECK(plain.err.find("centimetres") == std::string::npos);

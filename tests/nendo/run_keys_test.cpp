@@ -44,7 +44,7 @@ TEST_SUITE("run_keys") {
       return text.rfind("ticks") > text.rfind("released") + 20; // a line of progress without it
     }));
     CHECK(program.press('?'));
-    CHECK(program.tells("k  Keeps the recording of what was just done"));
+    CHECK(program.tells("k  Saves the most recent input as a recording"));
     CHECK(program.press('r'));
     CHECK(program.tells("There is nothing to redo."));
     CHECK(program.press('.'));

@@ -104,19 +104,19 @@ TEST_SUITE("stuck_sensor_command") {
     const FaultyGlove glove({"stick@0s=index_pip:255", "stick@0s=ring_mcp:130"});
     // On a busy machine an emulated glove may send nothing for the two seconds that info waits.
     auto report = nendo::test::nendo({"info", glove.spec()});
-    for (int again = 0; again < 2 && report.out.find("stands at its end") == std::string::npos;
-         ++again)
+    for (int again = 0;
+         again < 2 && report.out.find("at the end of its range") == std::string::npos; ++again)
       report = nendo::test::nendo({"info", glove.spec()});
     REQUIRE_MESSAGE(report.exit_code == 0, report.err);
-    CHECK(report.out.find("index_pip stands at its end (255)") != std::string::npos);
-    CHECK(report.out.find("ring_mcp stands") == std::string::npos); // at rest nobody can know
+    CHECK(report.out.find("index_pip is at the end of its range (255)") != std::string::npos);
+    CHECK(report.out.find("ring_mcp is at") == std::string::npos); // at rest nobody can know
     for (const auto& line : lines_of(report.out))
-      if (line.find("stands") != std::string::npos) CHECK(line.size() <= 80);
+      if (line.find("at the end") != std::string::npos) CHECK(line.size() <= 80);
     const auto as_json = nendo::test::nendo({"info", glove.spec(), "--json"});
     REQUIRE(as_json.exit_code == 0);
     CHECK(json::parse(as_json.out)["at_end"] == json{{"index_pip", 255}});
     const auto doctor = nendo::test::nendo({"doctor", glove.spec(), "--json"});
-    CHECK(doctor.out.find("index_pip stands at its end (255)") != std::string::npos);
+    CHECK(doctor.out.find("index_pip is at the end of its range (255)") != std::string::npos);
     const FaultyGlove whole({});
     const auto well = nendo::test::nendo({"info", whole.spec(), "--json"});
     REQUIRE(well.exit_code == 0);
@@ -190,12 +190,12 @@ TEST_SUITE("stuck_sensor_command") {
       double from_s;
       std::string words;
     };
-    for (const Case& made : {Case{{{Sensor::index_pip, 255}}, 0.0, "index_pip stands still"},
-                             Case{{{Sensor::ring_mcp, 118}}, 0.0, "ring_mcp stands still"},
+    for (const Case& made : {Case{{{Sensor::index_pip, 255}}, 0.0, "index_pip is stuck"},
+                             Case{{{Sensor::ring_mcp, 118}}, 0.0, "ring_mcp is stuck"},
                              Case{{{Sensor::index_pip, 1}, {Sensor::wrist_yaw, 128}},
                                   0.0,
-                                  "index_pip and wrist_yaw stand still"},
-                             Case{{{Sensor::middle_pip, 90}}, 40.0, "middle_pip stands still"}}) {
+                                  "index_pip and wrist_yaw are stuck"},
+                             Case{{{Sensor::middle_pip, 90}}, 40.0, "middle_pip is stuck"}}) {
       CAPTURE(made.words);
       const TemporaryFolder folder;
       const auto capture = folder.path() / "capture.jsonl", out = folder.path() / "anna.toml";
@@ -229,7 +229,7 @@ TEST_SUITE("stuck_sensor_command") {
     REQUIRE(calibrate.sees("Then SPACE begins"));
     std::this_thread::sleep_for(std::chrono::seconds(6));
     calibrate.press(' ');
-    REQUIRE(calibrate.sees("index_pip stands still"));
+    REQUIRE(calibrate.sees("index_pip is stuck"));
     CHECK(calibrate.wait() == 0);
     CHECK(calibrate.is_restored());
     const auto written = hand::read_calibration(folder.path() / "anna.toml");

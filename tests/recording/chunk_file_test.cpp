@@ -211,7 +211,7 @@ TEST_SUITE("chunk_file") {
     CHECK_FALSE(error_of(ChunkReader::open(folder.path() / "missing")).empty());
   }
 
-  TEST_CASE("a newer minor version is read; a newer major one and older ones are refused") {
+  TEST_CASE("a newer minor version is read, and a newer major one and older ones are refused") {
     Sample sample{"one"};
     const auto with_version = [&](unsigned major, unsigned minor) {
       std::vector<std::byte> file(sample.file.begin(), sample.file.begin() + 8);

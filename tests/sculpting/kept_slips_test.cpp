@@ -92,7 +92,8 @@ TEST_SUITE("kept_slips") {
     REQUIRE(hand::write_calibration(home.file(), home.made));
     const auto imported = home.wearer({"vera", "", true});
     REQUIRE_FALSE(imported);
-    CHECK(imported.error().message.find("how far its sensors went") != std::string::npos);
+    CHECK(imported.error().message.find("does not have the ranges of its sensors") !=
+          std::string::npos);
   }
 
   TEST_CASE("what has slipped by half a count is kept, with its ends, and nothing else changes") {
