@@ -86,8 +86,8 @@ TEST_SUITE("model_formats_command") {
     CAPTURE(again.err);
     REQUIRE(again.exit_code == 0);
     CHECK(read(place("replay.obj")).vertices == read(place("run.obj")).vertices);
-    const auto exported = test::nendo({"export", take, "--out", place("e-%d.obj"), "--from", "0",
-                                       "--to", "0.05", "--rate", "10"});
+    const auto exported = test::nendo(
+        {"export", take, "--out", place("e-%d.obj"), "--from", "0", "--to", "0.3", "--rate", "10"});
     CAPTURE(exported.err);
     REQUIRE(exported.exit_code == 0);
     // At its beginning, hardly anything has moved yet.
