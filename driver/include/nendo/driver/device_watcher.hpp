@@ -1,5 +1,5 @@
 #pragma once
-// Watches which gloves, and which ports that may be a glove's, are plugged in and pulled out.
+// Reports gloves and possible glove ports as they are attached and detached.
 
 #include <chrono>
 #include <memory>
@@ -16,11 +16,12 @@ struct DeviceEvent {
   GloveCandidate candidate;
 };
 
-/// Has no thread of its own: next() waits for the system's events. No event is lost between two
-/// calls. Asking thread, but for stop().
+/// Has no thread of its own: next() waits for events of the system. No event is lost between two
+/// calls. Asking thread, except stop().
 class NENDO_API DeviceWatcher {
 public:
-  /// Lists what is there and begins to watch. Error: failed (the system allows no more watches).
+  /// Lists the present devices and begins to watch. Error: failed (the system allows no more
+  /// watches).
   static Result<std::unique_ptr<DeviceWatcher>> open();
 
   DeviceWatcher() = default;
@@ -28,17 +29,16 @@ public:
   DeviceWatcher& operator=(const DeviceWatcher&) = delete;
   virtual ~DeviceWatcher() = default;
 
-  /// Returns what was there when it was opened. The list never changes.
+  /// Returns the devices that were present at open(). Constant.
   virtual const std::vector<GloveCandidate>& present() const noexcept = 0;
-  /// Returns true if the system gives events of USB devices: udev's, or the kernel's where udev
-  /// does not run. Otherwise only the nodes in /dev are watched, and a USB glove without a serial
-  /// port goes unnoticed. Some containers withhold all events although this returns true.
+  /// Returns true if USB events are available, from udev or, without udev, from the kernel.
+  /// Otherwise only the nodes in /dev are watched, and a USB glove without a serial port is not
+  /// detected. Some containers receive no events although this returns true.
   virtual bool sees_usb() const noexcept = 0;
-  /// Waits for the next event and returns it; returns nullopt after `timeout`, after stop(), and
-  /// when a signal arrived. A device is announced when its node and links are made, or 2 s after it
-  /// was seen.
+  /// Waits for the next event and returns it; returns nullopt after `timeout`, after stop(), and on
+  /// a signal. An attached device is reported when its node and links exist, or after 2 s.
   virtual std::optional<DeviceEvent> next(std::chrono::milliseconds timeout) = 0;
-  /// Ends a next() that waits, and all later ones. Thread-safe.
+  /// Makes a waiting next() and all later calls return nullopt. Thread-safe.
   virtual void stop() noexcept = 0;
 };
 

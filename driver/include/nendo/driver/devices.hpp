@@ -1,6 +1,6 @@
 #pragma once
-// Finds the devices that may be gloves, and what keeps this user from using them. No device is
-// opened or written to: all of it is read from libudev, /dev and /proc.
+// Finds devices that may be gloves, and the reasons why this user cannot use them. No device is
+// opened or written to: the data come from libudev, /dev and /proc.
 
 #include <chrono>
 #include <cstdint>
@@ -37,16 +37,16 @@ constexpr std::string_view name_of(DeviceKind kind) noexcept {
 struct GloveCandidate {
   DeviceKind kind = DeviceKind::serial_port;
   std::string device; ///< e.g. /dev/ttyUSB0 or /dev/bus/usb/001/005
-  /// udev's link to it, which stays the same when it is plugged in again; empty if there is none.
+  /// The udev symlink, which stays the same after a reconnect; empty if there is none.
   std::string stable_name;
-  /// The text for open_glove(), with the stable name if there is one; empty if nothing can open it.
+  /// The argument for open_glove(), with the stable name if there is one; empty if no driver fits.
   std::string spec;
   std::string description; ///< the device's own description
   std::string reason;      ///< why it may be a glove
-  bool identified = false; ///< the device or a udev rule names it a glove; `auto` opens only these
+  bool identified = false; ///< the device or a udev rule identifies a glove; `auto` requires it
   bool may_open = false;   ///< this user has the permission
   std::string access; ///< who may open it: "you", "group dialout", "user anna", "root"; or empty
-  bool node_missing = false; ///< the kernel has it, and /dev has no node: as in a container
+  bool node_missing = false; ///< the kernel has it but /dev has no node, as in a container
   std::string remedy;        ///< the command or action that makes it usable; empty if may_open
   std::optional<UsbIdentity> usb;
   /// The time by which an FTDI adapter delays short replies: 16 ms by default.
@@ -57,19 +57,19 @@ struct GloveCandidate {
 };
 
 /// Returns the serial ports and USB gloves, one entry per device, identified gloves first. A device
-/// that is pulled out meanwhile is left out. Blocks for less than a second.
+/// that is removed meanwhile is omitted. Blocks for less than a second.
 NENDO_API std::vector<GloveCandidate> find_gloves();
 
-/// Returns the port that a path leads to: follows symbolic links, e.g. /dev/nendo/right to
-/// /dev/ttyUSB0, up to a name that the kernel knows as a serial port. A path that leads nowhere is
-/// returned as it is. Reads the file system; opens nothing.
+/// Follows symbolic links, e.g. /dev/nendo/right to /dev/ttyUSB0, up to a name that the kernel
+/// knows as a serial port. A path that leads nowhere is returned unchanged. Reads the file system;
+/// opens nothing.
 NENDO_API std::string resolve_port(const std::string& path);
 
 /// Returns the command that sets the latency timer of this port to 1 ms.
 NENDO_API std::string latency_timer_remedy(const std::string& port);
 
-/// Returns which of the programs run that open serial adapters unasked: "ModemManager", "brltty".
-/// Reads /proc; blocks briefly.
+/// Returns the running programs that open serial adapters unasked: "ModemManager", "brltty". Reads
+/// /proc; blocks briefly.
 NENDO_API std::vector<std::string> running_port_grabbers();
 
 } // namespace nendo::driver

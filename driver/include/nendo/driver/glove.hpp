@@ -1,6 +1,6 @@
 #pragma once
-// The hardware abstraction: whatever the glove, it is one of these. An open glove is a working
-// glove; opening is open_glove()'s task (open_glove.hpp), so a half-open one does not exist.
+// The hardware abstraction: the interface of all gloves. open_glove() (open_glove.hpp) returns only
+// working gloves, so there is no half-open state.
 
 #include <array>
 #include <cstdint>
@@ -12,9 +12,9 @@
 
 namespace nendo::driver {
 
-/// What a glove can do besides measuring.
+/// Optional features of a glove.
 struct Abilities {
-  bool wrist_switch = false; ///< its samples have the switch's position
+  bool wrist_switch = false; ///< samples contain the switch's state
   bool light = false;        ///< a light at the wrist
   bool vibration = false;    ///< six vibrators: thumb to little finger, palm (CyberTouch)
   bool resistance = false;   ///< brakes on the five fingers (LucidGloves)
@@ -28,8 +28,8 @@ struct Feedback {
   friend bool operator==(const Feedback&, const Feedback&) = default;
 };
 
-/// One thing that a glove says of itself, e.g. {"firmware", "2.1"}. Names are stable, lower case
-/// with underscores, a unit at the end where there is one; values are one printable line.
+/// A property that a glove reports, e.g. {"firmware", "2.1"}. Names are stable, lower case with
+/// underscores, and end with the unit, if any; values are one printable line.
 struct GloveFact {
   std::string name;
   std::string value;
@@ -44,52 +44,49 @@ enum class GloveKind : std::uint8_t {
 
 struct GloveInfo {
   std::string source; ///< the GLOVE specification that opened it, e.g. "serial:/dev/ttyUSB0"
-  std::string model;  ///< what the glove says it is, one line, e.g. "CyberGlove, 22 sensors"
+  std::string model;  ///< the reported model, one line, e.g. "CyberGlove, 22 sensors"
   Side side = Side::right;
-  SensorMask sensors;   ///< slots that its samples carry
+  SensorMask sensors;   ///< the slots that samples contain
   double rate_hz = 0.0; ///< nominal records per second; 0 if unknown
   CountScale counts;
   Abilities abilities;
-  std::vector<GloveFact> facts; ///< everything else that it says of itself
+  std::vector<GloveFact> facts; ///< all other reported properties
   GloveKind kind = GloveKind::device;
-  std::string recording; ///< the recording's path, if it is `recorded`
+  std::string recording; ///< the recording's path, if kind is recorded
 };
 
 /// Monotonic counts of a stream of bytes. bytes = record_bytes + discarded_bytes + a remainder
 /// shorter than the longest record.
 struct StreamCounters {
   std::uint64_t bytes = 0;           ///< received from the device
-  std::uint64_t record_bytes = 0;    ///< that were part of a delivered record
-  std::uint64_t discarded_bytes = 0; ///< that were not: noise, damaged records, replies
-  std::uint64_t records = 0;         ///< delivered: whole, valid records
-  std::uint64_t bad_records = 0;     ///< framed, but of wrong length, header, checksum or content
-  std::uint64_t implausible =
-      0; ///< the bad ones that are well formed, but whose time stamp or status contradicts
-  std::uint64_t missed = 0;    ///< sent, by the glove's own clock, and not delivered; the bad
-                               ///< ones among them
-  std::uint64_t too_fast = 0;  ///< delivered, but sampled off the period, as the glove says (`es`)
-  std::uint64_t unplugged = 0; ///< records without a glove (`eg`), not delivered
-  std::uint64_t clamped = 0;   ///< values in delivered records that were out of range, and count as
-                               ///< the nearer end of it
+  std::uint64_t record_bytes = 0;    ///< bytes of delivered records
+  std::uint64_t discarded_bytes = 0; ///< bytes of noise, damaged records, replies
+  std::uint64_t records = 0;         ///< delivered records: complete and valid
+  std::uint64_t bad_records = 0;     ///< framed, with wrong length, header, checksum or content
+  std::uint64_t implausible = 0;     ///< bad records with contradictory time stamp or status
+  std::uint64_t missed = 0;    ///< sent, by the glove's clock, not delivered; includes bad ones
+  std::uint64_t too_fast = 0;  ///< delivered, but reported as off the sampling period (`es`)
+  std::uint64_t unplugged = 0; ///< records that report no glove (`eg`); not delivered
+  std::uint64_t clamped = 0;   ///< out-of-range values in delivered records, clamped to the range
 
-  /// Counts bytes that were read from the same stream elsewhere and that were no records.
+  /// Adds bytes that other code read from the same stream and that were no records.
   void count_discarded(std::uint64_t count) noexcept {
     bytes += count;
     discarded_bytes += count;
   }
 };
 
-/// The counts since start(). For a glove that counts_missed: records sent = records + missed, as
-/// soon as the next good record has arrived (with 12-bit records: the next two).
+/// The counts since start(). If counts_missed, records sent = records + missed, once the next valid
+/// record (with 12-bit records, the next two) has arrived.
 struct GloveStats : StreamCounters {
-  std::uint64_t ring_refused = 0; ///< samples that found the ring full
-  std::uint64_t silences = 0;     ///< times the stream stopped and was started again
-  std::uint64_t reopened = 0;     ///< times the device vanished and was opened again
+  std::uint64_t ring_refused = 0; ///< samples refused by the full ring
+  std::uint64_t silences = 0;     ///< times the stream stopped and was restarted
+  std::uint64_t reopened = 0;     ///< times the device vanished and was reopened
   double rate_hz = 0.0;           ///< records per second over the last second or two; 0 at first
-  bool counts_missed = false;     ///< its records let `missed` be counted
+  bool counts_missed = false;     ///< its records allow counting `missed`
 };
 
-/// Asking thread, but for the functions that are thread-safe.
+/// Asking thread, except for functions that are thread-safe.
 class NENDO_API Glove {
 public:
   Glove() = default;
@@ -97,24 +94,24 @@ public:
   Glove& operator=(const Glove&) = delete;
   virtual ~Glove() = default; ///< stops the stream if it runs; may block for a second
 
-  /// The glove's properties when it was opened. Constant, even if another glove is plugged in
-  /// later: each sample has its hand and sensors. Thread-safe.
+  /// Returns the properties at opening. Constant, even if another glove is plugged in later; each
+  /// sample has its own side and sensors. Thread-safe.
   virtual const GloveInfo& info() const noexcept = 0;
   /// Starts the reader thread, which is the only producer of `ring`; the ring must outlive stop().
-  /// After stop() it may be started again. May block for two seconds. Errors: no_device (it no
-  /// longer answers), failed (called twice).
+  /// Allowed again after stop(). May block for two seconds. Errors: no_device (it no longer
+  /// answers), failed (called twice).
   virtual Result<void> start(SampleRing& ring) = 0;
   /// Ends the stream and joins the reader thread. Idempotent; may block for a second.
   virtual void stop() noexcept = 0;
   /// Thread-safe, wait-free.
   virtual GloveStats stats() const noexcept = 0;
-  /// Returns whether the glove has sent its last sample since start(), as a recording at its end;
-  /// all that fit is in the ring then. A device may always come back, and so never ends.
-  /// Thread-safe, wait-free.
+  /// Returns whether the last sample was sent, as at the end of a recording; all samples that fit
+  /// are then in the ring. Devices never end, because they may be reconnected. Thread-safe,
+  /// wait-free.
   virtual bool has_ended() const noexcept { return false; }
-  /// Sets the feedback to show. The latest call wins, also after a reconnect. The reader thread
-  /// sends it: within 0.2 s, without losing a record of gloves that take commands while they
-  /// stream; a CyberGlove's stream pauses for it. Thread-safe, does not block.
+  /// Sets the feedback; the latest call is effective, also after a reconnect. The reader thread
+  /// sends it within 0.2 s. Gloves that accept commands while streaming lose no record; a
+  /// CyberGlove's stream pauses. Thread-safe, does not block.
   virtual void set_feedback(const Feedback& feedback) noexcept = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// For drivers, in this library and in programs: the options of a specification, for facts that a
-// glove may not report: its hand, and numbers and words out of a short list.
+// For drivers, in this library and in programs: parsers of options in a GloveSpec, for properties
+// that a glove may not report: its hand, and numbers and words from a short list.
 
 #include <initializer_list>
 #include <optional>
@@ -13,7 +13,7 @@
 namespace nendo::driver {
 
 /// Fails with the error `usage` if `spec` has an option that is not `known`. The message names the
-/// option and those that are known.
+/// option and all known ones.
 NENDO_API Result<void> allow_options(const GloveSpec& spec,
                                      std::initializer_list<std::string_view> known);
 
@@ -23,15 +23,15 @@ NENDO_API Result<int> number_option(const GloveSpec& spec, std::string_view key,
                                     std::initializer_list<int> known);
 
 /// Returns the option's word, or the first of `known` if the option is missing. Error: usage,
-/// naming all of `known`. `known` must be of literals.
+/// naming all of `known`. `known` must contain literals.
 NENDO_API Result<std::string_view> word_option(const GloveSpec& spec, std::string_view key,
                                                std::initializer_list<std::string_view> known);
 
-/// Returns the side of `hand=left|right`, or nothing if the option is missing. Error: usage.
+/// Returns the side of `hand=left|right`, or nullopt if the option is missing. Error: usage.
 NENDO_API Result<std::optional<Side>> hand_option(const GloveSpec& spec);
 
-/// Decides which hand a glove is on: what the option says, or else the glove, or else the caller's
-/// wish, or else right.
+/// Inputs of choose_hand(), which takes the side from the option, else from the glove, else the
+/// side that the caller wants, else right.
 struct SideOptions {
   std::optional<Side> option;
   std::optional<Side> wanted;
@@ -42,7 +42,7 @@ struct ChosenHand {
 };
 NENDO_API ChosenHand choose_hand(std::optional<Side> glove, const SideOptions& wishes) noexcept;
 
-/// Returns a sentence for people where the option contradicts the glove, or an empty text.
+/// Returns a message for the user if the option contradicts the glove, else an empty string.
 NENDO_API std::string hand_override(std::optional<Side> glove, const SideOptions& wishes);
 
 /// Fails with the error `usage` if `spec` names no port. `example` is a specification that names

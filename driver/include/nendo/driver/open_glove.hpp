@@ -1,5 +1,5 @@
 #pragma once
-// From what a user types to an open glove. One grammar everywhere:
+// Opens a glove from a typed specification, with one grammar everywhere:
 //   serial:/dev/ttyUSB0   serial:/dev/ttyUSB0?baud=38400   auto   auto:left
 //   sim   sim:pinch?seed=7&rate=100&hand=left&sensors=18
 // A program can add kinds of gloves, and motions of simulated ones.
@@ -19,7 +19,7 @@
 
 namespace nendo::driver {
 
-/// `kind:target?key=value&key=value`, taken apart but not yet validated.
+/// `kind:target?key=value&key=value`, split but not validated.
 struct GloveSpec {
   std::string text; ///< as typed
   std::string kind;
@@ -27,18 +27,18 @@ struct GloveSpec {
   std::map<std::string, std::string> options;
 };
 
-/// Error: usage, naming what cannot be read in it.
+/// Error: usage, naming the malformed part.
 NENDO_API Result<GloveSpec> parse_glove_spec(std::string_view text);
 
-/// Returns the joint angle of each sensor, by slot, in radians, at a time since start() in seconds,
-/// at least 0. Flexion is positive; abduction is the angle between neighbours. The glove's thread
-/// calls it; it must not throw.
+/// Returns the joint angle of each sensor, by slot, in radians, at `time_s` >= 0 seconds after
+/// start(). Flexion is positive; abduction is the angle between neighbouring fingers. The glove's
+/// thread calls it; it must not throw.
 using SensorMotion = std::function<std::array<double, sensor_slots>(double time_s)>;
 
 /// The options of a `sim:` specification.
 struct SimulatedGloveOptions {
   std::string source;            ///< the specification
-  std::string motion = "sculpt"; ///< its name, not yet validated
+  std::string motion = "sculpt"; ///< the motion's name, not validated
   std::uint32_t seed = 1;
   double rate_hz = 90.0;
   Side side = Side::right;
@@ -54,31 +54,31 @@ struct NamedMotion {
 
 struct GloveContext;
 
-/// A kind of glove: how it is named and opened.
+/// The driver of a kind of glove.
 struct GloveDriver {
   std::string_view kind;    ///< the part before the colon
   std::string_view grammar; ///< the grammar in `--help`
   std::string_view summary; ///< the description in `--help`
-  /// Opens and identifies it as open_glove() does.
+  /// Opens and identifies the glove, as open_glove() does.
   Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, std::optional<Side> side,
                                          const GloveContext& context);
 };
 
-/// Kinds and motions that a program adds to this library's. Names of the library come first.
+/// Drivers and motions that a program adds. The library's names take precedence.
 struct GloveContext {
   std::vector<GloveDriver> drivers{};
   std::vector<NamedMotion> motions{};
 };
 
-/// Opens and identifies the glove; may block, 5 seconds at most. `side` is the hand that the user
-/// wants it for: `auto` opens no other, and a simulated hand is that one (right if any will do).
-/// Errors: usage (kind, option), no_device (missing, or does not answer like a glove),
-/// no_permission; those of drivers in `context`.
+/// Opens and identifies the glove; may block for up to 5 seconds. `side` is the requested hand:
+/// `auto` opens only gloves of this hand, and a simulated glove gets it (right if nullopt). Errors:
+/// usage (kind, option), no_device (missing, or does not answer like a glove), no_permission; those
+/// of drivers in `context`.
 NENDO_API Result<std::unique_ptr<Glove>> open_glove(std::string_view spec,
                                                     std::optional<Side> side = std::nullopt,
                                                     const GloveContext& context = {});
 
-/// Returns the library's drivers, and those of `context` after them.
+/// Returns the library's drivers, then the drivers in `context`.
 NENDO_API std::vector<GloveDriver> glove_drivers(const GloveContext& context = {});
 
 } // namespace nendo::driver

@@ -1,6 +1,6 @@
 #pragma once
-// For drivers, in this library and in programs: the reader thread of a glove that is in this
-// process. It sleeps to deadlines, and stops at once.
+// For drivers, in this library and in programs, that make samples in this process: a reader thread
+// that sleeps until deadlines and that stop() wakes at once.
 
 #include <condition_variable>
 #include <functional>
@@ -16,11 +16,11 @@
 
 namespace nendo::driver {
 
-/// Asking thread, but for wait_until(), which the reader calls.
+/// Asking thread, except wait_until(), which `read` calls.
 class ReaderThread {
 public:
-  /// Runs `read` until it returns, which it does soon after `stop` was asked for. `source` names
-  /// the glove. Errors: failed (not stopped since it was started, no thread).
+  /// Runs `read` in a new thread; it must return soon after `stop` is requested. `source` names the
+  /// glove in messages. Errors: failed (already started, or no thread).
   Result<void> start(const std::string& source,
                      std::function<void(const std::stop_token& stop)> read) {
     if (thread_.joinable()) return Error{Errc::failed, source + ": start() was called twice"};
@@ -32,13 +32,13 @@ public:
     return {};
   }
 
-  /// Asks the thread to stop, and waits for its end. Idempotent.
+  /// Requests a stop and joins the thread. Idempotent.
   void stop() noexcept {
     thread_.request_stop();
     if (thread_.joinable()) thread_.join();
   }
 
-  /// For use in `read`: sleeps until `due`. Returns false if the thread has to stop.
+  /// For use in `read`: sleeps until `due`. Returns false if a stop was requested.
   bool wait_until(const std::stop_token& stop, HostTime due) {
     std::unique_lock lock(mutex_);
     wake_.wait_until(lock, stop, due, [] { return false; });
@@ -46,9 +46,9 @@ public:
   }
 
 private:
-  std::mutex mutex_; ///< used by no other thread; the wait needs one
+  std::mutex mutex_; ///< only for the condition variable
   std::condition_variable_any wake_;
-  std::jthread thread_; // last: joined before what it uses is gone
+  std::jthread thread_; // last, so joined before the others are destroyed
 };
 
 } // namespace nendo::driver

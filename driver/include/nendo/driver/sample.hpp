@@ -1,6 +1,6 @@
 #pragma once
-// What a glove delivers: raw counts for up to 24 named sensor slots, with the time of arrival.
-// Counts only; angles begin in `hand`. This is the one header of `driver` that `hand` may include.
+// A sample of a glove: raw counts for up to 24 named sensor slots, with their times. `hand` turns
+// them into angles. This is the only header of `driver` that `hand` may include.
 
 #include <array>
 #include <bit>
@@ -18,9 +18,8 @@
 namespace nendo {
 
 /// The CyberGlove's 24 sensor slots, in the order of its mask bits (vendor library and manual
-/// agree). The abduction sensors beside the thumb's measure the angle between two neighbouring
-/// fingers. The glove's documents call the little finger pinky; here it has the name that OpenXR
-/// and anatomy give it.
+/// agree). All abduction sensors but the thumb's measure the angle between two neighbouring
+/// fingers. The vendor's "pinky" is called little, as in OpenXR and anatomy.
 enum class Sensor : std::uint8_t {
   thumb_roll,
   thumb_mcp,
@@ -63,7 +62,7 @@ constexpr std::string_view name_of(Sensor sensor) noexcept {
   return sensor_names[static_cast<std::size_t>(sensor)];
 }
 
-/// Returns the sensor of that name. Also accepts older names, which have pinky in place of little.
+/// Returns the sensor of that name. Also accepts older names with pinky for little.
 constexpr std::optional<Sensor> sensor_named(std::string_view name) noexcept {
   constexpr std::string_view older = "pinky", newer = "little";
   const std::size_t at = name.find(older);
@@ -97,7 +96,7 @@ struct SensorMask {
   constexpr void add(Sensor sensor) noexcept { bits |= 1U << static_cast<unsigned>(sensor); }
   friend constexpr bool operator==(SensorMask, SensorMask) = default;
 
-  /// Visits the sensors in the order of their slots, as they were when the visit began.
+  /// Iterates over a copy of the mask, in the order of slots.
   class Iterator {
   public:
     constexpr explicit Iterator(std::uint32_t rest) noexcept : rest_(rest) {}
@@ -129,52 +128,51 @@ constexpr SensorMask mask_of(const Sensors& sensors) noexcept {
 inline constexpr SensorMask sensors_22{0x7FFF7F};
 inline constexpr SensorMask sensors_18{0x7BBB3F};
 
-/// What a glove's counts mean before anyone has calibrated it to a wearer.
+/// The scale of a glove's counts before calibration to a wearer.
 struct CountScale {
   std::uint16_t most = 255; ///< the largest count
-  /// True: 0 is the straight (closed) joint and `most` the fully bent (spread) one, as gloves
-  /// report that calibrate themselves. False: the bare converter of a CyberGlove.
+  /// True: 0 is a straight (closed) joint and `most` a fully bent (spread) one, as self-calibrating
+  /// gloves report. False: counts of a CyberGlove's A/D converter.
   bool whole_range = false;
   friend constexpr bool operator==(CountScale, CountScale) = default;
 };
 
-/// The switch at a CyberGlove's wrist, as far as the glove reports it.
+/// The state of a CyberGlove's wrist switch, if reported.
 enum class WristSwitch : std::uint8_t { unknown, off, on };
 
 struct GloveSample {
   HostTime arrival{}; ///< when the record's last byte reached the host
-  /// When the glove took it: its own time stamp on the host's clock, with the host's jitter removed
+  /// The time of measurement: the glove's time stamp, mapped to the host's clock without its jitter
   /// by an estimate of offset and drift. Equals `arrival` unless has_device_time.
   HostTime measured{};
-  /// The glove's own clock since its own zero, unwrapped; if has_device_time.
+  /// The glove's own clock, unwrapped, from its own zero; if has_device_time.
   std::chrono::nanoseconds device_time{};
-  std::uint64_t sequence =
-      0; ///< counts every record of this glove, also those that the ring refused
+  std::uint64_t sequence = 0; ///< number of the record; also counts records that the ring refused
   std::array<RawCount, sensor_slots> raw{};
   SensorMask present; ///< which slots of `raw` were measured
   bool has_device_time = false;
-  bool sampled_too_fast = false; ///< the glove says that it cannot keep its period (`es`)
+  bool sampled_too_fast = false; ///< the glove reports that it cannot keep its period (`es`)
   WristSwitch wrist_switch = WristSwitch::unknown;
   Side side = Side::right;
-  bool is_replayed = false; ///< `arrival` and `measured` are of the replay
-  /// What they were when the sample was recorded; if is_replayed.
+  bool is_replayed = false; ///< `arrival` and `measured` are times of the replay
+  /// The original `arrival` and `measured`; if is_replayed.
   HostTime recorded_arrival{};
   HostTime recorded_measured{};
 
-  /// Returns when it was measured, as exactly as it is known.
+  /// Returns the best known time of measurement.
   constexpr HostTime time() const noexcept { return has_device_time ? measured : arrival; }
   constexpr RawCount operator[](Sensor sensor) const noexcept {
     return raw[static_cast<std::size_t>(sensor)];
   }
-  /// What was measured, and that it was.
+  /// Sets a count and marks the sensor as present.
   constexpr void set(Sensor sensor, RawCount count) noexcept {
     raw[static_cast<std::size_t>(sensor)] = count;
     present.add(sensor);
   }
 };
 
-/// Carries samples from a glove's reader thread to the one thread that uses them. The ring notifies
-/// an event count, if it has one, of every sample, for a user that sleeps until one comes.
+/// Carries samples from a glove's reader thread to one consumer thread. Each push notifies the
+/// event count, if there is one, so that the consumer can sleep until a sample comes.
 class SampleRing {
 public:
   /// Allocates once, `at_least` samples rounded up to a power of two. `event_count` may serve
@@ -182,15 +180,15 @@ public:
   explicit SampleRing(std::size_t at_least, EventCount* event_count = nullptr)
       : ring_(at_least), event_count_(event_count) {}
 
-  /// Producer only, wait-free but for the system call that wakes a sleeper. False: the ring is
-  /// full, the sample was refused and counted.
+  /// Producer only, wait-free but for the system call that wakes the consumer. Returns false if the
+  /// ring is full; the sample is then refused and counted.
   bool try_push(const GloveSample& sample) noexcept {
     const bool taken = ring_.try_push(sample);
     if (event_count_ != nullptr) event_count_->notify();
     return taken;
   }
 
-  // SpscRing's: for the consumer; size() and counters() are thread-safe.
+  // As in SpscRing: consumer only; size() and counters() are thread-safe.
   bool try_pop(GloveSample& sample) noexcept { return ring_.try_pop(sample); }
   template <class Sink>
   std::size_t drain(Sink&& sink) noexcept {

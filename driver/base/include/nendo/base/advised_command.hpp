@@ -1,5 +1,5 @@
 #pragma once
-// Commands in messages, for the user to type.
+// Commands that messages advise the user to run.
 
 #include <filesystem>
 #include <string>
@@ -9,15 +9,14 @@
 
 namespace nendo {
 
-/// Returns the text as one word of a shell's command line: as it is if no shell does anything with
-/// it, else in single quotes. A GLOVE with ? or & needs them.
+/// Quotes `text` as one shell word. Text without shell metacharacters is returned unchanged. A
+/// glove specification with ? or & needs the quotes.
 NENDO_API std::string shell_word(std::string_view text);
 
-/// Returns the command that runs nendo with these arguments as root: "sudo nendo udev install". If
-/// this program is a nendo in a folder in which sudo does not look for programs, the command has
-/// its whole path.
+/// Returns the command that runs nendo with these arguments as root, e.g. "sudo nendo udev
+/// install". It contains this program's full path if this is a nendo outside of sudo's search path.
 NENDO_API std::string as_root(std::string_view arguments);
-/// The same for a program with that path.
+/// The same for the program at the path `program`.
 NENDO_API std::string as_root(std::string_view arguments, const std::filesystem::path& program);
 
 } // namespace nendo

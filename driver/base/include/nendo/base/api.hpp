@@ -1,5 +1,5 @@
 #pragma once
-// NENDO_API marks what a library defines and programs may use. Shared libraries hide all other
-// names, so that no program depends on a private part. Most headers have it by way of result.hpp.
+// NENDO_API exports a symbol from a shared library. All other symbols are hidden, so that no
+// program depends on private code. Most headers include this file through result.hpp.
 
 #define NENDO_API __attribute__((visibility("default")))

@@ -8,24 +8,24 @@
 
 namespace nendo {
 
-/// The distance in bytes that separates the data of different threads. Classes keep twice that
-/// distance where prefetchers fetch pairs of lines. It is a constant, because a class that is laid
-/// out by std::hardware_destructive_interference_size changes with the compiler's options.
+/// The size of a cache line, in bytes, for alignment against false sharing. Classes use twice the
+/// size, because prefetchers may fetch pairs of lines. It is a constant, because
+/// std::hardware_destructive_interference_size, and so the layout, depends on compiler options.
 inline constexpr std::size_t cache_line_bytes = 64;
 
 struct StdAtomics {
   template <class T>
   using Atomic = std::atomic<T>;
 
-  /// Data that one thread writes and another one reads, and that is not atomic by itself.
+  /// Non-atomic data that one thread writes and another thread reads.
   template <class T>
   using Plain = T;
 
   static void fence(std::memory_order order) noexcept { std::atomic_thread_fence(order); }
 };
 
-/// Marks this thread as spinning for the processor, so that the core's other hardware thread may
-/// run and less power is drawn. Takes some 10 to 60 ns. Wait-free.
+/// A spin-wait hint for the processor, which saves power and lets the core's other hardware thread
+/// run. Takes about 10 to 60 ns. Wait-free.
 inline void relax() noexcept {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();

@@ -1,7 +1,7 @@
 #pragma once
-// Reads bytes one after another and checks bounds. A read past the end yields zeros and sets a flag
-// that stays set, so that a decoder reads a whole layout and asks once, at the end, whether there
-// were enough bytes.
+// Reads little-endian values from a span, with bounds checks. Bytes past the end read as zero and
+// set a sticky flag, overrun(), so that a decoder can read a whole layout and check once at the
+// end.
 
 #include <bit>
 #include <cstddef>
@@ -40,8 +40,8 @@ public:
   }
   constexpr std::int64_t i64_le() noexcept { return std::bit_cast<std::int64_t>(u64_le()); }
   constexpr double f64_le() noexcept { return std::bit_cast<double>(u64_le()); }
-  /// Reads a text as ByteWriter::text() writes it; it may hold any bytes. The view is valid as long
-  /// as the bytes that are read.
+  /// Reads a string that ByteWriter::text() wrote; it may hold any bytes. The view points into the
+  /// input.
   std::string_view text() noexcept {
     const auto part = take(u16_le());
     return {reinterpret_cast<const char*>(part.data()), part.size()};
@@ -59,7 +59,7 @@ public:
   [[nodiscard]] constexpr std::size_t remaining() const noexcept {
     return bytes_.size() - position_;
   }
-  /// Returns true if any read so far went past the end.
+  /// Returns true if any read went past the end.
   [[nodiscard]] constexpr bool overrun() const noexcept { return overrun_; }
 
 private:

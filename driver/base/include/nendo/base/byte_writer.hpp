@@ -1,6 +1,5 @@
 #pragma once
-// Writes numbers and strings, little-endian, at the end of a vector, so that ByteReader can read
-// them.
+// Appends little-endian numbers and strings to a vector, for ByteReader to read.
 
 #include <bit>
 #include <cstddef>
@@ -25,8 +24,7 @@ public:
   void bytes(std::span<const std::byte> part) {
     out_->insert(out_->end(), part.begin(), part.end());
   }
-  /// Writes the text's length in two bytes and then the text, of which it cuts off what exceeds
-  /// 65535 bytes.
+  /// Writes a 16-bit length and then the string, truncated to 65535 bytes.
   void text(std::string_view part) {
     part = part.substr(0, UINT16_MAX);
     u16_le(static_cast<std::uint16_t>(part.size()));

@@ -1,6 +1,6 @@
 #pragma once
 // CRC-32C (Castagnoli) is the checksum of iSCSI (RFC 3720, appendix B.4) and of many file formats.
-// It finds every burst of damage up to 32 bits, and all but one in 2^32 of the longer ones.
+// It detects every burst error of up to 32 bits, and all but one in 2^32 of longer ones.
 
 #include <array>
 #include <cstddef>
@@ -26,8 +26,8 @@ inline constexpr auto crc32c_bytes = crc32c_table();
 
 } // namespace detail
 
-/// Returns the checksum of `bytes`. `before` is the checksum of the bytes that precede these. The
-/// function is pure and may be called in a signal handler.
+/// Returns the checksum of `bytes`, continued from `before`, the checksum of the preceding bytes.
+/// Pure and async-signal-safe.
 constexpr std::uint32_t crc32c(std::span<const std::byte> bytes,
                                std::uint32_t before = 0) noexcept {
   std::uint32_t crc = ~before;

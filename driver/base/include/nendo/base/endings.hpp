@@ -1,5 +1,5 @@
 #pragma once
-// Endings of files' names. People write them in either case: .OBJ, .Stl.
+// File name extensions, compared without regard to case: .OBJ, .Stl.
 
 #include <algorithm>
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace nendo {
 
-/// Returns whether the path ends in `ending` (".obj", in small letters), in any case.
+/// Returns whether `path` ends in `ending` (lower case, e.g. ".obj"), ignoring ASCII case.
 constexpr bool ends_in(std::string_view path, std::string_view ending) noexcept {
   const auto same = [](char in_path, char in_ending) {
     const char small =
@@ -19,7 +19,7 @@ constexpr bool ends_in(std::string_view path, std::string_view ending) noexcept 
                     ending.begin(), same);
 }
 
-/// Returns that of the endings in which the path ends; empty if it ends in none of them.
+/// Returns the first of `endings` in which `path` ends; empty if there is none.
 constexpr std::string_view ending_of(std::string_view path,
                                      std::span<const std::string_view> endings) noexcept {
   for (const std::string_view ending : endings)

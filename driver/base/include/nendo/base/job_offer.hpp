@@ -1,6 +1,6 @@
 #pragma once
-// A job that one thread offers to another. If the other thread runs, it takes the job; if not, the
-// first thread withdraws it. So no thread waits for one without a processor.
+// Hands a job from one thread to another. The offering thread can withdraw a job that was not
+// taken, so that it never waits for a thread that is not scheduled.
 
 #include <atomic>
 #include <cstdint>
@@ -9,19 +9,19 @@
 
 namespace nendo {
 
-/// All functions are wait-free. What was written before offer() is seen after take(), and what was
-/// written before done() is seen after is_done().
+/// All functions are wait-free. Writes before offer() are visible after take(), and writes before
+/// done() are visible after is_done(), if these return true.
 template <class Job, class Atomics = StdAtomics>
 class JobOffer {
 public:
-  /// Offering thread only. Offers a job. The previous job must have been withdrawn or be done.
+  /// Offering thread only. The previous job must be withdrawn or done.
   void offer(const Job& job) noexcept {
     job_ = job;
     done_.store(0, std::memory_order_relaxed);
     open_.store(1, std::memory_order_release);
   }
-  /// Offering thread only, at most once for each job. Takes the job back. Returns false if the
-  /// other thread has taken it.
+  /// Offering thread only, at most once per job. Withdraws the job; returns false if the other
+  /// thread has taken it.
   bool withdraw() noexcept { return open_.exchange(0, std::memory_order_relaxed) == 1; }
   /// Offering thread only. Returns whether a job that could not be withdrawn is done.
   bool is_done() const noexcept { return done_.load(std::memory_order_acquire) == 1; }
@@ -29,7 +29,8 @@ public:
   /// Other thread only. Takes the job, which belongs to this thread until done(). Returns false if
   /// there is none.
   bool take(Job& job) noexcept {
-    if (open_.load(std::memory_order_relaxed) == 0) return false; // spares others' caches
+    if (open_.load(std::memory_order_relaxed) == 0)
+      return false; // no write to the shared cache line
     if (open_.exchange(0, std::memory_order_acquire) == 0) return false;
     job = job_;
     return true;

@@ -1,7 +1,6 @@
 #pragma once
-// Result<T> is a value or an Error, and everything that can fail outside the loop returns it. It is
-// a small part of C++23's std::expected. Inside the loop, failures are enums and counters, never
-// strings.
+// Result<T> holds a value or an Error; it is a subset of C++23's std::expected. Functions that can
+// fail outside the loop return it. Inside the loop, failures are enums and counters, never strings.
 
 #include <cassert>
 #include <string>
@@ -21,7 +20,7 @@ enum class Errc {
   bad_input = 5,     ///< a file cannot be used
 };
 
-/// `message` is one line that says what, where, and what to do about it.
+/// `message` is one line: what failed, where, and the remedy.
 struct Error {
   Errc code = Errc::failed;
   std::string message;

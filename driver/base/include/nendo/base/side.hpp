@@ -1,5 +1,5 @@
 #pragma once
-// Which of a person's two hands is meant.
+// A left or right hand.
 
 #include <cstdint>
 #include <string_view>
@@ -12,7 +12,7 @@ constexpr Side opposite(Side side) noexcept {
   return side == Side::left ? Side::right : Side::left;
 }
 
-/// Returns "left" or "right", as options, files and udev's rules write it.
+/// Returns "left" or "right", as in options, files and udev rules.
 constexpr std::string_view name_of(Side side) noexcept {
   return side == Side::left ? "left" : "right";
 }

@@ -15,14 +15,14 @@
 
 namespace nendo {
 
-/// The counts of an SpscRing: offered = consumed + refused + SpscRing::size(), once both sides are
-/// at rest. Each count only grows and is written by one thread; other threads may read it at any
+/// The counts of an SpscRing: offered = consumed + refused + SpscRing::size(), while both threads
+/// are idle. Each count only grows and is written by one thread; other threads may read it at any
 /// time.
 struct RingCounters {
-  std::uint64_t offered = 0;  ///< elements pushed, or tried to
+  std::uint64_t offered = 0;  ///< elements passed to a push
   std::uint64_t refused = 0;  ///< the offered elements that were refused because the ring was full
-  std::uint64_t consumed = 0; ///< elements taken out
-  std::uint64_t high_water = 0; ///< the most that were ever in it at once
+  std::uint64_t consumed = 0; ///< elements that the consumer took
+  std::uint64_t high_water = 0; ///< maximum number of elements at once
 };
 
 template <class T, class Atomics = StdAtomics>
@@ -41,8 +41,8 @@ public:
   /// counted.
   bool try_push(const T& element) noexcept { return push_n({&element, 1}) == 1; }
 
-  /// Producer only, wait-free. Pushes the first elements, as many as fit, and publishes them
-  /// together. Returns how many these are; the others are refused and counted.
+  /// Producer only, wait-free. Pushes the leading elements that fit, publishes them together and
+  /// returns their number; the others are refused and counted.
   std::size_t push_n(std::span<const T> elements) noexcept {
     const std::size_t fitting = claim(elements.size());
     for (std::size_t n = 0; n < fitting; ++n)
@@ -52,9 +52,9 @@ public:
     return fitting;
   }
 
-  /// Producer only, wait-free: push_n() in steps, to fill elements in their place. claim() returns
-  /// how many of `wanted` slots are free. These may be written by claimed(n) until commit(), which
-  /// publishes the first `count` of them. refuse() counts elements that found no slot.
+  /// Producer only, wait-free: push_n() in steps, to fill elements in place. claim() returns the
+  /// number of free slots, at most `wanted`. The producer writes them through claimed(n), and
+  /// commit() publishes the first `count`. refuse() counts elements without a slot.
   [[nodiscard]] std::size_t claim(std::size_t wanted) noexcept {
     const std::uint64_t tail = tail_.load(std::memory_order_relaxed);
     if (wanted > capacity() - (tail - cached_head_)) look_at_head();
@@ -66,7 +66,7 @@ public:
   void commit(std::size_t count) noexcept {
     const std::uint64_t tail = tail_.load(std::memory_order_relaxed) + count;
     const std::uint64_t high_water = high_water_.load(std::memory_order_relaxed);
-    if (tail - cached_head_ > high_water) { // the cached head may be old
+    if (tail - cached_head_ > high_water) { // the cached head may be stale
       look_at_head();
       high_water_.store(std::max(high_water, tail - cached_head_), std::memory_order_relaxed);
     }
@@ -76,8 +76,8 @@ public:
     refused_.store(refused_.load(std::memory_order_relaxed) + count, std::memory_order_relaxed);
   }
 
-  /// Consumer only, wait-free. Hands every element present at the call to `sink`, oldest first, and
-  /// frees them together. Returns how many they were.
+  /// Consumer only, wait-free. Passes every element present at the call to `sink`, oldest first,
+  /// then frees them together. Returns their number.
   template <class Sink>
   std::size_t drain(Sink&& sink) noexcept {
     const std::uint64_t head = head_.load(std::memory_order_relaxed);
@@ -99,7 +99,7 @@ public:
   }
 
   [[nodiscard]] std::size_t capacity() const noexcept { return mask_ + 1; }
-  /// Any thread, wait-free. The size is exact only while both sides are at rest.
+  /// Any thread, wait-free. The size is exact only while both threads are idle.
   [[nodiscard]] std::size_t size() const noexcept {
     const RingCounters now = counters();
     return static_cast<std::size_t>(now.offered - now.refused - now.consumed);

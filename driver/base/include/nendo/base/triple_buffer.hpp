@@ -1,8 +1,8 @@
 #pragma once
 // TripleBuffer hands the newest value from one writer thread to one reader thread through three
-// buffers. The writer fills its buffer in place and publishes it with one exchange, whatever the
-// size of the value is. A reader that polls gets the newest value or learns that there is none.
-// Both sides are wait-free and never touch the same buffer. Proof, bounds and figures: RINGS.md.
+// buffers. The writer fills its buffer in place and publishes it with one atomic exchange, at any
+// size of the value. The reader polls for a new value. Both sides are wait-free and never touch the
+// same buffer. Proof, bounds and figures: RINGS.md.
 
 #include <array>
 #include <cstdint>
@@ -18,14 +18,14 @@ class TripleBuffer {
   static_assert(Middle::is_always_lock_free);
 
 public:
-  /// All three buffers start as copies of `initial`, so that sizes are set before the first
-  /// publish.
+  /// All three buffers start as copies of `initial`, so that vectors have their sizes before
+  /// publish().
   explicit TripleBuffer(const T& initial) : buffers_{initial, initial, initial} {}
 
-  /// Writer only. Returns the buffer to fill. It holds some older value, so fill all of it.
+  /// Writer only. Returns the buffer to fill. It holds an older value; overwrite all of it.
   Buffer& back() noexcept { return buffers_[back_]; }
-  /// Writer only, wait-free. Makes back() the latest value. Returns true if that replaced a value
-  /// that was never read.
+  /// Writer only, wait-free. Publishes back(). Returns true if this replaced a value that was never
+  /// read.
   bool publish() noexcept {
     const std::uint8_t old =
         middle_.exchange(static_cast<std::uint8_t>(back_ | fresh), std::memory_order_acq_rel);
@@ -33,8 +33,8 @@ public:
     return (old & fresh) != 0;
   }
 
-  /// Reader only, wait-free. Takes the latest value and returns true if there is a new one. The
-  /// reference that front() gives stays valid and unchanged until the next call of update().
+  /// Reader only, wait-free. Makes the latest value front() and returns true if it is new. The
+  /// reference from front() stays valid and unchanged until the next update().
   bool update() noexcept {
     if ((middle_.load(std::memory_order_relaxed) & fresh) == 0) return false;
     front_ = middle_.exchange(front_, std::memory_order_acq_rel) & index_mask;

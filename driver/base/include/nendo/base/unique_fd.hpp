@@ -1,5 +1,5 @@
 #pragma once
-// The owner of a file descriptor, which closes it in the destructor.
+// An owning file descriptor, which the destructor closes.
 
 #include <utility>
 
@@ -10,7 +10,7 @@ namespace nendo {
 class NENDO_API UniqueFd {
 public:
   UniqueFd() = default;
-  /// Takes over a descriptor, as open() returned it. A negative number means that no file is open.
+  /// Takes ownership of `fd`. A negative `fd`, as from a failed open(), means no open file.
   explicit UniqueFd(int fd) noexcept : fd_(fd) {}
   ~UniqueFd() { close(); }
   UniqueFd(UniqueFd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
@@ -24,8 +24,7 @@ public:
 
   int get() const noexcept { return fd_; }
   bool is_open() const noexcept { return fd_ >= 0; }
-  /// Closes the file, if it is open. Returns false if the system reports that an earlier write
-  /// failed.
+  /// Closes the file, if it is open. Returns false if the system reports a failed earlier write.
   bool close() noexcept;
 
 private:

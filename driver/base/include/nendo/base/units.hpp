@@ -1,7 +1,7 @@
 #pragma once
-// Units that cross folder boundaries. All of them are SI: metres, radians, seconds. Plain numbers
-// carry their unit in the name (`angle_rad`, `rate_hz`), times are std::chrono, and raw sensor
-// counts have a type of their own.
+// Units in interfaces between modules. All are SI: metres, radians, seconds. Plain numbers carry
+// their unit in the name (`angle_rad`, `rate_hz`), times are std::chrono, and raw sensor counts
+// have a type of their own.
 
 #include <chrono>
 #include <compare>
@@ -12,7 +12,7 @@
 
 namespace nendo {
 
-/// A sensor reading as the glove sent it, before calibration. 8-bit gloves send 1..255.
+/// An uncalibrated sensor reading, as sent by the glove. 8-bit gloves send 1..255.
 struct RawCount {
   std::uint16_t value = 0;
   friend constexpr auto operator<=>(RawCount, RawCount) = default;
@@ -26,8 +26,8 @@ constexpr double to_seconds(HostClock::duration d) noexcept {
   return std::chrono::duration<double>(d).count();
 }
 
-/// Returns the duration, without parts of a nanosecond. Seconds that HostClock cannot count give
-/// the longest or the shortest duration, and NaN gives zero.
+/// Returns the duration, truncated to whole nanoseconds. Values out of range saturate to the
+/// longest or shortest duration, and NaN gives zero.
 constexpr HostClock::duration from_seconds(double seconds) noexcept {
   constexpr double max_s = to_seconds(HostClock::duration::max());
   if (seconds != seconds) return HostClock::duration::zero();
@@ -44,8 +44,8 @@ constexpr double to_microseconds(std::chrono::nanoseconds d) noexcept {
   return static_cast<double>(d.count()) / 1e3;
 }
 
-/// Returns the seconds from one time to another. It is defined for any two times: a difference that
-/// would overflow wraps around.
+/// Returns the seconds from one time to another. Defined for any two times: an overflowing
+/// difference wraps around.
 constexpr double seconds_between(HostTime from, HostTime to) noexcept {
   const auto ticks = [](HostTime time) {
     return static_cast<std::uint64_t>(time.time_since_epoch().count());
@@ -53,8 +53,7 @@ constexpr double seconds_between(HostTime from, HostTime to) noexcept {
   return to_seconds(HostClock::duration(static_cast<HostClock::rep>(ticks(to) - ticks(from))));
 }
 
-/// These convert degrees to radians and back. Degrees are for people: strings, options, and tables
-/// taken from publications.
+/// Degrees are only for user interfaces (strings, options) and for tables from publications.
 constexpr double from_degrees(double angle_deg) noexcept {
   return angle_deg * std::numbers::pi / 180.0;
 }
