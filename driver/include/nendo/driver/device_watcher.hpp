@@ -20,8 +20,7 @@ struct DeviceEvent {
 /// calls. Asking thread, except stop().
 class NENDO_API DeviceWatcher {
 public:
-  /// Lists the present devices and begins to watch. Error: failed (the system allows no more
-  /// watches).
+  /// Lists the devices and begins to watch. Error: failed (the system allows no more watches).
   static Result<std::unique_ptr<DeviceWatcher>> open();
 
   DeviceWatcher() = default;
@@ -38,7 +37,7 @@ public:
   /// Waits for the next event and returns it; returns nullopt after `timeout`, after stop(), and on
   /// a signal. An attached device is reported when its node and links exist, or after 2 s.
   virtual std::optional<DeviceEvent> next(std::chrono::milliseconds timeout) = 0;
-  /// Makes a waiting next() and all later calls return nullopt. Thread-safe.
+  /// Ends a waiting next() and all later calls. Thread-safe.
   virtual void stop() noexcept = 0;
 };
 

@@ -35,7 +35,7 @@ struct GloveFact {
   std::string value;
 };
 
-/// Where a glove's samples come from.
+/// The source of a glove's samples.
 enum class GloveKind : std::uint8_t {
   device,    ///< a glove on a hand, or an emulated one at a port
   simulated, ///< made by this program

@@ -30,8 +30,8 @@ NENDO_API Result<std::string_view> word_option(const GloveSpec& spec, std::strin
 /// Returns the side of `hand=left|right`, or nullopt if the option is missing. Error: usage.
 NENDO_API Result<std::optional<Side>> hand_option(const GloveSpec& spec);
 
-/// Inputs of choose_hand(), which takes the side from the option, else from the glove, else the
-/// side that the caller wants, else right.
+/// Inputs of choose_hand(): it takes the option's side, else the glove's, else the wanted side,
+/// else right.
 struct SideOptions {
   std::optional<Side> option;
   std::optional<Side> wanted;

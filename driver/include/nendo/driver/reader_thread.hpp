@@ -1,5 +1,5 @@
 #pragma once
-// For drivers, in this library and in programs, that make samples in this process: a reader thread
+// For drivers, in this library and in programs, that generate their own samples: a reader thread
 // that sleeps until deadlines and that stop() wakes at once.
 
 #include <condition_variable>

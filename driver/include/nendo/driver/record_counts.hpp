@@ -40,7 +40,7 @@ NENDO_API RecordCounts since(const RecordCounts& earlier, const RecordCounts& no
 NENDO_API std::array<std::pair<std::string_view, std::optional<std::uint64_t>>, 6>
 by_name(const RecordCounts& counts) noexcept;
 /// Returns the counts as text: "457 sent, 359 delivered, 98 missed, 0 refused, 0 bad records". It
-/// says if losses are unknown, and omits clamped values if there are none.
+/// also states unknown losses, and omits zero clamped values.
 NENDO_API std::string in_words(const RecordCounts& counts);
 
 /// Returns "72.0 records per second of the 90.0 that were asked for" if losses cannot be counted

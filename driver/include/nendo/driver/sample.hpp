@@ -180,8 +180,8 @@ public:
   explicit SampleRing(std::size_t at_least, EventCount* event_count = nullptr)
       : ring_(at_least), event_count_(event_count) {}
 
-  /// Producer only, wait-free but for the system call that wakes the consumer. Returns false if the
-  /// ring is full; the sample is then refused and counted.
+  /// Producer only, wait-free but for the system call that wakes the consumer. False: the ring is
+  /// full; the sample is refused and counted.
   bool try_push(const GloveSample& sample) noexcept {
     const bool taken = ring_.try_push(sample);
     if (event_count_ != nullptr) event_count_->notify();

@@ -1,6 +1,5 @@
 #pragma once
-// The names of a hand's joint angles, so that limits, filters and reports can go through all of
-// them.
+// Indices and names of a hand's joint angles, for loops in limits, filters and reports.
 
 #include <array>
 #include <cstddef>
@@ -9,7 +8,7 @@
 
 namespace nendo::hand {
 
-/// Names each number in JointAngles, in its order: the thumb, the four fingers, palm and wrist.
+/// The angles in JointAngles, in the same order: thumb, four fingers, palm, wrist.
 enum class Angle : std::uint8_t {
   thumb_roll,
   thumb_abduction,
@@ -55,7 +54,7 @@ constexpr std::string_view name_of(Angle angle) noexcept {
   return angle_names[index_of(angle)];
 }
 
-/// Returns angle number `index`, which must be below angle_count.
+/// `index` must be below angle_count.
 constexpr Angle angle_at(std::size_t index) noexcept {
   return static_cast<Angle>(index);
 }

@@ -1,13 +1,12 @@
 #pragma once
-// A BVH recording on a disk. How many frames there will be is not known at the beginning, and a
-// crash or a full disk may end the recording. The file is therefore readable at any time: frames
-// are written whole, and the count at the head of the file is written over after them, never
-// before.
+// Writes a BVH recording to disk. The number of frames is not known in advance, and a crash or a
+// full disk may end the recording. The file is therefore valid at any time: whole frames are
+// written first, and then the frame count in the header is overwritten.
 //
-// The recording grows as FILE.part and gets its name at the end. So the file that had the name
-// before stays until the recording is whole, and what was recorded before a crash stays in
-// FILE.part, which nothing here writes over. A crash of the program loses the frames that were not
-// flushed; a crash of the machine also loses those that the kernel had not written yet.
+// The recording is written to FILE.part, which is renamed at the end. An existing FILE thus stays
+// until the recording is complete, and after a crash the frames stay in FILE.part, which is never
+// overwritten. A crash of the program loses frames that were not flushed; a crash of the machine
+// also loses frames that the kernel had not written yet.
 
 #include <array>
 #include <cstdint>
@@ -20,31 +19,31 @@
 
 namespace nendo::hand {
 
-// A hand's motion as text in the Biovision hierarchy format (BVH), which animation programs read.
-// Only text is made here; BvhFile writes it to a disk.
+// Formats a hand's motion as text in the Biovision hierarchy format (BVH), which animation programs
+// read. BvhFile writes the text to disk.
 //
-// - Lengths are in centimetres, as most readers take them, and angles in degrees. The axes are
+// - Lengths are in centimetres, as most readers expect, and angles in degrees. The axes are
 //   OpenXR's.
 // - The ROOT is the wrist. Every other joint is a JOINT, in OpenXR's order, and every tip an End
-//   Site. The palm is left out, because it is fixed to the wrist and nothing turns at it.
+//   Site. The palm is omitted, because it is fixed to the wrist.
 // - Names are OpenXR's followed by the hand, as the OpenXR specification advises: wrist_R,
 //   index_proximal_L.
-// - With all rotations zero the hand is the flat hand of JointAngles{}, whose bones are the
-//   OFFSETs: the hierarchy holds the rest shape. A joint's OpenXR orientation is therefore its BVH
-//   orientation times its orientation in the flat hand.
+// - With all rotations zero, the hand is the flat hand of JointAngles{}, whose bones are the
+//   OFFSETs. A joint's OpenXR orientation is therefore its BVH orientation times its orientation in
+//   the flat hand.
 // - Channels are "Yrotation Zrotation Xrotation", that is R = Ry Rz Rx. A finger spreads about Y
-//   and bends about X, so its channels are its joint's angles. This order is singular where Z is 90
-//   degrees, to which no finger can turn. With X in the middle it would be singular at a
-//   right-angled bend.
+//   and bends about X, so its channels are its joint's angles. This order is singular at Z = 90
+//   degrees, which no finger reaches. With X in the middle, it would be singular at a bend of 90
+//   degrees.
 class NENDO_API BvhFormat {
 public:
   static constexpr double units_per_metre = 100.0;
-  /// The width of a frame count. Blanks behind it fill the width, so that it can be written over.
+  /// The field width of the frame count, padded with blanks so that it can be overwritten.
   static constexpr std::size_t count_width = 12;
 
   explicit BvhFormat(const HandSkeleton& skeleton);
 
-  /// Returns the text from HIERARCHY to the line before MOTION.
+  /// Returns the text from HIERARCHY up to MOTION, exclusive.
   std::string hierarchy() const;
   /// Returns the lines MOTION, Frames and Frame Time. `rate_hz` must be above 0.
   static std::string motion_head(std::uint64_t frames, double rate_hz);
@@ -52,24 +51,24 @@ public:
   /// Returns the frame count, padded to its whole width.
   static std::string count_text(std::uint64_t frames);
 
-  /// Appends a line to `text`: where the wrist is and how all joints are turned, to six decimals.
-  /// `pose` must be one of the skeleton's. Returns false and appends nothing if any of the numbers
-  /// would not be finite.
+  /// Appends a frame line to `text`: the wrist's position and all joint rotations, with six
+  /// decimals. `pose` must come from this skeleton. Returns false and appends nothing if a number
+  /// is not finite.
   [[nodiscard]] bool append_frame(const HandPose& pose, std::string& text) const;
 
 private:
   void append_joint(Joint joint, int depth, std::string& text) const;
 
   Side side_;
-  HandPose rest_; ///< flat, at the origin
+  HandPose rest_; ///< the flat hand, at the origin
 };
 
-/// A BVH file that is being written. Its functions block as long as the disk does.
+/// A BVH file that is being written. Its functions block on file I/O.
 class NENDO_API BvhFile {
 public:
-  /// Creates FILE.part, without frames. Errors: usage (a rate that is not above 0 and at most 1e6,
-  /// a skeleton that is not finite), failed (the file cannot be written or is not a regular file,
-  /// or FILE.part exists).
+  /// Creates FILE.part, without frames. Errors: usage (a rate outside 0 < rate <= 1e6, a skeleton
+  /// that is not finite), failed (the file cannot be written or is not a regular file, or FILE.part
+  /// exists).
   static Result<BvhFile> create(const std::filesystem::path& path, const HandSkeleton& skeleton,
                                 double rate_hz);
 
@@ -79,15 +78,13 @@ public:
   /// any frame is removed.
   ~BvhFile();
 
-  /// Takes the next frame and keeps it until flush(). Fails with bad_input if the pose is not
-  /// finite; that frame is left out.
+  /// Buffers the next frame until flush(). Fails with bad_input if the pose is not finite; that
+  /// frame is omitted.
   Result<void> add(const HandPose& pose);
-  /// Hands the kept frames to the system, then the count. Fails with failed (disk full, ...);
-  /// frames that were not wholly written are then removed, and the message says where the others
-  /// are.
+  /// Writes the buffered frames, then the count. Fails with failed (disk full, ...); incomplete
+  /// frames are then removed, and the message names the file that has the others.
   Result<void> flush();
-  /// Flushes, syncs and gives the file its name. Must be called once, as the last call. Error:
-  /// failed.
+  /// Flushes, syncs and renames the file. Must be called once, as the last call. Error: failed.
   Result<void> finish();
 
   std::uint64_t frames() const noexcept { return frames_; }

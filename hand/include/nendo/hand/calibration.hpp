@@ -1,9 +1,9 @@
 #pragma once
-// Calibration turns raw counts into joint angles. Each sensor has its own line in the vendor's
-// form, angle = gain * (raw - offset) (VirtualHand SDK, vhtCyberGlove). Couplings come on top of
-// the lines, for what a glove cannot separate: its thumb sensors read roll and abduction mixed, and
-// the flexion of two neighbouring fingers also stretches the abduction sensor between them. Flexion
-// and spreading are positive.
+// Calibration converts raw counts to joint angles. Each sensor has its own line in the vendor's
+// form, angle = gain * (raw - offset) (VirtualHand SDK, vhtCyberGlove). Couplings are added to the
+// lines and correct cross-talk: the thumb sensors mix roll and abduction, and the flexion of two
+// neighbouring fingers also stretches the abduction sensor between them. Flexion and spreading are
+// positive.
 
 #include <array>
 
@@ -41,12 +41,11 @@ inline constexpr std::array<Coupling, 8> couplings{{
 
 struct NENDO_API Calibration {
   std::array<SensorCalibration, sensor_slots> sensors{};
-  /// One factor for each of `couplings`: radians that are added to `of` for each radian that the
-  /// line of `by` reads.
+  /// One factor per entry of `couplings`: radians added to sensor `of` per radian of the line of
+  /// sensor `by`.
   std::array<double, couplings.size()> coupling_gains{};
-  /// The middle finger's own abduction, which no sensor measures, as a part of how far the ring and
-  /// index fingers lie on different sides of it; 0 keeps the finger straight. The vendor calls it
-  /// "middle bias".
+  /// The middle finger's abduction, which no sensor measures, is -middle_bias * (index-middle gap -
+  /// middle-ring gap); 0 keeps the finger straight. The term is the vendor's.
   double middle_bias = 0.0;
 
   constexpr const SensorCalibration& operator[](Sensor sensor) const noexcept {
@@ -59,18 +58,17 @@ struct NENDO_API Calibration {
   constexpr bool has_couplings() const noexcept {
     return coupling_gains != decltype(coupling_gains){};
   }
-  /// Returns the joint angle of every sensor that is present, and 0 for the others, which also add
-  /// nothing by couplings. Wait-free.
+  /// Returns the joint angle of every present sensor, and 0 for the others, which also add nothing
+  /// by couplings. Wait-free.
   SensorAngles angles_rad(const GloveSample& sample) const noexcept;
   friend constexpr bool operator==(const Calibration&, const Calibration&) = default;
 };
 
-/// Returns a calibration that is usable for an average hand without any file; a wearer's own
-/// calibration is better. It is the same for both sides. A whole-range scale is spread over each
-/// joint's range of motion: from straight (closed) at 0 to fully bent (spread) at `most`, and for
-/// the wrist, which turns both ways, from one end to the other. Counts of a bare converter are
-/// taken for a CyberGlove's, whose typical 8-bit values are scaled to `most`. With `most` = 0 every
-/// gain is 0.
+/// Returns a calibration for an average hand, the same for both sides; a wearer's own calibration
+/// is better. A whole-range scale is mapped to each joint's range of motion: from straight (closed)
+/// at 0 to fully bent (spread) at `most`, and for the wrist, which turns both ways, from one end to
+/// the other. For other scales, a CyberGlove's typical 8-bit values are scaled to `most`. With
+/// `most` = 0 every gain is 0.
 NENDO_API Calibration default_calibration(CountScale scale = {}) noexcept;
 
 } // namespace nendo::hand

@@ -1,8 +1,8 @@
 #pragma once
-// The poses of the guided calibration: what a wearer is asked to do, and what that says about the
-// joints. Straight, hook, fist, table top and straight fist are the tendon gliding exercises of
-// hand therapy (Wehbe, Hunter 1985): each bends different joints, and people know how to do them.
-// The edge of a table bends PIP joints to an angle that does not depend on the wearer's judgement.
+// The poses of the guided calibration: instructions for the wearer, and assumed joint angles.
+// Straight, hook, fist, table top and straight fist are the tendon gliding exercises of hand
+// therapy (Wehbe, Hunter 1985): each bends different joints, and they are well known. The edge of a
+// table bends PIP joints to an angle that does not depend on the wearer's judgement.
 
 #include <array>
 #include <cstdint>
@@ -44,22 +44,21 @@ enum class PoseId : std::uint8_t {
 
 inline constexpr std::size_t pose_count = 24;
 
-/// The angle that a joint is taken to have in a pose.
+/// The assumed angle of a joint in a pose.
 struct AssumedAngle {
   double angle_rad = 0.0;
-  double deviation_rad = 0.0; ///< how far wearers are off, as a standard deviation; 0: not assumed
-  /// The wearer bends the joint to where it feels right, and nothing holds it there. The error is
-  /// partly a habit, which is the same each time.
+  double deviation_rad = 0.0; ///< standard deviation among wearers; 0: not assumed
+  /// The wearer bends the joint by feel, without a stop. The error is partly systematic: the same
+  /// each time.
   bool by_feel = false;
 
   constexpr bool known() const noexcept { return deviation_rad > 0.0; }
 };
 
 /// A touch of the pad of the thumb with the pad of a finger, or with the palm at the base of a
-/// finger. Bones end at the skeleton's tips, and soft pads lie between them: pads meet
-/// to the palmar side of either tip and behind it (HandSkeleton::pad()). At a finger's
-/// base, which is a proximal joint, the flesh is `palm_depth_m` deep to the palmar side, by the
-/// axes of the finger's metacarpal.
+/// finger. The pads meet palmar and proximal of both tips of the skeleton (HandSkeleton::pad()). At
+/// a finger's base, which is a proximal joint, the palm's surface is `palm_depth_m` to the palmar
+/// side, in the axes of the finger's metacarpal.
 struct Touch {
   Joint with = Joint::index_tip;
   double deviation_m =
@@ -70,8 +69,8 @@ inline constexpr double palm_depth_m = 0.012;
 struct CalibrationPose {
   std::string_view name;        ///< "pinch_index" and so on
   std::string_view instruction; ///< a sentence to be read or spoken to the wearer
-  /// The assumed angles by sensor slot, as in SensorAngles: those of the abduction sensors are of
-  /// pairs of fingers.
+  /// The assumed angles by sensor slot, as in SensorAngles: abduction is the angle between two
+  /// fingers.
   std::array<AssumedAngle, sensor_slots> assumed{};
   std::optional<Touch> touch{};
 };
@@ -81,14 +80,13 @@ NENDO_API std::optional<PoseId> pose_named(std::string_view name) noexcept;
 
 /// Returns flat and fist, the poses of the quick calibration.
 NENDO_API std::span<const PoseId> quick_poses() noexcept;
-/// Returns all poses, in an order that is easy on the hand.
+/// Returns all poses, in a comfortable order.
 NENDO_API std::span<const PoseId> full_poses() noexcept;
-/// Returns the poses that show how far sensors have slipped, in some twenty seconds: flat, fist and
+/// Returns the poses that determine the slips of sensors, in about twenty seconds: flat, fist and
 /// the four pinches.
 NENDO_API std::span<const PoseId> touch_up_poses() noexcept;
-/// Returns the poses that a full calibration asks for: all of them, then some once or twice more,
-/// because they say most, or alone, about a joint. No take asks for the same pose as the take
-/// before it.
+/// Returns the sequence of poses of a full calibration: all of them, then the most informative ones
+/// once or twice more. No two successive takes have the same pose.
 NENDO_API std::span<const PoseId> full_takes() noexcept;
 
 } // namespace nendo::hand

@@ -1,6 +1,6 @@
 #pragma once
-// Finds the calibration files and chooses the one for a glove. The content of a file decides; its
-// name only keeps files apart.
+// Lists calibration files and chooses one for a glove. The content of a file decides; its name is
+// only a unique key.
 
 #include <cstdint>
 #include <filesystem>
@@ -20,39 +20,39 @@ struct CalibrationFolders {
 
 /// Returns $XDG_CONFIG_HOME/nendo/calibrations (without that variable in ~/.config, where the home
 /// folder comes from $HOME or else from the password file), and /etc/nendo/calibrations. Reads the
-/// environment: no other thread may set it meanwhile.
+/// environment, which no other thread may change meanwhile.
 NENDO_API CalibrationFolders calibration_folders();
 
 /// Returns "USER+GLOVE+HAND.toml", where an empty serial number becomes "any". Different users,
 /// gloves and hands give different names. Every name is at most 200 characters of [A-Za-z0-9_+%.-],
-/// whatever the arguments.
+/// for any arguments.
 NENDO_API std::string calibration_file_name(const std::string& user,
                                             const std::string& glove_serial, Side side);
 
-/// Returns where this user's own calibration of that name is, or would be. Error: failed, without a
-/// folder of this user's own.
+/// Returns the path of this user's own calibration, which need not exist. Error: failed, if this
+/// user has no folder.
 NENDO_API Result<std::filesystem::path>
 own_calibration_path(const std::string& user, const std::string& glove_serial, Side side);
 
 struct StoredCalibration {
   std::filesystem::path path;
-  bool shared = false; ///< from the folder of all users
+  bool shared = false; ///< from the shared folder
   WearerCalibration wearer;
 };
 
 struct CalibrationList {
-  std::vector<StoredCalibration> files; ///< own files first, each folder's by name
-  std::vector<Error> unreadable;        ///< one error for each such file or existing folder
+  std::vector<StoredCalibration> files; ///< own files first, sorted by name per folder
+  std::vector<Error> unreadable;        ///< one error per unreadable file or folder
 };
 
-/// Reads the calibrations of both folders except the earlier versions. A missing folder counts as
+/// Reads the calibrations of both folders, without earlier versions. A missing folder counts as
 /// empty. Blocks.
 NENDO_API CalibrationList list_calibrations(const CalibrationFolders& folders);
 
 struct GloveIdentity {
   std::string user; ///< empty: any
   std::string model;
-  std::string serial; ///< empty: the glove does not report it
+  std::string serial; ///< empty if the glove reports none
   Side side = Side::right;
   CountScale counts;
 };
@@ -65,13 +65,13 @@ enum class GloveMatch : std::uint8_t {
 };
 
 struct CalibrationChoice {
-  const StoredCalibration* file; ///< one of those given
+  const StoredCalibration* file; ///< an element of `files`
   GloveMatch match;
 };
 
-/// Returns the best calibration for that glove, or nullopt. It is never one of the other hand, of
-/// another model or of the other kind of counts. Among equally good matches an own file goes before
-/// a shared one, then the newer file, then the one listed first. `files` must outlive the choice.
+/// Returns the best calibration for `glove`, or nullopt. It is never one of another user, side,
+/// model or CountScale::whole_range. Among equal matches, own files precede shared ones, then newer
+/// files older ones, then the first in `files` is chosen. `files` must outlive the choice.
 NENDO_API std::optional<CalibrationChoice>
 choose_calibration(const std::vector<StoredCalibration>& files, const GloveIdentity& glove);
 

@@ -1,7 +1,7 @@
 #pragma once
-// The body of a hand, which presses against models: rounded cones for the bones of the fingers, and
-// rounded triangles for the palm, which has no grooves. It follows all 26 joints. It is what
-// touches; the drawn skin is finer, and lies within a few millimetres of it.
+// A hand's collision body, which presses against models: rounded cones for the bones of the
+// fingers, and rounded triangles for the palm, without grooves. It follows all 26 joints. The drawn
+// skin is finer, and lies within a few millimetres of the body.
 
 #include <array>
 #include <cstddef>
@@ -10,13 +10,13 @@
 
 namespace nendo::hand {
 
-/// The convex hull of two balls (a rounded cone) or of three (a rounded triangle). A ball may
+/// The convex hull of two spheres (a rounded cone) or three (a rounded triangle). A sphere may
 /// contain the others.
 struct BodyPart {
   std::array<Eigen::Vector3d, 3> corners_m; ///< the centres; the third is unused in a cone
-  std::array<double, 3> radii_m;            ///< the balls' radii, >= 0
+  std::array<double, 3> radii_m;            ///< the spheres' radii, >= 0
   std::size_t corner_count = 2;             ///< 2 or 3
-  Joint carrier = Joint::wrist;             ///< the joint with which its surface turns and slides
+  Joint carrier = Joint::wrist;             ///< the joint with which its surface moves
 };
 
 struct ClosestPoint {
@@ -26,19 +26,19 @@ struct ClosestPoint {
   std::size_t part = 0;    ///< index in HandBody::parts()
 };
 
-/// Returns the nearest place of one part (its `part` is 0). It is exact, inside as well as outside,
-/// also where radii differ. On the medial axis or triangle, where several places are nearest, it
-/// is one of them. Wait-free.
+/// Returns the nearest surface point of one part, with ClosestPoint::part = 0. Exact inside and
+/// outside, also for unequal radii. On the medial axis or triangle, it is one of several nearest
+/// points. Wait-free.
 NENDO_API ClosestPoint nearest_of(const BodyPart& part, const Eigen::Vector3d& place_m) noexcept;
 
 class NENDO_API HandBody {
 public:
-  /// Three bones a finger and the thumb's three; of the palm, six triangles between metacarpals and
-  /// two towards the thumb; and three webs between the fingers.
+  /// Three bones each for fingers and thumb; for the palm, six triangles between metacarpals and
+  /// two towards the thumb; three webs between the fingers.
   static constexpr std::size_t part_count = 26;
 
-  /// Takes the wearer's sizes: radii are those of an average hand, scaled with its length. The body
-  /// is in the pose of zero angles.
+  /// Uses the skeleton's bones; radii are those of an average hand, scaled by the hand's length.
+  /// The initial pose has zero angles.
   explicit HandBody(const HandSkeleton& skeleton) noexcept;
 
   /// Moves the body to that pose; metres. Wait-free, no allocation.
@@ -47,21 +47,20 @@ public:
   /// Returns the parts, always in the same order: thumb to little finger from their roots to their
   /// ends, then the palm.
   const std::array<BodyPart, part_count>& parts() const noexcept { return parts_; }
-  /// Returns the nearest place of the surface of the whole: that of the part with the least
-  /// distance. Outside it is exact. Inside, the depth is that in the one part, and never more than
-  /// the way out of the whole.
+  /// Returns the nearest surface point of the part with the least distance. Exact outside. Inside,
+  /// the depth is that in this one part, which never exceeds the depth in the whole body.
   ClosestPoint nearest(const Eigen::Vector3d& place_m) const noexcept;
 
 private:
-  double scale_; ///< this hand's length, of the average hand's
+  double scale_; ///< this hand's length over the average hand's
   std::array<BodyPart, part_count> parts_;
 };
 
 struct FingerRadii {
   float knuckle_mm, middle_mm, end_mm, tip_mm; ///< from the knuckle to the tip
 };
-/// Those of a hand of 187 mm, thumb to little finger: between ANSUR II's women and men (2012) where
-/// it has them, and otherwise by eye. The drawn skin has the same. The thumb has no middle joint.
+/// Radii of a hand 187 mm long, thumb to little finger: between ANSUR II's women and men (2012), or
+/// estimated by eye. The drawn skin has the same. The thumb has no middle joint.
 inline constexpr std::array<FingerRadii, finger_count> average_finger_radii{
     {{11.8F, 10.2F, 9.8F, 8.0F},
      {10.2F, 8.8F, 7.8F, 6.7F},

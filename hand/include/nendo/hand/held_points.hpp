@@ -1,6 +1,6 @@
 #pragma once
-// Points all over a hand, by which the whole hand holds a model: on the bones of the fingers and of
-// the palm, in the wearer's own lengths, 12 mm or more apart in an open hand of average size.
+// Control points all over a hand, with which the whole hand holds a model: on the bones of fingers
+// and palm, scaled to the wearer, at least 12 mm apart in an open hand of average size.
 
 #include <array>
 #include <cstddef>
@@ -13,7 +13,7 @@ struct HeldPoint {
   Joint from = Joint::wrist;
   Joint to = Joint::wrist;
   double share = 0.0;     ///< 0 at `from`, 1 at `to`
-  std::size_t finger = 0; ///< whose it is, thumb to little finger; of the palm, whose metacarpal's
+  std::size_t finger = 0; ///< 0 to 4, thumb to little; in the palm, by metacarpal
 };
 
 inline constexpr std::size_t held_point_count = 45;
@@ -50,7 +50,7 @@ inline constexpr std::array<HeldPoint, held_point_count> held_points = [] {
 
 using HeldPlaces = Eigen::Matrix<double, 3, static_cast<int>(held_point_count)>;
 
-/// Returns where they are in that pose; metres. Wait-free, no allocation.
+/// Returns the positions, 3 by 45; metres. Wait-free, no allocation.
 inline HeldPlaces held_places(const HandPose& pose) noexcept {
   HeldPlaces places;
   for (std::size_t at = 0; at < held_point_count; ++at) {

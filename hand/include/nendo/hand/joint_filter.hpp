@@ -3,7 +3,7 @@
 // D. Vogel ("1 Euro Filter: A Simple Speed-based Low-pass Filter for Noisy Input in Interactive
 // Systems", CHI 2012), one for each angle. Slow joints are smoothed strongly and fast joints
 // little, because jitter is seen at rest and lag in motion. Smoothing delays the angles; latency()
-// returns by how much.
+// returns the delay.
 
 #include <array>
 #include <cstdint>
@@ -22,25 +22,24 @@ NENDO_API std::optional<FilterKind> filter_named(std::string_view name) noexcept
 
 /// The cutoff of a joint is min_cutoff_hz + beta_hz_per_rad_s |speed|. The defaults were chosen
 /// with a CyberGlove's count of 0.0125 rad at 90 Hz: a flicker between two counts is reduced to a
-/// quarter, and reaches of 1.2 rad in 0.2, 0.5 and 1 s are 12, 16 and 21 ms late.
+/// quarter, and movements of 1.2 rad in 0.2, 0.5 and 1 s are delayed by 12, 16 and 21 ms.
 struct FilterOptions {
   FilterKind kind = FilterKind::off;
   double min_cutoff_hz = 2.0;
   double beta_hz_per_rad_s = 4.0;
-  double derivative_cutoff_hz = 1.0; ///< cutoff of the filter of the speed; the authors' value
-  /// Pinches are closed after the filter (pinch_closing.hpp), not by JointFilter: it knows no
-  /// bones.
+  double derivative_cutoff_hz = 1.0; ///< cutoff of the speed filter; the authors' value
+  /// Whether pinches are closed after the filter (pinch_closing.hpp). JointFilter ignores it.
   bool close_pinches = false;
 
   friend bool operator==(const FilterOptions&, const FilterOptions&) = default;
 };
 
-/// The filter's present delay over all angles, in seconds.
+/// The filter's current delay over all angles, in seconds.
 struct FilterLatency {
   double worst_s = 0.0; ///< the slowest joint's: 1 / (2 pi min_cutoff) if any rests
   double mean_s = 0.0;
-  /// The mean with each joint weighted by its speed, that is the delay of moving joints. It is the
-  /// plain mean if nothing moves.
+  /// The mean weighted by the joints' speeds, that is, the delay of moving joints; the unweighted
+  /// mean if no joint moves.
   double moving_s = 0.0;
 };
 
@@ -54,16 +53,15 @@ public:
 
   /// Returns the filtered angles at `time`, the time of the sample from which `angles` were made.
   /// The first angles, and the first after a pause, pass unchanged; with FilterKind::off all do.
-  /// The output never leaves the range of the input since then. If time has not advanced, the
-  /// filtered angles stay, and the change counts as movement. An angle that is not finite or is
-  /// more than a turn is ignored: that joint stays where it was (at 0, if it is the first).
+  /// The output never leaves the range of the input since the last restart. If time has not
+  /// advanced, the filtered angles stay, and the change counts as movement. An angle that is not
+  /// finite or exceeds a full turn is ignored: its joint keeps the last angle (0 at first).
   /// Wait-free, no allocation.
   JointAngles pass(const JointAngles& angles, HostTime time) noexcept;
 
   /// Returns the joint's delay at its present cutoff: 1 / (2 pi cutoff), in seconds. This is the
-  /// group delay of a first-order lag at low frequencies, and the time by which the output follows
-  /// a steady movement, at any sample rate. It is 0 if the filter is off, and before the first
-  /// sample.
+  /// group delay of a first-order lag at low frequencies, and the lag of the output at constant
+  /// speed, at any sample rate. It is 0 if the filter is off, and before the first sample.
   double latency_s(Angle angle) const noexcept;
   FilterLatency latency() const noexcept;
 
@@ -71,8 +69,8 @@ public:
 
 private:
   struct Joint {
-    double last_rad = 0.0;     ///< as it came in
-    double filtered_rad = 0.0; ///< as it went out
+    double last_rad = 0.0;     ///< the last input
+    double filtered_rad = 0.0; ///< the last output
     double speed_rad_s = 0.0;  ///< filtered
   };
   double time_constant_s(const Joint& joint) const noexcept;

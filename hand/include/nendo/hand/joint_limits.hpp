@@ -11,17 +11,17 @@
 
 namespace nendo::hand {
 
-/// A joint's range of motion, radians: least < soft_min < soft_max < most.
+/// A joint's range of motion, radians: min < soft_min < soft_max < max.
 struct NENDO_API JointLimit {
   double min_rad;
   double soft_min_rad; ///< below it, angles are compressed
   double soft_max_rad; ///< above it, angles are compressed
   double max_rad;
 
-  /// Returns the angle itself from soft_min to soft_max. Beyond that, returns an angle on the
-  /// same side of them and no farther than the end of the range. The function is monotone with a
-  /// continuous slope, and is halfway to the end where the given angle is at the end. The result is
-  /// finite for every double: NaN becomes the lower end. Wait-free.
+  /// Returns the angle itself from soft_min to soft_max, and beyond them an angle between the soft
+  /// stop and the end of the range. Monotone, with a continuous slope; an angle at the end is
+  /// mapped halfway between soft stop and end. The result is finite for every double: NaN becomes
+  /// the lower end. Wait-free.
   double soften(double angle_rad) const noexcept;
 };
 
@@ -30,13 +30,13 @@ constexpr JointLimit limit_deg(double least, double soft_min, double soft_max,
   return {from_degrees(least), from_degrees(soft_min), from_degrees(soft_max), from_degrees(most)};
 }
 
-// Ranges of motion as clinical goniometry gives them (American Academy of Orthopaedic Surgeons:
-// finger MCP 0 to 90 and 20 to 30 of extension, PIP 0 to 100, DIP 0 to 80, thumb MCP 0 to 55, IP 0
-// to 80, wrist 70 to 80, 20 and 30 to the sides), a little widened. A glove that reads past them is
-// more often badly calibrated than worn by an acrobat. The soft stops begin at the clinical ends or
-// beyond, so that they change neither a flat hand nor a full fist. Where goniometry has no angle
-// (spreading, thumb roll, palm arch), the range is that of a spread or cupped hand: neighbouring
-// fingers part by 25 degrees, which add up from the middle finger outwards.
+// Ranges of motion from clinical goniometry (American Academy of Orthopaedic Surgeons: finger MCP 0
+// to 90 and 20 to 30 of extension, PIP 0 to 100, DIP 0 to 80, thumb MCP 0 to 55, IP 0 to 80, wrist
+// 70 to 80, 20 and 30 to the sides), slightly widened. Readings beyond them are usually calibration
+// errors. The soft stops begin at the clinical ends or beyond, so that they change neither a flat
+// hand nor a full fist. Where goniometry has no angle (spreading, thumb roll, palm arch), the range
+// is that of a spread or cupped hand: neighbouring fingers spread by 25 degrees, summed from the
+// middle finger outwards.
 inline constexpr JointLimit finger_mcp_limit = limit_deg(-30, -20, 90, 100);
 inline constexpr JointLimit finger_pip_limit = limit_deg(-10, -5, 105, 115);
 inline constexpr JointLimit finger_dip_limit = limit_deg(-10, -5, 80, 85);

@@ -48,8 +48,7 @@ constexpr std::size_t index_of(Joint joint) noexcept {
 
 NENDO_API std::string_view name_of(Joint joint) noexcept;
 
-/// Returns the joint that carries this one, or nullopt for the wrist, which is the root. The wrist
-/// carries the palm.
+/// Returns the parent joint, or nullopt for the wrist, which is the root and the palm's parent.
 NENDO_API std::optional<Joint> parent_of(Joint joint) noexcept;
 
 enum class Finger : std::uint8_t { thumb, index, middle, ring, little };

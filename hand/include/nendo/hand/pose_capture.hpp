@@ -1,6 +1,6 @@
 #pragma once
 // Captures a held pose from a stream of samples: waits until the hand has been still for a second,
-// and reports what it waits for.
+// and reports why it still waits.
 
 #include <array>
 #include <cstdint>
@@ -12,15 +12,15 @@ namespace nendo::hand {
 struct HeldPose {
   std::array<double, sensor_slots> mean_counts{};
   std::array<double, sensor_slots> noise_counts{}; ///< standard deviation of one sample
-  SensorMask present;                              ///< the slots for which the two are set
+  SensorMask present;                              ///< the slots that have both values
 };
 
 enum class CaptureState : std::uint8_t {
-  waiting,   ///< no sample yet, or none of a sensor
+  waiting,   ///< no sample yet, or no sensors in it
   moving,    ///< some sensor changes; troubled() says which
   noisy,     ///< some sensor jumps to and fro faster than a joint could
   saturated, ///< still, but some sensor is at an end of its counts half the time
-  unchanged, ///< still, but in the pose that was held last
+  unchanged, ///< still, but in the last held pose
   settling,  ///< still, but not yet for long enough
   held,      ///< held() is complete
 };
@@ -28,8 +28,8 @@ enum class CaptureState : std::uint8_t {
 /// Watches samples until a pose is held. Wait-free, no allocation.
 class NENDO_API PoseCapture {
 public:
-  /// These limits are for 255 counts. Other scales have them in proportion, but never so low that a
-  /// flickering last bit exceeds them.
+  /// These limits are for 255 counts. They are proportional for other scales, but never so low that
+  /// a flickering last bit exceeds them.
   static constexpr double still_range_counts = 6.0;
   static constexpr double max_noise_counts = 2.0;
   static constexpr double min_change_counts = 8.0;
@@ -38,30 +38,29 @@ public:
 
   explicit PoseCapture(CountScale scale = {}) noexcept;
 
-  /// Takes the next sample in time. Once the state is held, nothing changes until begin_next().
+  /// Takes samples in time order. Once the state is held, nothing changes until begin_next().
   CaptureState push(const GloveSample& sample) noexcept;
 
   CaptureState state() const noexcept { return state_; }
   /// Returns the sensors that prevent capture, if the state is moving, noisy or saturated.
   SensorMask troubled() const noexcept { return troubled_; }
-  /// Returns the part of hold_s that is over, 0 to 1. It is 1 exactly if the state is held.
+  /// Returns the elapsed fraction of hold_s, 0 to 1. It is 1 exactly if the state is held.
   double progress() const noexcept { return progress_; }
   /// Returns the held pose; meaningful only if the state is held.
   const HeldPose& held() const noexcept { return held_; }
-  /// Begins to wait for another pose, different from the one held.
+  /// Begins to wait for a pose that differs from the held one.
   void begin_next() noexcept;
-  /// Also accepts the pose held last, if it is held again.
+  /// Lets the next capture accept the last held pose again.
   void forget_last() noexcept { last_ = {}; }
-  /// Takes `pose`, of an earlier capture, for the one held last.
+  /// Sets the last held pose, from an earlier capture.
   void set_last(const HeldPose& pose) noexcept { last_ = pose; }
 
 private:
   struct Watched {
-    double before_counts = 0.0; ///< one sample ago
+    double before_counts = 0.0; ///< the previous sample
     double earlier_counts = 0.0;
-    double noise_variance =
-        0.0; ///< estimate from second differences, which steady movement does not touch
-    double low_counts = 0.0; ///< since the window's beginning, as all that follow
+    double noise_variance = 0.0; ///< from second differences, which cancel steady movement
+    double low_counts = 0.0;     ///< since the window began, as all fields below
     double high_counts = 0.0;
     double mean_counts = 0.0;
     double squares = 0.0; ///< sum of squared deviations from the mean
@@ -78,7 +77,7 @@ private:
   void fill_held() noexcept;
 
   CountScale scale_;
-  double unit_; ///< counts of this scale for one of 255
+  double unit_; ///< counts of this scale per count of 255
   std::array<Watched, sensor_slots> watched_{};
   SensorMask present_;
   HostTime begun_{};
@@ -87,7 +86,7 @@ private:
   std::uint32_t seen_ = 0;    ///< since the sensors last changed; stops at 3
   CaptureState state_ = CaptureState::waiting;
   SensorMask troubled_;
-  SensorMask last_troubled_; ///< a sample ago
+  SensorMask last_troubled_; ///< at the previous sample
   double progress_ = 0.0;
   HeldPose held_{};
   HeldPose last_{};

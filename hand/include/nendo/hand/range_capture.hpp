@@ -15,9 +15,9 @@ namespace nendo::hand {
 struct NENDO_API CountRanges {
   std::array<double, sensor_slots> low_counts{};
   std::array<double, sensor_slots> high_counts{};
-  SensorMask present; ///< the slots for which the two are set; none: nothing is known
+  SensorMask present; ///< the slots that have both values; empty if none is known
 
-  /// Makes the sensor's range contain these counts; sets it to them if there was none. Wait-free.
+  /// Extends the sensor's range to contain `counts`; begins the range if there was none. Wait-free.
   void widen(Sensor sensor, double counts) noexcept;
 };
 
@@ -27,8 +27,8 @@ public:
   RangeCapture() = default;
   explicit RangeCapture(const CountRanges& seen) noexcept : seen_(seen) {}
 
-  /// Takes the next sample in time. Of three counts in a row only the one in the middle by size is
-  /// used, so that a single sample that jumps does not widen a range.
+  /// Takes the next sample in time order. Uses the median of three successive counts, so that a
+  /// spike of one sample does not widen a range.
   void push(const GloveSample& sample) noexcept;
 
   const CountRanges& seen() const noexcept { return seen_; }
@@ -36,14 +36,14 @@ public:
 private:
   struct Last {
     std::array<double, 2> counts{};
-    std::uint8_t known = 0; ///< how many
+    std::uint8_t known = 0; ///< valid counts
   };
   std::array<Last, sensor_slots> last_{};
   CountRanges seen_;
 };
 
-// Finds the ends of the swings of one sensor: the counts from which its joint comes back. A hand at
-// rest has none, however long it rests, and an excursion counts once, however far and long it is.
+// Finds the ends of one sensor's swings: the counts at which its joint reverses. A hand at rest has
+// none, and an excursion counts once, at any size and duration.
 class NENDO_API SwingFinder {
 public:
   struct End {
@@ -52,12 +52,11 @@ public:
     bool is_top = false;
   };
 
-  /// Takes the next count in time, and returns the end that it shows, if any. A count that is gone
-  /// again within two samples is not seen. A movement over less than `min_swing` counts is no
-  /// swing. Where the first count lies in its swing is not known, so that the first turn is no end.
-  /// Wait-free, no allocation.
+  /// Takes the next count in time order, and returns the end that it reveals, if any. Ignores
+  /// spikes of at most two samples, and movements of less than `min_swing` counts. The first turn
+  /// is no end, because the start of its swing is unknown. Wait-free, no allocation.
   std::optional<End> push(std::uint16_t count, double min_swing) noexcept;
-  /// Forgets what came before, as after a pause.
+  /// Discards the previous counts, as after a pause.
   void reset() noexcept { seen_ = 0; }
 
 private:
@@ -67,18 +66,18 @@ private:
 
   std::array<std::uint16_t, window> recent_{};
   std::size_t seen_ = 0;            ///< number of counts since the last reset
-  double bottom_ = 0.0, top_ = 0.0; ///< the swing under way, counts
+  double bottom_ = 0.0, top_ = 0.0; ///< the current swing, counts
   bool rises_ = false, falls_ = false;
 };
 
-// The time between a glove's samples, for what moves a little with each of them.
+// The time between a glove's samples, for values that drift with each sample.
 class SampleInterval {
 public:
-  /// A pause is no time in which anything moves: it would jump.
+  /// Limits the drift after a pause, which would be a jump.
   static constexpr double longest_s = 0.1;
 
-  /// Takes the next sample in time, and returns the seconds since the previous one, at most
-  /// `longest_s`; 0 of the first. Wait-free, no allocation.
+  /// Takes the next sample in time order, and returns the seconds since the previous one, at most
+  /// `longest_s`; 0 for the first. Wait-free, no allocation.
   double push(const GloveSample& sample) noexcept {
     const HostTime time = sample.time();
     const double interval_s =
@@ -90,7 +89,7 @@ public:
 
 private:
   HostTime last_{};
-  bool begun_ = false; ///< last_ is one
+  bool begun_ = false; ///< last_ is valid
 };
 
 } // namespace nendo::hand

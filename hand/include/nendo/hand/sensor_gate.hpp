@@ -1,7 +1,7 @@
 #pragma once
-// The velocity gate: keeps out counts that no hand can have caused. A flipped bit in a sensor's
-// byte leaves a record well formed, and few gloves send a checksum. But such a count is far off in
-// one record and right again in the next, and a joint needs time to go and come back.
+// The velocity gate: rejects counts that no hand can have caused. A flipped bit in a sensor's byte
+// leaves a record well formed, and few gloves send a checksum. But such a spike lasts one record,
+// and a joint needs longer to move there and back.
 
 #include <array>
 #include <cstdint>
@@ -16,30 +16,28 @@ public:
   /// Fast finger flexion peaks near 20 to 25 rad/s (flicks and taps at full effort); the wrist and
   /// spreading are slower.
   static constexpr double max_speed_rad_s = 25.0;
-  /// How far noise and the converter's steps may change an angle in addition: four counts of a
-  /// CyberGlove.
+  /// The additional tolerance for noise and quantization: four counts of a CyberGlove.
   static constexpr double noise_rad = 0.05;
-  /// Without a glove's own clock, times of arrival say little about when a sample was taken,
-  /// because serial adapters hand over bytes every 16 ms. An interval then counts as at least that
-  /// long.
+  /// Without a glove's own clock, sample times are arrival times, which are inexact, because serial
+  /// adapters deliver bytes every 16 ms. An interval then counts as at least that long.
   static constexpr double min_arrival_interval_s = 0.016;
 
-  /// Takes the next sample in time and returns the sample to use instead of it. The gains of
-  /// `calibration` say how far a count turns a joint; it must be that of the glove that sent this
-  /// sample, which may not have sent the last one. A sensor that jumped farther than a joint can
-  /// turn since its last accepted count is held at that count for this one sample. Its next count
-  /// is always accepted, so that a real jump is only one sample late. A sensor that was absent
-  /// before, or on the other hand, is accepted. Wait-free.
+  /// Takes the next sample in time order and returns the sample to use instead of it.
+  /// `calibration`, whose gains convert counts to angles, must be that of the glove that sent this
+  /// sample; the previous sample may be of another glove. A sensor that jumped farther than a joint
+  /// can turn since its last accepted count is held at that count for this one sample. Its next
+  /// count is always accepted, so that a real jump is delayed by only one sample. The first count
+  /// after an absence or a change of hand is accepted. Wait-free.
   GloveSample pass(const GloveSample& sample, const Calibration& calibration) noexcept;
 
-  /// Returns by slot how often a jump was kept out and came back, that is, was no movement.
+  /// Returns, by slot, the number of rejected jumps that came back and so were no movements.
   const std::array<std::uint64_t, sensor_slots>& spikes() const noexcept { return spikes_; }
 
 private:
   struct Accepted {
     HostTime time{};
     RawCount count;
-    RawCount refused; ///< what came instead of it just now, if `holding`
+    RawCount refused; ///< the count just rejected, if `holding`
     bool known = false;
     bool holding = false;
   };

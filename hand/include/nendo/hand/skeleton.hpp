@@ -1,7 +1,7 @@
 #pragma once
 // The paper's VR Hand: a skeleton of constant rest shape, and its forward kinematics. Every pose is
-// computed from the rest shape and the current angles alone, so nothing drifts and a lost sample
-// does no harm.
+// computed from the rest shape and the current angles alone, so errors do not accumulate, even if
+// samples are lost.
 //
 // Frames follow OpenXR: right-handed; at zero angles a joint's -Z points to the fingertip, +Y out
 // of the back of the hand, +X to the right. A joint's pose is at the base of the bone that it is
@@ -18,7 +18,7 @@
 
 namespace nendo::hand {
 
-// The bones of one wearer's hand, as a ruler or a scan gives them.
+// The bones of one wearer's hand, measured by a ruler or a scan.
 /// Lengths in metres. A bone runs from joint to joint, a distal bone from its joint to the tip of
 /// the finger.
 struct NENDO_API BoneLengths {
@@ -33,9 +33,9 @@ struct NENDO_API BoneLengths {
   Result<void> check() const;
 };
 
-/// The two external measures from which all bones are scaled, and what the hand differs by from an
-/// average hand of these measures. The defaults lie between the means of women and men in the ANSUR
-/// II survey (2012).
+/// The two external measures from which all bones are scaled, and the deviations from an average
+/// hand of these measures. The defaults lie between the means of women and men in the ANSUR II
+/// survey (2012).
 struct HandSize {
   double length_m = 0.187;  ///< wrist crease to the tip of the middle finger
   double breadth_m = 0.083; ///< across the heads of the metacarpals
@@ -52,10 +52,10 @@ struct NENDO_API HandPose {
   Eigen::Matrix<double, 3, 5> fingertip_positions() const noexcept;
 };
 
-/// How the thumb is turned about itself. At 90 degrees its flexion runs across the palm.
+/// The rotation of the thumb about its long axis. At 90 degrees it flexes across the palm.
 struct ThumbPronation {
   double at_zero_rad;           ///< at zero angles
-  double by_roll, by_abduction; ///< how that changes for each radian
+  double by_roll, by_abduction; ///< its change per radian
   double at(double roll_rad, double abduction_rad) const noexcept {
     return at_zero_rad + by_roll * roll_rad + by_abduction * abduction_rad;
   }
@@ -65,40 +65,40 @@ class NENDO_API HandSkeleton {
 public:
   explicit HandSkeleton(Side side, const HandSize& size = {});
 
-  /// Makes a skeleton of a wearer's measured bones. The places where the metacarpals begin and
-  /// their directions are those of an average hand, scaled as the middle finger's bones are. Error:
-  /// as bones.check().
+  /// Makes a skeleton from a wearer's measured bones. The bases and directions of the metacarpals
+  /// are those of an average hand, scaled by the length of the middle finger's bones. Error: as
+  /// bones.check().
   static Result<HandSkeleton> of_bones(Side side, const BoneLengths& bones);
 
-  /// Returns the pose by forward kinematics. T_world_wrist is where the forearm ends; the wrist's
-  /// own angles turn the hand about it. An angle that is not finite counts as zero. Wait-free, no
-  /// allocation.
+  /// Returns the pose by forward kinematics. T_world_wrist is the pose of the forearm's end; the
+  /// wrist's angles rotate the hand about it. An angle that is not finite counts as zero.
+  /// Wait-free, no allocation.
   HandPose pose(const JointAngles& angles, const Eigen::Isometry3d& T_world_wrist) const noexcept;
 
   /// The axes of the thumb and of the knuckles, in the axes of a right hand.
   struct Axes {
-    Eigen::Matrix3d thumb; ///< axes in which the thumb rolls, in those of the wrist
+    Eigen::Matrix3d thumb; ///< the thumb's rolling axes, in the wrist's axes
     bool thumb_is_tilted;  ///< false: `thumb` is the identity
     double thumb_rest_rad; ///< the angle between thumb and index finger at zero angles
     ThumbPronation thumb_pronation;
-    std::array<double, 4> knuckle_tilts_rad; ///< turns of the fingers about themselves
+    std::array<double, 4> knuckle_tilts_rad; ///< rotations of the fingers about their long axes
   };
   const Axes& axes() const noexcept { return axes_; }
-  /// Returns where the middle of a digit's pad is, in the frame of its tip; metres.
+  /// Returns the centre of a digit's pad, in the frame of its tip; metres.
   const Eigen::Vector3d& pad() const noexcept { return pad_m_; }
 
   Side side() const noexcept { return side_; }
-  /// Returns the lengths of the bones in this skeleton, whatever it was made from.
+  /// Returns the lengths of this skeleton's bones.
   BoneLengths bones() const noexcept;
-  /// Returns the vector of the bone that ends in `joint`, from its parent at zero angles, in the
-  /// axes of a right hand's wrist; metres.
+  /// Returns the vector from the parent of `joint` to `joint` at zero angles, in the axes of a
+  /// right hand's wrist; metres.
   const Eigen::Vector3d& rest_offset(Joint joint) const noexcept {
     return offsets_m_[index_of(joint)];
   }
 
 private:
   using Offsets = std::array<Eigen::Vector3d, joint_count>;
-  /// The parts of a finger that are the same in every pose, in the axes of this side's own hand.
+  /// The constants of a finger's kinematics, in the axes of this side's own hand.
   struct FingerRoot {
     Eigen::Vector3d base_m; ///< the metacarpal's base, from the wrist
     Eigen::Vector3d head_m; ///< the metacarpal's head, from its base

@@ -1,8 +1,8 @@
 #pragma once
-// Finds sensors that do not change though their joints move. A sensor may not change because its
-// joint rests; that it is stuck shows only where its neighbours move to and fro for long, which no
-// hand does without moving this joint by a count. So nothing is found while nothing moves, and
-// a finger that moves alone shows nothing of the others.
+// Finds sensors that do not change although their joints move. A joint at rest also gives a
+// constant count. A sensor is therefore stuck only if its neighbours move to and fro for long,
+// which no hand does without moving this joint by a count. Nothing is found in a hand at rest, and
+// a finger that moves alone proves nothing about the others.
 
 #include <array>
 #include <cstdint>
@@ -12,20 +12,20 @@
 
 namespace nendo::hand {
 
-/// Watches the samples of a glove. What it finds depends on them alone, so that a replay finds the
-/// same. Wait-free, no allocation.
+/// Watches the samples of a glove. The result depends on them alone, so that a replay gives the
+/// same result. Wait-free, no allocation.
 class NENDO_API StuckWatch {
 public:
-  static constexpr double min_still_s = 3.0;       ///< time until a sensor is taken to be stuck
+  static constexpr double min_still_s = 3.0;       ///< minimum constant time of a stuck sensor
   static constexpr double min_swing_counts = 16.0; ///< counts of 255: about 11 degrees
 
-  /// `stuck` are the sensors that an earlier watch of the same glove had found.
+  /// `stuck` are the sensors that an earlier watch of the same glove found.
   explicit StuckWatch(CountScale scale = {}, SensorMask stuck = {}) noexcept;
 
-  /// Takes the next sample in time. Samples of another hand or other sensors restart.
+  /// Takes samples in time order. A change of hand or sensors restarts the watch.
   void push(const GloveSample& sample) noexcept;
 
-  /// Returns the sensors that are stuck. One that moves again is none for long.
+  /// Returns the stuck sensors. A sensor that moves again is soon removed.
   SensorMask stuck() const noexcept { return stuck_; }
   Side side() const noexcept { return side_; }
 
@@ -39,7 +39,7 @@ private:
     std::uint16_t low = 0, high = 0; ///< since it last changed
     std::uint64_t changed = 0;       ///< the number of the sample that changed it
     HostTime changed_at{};
-    std::uint8_t away = 0; ///< samples in a row in which a stuck sensor has moved
+    std::uint8_t away = 0; ///< successive samples with movement of a stuck sensor
   };
 
   void reset(const GloveSample& sample) noexcept;
@@ -61,21 +61,21 @@ private:
   std::uint64_t number_ = 0; ///< number of the sample
 };
 
-/// Returns whether a count is at an end of the range of a bare converter, where a broken sensor
-/// usually is. A glove that calibrates itself is at an end whenever a joint is.
+/// Returns whether a count is at an end of an A/D converter's range, as usual for a broken sensor.
+/// False for self-calibrating gloves, which are at an end whenever a joint is.
 constexpr bool is_at_end(std::uint16_t count, CountScale scale) noexcept {
   return !scale.whole_range && (count <= 1 || count + 1 >= scale.most);
 }
 
-/// Returns whether a sensor that counts from `low` to `high` does not change. A twelve-bit
-/// converter may flicker by its last two bits, and so does the last bit at an end.
+/// Returns whether counts from `low` to `high` are only flicker: of a twelve-bit converter's last
+/// two bits, or of the last bit at an end.
 constexpr bool is_still(std::uint16_t low, std::uint16_t high, CountScale scale) noexcept {
   const bool same_end = high - low <= 1 && is_at_end(low, scale) && is_at_end(high, scale);
   return high - low <= scale.most / 1024 || same_end;
 }
 
-/// Returns whether counts reach an end of a glove that calibrates itself, where it holds a straight
-/// or a fully bent joint: a constant count there means nothing.
+/// Returns whether counts reach an end of a self-calibrating glove's scale, to which it clamps
+/// straight or fully bent joints: a constant count there means nothing.
 constexpr bool rests_at_end(double low, double high, CountScale scale) noexcept {
   return scale.whole_range && (low <= 0.0 || high >= scale.most);
 }

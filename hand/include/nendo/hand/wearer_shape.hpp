@@ -1,7 +1,7 @@
 #pragma once
-// How one wearer's hand differs from the proportions of an average hand of its size: the bones, the
-// base and the axes of the thumb, how the knuckles' axes are tilted, and the pads. A calibration
-// finds it, because pads that touch determine it.
+// The deviations of a wearer's hand from the proportions of an average hand of its size: the bones,
+// the base and the axes of the thumb, the tilts of the knuckles' axes, and the pads. A calibration
+// determines them from touching pads.
 
 #include <array>
 #include <cstddef>
@@ -11,7 +11,7 @@
 namespace nendo::hand {
 
 enum class ShapeTerm : std::uint8_t {
-  thumb_metacarpal, ///< how much longer a bone is: the natural logarithm of the factor
+  thumb_metacarpal, ///< bones: the natural logarithm of a factor on the length
   thumb_proximal,
   thumb_distal,
   index_proximal,
@@ -26,26 +26,26 @@ enum class ShapeTerm : std::uint8_t {
   little_proximal,
   little_intermediate,
   little_distal,
-  thumb_base_x, ///< how far the thumb's base lies from the average, in metres: towards the ulna,
-  thumb_base_y, ///< to the back of the hand,
-  thumb_base_z, ///< and to the wrist
-  thumb_rest,   ///< how much farther the thumb lies from the index finger at zero angles, radians
-  thumb_tilt_x, ///< how the axis is tilted about which the thumb rolls: about the axes of a right
-  thumb_tilt_y, ///< hand's wrist, radians
-  thumb_pronation, ///< how much farther the thumb is turned about itself, radians
-  index_tilt,      ///< the turn of a knuckle's axis of flexion about the finger, radians; positive
-  middle_tilt,     ///< if the bent finger goes towards the ulna
+  thumb_base_x,    ///< offset of the thumb's base from the average, metres: to the ulna,
+  thumb_base_y,    ///< to the back of the hand,
+  thumb_base_z,    ///< and to the wrist
+  thumb_rest,      ///< additional angle of thumb and index finger at zero angles, radians
+  thumb_tilt_x,    ///< tilt of the axis about which the thumb rolls, about X and Y of a right
+  thumb_tilt_y,    ///< hand's wrist, radians
+  thumb_pronation, ///< additional rotation of the thumb about its long axis, radians
+  index_tilt,      ///< rotation of a knuckle's flexion axis about the finger, radians; positive
+  middle_tilt,     ///< if the bent finger deviates to the ulna
   ring_tilt,
   little_tilt,
-  thumb_pronation_by_roll,      ///< how much more the thumb turns about itself for each radian of
+  thumb_pronation_by_roll,      ///< additional rotation about its long axis per radian of
   thumb_pronation_by_abduction, ///< roll, or of abduction
-  pad_depth,                    ///< how much deeper below the bone a digit's pad is, metres,
-  pad_behind,                   ///< the pad's distance from the end of the finger
+  pad_depth,                    ///< additional depth of the pads below the bone, metres
+  pad_behind,                   ///< additional distance of the pads from the tips, metres
 };
 
 inline constexpr std::size_t shape_terms = 30;
 
-// An average hand's. A pad is the middle of the area that touches another pad.
+// Values of an average hand. A pad is the centre of the area that touches another pad.
 inline constexpr double pad_depth_m = 0.006;
 inline constexpr double pad_behind_tip_m = 0.003;
 
@@ -86,8 +86,8 @@ constexpr std::string_view name_of(ShapeTerm term) noexcept {
   return shape_term_names[static_cast<std::size_t>(term)];
 }
 
-/// Returns the most that a term may be, either way: half as long again, 30 mm, 60 degrees, pads 5
-/// mm. No hand differs that much.
+/// Returns the maximum magnitude of a term: a factor of 1.5 for bones, 30 mm, 60 degrees, 5 mm for
+/// pads. No hand differs that much.
 constexpr double max_of(ShapeTerm term) noexcept {
   if (term >= ShapeTerm::pad_depth) return 0.005;
   if (term <= ShapeTerm::little_distal) return 0.4;

@@ -60,7 +60,7 @@ public:
   /// Syncs the temporary file, so that finish() is unlikely to fail. Only finish() may follow. For
   /// callers that must replace several files or none. Error: failed (e.g. the disk is full).
   Result<void> sync();
-  /// Syncs the temporary file and renames it to its final name. No call may follow. Error: failed.
+  /// Syncs and renames the temporary file. No call may follow. Error: failed.
   Result<void> finish();
 
   std::uint64_t size() const noexcept { return size_; } ///< bytes written

@@ -21,7 +21,7 @@ namespace nendo {
 struct RingCounters {
   std::uint64_t offered = 0;  ///< elements passed to a push
   std::uint64_t refused = 0;  ///< the offered elements that were refused because the ring was full
-  std::uint64_t consumed = 0; ///< elements that the consumer took
+  std::uint64_t consumed = 0; ///< elements taken out
   std::uint64_t high_water = 0; ///< maximum number of elements at once
 };
 

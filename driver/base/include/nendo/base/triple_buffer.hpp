@@ -1,5 +1,5 @@
 #pragma once
-// TripleBuffer hands the newest value from one writer thread to one reader thread through three
+// TripleBuffer passes the newest value from one writer thread to one reader thread through three
 // buffers. The writer fills its buffer in place and publishes it with one atomic exchange, at any
 // size of the value. The reader polls for a new value. Both sides are wait-free and never touch the
 // same buffer. Proof, bounds and figures: RINGS.md.
