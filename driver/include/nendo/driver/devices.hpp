@@ -24,7 +24,7 @@ struct DeviceHolder {
 
 enum class DeviceKind : std::uint8_t {
   serial_port,
-  usb_glove,        ///< a glove that is a USB device of its own
+  usb_glove,        ///< a glove that is itself a USB device
   portless_adapter, ///< a USB-serial adapter for which the kernel made no port
 };
 
@@ -44,7 +44,7 @@ struct GloveCandidate {
   std::string description; ///< the device's own description
   std::string reason;      ///< why it may be a glove
   bool identified = false; ///< the device or a udev rule identifies a glove; `auto` requires it
-  bool may_open = false;   ///< this user has the permission
+  bool may_open = false;   ///< this user has permission
   std::string access; ///< who may open it: "you", "group dialout", "user anna", "root"; or empty
   bool node_missing = false; ///< the kernel has it but /dev has no node, as in a container
   std::string remedy;        ///< the command or action that makes it usable; empty if may_open

@@ -58,7 +58,7 @@ struct GloveInfo {
 /// Monotonic counts of a stream of bytes. bytes = record_bytes + discarded_bytes + a remainder
 /// shorter than the longest record.
 struct StreamCounters {
-  std::uint64_t bytes = 0;           ///< received from the device
+  std::uint64_t bytes = 0;           ///< bytes received from the device
   std::uint64_t record_bytes = 0;    ///< bytes of delivered records
   std::uint64_t discarded_bytes = 0; ///< bytes of noise, damaged records, replies
   std::uint64_t records = 0;         ///< delivered records: complete and valid

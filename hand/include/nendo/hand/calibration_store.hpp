@@ -75,7 +75,7 @@ struct CalibrationChoice {
 NENDO_API std::optional<CalibrationChoice>
 choose_calibration(const std::vector<StoredCalibration>& files, const GloveIdentity& glove);
 
-/// Returns whether choose_calibration() returns this file for its own user, glove and hand.
+/// Returns whether choose_calibration() chooses this file for its own user, glove and side.
 NENDO_API bool is_in_force(const StoredCalibration& file,
                            const std::vector<StoredCalibration>& files);
 

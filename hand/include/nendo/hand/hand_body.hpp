@@ -21,7 +21,7 @@ struct BodyPart {
 
 struct ClosestPoint {
   double distance_m = 0.0; ///< negative inside
-  Eigen::Vector3d normal;  ///< unit, outwards: the gradient of the distance
+  Eigen::Vector3d normal;  ///< outward unit vector: the gradient of the distance
   Eigen::Vector3d place_m; ///< on the surface
   std::size_t part = 0;    ///< index in HandBody::parts()
 };
@@ -44,8 +44,8 @@ public:
   /// Moves the body to that pose; metres. Wait-free, no allocation.
   void follow(const HandPose& pose) noexcept;
 
-  /// Returns the parts, always in the same order: thumb to little finger from their roots to their
-  /// ends, then the palm.
+  /// Returns the parts, always in the same order: thumb to little finger, each from root to tip,
+  /// then the palm.
   const std::array<BodyPart, part_count>& parts() const noexcept { return parts_; }
   /// Returns the nearest surface point of the part with the least distance. Exact outside. Inside,
   /// the depth is that in this one part, which never exceeds the depth in the whole body.

@@ -18,7 +18,7 @@ struct HeldPoint {
 
 inline constexpr std::size_t held_point_count = 45;
 
-/// Thumb to little finger, each from its root to its tip; the wrist is the last.
+/// Thumb to little finger, each from root to tip; the wrist is last.
 inline constexpr std::array<HeldPoint, held_point_count> held_points = [] {
   std::array<HeldPoint, held_point_count> points{};
   std::size_t count = 0;

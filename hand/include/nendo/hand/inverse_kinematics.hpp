@@ -14,8 +14,8 @@
 
 namespace nendo::hand {
 
-/// Each joint's range, in radians. A range that is not finite, not ordered, or wider than a full
-/// turn either way is replaced by the default range.
+/// Each joint's range, in radians. A range that is not finite, not ordered, or beyond a full turn
+/// either way is replaced by the default range.
 struct AngleLimits {
   JointAngles low;
   JointAngles high;

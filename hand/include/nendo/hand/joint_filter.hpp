@@ -36,7 +36,7 @@ struct FilterOptions {
 
 /// The filter's current delay over all angles, in seconds.
 struct FilterLatency {
-  double worst_s = 0.0; ///< the slowest joint's: 1 / (2 pi min_cutoff) if any rests
+  double worst_s = 0.0; ///< the slowest joint: 1 / (2 pi min_cutoff) if any rests
   double mean_s = 0.0;
   /// The mean weighted by the joints' speeds, that is, the delay of moving joints; the unweighted
   /// mean if no joint moves.
@@ -45,7 +45,7 @@ struct FilterLatency {
 
 class NENDO_API JointFilter {
 public:
-  /// After a pause longer than this, or if the clock goes back farther, the filter restarts.
+  /// The filter restarts after a longer pause, or if time steps back by more.
   static constexpr double longest_interval_s = 0.5;
 
   /// Limits the cutoffs to 0.001 to 100000 Hz and beta to 0 to 100000; NaN becomes the lower limit.

@@ -1,8 +1,8 @@
 #pragma once
-// The range of motion of each joint, and the soft stops that keep an angle within it. A glove reads
-// past the end of a joint's range for many reasons, most often because of a wrong calibration. A
-// hard clamp would hold such a joint still. A soft stop compresses the angles beyond its beginning
-// into the rest of the range, so that the joint still moves and no pose is impossible.
+// The range of motion of each joint, and the soft stops that keep an angle within it. Readings
+// often exceed a joint's range, mostly because of a wrong calibration. A hard clamp would freeze
+// such a joint. A soft stop compresses the angles beyond its start into the rest of the range, so
+// that the joint still moves and no pose is impossible.
 
 #include <array>
 

@@ -34,7 +34,7 @@ struct LearnedRanges {
     std::uint32_t bottoms = 0, tops = 0;        ///< turns used for low and high
     SensorCalibration line;                     ///< drifts towards this range; gain 0: cannot learn
   };
-  Side side = Side::right; ///< the hand from which they were learned
+  Side side = Side::right; ///< the hand that was learned
   std::array<Sensor, sensor_slots> sensors{};
 };
 
@@ -81,9 +81,9 @@ public:
 private:
   struct Learner {
     SwingFinder swings;
-    SensorCalibration usual;      ///< the joint's usual range, its angles at counts of 0 and 1
-    double usual_span = 0.0;      ///< in the default's counts; 0: nothing can be learned
-    double low = 0.0, high = 0.0; ///< the bounds, counts
+    SensorCalibration usual;             ///< line through the joint's usual range at counts 0 and 1
+    double usual_span = 0.0;             ///< in the default's counts; 0: nothing can be learned
+    double low = 0.0, high = 0.0;        ///< the bounds, counts
     std::uint32_t bottoms = 0, tops = 0; ///< number of ends used
 
     void learn(const SwingFinder::End& end) noexcept;

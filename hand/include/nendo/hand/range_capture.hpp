@@ -1,6 +1,6 @@
 #pragma once
-// Captures the counts that each sensor reaches while a hand moves freely. If every joint is moved
-// from end to end, these are the counts of a whole range of motion.
+// Captures the counts that each sensor reaches while a hand moves freely. If every joint moves from
+// end to end, they span its full range of motion.
 
 #include <algorithm>
 #include <array>

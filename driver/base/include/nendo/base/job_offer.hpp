@@ -41,8 +41,7 @@ private:
   template <class T>
   using Atomic = typename Atomics::template Atomic<T>;
 
-  // The value 1 means that a job is on offer. Both threads exchange it for 0, and only one of them
-  // gets the 1.
+  // 1 while a job is offered. Both threads exchange it for 0, and only one of them gets the 1.
   alignas(2 * cache_line_bytes) Atomic<std::uint32_t> open_{0};
   Atomic<std::uint32_t> done_{0};
   typename Atomics::template Plain<Job> job_{};

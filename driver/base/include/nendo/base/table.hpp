@@ -80,7 +80,7 @@ private:
   std::string_view rest_;
   std::string name_;
   std::string_view comment_; ///< the latest comment, without #
-  char separator_ = '\0';    ///< '\0': not known yet
+  char separator_ = '\0';    ///< '\0' until it is known
   bool blanks_too_ = false;  ///< blanks also separate cells
   bool is_pending_ = false;  ///< next() has not returned the row in `cells_`
   std::size_t line_ = 0;

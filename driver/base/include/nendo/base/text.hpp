@@ -55,8 +55,7 @@ NENDO_API std::optional<std::int64_t> to_integer(std::string_view field) noexcep
 /// exponent, as TOML requires of a float. `value` must be finite.
 NENDO_API std::string decimal_text(double value);
 
-/// Returns the text with '?' in place of everything but printable ASCII, so that no escape sequence
-/// reaches a terminal.
+/// Replaces all bytes but printable ASCII by '?', so that no escape sequence reaches a terminal.
 NENDO_API std::string printable(std::string_view text);
 
 /// Returns the text for a message: printable, in single quotes, cut after 40 characters.
