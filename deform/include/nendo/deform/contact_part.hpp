@@ -1,5 +1,5 @@
 #pragma once
-// What presses clay: bodies that are made of rounded cones and rounded triangles.
+// The bodies that press clay, made of rounded cones and rounded triangles.
 
 #include <array>
 #include <cstddef>
@@ -14,7 +14,7 @@ struct ContactPart {
                                          Eigen::Vector3d::Zero()}; ///< the balls' centres
   std::array<double, 3> radii{};                                   ///< > 0
   std::size_t corner_count = 2;                                    ///< 2 or 3
-  /// A frame with which its surface turns and slides: what sticks to it goes along.
+  /// The frame of the part's surface: clay that sticks to the part follows the frame.
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
 };
 

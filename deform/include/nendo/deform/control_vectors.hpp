@@ -1,5 +1,5 @@
 #pragma once
-// Control vectors from a file, for deforming without gloves or clock.
+// Reads control vectors from a file, for deformation without gloves.
 
 #include <filesystem>
 #include <string>
@@ -15,17 +15,17 @@ struct ControlVectors {
   Points starts;                ///< 3 by #rows, the start points c_i
   Points displacements;         ///< 3 by #rows, the displacements g_i
   std::vector<OwnSupport> own;  ///< one or more per row, or empty if the file has no radius column
-  std::string columns_not_read; ///< other columns, such as "note, weight"; empty: there are none
+  std::string columns_not_read; ///< ignored columns, such as "note, weight"; empty: none
 };
 
-/// Parses a table (nendo/base/table.hpp) with the columns x, y, z, dx, dy, dz and, if wanted,
-/// radius, in any order, and at most a million rows. A cell of the radius column is what
-/// parse_supports() takes. `name` is what error messages call the text. Error: bad_input, with the
-/// line and the column.
+/// Parses a table (nendo/base/table.hpp) with the columns x, y, z, dx, dy, dz and optionally
+/// radius, in any order, and at most a million rows. parse_supports() parses the cells of the
+/// radius column. Error messages call the text `name`. Error: bad_input, with the line and the
+/// column.
 NENDO_API Result<ControlVectors> parse_control_vectors(std::string_view text,
                                                        std::string_view name);
-/// Reads such a file. Blocks for as long as the disk does. Error: bad_input, also for a file that
-/// cannot be read.
+/// Reads and parses a file. Blocks during disk access. Error: bad_input, also if the file cannot be
+/// read.
 NENDO_API Result<ControlVectors> read_control_vectors(const std::filesystem::path& path);
 
 } // namespace nendo::deform

@@ -9,12 +9,12 @@
 
 namespace nendo::deform {
 
-/// Returns whether faces of that material are drawn: it is at most half transparent.
+/// Returns whether faces with this material are drawn: the material is at most half transparent.
 NENDO_API bool is_drawn(const Material& material) noexcept;
 
-/// Returns the faces that are drawn: first those without a material, then those of each material,
-/// so that entry m + 1 has those of material m, each in the mesh's order. If no face is of a
-/// material that is drawn, all faces are. Allocates.
+/// Returns the drawn faces by material: entry 0 has the faces without a material, and entry m + 1
+/// the faces with material m, in the mesh's order. If no face has a drawn material, all faces are
+/// drawn. Allocates.
 NENDO_API std::vector<std::vector<std::uint32_t>> drawn_faces(const Mesh& mesh);
 
 } // namespace nendo::deform

@@ -1,6 +1,6 @@
 #pragma once
-// The fields that a tick applied to a shape, one after another. A copy of the model elsewhere, on a
-// GPU or on another machine, becomes the same by applying them.
+// The fields that a tick applied to a shape, in order. Applying them to a copy of the model, on a
+// GPU or another machine, gives the same shape.
 
 #include <cassert>
 #include <cstddef>
@@ -19,23 +19,23 @@ public:
   FieldSequence(std::size_t most, const CsrbfField& like) : fields_(most, like) {}
 
   void clear() noexcept { used_ = 0; }
-  /// Appends a field; fewer than capacity() must be there.
+  /// Appends a field. The sequence must have fewer than capacity() fields.
   void push(const CsrbfField& field) noexcept {
     assert(used_ < fields_.size());
     fields_[used_++] = field;
   }
-  /// Copies `other`, which may have no more fields than capacity().
+  /// Copies `other`, which must have at most capacity() fields.
   void follow(const FieldSequence& other) noexcept {
     clear();
     for (const CsrbfField& field : other.fields())
       push(field);
   }
 
-  /// Returns the fields in the order in which they are to be applied.
+  /// Returns the fields in the order of their application.
   std::span<const CsrbfField> fields() const noexcept { return {fields_.data(), used_}; }
   /// Returns the largest number of fields.
   std::size_t capacity() const noexcept { return fields_.size(); }
-  /// Returns whether follow() copies any fields of such a sequence without allocating.
+  /// Returns whether follow() can copy any content of `other` without allocating.
   bool can_hold_fields_of(const FieldSequence& other) const noexcept {
     return capacity() >= other.capacity() &&
            (other.capacity() == 0 || fields_[0].centres.cols() == other.fields_[0].centres.cols());

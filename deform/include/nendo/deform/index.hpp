@@ -1,5 +1,5 @@
 #pragma once
-// How lists of vertices, faces, edges, materials and names are indexed.
+// Indices of vertices, faces, edges, materials and names.
 
 #include <cstddef>
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace nendo::deform {
 
-/// Stands where an index would be, and means that there is nothing: no face, no material, no name.
+/// The index of no element: no face, no material, no name.
 inline constexpr std::uint32_t no_index = std::numeric_limits<std::uint32_t>::max();
 
-/// Returns an index, or a number of entries, as lists of indices hold it. It must be so small.
+/// Converts an index or a count to 32 bits. It must be in this range.
 constexpr std::uint32_t to_index(std::size_t number) noexcept {
   return static_cast<std::uint32_t>(number);
 }

@@ -1,8 +1,8 @@
 #pragma once
-// Deforming without folding (the fourth item of the paper's outlook): the straight way of the start
-// points is cut into links. Each link is a field with its centres where the points then are, and so
-// short that x -> x + s(x) is a homeomorphism; the chain of links is one. Where paths cross,
-// no link would be short enough, so those points are held apart (LeastGap).
+// Deforms without folding (the fourth item of the paper's outlook): the straight path of the start
+// points is cut into links. Each link is a field centred at the current points, and so short that x
+// -> x + s(x) is a homeomorphism; so is the chain of links. Where paths cross, no link would be
+// short enough, so these points are kept apart (LeastGap).
 
 #include <array>
 #include <memory>
@@ -22,29 +22,29 @@ struct HeldPair {
   Eigen::Index second = 0;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero(); ///< unit length, from the second to the first
   double gap = 0.0;                                 ///< along the normal, in model units
-  double push = 0.0; ///< how far each is kept from its wanted place, in model units
+  double push = 0.0; ///< distance of each from its requested position, in model units
 };
 
 struct InjectiveOptions {
   double max_bound = 0.9; ///< largest Lipschitz bound of a link; below 1
-  int max_links = 64;     ///< limit for one call
-  double min_gap = 0.05;  ///< in least radii of a point; 0 lets points come as near as they like
+  int max_links = 64;     ///< limit per call
+  double min_gap = 0.05;  ///< as a fraction of a point's smallest radius; 0: no min distance
 };
 
 struct ChainReport {
   FieldStatus status = FieldStatus::ok;
-  int links = 0;                ///< how many links were made
-  double whole_bound = 0.0;     ///< Lipschitz bound of the first link's field, had it not been cut
-  double bound = 0.0;           ///< the largest of the links'
-  double min_determinant = 1.0; ///< the chain's, round the points; see DeterminantProbe
-  int held_pairs = 0;           ///< pairs that are kept from their wanted places
-  bool reached = true;          ///< false if `max_links` were not enough for the whole way
+  int links = 0;                ///< number of links made
+  double whole_bound = 0.0;     ///< Lipschitz bound of the first field before the path was cut
+  double bound = 0.0;           ///< max Lipschitz bound of the links
+  double min_determinant = 1.0; ///< min of the chain near the points; see DeterminantProbe
+  int held_pairs = 0;           ///< pairs that are kept from their requested positions
+  bool reached = true;          ///< false if `max_links` were not enough for the whole path
 };
 
-/// Call one of the two ways of going, then apply field() to the shape as long as next() is true:
+/// Call from_start() or from_here(), then apply field() to the shape while next() returns true:
 ///   for (chain.from_start(ends); chain.next();) displace(chain.field(), shape, shape);
-/// After the constructor nothing allocates, locks or calls the system, up to CsrbfSolver::lean_size
-/// points; next() then takes a bounded time.
+/// Up to CsrbfSolver::lean_size points, only the constructor allocates, locks or makes system
+/// calls, and next() takes a bounded time.
 class NENDO_API InjectiveChain {
 public:
   InjectiveChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf,
@@ -53,28 +53,26 @@ public:
   InjectiveChain(InjectiveChain&&) noexcept;
   InjectiveChain& operator=(InjectiveChain&&) noexcept;
 
-  /// Freezes the start points (3 by points). On failure, the last good ones stay.
+  /// Freezes the start points (3 by points). On failure, the previous start points are kept.
   FieldStatus grab(const Points& starts);
-  /// Type-1: goes from the start points straight to `ends` (3 by points). The links are for the
-  /// rest shape and depend on nothing else. If an end is not finite, the chain goes where it went
-  /// last.
+  /// Type-1: moves straight from the start points to `ends` (3 by points). The links apply to the
+  /// rest shape and depend on nothing else. If an end is not finite, the previous ends are used.
   FieldStatus from_start(const Points& ends) noexcept;
-  /// Type-2: continues from where the chain has come to, with the existing walls, in at most
-  /// `max_links` links. The links are for the shape as it is now. If an end is not finite, no link
-  /// follows.
+  /// Type-2: continues from the current positions, with the existing walls, in at most `max_links`
+  /// links. The links apply to the current shape. If an end is not finite, no link follows.
   FieldStatus from_here(const Points& ends, int max_links) noexcept;
   FieldStatus from_here(const Points& ends) noexcept { return from_here(ends, options_.max_links); }
 
-  /// Makes the next link's field. Returns false if there is none; the report is then complete.
+  /// Computes the next link's field. Returns false if no link is left; the report is then complete.
   bool next() noexcept;
 
-  /// Returns the solver that is built for the start points. To solve with it does not disturb the
+  /// Returns the solver that is built for the start points. Solving with it does not affect the
   /// chain.
   CsrbfSolver& start_solver() noexcept { return solvers_[kept_]; }
-  /// Returns the field of the link made last.
+  /// Returns the field of the last link.
   const CsrbfField& field() const noexcept { return field_; }
   const ChainReport& report() const noexcept { return report_; }
-  /// Returns where the chain has come to. Points that are held are not at their wanted places.
+  /// Returns the current positions of the points. Held points are not at their requested positions.
   const Points& places() const noexcept { return places_; }
   /// Returns all walls. A pair is held if its `push` is positive.
   std::span<const HeldPair> walls() const noexcept;
@@ -89,23 +87,23 @@ private:
   CsrbfOptions csrbf_;
   InjectiveOptions options_;
   std::array<CsrbfSolver, 2> solvers_; ///< one has the start points' factor, the other a link's
-  std::size_t kept_ = 0;               ///< which is the start points'
+  std::size_t kept_ = 0;               ///< index of the start points' solver
   bool grabbed_ = false;
   bool at_start_ = false; ///< places_ are the start points
   bool ended_ = true;
   int max_links_ = 0;
   Points starts_;
-  Eigen::VectorXd radii_; ///< the least at each point
+  Eigen::VectorXd radii_; ///< smallest radius of each point
   Points places_;
-  Points wanted_;  ///< the ends that were asked for
-  Points allowed_; ///< and those that the walls permit
+  Points wanted_;  ///< requested ends
+  Points allowed_; ///< ends that the walls permit
   Points step_;
-  Points tips_; ///< where the link leads that is being made
+  Points tips_; ///< ends of the current link
   double link_bound_ = 0.0;
   std::unique_ptr<LeastGap> gaps_;
   DeterminantProbe probe_;
   CsrbfField field_;
-  CsrbfField piece_; ///< up to the next corner of the way
+  CsrbfField piece_; ///< field up to the next corner of the path
   ChainReport report_;
 };
 

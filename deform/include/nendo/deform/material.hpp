@@ -1,6 +1,6 @@
 #pragma once
-// What a model looks like, as far as its files say: materials, textures, and names of its parts. A
-// deformation changes none of it.
+// The appearance of a model, as its files define it: materials, textures, and names of its parts.
+// Deformations do not change it.
 
 #include <cstdint>
 #include <memory>
@@ -14,41 +14,41 @@
 
 namespace nendo::deform {
 
-/// A picture file as it was read, of any format. It is not decoded, and may be damaged.
+/// The bytes of an image file of any format, not decoded. It may be damaged.
 struct Texture {
-  /// Its name relative to the model's folder. It never leads out of that folder.
+  /// Path relative to the model's folder, always inside it.
   std::string file;
-  /// The whole file; null if there was none.
+  /// The whole file; null if it was missing.
   std::shared_ptr<const std::string> contents;
 };
 
 /// Colours are linear, red, green, blue and opacity, from 0 to 1.
 struct Material {
   std::string name;
-  /// Unknown if the model's file names the material, but no file says what it is like.
+  /// Base colour; nullopt if the model's file names the material, but no file defines it.
   std::optional<Eigen::Vector4f> colour;
-  std::uint32_t texture = no_index; ///< the texture of the base colour, which it multiplies
-  bool drawn = true;                ///< false: wholly transparent, so pictures leave its faces out
+  std::uint32_t texture = no_index; ///< base colour texture, which multiplies `colour`
+  bool drawn = true;                ///< false: fully transparent, so its faces are not drawn
 };
 
-/// Names of faces: face f belongs to names[of_face[f]], or to none if that is no_index. Both are
-/// empty if no face has a name.
+/// Names of faces: face f has the name names[of_face[f]], or none if of_face[f] is no_index. Both
+/// are empty if no face has a name.
 struct FaceNames {
   std::vector<std::string> names;
   std::vector<std::uint32_t> of_face;
   bool operator==(const FaceNames&) const = default;
 };
 
-/// What a model looks like. Each list is empty if the model has nothing of the kind.
+/// The appearance of a model. A list is empty if the model has no such data.
 struct Appearance {
   std::vector<Material> materials;
   std::vector<std::uint32_t> face_materials; ///< one for each face, or no_index
   std::vector<Texture> textures;
   Eigen::Matrix4Xf vertex_colours; ///< 4 by #vertices, linear; they multiply the base colour
-  /// 4 by #texcoords, linear: colours of corners, where the faces at a vertex differ in colour.
-  /// They replace vertex_colours. A model without a texture then has texture coordinates of 0.
+  /// Corner colours, 4 by #texcoords, linear, if faces at a vertex differ in colour. They replace
+  /// vertex_colours. A model without a texture then has texture coordinates of 0.
   Eigen::Matrix4Xf texcoord_colours;
-  FaceNames groups;  ///< OBJ's g; several names are one, with blanks between them
+  FaceNames groups;  ///< OBJ's g; several names are joined by spaces
   FaceNames objects; ///< OBJ's o, or glTF's nodes
 
   bool has_colours() const noexcept {

@@ -1,6 +1,5 @@
 #pragma once
-// A polygon mesh as the deformation needs it: vertices in a fixed order, and faces that never
-// change.
+// A polygon mesh for deformation: vertices in a fixed order, and constant faces.
 
 #include <cstdint>
 #include <string_view>
@@ -16,9 +15,9 @@ namespace nendo::deform {
 /// Points as columns: 3 by #points, in model units. A model unit is the unit of the file.
 using Points = Eigen::Matrix3Xd;
 
-/// What refining (refinement.hpp) must know of a vertex.
+/// Refinement data of a vertex (refinement.hpp).
 struct VertexDetail {
-  float edge = 0.0f;       ///< how long edges should be here, model units
+  float edge = 0.0f;       ///< target edge length, model units
   bool is_refined = false; ///< the surface was refined here before
   friend bool operator==(const VertexDetail&, const VertexDetail&) = default;
 };
@@ -34,10 +33,10 @@ struct Mesh {
   Eigen::Matrix2Xd texcoords;
   std::vector<std::uint32_t> corner_texcoords;
   Appearance look; ///< materials, colours and names
-  /// One for each vertex of a refined mesh, or none at all. No file has them.
+  /// One per vertex of a refined mesh, otherwise empty. Not stored in files.
   std::vector<VertexDetail> detail;
-  /// The place in the file's coordinates that the vertices count from (offset.hpp). A file's
-  /// coordinates of a vertex are offset + vertex.
+  /// The origin of `vertices` in file coordinates (offset.hpp). A vertex has the file coordinates
+  /// offset + vertex.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 
   std::size_t face_count() const noexcept { return face_starts.size() - 1; }
@@ -45,7 +44,7 @@ struct Mesh {
 };
 
 struct Box {
-  Eigen::Vector3d lowest, highest; ///< lowest[0] > highest[0] if there is nothing in it
+  Eigen::Vector3d lowest, highest; ///< lowest[0] > highest[0] if the box is empty
 };
 
 /// Returns the axis-aligned bounding box of the points that are finite.
@@ -55,12 +54,12 @@ NENDO_API Box finite_box_of(const Points& points) noexcept;
 /// are no points.
 NENDO_API double diagonal_of(const Points& points) noexcept;
 
-/// Returns what is strange about a mesh, though it can be deformed: it has no faces, or all its
-/// vertices are in one place. The words go behind the mesh's name; empty if nothing is strange.
+/// Returns a warning if a mesh has no faces, or all its vertices are at one position, though it can
+/// be deformed. The text is to be appended to the mesh's name; empty if there is no warning.
 NENDO_API std::string_view warning_about(const Mesh& mesh) noexcept;
 
-/// Returns the normals of the vertices, 3 by #vertices, of unit length: the means of the faces'
-/// normals, weighted by area. A vertex without a face of any area has a normal of zero.
+/// Returns the unit normals of the vertices, 3 by #vertices: area-weighted means of the face
+/// normals. A vertex without a face of positive area has a zero normal.
 NENDO_API Points vertex_normals(const Mesh& mesh);
 
 } // namespace nendo::deform

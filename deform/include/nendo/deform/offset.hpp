@@ -1,7 +1,7 @@
 #pragma once
-// Models far from zero: surveyed ground, a part in its assembly, a scan in world coordinates. A
-// float holds a place to a share of its distance from zero. So that nothing depends on that
-// distance, the vertices of such a model count from a place beside it (Mesh::offset).
+// Models far from the origin: surveyed terrain, a part in its assembly, a scan in world
+// coordinates. Rounding errors of floats grow with the distance from the origin. So the vertices of
+// such a model are stored relative to a position near it (Mesh::offset).
 
 #include <string>
 
@@ -10,17 +10,16 @@
 
 namespace nendo::deform {
 
-/// Returns from where the vertices of a mesh should count. On an axis on which the middle of its
-/// faces is at most four times its size from zero, this is 0, so that most models stay as their
-/// files have them. On another axis it is that middle, to a millionth of the size: the difference
-/// to a vertex of a face is then exact, and so is the sum (Sterbenz 1974). In file coordinates.
+/// Returns the offset that suits a mesh, in file coordinates. On an axis on which the centre of its
+/// faces is at most four times its size from 0, the offset is 0, so that most models keep their
+/// file's coordinates. On other axes it is the centre, to a millionth of the size: subtracting it
+/// from a vertex of a face is then exact, and so is adding it (Sterbenz 1974).
 NENDO_API Eigen::Vector3d usual_offset(const Mesh& mesh) noexcept;
 
-/// Makes the vertices count from that place. The model stays where it is.
+/// Sets the mesh's offset, and adapts its vertices so that file coordinates do not change.
 NENDO_API void count_from(const Eigen::Vector3d& offset, Mesh& mesh) noexcept;
 
-/// Returns a place of a mesh with that offset as people look for it, in file coordinates:
-/// "(0, 1, 2.5)".
+/// Returns a position of a mesh with this offset as text in file coordinates: "(0, 1, 2.5)".
 NENDO_API std::string place_text(const Eigen::Vector3d& place, const Eigen::Vector3d& offset);
 
 } // namespace nendo::deform

@@ -1,6 +1,6 @@
 #pragma once
-// Parts of a model as rigid bodies, which hands take, move, turn and put down. The model is not
-// deformed, and parts go through each other.
+// Parts of a model as rigid bodies, which hands grab, move, rotate and release. The model is not
+// deformed, and parts may pass through each other.
 
 #include <bit>
 #include <cstddef>
@@ -17,19 +17,20 @@
 
 namespace nendo::deform {
 
-/// The parts of a mesh: two vertices are of one part if edges lead from the one to the other. They
-/// are numbered from 0 by their first vertices. It does not change: thread-safe.
+/// The parts of a mesh: its edge-connected components, indexed from 0 by first vertex. Immutable:
+/// thread-safe.
 class NENDO_API ModelParts {
 public:
-  /// Allocates. The layout is the mesh's.
+  /// Allocates. The layout must be the mesh's.
   ModelParts(const Mesh& mesh, const BlockLayout& layout);
 
-  /// A block with vertices of a part: bit k is that of the k-th.
+  /// A block with vertices of a part. Bit k of `lanes` is set if vertex k of the block belongs to
+  /// it.
   struct Block {
     std::uint32_t number = 0;
     std::uint64_t lanes = 0;
 
-    /// Calls `visit` with the number in the block of each of them.
+    /// Calls `visit` with the index in the block of each of these vertices.
     template <class Visit>
     void each_lane(const Visit& visit) const {
       for (std::uint64_t left = lanes; left != 0; left &= left - 1)
@@ -37,11 +38,11 @@ public:
     }
   };
   std::uint32_t count() const noexcept { return static_cast<std::uint32_t>(starts_.size()) - 1; }
-  /// Returns those of a part, by rising numbers.
+  /// Returns the blocks of a part, by increasing number.
   std::span<const Block> blocks_of(std::uint32_t part) const noexcept {
     return {blocks_.data() + starts_[part], blocks_.data() + starts_[part + 1]};
   }
-  /// Returns the part of the vertex at that place in block order; no_index if it has no face.
+  /// Returns the part of a vertex, given its index in block order; no_index if it has no face.
   std::uint32_t at_place(std::size_t place) const noexcept { return of_place_[place]; }
 
 private:
@@ -50,9 +51,9 @@ private:
   std::vector<Block> blocks_;
 };
 
-/// What a hand does, in model units.
+/// The state of a hand, in model units.
 struct PartGrip {
-  /// It turns with the hand, and its origin is where fingers meet.
+  /// The hand's frame, with its origin where the fingers meet.
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
   bool is_closed = false;
 };
@@ -60,14 +61,14 @@ struct PartGrip {
 struct PartMoverOptions {
   std::size_t hands = 2;
   double reach = 0.0; ///< reach of closing fingers, model units, > 0
-  /// Parts with a vertex of a weight below 1/2 stay where they are.
+  /// Parts with a vertex of weight below 1/2 do not move.
   std::shared_ptr<const VertexMask> mask{};
 };
 
-/// A hand that closes takes the part whose nearest vertex is nearest to its frame's origin, if that
-/// is within reach or within the part's box. The part then goes with the frame, until the hand
-/// opens. What two hands hold goes with both: the line between them leads it, and the mean of their
-/// turns about that line.
+/// A closing hand grabs the part with the vertex nearest to its frame's origin, if the vertex is
+/// within reach or the origin is in the part's box. The part follows the frame until the hand
+/// opens. A part that two hands hold follows the line between them, and the mean of their rotations
+/// about this line.
 class NENDO_API PartMover {
 public:
   /// Allocates. Call release() before another deformer works on `shape`, which must outlive this.
@@ -77,20 +78,20 @@ public:
   PartMover(PartMover&&) noexcept;
   PartMover& operator=(PartMover&&) noexcept;
 
-  /// Ends the stroke before, which can then be undone. What hands hold they hold on to, from
-  /// where `grips`, one a hand, are now. The status is ok or not_finite, in which case nothing
+  /// Ends the previous stroke, which can then be undone. Hands keep the parts that they hold,
+  /// relative to `grips`, one per hand. The status is ok, or not_finite, in which case nothing
   /// changes.
   FieldStatus begin(std::span<const PartGrip> grips) noexcept;
-  /// Does the same, but without ending the stroke before.
+  /// Does the same without ending the previous stroke.
   FieldStatus grab(std::span<const PartGrip> grips) noexcept;
-  /// Releases until the next begin() or grab(). With `is_step`, the stroke has ended.
+  /// Releases the shape until the next begin() or grab(). With `is_step`, ends the stroke.
   void release(bool is_step) noexcept;
-  /// Moves what is held, and takes or puts down what hands that close or open have under them.
-  /// Wait-free, without allocation; its cost is that of the vertices that move, and of all where a
-  /// hand closes. Before begin() or grab(), this is begin().
+  /// Moves the held parts; a closing hand grabs a part, and an opening hand releases it. Wait-free,
+  /// without allocation; the cost is linear in the moving vertices, or in all vertices when a hand
+  /// closes. Before begin() or grab(), it does what begin() does.
   FieldStatus move_to(std::span<const PartGrip> grips) noexcept;
 
-  /// Does what Type2Deformer::go() does; `grips` are where the hands then are.
+  /// Does what Type2Deformer::go() does; `grips` are the hands afterwards.
   FieldStatus go(HistoryMove move, std::span<const PartGrip> grips) noexcept;
 
   const BlockLayout& layout() const noexcept { return shape_->layout(); }

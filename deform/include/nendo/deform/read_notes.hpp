@@ -1,5 +1,5 @@
 #pragma once
-// Notes of readers: what is alike becomes one of them.
+// Notes of readers, with similar notes merged into one.
 
 #include <cstddef>
 #include <functional>
@@ -12,20 +12,18 @@
 
 namespace nendo::deform {
 
-/// What a reader left out, changed or guessed (ReadModel::notes).
+/// Notes about data that a reader ignored, changed or guessed (ReadModel::notes).
 using ReadNotes = std::vector<std::string>;
 
-/// Sums notes that differ in their subject alone: the first subject is named, and the others are
-/// counted. So a thousand textures that are missing are one line.
+/// Merges notes that differ only in their subject: the note names the first subject and counts the
+/// others. So a thousand missing textures are one line.
 class NENDO_API NoteSum {
 public:
-  /// Adds the note `before 'subject'after`. A subject that was added with these words before counts
-  /// once.
+  /// Adds the note `before 'subject'after`. Repeated notes count once.
   void add(std::string_view before, std::string_view subject, std::string_view after);
-  /// Adds a note that has no subject, once.
+  /// Adds a note without a subject. Repeated notes count once.
   void add(std::string_view note);
-  /// Appends all notes, in the order in which their kinds came: `before 'first' (and 2
-  /// others)after`.
+  /// Appends all notes, ordered by first occurrence: `before 'first' (and 2 others)after`.
   void append_to(ReadNotes& notes) const;
 
 private:
@@ -36,13 +34,13 @@ private:
   std::vector<Kind> kinds_; ///< few: one for each place in the code that adds notes
 };
 
-/// The most notes that a model has.
+/// Max number of notes of a model.
 inline constexpr std::size_t max_notes = 20;
 
-/// Makes each note one printable line, and of those beyond max_notes one that counts them.
+/// Makes each note one printable line, and replaces those beyond max_notes by one that counts them.
 NENDO_API void bound_notes(ReadNotes& notes);
 
-/// Returns a name for a note: printable, in single quotes, and without the middle if it is long.
+/// Formats a name for a note: printable, in single quotes, and without the middle if it is long.
 NENDO_API std::string quoted_name(std::string_view name);
 
 } // namespace nendo::deform

@@ -1,8 +1,7 @@
 #pragma once
-// Triangles that follow a shape: where a surface was stretched its edges are split, where it was
-// crowded they are collapsed, and edges are flipped where that makes triangles fairer. In the
-// manner of Stanculescu, Chaine and Cani, "Freestyle: Sculpting meshes with self-adaptive
-// topology", 2011.
+// Adapts triangles to a shape: splits edges where the surface was stretched, collapses them where
+// it was compressed, and flips them where this improves the triangles. After Stanculescu, Chaine
+// and Cani, "Freestyle: Sculpting meshes with self-adaptive topology", 2011.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,13 +15,13 @@
 
 namespace nendo::deform {
 
-/// What is done to the edge between two points. Points are numbered as the vertices of the mesh
-/// before, and each split appends one in the middle; numbers of points that are gone are not used
-/// again.
+/// An operation on the edge between two points. Points have the indices of the original mesh's
+/// vertices, and each split appends a point in the middle; indices of removed points are not
+/// reused.
 struct EdgeOperation {
   enum class Kind : std::uint8_t {
     split,
-    collapse, ///< `to` goes into `from`, which stays in its place
+    collapse, ///< `to` is merged into `from`, which does not move
     flip,
   };
   Kind kind = Kind::split;
@@ -31,34 +30,34 @@ struct EdgeOperation {
 };
 
 struct RefinementLimits {
-  std::size_t max_vertices = std::size_t{1} << 22; ///< no edge is split beyond it
-  std::size_t budget = 20000;                      ///< splits and collapses
+  std::size_t max_vertices = std::size_t{1} << 22; ///< no edge is split above this number
+  std::size_t budget = 20000;                      ///< max number of splits and collapses
 };
 
-/// A refined mesh. Vertices that stay come first, in their order and with their bits.
+/// A refined mesh. The remaining vertices come first, with their order and bits.
 struct Refinement {
-  Mesh mesh;              ///< as it is before the hands; all faces are triangles; with Mesh::detail
-  Eigen::Matrix3Xf shape; ///< where each vertex is, in the numbers of the blocks (BlockLayout)
-  std::vector<EdgeOperation> operations; ///< in their order; empty: there was nothing to do
+  Mesh mesh;              ///< not deformed; all faces are triangles; with Mesh::detail
+  Eigen::Matrix3Xf shape; ///< deformed position of each vertex, in block coordinates (BlockLayout)
+  std::vector<EdgeOperation> operations; ///< in order of execution; empty: no change
 };
 
-/// Refines a mesh for the shape that it has. Only what the shape stretches or presses is touched:
-/// edges there should be as long as Mesh::detail says. It never makes a self-intersection, keeps
-/// the Euler characteristic and the borders between materials, names and texture islands, and lets
-/// the mesh's bounding box be. The same bits for the same bits.
+/// Refines a mesh for its deformed shape. Only stretched or compressed regions change; Mesh::detail
+/// has the target edge lengths. Creates no self-intersections, and keeps the Euler characteristic,
+/// the borders between materials, names and texture islands, and the mesh's bounding box.
+/// Deterministic to the bit.
 class NENDO_API Refiner {
 public:
-  /// bad_input, without the mesh's name, if it is not finite, closed and two-manifold
+  /// Error: bad_input, without the mesh's name, if the mesh is not finite, closed and two-manifold
   /// (closed_manifold.hpp). Allocates.
   static Result<void> check(const Mesh& mesh);
-  /// Makes ready what needs only the mesh. Error: that of check(). Allocates.
+  /// Precomputes the data that depend only on the mesh. Error: that of check(). Allocates.
   static Result<Refiner> make(const Mesh& mesh);
   Refiner(Refiner&&) noexcept;
   Refiner& operator=(Refiner&&) noexcept;
   ~Refiner();
 
-  /// Returns how many edges of that shape of the mesh are too short, or too long, unless the
-  /// limit of vertices is reached. Allocates.
+  /// Returns the number of edges of the shape that are too short, or too long unless the limit of
+  /// vertices is reached. Allocates.
   std::size_t count_unfit(const BlockShape& shape, const BlockLayout& layout,
                           const RefinementLimits& limits) const;
   /// Allocates.
@@ -71,8 +70,9 @@ private:
   std::unique_ptr<const Parts> parts_;
 };
 
-/// Does to a mesh what was done to one of the same faces: Refinement::mesh, to the last bit.
-/// bad_input: it is not closed, or an operation cannot be done to it. Allocates.
+/// Repeats the operations of a refinement on a mesh with the same faces: gives Refinement::mesh,
+/// bit for bit. Error: bad_input (the mesh is not closed, or an operation is not applicable).
+/// Allocates.
 NENDO_API Result<Mesh> refined(const Mesh& mesh, std::span<const EdgeOperation> operations);
 
 /// Returns a refinement's shape in blocks of its mesh's layout. Allocates.

@@ -1,6 +1,6 @@
 #pragma once
-// Chooses the vector instructions that evaluate the field. The best that the processor has is
-// chosen at run time.
+// Selects the vector instructions that evaluate fields. By default, the best set of the processor
+// is selected at run time.
 
 #include <string_view>
 #include <vector>

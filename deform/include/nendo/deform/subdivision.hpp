@@ -10,25 +10,26 @@
 
 namespace nendo::deform {
 
-/// A subdivided mesh. Its first vertices are those of the mesh before, with their numbers and bits.
+/// A subdivided mesh. Its first vertices are those of the original mesh, with their indices and
+/// bits.
 struct Subdivision {
   Mesh mesh;
-  /// The k-th further vertex is the mean of the vertices parents[parent_starts[k]] to
-  /// parents[parent_starts[k + 1] - 1] of the mesh before.
+  /// The k-th new vertex is the mean of the vertices parents[parent_starts[k]] to
+  /// parents[parent_starts[k + 1] - 1] of the original mesh.
   std::vector<std::uint32_t> parent_starts{0};
   std::vector<std::uint32_t> parents;
 };
 
 /// Subdivides without smoothing, as Blender's Subdivide does: each edge gets a vertex in its
-/// middle, a triangle becomes four, and a face of n > 3 corners becomes n faces about its middle.
-/// A concave face that would fold about its middle becomes triangles before (triangles.hpp).
-/// Texture coordinates and vertices' colours follow, and faces keep materials and names. Faces of
-/// fewer than three corners stay. Allocates.
+/// middle, a triangle becomes four, and a face of n > 3 corners becomes n faces around its centre.
+/// A concave face that would fold is triangulated first (triangles.hpp). Texture coordinates and
+/// vertex colours are interpolated, and faces keep materials and names. Faces of fewer than three
+/// corners are unchanged. Allocates.
 NENDO_API Subdivision subdivide(const Mesh& mesh);
 
-/// Returns the shape of the subdivided mesh that a shape of the mesh before means: old vertices
-/// keep their bits, and a new one is moved by the mean of its parents' moves. `before`
-/// and `after` are the layouts of both meshes. Allocates.
+/// Transfers a shape of the original mesh to the subdivided mesh: old vertices keep their bits, and
+/// a new one gets the mean displacement of its parents. `before` and `after` are the layouts of
+/// both meshes. Allocates.
 NENDO_API BlockShape subdivided(const BlockShape& shape, const BlockLayout& before,
                                 const Subdivision& subdivision, const BlockLayout& after);
 

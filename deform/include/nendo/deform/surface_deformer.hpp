@@ -1,6 +1,6 @@
 #pragma once
-// Type-1 (the paper, 2.3.1) with distances along the surface. The functions belong to the surface
-// at rest and stay as they are, whatever is committed, so a grab needs no equations.
+// Type-1 (the paper, 2.3.1) with distances along the surface. The radial functions belong to the
+// surface at rest, and commits do not change them, so a grab solves no equations.
 
 #include <memory>
 
@@ -11,10 +11,10 @@
 
 namespace nendo::deform {
 
-/// Its functions do what those of Type1Deformer do, also without allocation.
+/// The functions do what those of Type1Deformer do, without allocation.
 class NENDO_API SurfaceDeformer {
 public:
-  /// Allocates. The field must be of the shape's layout, and `shape` must outlive the deformer.
+  /// Allocates. The field must have the shape's layout, and `shape` must outlive the deformer.
   SurfaceDeformer(SculptedShape& shape, std::shared_ptr<const SurfaceField> field);
 
   FieldStatus grab(const Points& starts);
@@ -34,8 +34,8 @@ public:
   }
   /// Always empty: there is no closed-form displacement field.
   const FieldSequence& fields() const noexcept { return fields_; }
-  /// Writes what displaced the rest shape in the last apply(). Allocates only if `move` is
-  /// too small.
+  /// Writes the displacement of the rest shape by the last apply(). Allocates only if `move` is too
+  /// small.
   void write_move(SurfaceMove& move) const { field_->write_move(coefficients_, move); }
   ChainReport report() const noexcept { return {}; }
   /// Returns whether the last apply() moved anything.
@@ -49,33 +49,33 @@ private:
   std::shared_ptr<const SurfaceField> field_;
   Points starts_;
   Points vectors_;
-  SurfaceField::Coefficients coefficients_; ///< used by the last apply(); 0: at rest
+  SurfaceField::Coefficients coefficients_; ///< coefficients of the last apply(); 0: at rest
   FieldSequence fields_;
   bool grabbed_ = false;
 };
 
-/// A stroke of Type-2 with distances along the surface. The functions belong to the surface at rest
-/// and stay as they are, so that the field is linear in the points' ways: however a way is cut into
-/// pieces, they make the same shape. So the shape at a stroke's beginning is kept, and each step
-/// makes the shape of it and of the whole way up to there. Nothing is lost to rounding, however
-/// short the steps are.
+/// A stroke of Type-2 with distances along the surface. The radial functions belong to the surface
+/// at rest and do not change, so the field is linear in the points' displacements, and any division
+/// of a path gives the same shape. So each step deforms the shape at the stroke's beginning by the
+/// whole displacement so far. Rounding errors do not accumulate, however short the steps are.
 class NENDO_API SurfaceStroke {
 public:
-  /// Allocates; no other function does. The field must be of that layout.
+  /// Allocates; no other function does. The field must have this layout.
   SurfaceStroke(const BlockLayout& layout, std::shared_ptr<const SurfaceField> field);
 
-  /// Begins at these points (3 by #points), which must be usable, and of the shape as the first
-  /// go_to() finds it.
+  /// Begins a stroke at these points (3 by #points), which must be usable. It deforms the shape
+  /// that the first go_to() gets.
   void begin(const Points& tips) noexcept;
-  /// Makes the shape that of the stroke up to `tips`, which must be usable. If float could not hold
-  /// it, nothing happens and the status is not_finite.
+  /// Deforms the shape by the stroke up to `tips`, which must be usable. If the result exceeds the
+  /// range of float, nothing changes and the status is not_finite.
   FieldStatus go_to(const Points& tips, SculptedShape::Parts& parts) noexcept;
-  /// Forgets what the last go_to() did, so that is_moved() and write_move() do not report it again.
+  /// Clears the displacement of the last go_to(), so that is_moved() and write_move() do not report
+  /// it again.
   void clear() noexcept { step_.all.setZero(); }
 
   /// Returns whether the last go_to() moved anything.
   bool is_moved() const noexcept { return !step_.all.isZero(0.0F); }
-  /// Writes what displaced the previous shape in the last go_to(). Allocates only if `move` is
+  /// Writes the displacement of the previous shape by the last go_to(). Allocates only if `move` is
   /// too small.
   void write_move(SurfaceMove& move) const { field_->write_move(step_, move); }
   /// Returns how many vectors write_move() writes.
@@ -86,12 +86,12 @@ public:
 private:
   std::shared_ptr<const SurfaceField> field_;
   Points starts_;
-  Points way_;                       ///< from there
-  BlockShape first_;                 ///< the shape at the beginning
-  double first_extent_ = 0.0;        ///< no coordinate of it is larger
-  SurfaceField::Coefficients whole_; ///< coefficients of the way so far
-  SurfaceField::Coefficients next_;  ///< and of the one that is tried
-  SurfaceField::Coefficients step_;  ///< the difference of both
+  Points way_;                       ///< displacement from starts_
+  BlockShape first_;                 ///< shape at the stroke's beginning
+  double first_extent_ = 0.0;        ///< upper bound of the coordinates of first_
+  SurfaceField::Coefficients whole_; ///< coefficients of the displacement so far
+  SurfaceField::Coefficients next_;  ///< coefficients of the next displacement
+  SurfaceField::Coefficients step_;  ///< next_ minus whole_
   bool has_first_ = false;
 };
 

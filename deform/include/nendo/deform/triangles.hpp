@@ -1,19 +1,20 @@
 #pragma once
-// A mesh's faces as triangles, the same ones for everything that needs triangles: pictures,
-// windows, hands, cuts, joins and exports.
+// Triangulates a mesh's faces, identically for all code that needs triangles: pictures, windows,
+// hands, cuts, joins and exports.
 //
 // - A face of three corners is that triangle, and one of fewer corners gives none.
-// - A face becomes a fan about its first corner wherever that is right: all triangles of the fan
-//   face the way of the face. So it is for convex faces.
-// - Other faces are cut by clipping ears, in the plane of the face's area vector (Newell's). Faces
-//   may be concave, have holes by bridges (a vertex twice), touch themselves, or be warped. All
-//   decisions are exact. A face that crosses itself, or without area, gets triangles that overlap.
-// - A face of n corners gives n - 2 triangles. Those that would have a vertex twice are left out,
-//   which only faces with a vertex twice can have.
+// - A face becomes a fan around its first corner if all triangles of the fan have the face's
+//   orientation, as for convex faces.
+// - Other faces are triangulated by ear clipping, in the plane of the face's area vector
+//   (Newell's). Faces may be concave, have holes connected by bridges (a vertex twice), touch
+//   themselves, or be non-planar. All predicates are exact. A face that intersects itself, or has
+//   no area, gets overlapping triangles.
+// - A face of n corners gives n - 2 triangles, without those that repeat a vertex, which occur only
+//   if the face repeats a vertex.
 //
-// One set of places decides, so that triangles do not change while hands shape a model: those in
-// Mesh::vertices, which in a run are the model version's rest. Whoever puts other places into a
-// mesh says which places decide.
+// One set of positions determines the triangles, so that they do not change while hands shape a
+// model: Mesh::vertices, which in a run are the rest shape of the model version. Code that puts
+// other positions into a mesh must pass the positions that determine the triangles.
 
 #include <array>
 #include <cstdint>
@@ -26,22 +27,22 @@
 
 namespace nendo::deform {
 
-/// Three corners or vertices, counter-clockwise seen from where the face faces to.
+/// Three corners or vertices, counter-clockwise seen from the front.
 using Triangle = std::array<std::uint32_t, 3>;
 
 class NENDO_API FaceTriangles {
 public:
-  /// The places of the mesh's vertices decide. The mesh must outlive this.
+  /// The mesh's vertices determine the triangles. The mesh must outlive this object.
   explicit FaceTriangles(const Mesh& mesh) : FaceTriangles(mesh, mesh.vertices) {}
-  /// Other places of the vertices decide; they must outlive this. Vertices of faces that are
-  /// asked for must be among them.
+  /// Other vertex positions determine the triangles. They must outlive this object, and include the
+  /// vertices of all requested faces.
   FaceTriangles(const Mesh& mesh, const Points& places);
   ~FaceTriangles();
   FaceTriangles(const FaceTriangles&) = delete;
   FaceTriangles& operator=(const FaceTriangles&) = delete;
 
-  /// Returns the triangles of a face. Their corners are places in Mesh::face_corners and in
-  /// Mesh::corner_texcoords. They are valid until the next call. Seldom allocates.
+  /// Returns the triangles of a face. Their corners are indices into Mesh::face_corners and
+  /// Mesh::corner_texcoords. The span is valid until the next call. Rarely allocates.
   std::span<const Triangle> of(std::size_t face) {
     const std::uint32_t begin = mesh_.face_starts[face];
     const std::uint32_t count = mesh_.face_starts[face + 1] - begin;
@@ -64,7 +65,7 @@ private:
   std::unique_ptr<Parts> parts_;
 };
 
-/// Calls visit(face, Triangle) with the corners of every triangle: places in Mesh::face_corners.
+/// Calls visit(face, Triangle) with the corners of every triangle: indices into Mesh::face_corners.
 template <class Visit>
 void for_each_face_triangle(const Mesh& mesh, Visit visit) {
   FaceTriangles triangles(mesh);
@@ -73,7 +74,7 @@ void for_each_face_triangle(const Mesh& mesh, Visit visit) {
       visit(face, corners);
 }
 
-/// Calls visit(Triangle) with the vertices of every triangle. `places` decide.
+/// Calls visit(Triangle) with the vertices of every triangle. `places` determine the triangles.
 template <class Visit>
 void for_each_triangle(const Mesh& mesh, const Points& places, Visit visit) {
   FaceTriangles triangles(mesh, places);
@@ -91,17 +92,17 @@ void for_each_triangle(const Mesh& mesh, Visit visit) {
 /// Returns the vertex indices of all triangles, three for each.
 NENDO_API std::vector<std::uint32_t> corners_of_triangles(const Mesh& mesh);
 
-/// Returns the mesh with some faces, one entry for each, replaced by their triangles, about which
-/// `places` decide. Their materials, names and texture coordinates follow.
+/// Returns the mesh with the faces of true entries of `is_split` replaced by their triangles, which
+/// `places` determine. The triangles keep materials, names and texture coordinates.
 NENDO_API Mesh with_split_faces(const Mesh& mesh, const Points& places,
                                 const std::vector<bool>& is_split);
 
-/// Returns the mesh so that the places of its own vertices give the triangles that `rest` gives:
-/// each face that they would cut in another way is replaced by its triangles. `rest` has the places
-/// of the first vertices; faces with later vertices stay. For a shape that becomes a model.
+/// Returns the mesh such that its own vertices determine the same triangles as `rest`: each face
+/// whose triangles would differ is replaced by its triangles. `rest` has the positions of the first
+/// vertices; faces with later vertices are unchanged. For a shape that becomes a model.
 NENDO_API Mesh with_triangles_of(Mesh mesh, const Points& rest);
 
-/// Returns the model with its vertices in other places, with the triangles that it has.
+/// Returns the model with other vertex positions and the same triangles.
 NENDO_API Mesh in_shape(const Mesh& model, Points places);
 
 } // namespace nendo::deform

@@ -1,7 +1,7 @@
 #pragma once
-// Type-2 (the paper, 2.3.2): the fingertips' samples are joined by a smooth curve, which is cut at
-// a constant arc length. Start and end points are neighbouring cuts; each piece deforms the current
-// shape, which becomes the start of the next.
+// Type-2 (the paper, 2.3.2): a smooth curve connects the samples of each fingertip, and is cut into
+// pieces of constant arc length. Start and end points are the ends of a piece; each piece deforms
+// the shape that the previous piece made.
 
 #include <memory>
 #include <optional>
@@ -25,27 +25,28 @@ class SurfaceStroke;
 
 struct StrokeResult {
   FieldStatus status = FieldStatus::ok;
-  int pieces = 0; ///< how many pieces were cut and applied
+  int pieces = 0; ///< number of pieces that were cut and applied
 };
 
 /// The shape is in blocks, in float, and within 1e-5 of the model's diagonal of the result of
 /// displace() in double for the same piece.
 class NENDO_API Type2Deformer {
 public:
-  static constexpr int max_pieces = 16; ///< limit for one call, without `injective`
+  static constexpr int max_pieces = 16; ///< limit per call, without `injective`
 
   /// Allocates for the shape (3 by #vertices) and for `control_points` fingertips. piece_length is
-  /// > 0, in model units. With `injective`, a piece is made in as many links as it takes; a call
+  /// > 0, in model units. With `injective`, a piece consists of as many links as necessary; a call
   /// makes at most InjectiveOptions::max_links, and the rest waits for the next call. With
-  /// keep_volume it is made in one midpoint step or two, and `injective` is left out.
+  /// keep_volume, it consists of one or two midpoint steps, and `injective` is ignored.
   Type2Deformer(Points shape, Eigen::Index control_points, double piece_length,
                 const DeformerOptions& options);
-  /// Works on a shape that other deformers work on before or after it. Call release() before
-  /// another one does. `shape` must outlive the deformer.
+  /// Works on a shape that other deformers may use before or after it. Call release() before
+  /// another one uses it. `shape` must outlive the deformer.
   Type2Deformer(SculptedShape& shape, Eigen::Index control_points, double piece_length,
                 const DeformerOptions& options);
-  /// Measures distances along the surface. The field must be of the shape's layout, and holds its
-  /// masks. All points pull, and each call leads all the way to them, without pieces or links.
+  /// Measures distances along the surface. The field must have the shape's layout, and contains the
+  /// masks. All points pull, and each call deforms all the way to the tips, without pieces or
+  /// links.
   Type2Deformer(SculptedShape& shape, std::shared_ptr<const SurfaceField> field);
   /// Uses one radius > 0 for all fingertips, in model units.
   Type2Deformer(Points shape, Eigen::Index control_points, double radius, double piece_length,
@@ -56,20 +57,21 @@ public:
   Type2Deformer(Type2Deformer&&) noexcept;
   Type2Deformer& operator=(Type2Deformer&&) noexcept;
 
-  /// Starts a curve at these fingertips (3 by control_points) without deforming anything, and ends
-  /// the stroke before, which can then be undone. The status is ok, not_finite, or, with
-  /// `injective`, what building a field there gives.
+  /// Starts curves at these fingertips (3 by control_points) without deforming the shape, and ends
+  /// the previous stroke, which can then be undone. The status is ok, not_finite, or, with
+  /// `injective`, that of building a field there.
   FieldStatus begin(const Points& tips);
-  /// Does the same, but without ending the stroke before.
+  /// Does the same without ending the previous stroke.
   FieldStatus grab(const Points& tips);
-  /// Releases the shape until the next begin() or grab(). With `is_step`, the stroke has ended.
+  /// Releases the shape until the next begin() or grab(). With `is_step`, ends the stroke.
   void release(bool is_step) noexcept;
-  /// Changes the shape, and begins a new stroke at `tips`. On failure the shape stays.
+  /// Moves the shape in its history, and begins a new stroke at `tips`. On failure the shape is
+  /// unchanged.
   FieldStatus go(HistoryMove move, const Points& tips);
-  /// Extends the curves to `tips` and deforms by the pieces that are whole. What is left, less than
-  /// one and a half pieces, waits for the next call. A jump is made in at most max_pieces, so that
-  /// the time of a call is bounded. Does not allocate. A piece without a usable field is skipped.
-  /// If a fingertip is not finite, nothing happens and the status is not_finite.
+  /// Extends the curves to `tips` and applies the complete pieces. The rest, less than one and a
+  /// half pieces, waits for the next call. A jump is divided into at most max_pieces, so that the
+  /// time of a call is bounded. Does not allocate. A piece without a usable field is skipped. If a
+  /// fingertip is not finite, nothing changes and the status is not_finite.
   StrokeResult stroke_to(const Points& tips);
   /// Does the same, but deforms all the way to `tips`.
   StrokeResult end_at(const Points& tips);
@@ -80,21 +82,21 @@ public:
   /// Returns the shape. BlockShape::follow() brings a copy of it up to date.
   const BlockShape& shape() const noexcept { return shape_->shape(); }
   /// Returns the fields that the last call applied to the shape. Their centres are the fingertips
-  /// rounded by BlockLayout::rounded(). None along the surface.
+  /// rounded by BlockLayout::rounded(). Empty for distances along the surface.
   const FieldSequence& fields() const noexcept { return fields_; }
-  /// Returns whether a brush has changed the shape in the last call, so that fields() is not
-  /// all.
+  /// Returns whether a brush changed the shape in the last call, so that fields() alone do not give
+  /// it.
   bool is_brushed() const noexcept { return is_brushed_; }
-  /// Returns whether a mask holds vertices, which fields() does not contain either.
+  /// Returns whether a mask protects vertices, which fields() do not contain either.
   bool is_masked() const noexcept;
-  /// Returns what the stroke has done along the surface; null: distances go through the air.
+  /// Returns the stroke along the surface; null: distances are straight.
   const SurfaceStroke* along() const noexcept { return along_.get(); }
-  /// Returns what the last call took, the worst of its pieces; all is 0 unless the deformer is
-  /// injective.
+  /// Returns the report of the last call, the worst of its pieces; default values unless the
+  /// deformer is injective.
   const ChainReport& report() const noexcept { return report_; }
 
 private:
-  /// A function of the curve that takes the next tips.
+  /// A member function of the curve that takes the next tips.
   using Lead = void (FingertipCurve::*)(const Points&);
 
   Type2Deformer(std::unique_ptr<SculptedShape> own, Eigen::Index control_points,
@@ -109,16 +111,16 @@ private:
   FieldStatus apply_steps();
   FieldStatus apply(const CsrbfField& field);
 
-  std::unique_ptr<SculptedShape> own_; ///< null if it was given
+  std::unique_ptr<SculptedShape> own_; ///< null if the caller owns the shape
   SculptedShape* shape_;
   std::unique_ptr<FingertipCurve> curve_;
-  Points current_;                           ///< where the curves have been cut last
-  Points next_;                              ///< and where the piece leads
-  std::vector<Eigen::Index> pulling_points_; ///< whose brush is Brush::pull
-  Points pulling_;                           ///< those of some tips
+  Points current_;                           ///< last cuts of the curves
+  Points next_;                              ///< end points of the piece
+  std::vector<Eigen::Index> pulling_points_; ///< points whose brush is Brush::pull
+  Points pulling_;                           ///< the tips of pulling_points_
   Points step_;
-  Points rounded_;    ///< current_ of those that pull, as float holds it
-  Supports supports_; ///< with radii as float holds them
+  Points rounded_;    ///< current_ of pulling_points_, rounded to float
+  Supports supports_; ///< with radii rounded to float
   CsrbfSolver solver_;
   CsrbfField field_;
   FieldSequence fields_;

@@ -20,7 +20,7 @@ struct SavedChain {
   SavedBlock* last = nullptr;
   std::size_t count = 0;
 };
-/// Allocates `count` > 0 blocks and touches them all, so that their first use is no page fault.
+/// Allocates `count` > 0 blocks and touches them all, so that their first use causes no page fault.
 NENDO_API std::unique_ptr<SavedBlock[]> make_saved_blocks(std::size_t count, SavedChain& chain);
 
 /// The memory of one deformer. The deformer keeps the blocks that it has taken and uses them again.
@@ -38,10 +38,9 @@ public:
   /// Returns how many bytes have been allocated. Asking thread.
   std::size_t bytes() const noexcept { return bytes_; }
 
-  /// Takes some blocks; none, with a count of 0, if none are ready. Wait-free. Loop's
-  /// thread.
+  /// Takes some blocks; the count is 0 if none are ready. Wait-free. Loop's thread.
   SavedChain take() noexcept;
-  /// Reports how many free blocks the deformer has itself. Wait-free. Loop's thread.
+  /// Reports the number of free blocks of the deformer. Wait-free. Loop's thread.
   void report_free(std::size_t blocks) noexcept { free_.store(blocks, std::memory_order_relaxed); }
 
 private:
@@ -54,7 +53,7 @@ private:
   std::atomic<std::size_t> free_{0};
 };
 
-/// Returns half of usable_memory() in bytes: the bound of undo's memory where the user sets none.
+/// Returns half of usable_memory() in bytes: the default limit of undo memory.
 NENDO_API std::size_t half_of_memory();
 
 } // namespace nendo::deform

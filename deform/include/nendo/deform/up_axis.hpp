@@ -1,17 +1,17 @@
 #pragma once
-// Turns models between files whose z is up and Nendo, whose y is up. Both ways are exact.
+// Converts between z-up files and Nendo's y-up coordinates. Both directions are exact.
 
 #include <nendo/deform/mesh.hpp>
 
 namespace nendo::deform {
 
-/// Turns points of a file whose z is up, in place.
+/// Rotates z-up points to y-up, in place.
 inline void lay_from_z_up(Points& points) {
   points.row(1).swap(points.row(2));
   points.row(2).array() = 0.0 - points.row(2).array(); // no -0
 }
 
-/// Turns points back as they are in that file.
+/// Rotates y-up points to z-up, in place.
 inline void lay_z_up(Points& points) {
   points.row(2).array() = 0.0 - points.row(2).array(); // no -0
   points.row(1).swap(points.row(2));

@@ -1,6 +1,6 @@
 #pragma once
-// Vertices in the form that suits vector instructions: in float, in blocks of 64 neighbours in
-// space, with separate arrays of x, y and z. A block's bounds show whether a field reaches it.
+// Vertices in a layout for vector instructions: floats in blocks of 64 spatial neighbours, with
+// separate arrays of x, y and z. A block's bounds show whether a field reaches it.
 
 #include <array>
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace nendo::deform {
 
 inline constexpr std::size_t block_size = 64;
 
-/// Returns how many blocks so many vertices fill; the last one may be filled in part.
+/// Returns the number of blocks for this number of vertices; the last block may be partly filled.
 constexpr std::size_t block_count_of(std::size_t vertices) noexcept {
   return (vertices + block_size - 1) / block_size;
 }
@@ -23,7 +23,7 @@ struct alignas(64) VertexBlock {
 };
 
 /// The axis-aligned bounds of a block: lowest x, y, z, 0, and the negated highest x, y, z, 0, so
-/// that the bounds of two are the lesser of each number.
+/// that the bounds of two blocks are the element-wise minimum.
 struct alignas(32) BlockBounds {
   std::array<float, 8> sides;
 };
@@ -64,15 +64,15 @@ private:
 inline Eigen::Vector3f vertex_in(const VertexBlock& block, std::size_t lane) noexcept {
   return {block.x[lane], block.y[lane], block.z[lane]};
 }
-/// Returns the vertex at that place in block order.
+/// Returns the vertex at this index in block order.
 inline Eigen::Vector3f vertex_at(const BlockShape& shape, std::size_t place) noexcept {
   return vertex_in(shape[place / block_size], place % block_size);
 }
 
-/// The place of each vertex of a mesh in the blocks, and what the numbers there mean: vertex =
-/// origin + unit * coordinate. The origin is the middle of the model and the unit a power of two of
-/// about half its size, so that float is precise enough for models of any size and place. A layout
-/// does not change: thread-safe.
+/// The index of each vertex of a mesh in the blocks, and the block coordinates: vertex = origin +
+/// unit * coordinate. The origin is the centre of the model, and the unit a power of two near half
+/// its size, so that float is precise enough for models of any size and position. Immutable:
+/// thread-safe.
 class NENDO_API BlockLayout {
 public:
   /// vertices: 3 by #vertices, kept as the original. Allocates.
@@ -81,28 +81,30 @@ public:
   const Points& original() const noexcept { return original_; }
   const Eigen::Vector3d& origin() const noexcept { return origin_; }
   double unit() const noexcept { return unit_; }
-  double diagonal() const noexcept { return diagonal_; } ///< that of the original, in model units
+  double diagonal() const noexcept {
+    return diagonal_;
+  } ///< box diagonal of the original, model units
   std::size_t vertex_count() const noexcept { return order_.size(); }
   std::size_t block_count() const noexcept { return block_count_of(order_.size()); }
   /// The k-th vertex in block order is vertex order()[k] of the mesh.
   const std::vector<std::uint32_t>& order() const noexcept { return order_; }
 
-  /// Returns the place in block order of each vertex of the mesh: the inverse of order().
+  /// Returns the index in block order of each vertex of the mesh: the inverse of order().
   std::vector<std::uint32_t> places() const;
 
   /// Returns the original in blocks. The rest of the last block repeats its last vertex. Allocates.
   BlockShape pack() const { return pack(original_); }
-  /// Returns other places of these vertices in blocks: what unpack() reads back, but for rounding.
+  /// Returns other positions of these vertices in blocks. unpack() inverts this, up to rounding.
   BlockShape pack(const Points& places) const;
-  /// Computes out = origin + unit * shape, 3 by #vertices; but a coordinate that nothing moved is
-  /// the original's, bit for bit. So faces that do not meet in the blocks do not meet in `out`, but
-  /// for what nothing moved. `out` is resized only if its size differs.
+  /// Computes out = origin + unit * shape, 3 by #vertices; but a coordinate that did not move is
+  /// the original's, bit for bit. So faces that do not intersect in the blocks do not intersect in
+  /// `out`, except at unmoved coordinates. `out` is resized only if its size differs.
   void unpack(const BlockShape& shape, Points& out) const;
 
-  /// Returns the nearest place that a float can hold in these coordinates. A field must be solved
-  /// for such centres, so that the evaluation in float has exactly the same ones.
+  /// Returns the nearest position that float block coordinates can represent. A field must be
+  /// solved for such centres, so that the evaluation in float uses exactly the same ones.
   Eigen::Vector3d rounded(const Eigen::Vector3d& place) const noexcept;
-  /// Returns the nearest radius whose inverse a float can hold.
+  /// Returns the nearest radius whose inverse a float can represent.
   double rounded_radius(double radius) const noexcept;
 
 private:
@@ -115,7 +117,7 @@ private:
   std::vector<std::uint32_t> order_;
 };
 
-/// The largest number that a block may contain. Sums of such numbers do not overflow; squares may.
+/// Max absolute value of a block coordinate. Sums of such numbers do not overflow; squares may.
 inline constexpr double max_units = 1e35;
 
 } // namespace nendo::deform

@@ -1,8 +1,8 @@
 #pragma once
-// How far each vertex follows what deforms the model: a weight per vertex, of 0 (nothing moves it,
-// bit for bit) to 1 (it is free). A masked displacement w(x) s(x) is still linear in the control
-// vectors. But it is no field of a place: the slope of w comes on top of that of s. So links that
-// are injective (InjectiveChain) promise nothing where 0 < w < 1, and a surface can fold there.
+// Weights that scale the displacement of each vertex, from 0 (it does not move, bit for bit) to 1
+// (it is free). A masked displacement w(x) s(x) is still linear in the control vectors, but its
+// derivative includes that of w. So injective links (InjectiveChain) guarantee nothing where 0 < w
+// < 1, and a surface can fold there.
 
 #include <array>
 #include <cstdint>
@@ -13,13 +13,13 @@
 
 namespace nendo::deform {
 
-/// It does not change: thread-safe.
+/// Immutable: thread-safe.
 class NENDO_API VertexMask {
 public:
-  /// A block of which some vertices are not free.
+  /// A block with vertices that are not free.
   struct Part {
     std::uint32_t block = 0;
-    bool is_still = false; ///< none of it moves
+    bool is_still = false; ///< no vertex of the block moves
     alignas(64) std::array<float, block_size> weights{};
   };
 
@@ -31,9 +31,8 @@ public:
   const float* of_block(std::size_t block) const noexcept {
     return numbers_[block] == no_index ? nullptr : parts_[numbers_[block]].weights.data();
   }
-  /// Makes `to` what the weights leave of the way to it from `from`, which has as many blocks.
-  /// Where nothing moves, `to` gets the block of `from`, with its stamp. Wait-free, without
-  /// allocation.
+  /// Scales the displacement of `to` from `from`, which has as many blocks, by the weights. Blocks
+  /// that do not move are copied from `from`, with their stamps. Wait-free, without allocation.
   void hold(const BlockShape& from, BlockShape& to) const noexcept;
 
 private:
@@ -41,7 +40,7 @@ private:
   std::vector<std::uint32_t> numbers_; ///< the number of each block's part, or no_index
 };
 
-/// Makes `to`, where a block was moved to from `from`, what the weights leave of that way.
+/// Scales the displacement of the block `to` from `from` by the weights of `part`.
 NENDO_API void hold_block(const VertexMask::Part& part, const VertexBlock& from,
                           VertexBlock& to) noexcept;
 

@@ -12,9 +12,9 @@
 
 namespace nendo::deform {
 
-/// Numbers are places in block order (BlockLayout::order()). Vertices that are at the same place in
-/// the model, as along the seams of a texture, share one ring, so that what is made of rings moves
-/// them alike. Rings do not change: thread-safe.
+/// Vertices are indexed in block order (BlockLayout::order()). Vertices at the same position in the
+/// model, such as along texture seams, share one ring, so that results from rings move them
+/// equally. Immutable: thread-safe.
 class NENDO_API VertexRings {
 public:
   /// The layout must be the mesh's. Allocates.
@@ -28,8 +28,8 @@ public:
     return {corners_.data() + triangle_starts_[ring],
             triangle_starts_[ring + 1] - triangle_starts_[ring]};
   }
-  /// Returns the vertices at the other ends of its edges; of a vertex on the surface's border, only
-  /// those along the border, so that a border is smoothed as a line.
+  /// Returns the neighbours of the vertex; for a vertex on the surface's border, only those along
+  /// the border, so that a border is smoothed as a line.
   std::span<const std::uint32_t> neighbours(std::size_t place) const noexcept {
     const std::size_t ring = ring_[place];
     return {neighbours_.data() + neighbour_starts_[ring],
@@ -40,15 +40,15 @@ private:
   void find_rings(const Mesh& mesh, const BlockLayout& layout);
   void find_neighbours();
 
-  std::vector<std::uint32_t> ring_; ///< the ring of each place
+  std::vector<std::uint32_t> ring_; ///< the ring of each vertex
   std::vector<std::uint32_t> triangle_starts_, neighbour_starts_;
   std::vector<std::array<std::uint32_t, 2>> corners_;
   std::vector<std::uint32_t> neighbours_;
 };
 
-/// Returns six times the derivative of the enclosed volume by the vertex's place, in the units of
-/// the shape: the sum of the cross products of its triangles. It points outwards, and its length is
-/// twice the area of the triangles where they are flat.
+/// Returns six times the derivative of the enclosed volume with respect to the vertex's position,
+/// in the units of the shape: the sum of the cross products of its triangles. It points outwards,
+/// and its length is twice the area of the triangles where they are flat.
 NENDO_API Eigen::Vector3d area_normal(const VertexRings& rings, const BlockShape& shape,
                                       std::size_t place) noexcept;
 

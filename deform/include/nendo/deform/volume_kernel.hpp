@@ -1,11 +1,12 @@
 #pragma once
-// The kernel between air and clay. Wendland's functions multiply an identity matrix: what is
-// pressed in is gone, as if the model were full of air. The curl of the curl of one is a matrix K
-// whose columns have no divergence (Narcowich and Ward 1994; Fuselier 2008), so that clay that is
-// pressed in comes out nearby. With u = (x - c) / r and t = |u| < 1, of Wendland's C4 function:
+// A kernel from compressible to volume-preserving. Wendland's functions multiply an identity
+// matrix: volume that is pressed in is lost, as if the model were full of air. The double curl of
+// one is a matrix K with divergence-free columns (Narcowich and Ward 1994; Fuselier 2008), so that
+// clay that is pressed in bulges nearby. With u = (x - c) / r and t = |u| < 1, for Wendland's C4
+// function:
 //   K(u) = (1 - t)^4 ((1 + 4 t - 20 t^2) I + 15 u u^T),   K(0) = I, and 0 for t >= 1.
-// Between the two is (1 - keep) psi(t) I + keep K(u). Both are positive definite, so each of these
-// sums is one for 0 <= keep <= 1, and its divergence is 1 - keep times that of air.
+// The kernel is (1 - keep) psi(t) I + keep K(u). Both terms are positive definite, so their sum is
+// for 0 <= keep <= 1, and its divergence is 1 - keep times that of psi(t) I.
 
 #include <nendo/deform/wendland.hpp>
 

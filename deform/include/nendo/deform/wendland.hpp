@@ -29,8 +29,8 @@ constexpr double wendland(Wendland kernel, double t) noexcept {
   return 0.0;
 }
 
-/// Returns psi'(t) for t >= 0. For c0, which has no derivative at t = 0, it is the slope to the
-/// right there.
+/// Returns psi'(t) for t >= 0. For c0, which has no derivative at t = 0, it is the right derivative
+/// there.
 constexpr double wendland_slope(Wendland kernel, double t) noexcept {
   if (!(t < 1.0)) return 0.0;
   const double u = 1.0 - t;
