@@ -74,9 +74,9 @@ NENDO_API std::vector<std::string> lost_in_file(const std::filesystem::path& pat
 /// Mesh::offset to the coordinates; they survive a round trip exactly, except in STL, which stores
 /// floats. OBJ stores all mesh data, but only one colour per vertex; its materials and textures are
 /// written beside it, the materials to `materials`, or if that is empty to the same name with .mtl.
-/// They never replace a file that this function did not write. PLY stores only vertex colours, STL
-/// only triangles. Blocks during disk access. Errors: usage (unknown extension), failed (a file
-/// cannot be written, or the model is too large for an STL).
+/// They never replace a file that this function did not write. Of the appearance, PLY stores only
+/// vertex colours; STL stores only triangles. Blocks during disk access. Errors: usage (unknown
+/// extension), failed (a file cannot be written, or the model is too large for an STL).
 NENDO_API Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh,
                                   const std::filesystem::path& materials = {},
                                   UpAxis up = UpAxis::y);

@@ -9,8 +9,8 @@
 //     term;
 //  2. x^T Psi W Psi^T x = |W^(1/2) Psi^T x|^2 is never negative;
 //  3. so x^T M x > 0 for x != 0.
-// A radius for each column instead, and no shared one, gives a matrix that is singular on the way
-// between ordinary poses.
+// With one radius per column, and no shared radius, the matrix becomes singular between ordinary
+// poses.
 
 #include <optional>
 #include <string_view>

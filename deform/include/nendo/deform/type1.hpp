@@ -99,9 +99,9 @@ private:
   SculptedShape* shape_;               ///< the rest shape
   Points starts_;
   Points rounded_;       ///< the start points, rounded to float
-  Points displacements_; ///< the last ones with a solution
+  Points displacements_; ///< last displacements with a solution
   Points asked_;
-  Supports supports_;  ///< with radii rounded to float
+  Supports supports_;  ///< supports with radii rounded to float
   CsrbfSolver solver_; ///< solver for the start points, unless the chain has it
   CsrbfField field_;   ///< used unless the shape is made in several links
   FieldSequence fields_;

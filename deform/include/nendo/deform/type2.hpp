@@ -59,7 +59,7 @@ public:
 
   /// Starts curves at these fingertips (3 by control_points) without deforming the shape, and ends
   /// the previous stroke, which can then be undone. The status is ok, not_finite, or, with
-  /// `injective`, that of building a field there.
+  /// `injective`, the status of building a field there.
   FieldStatus begin(const Points& tips);
   /// Does the same without ending the previous stroke.
   FieldStatus grab(const Points& tips);
@@ -120,7 +120,7 @@ private:
   Points pulling_;                           ///< the tips of pulling_points_
   Points step_;
   Points rounded_;    ///< current_ of pulling_points_, rounded to float
-  Supports supports_; ///< with radii rounded to float
+  Supports supports_; ///< supports with radii rounded to float
   CsrbfSolver solver_;
   CsrbfField field_;
   FieldSequence fields_;

@@ -6,7 +6,7 @@
 // function:
 //   K(u) = (1 - t)^4 ((1 + 4 t - 20 t^2) I + 15 u u^T),   K(0) = I, and 0 for t >= 1.
 // The kernel is (1 - keep) psi(t) I + keep K(u). Both terms are positive definite, so their sum is
-// for 0 <= keep <= 1, and its divergence is 1 - keep times that of psi(t) I.
+// positive definite for 0 <= keep <= 1, and its divergence is 1 - keep times that of psi(t) I.
 
 #include <nendo/deform/wendland.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
-// Gestures by which a hand releases a puppet, and grabs it again: a fist, or a pinch,
-// that is held for a moment. While a gesture is made, the functions go back to where they were
-// before it, so that the gesture itself does not play the puppet.
+// Gestures by which a hand releases a puppet and grabs it again: a fist or a pinch, held for a
+// moment. During a gesture, the functions return to their values before it, so that the gesture
+// itself does not move the puppet.
 
 #include <algorithm>
 #include <array>
@@ -14,59 +14,58 @@
 
 namespace nendo::puppet {
 
-/// Returns how much of that gesture a hand shows: for a fist the least angle, in radians, by which
-/// one of four fingers is bent; for a pinch how near the tips are, in metres, negative. No gesture
-/// has 0. Wait-free; no allocation.
+/// Returns the strength of a gesture: for a fist the smallest bend of the four fingers, in radians;
+/// for a pinch the negative distance of the tips, in metres; for no gesture 0. Wait-free; no
+/// allocation.
 NENDO_API double gesture_strength(ClutchTrigger means, const HandState& hand) noexcept;
 
-/// Watches both hands of a player. For one thread; only the constructor allocates. It depends on
-/// poses and times alone, so a replay of the same ticks does the same.
+/// Watches both hands of a player. For one thread; only the constructor allocates. The result
+/// depends only on poses and times, so a replay of the same ticks is identical.
 ///
-/// A gesture begins where its strength reaches the bound of the puppet, and ends below a lower one.
-/// From its beginning on, the functions are drawn to the values that they had before the hand
-/// closed, within ease_s. If it lasts for ClutchOptions::held_s, the hand releases. A hand that had
-/// release re-grabs when the gesture has ended and the fingers have come to rest, so that
-/// opening the hand plays nothing either. If a gesture is shorter, the functions go back to what
-/// the hand shows, within ease_s.
+/// A gesture begins when its strength reaches the puppet's threshold, and ends below a lower one.
+/// During it, the functions return, within ease_s, to their values before the hand closed. If it
+/// lasts for ClutchOptions::held_s, the hand releases. A hand that had released grabs again when
+/// the gesture has ended and the fingers are at rest, so that opening the hand moves nothing
+/// either. After a shorter gesture, the functions return to the hand's values within ease_s.
 class NENDO_API GestureClutch {
 public:
-  static constexpr double ease_s = 0.2;        ///< less than any held_s
-  static constexpr double look_back_s = 0.6;   ///< closing a hand may take so long
-  static constexpr double rest_s = 0.15;       ///< fingers at rest hardly move for so long
-  static constexpr double max_rest_s = 1.0;    ///< after which they are taken to be at rest
-  static constexpr double fist_ends_at = 0.8;  ///< fraction of its bound
-  static constexpr double pinch_ends_at = 1.5; ///< fraction of its bound
+  static constexpr double ease_s = 0.2;       ///< less than any held_s
+  static constexpr double look_back_s = 0.6;  ///< max duration of closing a hand
+  static constexpr double rest_s = 0.15;      ///< min duration without motion of fingers at rest
+  static constexpr double max_rest_s = 1.0;   ///< fingers are assumed to be at rest after this time
+  static constexpr double fist_ends_at = 0.8; ///< fraction of the fist threshold
+  static constexpr double pinch_ends_at = 1.5; ///< fraction of the pinch threshold
 
   explicit GestureClutch(const Rig& rig);
 
-  /// Looks at the hands, before RigPlayer::follow() does so, at a time that does not go back. A
-  /// hand that is not there stays in the state that it had.
+  /// Processes the hands. Call before RigPlayer::follow(), with times that do not decrease. An
+  /// absent hand keeps its state.
   void watch(RigPlayer& player, const RigPlayer::Hands& hands, HostTime time) noexcept;
-  /// Forgets what was before. A gesture that is made just then has no effect.
+  /// Resets the state. A gesture in progress has no effect.
   void reset(RigPlayer& player) noexcept;
 
 private:
   enum class State : std::uint8_t {
-    unknown, ///< nothing was seen yet
+    unknown, ///< no pose seen yet
     open,    ///< no gesture
     made,    ///< a gesture, not long enough yet
     done,    ///< a gesture that has had its effect
-    taking,  ///< a gesture, behind whose end the hand grabs
-    opening, ///< its end
+    taking,  ///< a gesture, at whose end the hand grabs
+    opening, ///< the end of the gesture in `taking`
   };
   struct Moment {
     HostTime time{};
     double strength = 0.0;
-    bool followed = false;     ///< the functions did what the hand showed
-    std::vector<double> asked; ///< one per function
+    bool followed = false;     ///< the functions followed the hand
+    std::vector<double> asked; ///< requested values, one per function
   };
   struct Watch {
     State state = State::unknown;
-    HostTime since{};  ///< begin of the state
-    HostTime last{};   ///< seen
+    HostTime since{};  ///< beginning of the state
+    HostTime last{};   ///< last time of a pose
     double ramp = 0.0; ///< 0: the hand is followed; 1: the functions are kept
     std::vector<double> kept;
-    std::array<Moment, 32> moments{}; ///< a ring of the last ones
+    std::array<Moment, 32> moments{}; ///< ring buffer of the latest moments
     std::size_t count = 0;            ///< number of moments so far
 
     void go_to(State next) noexcept {
@@ -76,7 +75,7 @@ private:
     double lasted_s() const noexcept { return to_seconds(last - since); }
     void look_back(const RigPlayer& player, double strength) noexcept;
     void note(const RigPlayer& player, double strength, bool followed) noexcept;
-    /// Calls that for each moment that is not older, the newest first.
+    /// Calls `visit` for each moment since `oldest`, the newest first.
     template <class Visit>
     void each_since(HostTime oldest, const Visit& visit) const noexcept {
       for (std::size_t back = 1; back <= std::min(count, moments.size()); ++back) {

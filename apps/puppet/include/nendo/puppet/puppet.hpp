@@ -1,9 +1,9 @@
 #pragma once
-// A puppet: what each finger does to a model. The paper assigned the displacements of ten
-// fingertips to ten functions on a face (2.2, figure 3); so does a puppet file, a short text beside
-// the model (README.md of this folder lists its keys). Without points it is a mask file: the
-// fingertips then touch the model, of which masks hold parts, and a mirror lets them shape both
-// sides.
+// A puppet: a mapping from fingers to motions of a model. The paper assigned the displacements of
+// ten fingertips to ten functions on a face (2.2, figure 3); so does a puppet file, a short text
+// beside the model (apps/puppet/README.md lists its keys). Without points it is a mask file:
+// fingertips then touch the model, masks protect regions of it, and a mirror makes fingertips shape
+// both sides.
 
 #include <array>
 #include <cstdint>
@@ -24,25 +24,26 @@
 
 namespace nendo::puppet {
 
-/// A hand at one moment.
+/// The state of a hand at one time.
 struct HandState {
   hand::JointAngles angles;
   hand::HandPose pose;
   Eigen::Isometry3d T_world_wrist = Eigen::Isometry3d::Identity();
 };
 
-/// One number of a hand's pose, the input of a puppet. Angles are steadier than places, because a
-/// fingertip's place mixes three joints and the wrist. Its name is the hand, a point, and one of
-/// - thumb_flexion to little_flexion: what all joints of the finger are bent by, radians;
+/// One scalar of a hand's pose, the input of a puppet. Angles are steadier than positions, because
+/// a fingertip's position depends on three joints and the wrist. Its name is the hand, a point, and
+/// one of
+/// - thumb_flexion to little_flexion: total flexion of the finger's joints, radians;
 /// - a joint angle (hand::Angle): thumb_roll, index_mcp_abduction, wrist_yaw and so on, radians;
-/// - thumb_tip_x to little_tip_z: the fingertip's place along an axis of the wrist, metres. x goes
-///   to the side of the little finger, so that hands that mirror each other have the same signals.
+/// - thumb_tip_x to little_tip_z: the fingertip's coordinate on an axis of the wrist, metres. x
+///   points to the little finger's side, so that mirrored hands have equal signals.
 class NENDO_API HandSignal {
 public:
   HandSignal() = default;
-  /// Returns nothing if there is no such signal.
+  /// Returns nullopt if there is no such signal.
   static std::optional<HandSignal> named(std::string_view name) noexcept;
-  /// Returns the signal of that number; nothing if there is none. Recordings keep the numbers.
+  /// Returns the signal with this number; nullopt if there is none. Recordings store the numbers.
   static std::optional<HandSignal> numbered(Side side, std::uint8_t number) noexcept;
   /// Returns the signal of the other hand.
   HandSignal mirrored() const noexcept;
@@ -54,7 +55,7 @@ public:
   static constexpr std::uint8_t no_finger = 5;
   /// Returns the finger to which it belongs, 0 thumb to 4 little finger; no_finger: palm or wrist.
   std::uint8_t finger() const noexcept;
-  /// Of a fingertip's place: the way along which the signal grows, in the axes of the wrist.
+  /// For a fingertip's coordinate: the direction in which the signal increases, in the wrist frame.
   Eigen::Vector3d direction() const noexcept;
   /// Returns its value. Wait-free; no allocation.
   double of(const HandState& hand) const noexcept;
@@ -67,27 +68,28 @@ private:
   std::uint8_t number_ = 0; ///< five flexions, then all angles, then 5 tips times 3 axes
 };
 
-/// How far apart a place and a start point are.
+/// The path along which distances from a start point are measured.
 enum class Distance : std::uint8_t {
-  surface, ///< along it, so that a mouth opens
-  air,     ///< straight
+  surface, ///< along the surface, so that a mouth can open
+  air,     ///< straight through space
 };
 
 /// A start point of the field.
 struct PuppetPoint {
   std::string name;
-  std::optional<std::uint32_t> vertex{};        ///< where it is; or else
-  Eigen::Vector3d at = Eigen::Vector3d::Zero(); ///< near here, model units
+  std::optional<std::uint32_t> vertex{};        ///< its vertex; nullopt: the point is at `at`
+  Eigen::Vector3d at = Eigen::Vector3d::Zero(); ///< the surface position nearest to it, model units
   double radius = 1.0;                          ///< model units, > 0; the largest of `mix`
-  bool is_pin = false;                          ///< nothing moves it
-  /// It is on the other side of x = 0 of where `vertex` or `at` are: a twin that no file has.
+  bool is_pin = false;                          ///< no function moves it
+  /// True: it is the mirror image, about x = 0, of `vertex` or `at`: a twin, which files do not
+  /// store.
   bool is_mirrored = false;
-  std::vector<deform::Support> mix{}; ///< several radii with their weights; empty: one
+  std::vector<deform::Support> mix{}; ///< several radii with weights; empty: only `radius`
   /// Returns the mix, or the one radius with a weight of 1.
   std::vector<deform::Support> supports() const {
     return mix.empty() ? std::vector{deform::Support{radius, 1.0}} : mix;
   }
-  static constexpr std::size_t max_radii = 4; ///< in one mix
+  static constexpr std::size_t max_radii = 4; ///< max number of radii in a mix
   friend bool operator==(const PuppetPoint&, const PuppetPoint&) = default;
 };
 
@@ -99,128 +101,130 @@ struct AxisTurn {
   friend bool operator==(const AxisTurn&, const AxisTurn&) = default;
 };
 
-/// What a function does to one point when its value is 1.
+/// The motion of one point by a function of value 1.
 struct Move {
   std::size_t point = 0;                            ///< index into Puppet::points
   Eigen::Vector3d vector = Eigen::Vector3d::Zero(); ///< model units
-  /// In place of a vector: by how much of Function::turn the point turns. It goes in a straight
-  /// line to where that leads.
+  /// Replaces the vector: the fraction of Function::turn by which the point rotates. The point
+  /// moves straight to the rotated position.
   std::optional<double> part{};
   friend bool operator==(const Move&, const Move&) = default;
 };
 
-/// One thing that the model can do, by a hand.
+/// A motion of the model, controlled by a hand.
 struct Function {
-  std::string name; ///< ARKit's, where it means the same
+  std::string name; ///< ARKit's name, if the meaning is the same
   HandSignal input;
   double travel = 1.0; ///< change of the signal for a value of 1; may be < 0
-  double least = 0.0;  ///< the values between which it stays
+  double least = 0.0;  ///< limits of the value: `least` to `most`
   double most = 1.0;
-  bool eases = false; ///< towards its limits it slows down, in place of stopping
+  bool eases = false; ///< slows down near its limits instead of stopping
   std::optional<AxisTurn> turn{};
-  std::vector<Move> moves; ///< moves by the turn, then those by vectors
-  bool is_twin = false;    ///< made by `mirror`; no file has it
+  std::vector<Move> moves; ///< first the moves by `turn`, then the moves by vectors
+  bool is_twin = false;    ///< made by `mirror`; not stored in files
   friend bool operator==(const Function&, const Function&) = default;
 };
 
-/// Vertices that belong to no part of the surface with a point, such as teeth.
+/// Vertices of parts of the surface without points, such as teeth.
 struct PuppetPart {
-  std::optional<deform::Box> inside{}; ///< only those in here, model units; otherwise all
-  std::uint32_t first = 0;             ///< only those from this one
-  std::uint32_t last = 0xFFFFFFFF;     ///< up to this one
-  std::vector<std::size_t> points;     ///< that they follow; empty: the surface
+  std::optional<deform::Box> inside{}; ///< only vertices in this box, model units; nullopt: all
+  std::uint32_t first = 0;             ///< first vertex
+  std::uint32_t last = 0xFFFFFFFF;     ///< last vertex, inclusive
+  std::vector<std::size_t> points;     ///< points that they follow; empty: the surface
   bool is_affine = true;               ///< deform::FollowingPart::is_affine
   NENDO_API friend bool operator==(const PuppetPart&, const PuppetPart&) noexcept;
 };
 
-/// What stays as it is, within a radius of a place.
+/// Protects the vertices within a radius of a position.
 struct Mask {
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
-  double radius = 0.0; ///< model units; vertices within half of it stay, and the rest eases out
+  double radius = 0.0; ///< model units; full protection within half of it, then decreasing
   friend bool operator==(const Mask&, const Mask&) = default;
 };
 
-/// What makes a hand release its functions and grab them again, besides keys.
+/// The trigger, besides keys, that makes a hand release its functions and grab them again.
 enum class ClutchTrigger : std::uint8_t {
   none,
   fist,         ///< all four fingers bent
   pinch,        ///< the tips of thumb and index finger together
-  wrist_switch, ///< the glove's, turned on
+  wrist_switch, ///< the glove's switch, turned on
 };
 
-NENDO_API std::string_view name_of(ClutchTrigger means) noexcept; ///< in the file
+NENDO_API std::string_view name_of(ClutchTrigger means) noexcept; ///< name in the file
 NENDO_API std::optional<ClutchTrigger> clutch_trigger_named(std::string_view name) noexcept;
 
 struct ClutchOptions {
-  std::array<ClutchTrigger, 2> means{}; ///< the left hand's and the right hand's
-  double held_s = 0.5;                  ///< how long a gesture must last
+  std::array<ClutchTrigger, 2> means{}; ///< triggers of the left and the right hand
+  double held_s = 0.5;                  ///< min duration of a gesture
   double fist_deg = 200.0;              ///< min bend of each finger in a fist
   double pinch_m = 0.02;                ///< max distance of the tips in a pinch
 
   friend bool operator==(const ClutchOptions&, const ClutchOptions&) = default;
 };
 
-/// At this part of a mask's radius, places move half as far as without it.
+/// At this fraction of a mask's radius, vertices move half as far as without the mask.
 inline constexpr double half_of_mask = 0.75;
 
 struct NENDO_API Puppet {
-  std::string model; ///< file name, beside the puppet's file
+  std::string model; ///< name of the model file, in the folder of the puppet's file
   Distance distance = Distance::surface;
-  bool mirrors = false;   ///< `mirror = "x"`: points and functions that are twins follow the others
-  double mirror_at = 0.0; ///< x of that plane, model units; 0 if there are points
+  bool mirrors = false;   ///< `mirror = "x"`: twins follow the other points and functions
+  double mirror_at = 0.0; ///< x of the mirror plane, model units; 0 if there are points
   std::vector<PuppetPoint> points;
   std::vector<Function> functions;
   std::vector<PuppetPart> parts;
   std::vector<Mask> masks;
-  bool inverted = false; ///< the masks select the parts that move, and the rest stays
+  bool inverted = false; ///< the masks select the vertices that move; all others are protected
   ClutchOptions clutch;
   std::string text; ///< the file's text
 
-  /// Returns whether hands play it. Otherwise it has no points, and their fingertips touch the
+  /// Returns whether hands play the puppet. Otherwise it has no points, and fingertips touch the
   /// model.
   bool is_played() const noexcept { return !points.empty(); }
-  /// Returns the number of the function with that name.
+  /// Returns the index of the function with this name.
   std::optional<std::size_t> function_named(std::string_view name) const noexcept;
   /// Compares all but the text.
   NENDO_API friend bool operator==(const Puppet& one, const Puppet& other) noexcept;
 
-  static constexpr std::size_t max_points = 1000; ///< and radii of all points together
+  static constexpr std::size_t max_points = 1000; ///< also of all radii together
   static constexpr std::size_t max_functions = 64;
 };
 
 /// Returns "browRight" for "browLeft", and the other way round; other names are their own twins.
 NENDO_API std::string twin_of(const std::string& name);
 
-/// Parses a puppet file. What `mirror = "x"` asks for is in the result: points and functions whose
-/// names end with Left have twins that end with Right. Error: bad_input, with the line.
+/// Parses a puppet file. `mirror = "x"` is expanded in the result: points and functions whose names
+/// end with Left have twins that end with Right. Error: bad_input, with the line.
 NENDO_API Result<Puppet> parse_puppet(std::string_view text, std::string_view name);
 /// Reads and parses a file. Errors: those of parse_puppet(), and bad_input if it cannot be read.
 NENDO_API Result<Puppet> read_puppet(const std::filesystem::path& path);
-/// Returns a file for it, which parse_puppet() makes the same puppet of again. Twins are left to
-/// `mirror`. Of the comments of `puppet.text`, those at its beginning are kept.
+/// Returns the text of a file that parse_puppet() parses to the same puppet. Twins are omitted,
+/// because `mirror` generates them. Of the comments of `puppet.text`, only the leading ones are
+/// kept.
 NENDO_API std::string text_of(const Puppet& puppet);
 
-/// Makes the places of a puppet, and those in its text, count from there: deform::Mesh::offset of
-/// its model, or, back to the file's coordinates, minus that. A mirror of x = 0 stays as it is: of
-/// a model far from zero it is the plane x = offset, its middle. Without an offset nothing changes.
+/// Subtracts an offset from the positions of a puppet and of its text: deform::Mesh::offset of its
+/// model, or its negative to restore the file's coordinates. A mirror about x = 0 is unchanged: for
+/// a model far from the origin, it is the plane x = offset, its centre. Offset 0 changes nothing.
 NENDO_API void count_from(const Eigen::Vector3d& offset, Puppet& puppet);
 
-/// Error: bad_input (the model has no face, or not the vertex of a point).
+/// Checks a puppet against a model. Error: bad_input (the model has no face, or lacks a point's
+/// vertex).
 NENDO_API Result<void> check_fits(const Puppet& puppet, const deform::Mesh& model);
-/// Returns where the points are on that model, in their order. It must fit (check_fits()).
+/// Returns the positions of the points on the model, in order. The puppet must fit (check_fits()).
 NENDO_API std::vector<deform::SurfacePlace> places_on(const Puppet& puppet,
                                                       const deform::Mesh& model);
-/// Returns how far each of these vertices follows what moves the model, 0 to 1: by the masks.
-/// Empty: there is no mask, and all follow.
+/// Returns the weight of each vertex by the masks, from 0 (protected) to 1 (free). Empty: there is
+/// no mask.
 NENDO_API Eigen::VectorXd mask_weights(const Puppet& puppet, const deform::Points& vertices);
-/// Returns them for a deformer; null: everything moves. Allocates.
+/// Returns these weights for a deformer; null: all vertices are free. Allocates.
 NENDO_API std::shared_ptr<const deform::VertexMask> vertex_mask(const Puppet& puppet,
                                                                 const deform::BlockLayout& layout,
                                                                 const deform::Points& vertices);
-/// Returns the x of the plane x = constant in which the model is symmetric: that of the middle of
-/// its bounds, if nearly all vertices that are looked at have a mirror image; otherwise 0.
+/// Returns the x of the model's symmetry plane x = constant: the centre of its bounds if nearly all
+/// sampled vertices have a mirror image; otherwise 0.
 NENDO_API double plane_of_symmetry(const deform::Points& vertices);
-/// Returns what the field along that model's surface is made of.
+/// Returns the setup of the puppet's field along the model's surface.
 NENDO_API deform::SurfaceSetup surface_setup(const Puppet& puppet, const deform::Mesh& model,
                                              deform::Wendland kernel);
 

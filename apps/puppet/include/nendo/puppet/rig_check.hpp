@@ -1,7 +1,6 @@
 #pragma once
-// What can be wrong with a puppet though its file can be read: triangles that turn over, and sides
-// that are not alike. Along a surface no theorem keeps a field from folding, so this looks at the
-// triangles at the functions' limits.
+// Checks a readable puppet for flipped triangles and asymmetric sides. No theorem excludes folds of
+// a field along a surface, so the check inspects the triangles at the functions' limits.
 
 #include <cstdint>
 #include <memory>
@@ -15,11 +14,11 @@
 
 namespace nendo::puppet {
 
-/// The shapes of a puppet at given values of its functions, without hands and without a loop. They
-/// are made by the deformers that the loop has, so a check sees what a run shows. For one thread.
+/// The shapes of a puppet at given function values, without hands and without a loop. The loop's
+/// deformers make them, so a check sees the shapes of a run. For one thread.
 class NENDO_API RigShapes {
 public:
-  /// Solves for the field. Error: bad_input (points are too near to each other for their radii; it
+  /// Solves for the field. Error: bad_input (points are too close for their radii; the message
   /// names them). `model` must have a face. Allocates.
   static Result<std::unique_ptr<RigShapes>> make(std::shared_ptr<const Rig> rig,
                                                  const deform::Mesh& model);
@@ -27,17 +26,17 @@ public:
   RigShapes(const RigShapes&) = delete;
   RigShapes& operator=(const RigShapes&) = delete;
 
-  /// Returns the vertices, 3 by #vertices, where the functions have these values, which no limit
-  /// changes. Functions beyond the last value have 0. Allocates.
+  /// Returns the vertices, 3 by #vertices, for these function values, which are not clamped.
+  /// Functions without a value have 0. Allocates.
   deform::Points at(std::span<const double> values);
-  /// The same, for one function alone.
+  /// Does the same for one function; the others have 0.
   deform::Points at(std::size_t function, double value);
-  /// The same, in the blocks of the model's layout, until the next call.
+  /// Does the same in blocks of the model's layout, which are valid until the next call.
   const deform::BlockShape& blocks_at(std::span<const double> values);
-  /// The same, where the points are at these places, 3 by #points.
+  /// Does the same for these point positions, 3 by #points.
   const deform::BlockShape& blocks_with(const deform::Points& points);
-  /// Returns the condition of the field's equations in the 1-norm (SurfaceField); 0 where distances
-  /// are through the air, whose equations are solvable whatever the points are.
+  /// Returns the condition number of the field's equations in the 1-norm (SurfaceField); 0 for
+  /// straight distances, whose equations are always solvable.
   double condition() const noexcept;
   const Rig& rig() const noexcept;
 
@@ -53,36 +52,37 @@ struct AtLimit {
   double value = 0.0;
 };
 
-/// The triangles of the model where one function, or two, are at a limit.
+/// Counts of the model's triangles with one function, or two, at a limit.
 struct LimitCheck {
   AtLimit one;
   std::optional<AtLimit> other{};
   std::size_t moved = 0;  ///< triangles with a corner that moves
-  std::size_t turned = 0; ///< those whose normal turns by more than 90 degrees
+  std::size_t turned = 0; ///< moved triangles whose normal rotates by more than 90 degrees
 };
 
-/// Two functions that are each other's mirror image, both at their greatest values.
+/// Two functions that are mirror images of each other, both at their max values.
 struct TwinCheck {
   std::size_t left = 0;
   std::size_t right = 0;
-  /// The farthest that a vertex is from the mirror image of its twin, as a part of the diagonal.
+  /// Max distance of a vertex from the mirror image of its twin, as a fraction of the diagonal.
   double apart = 0.0;
 };
 
 struct NENDO_API RigCheck {
-  /// Of the moved triangles of one function alone, so many may turn over: rolling lips do.
+  /// Max fraction of one function's moved triangles that may flip, because rolling lips do.
   static constexpr double max_turned = 0.005;
-  /// Twins are symmetric within this part of the diagonal, and what the model itself lacks.
+  /// Tolerance for symmetric twins, as a fraction of the diagonal, beside the model's own
+  /// asymmetry.
   static constexpr double symmetric_within = 1e-6;
-  /// A vertex has a mirror image if there is a vertex within this part of the diagonal.
+  /// Max distance of a mirror image from the exact mirror position, as a fraction of the diagonal.
   static constexpr double image_within = 0.005;
 
   std::vector<LimitCheck> alone;
   std::vector<LimitCheck> pairs; ///< pairs of functions whose signals differ
   std::vector<TwinCheck> twins;
   std::size_t lone_vertices = 0; ///< the model's vertices without a mirror image
-  /// The farthest that a vertex of the model at rest is from the mirror image of its own image, as
-  /// a part of the diagonal.
+  /// Max distance, on the model at rest, of a vertex from the mirror position of its image, as a
+  /// fraction of the diagonal.
   double model_apart = 0.0;
 
   static bool folds(const LimitCheck& limit) noexcept {
@@ -91,15 +91,15 @@ struct NENDO_API RigCheck {
   bool are_symmetric(const TwinCheck& pair) const noexcept {
     return pair.apart <= symmetric_within + 2.0 * model_apart;
   }
-  bool passes() const noexcept; ///< no function alone folds
+  bool passes() const noexcept; ///< no single function folds
 };
 
-/// Makes a shape for each limit of each function, and of each pair. `model` is the rig's.
+/// Checks the shape at each limit of each function, and of each pair. `model` must be the rig's.
 /// Allocates.
 NENDO_API RigCheck check_rig(RigShapes& shapes, const deform::Mesh& model);
 
-/// Returns for each point (3 by N) the numbers of those that are where its mirror image about x = 0
-/// is, within the tolerance. Parts of a model may touch, so there may be several.
+/// Returns for each point (3 by N) the indices of the points at its mirror position about x = 0,
+/// within the tolerance. There may be several, because parts of a model may touch.
 NENDO_API std::vector<std::vector<std::uint32_t>> mirror_images(const deform::Points& points,
                                                                 double tolerance);
 

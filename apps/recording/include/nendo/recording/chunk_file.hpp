@@ -1,7 +1,7 @@
 #pragma once
-// The frame of a recording (apps/recording/FORMAT.md): a file header, then chunks, each with a
-// type, a length, a number and checksums, so that damage is found, costs no more than the chunks
-// that it hit, and a file that ends in the middle of a chunk is good up to there.
+// The container format of a recording (apps/recording/FORMAT.md): a file header, then chunks, each
+// with a type, a length, a number and checksums. Damage is detected and affects only the chunks
+// that it hit, and a truncated file is valid up to its last whole chunk.
 
 #include <array>
 #include <cstddef>
@@ -17,7 +17,7 @@
 
 namespace nendo::recording {
 
-/// A chunk's type: four letters, in the order of the file.
+/// A chunk's type: four letters in file order (FourCC).
 using ChunkType = std::uint32_t;
 constexpr ChunkType chunk_type(const char (&letters)[5]) noexcept {
   ChunkType type = 0;
@@ -26,8 +26,8 @@ constexpr ChunkType chunk_type(const char (&letters)[5]) noexcept {
   return type;
 }
 
-// The first released format. Older ones cannot be read, nor can newer major ones; newer minor ones
-// add what a reader may skip.
+// The first released format. Older versions cannot be read, nor can newer major versions; newer
+// minor versions only add data that a reader may skip.
 inline constexpr std::uint16_t format_major = 1;
 inline constexpr std::uint16_t format_minor = 13;
 inline constexpr std::size_t file_header_bytes = 16;
@@ -35,7 +35,7 @@ inline constexpr std::size_t chunk_header_bytes = 20;
 inline constexpr std::size_t chunk_checksum_bytes = 4; ///< after the payload
 inline constexpr std::size_t max_payload_bytes = std::size_t{1} << 24;
 
-/// Returns the first bytes of a file. Pure; may be called in a signal handler.
+/// Returns the header of a file. Pure; may be called in a signal handler.
 NENDO_API std::array<std::byte, file_header_bytes> file_header() noexcept;
 /// Returns the header of `payload`, which has at most max_payload_bytes. `number` counts the
 /// chunks of the file, from 0. Pure; may be called in a signal handler.
@@ -48,38 +48,38 @@ NENDO_API void append_chunk(std::vector<std::byte>& out, ChunkType type, std::ui
 struct Chunk {
   ChunkType type = 0;
   std::uint32_t number = 0;
-  std::uint64_t offset = 0;           ///< where its header begins in the file
-  std::span<const std::byte> payload; ///< valid until the next chunk is asked for
+  std::uint64_t offset = 0;           ///< file offset of its header
+  std::span<const std::byte> payload; ///< valid until the next call of ChunkReader::next()
 };
 
 struct ChunkDamage {
-  std::uint64_t offset = 0; ///< where it begins
+  std::uint64_t offset = 0; ///< file offset of its beginning
   std::uint64_t bytes = 0;  ///< unusable bytes; 0 if chunks are missing between two good ones
-  std::string what;         ///< one line
+  std::string what;         ///< description, one line
 };
 
-/// Goes through a file, or bytes in memory, from chunk to chunk. Hostile bytes cost time and memory
-/// that the file's size bounds. Blocks for as long as the disk does.
+/// Iterates over the chunks of a file, or of bytes in memory. The file's size bounds time and
+/// memory, also for hostile bytes. Blocks during disk access.
 class NENDO_API ChunkReader {
 public:
   /// Opens a recording. Error: bad_input (not a regular file, not a recording, of another format).
   static Result<ChunkReader> open(const std::filesystem::path& path);
-  /// Opens a file to save what can be saved from it: a wrong file header counts as damage. Error:
-  /// bad_input (not a regular file).
+  /// Opens a file for recovery: a wrong file header counts as damage. Error: bad_input (not a
+  /// regular file).
   static Result<ChunkReader> open_damaged(const std::filesystem::path& path);
-  /// Reads from memory. `bytes` must outlive the reader; errors call them `name`.
+  /// Reads from memory. `bytes` must outlive the reader; error messages call them `name`.
   static Result<ChunkReader> of(std::span<const std::byte> bytes, std::string_view name);
 
-  /// Returns the next whole chunk, or nullopt at the end. Damaged parts are passed over and listed
-  /// in damages().
+  /// Returns the next whole chunk, or nullopt at the end. Damaged parts are skipped and listed in
+  /// damages().
   std::optional<Chunk> next();
 
-  /// Returns the damage found so far, the first max_damages pieces of it.
+  /// Returns the first max_damages damages found so far.
   const std::vector<ChunkDamage>& damages() const noexcept { return damages_; }
   std::uint64_t damage_count() const noexcept { return damage_count_; }
   static constexpr std::size_t max_damages = 100;
   std::uint64_t size() const noexcept { return end_; }
-  /// Returns where the last good chunk ended.
+  /// Returns the end offset of the last valid chunk.
   std::uint64_t good_end() const noexcept { return good_end_; }
   const std::string& name() const noexcept { return name_; }
 
@@ -100,8 +100,8 @@ private:
   void count_number(std::uint32_t number);
 
   std::string name_;
-  UniqueFd file_;                    ///< open, or else:
-  std::span<const std::byte> bytes_; ///< all there is; of a file, its part from window_at_ on
+  UniqueFd file_;                    ///< open for a file; closed for bytes in memory
+  std::span<const std::byte> bytes_; ///< the bytes in memory, or the file's part from window_at_ on
   std::vector<std::byte> window_;
   std::uint64_t window_at_ = 0;
   std::uint64_t end_ = 0;

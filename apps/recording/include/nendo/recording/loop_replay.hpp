@@ -19,8 +19,8 @@ inline constexpr std::string_view without_loop =
     "gloves were recorded, but no loop that shapes a model; shape one with `nendo run --right "
     "replay:FILE`";
 
-/// Returns the options of the recorded loop, with its puppet and what this needs of `model`, and
-/// without rings. Error: bad_input, as from LoopReplay::make(), but for the hands' hold.
+/// Returns the options of the recorded loop, with its puppet on `model`, and without rings. Error:
+/// bad_input, as from LoopReplay::make(), except that it does not check whether the hands can grab.
 NENDO_API Result<flow::LoopOptions> loop_options_of(const Setup& setup, const deform::Mesh& model);
 
 class NENDO_API LoopReplay {
@@ -32,7 +32,7 @@ public:
 
   /// Feeds the next entry of the recording. Returns true if it was a tick, which has then run.
   bool feed(const Entry& entry) noexcept;
-  /// Returns true if nothing was missing so far, so that the shape equals that of the recorded
+  /// Returns true if no entry was missing so far, so that the shape equals that of the recorded
   /// loop.
   bool is_exact() const noexcept { return exact_; }
 
@@ -55,17 +55,17 @@ private:
 
 struct TakeInput {
   Setup setup;
-  /// What the loop took: all samples, and of the commands all but those that the next loop makes
-  /// itself (HoldStill, and a ChangeModel to a version that was there).
+  /// The loop's input: all samples, and all commands except those that the next loop generates
+  /// itself (HoldStill, and ChangeModel to an existing version).
   std::unique_ptr<flow::InputScript> script;
-  /// The puppets to which it changes (flow::ChangePuppet), by their numbers. One that is not here
-  /// is that with which the recording began.
+  /// The puppets of flow::ChangePuppet, by number. A missing number refers to the puppet with which
+  /// the recording began.
   std::map<std::uint32_t, std::shared_ptr<const RecordedPuppet>> puppets{};
   std::vector<driver::RecordCounts> sent; ///< one per glove
-  bool is_exact = true;                   ///< nothing is missing
+  bool is_exact = true;                   ///< no entry is missing
 };
 
-/// Reads a recording of a loop. Blocks, and takes 160 bytes for each sample. Errors: bad_input (as
+/// Reads a recording of a loop. Blocks, and allocates 160 bytes per sample. Errors: bad_input (as
 /// from TakeReader::open(); or no loop was recorded, or it has no tick).
 NENDO_API Result<TakeInput> read_take_input(const std::filesystem::path& path);
 

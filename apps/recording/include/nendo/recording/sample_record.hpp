@@ -1,6 +1,6 @@
 #pragma once
-// The parts of a recording that belong to gloves (apps/recording/FORMAT.md): who they are, and
-// their samples as entries of an input log.
+// The glove data of a recording (apps/recording/FORMAT.md): the gloves' descriptions, and their
+// samples as entries of an input log.
 
 #include <cstdint>
 #include <optional>
@@ -13,10 +13,10 @@
 
 namespace nendo::recording {
 
-inline constexpr ChunkType glove_chunk = chunk_type("GLOV"); ///< one for each glove
-inline constexpr ChunkType log_chunk = chunk_type("TAPE");   ///< what happened, in its order
+inline constexpr ChunkType glove_chunk = chunk_type("GLOV"); ///< one per glove
+inline constexpr ChunkType log_chunk = chunk_type("TAPE");   ///< entries of the input log, in order
 
-/// Kinds of entries; unknown ones are passed over.
+/// Kinds of entries. Readers skip unknown kinds.
 enum class EntryKind : std::uint8_t {
   sample = 1,
   request = 2,
@@ -35,7 +35,7 @@ enum class EntryKind : std::uint8_t {
   wire = 16,
 };
 
-/// One entry of an input log: its kind and what it holds.
+/// One entry of an input log: its kind and its content.
 struct LogEntry {
   std::uint8_t kind = 0;
   std::span<const std::byte> body;
@@ -43,7 +43,7 @@ struct LogEntry {
   bool is(EntryKind wanted) const noexcept { return kind == static_cast<std::uint8_t>(wanted); }
 };
 
-/// Goes through the entries of a TAPE chunk's payload. Pure.
+/// Iterates over the entries of a TAPE chunk's payload. Pure.
 class NENDO_API LogEntries {
 public:
   explicit LogEntries(std::span<const std::byte> payload) noexcept : reader_(payload) {}
@@ -60,11 +60,11 @@ private:
 NENDO_API void put_entry_head(ByteWriter& writer, EntryKind kind, std::size_t body_bytes);
 
 struct RecordedSample {
-  std::uint8_t glove = 0; ///< the number that its GLOV chunk gives it
+  std::uint8_t glove = 0; ///< number from the glove's GLOV chunk
   GloveSample sample;
 };
 
-/// Says whether a time is within 2^61 ns (73 years) of the clock's zero. Readers refuse other
+/// Returns whether a time is within 2^61 ns (73 years) of the clock's zero. Readers refuse other
 /// times, so that differences of times never overflow.
 NENDO_API bool is_usable_time(std::chrono::nanoseconds since_epoch) noexcept;
 NENDO_API void put_time(ByteWriter& writer, HostTime time);
@@ -72,7 +72,8 @@ NENDO_API HostTime read_time(ByteReader& reader) noexcept;
 
 /// Writes a sample as a whole entry.
 NENDO_API void put_sample(ByteWriter& writer, const RecordedSample& recorded);
-/// Returns the sample of an entry; nullopt if the entry is no sample, or holds what no glove sends.
+/// Returns the sample of an entry; nullopt if the entry is no sample, or has values that no glove
+/// sends.
 NENDO_API std::optional<RecordedSample> sample_of(const LogEntry& record) noexcept;
 /// Writes or reads a sample without the kind and length of an entry, for other chunks.
 NENDO_API void put_sample_body(ByteWriter& writer, const RecordedSample& recorded);

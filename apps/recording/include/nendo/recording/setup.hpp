@@ -1,6 +1,6 @@
 #pragma once
-// The beginning of a recording: who recorded it, when and with what, and all data from which the
-// loop is made, so that a loop that does the same can be made again.
+// The beginning of a recording: its wearer, time, program and gloves, and all data that are
+// necessary to make an identical loop.
 
 #include <chrono>
 #include <cstdint>
@@ -28,24 +28,24 @@ struct RecordedPuppet {
   std::string text{};      ///< its file's text
   deform::Points starts{}; ///< puppet::Rig::starts()
 };
-/// Makes the puppet again, for the model of the recording. Error: bad_input.
+/// Reconstructs the puppet for the model of the recording. Error: bad_input.
 NENDO_API Result<std::shared_ptr<const puppet::Rig>> rig_of(const RecordedPuppet& recorded,
                                                             const deform::Mesh& model);
 
 struct LoopSetup {
-  std::string mesh; ///< the file's name, as it was given
+  std::string mesh; ///< the file's name, as the user gave it
   ShapeSum mesh_sum;
   flow::Placement placement; ///< without the gaps
-  /// Has no pointers and no stages, and not `spin`, `longest_wait` and `evaluation.threads`,
+  /// Without pointers and stages, and without `spin`, `longest_wait` and `evaluation.threads`,
   /// because the shape does not depend on them.
   flow::LoopOptions options;
   /// The vector instructions with which the field was evaluated. Others may round differently.
   std::string simd;
-  /// How the model came from the file's before the recording began (flow::rebuild()).
+  /// The changes from the file's model to the model at the beginning (flow::rebuild()).
   std::vector<std::shared_ptr<const flow::ModelOrigin>> origins{};
-  /// The shape at first, in the blocks of the model's layout; empty: the model.
+  /// The initial shape, in blocks of the model's layout; empty: the model's shape.
   std::vector<deform::VertexBlock> rest{};
-  RecordedPuppet puppet{}; ///< without a text: the hands touch the model
+  RecordedPuppet puppet{}; ///< empty text: no puppet, hands touch the model
 };
 
 struct Setup {
@@ -54,8 +54,7 @@ struct Setup {
   std::string program;                   ///< the program that recorded it, such as "nendo 0.2.0"
   std::string wearer;                    ///< empty means unknown
   std::vector<driver::GloveInfo> gloves; ///< indexed by their numbers
-  /// By the numbers of their gloves, also if there is no loop. They have no rings and no measured
-  /// bones.
+  /// Indexed by glove number, also without a loop. Rings and measured bones are omitted.
   std::vector<flow::HandInput> hands;
   std::optional<LoopSetup> loop; ///< nothing if only gloves were recorded
 };
@@ -63,8 +62,8 @@ struct Setup {
 /// Returns a setup that begins now.
 NENDO_API Setup begin_setup(std::string program);
 
-/// Makes of a loop's setup, as it began, the one of a loop that continues from a later state.
-/// `layout` is the loop's.
+/// Changes a loop's initial setup into that of a loop that continues from `state`. `layout` is the
+/// loop's.
 NENDO_API void continue_from(const flow::LoopState& state, const deform::BlockLayout& layout,
                              Setup& setup);
 
@@ -72,11 +71,11 @@ NENDO_API void continue_from(const flow::LoopState& state, const deform::BlockLa
 /// number of these chunks.
 NENDO_API std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks);
 
-/// Returns whether setup_bytes() of a setup can be read again. Error: failed, with what is out of
-/// its range, and what to do. A recorder refuses such a setup before anything is recorded.
+/// Checks that the result of setup_bytes() can be read back. Error: failed, with the value that is
+/// out of range, and a remedy. A recorder refuses such a setup before anything is recorded.
 NENDO_API Result<void> check_readable(const Setup& setup, std::span<const std::byte> bytes);
 
-/// Reads a chunk into `setup`. Returns false if the chunk is of a setup, but holds something that
+/// Reads a chunk into `setup`. Returns false if the chunk belongs to a setup, but has content that
 /// nendo does not write. Chunks of other types are ignored and give true. The result is finite and
 /// usable without further checks, because enumerators, counts and sizes are checked here.
 NENDO_API bool read_setup_chunk(ChunkType type, std::span<const std::byte> payload, Setup& setup);
