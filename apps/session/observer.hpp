@@ -19,28 +19,28 @@
 namespace nendo::session {
 
 struct GloveStatus {
-  std::string source; ///< GloveInfo::source; empty: there is no glove on this hand
+  std::string source; ///< GloveInfo::source; empty: no glove for this hand
   driver::RecordCounts counts;
   bool uncalibrated = false; ///< gloves::OpenHand::uncalibrated
 };
 /// The states of both gloves, by flow::Placement::index_of(side).
 using GloveStatuses = std::array<GloveStatus, 2>;
-/// Returns the states of the gloves. It may take a lock.
+/// May take a lock.
 GloveStatuses status_of(const std::vector<gloves::OpenHand>& hands);
 
 struct RunStatus {
   const flow::Frame& frame;        ///< the latest
   const flow::ModelVersion& model; ///< the model of that frame
-  bool fresh = false;              ///< the frame is new since the previous call
+  bool fresh = false;              ///< the frame is new since the last call
   const GloveStatuses& gloves;
   commands::RunFacts facts{};
-  /// The puppet whose functions made the frame; null: none.
+  /// The frame's puppet; null: none.
   const std::shared_ptr<const puppet::Rig>& puppet;
 
   commands::Situation situation() const noexcept { return {frame, facts}; }
 };
 
-/// A request of an observer: a command, or another puppet, not null, for the loop.
+/// An observer's request: a command, or a new puppet, not null, for the loop.
 using Ask = std::variant<flow::Command, std::shared_ptr<const puppet::Rig>>;
 using Asks = std::vector<Ask>;
 
@@ -48,18 +48,18 @@ using Asks = std::vector<Ask>;
 class Observer {
 public:
   virtual ~Observer() = default;
-  /// Called before the loop begins. Its model and hands live as long as the run.
+  /// Called before the loop begins. `start` is valid until the run ends.
   virtual void loop_begins(const LoopStart& start) { static_cast<void>(start); }
-  /// Called repeatedly while the loop runs. Adds the requests since the last call.
+  /// Called repeatedly while the loop runs. Appends the requests since the last call.
   virtual void update(const RunStatus& status, Asks& asks) = 0;
   /// Shows a message about a command to the user.
   virtual void report(const std::string& message) { static_cast<void>(message); }
-  /// Returns whether update() waits by itself, as a window waits for its screen.
+  /// Returns whether update() waits by itself, as a window does for its screen.
   virtual bool sets_pace() const noexcept { return false; }
-  /// Returns whether the run continues when all gloves have ended (Glove::has_ended()), because
-  /// only its user may close it, as for a window.
+  /// Returns whether the run continues after all gloves have ended (Glove::has_ended()), until the
+  /// user ends it, as with a window.
   virtual bool stays_open() const noexcept { return false; }
-  /// Called after the loop, when the shape has been written. An error becomes the run's.
+  /// Called after the loop has ended and the shape is written. The run returns its error.
   virtual Result<void> end() { return {}; }
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Opens the gloves of a run: those that were named, or those that the machine has.
+// Opens the gloves of a run: the named ones, or the machine's.
 
 #include <string>
 #include <vector>
@@ -13,22 +13,22 @@ namespace nendo::session {
 
 struct RunHands {
   std::vector<gloves::OpenHand> hands;
-  std::vector<flow::Grant> grants; ///< whether the readers got their priority
+  std::vector<flow::Grant> grants; ///< the result of requesting the readers' priority
 };
 
-/// Opens and starts the gloves and waits for the first sample of each. If none is named, it uses
-/// the gloves that are identified or, if there are none, simulated hands, and says so. Simulated
-/// hands may do something to `model` (motions::planned_motions()). The readers get the priority
-/// that belongs to the loop's. With OverrunPolicy::sample, `event_count` wakes the loop; it must
-/// outlive the loop and the gloves. Errors: usage (a switch action without a wrist switch), and
-/// those of gloves::open_glove() and gloves::calibrate().
+/// Opens and starts the gloves and waits for the first sample of each. If none is named, opens the
+/// detected gloves or, without any, simulated hands, and notes it. Simulated hands may have motions
+/// for `model` (motions::planned_motions()). The readers get flow::reader_priority(). With
+/// OverrunPolicy::sample, `event_count` wakes the loop; it must outlive the loop and the gloves.
+/// Errors: usage (a switch action without a wrist switch), and those of gloves::open_glove() and
+/// gloves::calibrate().
 Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
                             EventCount& event_count);
 
-/// Checks that these are one or two. Error: usage.
+/// Checks that there are one or two. Error: usage.
 Result<void> check_count(const std::vector<std::string>& specs);
-/// Opens each of these gloves, one or two. Errors: those of gloves::open_hand(), and usage (two
-/// gloves of one hand).
+/// Opens one or two gloves. Errors: those of gloves::open_hand(), and usage (two gloves for the
+/// same hand).
 Result<std::vector<gloves::OpenHand>> open_each(const std::vector<std::string>& specs);
 
 } // namespace nendo::session

@@ -1,6 +1,6 @@
 #pragma once
-// A take in layers: a recording is played once more, and live gloves play some joints over it. The
-// run is recorded as any other, with the take's input in it.
+// Overdubbing: a run replays a recording, the take, while live gloves play some joints over it. A
+// recording of the run contains the take's input.
 
 #include <array>
 #include <memory>
@@ -20,15 +20,15 @@ struct RunOptions;
 /// The options --over, --layer, --punch and --loop, as they are given.
 struct OverdubArguments {
   std::string take;  ///< empty: live gloves alone
-  std::string layer; ///< empty: what the take lacks, or all
+  std::string layer; ///< empty: the hands that the take lacks, or all
   std::string punch; ///< IN:OUT; empty: from the beginning to the end
-  std::string loop;  ///< A:B; empty: the take is played once
+  std::string loop;  ///< A:B; empty: the take plays once
 };
 void add_overdub_options(const cli::Command& command, OverdubArguments& arguments);
 
-/// What is played over.
+/// The take that live gloves play over.
 struct Overdub {
-  /// Since the take's first tick. `to` is HostClock::duration::max() where it is left open.
+  /// Times since the take's first tick. An open `to` is HostClock::duration::max().
   struct Span {
     HostClock::duration from{};
     HostClock::duration to{};
@@ -37,7 +37,7 @@ struct Overdub {
   std::string file;
   recording::TakeInput take;
   std::optional<Span> punch{};
-  HostTime begin{}; ///< when the take's first tick is to be due; set by play_over()
+  HostTime begin{}; ///< the deadline of the take's first tick; set by play_over()
 
   bool begins_on() const noexcept { return !punch || punch->from == HostClock::duration::zero(); }
 };
@@ -45,24 +45,24 @@ struct Overdub {
 /// Returns whether the take has that hand.
 bool has_hand(const recording::Setup& take, Side side);
 
-/// What live gloves play, of both hands by flow::Placement::index_of(side). Nothing: whole hands.
+/// The angles that live gloves play, by flow::Placement::index_of(side). Nothing: whole hands.
 using LivePart = std::optional<std::array<flow::AngleSet, 2>>;
 
-/// Reads the take and what is to be done with it. Blocks. Errors: usage, naming the option; and
-/// those of read_take_input().
+/// Reads the take, and parses its options. Blocks. Errors: usage, naming the option; and those of
+/// read_take_input().
 Result<std::shared_ptr<Overdub>> read_overdub(const OverdubArguments& arguments);
 
-/// Chooses what live gloves play: what --layer says; without it, all that the gloves in `options`
-/// give or, if none is named, the hands that the take lacks or, if it lacks none, both. Errors:
-/// usage (--layer; a glove that plays nothing; a part that no glove plays).
+/// Chooses the angles that live gloves play: those of --layer; without it, all angles of the gloves
+/// in `options` or, if none is named, the hands that the take lacks, or else both. Errors: usage
+/// (--layer; a glove that plays nothing; a part that no glove plays).
 Result<LivePart> live_part(const OverdubArguments& arguments, const RunOptions& options);
 
-/// Puts the settings of the take into the options, in place of those of the command line. `model`
-/// is the recorded one. Error: bad_input, as from recording::loop_options_of().
+/// Replaces the settings in the options by the take's. `model` is the recorded one. Errors: those
+/// of recording::loop_options_of().
 Result<void> take_over_settings(const deform::Mesh& model, RunOptions& options);
 
-/// Puts the take's inputs before those of live gloves, which become layers, and makes its script
-/// ready to begin a moment from now. `options` have a take. Error: usage (too many layers).
+/// Inserts the take's inputs before those of live gloves, which become layers, and schedules its
+/// script to begin shortly. `options` must have a take. Error: usage (too many layers).
 Result<void> play_over(const RunOptions& options, std::vector<flow::HandInput>& inputs);
 
 } // namespace nendo::session

@@ -1,6 +1,6 @@
 #pragma once
-// Executes the commands of a run: passes them to its loop, saves files, or keeps commands until
-// they are possible.
+// Executes the commands of a run: passes them to its loop, saves files, or queues them until they
+// are possible.
 
 #include <array>
 #include <cstddef>
@@ -25,52 +25,52 @@
 
 namespace nendo::session {
 
-/// Passes commands to a running loop, and reports dropped ones. For one thread, except for ring(),
-/// of which the loop is the consumer.
+/// Passes commands to a running loop, and reports dropped ones. For one thread; the loop consumes
+/// ring().
 class LoopCommands {
 public:
   explicit LoopCommands(std::size_t at_least) : ring_(at_least) {}
 
   flow::CommandRing& ring() noexcept { return ring_; }
-  /// Returns how many the loop has not taken yet.
+  /// Returns the number of commands that the loop has not taken yet.
   std::size_t size() const noexcept { return ring_.size(); }
   /// Passes the command on. Returns false if the ring is full, as when the loop has stopped; the
-  /// command is then dropped, and named by the next dropped().
+  /// command is then dropped, and the next dropped() names it.
   bool push(const flow::Command& command);
   /// Passes the command on, or returns false if the ring is full.
   bool try_push(const flow::Command& command) noexcept { return ring_.try_push(command); }
-  /// Returns a message that names what was dropped since the last call, or nothing. Each command is
-  /// named once until one is passed on again.
+  /// Returns a message with the commands dropped since the last call, or nothing. Names each
+  /// command once until one is passed on again.
   std::optional<std::string> dropped();
 
 private:
   flow::CommandRing ring_;
-  std::vector<std::string_view> dropped_; ///< since the last command that was passed on
-  std::size_t reported_ = 0;              ///< how many of these dropped() has named
+  std::vector<std::string_view> dropped_; ///< commands dropped since the last successful push()
+  std::size_t reported_ = 0;              ///< the number of them that dropped() has named
 };
 
-/// Writes the shape to `out`, with the axis `up` of the file up, and notes on standard error what
-/// such a file cannot keep. If that is impossible, on a full disk for example, it writes to the
-/// folder for temporary files, so that the shape is not lost. Blocks. Error: failed, also if the
-/// shape is in the other folder; the message says where.
+/// Writes the shape to `out`, with `up` as the file's up axis, and notes on standard error what the
+/// format cannot store. If that fails, as on a full disk, writes to the folder for temporary files,
+/// so that the shape is not lost. Blocks. Error: failed, also if the shape is in the other folder,
+/// which the message names.
 Result<void> write_shape(const std::string& out, const deform::Mesh& shape,
                          deform::UpAxis up = deform::UpAxis::y);
 
-/// Saves a few times per second at most, even if it is asked more often.
+/// Saves files, at most a few times per second.
 class RunSaving {
 public:
   /// Saved shapes are named after `options.out` and numbered. `recorder` must outlive this.
   RunSaving(const RunOptions& options, RunRecorder& recorder);
 
-  /// Takes note of flow::SaveShape, flow::SaveRecording and flow::SavePuppet for save(). Other
-  /// commands change nothing.
+  /// Queues flow::SaveShape, flow::SaveRecording and flow::SavePuppet for save(). Ignores other
+  /// commands.
   void add(const flow::Command& command) noexcept;
-  /// Returns whether anything waits to be saved.
+  /// Returns whether a save is pending.
   bool is_due() const noexcept { return shape_ || recording_ || puppet_; }
-  /// Returns whether anything waits to be saved and the last save() was long enough ago.
+  /// Returns whether a save is pending, and the last save() was long enough ago.
   bool is_due_now() const noexcept { return is_due() && HostClock::now() >= next_; }
-  /// Saves what waits. The shape is that of the newest frame. Blocks while it writes. Returns a
-  /// message for people that says what was saved.
+  /// Saves all pending files, the shape from the newest frame. Blocks while it writes. Returns a
+  /// message for the user with the results.
   std::string save(flow::DeformLoop& loop);
 
 private:
@@ -80,7 +80,7 @@ private:
 
   std::string out_;
   deform::UpAxis up_;
-  std::string model_; ///< its file
+  std::string model_; ///< the model's file
   PuppetPlace out_puppet_;
   RunRecorder& recorder_;
   int saved_ = 0;
@@ -94,22 +94,21 @@ class RunCommands {
 public:
   using Report = std::function<void(const std::string& message)>;
 
-  /// All of them must outlive this. `placed` has its loop before the first call except of ring().
-  /// All calls come from the main thread.
+  /// All arguments must outlive this. `placed` must have its loop before the first call, except
+  /// ring(). Main thread.
   RunCommands(const RunOptions& options, const PlacedLoop& placed, const std::vector<Sink*>& sinks,
               RunRecorder& recorder, RunModels& models, RunSaving& saving, Report report)
       : options_(options), placed_(placed), sinks_(sinks), recorder_(recorder), models_(models),
         saving_(saving), report_(std::move(report)) {}
 
-  /// The ring that the loop takes its commands from.
+  /// The loop's command ring.
   flow::CommandRing& ring() noexcept { return for_loop_.ring(); }
-  /// Evaluates the latest frame: cuts by a completed wire, and reports a layer's punch in and out.
+  /// Handles the latest frame: cuts by a completed wire, and reports punch in and out.
   void follow_frame(const flow::Frame& frame);
-  /// Executes these commands, and those of the take that is played over, or keeps them for
-  /// follow().
+  /// Executes or queues these commands, and those of the take.
   void execute(const Asks& asks);
   /// Continues pending commands: passes on the newest settings when the loop has the previous ones,
-  /// changes puppets, begins or ends a recording, and continues with making a model.
+  /// changes puppets, begins or ends a recording, and continues making a model.
   void follow(bool fresh);
   /// Returns whether a command is pending.
   bool is_due() const;
@@ -142,7 +141,7 @@ private:
   void execute(const flow::JoinParts& asked) { ask_model(asked); }
   void execute(const flow::EditPart& asked) { ask_model(asked); }
   void execute(const flow::ChangePuppet& change);
-  // These are not commands of users: a loop writes them to a log, or Punch makes them.
+  // Not from users: a loop logs them, or Punch makes them.
   void execute(const flow::HoldStill&) noexcept {}
   void execute(const flow::ChangeModel&) noexcept {}
   void execute(const flow::SetLayer&) noexcept {}
@@ -168,17 +167,18 @@ private:
   Report report_;
   LoopCommands for_loop_{256};
   std::array<std::optional<flow::WristMove>, 2> wrists_; ///< not passed on yet
-  bool move_refused_ = false; ///< the refusal of wrist moves was reported
+  bool move_refused_ = false;                            ///< a refused wrist move was reported
   bool ends_ = false;
   std::optional<flow::LoopSettings> settings_; ///< not passed on yet
   std::string no_effect_;                      ///< the last reported setting without effect
   Rig puppet_;                                 ///< not passed on yet
-  std::optional<std::uint32_t> taken_puppet_;  ///< not passed on yet; the take's number
+  std::optional<std::uint32_t> taken_puppet_;  ///< the take's number, not passed on yet
   std::uint64_t take_refused_ = 0; ///< the reported number of the take's dropped commands
-  std::map<std::uint32_t, std::uint32_t> taken_puppets_; ///< the loop's numbers of the take's
-  std::vector<flow::Command> mask_edits_;                ///< not passed on yet; also of symmetry
-  std::optional<bool> record_;                           ///< to a file or not; not passed on yet
-  std::uint32_t wires_ = 0;                              ///< number of completed wires
+  std::map<std::uint32_t, std::uint32_t>
+      taken_puppets_;                     ///< the loop's puppet number for each of the take's
+  std::vector<flow::Command> mask_edits_; ///< edits of masks and symmetry, not passed on yet
+  std::optional<bool> record_;            ///< the requested recording, not passed on yet
+  std::uint32_t wires_ = 0;               ///< number of completed wires
   std::uint64_t marks_ = 0;
   std::optional<bool> is_in_; ///< the live layers play in the latest frame
 };

@@ -20,20 +20,19 @@
 
 namespace nendo::flow {
 
-/// Writes the parts of a hand in that pose, on the stage, into HandBody::part_count parts in model
-/// units. Each part's surface goes with the joint that carries it. Wait-free, no allocation.
+/// Writes a hand's HandBody::part_count parts, in model units, for a pose on the stage. The surface
+/// of each part moves with the part's joint. Wait-free, no allocation.
 NENDO_API void contact_parts(hand::HandBody& body, const hand::HandPose& pose,
                              double units_per_metre, std::span<deform::ContactPart> parts) noexcept;
 
-/// Returns T_stage_wrist, moved away from the model's middle until the hand is `clear_m` from all
-/// vertices, of which some thousands are looked at. Hands that begin to press clay must not be in
-/// it. Allocates.
+/// Returns T_stage_wrist, moved away from the model's centre until the hand is `clear_m` from all
+/// vertices, of which it tests some thousands. Hands must not begin inside clay. Allocates.
 NENDO_API Eigen::Isometry3d beside(const deform::Mesh& model, double units_per_metre,
                                    const hand::HandSkeleton& skeleton,
                                    const hand::JointAngles& angles,
                                    const Eigen::Isometry3d& T_stage_wrist, double clear_m);
 
-/// The bodies of one hand or two, where they are now, and the table on which the model lies.
+/// The bodies of one or two hands in their current poses, and the table under the model.
 class NENDO_API HandBodies {
 public:
   /// Allocates. All hands are in the pose of zero angles.
@@ -41,7 +40,7 @@ public:
 
   /// Moves a hand's body; its pose is on the stage. Wait-free, no allocation.
   void follow(std::size_t hand, const hand::HandPose& pose) noexcept;
-  /// Returns the parts of the first hand, then those of the next, and of the table; model units.
+  /// Returns the parts of the first hand, of the second hand, and of the table; model units.
   std::span<const deform::ContactPart> parts() const noexcept { return parts_; }
   std::size_t count() const noexcept { return bodies_.size(); } ///< the number of hands
   static constexpr std::size_t tables = 1;
@@ -55,56 +54,55 @@ private:
   double units_per_metre_;
 };
 
-/// Returns the bodies of the hands that there are, by side, left hand first. Without a table it is
-/// table_under() the model. Allocates.
+/// Returns the bodies of the present hands, left hand first. The default table is table_under() the
+/// model. Allocates.
 NENDO_API std::shared_ptr<HandBodies>
 make_bodies(const std::array<std::optional<hand::HandSkeleton>, 2>& by_side,
             const deform::Mesh& model, double units_per_metre,
             const std::optional<Table>& table = {});
 
-/// The corners of a model's triangles, three each, and the volume that the clay had at first, in
-/// the model's own units.
+/// The vertex indices of a model's triangles, three each, and the clay's initial volume, in model
+/// units.
 struct NENDO_API ClayModel {
   explicit ClayModel(const deform::Mesh& mesh);
-  /// For a mesh that was refined: the clay is the same, and its other triangles enclose a little
-  /// less.
+  /// For a refined mesh, whose triangles enclose slightly less of the same clay.
   ClayModel(const deform::Mesh& mesh, double first_volume);
 
   std::vector<std::uint32_t> corners;
   double volume = 0.0; ///< >= 0
 };
 
-/// What the hands do to clay in a frame, and did before. Frame::contacts has the places.
+/// The state of the clay, and of its contact with hands, in a frame. Frame::contacts has the
+/// positions.
 struct ClayState {
-  bool is_clay = false;        ///< the mode is clay; otherwise all else is 0
-  std::uint32_t touching = 0;  ///< places at which hands touch the surface
-  double penetration_mm = 0.0; ///< how deep the surface was left in a hand, before it was set right
-  double behind_mm = 0.0;      ///< the path of a hand that is left for the next tick
-  double volume = 0.0;         ///< now, in cubic model units; 0 if the surface is not closed
+  bool is_clay = false;        ///< the mode is clay; otherwise all other members are 0
+  std::uint32_t touching = 0;  ///< the number of contacts of hands with the surface
+  double penetration_mm = 0.0; ///< the depth of the surface in a hand before its correction
+  double behind_mm = 0.0;      ///< the rest of a hand's path, for the next tick
+  double volume = 0.0;         ///< in cubic model units; 0 if the surface is not closed
   double first_volume = 0.0;   ///< the model's volume before the hands
 
-  /// Returns the volume, relative to the first one; 1 if there is none.
+  /// Returns volume / first_volume; 1 if first_volume is 0.
   double volume_part() const noexcept { return first_volume > 0.0 ? volume / first_volume : 1.0; }
 };
 
-/// Returns how hard a hand presses there, from 0 to 1: half of it by the pressure that stays, half
-/// by how fast it presses on.
+/// Returns the strength of a contact, 0 to 1: half of it from the static pressure, half from the
+/// speed of pressing.
 NENDO_API float strength_of(const deform::ClayContact& contact) noexcept;
 
-/// How hard each finger, thumb to little finger, and the palm press, from 0 to 1.
+/// The contact strengths of the fingers, thumb to little finger, and of the palm, 0 to 1.
 using HandTouch = std::array<float, hand::finger_count + 1>;
 /// Returns the touch of a body, by its index in HandBodies.
 NENDO_API HandTouch touch_of(std::span<const deform::ClayContact> contacts,
                              std::size_t body) noexcept;
 
-/// Its functions do what those of deform::Type2Deformer do; the bodies, and not the fingertips,
-/// give the hands' positions. None but the constructors allocates.
+/// Has the interface of deform::Type2Deformer, but follows the hands' bodies instead of fingertips.
+/// Only the constructor allocates.
 class NENDO_API ClayHands {
 public:
-  /// `radius_m` is the distance from a hand within which clay yields, on the stage; less than
-  /// min_radius_m counts as that, because palms crease the surface otherwise. `shape` must outlive
-  /// this. With a `mirror`, the x of a plane in model units, the hands' mirror images press as
-  /// well.
+  /// Clay within `radius_m` of a hand, on the stage, yields. Values below min_radius_m are raised
+  /// to it, because palms would crease the surface. `shape` must outlive this. With `mirror`, the x
+  /// of a plane in model units, the hands' mirror images also press.
   ClayHands(deform::SculptedShape& shape, std::shared_ptr<const ClayModel> model,
             std::shared_ptr<const HandBodies> bodies, double radius_m,
             const deform::DeformerOptions& options, std::optional<double> mirror);
@@ -115,14 +113,14 @@ public:
   void go_on_from(const ClayHands& before, bool keeps_volume) noexcept {
     clay_.go_on_from(before.clay_, keeps_volume);
   }
-  /// Presses the surface out of where the bodies are now. With `ends`, their whole path is made.
+  /// Pushes the surface out of the bodies. With `ends`, completes their whole path.
   deform::FieldStatus follow(const deform::Points&, bool ends);
   void release(bool is_step) noexcept;
   deform::FieldStatus go(deform::HistoryMove move, const deform::Points&) {
     return clay_.go(move, parts());
   }
 
-  /// Always empty: no short formula describes what hands do.
+  /// Always empty: fields cannot describe the effect of hands.
   const deform::FieldSequence& fields() const noexcept { return fields_; }
   deform::ChainReport report() const noexcept { return {}; }
   /// Returns whether the last follow() changed the shape.
@@ -141,15 +139,15 @@ private:
   deform::ClayDeformer clay_;
   deform::FieldSequence fields_;
   bool is_moved_ = false;
-  bool presses_ = false; ///< since the last release
+  bool presses_ = false; ///< has pressed since the last release
 };
 
-/// The parts that hands hold in a frame.
+/// The model's parts, and those that hands hold, in a frame.
 struct PartsState {
-  std::uint32_t count = 0; ///< the number of parts; 0: another mode is in effect
-  /// The part that each hand holds, of the hands that are present, left hand first; none: no_index.
+  std::uint32_t count = 0; ///< the number of parts; 0 in other modes
+  /// The part that each present hand holds, left hand first; no_index: none.
   std::array<std::uint32_t, 2> held{deform::no_index, deform::no_index};
-  /// The part that a hand has taken last; no_index if none has taken any of this model's.
+  /// The part that a hand grabbed last; no_index: none of this model yet.
   std::uint32_t chosen = deform::no_index;
 
   bool is_held() const noexcept {
@@ -157,44 +155,44 @@ struct PartsState {
   }
 };
 
-/// Its functions do what those of deform::PartMover do, for hands whose fingertips are at `tips`,
-/// five columns per hand, model units. A hand is closed if its thumb has met the index or the
-/// middle finger, until these are farther apart again. A part turns with the palm, and goes with
-/// the middle between thumb and fingers. None but the constructor allocates.
+/// Has the interface of deform::PartMover, for hands with fingertips at `tips`, five columns per
+/// hand, model units. A hand closes when its thumb is within closed_m of the index or middle
+/// finger, and opens beyond open_m. A part turns with the palm, and moves with the midpoint of
+/// thumb and fingers. Only the constructor allocates.
 class NENDO_API PartHands {
 public:
-  static constexpr double closed_m = 0.025; ///< from tip to tip
+  static constexpr double closed_m = 0.025; ///< between fingertips
   static constexpr double open_m = 0.040;
-  static constexpr double reach_m = 0.040; ///< from between the tips to a vertex
+  static constexpr double reach_m = 0.040; ///< from the midpoint of the tips to a vertex
 
-  /// `shape` must outlive this. Parts with a protected vertex in `mask` stay.
+  /// `shape` must outlive this. Parts with a vertex that `mask` protects do not move.
   PartHands(deform::SculptedShape& shape, std::shared_ptr<const deform::ModelParts> parts,
             std::shared_ptr<const HandBodies> bodies,
             std::shared_ptr<const deform::VertexMask> mask);
 
   deform::FieldStatus begin(const deform::Points& tips) { return mover_.begin(grips(tips)); }
   deform::FieldStatus grab(const deform::Points& tips) { return mover_.grab(grips(tips)); }
-  /// Moves what is held to where the hands are, always the whole path.
+  /// Moves the held parts to the hands, always along the whole path.
   deform::FieldStatus follow(const deform::Points& tips, bool ends) noexcept;
   void release(bool is_step) noexcept;
   deform::FieldStatus go(deform::HistoryMove move, const deform::Points& tips) {
     return mover_.go(move, grips(tips));
   }
 
-  /// Always empty: a part moves as a whole, and others stay.
+  /// Always empty: parts move rigidly.
   const deform::FieldSequence& fields() const noexcept { return fields_; }
   deform::ChainReport report() const noexcept { return {}; }
   bool is_moved() const noexcept { return mover_.is_moved(); } ///< in the last follow()
   PartsState state() const noexcept;
-  /// Returns where hands hold parts, as if these were clay that they touch lightly.
+  /// Returns the contacts of hands with held parts, as light contacts with clay.
   std::span<const deform::ClayContact> contacts() const noexcept { return contacts_; }
 
 private:
-  static constexpr std::size_t max_places = 24; ///< the limit of a hand's contacts
+  static constexpr std::size_t max_places = 24; ///< max contacts per hand
 
   struct Hand {
     bool is_closed = false;
-    std::uint32_t held = deform::no_index; ///< the part of these places
+    std::uint32_t held = deform::no_index; ///< the part that has these places
     std::vector<std::size_t> places{};     ///< in block order
   };
 

@@ -1,7 +1,6 @@
 #pragma once
-// The commands that a user gives to a run by keys, by the window's mouse and buttons, or by a
-// browser. A command is a plain value of fixed size, so that it passes through rings without
-// allocation.
+// The commands of a run, from keys, from the window's mouse and buttons, or from a browser. A
+// command is a trivially copyable value, so that rings pass it without allocation.
 
 #include <array>
 #include <cstdint>
@@ -22,11 +21,11 @@ namespace nendo::flow {
 /// Recordings keep the numbers, so new values are added at the end.
 enum class Request : std::uint8_t {
   grab,   ///< the hands grab the model
-  let_go, ///< and release it; what they have shaped stays
-  commit, ///< the shape so far becomes the rest shape, and the hands hold it again
-  undo,   ///< back to the rest shape before the last commit (deform::HistoryMove)
-  redo,   ///< undoes the last undo, if nothing was committed since
-  reset,  ///< back to the model as it was loaded, which an undo undoes
+  let_go, ///< the hands release the model; the shape stays
+  commit, ///< the shape becomes the rest shape, and the hands hold it again
+  undo,   ///< reverts the last step (deform::HistoryMove)
+  redo,   ///< reverts the last undo, if nothing was committed since
+  reset,  ///< restores the loaded model; an undo reverts this
   /// The hands that hold the model re-grab where they are, without a commit
   /// (Shaping::ask()).
   take_hold,
@@ -36,7 +35,7 @@ inline constexpr std::array requests{Request::grab,     Request::let_go, Request
                                      Request::undo,     Request::redo,   Request::reset,
                                      Request::take_hold};
 
-/// Returns whether a request undoes, redoes or resets: Shaping does these one after another.
+/// Returns whether a request is an undo, redo or reset. Shaping executes these in sequence.
 constexpr bool goes_through_history(Request request) noexcept {
   return request == Request::undo || request == Request::redo || request == Request::reset;
 }
@@ -44,20 +43,18 @@ constexpr bool goes_through_history(Request request) noexcept {
 NENDO_API std::string_view name_of(Request request) noexcept;
 NENDO_API std::optional<Request> request_named(std::string_view name) noexcept;
 
-/// Lets the loop continue with these settings from its next tick on
-/// (DeformLoop::change_settings()).
+/// Changes the loop's settings from its next tick on (ChangeBroker::change_settings()).
 struct ChangeSettings {
   LoopSettings settings;
   friend bool operator==(const ChangeSettings&, const ChangeSettings&) = default;
 };
-/// Makes a finer model of the present one (deform::subdivide()), with which the loop then
-/// continues.
+/// Subdivides the model (deform::subdivide()), and the loop continues with the result.
 struct Subdivide {
   friend bool operator==(const Subdivide&, const Subdivide&) = default;
 };
 /// Adapts the model's triangles to the current shape (deform::Refiner).
 struct Refine {
-  /// No edge is split beyond it.
+  /// No edge is split above this number.
   std::uint32_t max_vertices = std::uint32_t{1} << 22;
   friend bool operator==(const Refine&, const Refine&) = default;
 };
@@ -70,7 +67,7 @@ struct SetRecording {
   bool on = false;
   friend bool operator==(const SetRecording&, const SetRecording&) = default;
 };
-/// Writes the present shape to a file of its own.
+/// Writes the current shape to a new file.
 struct SaveShape {
   friend bool operator==(const SaveShape&, const SaveShape&) = default;
 };
@@ -82,27 +79,27 @@ struct SavePuppet {
 struct SaveRecording {
   friend bool operator==(const SaveRecording&, const SaveRecording&) = default;
 };
-/// Marks this moment in the recording, so that it is found again. The shape does not depend on it.
+/// Marks this time in the recording. The shape does not depend on it.
 struct Mark {
   friend bool operator==(const Mark&, const Mark&) = default;
 };
-/// Lets a hand, or one of its fingers, release the functions of a puppet that it plays, or grab
-/// them again (puppet::RigPlayer::set_clutch()).
+/// Makes a hand, or one of its fingers, release its functions of a puppet, or grab them again
+/// (puppet::RigPlayer::set_clutch()).
 struct SetClutch {
   Side side = Side::left;
   std::uint8_t finger = puppet::RigPlayer::all_fingers;
   bool holds = true;
   friend bool operator==(const SetClutch&, const SetClutch&) = default;
 };
-/// Lets a function of a puppet listen to another signal. Those that a puppet has not are passed
-/// over.
+/// Sets the input signal of a puppet's function. Functions that the puppet does not have are
+/// ignored.
 struct SetRole {
   std::uint16_t function = 0; ///< the index in puppet::Puppet::functions
   puppet::HandSignal input;
   friend bool operator==(const SetRole&, const SetRole&) = default;
 };
-/// One hand plays both sides of a puppet, or each plays its own. Without a puppet, fingertips shape
-/// both sides of the model's plane of symmetry, or only where they are.
+/// Turns symmetry on or off. With symmetry, one hand plays both sides of a puppet or, without a
+/// puppet, fingertips shape both sides of the model's plane of symmetry.
 struct SetSymmetry {
   bool on = false;
   friend bool operator==(const SetSymmetry&, const SetSymmetry&) = default;
@@ -110,7 +107,7 @@ struct SetSymmetry {
 /// An edit of the masks, which protect parts of the model.
 enum class MaskEdit : std::uint8_t {
   hold,   ///< protects a ball
-  free,   ///< removes the balls whose middle is in that ball
+  free,   ///< removes the balls with centres in that ball
   clear,  ///< removes all protection
   invert, ///< protects what was free, and frees what was protected
 };
@@ -119,28 +116,28 @@ NENDO_API std::optional<MaskEdit> mask_edit_named(std::string_view name) noexcep
 /// Edits the masks of the fingertips, or of the puppet that is played.
 struct NENDO_API SetMask {
   MaskEdit edit = MaskEdit::clear;
-  std::array<double, 3> at{}; ///< a place of the undeformed model, model units
+  std::array<double, 3> at{}; ///< the ball's centre on the undeformed model, model units
   double radius = 0.0;        ///< model units, > 0; the ball is protected by half at least
   bool is_usable() const noexcept;
   friend bool operator==(const SetMask&, const SetMask&) = default;
 };
-/// Lets a layer (Layer) come in, or go out. The inputs of a loop are numbered in their order.
+/// Fades a layer (Layer) in or out. `input` is the index of the loop's input.
 struct SetLayer {
   std::uint8_t input = 0;
   bool on = true;
   friend bool operator==(const SetLayer&, const SetLayer&) = default;
 };
-/// Lets the layers that live gloves play come in, or go out if they are in: punch in and out.
+/// Fades the layers of live gloves in, or out if they are in: punch in and out.
 struct Punch {
   friend bool operator==(const Punch&, const Punch&) = default;
 };
 /// The cutting tool.
 enum class Blade : std::uint8_t {
-  wire,  ///< between both index fingertips, or, of one hand alone, between thumb and index finger
-  knife, ///< from the tip of an index finger on, where it points to; as long as the model
+  wire,  ///< between the index fingertips; with one hand, between thumb and index finger
+  knife, ///< from the tip of an index finger in its direction, as long as the model
 };
-/// Begins to draw a wire, or a knife, through the model (WirePath). Or ends that, and what it swept
-/// then cuts the model. Meanwhile the hands release the model.
+/// Begins to draw a wire or knife through the model (WirePath), or ends it and cuts the model along
+/// the swept surface. The hands release the model meanwhile.
 struct DrawWire {
   bool on = false;
   Blade blade = Blade::wire;
@@ -151,11 +148,11 @@ struct JoinParts {
   double seam_width = 0.0; ///< model units, >= 0
   friend bool operator==(const JoinParts&, const JoinParts&) = default;
 };
-/// Puts a copy of a part beside it, or removes the part: the one that a hand holds, or has held
-/// last (PartsState::chosen).
+/// Copies a part, and places the copy beside it, or removes the part. The default part is the last
+/// one that a hand grabbed (PartsState::chosen).
 struct EditPart {
   bool removes = false;
-  std::uint32_t part = deform::no_index; ///< or that one of the newest model
+  std::uint32_t part = deform::no_index; ///< an index in the newest model; no_index: the default
   friend bool operator==(const EditPart&, const EditPart&) = default;
 };
 /// Ends the run, which then writes its shape.
@@ -163,23 +160,23 @@ struct EndRun {
   friend bool operator==(const EndRun&, const EndRun&) = default;
 };
 
-/// The hands stop shaping at the end of a tick. Requested only while a new model is built from the
-/// shape; the ChangeModel that follows lets them continue where they have stopped.
+/// The hands stop shaping at the end of a tick, while a new model is made of the shape. After the
+/// ChangeModel that follows, they continue where they stopped.
 struct HoldStill {
   friend bool operator==(const HoldStill&, const HoldStill&) = default;
 };
 /// The origin of a model. Recordings keep the numbers.
 enum class ModelSource : std::uint8_t {
-  kept,       ///< an earlier version, to which an undo or a redo leads
+  kept,       ///< a stored version, for an undo or a redo
   subdivided, ///< the previous model, subdivided
-  refined,    ///< the previous model, refined for its shape
-  cut,        ///< the previous shape, cut by the wire that was drawn last
+  refined,    ///< the previous model, refined for its current shape
+  cut,        ///< the previous shape, cut by the last drawn wire
   joined,     ///< the previous shape, with all its parts joined
   copied,     ///< the previous shape, with a copy of one of its parts
   removed,    ///< the previous shape, without one of its parts
-  topology,   ///< the previous shape, changed where it was thin
+  topology,   ///< the previous shape, with changed topology where it was thin
 };
-/// Returns whether such a model is made of the previous shape, which becomes its rest.
+/// Returns whether the previous shape becomes the rest shape of such a model.
 constexpr bool is_of_shape(ModelSource source) noexcept {
   return source >= ModelSource::cut;
 }
@@ -187,17 +184,17 @@ constexpr bool is_of_shape(ModelSource source) noexcept {
 struct ChangeModel {
   std::uint32_t number = 0;
   ModelSource source = ModelSource::kept;
-  std::uint32_t max_vertices = 0; ///< Refine::max_vertices, if it is refined
-  double seam_width = 0.0;        ///< JoinParts::seam_width, if it is joined
-  std::uint32_t part = 0;         ///< that is copied or removed (deform::ModelParts)
+  std::uint32_t max_vertices = 0; ///< Refine::max_vertices, for `refined`
+  double seam_width = 0.0;        ///< JoinParts::seam_width, for `joined`
+  std::uint32_t part = 0;         ///< the copied or removed part (deform::ModelParts)
   bool is_new() const noexcept { return source != ModelSource::kept; }
   friend bool operator==(const ChangeModel&, const ChangeModel&) = default;
 };
 
-/// The loop continues with another puppet (DeformLoop::change_puppet()). For the log and its replay
-/// only.
+/// The loop continues with another puppet (ChangeBroker::change_puppet()). Only for the log and its
+/// replay.
 struct ChangePuppet {
-  std::uint32_t number = 0; ///< DeformLoop::puppet()
+  std::uint32_t number = 0; ///< ChangeBroker::puppet()
   friend bool operator==(const ChangePuppet&, const ChangePuppet&) = default;
 };
 
@@ -225,8 +222,8 @@ constexpr std::optional<ChangeModel> model_asked_by(const Command& command) noex
                        edit->part};
   return std::nullopt;
 }
-/// Returns the command that asks for such a change, which is_new() and is no cut: that is asked for
-/// by a wire.
+/// Returns the command that requests a change. It must be is_new(), and not a cut, which needs a
+/// wire.
 constexpr Command asking_for(const ChangeModel& change) noexcept {
   if (change.source == ModelSource::copied || change.source == ModelSource::removed)
     return EditPart{change.source == ModelSource::removed, change.part};
@@ -239,7 +236,7 @@ constexpr Command asking_for(const ChangeModel& change) noexcept {
 /// The asking thread pushes commands, and the loop's thread takes them.
 using CommandRing = SpscRing<Command>;
 
-/// Returns whether it is about how a puppet is played.
+/// Returns whether the command controls a puppet's player.
 constexpr bool is_for_puppet(const Command& command) noexcept {
   return std::holds_alternative<SetClutch>(command) || std::holds_alternative<SetRole>(command) ||
          std::holds_alternative<SetSymmetry>(command);
@@ -252,27 +249,27 @@ constexpr bool is_for_loop(const Command& command) noexcept {
          std::holds_alternative<DrawWire>(command) || is_for_puppet(command);
 }
 
-/// Shows the requested settings until a loop has had time to take them, and then those in effect,
-/// by whichever client they were requested. Asking thread; does not allocate.
+/// The settings that a client shows: the requested ones until the loop has had time to take them,
+/// then those in effect. Asking thread; does not allocate.
 class NENDO_API WantedSettings {
 public:
   static constexpr std::array kernels{deform::Wendland::c0, deform::Wendland::c2,
                                       deform::Wendland::c4, deform::Wendland::c6};
   static constexpr HostClock::duration patience = std::chrono::seconds(1);
 
-  LoopSettings now; ///< the chosen settings; widgets write here
+  LoopSettings now; ///< the chosen settings, which widgets write
 
-  /// To be called with each frame's settings. Returns true if other settings are chosen by that.
+  /// Call it with each frame's settings. Returns true if `now` has changed.
   bool follow(const LoopSettings& in_effect) noexcept;
-  /// Returns the command for the chosen settings, if they were not requested yet.
+  /// Returns the command for `now`; nothing if it was already requested.
   std::optional<Command> ask() noexcept;
 
-  /// The points of a puppet do not press clay.
+  /// With `is_puppet`, skips the modes that need hands.
   void next_mode(bool is_puppet) noexcept;
   void next_kernel() noexcept;
-  /// Gives all fingers the next brush, none left out; brushes are of type 2.
+  /// Gives all fingers the next brush, skipping Brush::none, and sets type 2.
   void next_brush() noexcept;
-  /// A quarter more of clay; from 1 to 0.
+  /// Adds 1/4 to keep_volume; 1 wraps to 0.
   void next_volume() noexcept;
   void toggle_hold() noexcept { now.hold = now.hold == Hold::hand ? Hold::fingertips : Hold::hand; }
   void toggle_folding() noexcept { now.injective = !now.injective; }
@@ -280,12 +277,12 @@ public:
     const bool is_off = now.filter.kind == hand::FilterKind::off;
     now.filter.kind = is_off ? hand::FilterKind::one_euro : hand::FilterKind::off;
   }
-  /// Make all radii larger, or smaller, by a tenth, within the range.
+  /// Scale all radii by 1.1 or 1/1.1, within the range.
   void enlarge_radii() noexcept { scale_radii(1.1); }
   void reduce_radii() noexcept { scale_radii(1.0 / 1.1); }
-  bool has_one_radius() const noexcept; ///< all fingers have the same
+  bool has_one_radius() const noexcept; ///< all fingers have the same radius
   bool has_one_brush() const noexcept;
-  /// Make the brushes stronger, or weaker and then their opposites, by a tenth of the most.
+  /// Change the brushes' strength by +-0.1; below 0 their effect is reversed.
   void strengthen() noexcept { add_strength(0.1); }
   void weaken() noexcept { add_strength(-0.1); }
 

@@ -1,6 +1,6 @@
 #pragma once
-// The loop drains the gloves' rings, computes both hands' fingertips, makes control vectors of
-// them, deforms the model and publishes the frame, at a fixed rate.
+// The loop: at a fixed rate, it drains the gloves' rings, computes fingertips and control vectors,
+// deforms the model and publishes the frame.
 
 #include <atomic>
 #include <cstddef>
@@ -25,19 +25,19 @@
 
 namespace nendo::flow {
 
-/// The stages of a tick. A measurement may leave some out; their results then stay as they were.
+/// The stages of a tick. A measurement may disable some; their results then do not change.
 struct TickStages {
   bool input = true;   ///< drains the rings
   bool hands = true;   ///< joints and fingertips
   bool deform = true;  ///< field and vertices
-  bool publish = true; ///< gives the frame to the reader and the sinks
+  bool publish = true; ///< passes the frame to the reader and the sinks
 };
 
 struct LoopOptions : PaceOptions {
   SculptorOptions sculptor;
   TickStages stages;
-  /// The ring that gets every tick's record, or refuses and counts it (counters()) if it is full.
-  /// It must outlive the loop.
+  /// Receives each tick's record. A full ring refuses records and counts them (counters()). It must
+  /// outlive the loop.
   TickRing* records = nullptr;
   /// The commands, which the loop takes at the beginning of a tick. It must outlive the loop.
   CommandRing* commands = nullptr;
@@ -46,32 +46,30 @@ struct LoopOptions : PaceOptions {
   /// Recorded input that the loop takes in its ticks, before live input. It must outlive the
   /// loop.
   InputScript* script = nullptr;
-  /// When a wire or knife is drawn (DrawWire) by itself, since the first tick was due.
+  /// The times of an automatic DrawWire, since the first tick's deadline.
   struct WireTime {
     double from_s = 0.0, to_s = 0.0;
     Blade blade = Blade::wire;
   };
   std::optional<WireTime> wire_time{};
-  std::size_t undo_max_bytes = 0; ///< UndoSpace::max_bytes, of all versions together
+  std::size_t undo_max_bytes = 0; ///< UndoSpace::max_bytes for all versions together
   /// The sinks that are shown every frame. They must outlive the loop.
   std::vector<FrameSink*> sinks;
-  /// Is notified of each sample that comes; OverrunPolicy::sample needs it. It must outlive the
-  /// loop.
+  /// Is notified of each sample. OverrunPolicy::sample needs it. It must outlive the loop.
   EventCount* event_count = nullptr;
   HostClock::duration silent_after = std::chrono::milliseconds(500);
   SwitchAction switch_action = SwitchAction::none;
-  /// Whether the hands hold the model at first; nothing: unless SwitchAction::grab waits for a
-  /// switch.
+  /// Whether the hands initially hold the model; nothing: true unless switch_action is
+  /// SwitchAction::grab.
   std::optional<bool> held{};
-  /// A puppet: the hands play its functions, which move its points, in place of touching the model
-  /// with their fingertips. The supports are then those of the points. It must be of this model.
-  /// One without points (puppet::Puppet::is_played()) has masks for the fingertips, and perhaps a
-  /// mirror, with which the supports are those of_both_sides().
-  /// Where its distances are along the surface, sculptor.surface is surface_for() it, or null: the
-  /// loop then makes that itself.
+  /// The puppet of this model that hands play: its functions move its points, and fingertips do not
+  /// touch the model. The supports are those of the points. A puppet without points
+  /// (puppet::Puppet::is_played()) has masks for fingertips, and optionally a mirror, with which
+  /// the supports are those of_both_sides(). If it measures distances along the surface,
+  /// sculptor.surface is its surface_for(), or null: the loop then makes it.
   std::shared_ptr<const puppet::Rig> rig{};
-  puppet::RigState rig_state{}; ///< its player's first state
-  /// The settings at first, if settings_of() the sculptor and the filter would be less exact.
+  puppet::RigState rig_state{}; ///< its player's initial state
+  /// The initial settings, if settings_of() the sculptor and filter would be less exact.
   std::optional<LoopSettings> settings{};
 
   bool begins_held() const noexcept { return held.value_or(switch_action != SwitchAction::grab); }
@@ -81,10 +79,9 @@ struct LoopOptions : PaceOptions {
 /// waits for the other.
 class NENDO_API DeformLoop {
 public:
-  /// `hands` must pass check_inputs(). Copies the model and allocates all that a tick
-  /// needs. The hands grab the model at their first samples. With SwitchAction::grab they hold it
-  /// only while a switch is on. With `first`, the shape is at first that one, in the blocks of the
-  /// model's layout.
+  /// `hands` must pass check_inputs(). Copies the model and allocates all that a tick needs. The
+  /// hands grab the model at their first samples. With SwitchAction::grab they hold it only while a
+  /// switch is on. `first`, if given, is the initial shape, in the blocks of the model's layout.
   DeformLoop(const deform::Mesh& model, const Placement& placement,
              const std::vector<HandInput>& hands, const LoopOptions& options,
              const deform::BlockShape* first = nullptr);
@@ -93,32 +90,33 @@ public:
   DeformLoop& operator=(const DeformLoop&) = delete;
 
   /// Runs ticks on the calling thread, which is then the loop's thread, until `stop` or for
-  /// `max_ticks` deadlines of the grid, also skipped ones. A tick does not allocate or lock; its
-  /// only system call is the sleep. Call make_thread_realtime() first to make wake-ups punctual.
+  /// `max_ticks` deadlines of the grid, skipped ones included. A tick does not allocate or lock;
+  /// its only system call is the sleep. Call make_thread_realtime() first to make wake-ups
+  /// punctual.
   void run(const std::atomic<bool>& stop,
            std::uint64_t max_ticks = std::numeric_limits<std::uint64_t>::max()) noexcept;
-  /// Runs one tick without its sleep, for callers with a clock of their own. Loop's thread.
+  /// Runs one tick without sleep, for callers with their own clock. Loop's thread.
   void tick(std::uint64_t number, HostTime scheduled) noexcept;
-  /// Repeats a tick from an input log. Durations that are measured of it mean nothing.
+  /// Replays a tick of an input log. Its measured durations have no meaning.
   void tick(std::uint64_t number, HostTime scheduled, HostTime woke) noexcept;
 
   /// Changes that the loop takes at the beginning of its next tick. Asking thread.
   ChangeBroker& changes() noexcept { return changes_; }
   const ChangeBroker& changes() const noexcept { return changes_; }
 
-  /// The frames, of which the newest may be taken while the loop runs. Asking thread.
+  /// The frames. A reader can take the newest one while the loop runs. Asking thread.
   FrameExchange& frames() noexcept;
   /// Returns ok or merged if the hands could grab the model. Thread-safe.
   deform::FieldStatus grab_status() const noexcept;
 
-  // Loop's thread, or any one when run() has returned:
+  // Loop's thread, or any thread after run() has returned:
 
   const LoopStats& stats() const noexcept;
-  /// Returns the last wire whose path is complete. The asking thread finds it in Frame::wire.
+  /// Returns the last completed wire. The asking thread uses Frame::wire.
   const WirePath& drawn_wire() const noexcept;
   /// Completes the last stroke and returns the shape, 3 by #vertices. Allocates.
   deform::Points final_shape();
-  /// Does the same, with the faces of the version that the loop has. Allocates.
+  /// Does the same, with the faces of the loop's version. Allocates.
   deform::Mesh final_mesh();
 
 private:

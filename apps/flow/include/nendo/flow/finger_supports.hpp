@@ -1,6 +1,5 @@
 #pragma once
-// The radii of fingertips: as a user gives them, for five fingers or ten, and as the loop's
-// supports.
+// Converts fingertip radii between user input, for five or ten fingers, and the loop's supports.
 
 #include <array>
 #include <string>
@@ -22,22 +21,22 @@ NENDO_API Result<deform::Supports> parse_finger_supports(std::string_view text,
 /// usage, if there is one hand, and the two hands differ.
 NENDO_API Result<deform::Supports> supports_of_hands(const deform::Supports& of_two, int hands);
 
-/// Returns the supports of fingertips and, after them, of their mirror images, from those of the
-/// fingertips alone; and the reverse.
+/// Convert between the supports of fingertips, and those of fingertips followed by their mirror
+/// images.
 NENDO_API deform::Supports of_both_sides(deform::Supports supports, Eigen::Index tips);
 NENDO_API deform::Supports of_one_side(deform::Supports supports, Eigen::Index tips);
 
-/// The supports of both hands, whose fingers have these radii on the stage, thumb to little finger.
+/// Returns the supports of two hands with these radii on the stage, thumb to little finger.
 NENDO_API deform::Supports supports_on_model(const std::array<double, 5>& radius_m,
                                              double units_per_metre);
 
-/// The radii of five fingers on the stage, in metres. supports: a loop's; the largest radius of
-/// each finger's own counts, or of the shared ones if it has none.
+/// Returns the radii of five fingers on the stage, in metres, from a loop's supports: each finger's
+/// largest own radius, or the largest shared one.
 NENDO_API std::array<double, 5> radii_on_stage(const deform::Supports& supports,
                                                double units_per_metre);
 
-/// Returns these radii for messages, on the stage, and in the model's units in
-/// brackets: "13.2 cm (0.248)", or "13.2 to 14 cm (0.248 to 0.263)".
+/// Returns a text for messages, with model units in brackets: "13.2 cm (0.248)", or "13.2 to 14 cm
+/// (0.248 to 0.263)".
 NENDO_API std::string radius_text(const std::array<double, 5>& radius_m, double units_per_metre);
 
 } // namespace nendo::flow

@@ -45,17 +45,16 @@ struct AngleSet {
 /// angle by its name (hand::angle_names). Returns nothing if there is no such part.
 NENDO_API std::optional<AngleSet> angles_named(std::string_view part) noexcept;
 
-/// Parses what a layer plays, of both hands by Placement::index_of(side): parts with commas
-/// between, each a hand (left, right), or a hand, a point and one of its parts, such as
-/// "left.index,right". Returns nothing if the text is not that.
+/// Parses a layer's angles, by Placement::index_of(side): comma-separated hands (left, right) or
+/// hand.part, such as "left.index,right". Returns nothing if the text is invalid.
 NENDO_API std::optional<std::array<AngleSet, 2>> parse_layer(std::string_view text) noexcept;
 
-/// Returns what that parses as the angles of that hand, with whole parts by their names.
+/// Returns the angles of a hand as a text for parse_layer(), with names of whole parts.
 NENDO_API std::string in_words(Side side, AngleSet angles);
 
-/// What makes a layer of an input. Angles are merged, because each glove's counts mean something
-/// else, and the hand that shapes is one skeleton. Where no input before it is of the same hand, it
-/// lies over that hand at rest, in the pose of its own first sample.
+/// Makes an input a layer: its angles replace those of earlier inputs of the same hand. Angles are
+/// merged, because raw counts differ between gloves. If no earlier input has that hand, the layer
+/// is over a static hand, in the pose of the layer's first sample.
 struct NENDO_API Layer {
   /// The fade-in and fade-out time.
   static constexpr HostClock::duration blend_time = std::chrono::milliseconds(150);
@@ -63,37 +62,37 @@ struct NENDO_API Layer {
   static constexpr HostClock::duration longest_step = std::chrono::milliseconds(30);
 
   AngleSet joints = AngleSet::all();
-  bool on = true;      ///< it plays, or fades in
+  bool on = true;      ///< it is in, or fades in
   double weight = 1.0; ///< 0: faded out; 1: faded in
-  /// The hand below, if no input before this one is of that hand. Nothing: the pose of its first
-  /// sample.
+  /// The static hand below, if no earlier input has that hand. Nothing: the pose of the layer's
+  /// first sample.
   std::optional<hand::JointAngles> below{};
 
-  /// Continues its fade. Wait-free.
+  /// Advances the fade. Wait-free.
   void advance(HostClock::duration time) noexcept;
-  /// Puts its angles `own` over those in `angles`. Those that are not its joints stay as they are,
-  /// bit for bit, as all do while it is out; while it is wholly in, its joints are `own`, bit for
-  /// bit. Wait-free.
+  /// Blends the layer's `own` angles over `angles`. Angles outside `joints`, and all angles while
+  /// it is faded out, keep their bits; when it is faded in, `joints` have exactly the bits of
+  /// `own`. Wait-free.
   void play_over(const hand::JointAngles& own, hand::JointAngles& angles) const noexcept;
 };
 
-/// A hand as an input of the loop, or a layer over it. Only the loop's thread drains `ring`, which
-/// must outlive the loop; without one, the input is in LoopOptions::script.
+/// An input of the loop: a hand, or a layer over it. Only the loop's thread drains `ring`, which
+/// must outlive the loop; null: the input is in LoopOptions::script.
 struct HandInput {
   SampleRing* ring = nullptr;
-  Side side = Side::right; ///< which hand it is on the stage, whichever glove it wears
+  Side side = Side::right; ///< the hand's side on the stage, for a glove of either side
   hand::Wearer wearer;
   GloveSample first;            ///< the pose in which the hand grabs the model
-  bool gated = true;            ///< hand::SensorGate keeps out counts that no hand can have caused
-  hand::FilterOptions filter{}; ///< filters the joint angles, at the samples' own times
-  /// Measured bones (HandSkeleton::of_bones) for gloves of the first sample's side, in place of the
+  bool gated = true;            ///< hand::SensorGate rejects counts that no hand can cause
+  hand::FilterOptions filter{}; ///< filters the joint angles by the samples' times
+  /// Measured bones (HandSkeleton::of_bones) for gloves of the first sample's side, instead of the
   /// wearer's size. A recording does not keep them.
   std::optional<hand::HandSkeleton> measured{};
   /// A layer has its own glove and calibration; the hand's bones are those of the first input of
   /// its side.
   std::optional<Layer> layer{};
-  /// Where the wrist of a simulated hand is, by its glove's own time. The loop moves the wrist with
-  /// each sample as a WristMove does, which a recording keeps.
+  /// The wrist path of a simulated hand, over its glove's time. The loop moves the wrist at each
+  /// sample by a WristMove, which a recording keeps.
   std::shared_ptr<const WristPath> wrist_path{};
 
   /// Returns the skeleton for samples from a glove of that side. It always has the side `side`.
@@ -103,22 +102,22 @@ struct HandInput {
   }
 };
 
-/// Checks that a loop can be made of these: one to max_inputs, and of each side at most one that
-/// is no layer, before its layers. Error: bad_input, naming the input that is wrong.
+/// Checks the inputs of a loop: one to max_inputs, and per side at most one that is not a layer,
+/// before its layers. Error: bad_input, naming the wrong input.
 NENDO_API Result<void> check_inputs(std::span<const HandInput> inputs);
-/// Returns how many hands shape: one or two.
+/// Returns the number of hands: one or two.
 NENDO_API std::size_t count_hands(std::span<const HandInput> inputs) noexcept;
 
 /// Loop's thread. Only the constructor allocates.
 struct NENDO_API GloveHand {
   GloveHand(HandInput hand_input, const Placement& placement, bool closes);
 
-  /// Updates `latest` and `angles` by the next sample. Returns true if the switch at the wrist was
-  /// just turned on.
+  /// Updates `latest` and `angles` by the next sample. Returns true if this sample turns the wrist
+  /// switch on.
   bool update(const GloveSample& sample) noexcept;
-  /// Changes the filter, where it differs, and whether pinches are closed.
+  /// Changes the filter, if it differs, and whether pinches are closed.
   void change_filter(const hand::FilterOptions& options, bool closes) noexcept;
-  /// Forgets all that came before `latest` but what adaptation has learned.
+  /// Resets all state before `latest`, except learned ranges and stuck sensors.
   void restart() noexcept;
 
   const hand::HandSkeleton& skeleton() const noexcept {
@@ -130,19 +129,19 @@ struct NENDO_API GloveHand {
   }
 
   HandInput input;
-  std::size_t slot; ///< in arrays by side
+  std::size_t slot; ///< the index in arrays by side
   Eigen::Isometry3d T_stage_wrist;
   std::array<hand::HandSkeleton, 2> skeletons; ///< in the order of the glove's side
   hand::ActiveCalibration calibration;
   hand::SensorGate gate{};
   hand::JointFilter filter;
   GloveSample latest{};
-  bool closes_pinches;        ///< the filter's options say so, and nothing is between the pads
-  hand::JointAngles angles{}; ///< those of `latest`, filtered, with pinches closed
+  bool closes_pinches;        ///< as FilterOptions::close_pinches, but not in clay
+  hand::JointAngles angles{}; ///< the filtered angles of `latest`, with pinches closed
   WristSwitchEdge wrist_switch{};
-  bool is_lowest = true;  ///< the hand of its side, and not a layer over it
+  bool is_lowest = true;  ///< not a layer over another input
   bool is_topmost = true; ///< the last layer of its side, whose samples are counted
-  bool fresh = false;     ///< samples came out of its ring in this tick
+  bool fresh = false;     ///< it got samples in this tick
   bool silent = false;
 
 private:

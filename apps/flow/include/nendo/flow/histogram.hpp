@@ -21,11 +21,11 @@ public:
   std::uint64_t count() const noexcept { return count_; }
   Nanoseconds min() const noexcept { return Nanoseconds(count_ == 0 ? 0 : min_ns_); }
   Nanoseconds max() const noexcept { return Nanoseconds(max_ns_); }
-  /// Returns the least recorded value that `fraction` (0..1) of all values do not exceed, to within
-  /// 1.6 %. It is never above max().
+  /// Returns the smallest value that `fraction` (0 to 1) of all values do not exceed, to within 1.6
+  /// %, and at most max().
   Nanoseconds percentile(double fraction) const noexcept;
-  /// Calls sink(longest, count) for each class of durations that has any, shortest first. `longest`
-  /// is the longest duration of that class, at most max().
+  /// Calls sink(longest, count) for each non-empty bucket, shortest durations first. `longest` is
+  /// the bucket's upper limit, at most max().
   template <class Sink>
   void for_each(Sink&& sink) const {
     for (std::size_t bucket = 0; bucket < bucket_count; ++bucket) {
@@ -37,7 +37,7 @@ public:
   }
 
 private:
-  // There are 64 buckets an octave; values below 64 ns have one each. Values above 2^40 ns, which
+  // There are 64 buckets per octave; values below 64 ns have one each. Values above 2^40 ns, which
   // is 18 minutes, share the last bucket.
   static constexpr unsigned sub_bits = 6;
   static constexpr unsigned max_bits = 40;

@@ -1,6 +1,6 @@
 #pragma once
-// Input that was recorded, played to a loop once more, at its own times and together with live
-// hands. The loop takes it at the beginning of a tick, as it takes samples out of a ring.
+// Replays recorded input to a loop at its original times, together with live hands. The loop takes
+// it at the beginning of a tick, like the samples of a ring.
 
 #include <array>
 #include <atomic>
@@ -18,9 +18,8 @@
 
 namespace nendo::flow {
 
-// The input log has the loop's input in the order in which the loop took it: samples, commands, and
-// after them the tick that used them. Another loop of the same options makes the same shape of the
-// same input, bit for bit.
+// The input log has the loop's input in the order in which the loop took it: samples and commands,
+// followed by their tick. A loop with the same options and input makes the same shape, bit for bit.
 
 struct TakenSample {
   std::uint8_t hand = 0; ///< the index of the loop's input
@@ -32,16 +31,16 @@ struct LoggedTick {
   std::uint64_t number = 0; ///< Pacer::Due::number
   HostTime scheduled{};
   HostTime woke{};
-  std::uint64_t lost = 0; ///< entries that had found the input log full until then
+  std::uint64_t lost = 0; ///< entries that the full input log has refused so far
 };
 
 using InputLogEntry = std::variant<TakenSample, Command, LoggedTick>;
 
-/// Hands the loop's input to a recorder through a ring. A full ring refuses entries, and the next
-/// tick that is logged has their number. The loop's side is wait-free.
+/// Passes the loop's input to a recorder through a ring. A full ring refuses entries; the next
+/// logged tick has their number. The loop's side is wait-free.
 class InputLog {
 public:
-  /// Allocates once, 128 bytes for each entry. Two gloves and a loop at 90 Hz make 270 entries a
+  /// Allocates once, 128 bytes for each entry. Two gloves and a loop at 90 Hz make 270 entries per
   /// second.
   explicit InputLog(std::size_t min_entries = std::size_t{1} << 14) : ring_(min_entries) {}
 
@@ -53,12 +52,12 @@ public:
     ring_.try_push(LoggedTick{number, scheduled, woke, ring_.counters().refused});
   }
 
-  /// The recorder's thread only, wait-free. Hands all present entries to `sink`, in order.
+  /// Passes all present entries to `sink`, in order. Recorder's thread only; wait-free.
   template <class Sink>
   std::size_t drain(Sink&& sink) noexcept {
     return ring_.drain(std::forward<Sink>(sink));
   }
-  /// Returns how many entries were refused so far. Thread-safe.
+  /// Returns the number of refused entries. Thread-safe.
   std::uint64_t lost() const noexcept { return ring_.counters().refused; }
 
 private:
@@ -70,22 +69,22 @@ inline constexpr std::size_t max_inputs = 16;
 
 class NENDO_API InputScript {
 public:
-  /// Something that the loop took: a TakenSample or a Command, never a tick.
+  /// An input of the loop: a TakenSample or a Command, never a tick.
   struct Event {
-    HostClock::duration at{}; ///< since the first tick: when the tick was due that took it
+    HostClock::duration at{}; ///< the deadline of its tick, since the first tick
     InputLogEntry entry;
   };
-  /// Where it begins again, and at what time it then continues.
+  /// A repetition: at `to`, playback continues at `from`.
   struct Round {
     HostClock::duration from{};
     HostClock::duration to{}; ///< later than `from` by shortest_round at least
   };
   static constexpr HostClock::duration shortest_round = std::chrono::milliseconds(200);
-  /// What is later by so little is of the same tick: two grids round in different ways.
+  /// Events later by at most this time belong to the same tick, because grids round differently.
   static constexpr HostClock::duration rounding = std::chrono::microseconds(1);
 
-  /// `events` in the order in which they were taken; `first_tick` is when the first tick was due by
-  /// the clock of the samples. `length` is when the last one was, since then.
+  /// `events` are in the order in which the loop took them; `first_tick` is the first tick's
+  /// deadline by the samples' clock, and `length` the time from there to the last tick's.
   InputScript(std::vector<Event> events, HostTime first_tick, HostClock::duration length)
       : events_(std::move(events)), first_tick_(first_tick), length_(length) {}
 
@@ -94,9 +93,9 @@ public:
   /// Adds an event before those of the same time.
   void add(HostClock::duration at, const Command& command);
   void repeat(const Round& round) { round_ = round; }
-  /// Moves the times of all samples so that the first tick is due at `begin`.
+  /// Shifts the times of all samples so that the first tick is due at `begin`.
   void begin_at(HostTime begin) noexcept { shift_ = begin - first_tick_; }
-  /// Returns the sample with its times moved the same way, for HandInput::first.
+  /// Returns the sample with its times shifted by begin_at(), for HandInput::first.
   GloveSample moved(GloveSample sample) const noexcept;
 
   HostClock::duration length() const noexcept { return length_; }
@@ -104,8 +103,8 @@ public:
 
   // Loop's thread, wait-free:
 
-  /// Hands all events to `take` that are due when the loop's tick is so much later than its first
-  /// one: commands first, as from a loop's rings. Where a round ends, the next one begins in the
+  /// Passes all events to `take` that are due at `now`, the tick's time since the first one:
+  /// commands first, as from a loop's rings. After the end of a round, the next one begins in the
   /// next tick.
   template <class Take>
   void play(HostClock::duration now, Take&& take) noexcept {
@@ -123,7 +122,7 @@ public:
       ended_.store(true, std::memory_order_release);
   }
 
-  /// Returns whether all of it has been played. Never, if it repeats. Thread-safe.
+  /// Returns whether all events have been played; never true with repeat(). Thread-safe.
   bool has_ended() const noexcept { return ended_.load(std::memory_order_acquire); }
   /// The commands that a loop does not execute itself: changes of settings and puppets, and
   /// Subdivide. The code that runs the loop takes them from here, and reports how many were refused
@@ -141,13 +140,13 @@ private:
   TakenSample now_played(TakenSample taken, HostClock::duration at) noexcept;
   void begin_again() noexcept;
 
-  /// Of one input.
+  /// The state of one input.
   struct Stream {
-    GloveSample last{}; ///< as it was given
-    GloveSample held{}; ///< the last one of the round before, from which the next one departs
-    std::uint64_t recorded = 0; ///< the sequence number of the last one in the recording
+    GloveSample last{};         ///< the last sample, with its original values
+    GloveSample held{};         ///< the last sample of the previous round
+    std::uint64_t recorded = 0; ///< the last sample's sequence number in the recording
     bool begun = false;
-    bool departs = false; ///< it has a `held`
+    bool departs = false; ///< `held` is set
   };
 
   std::vector<Event> events_;
@@ -155,7 +154,7 @@ private:
   HostClock::duration length_;
   std::optional<Round> round_;
   HostClock::duration shift_{};
-  HostClock::duration offset_{}; ///< from the script's time to that of the loop
+  HostClock::duration offset_{}; ///< the loop's time minus the script's time
   std::size_t next_ = 0;
   std::array<Stream, max_inputs> streams_{};
   std::atomic<bool> ended_{false};

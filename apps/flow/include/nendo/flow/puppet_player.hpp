@@ -1,6 +1,5 @@
 #pragma once
-// A puppet that hands play: its player, its clutch gestures, and the values at which the hands hold
-// the shape.
+// A puppet that hands play: its player, clutch gestures, and the function values at the grab.
 
 #include <cstddef>
 #include <memory>
@@ -23,25 +22,25 @@ public:
 
   explicit PuppetPlayer(std::shared_ptr<const puppet::Rig> rig);
 
-  /// Handles a command that is_for_puppet(). `hands` are where they are now.
+  /// Handles a command that is_for_puppet(). `hands` are the current poses.
   void apply(const Command& command, const Hands& hands) noexcept;
-  /// Updates the functions by the hands. Hands that do not hold the model move nothing, and grab
-  /// again where they are then, as one lifts a mouse. Gestures are watched if there is a time.
+  /// Updates the functions from the hands. Hands that do not hold the model move nothing, and later
+  /// re-grab at their new poses, like a lifted mouse. Detects gestures if `time` is given.
   void play(bool is_held, const Hands& hands, std::optional<HostTime> time) noexcept;
   void reset_gestures() noexcept { gestures_.reset(player_); }
 
-  /// Keeps the present values as those at which the hands grabbed the shape.
+  /// Stores the current values as those at the grab.
   void keep_held_values() noexcept;
-  /// Keeps the present values as those at which the hands stopped (Shaping::is_still()).
+  /// Stores the current values as those at the stop (Shaping::is_still()).
   void keep_still_values() noexcept;
-  /// The hands hold the shape at the values at which they stopped.
+  /// Makes the values at the stop those at the grab.
   void hold_where_stopped() noexcept { held_at_ = still_at_; }
 
-  /// Prepares this puppet, which was played before as `earlier`, to be played again. Allocates.
+  /// Restores the state of `earlier`, which played this puppet before. Allocates.
   void remember(const PuppetPlayer& earlier);
-  /// Continues where `before` was, if it is not null (puppet::RigPlayer::go_on_from(), which says
-  /// what `from` is), or grabs with the hands. Functions that both have keep the values at which
-  /// the hands hold the shape; `starts` gets the points at these values.
+  /// Continues from the state of `before` (`from`: see puppet::RigPlayer::go_on_from()); null:
+  /// grabs with the hands. Common functions keep their values at the grab. Writes the points at
+  /// these values to `starts`.
   void take_over(const PuppetPlayer* before, std::span<const std::size_t> from, const Hands& hands,
                  deform::Points& starts) noexcept;
 

@@ -1,6 +1,6 @@
 #pragma once
-// Requests what a thread needs to be on time from the system, and reports what was granted. A
-// refusal is never fatal, and it is always reported.
+// Requests real-time rights from the system, and reports which were granted. A refusal is not
+// fatal, and is always reported.
 
 #include <optional>
 #include <string>
@@ -11,11 +11,11 @@
 namespace nendo::flow {
 
 struct RealtimeOptions {
-  /// The priority under SCHED_FIFO, 1 to 97, or 0 for the ordinary scheduler. The readers of gloves
-  /// run two above, so that a sample that has arrived is in the ring before the loop drains it.
+  /// The priority under SCHED_FIFO, 1 to 97, or 0 for the ordinary scheduler. The glove readers'
+  /// priority is higher by two, so that an arrived sample is in the ring before the loop drains it.
   unsigned priority = 0;
   std::vector<unsigned> affinity; ///< the CPUs that the thread may use; empty: all
-  bool lock_memory = false;       ///< no page of the process is ever fetched again
+  bool lock_memory = false;       ///< locks all pages of the process in memory
 };
 inline constexpr unsigned usual_priority = 80;
 inline constexpr unsigned max_priority = 97;
@@ -27,21 +27,21 @@ constexpr unsigned reader_priority(unsigned of_loop) noexcept {
 NENDO_API Result<std::vector<unsigned>> parse_cpus(const std::string& text,
                                                    const std::string& option);
 
-/// A requested right.
+/// The result of requesting a right.
 struct Grant {
-  std::string name;   ///< stable: "policy", "affinity", "memory_lock", "dma_latency", "timer_slack"
+  std::string
+      name; ///< a stable id: "policy", "affinity", "memory_lock", "dma_latency", "timer_slack"
   std::string wanted; ///< "SCHED_FIFO 80"
   bool granted = false;
-  std::string why;    ///< the system's words; empty if granted
-  std::string remedy; ///< the command or action that fixes it; empty if granted
+  std::string why;    ///< the system's message; empty if granted
+  std::string remedy; ///< a command or action that helps; empty if granted
 };
 /// Returns a line for each refused right: what was refused, why, and the remedy.
 NENDO_API std::vector<std::string> refusals(const std::vector<Grant>& grants);
 
-/// Holds the process's rights while it lives. Memory is locked, and malloc keeps it. If a priority
-/// is requested, the processor is kept from sleep states that take long to leave
-/// (/dev/cpu_dma_latency). Locked memory stays locked until the process ends. The constructor
-/// blocks while pages come in.
+/// Holds process-wide rights during its lifetime. Locks memory, which malloc then does not return,
+/// until the process ends. With a priority, disables deep processor sleep states
+/// (/dev/cpu_dma_latency). The constructor blocks while pages are loaded.
 class NENDO_API RealtimeProcess {
 public:
   explicit RealtimeProcess(const RealtimeOptions& options);
@@ -56,12 +56,12 @@ private:
   std::vector<Grant> grants_;
 };
 
-/// Sets the calling thread's affinity, scheduler and timer slack, and touches 256 KiB of its stack.
-/// With the default slack, the ordinary scheduler may delay a wake-up by 50 microseconds.
+/// Sets the calling thread's affinity, scheduler and timer slack, and prefaults 256 KiB of its
+/// stack. With the default slack, the ordinary scheduler may delay a wake-up by 50 microseconds.
 NENDO_API std::vector<Grant> make_thread_realtime(const RealtimeOptions& options);
 
-/// While it lives, the calling thread and the threads that it starts run at this priority under
-/// SCHED_FIFO. With 0 nothing changes.
+/// During its lifetime, the calling thread and threads that it starts have this priority under
+/// SCHED_FIFO. 0: no change.
 class NENDO_API InheritedPriority {
 public:
   explicit InheritedPriority(unsigned priority);

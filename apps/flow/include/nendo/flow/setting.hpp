@@ -1,6 +1,6 @@
 #pragma once
-// The one description of each setting: names, range, help. Options, timelines, reports and widgets
-// are made from it by for_each_setting().
+// The description of each setting: names, range, help. Options, timelines, reports and widgets use
+// it through for_each_setting().
 
 #include <algorithm>
 #include <array>
@@ -19,21 +19,21 @@
 
 namespace nendo::flow {
 
-/// The strings about a setting for messages, files and widgets.
+/// The strings of a setting for messages, files and widgets.
 struct SettingText {
-  std::string_view name;              ///< in timelines and JSON
-  std::string_view option;            ///< the option of the command line; empty: none
-  std::string_view words;             ///< its name in messages about a run
-  std::string_view label;             ///< beside a widget
+  std::string_view name;              ///< the key in timelines and JSON
+  std::string_view option;            ///< the command line option; empty: none
+  std::string_view words;             ///< the name in messages of a run
+  std::string_view label;             ///< the label of its widget
   std::string_view help;              ///< the option's help
-  StepKind step = StepKind::settings; ///< a change of it alone
+  StepKind step = StepKind::settings; ///< the undo step of changing only this setting
 };
 
 template <class T>
 struct Setting : SettingText {
   T LoopSettings::* member = nullptr;
   T hand::FilterOptions::* filter_member =
-      nullptr; ///< a member of LoopSettings::filter, without `member`
+      nullptr; ///< a member of LoopSettings::filter; used if `member` is null
 
   const T& of(const LoopSettings& settings) const noexcept {
     return member != nullptr ? settings.*member : settings.filter.*filter_member;
@@ -41,7 +41,7 @@ struct Setting : SettingText {
   T& of(LoopSettings& settings) const noexcept {
     return member != nullptr ? settings.*member : settings.filter.*filter_member;
   }
-  // For the description of a filter's setting.
+  // For descriptions with filter_member.
   const T& of(const hand::FilterOptions& filter) const noexcept { return filter.*filter_member; }
   T& of(hand::FilterOptions& filter) const noexcept { return filter.*filter_member; }
 };
@@ -61,8 +61,8 @@ using SwitchSetting = Setting<bool>;
 using BrushesSetting = Setting<std::array<deform::Brush, 5>>;
 struct NumberSetting : Setting<double> {
   Range range;             ///< the values that a loop accepts
-  std::string_view unit{}; ///< empty: it has none
-  /// Whether other settings give it an effect; null: it always has one.
+  std::string_view unit{}; ///< empty: no unit
+  /// Whether it has an effect with these settings; null: always.
   bool (*has_effect)(const LoopSettings& settings) noexcept = nullptr;
   std::string_view remedy{}; ///< an option that gives it an effect, with an example
 };
@@ -70,12 +70,12 @@ struct NumberSetting : Setting<double> {
 struct FingersSetting : Setting<std::array<double, 5>> {
   Range range; ///< the values that a loop accepts
   std::string_view unit{};
-  Range handy; ///< that keys and widgets choose from
+  Range handy; ///< the range of keys and widgets
 };
-/// One of several, which have names.
+/// A choice among named values.
 template <class T>
 struct ChoiceSetting : Setting<T> {
-  std::string_view choices; ///< all names for messages, in the order of their numbers
+  std::string_view choices; ///< all names for messages, in the order of their values
   std::string_view (*name_of)(T choice) noexcept = nullptr;
   std::optional<T> (*named)(std::string_view name) noexcept = nullptr;
 };
@@ -140,7 +140,7 @@ inline constexpr ChoiceSetting<bool> pinches{
     pinches_named};
 } // namespace setting
 
-/// Calls see(setting) with the numbers of the filter, in the order of files.
+/// Calls see(setting) with each number of the filter, in file order.
 template <class See>
 constexpr void for_each_filter_number(const See& see) {
   see(setting::min_cutoff);
@@ -148,8 +148,8 @@ constexpr void for_each_filter_number(const See& see) {
   see(setting::derivative_cutoff);
 }
 
-/// Calls see(setting) with each description of LoopSettings::filter. Timelines have none of them:
-/// their keys are poses that were filtered.
+/// Calls see(setting) with each description of LoopSettings::filter. Timelines do not have these,
+/// because their keys are filtered poses.
 template <class See>
 constexpr void for_each_filter_setting(const See& see) {
   see(setting::filter);
@@ -234,7 +234,7 @@ inline constexpr ChoiceSetting<Hold> hold{
 
 } // namespace setting
 
-/// Calls see(setting) with each description but those of the filter, in the order of files.
+/// Calls see(setting) with each description except those of the filter, in file order.
 template <class See>
 constexpr void for_each_shape_setting(const See& see) {
   see(setting::mode);
@@ -255,7 +255,7 @@ constexpr void for_each_setting(const See& see) {
   for_each_filter_setting(see);
 }
 
-/// Calls see(setting) with each setting that SculptorOptions have (set_plain_settings()).
+/// Calls see(setting) with each setting in SculptorOptions (set_plain_settings()).
 template <class See>
 constexpr void for_each_plain_setting(const See& see) {
   see(setting::mode);
@@ -266,8 +266,7 @@ constexpr void for_each_plain_setting(const See& see) {
   see(setting::hold);
 }
 
-/// Returns the value of a setting as reports have it: names of choices, or else the value itself.
-/// May allocate.
+/// Returns a setting's value for reports: a choice's name, or the value itself. May allocate.
 template <class Described>
 auto reported_value(const Described& setting, const LoopSettings& settings) {
   if constexpr (requires { setting.name_of; })
@@ -278,31 +277,30 @@ auto reported_value(const Described& setting, const LoopSettings& settings) {
     return setting.of(settings);
 }
 
-/// Returns a range as messages show it: "0.01 to 1000 Hz". Allocates.
+/// Returns a range for messages: "0.01 to 1000 Hz". Allocates.
 NENDO_API std::string in_words(const Range& range, std::string_view unit);
-/// Checks that a loop takes all of these. Error: bad_input, naming the first that is out of its
-/// range, and the range: "keep_volume: use 0 to 1". Allocates.
+/// Checks that all settings are within their ranges. Error: bad_input, naming the first one that is
+/// not, and its range: "keep_volume: use 0 to 1". Allocates.
 NENDO_API Result<void> check_ranges(const LoopSettings& settings);
-/// Returns their description for messages: "type1, wendland-c2, never folds, radius 13.2 cm
-/// (0.248)".
+/// Returns the settings for messages: "type1, wendland-c2, never folds, radius 13.2 cm (0.248)".
 NENDO_API std::string in_words(const LoopSettings& settings, double units_per_metre);
 
-/// What a puppet measures its distances along. Without a puppet, fingertips and hands touch.
+/// The distances of a puppet. `nothing`: no puppet is played; hands touch the model.
 enum class Played : std::uint8_t { nothing, through_air, along_surface };
 
 NENDO_API Played played_by(const puppet::Puppet& puppet) noexcept;
-/// The same; null: nothing is played.
+/// Does the same; null: nothing is played.
 NENDO_API Played played_by(const puppet::Rig* rig) noexcept;
 
-/// How a message names a setting: as the command line has it, or in words.
+/// How messages name a setting: by its option, or in words.
 enum class Naming : std::uint8_t { options, words };
 
-/// Returns whether a loop can shape with all of these. Error, in one line: which two exclude each
-/// other, why, and what to do; usage where it names options, otherwise bad_input. Allocates.
+/// Checks that the settings can be combined. Error, in one line: which two exclude each other, why,
+/// and a remedy; usage with Naming::options, otherwise bad_input. Allocates.
 NENDO_API Result<void> compatible(const LoopSettings& settings, Played played,
                                   Naming naming = Naming::words);
-/// Checks the same, and whether each setting has an effect. A loop takes settings of which one has
-/// none, so that users choose them in any order; on the command line they are an error.
+/// Checks the same, and that each setting has an effect. A loop accepts settings without effect, so
+/// that users can choose them in any order; on the command line they are an error.
 NENDO_API Result<void> all_effective(const LoopSettings& settings, Played played,
                                      Naming naming = Naming::words);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Applies requests to a sculptor: the hands grab and release, shapes are committed, undone and
-// redone. The loop uses it, and so does code that shapes without a loop.
+// Applies requests to a sculptor: grab, release, commit, undo, redo. For the loop, and for code
+// that shapes without a loop.
 
 #include <array>
 #include <memory>
@@ -16,26 +16,26 @@
 namespace nendo::flow {
 
 struct ShapingOptions {
-  std::size_t max_requests = 64; ///< undos, redos and resets that may wait; others are refused
-  bool held = true;              ///< at first
-  /// The caller makes the change that an undo or a redo awaits (Frame::awaited) in the same tick,
+  std::size_t max_requests = 64; ///< max pending undos, redos and resets; further ones are refused
+  bool held = true;              ///< initially
+  /// The caller applies the change that an undo or a redo awaits (Frame::awaited) in the same tick,
   /// so shape() completes the stroke.
   bool changes_at_once = false;
 };
 
-/// Another sculptor, made before it is needed.
+/// A prepared sculptor.
 struct ReadySculptor {
   ModelVersion* model = nullptr; ///< the sculptor's model
-  bool is_new_model = false;     ///< no step leads to that model yet
+  bool is_new_model = false;     ///< no undo step leads to that model yet
   std::unique_ptr<Sculptor> sculptor;
   LoopSettings settings{};
   std::uint32_t puppet = 0;                ///< the puppet that moves the control points
-  StepKind puppet_step = StepKind::puppet; ///< the kind of that puppet's edit
-  /// With another puppet, in type 1: the hands keep their grip at `starts`, and do not grab again
-  /// where they are. So the shape changes only by the edit.
+  StepKind puppet_step = StepKind::puppet; ///< the kind of the puppet's change
+  /// With another puppet, in type 1: the hands keep their grip at `starts` instead of re-grabbing,
+  /// so that only the edit changes the shape.
   bool holds_on = false;
   deform::Points starts{};     ///< 3 by #control points
-  deform::Points still_tips{}; ///< memory for this number of points
+  deform::Points still_tips{}; ///< memory for the control points
   /// The control points at the exchange, if their count changes (Hold). The caller of exchange()
   /// writes them.
   deform::Points tips{};
@@ -51,32 +51,31 @@ struct ReadySculptor {
   std::array<SpareShape, 3> spare_shapes;
 };
 
-/// Loop's thread, or that of a player without a loop, but for prepare().
+/// Loop's thread, or the thread of a player without a loop, except prepare().
 class NENDO_API Shaping {
 public:
-  /// Shapes that model, which must outlive this, as must all later models. Allocates all that a
-  /// tick needs.
+  /// `model` and all later models must outlive this. Allocates all that a tick needs.
   Shaping(ModelVersion& model, const SculptorSetup& setup, Eigen::Index control_points,
           const ShapingOptions& options);
 
-  /// Lets the fingertips grab for the first time (3 by control_points, model units).
+  /// Grabs the model for the first time, at `tips` (3 by control_points, model units).
   deform::FieldStatus begin(const deform::Points& tips) noexcept { return sculptor_->grab(tips); }
-  /// Sets the time of the next calls, since the beginning.
+  /// Sets the time of the next calls, since the first tick.
   void set_time(HostClock::duration time) noexcept { time_ = time; }
-  /// Makes the next shape() do it. Wait-free. Request::take_hold, without effect on hands that hold
-  /// nothing, grabs again where the fingertips are; the paper separates this from a commit (2.3.1).
-  /// In type 1 the pull is undone, a redo restores it, and the rest shape stays. In type 2 the
-  /// shape stays, the strokes before and after are one step, and the path to the next piece is
-  /// dropped. It waits while an undo or a redo waits (Frame::awaited).
+  /// Requests an action of the next shape(). Wait-free. Request::take_hold makes hands that hold
+  /// the model re-grab it at the current fingertips; the paper separates this from a commit
+  /// (2.3.1). In type 1 it undoes the current deformation, which a redo restores, and keeps the
+  /// rest shape. In type 2 it keeps the shape, joins the strokes before and after into one step,
+  /// and drops the path to the next piece. It waits while an undo or a redo waits (Frame::awaited).
   void ask(Request request) noexcept;
-  /// Requests a grab if the last request was to release, and the reverse.
+  /// Requests a release if the last request was a grab, or else a grab.
   void toggle_hold() noexcept { hold_wanted_ = !hold_wanted_; }
   /// Requests a commit that waits until the hands hold the model.
   void commit_when_held() noexcept { commit_due_ = true; }
 
-  /// Does a tick's work: carries out requests, computes the frame's shape, fields, chain and `held`
-  /// from the fingertips' positions, and counts in `stats`. With `completes`, a stroke goes all the
-  /// way to `tips`. Wait-free. It does not allocate if the frame has the right size.
+  /// Does a tick's work: executes requests, computes the frame's shape, fields, chain and `held`
+  /// from `tips`, and counts in `stats`. With `completes`, a stroke is completed up to `tips`.
+  /// Wait-free. Does not allocate if the frame has the right size.
   deform::FieldStatus shape(const deform::Points& tips, Frame& frame, LoopStats& stats,
                             bool completes = false) noexcept;
   /// Completes the stroke and returns the shape, 3 by #vertices. Allocates.
@@ -90,40 +89,38 @@ public:
   std::uint32_t puppet() const noexcept { return puppet_; }      ///< in effect
   const deform::BlockLayout& layout() const noexcept { return model_->layout(); }
 
-  /// Stops the hands from shaping. Call after shape() with `completes`, in the same tick. What they
-  /// have shaped is a step, and requests wait. When another version comes, the hands grab it where
-  /// they stopped, so that none of their path is lost. Wait-free, without allocation.
+  /// Stops the hands from shaping. Call it after shape() with `completes`, in the same tick. Their
+  /// shaping becomes a step, and requests wait. The hands grab the next version where they stopped,
+  /// so that none of their path is lost. Wait-free, without allocation.
   void hold_still(const deform::Points& tips, Frame& frame, LoopStats& stats) noexcept;
-  /// Puts another sculptor with this number of control points into `ready`, for that version of the
-  /// model. Asking thread, at any time. For a version that is not in effect, the caller
-  /// makes `spare_shapes`. Allocates.
+  /// Makes a sculptor with this number of control points for a version of the model, in `ready`.
+  /// Asking thread, at any time. For a version that is not in effect, the caller makes
+  /// `spare_shapes`. Allocates.
   static void prepare(const SculptorSetup& setup, ModelVersion& model, Eigen::Index control_points,
                       ReadySculptor& ready);
   /// Returns whether the hands keep their grip in exchange() (ReadySculptor::holds_on).
   bool holds_on(const ReadySculptor& ready) const noexcept;
-  /// Continues with that sculptor; `ready` then has the previous one. Call after shape() with
-  /// `completes`, in the same tick. The stroke ends, and the fingertips grab again at `tips`, or at
-  /// `ready.tips` if their count changes. Stroke and change are steps of their own, but less than a
-  /// second after the previous exchange they join the steps before and after. If an undo or a redo
-  /// waits for this change (Frame::awaited), this completes it. The shape stays, except that an
-  /// undo drops what the hands have shaped since the last step. Another version of the model is
-  /// always a step, and the frame shows it. Returns false, and only ends the stroke and grabs
-  /// again, if the version is not new and no undo or redo waits for it any more. Wait-free, without
-  /// allocation.
+  /// Swaps the sculptor with that of `ready`. Call it after shape() with `completes`, in the same
+  /// tick. The stroke ends, and the fingertips re-grab at `tips`, or at `ready.tips` if their count
+  /// changes. Stroke and change are separate steps; within a second after the previous exchange
+  /// they join the adjacent steps. If an undo or a redo waits for this change (Frame::awaited),
+  /// this completes it. The shape is kept, except that an undo drops the shaping since the last
+  /// step. A change of the model's version is always a step, and the frame shows the new version.
+  /// Returns false, and only ends the stroke and re-grabs, if the version is not new and no undo or
+  /// redo waits for it any more. Wait-free, without allocation.
   bool exchange(ReadySculptor& ready, const deform::Points& tips, Frame& frame,
                 LoopStats& stats) noexcept;
-  /// Ends the stroke and drops requests that wait. Fingertips that hold the shape grab again, as in
-  /// begin(). Undo then goes back to here and no farther (`fences`), or as far as memory goes. The
-  /// past influences the future only by the shape, and by whether it is held. Wait-free, without
-  /// allocation.
+  /// Ends the stroke and drops pending requests. Fingertips that hold the shape re-grab, as in
+  /// begin(). With `fences`, undo cannot go back beyond this point. Later ticks depend on earlier
+  /// ones only through the shape, and whether it is held. Wait-free, without allocation.
   void restart(const deform::Points& tips, bool fences, Frame& frame, LoopStats& stats) noexcept;
 
 private:
   enum class Exchange : std::uint8_t {
-    awaited_step, ///< completes the undo or redo that waits for it (Frame::awaited)
+    awaited_step, ///< completes the pending undo or redo (Frame::awaited)
     new_step,
-    same_step, ///< joins the step of a change less than a second ago
-    refused    ///< another version, for which no undo or redo waits any more
+    same_step, ///< joins the step of the last change, less than a second ago
+    refused    ///< a version for which no undo or redo waits any more
   };
 
   Awaited in_effect() const noexcept { return {settings_, model_->number, puppet_}; }
@@ -169,31 +166,31 @@ private:
   void list_steps(StepList& list) const noexcept;
 
   ModelVersion* model_;
-  ModelVersion* fenced_ = nullptr; ///< undo goes back to the fence there and no farther
+  ModelVersion* fenced_ = nullptr; ///< the version with the fence for undo
   std::unique_ptr<Sculptor> sculptor_;
-  std::array<deform::FieldSequence, 3> spare_fields_; ///< memory for frames that lack it
+  std::array<deform::FieldSequence, 3> spare_fields_; ///< memory for frames that need more
   std::array<deform::SurfaceMove, 3> spare_moves_;
   std::array<ReadySculptor::SpareShape, 3> spare_shapes_;
-  deform::Points still_tips_; ///< where the hands stopped, if is_still_
+  deform::Points still_tips_; ///< the points at the stop, if is_still_
   bool is_still_ = false;
   bool changes_at_once_;
   bool held_;        ///< the fingertips shape the model
-  bool hold_wanted_; ///< held_ follows at the next tick that can
+  bool hold_wanted_; ///< the requested value of held_
   bool commit_due_ = false;
   bool regrab_due_ = false;         ///< Request::take_hold
-  bool shaped_ = false;             ///< since the hands grabbed, or since the last commit
-  std::uint64_t strokes_ended_ = 0; ///< without a commit
+  bool shaped_ = false;             ///< has shaped since the grab or the last commit
+  std::uint64_t strokes_ended_ = 0; ///< strokes that ended without a commit
   std::uint64_t refused_steps_ = 0; ///< LoopStats::refused_steps
   std::uint64_t shape_jumps_ = 0;   ///< Frame::shape_jumps
   std::uint64_t surface_moves_ = 0; ///< Frame::surface_moves
-  bool in_step_ = false;            ///< something shaped before a change is no step yet
+  bool in_step_ = false;            ///< the shaping before a change is not a step yet
   LoopSettings settings_;           ///< in effect
   std::uint32_t puppet_ = 0;        ///< in effect
-  std::optional<Awaited> awaited_;  ///< what the first of steps_due_ awaits
+  std::optional<Awaited> awaited_;  ///< the change that steps_due_.front() awaits
   HostClock::duration time_{};
-  std::optional<HostClock::duration> exchanged_at_; ///< settings alone, last
-  std::optional<HostClock::duration> touched_at_;   ///< clay, last
-  std::vector<Request> steps_due_;                  ///< undos, redos and resets, in their order
+  std::optional<HostClock::duration> exchanged_at_; ///< the last change of settings alone
+  std::optional<HostClock::duration> touched_at_;   ///< the last contact with clay
+  std::vector<Request> steps_due_;                  ///< pending undos, redos and resets, in order
 };
 
 } // namespace nendo::flow

@@ -1,6 +1,6 @@
 #pragma once
-// What a tick does to the shape: hand poses, commands and prepared changes in, a frame out. It has
-// no clock, thread or ring, so that loops, replays and timelines make the same shapes.
+// Computes a frame from hand poses, commands and prepared changes. It has no clock, thread or ring,
+// so that loops, replays and timelines make the same shapes.
 
 #include <array>
 #include <cstddef>
@@ -21,51 +21,51 @@ namespace nendo::flow {
 
 class DrawnBlade;
 
-/// Loop's thread, or that of a player without a loop. The constructor allocates; its functions
-/// neither allocate nor wait.
+/// Loop's thread, or the thread of a player without a loop. The constructor allocates; other
+/// functions neither allocate nor wait.
 class NENDO_API ShapingCore {
 public:
   using Hands = puppet::RigPlayer::Hands;
 
-  /// `changes` has the first model and its sculptor's setup, and was made with these options. It
-  /// must outlive the core.
+  /// `changes` has the initial model and setup, must be made with the same options, and must
+  /// outlive this.
   ShapingCore(ChangeBroker& changes, const CoreOptions& options);
   ~ShapingCore();
 
-  /// Returns a frame that has the memory that a tick needs.
+  /// Returns a frame with all memory for a tick.
   Frame first_frame() const;
-  /// Lets the hands grab the model for the first time.
+  /// Grabs the model for the first time.
   deform::FieldStatus begin(const Hands& hands, Frame& frame) noexcept;
 
-  // In a tick, in this order. `hands` are where they are then; all hands of the options must be
-  // there.
+  // Call these in a tick, in this order. `hands` are the current poses of all hands of the options.
 
-  /// Handles a Request, DrawWire, or command of a puppet; others have no effect.
+  /// Executes a Request, DrawWire or puppet command; others have no effect.
   void apply(const Command& command, const Hands& hands) noexcept;
-  /// Toggles the clutch of the puppet's hand. There must be a played puppet.
+  /// Toggles a hand's clutch. A puppet must be played.
   void toggle_clutch(Side side, const Hands& hands) noexcept;
   void ask(Request request) noexcept { shaping_.ask(request); }
   void toggle_hold() noexcept { shaping_.toggle_hold(); }
   void commit_when_held() noexcept { shaping_.commit_when_held(); }
-  /// Moves the control points and the blade with the hands. `time` is that of clutch gestures. The
-  /// hands' bodies move in modes that use them, and, `with_bodies`, in all, as before a change.
+  /// Moves the control points and the blade with the hands. `time` is for clutch gestures. Moves
+  /// the hands' bodies in modes that use them and, with `with_bodies`, in all modes, as before a
+  /// change.
   void place(const Hands& hands, std::optional<HostTime> time, bool with_bodies,
              Frame& frame) noexcept;
-  /// Makes the frame's shape, at that time since the beginning. With `completes`, a stroke leads
-  /// all the way to the hands.
+  /// Makes the frame's shape, at `time` since the first tick. With `completes`, a stroke is
+  /// completed up to the hands.
   void shape(HostClock::duration time, bool completes, Frame& frame, LoopStats& stats) noexcept;
 
-  // At the end of a tick, whose shape() has completed the stroke:
+  // Call these at the end of a tick, after shape() with `completes`:
 
-  /// Holds still, or continues with another sculptor, version or puppet. `change` gets the previous
-  /// ones. Hands whose poses jumped, as by another filter, grab where they are.
+  /// Holds still, or changes the sculptor, version or puppet, and returns the previous ones in
+  /// `change`. Hands whose poses jumped, as by another filter, re-grab.
   void finish(PreparedChange& change, const Hands& hands, Frame& frame, LoopStats& stats) noexcept;
-  /// Ends all that came before (Shaping::restart()), and writes the state.
+  /// Calls Shaping::restart(), and writes the state to `change`.
   void restart(LogChange& change, const Hands& hands, Frame& frame, LoopStats& stats) noexcept;
 
   const Shaping& shaping() const noexcept { return shaping_; }
   const PuppetPlayer* puppet() const noexcept { return puppet_ ? &*puppet_ : nullptr; }
-  /// Returns whether the switch at that hand's wrist is the clutch of the puppet.
+  /// Returns whether that hand's wrist switch is the puppet's clutch.
   bool has_clutch(Side side) const noexcept;
   const WirePath& completed_wire() const noexcept;
   /// Completes the stroke and returns the shape, 3 by #vertices. Allocates.
@@ -84,14 +84,13 @@ private:
 
   double units_per_metre_;
   std::vector<Side> hands_;
-  std::shared_ptr<HandBodies>
-      bodies_; ///< bodies of hands that press clay; in the order of Side, if there are two
-  std::optional<double> mirror_; ///< mirror_of() the puppet or masks
-  deform::Points tips_; ///< control points: of hands, or of the puppet; 3 by #, model units
+  std::shared_ptr<HandBodies> bodies_; ///< in the order of Side, if there are two
+  std::optional<double> mirror_;       ///< mirror_of() the rig
+  deform::Points tips_;                ///< control points of hands or puppet; 3 by #, model units
   Shaping shaping_;
   std::optional<PuppetPlayer> puppet_; ///< none: the hands touch the model
   std::unique_ptr<DrawnBlade> blade_;
-  bool holds_after_blade_ = false; ///< the hands held the model before they drew
+  bool holds_after_blade_ = false; ///< whether the hands re-grab after drawing
 };
 
 } // namespace nendo::flow

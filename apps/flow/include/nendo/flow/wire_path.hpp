@@ -1,5 +1,6 @@
 #pragma once
-// A wire that hands draw through the model, as a potter cuts clay. When it has been drawn, it cuts.
+// A wire that hands draw through the model, like a potter's wire. When completed, it cuts the
+// model.
 
 #include <array>
 #include <cstdint>
@@ -9,26 +10,23 @@
 
 namespace nendo::flow {
 
-/// The successive places of a wire's ends, in model units. It has a fixed size and does not
-/// allocate. Where a wire is drawn far, every second place is forgotten; and what a hand goes back
-/// and forth by a few steps is.
+/// The sequence of a wire's end positions, in model units. Has a fixed size and does not allocate.
+/// When it is full, every second place is dropped; short movements back and forth are also dropped.
 class NENDO_API WirePath {
 public:
   static constexpr std::size_t max_places = 128;
 
-  /// Begins another wire, of which places that are nearer to each other than `step`, or than 1/40
-  /// of the wire's greatest length, are one.
+  /// Begins a wire. Places closer than `step`, or than 1/40 of the wire's max length, are merged.
   void begin(double step) noexcept;
-  /// Does nothing unless the wire is being drawn. Places that are not finite are passed over.
+  /// Does nothing unless the wire is being drawn. Ignores places that are not finite.
   void draw_to(const deform::WirePlace& place) noexcept;
-  void end() noexcept;   ///< the wire is drawn, if it has been anywhere; its way is smoothed
-  void clear() noexcept; ///< there is no wire
+  void end() noexcept;   ///< completes the wire, if it has places, and smooths its path
+  void clear() noexcept; ///< removes the wire
 
-  bool is_drawing() const noexcept { return is_drawing_; } ///< just now
-  /// Returns how many wires have been drawn to their end. The number distinguishes a new one from
-  /// one that has cut already.
+  bool is_drawing() const noexcept { return is_drawing_; }
+  /// Returns the number of completed wires, by which a reader detects a new one.
   std::uint32_t completed() const noexcept { return completed_; }
-  /// Returns the places of the current wire, or of the last one.
+  /// Returns the places of the current or last wire.
   std::span<const deform::WirePlace> places() const noexcept { return {places_.data(), count_}; }
   bool operator==(const WirePath& other) const noexcept { return version_ == other.version_; }
 
@@ -41,9 +39,9 @@ private:
   std::array<deform::WirePlace, max_places> places_{};
   std::uint32_t count_ = 0;
   std::uint32_t completed_ = 0;
-  std::uint64_t version_ = 0; ///< differs where anything does
+  std::uint64_t version_ = 0; ///< changes with every change
   double step_ = 0.0;
-  deform::WirePlace last_{}; ///< which may not be among the places
+  deform::WirePlace last_{}; ///< may not be in places_
   bool is_drawing_ = false;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// What --adapt has learned of a wearer: the ranges of joints, kept as a calibration of the method
-// "adapted", and how far a calibrated glove has slipped.
+// Stores the results of --adapt: the ranges of joints, as a calibration of the method "adapted",
+// and the slips of a calibrated glove.
 
 #include <filesystem>
 #include <optional>
@@ -14,23 +14,23 @@
 
 namespace nendo::sculpting {
 
-/// Returns whether a calibration is what keep_ranges() writes.
+/// Returns whether a calibration was written by keep_ranges().
 NENDO_API bool is_kept_ranges(const hand::WearerCalibration& wearer);
 
-/// Returns the ranges that were kept for this user, glove and hand; nullopt without a user, or if
-/// there are none yet. Blocks. Error: bad_input, if the user has a calibration that was made by
-/// poses, which must not be lost to ranges, or one that cannot be read.
+/// Returns the stored ranges of this user, glove and hand; nullopt without a user, or if there are
+/// none. Blocks. Error: bad_input (the user has a calibration by poses, which ranges must not
+/// replace, or an unreadable one).
 NENDO_API Result<std::optional<hand::LearnedRanges>>
 kept_ranges(const driver::GloveInfo& glove, Side side, const std::string& user);
 
-/// Writes them, and returns the file's path; an empty path if no joint has taught any. Blocks.
+/// Writes the ranges, and returns the file's path; empty if no joint's range was learned. Blocks.
 /// Errors: those of kept_ranges() and of hand::write_calibration().
 NENDO_API Result<std::filesystem::path> keep_ranges(const driver::GloveInfo& glove, Side side,
                                                     const std::string& user,
                                                     const hand::SensorRanges& ranges);
 
-/// Returns the ends that the sensors reached when this calibration was made for a glove with the
-/// counts of `glove`. Error: bad_input, if it does not have them, or is of another kind of glove.
+/// Returns the end counts of the sensors from the time of this calibration. Error: bad_input (the
+/// file does not have them, or is for another type of glove).
 NENDO_API Result<hand::CalibratedRange> ends_of(const hand::StoredCalibration& file,
                                                 const driver::GloveInfo& glove);
 
@@ -39,9 +39,9 @@ struct KeptSlips {
   bool is_changed = false;    ///< false: no sensor has slipped by hand::min_slip_counts()
 };
 
-/// Writes the user's calibration, from which slips were learned, with the sensors' offsets and ends
-/// moved by them; the previous file is kept beside it. Blocks. Errors: bad_input, if the
-/// calibration is gone, and those of hand::write_calibration().
+/// Applies the learned slips to the offsets and ends of the user's calibration, and writes it;
+/// keeps the previous file beside it. Blocks. Errors: bad_input (the calibration is missing), and
+/// those of hand::write_calibration().
 NENDO_API Result<KeptSlips> keep_slips(const driver::GloveInfo& glove, Side side,
                                        const std::string& user,
                                        const hand::SensorAngles& slips_counts);

@@ -13,7 +13,7 @@
 
 namespace nendo::sculpting {
 
-/// Asking thread, but for `ended`.
+/// Asking thread, except for `ended`.
 class LoopThread {
 public:
   /// Starts the loop, which must outlive this. It runs until stop(), or for `max_ticks`.
@@ -28,9 +28,9 @@ public:
   LoopThread(const LoopThread&) = delete;
   LoopThread& operator=(const LoopThread&) = delete;
 
-  /// Returns the rights that the thread has requested. Blocks until then. Call it once.
+  /// Returns the thread's rights. Blocks until it has requested them. Call it once.
   std::vector<flow::Grant> grants() { return prepared_.get_future().get(); }
-  /// Ends the loop after its present tick, and joins the thread.
+  /// Ends the loop after its current tick, and joins the thread.
   void stop() {
     over_ = true;
     if (thread_.joinable()) thread_.join();
