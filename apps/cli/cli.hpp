@@ -1,6 +1,6 @@
 #pragma once
-// Functions that all commands share: errors and notes on standard error, JSON lines on standard
-// output, the stop signals, the shipped models.
+// Functions for all commands: errors and notes on standard error, JSON lines on standard output,
+// stop signals, shipped models.
 
 #include <atomic>
 #include <filesystem>
@@ -18,10 +18,9 @@ int report(const Error& error);
 /// Prints a line on standard error that is not an error.
 void note(std::string_view text);
 
-/// Returns the object in one line. Bytes that are no UTF-8, as names of files and devices may have,
-/// become U+FFFD.
+/// Returns the object in one line. Invalid UTF-8, as in names of files and devices, becomes U+FFFD.
 std::string json_text(const nlohmann::ordered_json& object);
-/// Prints that line and flushes it, so that a program at a pipe gets it at once.
+/// Prints the json_text() of the object and flushes, for readers of a pipe.
 void print_line(const nlohmann::ordered_json& object);
 
 /// Returns a flag that becomes true at SIGINT, SIGTERM or SIGHUP. A second such signal ends the
@@ -29,20 +28,19 @@ void print_line(const nlohmann::ordered_json& object);
 const std::atomic<bool>& stop_requested() noexcept;
 /// Sets the flag, as such a signal does.
 void request_stop() noexcept;
-/// Lets these signals set the flag. SIGHUP stays ignored if it was, as under nohup.
+/// Installs the handlers of these signals. SIGHUP stays ignored if it was, as under nohup.
 void install_stop_signals() noexcept;
 
-/// Returns the path of a model that ships with the program, which is beside the executable
-/// (../share/nendo/models).
+/// Returns the path of a shipped model, relative to the executable (../share/nendo/models).
 std::filesystem::path shipped_model(std::string_view file_name);
 
-/// For what fills large memory once, and may spend more time on pages of 4 KiB than on the model
-/// (../../deform/CUTTING.md has figures). Lets the C library ask the kernel for huge pages, if the
-/// kernel gives them only on request (transparent_hugepage/enabled is "madvise"). The library reads
-/// that option at a program's start (GLIBC_TUNABLES, glibc.malloc.hugetlb=1, glibc 2.35 and newer),
-/// so this starts the program once more, in the same process. An existing value of
-/// glibc.malloc.hugetlb, such as 0, is kept. If it cannot be done, it returns, and the program
-/// continues as it is. Call it first in main().
+/// Makes the C library request huge pages if the kernel gives them only on request
+/// (transparent_hugepage/enabled is "madvise"). For commands that fill large memory once, where
+/// faults of 4 KiB pages can take more time than the model (../../deform/CUTTING.md has
+/// measurements). The library reads the option at program start (GLIBC_TUNABLES,
+/// glibc.malloc.hugetlb=1, glibc 2.35 and newer), so this executes the program again, in the same
+/// process. Keeps an existing value of glibc.malloc.hugetlb, such as 0. On failure it returns,
+/// without effect. Call it first in main().
 void use_huge_pages(char** argv) noexcept;
 
 struct TwoProcessors {
@@ -50,7 +48,7 @@ struct TwoProcessors {
   int second = 0;
 };
 
-/// Returns the first two processors that this process may use. Fails if there is only one.
+/// Returns the first two processors that this process may use. Error: failed (only one).
 Result<TwoProcessors> two_processors();
 
 } // namespace nendo::cli

@@ -1,6 +1,6 @@
 #pragma once
-// A command of the program, with the arguments that may follow its name. Only one source file uses
-// CLI11 for it, because CLI11's headers take longer to compile than any command.
+// A command of the program, with its arguments. Only one source file includes CLI11, because its
+// headers take longer to compile than any command.
 
 #include <cstdint>
 #include <functional>
@@ -26,31 +26,31 @@ public:
 
   Option& required();
   Option& one_of(std::initializer_list<const char*> words);
-  /// Lets each use of the option take one value, which --help calls `type`. Otherwise a list takes
-  /// all values that follow.
+  /// Each use of the option takes one value, named `type` in --help. By default, a list takes all
+  /// values that follow.
   Option& once_each(const std::string& type);
 
 private:
   CLI::Option* option_;
 };
 
-/// A command, or the program itself. A copy is the same command.
+/// A command, or the program itself. Copies refer to the same command.
 class Command {
 public:
-  /// `chosen` takes what on_chosen() was given. Both must outlive this.
+  /// on_chosen() sets `chosen`. Both must outlive this.
   Command(CLI::App& app, std::function<int()>& chosen) noexcept : app_(&app), chosen_(&chosen) {}
 
   Command add_command(const std::string& name, const std::string& summary);
-  /// Returns the same command, which puts further options under this heading of --help.
+  /// Returns the same command; its further options appear under this heading of --help.
   Command under(const std::string& heading) const;
-  /// Adds an option. `value` must outlive parsing; what it holds is the default, which --help shows
-  /// unless it is empty or zero. A name without dashes is a positional argument. T is string,
-  /// double, a whole number, an optional, or a list of strings, as command.cpp instantiates.
+  /// Adds an option. `value` must outlive parsing; its initial value is the default, which --help
+  /// shows unless it is empty or zero. A name without dashes is a positional argument. T is string,
+  /// double, an integer, an optional, or a list of strings, as command.cpp instantiates.
   template <class T>
   Option add_option(const std::string& names, T& value, const std::string& summary);
-  /// Adds an option whose value is a number with a unit (quantities.hpp), or without: then it is in
-  /// seconds, such as 90s, in millimetres, such as 18.5cm, in microseconds, such as 1ms, or in
-  /// hertz, such as 90Hz. T is double or an optional of it.
+  /// Add an option for a number with a unit (quantities.hpp), such as 90s, 18.5cm, 1ms or 90Hz. A
+  /// bare number is in seconds, millimetres, microseconds or hertz. T is double or an optional of
+  /// it.
   template <class T>
   Option add_duration(const std::string& names, T& seconds, const std::string& summary) {
     return add_quantity(names, seconds, summary, Unit::s);
@@ -68,18 +68,18 @@ public:
     return add_quantity(names, rate_hz, summary, Unit::hz);
   }
   Option add_flag(const std::string& names, bool& value, const std::string& summary);
-  /// Lets another option have -h. --help stays.
+  /// Makes -h available for another option. --help stays.
   void free_short_help();
   /// Sets the text after the options in --help.
   void set_footer(const std::string& text);
-  /// Sets the function that runs when this command is chosen. It returns the exit code, or an
-  /// error, which is then reported.
+  /// Sets the function that runs when this command is chosen. It returns the exit code, or an error
+  /// to report.
   void on_chosen(std::function<int()> command);
   void on_chosen(std::function<Result<void>()> command);
-  /// Requires that one of its commands follows, since this one does nothing by itself.
+  /// Requires one of its subcommands.
   void require_command();
-  /// Returns the first of these options, by one name of each, that the arguments have; empty: none.
-  /// For the function of on_chosen().
+  /// Returns the first of these options, each by one name, that was given; empty: none. For the
+  /// function of on_chosen().
   std::string first_given(const std::vector<std::string>& names) const;
 
 private:
@@ -94,11 +94,11 @@ private:
   std::string heading_; ///< empty: "Options"
 };
 
-/// Returns everything that `add_commands` describes, as --help shows it.
+/// Returns the description that `add_commands` makes, as in --help.
 CommandModel describe_program(const std::string& summary,
                               const std::function<void(Command&)>& add_commands);
-/// Describes the program by `add_commands`, runs the command that the arguments choose, and returns
-/// the exit code. Wrong usage prints one line on standard error.
+/// Describes the program by `add_commands`, runs the chosen command, and returns the exit code. A
+/// usage error prints one line on standard error.
 int run_program(int argc, char** argv, const std::string& summary,
                 const std::function<void(Command&)>& add_commands);
 

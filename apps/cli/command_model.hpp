@@ -1,6 +1,6 @@
 #pragma once
-// A description of a command and its options in plain data. --help, manual pages and completions
-// are made of it, so they cannot disagree.
+// A description of a command and its options as plain data. --help, manual pages and completions
+// are generated from it, so they agree.
 
 #include <string>
 #include <vector>
@@ -9,11 +9,11 @@ namespace nendo::cli {
 
 struct OptionModel {
   std::vector<std::string> names;   ///< "-i", "--interval"; a positional argument has one: "GLOVE"
-  std::string value;                ///< what its value is: "TEXT"; empty: a flag
-  std::vector<std::string> choices; ///< the values that there are; empty: any
+  std::string value;                ///< the type of its value: "TEXT"; empty: a flag
+  std::vector<std::string> choices; ///< the valid values; empty: any
   std::string default_value;
   std::string summary;
-  std::string heading; ///< under which --help shows it; empty: "Options"
+  std::string heading; ///< its heading in --help; empty: "Options"
   bool required = false;
   bool repeats = false;
 
@@ -21,8 +21,8 @@ struct OptionModel {
 };
 
 struct CommandModel {
-  std::string name;    ///< its own: "bind"
-  std::string summary; ///< one line; of the program, further lines
+  std::string name;    ///< without those of parents: "bind"
+  std::string summary; ///< one line; for the program, several
   std::string footer;  ///< the text after the options
   std::vector<OptionModel> options;
   std::vector<CommandModel> commands; ///< hidden ones left out

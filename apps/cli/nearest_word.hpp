@@ -1,5 +1,5 @@
 #pragma once
-// Finds the word that was meant by a mistyped one.
+// Suggests a known word for a mistyped one.
 
 #include <string>
 #include <string_view>
@@ -7,8 +7,9 @@
 
 namespace nendo::cli {
 
-/// Returns the known word that is nearest to the text: by letters that are wrong, missing, too many
-/// or swapped, at most a third of them, or because the text begins it. Empty if there is none.
+/// Returns the known word with the smallest edit distance to the text (substitutions, insertions,
+/// deletions, swaps), at most a third of its letters, or a word that begins with the text. Empty if
+/// there is none.
 std::string nearest_word(std::string_view text, const std::vector<std::string>& known);
 
 } // namespace nendo::cli

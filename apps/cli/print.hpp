@@ -8,8 +8,8 @@
 
 namespace nendo::cli {
 
-/// Unlike fmt::print(), does not throw where nothing can be written: the command finishes its work,
-/// and run_program() reports lost output.
+/// Unlike fmt::print(), does not throw on write errors: the command finishes its work, and
+/// run_program() reports lost output.
 template <class... Values>
 void print(std::FILE* out, fmt::format_string<Values...> format, Values&&... values) {
   std::fputs(fmt::format(format, std::forward<Values>(values)...).c_str(), out);

@@ -17,13 +17,13 @@ class SvgDrawing {
 public:
   SvgDrawing(double width, double height);
 
-  /// Draws any text. Characters with a meaning in XML are escaped.
+  /// Draws a text, escaped for XML.
   void words(double x, double y, const std::string& words, const SvgText& style);
   void line(double x0, double y0, double x1, double y1, const char* colour, double width = 1.0,
             const char* dashes = "none");
   void box(double x, double y, double width, double height, const char* colour, double opacity);
   void dot(double x, double y, double radius, const char* fill, const char* edge);
-  /// Draws a path. `points` is made of svg_point()s.
+  /// Draws a path. `points` are concatenated svg_point()s.
   void path(const std::string& points, const char* colour, double width);
 
   std::string finished() &&;
@@ -32,7 +32,7 @@ private:
   std::string text_;
 };
 
-/// Returns a corner of a path.
+/// Returns a point of a path, for path().
 std::string svg_point(double x, double y);
 
 } // namespace nendo::cli

@@ -1,6 +1,6 @@
 #pragma once
-// Keys that need no Return, and a terminal that shows a page, which is drawn repeatedly. However
-// the command ends, and while it is suspended (Ctrl-Z), the terminal is as it was before.
+// Unbuffered keys, and a terminal that repeatedly draws a page. The terminal is restored at any end
+// of the command, and while it is suspended (Ctrl-Z).
 
 #include <chrono>
 #include <optional>
@@ -17,7 +17,7 @@ bool has_control_codes(int descriptor) noexcept;
 
 class Keys {
 public:
-  /// What is shown while keys can come.
+  /// The page that is visible while keys are read.
   class Page {
   public:
     virtual void hide() noexcept = 0; ///< called before the program is suspended
@@ -26,21 +26,21 @@ public:
     ~Page() = default;
   };
 
-  /// Takes standard input if it is a terminal whose foreground this process is in: no echo, no
-  /// Return. Ctrl-C stays a signal. next() handles Ctrl-Z. `page`, if any, must outlive this.
+  /// If standard input is a terminal with this process in the foreground, turns off echo and line
+  /// buffering. Ctrl-C stays a signal. next() handles Ctrl-Z. `page`, if any, must outlive this.
   explicit Keys(Page* page = nullptr) noexcept;
   ~Keys(); ///< restore()
   Keys(const Keys&) = delete;
   Keys& operator=(const Keys&) = delete;
 
-  /// Returns whether keys can come.
+  /// Returns whether keys can be read.
   bool are_available() const noexcept { return saved_.has_value(); }
-  /// Returns the next key, or nothing if none comes within `timeout` or a signal ends the wait. If
-  /// no keys can come, it sleeps for that time. Ctrl-Z suspends the program and all of its job, as
-  /// the terminal would: this returns when the job continues. If it continues in the background,
-  /// the terminal is left alone until it is in the foreground.
+  /// Returns the next key, or nothing at `timeout` or at a signal. If no keys can be read, sleeps
+  /// for `timeout`. Ctrl-Z suspends the process group, as the terminal would; then this returns
+  /// when the job continues. If it continues in the background, the terminal is not changed until
+  /// it is in the foreground.
   std::optional<char> next(std::chrono::milliseconds timeout) noexcept;
-  /// Returns true once standard input has ended, as when the window was closed.
+  /// Returns whether standard input has ended, as after closing the window.
   bool have_ended() const noexcept { return gone_; }
   /// Restores the settings of the terminal. Idempotent.
   void restore() noexcept;
@@ -50,8 +50,8 @@ private:
   void suspend() noexcept;
 
   Page* const page_;
-  std::optional<termios> saved_; ///< its settings, while it is taken
-  bool suspended_ = false;       ///< it was taken, and is to be taken again in the foreground
+  std::optional<termios> saved_; ///< the original settings, while they are changed
+  bool suspended_ = false;       ///< change the settings again in the foreground
   bool gone_ = false;
 };
 
@@ -60,34 +60,32 @@ struct ScreenSize {
   int rows = 24;
 };
 
-/// Returns the present size of the terminal that the file descriptor is, or 80 by 24 if that is
-/// unknown.
+/// Returns the current size of the file descriptor's terminal, or 80 by 24 if that is unknown.
 ScreenSize screen_size(int descriptor) noexcept;
 
 class Terminal final : private Keys::Page {
 public:
-  /// Takes standard output, which must be a terminal, with its alternate screen and a hidden
-  /// cursor. Takes keys, if they can come. It gets control codes only if it has them.
+  /// Switches standard output, which must be a terminal, to the alternate screen, and hides the
+  /// cursor, if it has control codes. Reads keys, if possible.
   Terminal();
   ~Terminal(); ///< leave()
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  /// Returns the present size of the terminal, or 80 by 24 if that is unknown.
+  /// Returns the current size of the terminal, or 80 by 24 if that is unknown.
   ScreenSize size() const noexcept;
   /// Returns true if the terminal has no control codes.
   bool is_plain() const noexcept { return plain_; }
-  /// Replaces the page, in one write. Lines must be printable ASCII; what exceeds the screen is
-  /// cut. Blocks while the terminal does not read. An interrupted write stays unfinished. On a
-  /// plain terminal, prints the lines that have changed, at most once a second.
+  /// Replaces the page, in one write. Lines must be printable ASCII, and are clipped to the screen.
+  /// Blocks while the terminal does not read. Does not resume an interrupted write. On a plain
+  /// terminal, prints the changed lines, at most once per second.
   void draw(const std::vector<std::string>& lines);
   bool has_keys() const noexcept { return keys_.are_available(); }
   /// Returns the next key. See Keys::next().
   std::optional<char> key(std::chrono::milliseconds timeout) noexcept {
     return keys_.next(timeout);
   }
-  /// Returns true once the terminal cannot be written or read any more, as when the window was
-  /// closed.
+  /// Returns whether the terminal can no longer be written or read, as after closing the window.
   bool is_gone() const noexcept { return gone_ || keys_.have_ended(); }
   /// Restores the screen and the settings of the terminal. Idempotent.
   void leave() noexcept;
@@ -102,9 +100,9 @@ private:
   const bool plain_;
   ScreenSize drawn_{0, 0}; ///< the size at the last draw()
   bool entered_ = true;
-  bool hidden_ = false; ///< the program is suspended, or was and is in the background
+  bool hidden_ = false; ///< the program is suspended, or continued in the background
   bool gone_ = false;
-  std::vector<std::string> printed_; ///< on a plain terminal, the last lines
+  std::vector<std::string> printed_; ///< the last lines on a plain terminal
   std::chrono::steady_clock::time_point next_print_{};
 };
 

@@ -1,7 +1,6 @@
 #pragma once
-// The table of the commands of a run and of a timeline's editor, with their keys and buttons in the
-// terminal, in windows and on the page. Lists of keys, the protocol and the manual are made from
-// it.
+// The table of all commands of runs and of the timeline editor, with keys and buttons for the
+// terminal, windows and the web page. Key lists, the protocol and the manual are generated from it.
 
 #include <array>
 #include <cstdint>
@@ -17,10 +16,10 @@
 
 namespace nendo::commands {
 
-/// Facts of a run that its frames do not have.
+/// Facts about a run that are not in its frames.
 struct RunFacts {
-  bool recorded = false;   ///< to a file
-  bool can_mark = false;   ///< there is a recording, to a file or in memory
+  bool recorded = false;   ///< a recording to a file is active
+  bool can_mark = false;   ///< a recording, to a file or in memory, is active
   bool keeps_last = false; ///< --keep-last
   bool has_layers = false; ///< gloves play some joints over a recording, or over other gloves
 };
@@ -30,37 +29,38 @@ struct Situation {
   const RunFacts& facts;
 };
 
-// Where a command can be given; the bits are combined.
+// The places where a command is available, as bits.
 inline constexpr std::uint8_t in_terminal = 1, in_window = 2, on_page = 4, in_timeline = 8;
 inline constexpr std::uint8_t everywhere = in_terminal | in_window | on_page;
 
-/// Where a button is: `more` is among the settings, and those from `head` on are of a timeline.
+/// The group of a button. `more` is among the settings; `head` and later groups are in the timeline
+/// editor.
 enum class Buttons : std::uint8_t { none, hands, model, more, head, key, whole, file };
 
-/// One command. It has `make`, `choose` or `edit`, or is executed by the window or the page itself.
+/// One command. It has `make`, `choose` or `edit`; otherwise the window or the page executes it.
 struct Row {
-  std::string_view name; ///< the text that a client sends, too (PROTOCOL.md)
-  /// The first is shown first. Capitals are typed with shift, and only those of one character, but
-  /// for `?`, can be typed in the terminal. Rows share a key only if they are for different places,
-  /// and then they share all keys and the first word of their names.
+  std::string_view name; ///< also the text that a client sends (PROTOCOL.md)
+  /// The keys, the preferred one first. Capitals need shift. The terminal has only keys of one
+  /// character, except `?`. Rows that share a key have different places, the same keys, and the
+  /// same first word in their names.
   std::array<std::string_view, 3> keys;
   std::string_view help; ///< one sentence
   std::string_view button{};
-  std::string_view button_on{}; ///< while is_on(); empty: as button
+  std::string_view button_on{}; ///< the label while is_on(); empty: as `button`
   Buttons group = Buttons::none;
   std::uint8_t places = everywhere;
-  bool repeats = false; ///< while the key is held down in the window
-  /// Makes the command. `on`: is_on(), and the command ends that.
+  bool repeats = false; ///< the key repeats while it is held down in the window
+  /// Makes the command. `on`: is_on(), which the command then turns off.
   flow::Command (*make)(bool on) = nullptr;
   void (*choose)(flow::WantedSettings& wanted, const flow::Frame& frame) = nullptr;
   std::optional<Edit> edit{};
   bool (*is_on)(const Situation& now) = nullptr;
   /// Returns why the command is not possible now, as a sentence; null: it is possible.
   const char* (*refusal)(const Situation& now) = nullptr;
-  /// Returns whether a window shows the button; null: it does.
+  /// Returns whether a window shows the button; null: always.
   bool (*is_shown)(const Situation& now) = nullptr;
 
-  /// Returns whether the run executes it, and not the window or the page.
+  /// Returns whether the run executes it, not the window or the page.
   constexpr bool is_for_run() const noexcept { return make != nullptr || choose != nullptr; }
   bool is_on_in(const Situation& now) const { return is_on != nullptr && is_on(now); }
   /// Returns null if the command is possible.
@@ -81,27 +81,27 @@ struct Row {
 };
 
 std::span<const Row> table() noexcept;
-/// Returns the row of that name, or with that key in one of the places; null: there is none.
+/// Return the row of that name, or with that key in one of the places; null: none.
 const Row* named(std::string_view name) noexcept;
 const Row* with_key(std::string_view key, std::uint8_t places) noexcept;
-/// Returns the name of the row that makes the command, whatever its numbers are, such as "wire";
-/// "role", or "a command", if no row makes it.
+/// Returns the name of the row that makes this type of command, such as "wire"; without a row,
+/// "role" or "a command".
 std::string_view name_of(const flow::Command& command) noexcept;
-/// Returns the row of that command; each one has a row.
+/// Every command has a row.
 const Row& row_of(EditCommand command) noexcept;
 
 /// The effect of a key or a button.
 struct Answer {
   std::optional<flow::Command> command;
-  /// Why it is not possible, as a sentence; or null. A flow::Request is a command even so, because
-  /// the loop may be a few ticks ahead of the frame.
+  /// Why it is not possible, as a sentence; null: it is possible. A refused flow::Request still has
+  /// a command, because the loop may be some ticks ahead of the frame.
   const char* refusal = nullptr;
 };
-/// Returns the command of a row that is_for_run(). `wanted` belongs to the caller, and has followed
+/// Returns the command of a row that is_for_run(). `wanted` is the caller's, after follow() with
 /// the frame. Does not allocate.
 Answer press(const Row& row, const Situation& now, flow::WantedSettings& wanted);
 
-// Reasons, for code that gets the same command without the table.
+// Refusals, for code that gets these commands without the table.
 inline constexpr const char* no_layers = "The gloves play whole hands here, and no layer; --layer "
                                          "and --over make one.";
 inline constexpr const char* no_puppet = "There is no puppet here, and fingertips touch the model; "
@@ -113,10 +113,10 @@ inline constexpr const char* no_recording = "There is no recording to mark; begi
 inline constexpr const char* nothing_kept = "Nothing is kept in memory; start with --keep-last "
                                             "60s.";
 
-/// Returns the keys of a row with commas between: "u, Ctrl Z".
+/// Returns the keys of a row, separated by commas: "u, Ctrl Z".
 std::string keys_of(const Row& row);
-/// Returns a list of the keys in one of the places, for a terminal or a manual page: each row's
-/// keys and its sentence, with this text before and between them.
+/// Returns the key list of a place, for a terminal or a manual page. `before` precedes each row's
+/// keys, and `between` its sentence.
 std::string key_list(std::uint8_t places, std::string_view before, std::string_view between);
 
 } // namespace nendo::commands

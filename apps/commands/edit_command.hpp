@@ -1,5 +1,5 @@
 #pragma once
-// The commands of a timeline's editor.
+// The commands of the timeline editor.
 
 #include <cstdint>
 
@@ -24,10 +24,10 @@ enum class EditCommand : std::uint8_t {
   undo,
   redo,
   save,
-  export_glb, ///< the last one: the table has a row for each up to here
+  export_glb, ///< must be last: the table has a row for each command up to here
 };
 
-/// The state of an editor at the time of a command.
+/// The state of the editor at the time of a command.
 struct EditFacts {
   bool playing = false;
   bool can_undo = false;
@@ -36,7 +36,7 @@ struct EditFacts {
   bool key_selected = false;
 };
 
-/// What the editor does for a row, and when.
+/// A row's command of the editor, and its state.
 struct Edit {
   EditCommand command;
   /// Returns why the command is not possible now, as a sentence; null: it is possible.
@@ -44,7 +44,7 @@ struct Edit {
   bool (*is_on)(const EditFacts& now) = nullptr;
 };
 
-/// A reason, for commands of the mouse without a row.
+/// A refusal, for mouse commands without a row.
 inline constexpr const char* no_key = "No key is selected; click one on the strip.";
 
 } // namespace nendo::commands

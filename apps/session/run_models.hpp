@@ -1,5 +1,5 @@
 #pragma once
-// Makes other versions of the model while a run continues, and hands them over to the loop.
+// Makes new versions of the model during a run, and hands them to the loop.
 
 #include <future>
 #include <optional>
@@ -14,28 +14,28 @@ namespace nendo::session {
 
 class RunModels {
 public:
-  /// Both must outlive this. `placed` has its loop before the first call. The model is refined
-  /// automatically up to `refine_to` vertices; 0: only on request. With `changes_topology`, thin
-  /// places then part, open or fuse.
+  /// Both must outlive this. `placed` must have its loop before the first call. The model is
+  /// refined automatically up to `refine_to` vertices; 0: only on request. With `changes_topology`,
+  /// this also separates, opens or fuses thin places.
   RunModels(const PlacedLoop& placed, const std::vector<Sink*>& sinks, std::uint32_t refine_to,
             bool changes_topology)
       : placed_(placed), sinks_(sinks), refine_to_(refine_to), changes_topology_(changes_topology) {
   }
 
-  /// Requests another model, made of the present one: flow::model_asked_by().
+  /// Requests a new model, made from the current one (flow::model_asked_by()).
   void ask(const flow::ChangeModel& change) noexcept { asked_ = change; }
-  /// Requests the present model, cut by that wire.
+  /// Requests a cut of the current model by the wire.
   void cut(const flow::WirePath& wire) noexcept {
     wire_ = wire;
     ask({0, flow::ModelSource::cut});
   }
-  /// Returns to kept settings and a kept version, for an undo or a redo (flow::Frame::awaited).
+  /// Requests the stored settings and version that an undo or a redo awaits (flow::Frame::awaited).
   /// Returns a message for the user if that is impossible.
   std::optional<std::string> go_to(const flow::Awaited& awaited);
-  /// Continues the work without waiting for other threads; call it repeatedly, without `may_begin`
-  /// while the loop must not hold still. Returns a message for the user, if any.
+  /// Continues the work without waiting for other threads; call it repeatedly. Pass `may_begin`
+  /// false while the loop must not hold still. Returns a message for the user, if any.
   std::optional<std::string> follow(bool may_begin);
-  /// Returns whether a request is not done yet.
+  /// Returns whether a request is pending.
   bool is_due() const noexcept { return asked_ || (!is_by_itself_ && (finer_ || making_.valid())); }
   /// Returns whether the loop holds still, or is about to get a model. No recording may begin or
   /// end then.
@@ -43,10 +43,10 @@ public:
 
 private:
   enum class Stage { none, holding_still, handing_over };
-  /// The result of another thread.
+  /// The result of the worker thread.
   struct Made {
     Result<flow::PendingModel> finer;
-    bool is_wanted = true; ///< requested, or enough edges are unfit, or there are thin places
+    bool is_wanted = true; ///< requested, or enough edges are unfit, or places are thin
     flow::ModelSource source = flow::ModelSource::refined; ///< the kind of change
   };
 
@@ -61,12 +61,12 @@ private:
   std::uint32_t refine_to_;
   bool changes_topology_;
   HostTime looked_at_{};                       ///< the last search
-  std::pair<std::uint64_t, bool> last_look_{}; ///< the newest stamp in the shape, in a stroke
-  bool is_by_itself_ = false;                  ///< the version in the making was not requested
+  std::pair<std::uint64_t, bool> last_look_{}; ///< the newest stamp; is in a stroke
+  bool is_by_itself_ = false;                  ///< the current work was not requested
   bool was_refined_ = false;                   ///< the last automatic change was a refinement
   std::optional<flow::ChangeModel> asked_;     ///< without its number
   std::future<Made> making_;
-  flow::ChangeModel made_;                  ///< how making_ and finer_ are made
+  flow::ChangeModel made_;                  ///< the change of making_ and finer_
   flow::WirePath wire_;                     ///< the wire that cuts
   std::optional<flow::PendingModel> finer_; ///< the next version, which the loop does not have yet
   Stage stage_ = Stage::none;

@@ -15,41 +15,41 @@
 
 namespace nendo::session {
 
-/// Where a puppet that was edited goes.
+/// The file for an edited puppet.
 struct PuppetPlace {
   std::string file;             ///< .toml; empty: puppets cannot be edited
-  bool may_be_replaced = false; ///< as it is the file that was opened
+  bool may_be_replaced = false; ///< it is the opened file
 };
 
 struct RunOptions {
-  std::string left;                       ///< GLOVE; empty: not asked for
-  std::string right;                      ///< GLOVE; empty: not asked for
+  std::string left;                       ///< GLOVE; empty: not requested
+  std::string right;                      ///< GLOVE; empty: not requested
   std::string mesh;                       ///< empty: the shipped model, or a puppet's
-  deform::ReadOptions reading{};          ///< the model's axes, also in written files
+  deform::ReadOptions reading{};          ///< the file's axes, also for written files
   std::string puppet_file;                ///< empty: none
   std::optional<puppet::Puppet> puppet{}; ///< the contents of that file
-  PuppetPlace out_puppet{};               ///< where a window saves it
-  std::string out;                        ///< empty: a name made of date and time
+  PuppetPlace out_puppet{};               ///< where a window saves the puppet
+  std::string out;                        ///< empty: a name from date and time
   std::string picture;                    ///< empty: none
-  std::string mask_file;                  ///< as it was given
-  std::optional<puppet::Puppet> masks{};  ///< masks for fingertips, without points; nothing: none
+  std::string mask_file;                  ///< the file of `masks`, as given
+  std::optional<puppet::Puppet> masks{};  ///< fingertips' masks, without points; nothing: none
   bool symmetric = false;                 ///< fingertips shape both sides
   /// Max vertices of automatic refinement; 0: none.
   std::uint32_t refine_to = 0;
-  bool changes_topology = false; ///< meanwhile, what is thin parts, opens or fuses
+  bool changes_topology = false; ///< refinement also separates, opens or fuses thin places
   double duration_s = 0.0;       ///< 0: until a stop signal
-  /// Of fingertips, as parse_radius() reads it; empty: one for all, computed from the model's size.
+  /// The fingertips' radii for parse_radius(); empty: one radius, computed from the model's size.
   std::string radius;
   double model_size_m = 0.8; ///< the model's longest side, on the stage
   bool json = false;
-  bool verbose = false;                   ///< the summary has figures about folds
-  std::optional<double> undo_memory_mb{}; ///< nothing: half of the memory
+  bool verbose = false;                   ///< the summary has numbers about folds
+  std::optional<double> undo_memory_mb{}; ///< nothing: half of the machine's memory
   gloves::CalibrationOptions calibration;
   gloves::HandLength length;
   hand::FilterOptions filter; ///< the filter of both hands
   flow::LoopOptions loop;
-  std::shared_ptr<Overdub> over{}; ///< a take that plays; null: none
-  LivePart live{};                 ///< what the gloves play; nothing: all
+  std::shared_ptr<Overdub> over{}; ///< the take that is played; null: none
+  LivePart live{};                 ///< the angles that the gloves play; nothing: all
   RecordingOptions recording;
   flow::RealtimeOptions realtime; ///< the rights of the loop's thread
 };

@@ -19,11 +19,11 @@ struct PlacedLoop;
 struct RunOptions;
 
 struct RecordingOptions {
-  bool on = false;       ///< a file is recorded
-  std::string file;      ///< the name of the first file, of which later names are made
-  std::string keep_last; ///< as for cli::parse_duration(); empty: nothing is kept in memory
+  bool on = false;       ///< records to a file
+  std::string file;      ///< the name of the first file; later names are derived from it
+  std::string keep_last; ///< a duration for cli::parse_duration(); empty: nothing is kept in memory
   double keep_last_s = 0.0;
-  std::string kept_stem; ///< the beginning of the names of kept files
+  std::string kept_stem; ///< the prefix of the names of kept files
 
   bool wanted() const noexcept { return on || keep_last_s > 0.0; }
   /// Checks the options and reads `keep_last`. Files without a name get one beside `out`. Errors:
@@ -36,59 +36,60 @@ void add_recording_options(const cli::Command& command, RecordingOptions& option
 
 /// The result of one recording.
 struct RecordingOutcome {
-  std::string file;                            ///< empty: it was only kept in memory
-  std::optional<recording::Recorded> recorded; ///< nothing: it is not complete
+  std::string file;                            ///< empty: in memory only
+  std::optional<recording::Recorded> recorded; ///< nothing: incomplete
 };
 
-/// Begins a recording's setup: the program, the time, the wearer, and the gloves in the order of
-/// the hands.
+/// Returns a setup with the program, the time, the wearer, and the gloves in the order of the
+/// hands.
 recording::Setup begin_setup(const std::vector<gloves::OpenHand>& hands, const std::string& wearer);
 
-/// Returns what became of the records of each glove since it was started, in the order of the
-/// hands. Any thread; wait-free but for its memory.
+/// Returns the record counts of each glove since its start, in the order of the hands. Thread-safe.
+/// Allocates; otherwise wait-free.
 std::vector<driver::RecordCounts> counts_of(const std::vector<gloves::OpenHand>& hands);
 
-/// Records a run: from its beginning, or from any tick to any later one. Each recording has a log,
-/// a recorder and, from the second on, a numbered name of its own.
+/// Records a run: from its beginning, or from any tick to any later one. Each recording has its own
+/// log and recorder; the names of later ones are numbered.
 class RunRecorder {
 public:
-  /// All of them must outlive this.
+  /// All arguments must outlive this.
   RunRecorder(const RunOptions& options, const PlacedLoop& placed,
               const std::vector<gloves::OpenHand>& hands, const deform::Mesh& model)
       : options_(options), placed_(placed), hands_(hands), model_(model) {}
 
-  /// Makes the log of the recording with which the run begins, which place_loop() then needs.
-  /// Returns null if there is none.
+  /// Makes the log of the initial recording, for place_loop(). Returns null if the run does not
+  /// begin with a recording.
   flow::InputLog* first_log();
-  /// Begins to record into it, before the loop runs. Error: failed, if the file cannot be made.
+  /// Begins the initial recording, before the loop runs. Error: failed (the file cannot be
+  /// created).
   Result<void> begin();
-  /// Requests another recording, to a file or in memory. `frame` is the latest one. Not while
-  /// is_changing().
+  /// Requests a new recording, to a file or in memory. `frame` is the latest one. Do not call it
+  /// while is_changing().
   void set_file(bool on, const flow::Frame& frame);
   /// Completes a change; call it repeatedly. Returns a message for the user if a recording could
-  /// not be begun; the run continues.
+  /// not begin; the run continues.
   std::optional<std::string> follow();
   /// Ends the recording. To be called after the loop's last tick, with its final shape.
   void end(const deform::Points& shape);
 
   bool is_changing() const noexcept { return is_changing_; }
-  /// Returns true while there is a recording to a file.
+  /// Returns whether it records to a file.
   bool is_to_file() const noexcept { return to_file_; }
-  /// Returns true while there is a recording, to a file or in memory.
+  /// Returns whether it records, to a file or in memory.
   bool is_recording() const noexcept { return recorder_ != nullptr; }
-  /// Returns true with --keep-last.
+  /// Returns whether --keep-last was given.
   bool keeps_last_minute() const noexcept;
   /// Records a puppet before the loop gets it.
   void add_puppet(std::uint32_t number, const puppet::Rig& rig);
-  /// Requests that the recording in memory is written to a file. Does nothing unless
-  /// keeps_last_minute(). Wait-free.
+  /// Requests writing the recording in memory to a file. Does nothing without keeps_last_minute().
+  /// Wait-free.
   void save_last_minute() noexcept;
   /// Returns one outcome for each recording.
   const std::vector<RecordingOutcome>& outcomes() const noexcept { return outcomes_; }
 
 private:
   using Counts = std::vector<driver::RecordCounts>;
-  recording::Setup setup_now() const; ///< the setup of the loop at its begin
+  recording::Setup setup_now() const; ///< the loop's initial setup
   Counts counts() const;              ///< the counts of all inputs of the loop
   Result<void> begin(const recording::Setup& setup, const Counts& before);
   void end_with(const recording::ShapeSum& shape);
@@ -97,7 +98,7 @@ private:
   const RunOptions& options_;
   const PlacedLoop& placed_;
   const std::vector<gloves::OpenHand>& hands_;
-  const deform::Mesh& model_; ///< as it was loaded
+  const deform::Mesh& model_; ///< the loaded model
   std::unique_ptr<flow::InputLog> log_;
   std::unique_ptr<recording::Recorder> recorder_; ///< the recorder of log_; null: none
   bool to_file_ = false;

@@ -1,6 +1,6 @@
 #pragma once
-// The options of the commands that run the loop or deform: the settings, made from their
-// description (flow/setting.hpp), and the loop's timing, rights and threads.
+// Options of the commands that run the loop or deform: the settings, from their descriptions
+// (flow/setting.hpp), and the loop's timing, rights and threads.
 
 #include <map>
 #include <optional>
@@ -60,7 +60,7 @@ private:
   std::map<std::string_view, std::string> values_;
   std::map<std::string_view, std::optional<double>> numbers_;
   flow::LoopSettings usual_ = flow::usual_settings();
-  flow::LoopSettings switched_ = usual_; ///< has those that are on or off
+  flow::LoopSettings switched_ = usual_; ///< has the switch settings
 };
 
 struct LoopArguments {

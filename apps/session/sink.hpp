@@ -1,5 +1,5 @@
 #pragma once
-// A sink takes every frame of a run, for other programs, other machines or a browser.
+// A sink receives every frame of a run, for other programs, other machines or a browser.
 
 #include <atomic>
 #include <cstdint>
@@ -12,31 +12,30 @@
 
 namespace nendo::session {
 
-/// Its show() is called in the tick, on the loop's thread.
+/// show() is called in the tick, on the loop's thread.
 class Sink : public flow::FrameSink {
 public:
   /// Called before the first tick. Returns an error if it cannot take the loop's frames.
   virtual Result<void> begin(const LoopStart& start) = 0;
   /// Called on the main thread while the loop runs, before the loop continues with another version
-  /// of the model (flow::Frame::model): one that is new, or that was there before. Returns an error
-  /// if the sink cannot take it; the model then stays as it is. It may be called for another
-  /// version, or again, before a frame of that one has come.
+  /// of the model (flow::Frame::model), new or earlier. After an error, the model does not change.
+  /// May be called again, also for another version, before a frame of this version.
   virtual Result<void> prepare(const flow::ModelVersion& version) = 0;
-  /// Called on the main thread after the first frame of that version. The error is reported.
+  /// Called on the main thread after the first frame of a prepared version. The error is reported.
   virtual Result<void> settle() { return {}; }
 };
 
-/// The target that a sink writes to. Each version of the model needs its own, and the tick changes
-/// to the next one with the first frame of that version.
+/// The target of a sink. Each version of the model has its own; the tick switches at the first
+/// frame of the next version.
 template <class Target>
 class VersionTarget {
 public:
-  /// For the first version, before the loop runs.
+  /// Sets the target of the first version, before the loop runs.
   void begin(std::shared_ptr<Target> first) noexcept {
     now_ = std::move(first);
     in_tick_ = now_.get();
   }
-  /// Returns the target of the frame's version. For the tick; wait-free.
+  /// Returns the target of the frame's version. Loop's thread; wait-free.
   Target& of(const flow::Frame& frame) noexcept {
     if (frame.model != model_) {
       model_ = frame.model;
@@ -45,15 +44,15 @@ public:
     return *in_tick_;
   }
 
-  // For the main thread:
+  // Main thread:
 
-  /// Sets the target of the version with which the loop will continue, before the loop has it.
+  /// Sets the next version's target, before the loop has that version.
   void prepare(std::shared_ptr<Target> next) noexcept {
     next_ = std::move(next);
     next_in_tick_.store(next_.get(), std::memory_order_release);
   }
-  /// Makes the next target the present one after a frame of its version. Returns the previous one,
-  /// which the tick no longer uses; null if there was no other.
+  /// Makes the next target the current one, after a frame of its version. Returns the previous one,
+  /// which the tick no longer uses; null if there is no next target.
   std::shared_ptr<Target> settle() noexcept {
     if (!next_) return nullptr;
     return std::exchange(now_, std::exchange(next_, nullptr));

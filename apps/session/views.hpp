@@ -12,16 +12,16 @@ namespace nendo::session {
 
 struct ViewOptions {
   bool window = false;
-  bool contact = false;     ///< shows at first where hands touch clay
-  std::string screenshot;   ///< where the last picture goes, .png; empty: nowhere
+  bool contact = false;     ///< initially shows where hands touch clay
+  std::string screenshot;   ///< the file for the last picture, .png; empty: none
   std::uint32_t frames = 0; ///< pictures after which the run ends; 0: no limit
 };
 
-/// Opens the window. This and all calls of the window belong to the main thread. Errors: failed (no
-/// screen, no OpenGL, or built without the view); the message says what to do instead.
+/// Opens the window. Main thread, also for all calls of the window. Errors: failed (no screen, no
+/// OpenGL, or built without the view); the message has a remedy.
 Result<std::unique_ptr<Observer>> open_live_view(const ViewOptions& options, const RunOptions& run);
 
-/// It takes every frame in the tick, and observes the run on the main thread.
+/// Receives every frame in the tick, and observes the run on the main thread.
 class BrowserView : public Sink, public Observer {};
 
 /// Opens the server for --web, and prints its address on standard error. Errors: those of

@@ -1,5 +1,5 @@
 #pragma once
-// The strip below the scene: play head, keys and marks, which the mouse can move.
+// The dope sheet below the scene: play head, keys and marks, which the mouse can move.
 
 #include <optional>
 
@@ -28,7 +28,7 @@ private:
   DopeSheet strip_;
   std::optional<Taken> taken_; ///< a key that the mouse holds
   bool scrubs_ = false;
-  double head_s_ = 0.0; ///< at the last picture
+  double head_s_ = 0.0; ///< the play head at the last picture
 };
 
 } // namespace nendo::viewer

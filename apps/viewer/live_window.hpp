@@ -1,7 +1,6 @@
 #pragma once
-// The live window: the scene, a camera that the mouse moves, and a panel that shows the state of
-// the loop and has buttons for every command. The window reads frames. It never waits for the loop,
-// and the loop never waits for it. All calls belong to the main thread.
+// The live window: the scene, a camera that the mouse moves, and a panel with the loop's state and
+// buttons for all commands. The window and the loop never wait for each other. Main thread.
 
 #include <memory>
 #include <optional>
@@ -18,11 +17,11 @@
 
 namespace nendo::viewer {
 
-/// What the panel shows in addition to the frame.
+/// Values for the panel in addition to the frame.
 struct Gauges {
-  std::string model;                 ///< its name
-  double rate_hz = 0.0;              ///< wanted
-  std::array<std::string, 2> gloves; ///< their names; empty means no glove
+  std::string model;                 ///< the model's name
+  double rate_hz = 0.0;              ///< the requested rate
+  std::array<std::string, 2> gloves; ///< the gloves' names; empty: no glove
   std::array<driver::RecordCounts, 2> counts{};
   commands::RunFacts facts{};
   std::string report; ///< the result of the last command that saved something
@@ -32,31 +31,30 @@ class PuppetEditor;
 class PuppetMarks;
 class PuppetTool;
 
-/// The commands that the user has given since the last picture, in their order.
+/// The user's commands since the last picture, in order.
 using Commands = std::vector<flow::Command>;
 
 class LiveWindow {
 public:
-  /// Opens a window. Error: failed (no screen, no OpenGL 3.3); the message says what to do
-  /// instead.
+  /// Opens a window. Error: failed (no screen, no OpenGL 3.3); the message has an alternative.
   static Result<std::unique_ptr<LiveWindow>> open(const std::string& title, render::Size size);
   ~LiveWindow();
   LiveWindow(const LiveWindow&) = delete;
   LiveWindow& operator=(const LiveWindow&) = delete;
 
-  /// Begins to show a loop over this model, with the settings that it begins with.
+  /// Begins to show a loop with this model and these initial settings.
   void begin(const deform::BlockLayout& layout, const render::SceneBuilder& builder,
              const flow::LoopSettings& settings);
-  /// Shows another version of that model, which the frames from now on are of. The camera stays.
+  /// Shows another version of the model, for all frames from now on. Keeps the camera.
   void set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder);
   /// Draws one picture of the latest frame and waits for the screen, or for at most 8 ms if there
-  /// is none. fresh: the frame differs from that of the previous call.
+  /// is none. fresh: the frame is new since the last call.
   Commands show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
 
-  /// Edits the puppet, if begin() has been called of it.
+  /// The editor of the puppet, after its own begin().
   PuppetEditor& editor() noexcept { return *editor_; }
 
-  /// Returns the line below the panel's buttons: the report, or why a command was not possible.
+  /// Returns the line below the panel's buttons: the report, or a command's refusal.
   const std::string& message() const noexcept;
   /// Returns the settings that the panel shows.
   const flow::LoopSettings& settings() const noexcept;
@@ -77,7 +75,7 @@ private:
   std::unique_ptr<PuppetTool> tool_;
   std::unique_ptr<PuppetMarks> marks_;
   std::optional<render::SceneBuilder> builder_;
-  bool shows_loop_ = true; ///< and not the model of the editor
+  bool shows_loop_ = true; ///< otherwise the editor's model
   bool plays_ = false;     ///< the loop has a puppet
   render::HoldTracker holds_;
   render::SceneFrame scene_frame_;

@@ -32,7 +32,7 @@ private:
 };
 
 struct LiveWindow::Panel {
-  static constexpr float gap_px = 10.0F; ///< to the window's edges
+  static constexpr float gap_px = 10.0F; ///< the gap to the window's edges
   static constexpr float width_px = 250.0F;
 
   flow::WantedSettings wanted;
@@ -43,30 +43,30 @@ struct LiveWindow::Panel {
   std::uint64_t history_shown = 0; ///< the list's version
   bool fold_asked = false;
   bool folded = false;
-  std::string note;    ///< takes the place of Gauges::report until the next command
-  std::string message; ///< the line that is shown below the buttons
+  std::string note;    ///< replaces Gauges::report until the next command
+  std::string message; ///< the line below the buttons
 
-  /// Returns how much of the window's left the panel covers.
+  /// Returns the width that the panel covers at the window's left.
   int covered_px() const noexcept { return folded ? 0 : static_cast<int>(gap_px + width_px); }
   void follow_settings(const flow::LoopSettings& current);
   void follow(const flow::Frame& frame, double rate_hz);
   void buttons(const commands::Situation& now, const Gauges& gauges, Commands& commands);
-  /// Draws the buttons of one group, with so many in a line.
+  /// Draws the buttons of a group, `in_line` per line.
   void buttons_of(commands::Buttons group, int in_line, const commands::Situation& now,
                   Commands& commands);
   static void parts(SceneWindow& window);
   void settings();
   void brushes(flow::LoopSettings& chosen);
-  /// Lists the steps of the history. A click goes there.
+  /// Lists the history's steps. A click undoes or redoes up to a step.
   void history(const flow::Frame& frame, Commands& commands);
-  /// Symmetry, and what fingertips leave alone.
+  /// Controls symmetry, and masks of fingertips.
   void masks(PuppetEditor& editor, const commands::Situation& now, Commands& commands);
   /// Edits the puppet.
   static void puppet(PuppetEditor& editor, Commands& commands);
   static void clay(const flow::Frame& frame);
   void timing(const flow::Frame& frame, const Gauges& gauges) const;
   void hands(const flow::Frame& frame, const Gauges& gauges) const;
-  /// What keys do. It also draws their list.
+  /// Handles keys, and draws their list.
   void keys(const commands::Situation& now, SceneWindow& window, PuppetEditor& editor,
             Commands& commands);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Relates pixels of the picture to places in the scene and on a model, and moves a hand or a
-// fingertip with the mouse.
+// Maps pixels to places in the scene and on a model, and moves a hand or a fingertip with the
+// mouse.
 
 #include <array>
 #include <cstddef>
@@ -16,8 +16,8 @@
 
 namespace nendo::viewer {
 
-/// Returns the pixel at which a place is visible, from the picture's top left corner. Returns
-/// nothing if the place is behind the camera.
+/// Returns the pixel of a place, from the picture's top left corner; nothing if the place is behind
+/// the camera.
 std::optional<Eigen::Vector2d> pixel_of(const render::Camera& camera, const Eigen::Vector3d& place,
                                         render::Size size) noexcept;
 
@@ -35,44 +35,44 @@ struct Ray {
   Eigen::Vector3d along; ///< unit length
 };
 
-/// Returns the line of sight through a pixel, counted from the picture's top left corner.
+/// Returns the ray through a pixel, from the picture's top left corner.
 Ray ray_at(const render::Camera& camera, const Eigen::Vector2d& pixel, render::Size size) noexcept;
 
-/// A place of a surface, with the normal of its triangle, which looks against the ray.
+/// A place on a surface, with the normal of its triangle on the ray's side.
 struct SurfaceHit {
   Eigen::Vector3d at;
   Eigen::Vector3d normal;
   std::array<std::uint32_t, 3> corners{};          ///< the triangle's vertices
-  Eigen::Vector3d parts = Eigen::Vector3d::Zero(); ///< weights of the corners, whose sum `at` is
+  Eigen::Vector3d parts = Eigen::Vector3d::Zero(); ///< barycentric coordinates of `at`
 };
 
-/// Returns the first place of the mesh's faces that the ray meets; nothing if it meets none. It
-/// looks at all triangles. `rest` is where the vertices of a shaped model rest, which decides about
-/// its triangles (triangles.hpp); null: as they are.
+/// Returns the first intersection of the ray with the mesh; nothing if there is none. Tests all
+/// triangles. `rest` has the rest positions of a shaped model, which determine its triangulation
+/// (triangles.hpp); null: the mesh's own positions.
 std::optional<SurfaceHit> first_hit(const deform::Mesh& mesh, const Ray& ray,
                                     const deform::Points* rest = nullptr);
 
-/// Holds a hand, of a glove without a tracker or simulated, while the mouse button is down.
+/// Drags a hand, simulated or of a glove without a tracker, while the mouse button is down.
 class HandMover {
 public:
-  /// Takes the hand with the joint that is nearest to the pointer, which is in pixels from the
-  /// picture's top left corner. Takes no hand if no joint is within `reach` pixels.
+  /// Takes the hand with the joint nearest to the pointer, in pixels from the picture's top left
+  /// corner, if a joint is within `reach` pixels.
   static constexpr double reach = 60.0;
   void take(const render::Camera& camera, const flow::Frame& frame, const Eigen::Vector2d& pointer,
             render::Size size) noexcept;
   void release() noexcept { slot_.reset(); }
   bool holds() const noexcept { return slot_.has_value(); }
 
-  /// Moves the hand by the pixels that the pointer moved, in the picture's plane, so that the hand
-  /// stays under the pointer. `height` is the picture's height in pixels.
+  /// Moves the hand by the pointer's motion in pixels, in the picture's plane, so that it stays
+  /// under the pointer. `height` is the picture's height in pixels.
   void shift(const render::Camera& camera, double dx, double dy, double height) noexcept;
-  /// Turns the hand about its wrist, around the picture's vertical and horizontal axes, by the
-  /// pixels that the pointer moved.
+  /// Rotates the hand about its wrist, around the picture's vertical and horizontal axes, by the
+  /// pointer's motion in pixels.
   void turn(const render::Camera& camera, double dx, double dy) noexcept;
   /// Moves the hand by steps of the wheel, 1 cm each. Positive steps go away from the viewer.
   void push(const render::Camera& camera, double steps) noexcept;
 
-  /// Returns the pose that the held hand's wrist must take.
+  /// Returns the new wrist pose of the held hand.
   flow::WristMove move() const noexcept;
 
 private:
@@ -80,15 +80,15 @@ private:
 
   std::optional<std::size_t> slot_;                         ///< flow::Placement::index_of(side)
   Eigen::Isometry3d wrist_ = Eigen::Isometry3d::Identity(); ///< T_stage_wrist
-  Eigen::Vector3d lowest_m_ = Eigen::Vector3d::Zero();      ///< where it may go, on the stage
+  Eigen::Vector3d lowest_m_ = Eigen::Vector3d::Zero(); ///< the limits of the wrist, on the stage
   Eigen::Vector3d highest_m_ = Eigen::Vector3d::Zero();
 };
 
-/// Holds a fingertip of a timeline's key while the mouse button is down.
+/// Drags a fingertip of a timeline's key while the mouse button is down.
 class TipMover {
 public:
-  /// Returns the fingertip of a hand that is nearest to the pointer, which is in pixels from the
-  /// picture's top left corner. Returns nothing if none is within `reach` pixels.
+  /// Returns the fingertip nearest to the pointer, in pixels from the picture's top left corner;
+  /// nothing if none is within `reach` pixels.
   static constexpr double reach = 14.0;
   static std::optional<hand::Finger> tip_at(const render::Camera& camera,
                                             const hand::HandPose& pose,
@@ -97,13 +97,13 @@ public:
 
   void take(const hand::HandPose& pose, hand::Finger finger) noexcept;
   void release() noexcept { finger_.reset(); }
-  std::optional<hand::Finger> finger() const noexcept { return finger_; } ///< that is held
+  std::optional<hand::Finger> finger() const noexcept { return finger_; } ///< the held one
 
-  /// As HandMover's.
+  /// As in HandMover.
   void shift(const render::Camera& camera, double dx, double dy, double height) noexcept;
   void push(const render::Camera& camera, double steps) noexcept;
-  /// Returns the place on the stage to which the held tip must go, in metres. Each coordinate is
-  /// within 2 m of the stage's middle.
+  /// Returns the held tip's target on the stage, in metres. Each coordinate is within 2 m of the
+  /// origin.
   const Eigen::Vector3d& target_m() const noexcept { return target_m_; }
 
 private:

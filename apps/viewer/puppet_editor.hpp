@@ -1,7 +1,6 @@
 #pragma once
-// A puppet that is edited: what the user does with the mouse and keys in a window, as edits of the
-// puppet that the loop plays. It draws nothing and knows no window. All lengths are in model units.
-// For the main thread.
+// Edits the puppet that the loop plays, by mouse and key actions of a window. Independent of the
+// window, and draws nothing. All lengths are in model units. Main thread.
 
 #include <memory>
 #include <optional>
@@ -23,78 +22,78 @@ public:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
   PuppetEditor();
-  /// Begins with the model with which the loop began, whose file the puppet names so, and with the
-  /// puppet that it plays; null: none.
+  /// Begins with the loop's initial model, its file name for the puppet, and the played puppet;
+  /// null: none.
   void begin(const deform::Mesh& loaded, const std::string& model_name, const RigPointer& rig);
-  /// Another version of the model is shown.
+  /// Sets the visible version of the model.
   void set_model(const deform::Mesh& shown);
-  /// Takes the puppet that the loop plays, which an undo may have changed, and looks at the hands:
-  /// a finger that bends far enough moves the place that was clicked last.
+  /// Updates the played puppet, which an undo may have changed, and evaluates the hands: a finger
+  /// that bends far enough becomes the input of the pending place.
   void follow(const RigPointer& current, const flow::Frame& frame);
-  /// Returns, once, the puppet that the loop shall continue with; null: no other one.
+  /// Returns, once, the puppet with which the loop must continue; null: no change.
   RigPointer take() { return std::exchange(to_loop_, nullptr); }
 
   bool is_on() const noexcept { return is_on_; }
   void turn(bool on);
-  /// The model as it is to be shown: at rest, or with the function at 1 whose point is dragged.
-  /// Null: as the hands have shaped it, while masks are painted for their fingertips.
+  /// Returns the shape to show: the rest shape, or, during a drag, the dragged function at 1. Null:
+  /// the hands' shape, while masks of fingertips are painted.
   const deform::BlockShape* shape();
-  /// Without a puppet: one that has no points.
+  /// Without a puppet, returns one without points.
   const puppet::Rig& rig() const noexcept { return *rig_; }
   const deform::Mesh& model() const noexcept { return shown_; }
-  /// The model as it is shown: at rest, or, with masks of fingertips, as it was a moment ago.
+  /// The visible model: at rest or, with masks of fingertips, in a recent shape.
   const deform::Mesh& seen() const noexcept { return is_live() ? live_ : shown_; }
-  const std::string& message() const noexcept { return message_; } ///< the latest, for the user
+  const std::string& message() const noexcept { return message_; } ///< the latest message
 
-  // Points. A place that was clicked waits for the finger that shall move it.
+  // Points. A clicked place is pending until a finger is chosen for it.
 
   void place(const SurfaceHit& hit);
   const std::optional<SurfaceHit>& pending() const noexcept { return pending_; }
   void forget_place();
-  /// Says that the place that was clicked needs a finger before it can be dragged.
+  /// Sets the message that the pending place needs a finger before a drag.
   void ask_for_finger();
-  /// Lets that finger move the place that was clicked, or the chosen function.
+  /// Sets the input of the pending place, or of the chosen function.
   void choose_input(const puppet::HandSignal& input, double travel);
-  /// Pins the place that was clicked, or pins the chosen point or lets it go.
+  /// Pins the pending place, or pins or unpins the chosen point.
   void toggle_pin();
   void choose_point(std::size_t point);
   void choose_function(std::size_t function);
-  std::size_t point() const noexcept;    ///< that is chosen; none
+  std::size_t point() const noexcept;    ///< the chosen point, or `none`
   std::size_t function() const noexcept; ///< the chosen one, or one that moves the chosen point
   void remove_point();
   void rename_function(const std::string& name);
   void toggle_mirror();
 
-  // The way of the chosen point in the chosen function.
+  // The displacement of the chosen point by the chosen function.
 
   void begin_drag(std::size_t point);
   void drag(const Eigen::Vector3d& way);
-  /// The same for the turn of the chosen function, that is, for all points that it turns. One that
-  /// turns none gets a turn about the line to the viewer through the nearest pin, or, without pins,
-  /// through the middle of the model.
+  /// Begins a drag of the chosen function's rotation, for all points that it rotates. A function
+  /// without a rotation gets one about the line of sight through the nearest pin or, without pins,
+  /// through the model's centre.
   void begin_turn(std::size_t point, const Eigen::Vector3d& to_viewer);
   void turn_by(double degrees);
-  /// The turn that is dragged; null: none.
+  /// Returns the dragged rotation; null: none.
   const puppet::AxisTurn* dragged_turn() const noexcept;
   void end_drag();
   bool is_dragging() const noexcept { return drag_.has_value(); }
-  /// Returns where that point goes in the chosen function, while it is dragged.
+  /// Returns a point's displacement by the chosen function, during a drag.
   Eigen::Vector3d way_of(std::size_t point) const;
 
-  /// Makes the radius of the chosen point, or of places to come, larger by so many tenths. The loop
-  /// gets it when no further step has come for a while, so that it is one edit.
+  /// Increases the radius of the chosen point, or of new places, by `steps` tenths. The loop gets
+  /// it when no step has come for a while, so that it is one edit.
   void scale_radius(double steps);
-  double radius() const noexcept; ///< the radius of the chosen point, or of places to come
+  double radius() const noexcept; ///< the radius of the chosen point, or of new places
 
   // The brush for masks.
 
   bool brushes() const noexcept { return brushes_; }
   void toggle_brush();
-  /// Begins to paint what fingertips leave alone, or ends that.
+  /// Begins or ends painting masks of fingertips.
   void toggle_masks();
-  /// Returns whether it is on for that alone.
+  /// Returns whether the editor is on only for painting these masks.
   bool paints_masks() const noexcept { return only_masks_; }
-  /// Returns whether fingertips have masks, which are drawn whether they are edited or not.
+  /// Returns whether fingertips have masks. They are always drawn.
   bool has_masks() const noexcept;
   void paint(const SurfaceHit& hit, bool erases);
   void end_stroke();
@@ -102,9 +101,9 @@ public:
   bool erases() const noexcept { return erases_; }
   double brush_radius() const noexcept { return brush_radius_; }
 
-  /// Returns a number that changes when what is marked on the model does.
+  /// Returns a number that changes with the marks on the model.
   std::uint64_t version() const noexcept { return version_; }
-  /// The same for the model.
+  /// Returns a number that changes with the model.
   std::uint64_t model_version() const noexcept { return model_version_; }
 
 private:
@@ -112,8 +111,8 @@ private:
     std::size_t point = none;
     std::size_t function = none;
     Eigen::Vector3d way;
-    std::optional<puppet::AxisTurn> turn{}; ///< in place of the way
-    deform::Points vectors{};               ///< the displacements by the turn
+    std::optional<puppet::AxisTurn> turn{}; ///< replaces the way
+    deform::Points vectors{};               ///< displacements by the rotation
   };
   struct Scaling {
     std::size_t point = none;
@@ -132,16 +131,16 @@ private:
 
   deform::Mesh loaded_, shown_;
   RigPointer rig_, empty_;
-  RigPointer current_;           ///< in the loop, as follow() had it last
-  std::vector<RigPointer> sent_; ///< to the loop, and not in effect yet
-  RigPointer to_loop_;           ///< not taken yet
+  RigPointer current_;           ///< the loop's puppet at the last follow()
+  std::vector<RigPointer> sent_; ///< puppets sent to the loop, not in effect yet
+  RigPointer to_loop_;           ///< take() returns it next
   std::unique_ptr<puppet::RigShapes>
       shapes_; ///< shapes of rig_ on shown_; null: none, or not made yet
-  std::optional<deform::BlockShape> plain_;   ///< shown_ itself, where there is no puppet
-  std::optional<deform::BlockLayout> layout_; ///< layout of shown_, if it was needed
-  deform::Mesh live_;                         ///< shown_, as the hands have shaped it
-  HostTime live_at_{};                        ///< when it was brought up to date
-  std::string point_name_, function_name_;    ///< that are chosen
+  std::optional<deform::BlockShape> plain_;   ///< shown_, if there is no puppet
+  std::optional<deform::BlockLayout> layout_; ///< the layout of shown_, made when needed
+  deform::Mesh live_;                         ///< shown_ in the hands' shape
+  HostTime live_at_{};                        ///< the time of the last update of live_
+  std::string point_name_, function_name_;    ///< the chosen ones
   std::optional<SurfaceHit> pending_;
   puppet::BendWatch bends_;
   std::optional<Drag> drag_;
@@ -149,7 +148,7 @@ private:
   std::vector<Eigen::Vector3d> stroke_;
   double new_radius_ = 1.0, brush_radius_ = 1.0;
   bool is_on_ = false, brushes_ = false, erases_ = false;
-  bool only_masks_ = false; ///< it is on for them alone
+  bool only_masks_ = false; ///< on only for masks of fingertips
   std::uint64_t version_ = 1, model_version_ = 1;
   std::string message_;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// A puppet that is edited, in a window: its points, where they go, how far they reach along the
-// surface, its masks, and the mouse on the model.
+// Edits a puppet in a window: draws its points, their displacements, their reach along the surface
+// and its masks, and handles the mouse.
 
 #include <cstdint>
 #include <optional>
@@ -16,8 +16,8 @@ namespace nendo::viewer {
 
 class PuppetMarks {
 public:
-  /// Returns coloured patches of the model: the reach of the chosen point, or of the place that was
-  /// clicked, and the masks. They are made again when the editor's version changes.
+  /// Returns coloured patches of the model: the reach of the chosen point or pending place, and the
+  /// masks. Updates them when the editor's version changes.
   const std::vector<render::Surface>& veils(const PuppetEditor& editor,
                                             const render::SceneBuilder& builder);
 
@@ -36,26 +36,25 @@ private:
   std::vector<std::uint32_t> corners_;
 };
 
-/// Draws the points as marks over the picture, with an arrow to where each goes in the chosen
-/// function, and with their names; of many points, only the chosen one and the one under the mouse
-/// (`hovered`, or none) have theirs.
+/// Draws the points as marks over the picture, with names, and with arrows for their displacements
+/// by the chosen function. Of many points, only the chosen and the `hovered` one have names.
 void draw_points(const PuppetEditor& editor, const render::Camera& stage_camera, render::Size size,
                  double units_per_metre, std::size_t hovered);
 
 class PuppetTool {
 public:
-  /// Does what the mouse asks for: a click places a point, or chooses one; a drag of a point sets
-  /// where it goes, with shift how it turns; the wheel over one sets its radius; the brush paints.
-  /// Returns true if the mouse does nothing else then.
+  /// Handles the mouse: a click places or chooses a point; a drag sets its displacement, with shift
+  /// its rotation; the wheel sets its radius; the brush paints. Returns true if it has used the
+  /// mouse.
   bool follow(const SceneWindow& window, double units_per_metre, PuppetEditor& editor);
-  std::size_t hovered() const noexcept { return hovered_; } ///< point under the mouse; none
+  std::size_t hovered() const noexcept { return hovered_; } ///< point under the mouse, or none
 
 private:
   bool brush(const SceneWindow& window, double units_per_metre, PuppetEditor& editor);
 
   std::size_t hovered_ = PuppetEditor::none;
-  std::optional<Eigen::Vector2d> pressed_at_; ///< not on a point
-  bool holds_pending_ = false;                ///< the mark of a place that waits for its finger
+  std::optional<Eigen::Vector2d> pressed_at_; ///< a press beside all points
+  bool holds_pending_ = false;                ///< drags the pending place
   bool paints_ = false;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// What a window for editing a timeline shows, and what the user wants to do there. These are plain
-// data: the window does not know timelines, and the editor does not know the window.
+// The contents of the timeline window, and the user's actions there, as plain data. The window is
+// independent of timelines, and the editor of the window.
 
 #include <cstddef>
 #include <optional>
@@ -33,47 +33,47 @@ struct StripKey {
   friend bool operator==(const StripKey&, const StripKey&) = default;
 };
 
-/// The visible part of a timeline and its place on the strip: which time is at which pixel, counted
-/// from the strip's top left corner, and which key or mark the pointer is at. From top to bottom,
-/// the strip has a ruler, the lanes and the marks.
+/// Maps the visible part of a timeline to pixels of the strip, from its top left corner, and finds
+/// the key or mark at the pointer. From top to bottom, the strip has a ruler, the lanes and the
+/// marks.
 class DopeSheet {
 public:
-  static constexpr double left = 58.0;    ///< pixels for the names
-  static constexpr double right = 14.0;   ///< pixels, enough for half a key
+  static constexpr double left = 58.0;    ///< px, the width of the names
+  static constexpr double right = 14.0;   ///< px, for half a key
   static constexpr double ruler = 24.0;   ///< height
   static constexpr double lane = 26.0;    ///< height
   static constexpr double reach = 8.0;    ///< pixels from the pointer to a key or mark
-  static constexpr double closest = 0.02; ///< seconds; the shortest part that can fill the strip
+  static constexpr double closest = 0.02; ///< s, the shortest visible part
 
   static double height_for(std::size_t lanes) noexcept {
     return ruler + lane * static_cast<double>(lanes + 1);
   }
 
-  /// Sets the strip's width in pixels and the timeline's duration. The visible part stays the same
-  /// as far as it is within the duration. If all was visible, all stays visible.
+  /// Sets the strip's width in pixels and the timeline's duration. Keeps the visible part, limited
+  /// to the duration. If all was visible, all stays visible.
   void fit(double width, double duration_s) noexcept;
-  double first_s() const noexcept { return first_s_; } ///< the begin of the visible part
+  double first_s() const noexcept { return first_s_; } ///< the visible part's begin
   double last_s() const noexcept { return last_s_; }   ///< its end
   double x_of(double time_s) const noexcept;
-  /// Returns the time at x, limited to 0 and the duration.
+  /// Returns the time at x, clamped to 0 and the duration.
   double time_at(double x) const noexcept;
-  /// Returns the y of the middle of that lane. The number of lanes as `lane` gives the row of the
+  /// Returns the y of a lane's centre. With the number of lanes as `lane`, returns that of the
   /// marks.
   static double middle_of(std::size_t lane) noexcept;
 
-  /// Zooms while the time under x stays there. Positive steps come closer.
+  /// Zooms about the time at x. Positive steps zoom in.
   void zoom(double x, double steps) noexcept;
   void pan(double dx) noexcept;
-  /// Moves the visible part so that it contains time_s, if it does not.
+  /// Scrolls so that time_s is visible, if it is not.
   void follow(double time_s) noexcept;
 
-  /// Returns the key at the pointer, or the nearest if there are several.
+  /// Returns the nearest key at the pointer, if any.
   std::optional<StripKey> key_at(std::span<const StripLane> lanes, double x, double y) const;
-  /// Returns the mark at the pointer, or the nearest if there are several.
+  /// Returns the nearest mark at the pointer, if any.
   std::optional<std::size_t> mark_at(std::span<const StripMark> marks, std::size_t lanes, double x,
                                      double y) const;
-  /// Returns the interval between the ruler's numbers: 1, 2 or 5 times a power of ten, so that the
-  /// numbers do not overlap.
+  /// Returns the interval of the ruler's labels: 1, 2 or 5 times a power of ten, so that labels do
+  /// not overlap.
   double ruler_step_s() const noexcept;
 
 private:
@@ -86,19 +86,19 @@ private:
   double last_s_ = 1.0;
 };
 
-/// What a function of a puppet is at.
+/// The value of a puppet's function.
 struct FunctionValue {
   std::string name;
   double value = 0.0;
 };
 
 struct TimelineView {
-  std::string file; ///< where the timeline is saved
+  std::string file; ///< the timeline's file
   double duration_s = 0.0;
   double rate_hz = 90.0; ///< frames per second
   std::vector<StripLane> lanes;
   std::vector<StripMark> marks;
-  std::vector<FunctionValue> functions; ///< at the play head; without a puppet there are none
+  std::vector<FunctionValue> functions; ///< at the play head; empty without a puppet
 
   double head_s = 0.0;
   bool loops = false;
@@ -117,9 +117,9 @@ struct TimelineView {
 
 using commands::EditCommand;
 
-/// A trial edit. Each one replaces the previous one, until EditActions::keep or EditActions::drop.
+/// Trial edits. Each replaces the previous one, until EditActions::keep or EditActions::drop.
 struct KeyDrag {
-  StripKey key; ///< with its number at the beginning of the drag
+  StripKey key; ///< its indices at the beginning of the drag
   double to_s = 0.0;
   bool copy = false;
 };
@@ -136,17 +136,17 @@ struct Retiming {
   double scale = 1.0;
 };
 
-/// What the user has done since the last picture. It must be applied in this order.
+/// The user's actions since the last picture, to be applied in this order.
 struct EditActions {
   std::optional<StripKey> select;
   std::optional<double> seek_s;
   std::optional<double> speed;
   std::optional<std::variant<KeyDrag, TipDrag, KeyBlend>> tried;
-  bool keep = false; ///< the tried edit becomes a step
+  bool keep = false; ///< the trial edit becomes a step
   bool drop = false;
   std::optional<Retiming> retiming;
   std::vector<EditCommand> commands;
-  bool quit = false; ///< after all others; saves only if `commands` has `save`
+  bool quit = false; ///< applied last; saves only if `commands` has `save`
 };
 
 } // namespace nendo::viewer

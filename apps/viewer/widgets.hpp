@@ -1,8 +1,7 @@
 #pragma once
-// Helpers for ImGui that every window uses.
-// Passes keys and the pointer to ImGui, with GLFW's numbers for keys. Before version 1.87, a
-// program writes their state into ImGuiIO. Since 1.87, ImGui has its own numbers for keys and takes
-// events, which NewFrame() applies. All calls belong to the main thread.
+// ImGui helpers for all windows, and input by GLFW's key numbers. Before version 1.87, a program
+// writes the state of keys and pointer into ImGuiIO. Since 1.87, ImGui has its own key numbers and
+// queues events, which NewFrame() applies. Main thread.
 
 #include <array>
 #include <utility>
@@ -12,8 +11,8 @@
 
 namespace nendo::viewer {
 
-/// Since version 1.87, ImGui itself shows each event in a picture of its own, however short the key
-/// was down. Then the events of the window's back end need no help.
+/// Since version 1.87, ImGui handles press and release in separate frames, also for short presses.
+/// Then the back end's events need no workaround.
 inline constexpr bool imgui_queues_events = IMGUI_VERSION_NUM >= 18700;
 
 #if IMGUI_VERSION_NUM < 18700
@@ -50,7 +49,7 @@ inline void put_wheel(float turns) {
 
 #else
 
-/// Returns ImGuiKey_None for a key that no window here uses.
+/// Returns ImGuiKey_None for keys that no window uses.
 inline ImGuiKey imgui_key(int key) {
   if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z)
     return static_cast<ImGuiKey>(ImGuiKey_A + (key - GLFW_KEY_A));
@@ -113,8 +112,8 @@ inline void put_wheel(float turns) {
 
 #endif
 
-/// Returns whether the key, by GLFW's number, has just gone down. With `repeats`, a key that is
-/// held down counts again at intervals.
+/// Returns whether the key, by GLFW's number, was just pressed. With `repeats`, a key that is held
+/// down repeats.
 inline bool pressed(int key, bool repeats = false) {
   const auto known = imgui_key(key);
 #if IMGUI_VERSION_NUM < 18700
@@ -125,13 +124,12 @@ inline bool pressed(int key, bool repeats = false) {
   return ImGui::IsKeyPressed(known, repeats);
 }
 
-/// Returns whether keys are meant for the window: no text is being entered, and no question or list
-/// is open.
+/// Returns whether keys are for the window: no text field, dialog or list is active.
 inline bool takes_keys() {
   return !ImGui::GetIO().WantTextInput && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);
 }
 
-/// Begins a question in the middle of the window. If it returns true, the question's buttons and
+/// Begins a modal dialog in the window's centre. If it returns true, the dialog's buttons and
 /// ImGui::EndPopup() must follow.
 inline bool begin_question(const char* title) {
   const ImVec2 all = ImGui::GetIO().DisplaySize;

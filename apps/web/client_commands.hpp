@@ -1,9 +1,7 @@
 #pragma once
-// A strict parser for the commands that a client may send, and the settings as text in both
-// directions (PROTOCOL.md). The latter are made from the description of the settings
-// (flow/setting.hpp).
-// The table of commands and the description of the settings, as the page and other clients have
-// them.
+// A strict parser for clients' commands, and conversions of settings to and from text
+// (PROTOCOL.md), by the descriptions in flow/setting.hpp. Also the command table and the settings
+// for the page and other clients.
 
 #include <cstdint>
 #include <string>
@@ -18,45 +16,42 @@
 
 namespace nendo::web {
 
-/// The settings that a client names. It does not change the others.
+/// The settings that a client changes.
 struct NamedSettings {
   flow::LoopSettings values;
   std::uint32_t named = 0; ///< bit k: the k-th setting of flow::for_each_setting()
 
-  /// Gives these settings the values of those that are named.
+  /// Copies the named values to `settings`.
   void apply_to(flow::LoopSettings& settings) const noexcept;
 
   friend bool operator==(const NamedSettings&, const NamedSettings&) = default;
 };
 
-/// Reads a text such as "mode=type2 radius_m=0.1,0.1,0.1,0.1,0.05", with single spaces between.
-/// Allocates only for an error. Error: bad_input, naming the setting and what can be used.
+/// Parses a text such as "mode=type2 radius_m=0.1,0.1,0.1,0.1,0.05", separated by single spaces.
+/// Allocates only for an error. Error: bad_input, naming the setting and its valid values.
 Result<NamedSettings> parse_named_settings(std::string_view text);
 
-/// Returns such a text, which has all settings. Allocates.
+/// Returns all settings as such a text. Allocates.
 std::string text_of(const flow::LoopSettings& settings);
 
-/// A command; or a row of the table, which a client gives by its name as a person does by its key:
-/// what becomes of it depends on the run (commands::press()); or the settings that a client
-/// changes.
+/// A command; or a row of the table, by its name, whose effect depends on the run
+/// (commands::press()); or changed settings.
 using ClientCommand = std::variant<flow::Command, const commands::Row*, NamedSettings>;
 
-/// Returns the command that the text means. The quaternion of a wrist is normalised. Allocates only
-/// for an error. Error: bad_input (it is no command, or a number in it is out of range), in at most
-/// max_close_reason bytes.
+/// Parses a command. Normalises the quaternion of a wrist. Allocates only for an error. Error:
+/// bad_input (not a command, or a number out of range), in at most max_close_reason bytes.
 Result<ClientCommand> parse_command(std::string_view text);
 
-/// Returns the rows that the page has, as a list in JavaScript, of which each has name, keys, help,
-/// button, buttonOn, isForRun and isSetting.
+/// Returns the page's rows as a JavaScript array of objects with name, keys, help, button,
+/// buttonOn, isForRun and isSetting.
 std::string page_commands();
 
-/// Returns an object in JavaScript with the settings by their names, of which each has label, and
-/// if it is chosen by a slider, min and max. The brushes have choices.
+/// Returns a JavaScript object with the settings by name. Each has label; those with a slider have
+/// min and max, and the brushes have choices.
 std::string page_settings();
 
-/// Returns the text of the message about commands: a line for each that is on or not possible, in
-/// the order of the table. It has the command's name, "on" or "off", and why the command is not
-/// possible, with tabs between.
+/// Returns the text of the commands message: a line for each command that is on or not possible, in
+/// table order, with name, "on" or "off", and refusal, separated by tabs.
 std::string command_states(const commands::Situation& now);
 
 } // namespace nendo::web

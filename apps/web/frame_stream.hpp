@@ -1,8 +1,7 @@
 #pragma once
-// Carries frames from the loop's thread to the server's thread. For each frame it makes a record,
-// which is encoded as PROTOCOL.md describes. From the records a client can follow the shape by
-// itself. The whole shape is copied only when the server asks for it. A feed decides which of the
-// records and shapes one client is sent. Nothing here knows of sockets.
+// Passes frames from the loop's thread to the server's thread, as records in the encoding of
+// PROTOCOL.md, from which a client can compute the shape. Copies the whole shape only at the
+// server's request. A feed selects the records and shapes for one client. Independent of sockets.
 
 #include <array>
 #include <atomic>
@@ -21,14 +20,14 @@ namespace nendo::web {
 
 /// One frame, encoded for clients.
 struct Record {
-  std::uint64_t number = 0; ///< the frame's, counted from 1
-  /// The step does not continue the previous record, so a client needs the shape again.
+  std::uint64_t number = 0; ///< the frame's number, counted from 1
+  /// The step does not continue the previous record: clients need a new shape.
   bool discontinuous = false;
-  bool bakes = false; ///< the step changes the base, and is not only drawn over it
-  /// The rounding errors that a client, which adds up in float, may collect by this step, as a
-  /// share of the allowed errors. When the shares add up to 1, the client needs a fresh shape.
+  bool bakes = false; ///< the step changes the base shape, not only the drawn one
+  /// A bound of the float rounding error that a client accumulates by this step, as a fraction of
+  /// the allowed error. When the sum reaches 1, the client needs a new shape.
   double drift = 0.0;
-  /// deform::SurfaceField::number() of the weights that the step needs; 0: of none.
+  /// deform::SurfaceField::number() of the step's weights; 0: none.
   std::uint64_t weights = 0;
   std::vector<std::byte> head; ///< head and hands of an update message, with `steps` 0
   std::vector<std::byte> step; ///< one step of an update message
@@ -36,37 +35,38 @@ struct Record {
 
 class FrameStream final : public flow::FrameSink {
 public:
-  /// The most that a frame may have, whatever the settings become.
+  /// The max contents of a frame, with any settings.
   struct Capacity {
     std::size_t fields = 0;
     std::size_t functions = 0; ///< max per field
     std::size_t vectors = 0;   ///< max of deform::SurfaceMove
   };
 
-  /// layout: that of a loop that has not begun yet. Allocates all that show() needs.
+  /// layout: of a loop that has not begun yet. Allocates all memory for show().
   FrameStream(const deform::BlockLayout& layout, const Capacity& capacity);
 
-  /// Writes a record while the stream is active. Copies the changed blocks of the shape if the
-  /// shape was requested, after a commit and after an undo. Called in the tick; wait-free.
+  /// Writes a record if the stream is active. Copies the shape's changed blocks if it was
+  /// requested, after a commit and after an undo. Loop's thread; wait-free.
   void show(const flow::Frame& frame) noexcept override;
 
-  // All functions that follow are for one other thread.
+  // The following functions are for one other thread.
 
-  /// Switches the stream on or off. While it is not active, no records are made. Wait-free.
+  /// Switches the stream on or off. An inactive stream makes no records. Wait-free.
   void set_active(bool active) noexcept { active_.store(active, std::memory_order_relaxed); }
   /// Appends the records since the last call. Allocates; does not block.
   void take(std::vector<Record>& records);
-  /// Requests a copy of the next frame's shape. Has no effect while one is on its way. Wait-free.
+  /// Requests a copy of the next frame's shape. Has no effect while a request is pending.
+  /// Wait-free.
   void request_shape() noexcept;
-  /// A shape message: the base after the record `number`, which take() has not returned yet.
+  /// A shape message: the base shape after the record `number`, which take() has not returned yet.
   struct Shape {
     std::uint64_t number = 0;
     std::vector<std::byte> message;
   };
-  /// Returns the requested shape, or nothing if it has not come yet. To be called after take().
-  /// Allocates; does not block.
+  /// Returns the requested shape, or nothing if it is not ready. Call it after take(). Allocates;
+  /// does not block.
   std::optional<Shape> take_shape();
-  /// Returns how many frames came when the ring was full. Any thread may call it.
+  /// Returns the number of frames that the full ring refused. Thread-safe.
   std::uint64_t lost() const noexcept { return ring_.counters().refused; }
 
 private:
@@ -85,7 +85,7 @@ private:
   const std::size_t vertices_;
   const double max_drift_; ///< squared, in units
   // Used by the tick only.
-  deform::BlockShape rest_; ///< in Type-1, the shape that fields are applied to; in Type-2, that of
+  deform::BlockShape rest_; ///< in type 1, the shape to which fields apply; in type 2, the shape of
                             ///< the last commit or undo
   std::uint64_t number_ = 0;
   std::uint64_t rest_changes_ = 0;
@@ -102,38 +102,38 @@ private:
   std::vector<std::byte> incoming_;
 };
 
-/// What the page shows of a glove beside its samples.
+/// A glove's state for the page, besides its samples.
 struct GloveState {
   driver::RecordCounts counts;
-  bool uncalibrated = false; ///< its angles are an average hand's
+  bool uncalibrated = false; ///< its calibration is an average hand's
 };
-/// By flow::Placement::index_of(side).
+/// Index: flow::Placement::index_of(side).
 using GloveStates = std::array<GloveState, 2>;
 
-/// What the server adds to an update message.
+/// The server's contribution to an update message.
 struct FeedCounters {
-  std::uint64_t lost = 0; ///< frames that came when the ring was full
+  std::uint64_t lost = 0; ///< frames that the full ring refused
   GloveStates gloves;
 };
 
 class Feed {
 public:
-  /// Must be called with the records before update() or skip() is.
+  /// Must be called with the records before update() or skip().
   void look_at(std::span<const Record> records) noexcept;
-  /// Returns the weights that the client must be sent first (Record::weights); 0: none.
+  /// Returns the weights to send to the client first (Record::weights); 0: none.
   std::uint64_t wanted_weights() const noexcept { return needed_ == weights_ ? 0 : needed_; }
-  /// Must be called when the client has been sent those weights, in place of those that it had.
+  /// Must be called after sending these weights, which replace the client's previous ones.
   void weights_sent(std::uint64_t weights) noexcept { weights_ = weights; }
-  /// Returns whether the client needs a shape: at first, when it has missed steps, and when its
-  /// rounding errors may have become too large. It needs none as long as it lacks weights.
+  /// Returns whether the client needs a shape: initially, after missed steps, and when its rounding
+  /// errors may be too large. False while it needs weights.
   bool wants_shape() const noexcept {
     return wanted_weights() == 0 && (lacks_shape_ || drift_ >= 1.0);
   }
-  /// Must be called when the client has been sent the shape after that frame.
+  /// Must be called after sending the shape of that frame.
   void shape_sent(std::uint64_t number) noexcept;
 
-  /// Makes an update message of the records since the last call. Returns nothing if there are none.
-  /// The message has no steps while the client lacks the shape that they continue.
+  /// Makes an update message from the records since the last call; nothing if there are none. The
+  /// message has no steps while the client needs a shape.
   std::optional<std::vector<std::byte>> update(std::span<const Record> records,
                                                const FeedCounters& counters);
   /// Must be called instead of update() when nothing can be sent to the client.
@@ -144,10 +144,10 @@ private:
   bool can_follow(std::span<const Record> records) const noexcept;
 
   bool lacks_shape_ = true;
-  std::uint64_t needed_ = 0;  ///< the weights that the newest step needs
-  std::uint64_t weights_ = 0; ///< that the client has
-  std::uint64_t base_ = 0;    ///< the last frame that the client knows
-  std::uint64_t shape_ = 0;   ///< the frame whose shape was sent last
+  std::uint64_t needed_ = 0;  ///< the newest step's weights
+  std::uint64_t weights_ = 0; ///< the client's weights
+  std::uint64_t base_ = 0;    ///< the last frame that the client has
+  std::uint64_t shape_ = 0;   ///< the frame of the last sent shape
   double drift_ = 0.0;
   std::uint64_t skipped_ = 0;
 };

@@ -1,7 +1,7 @@
 #pragma once
-// A strict parser for the head of an HTTP/1.1 request (RFC 9112). It refuses all that can be read
-// in two ways. The result consists of views into the bytes that were parsed. And the decision which
-// requests are granted: the defence against pages of other sites in the same browser.
+// A strict parser for the head of an HTTP/1.1 request (RFC 9112), which refuses ambiguous input.
+// The result has views into the parsed bytes. Also admits requests, as a defence against pages of
+// other sites in the same browser.
 
 #include <cstddef>
 #include <optional>
@@ -21,14 +21,13 @@ struct HttpRequest {
   std::string_view query; ///< the part after it
   std::vector<std::pair<std::string_view, std::string_view>> headers;
 
-  /// Returns the value of a header, whose name is compared without regard to case. Returns nothing
-  /// if there is no such header or more than one.
+  /// Returns the value of a header, by its case-insensitive name; nothing unless there is exactly
+  /// one.
   std::optional<std::string_view> header(std::string_view name) const noexcept;
   std::size_t count(std::string_view name) const noexcept; ///< number of headers of that name
-  /// Returns whether one of the headers of that name is a comma-separated list with that word in
-  /// it.
+  /// Returns whether a header of that name is a comma-separated list that contains the word.
   bool lists(std::string_view name, std::string_view word) const noexcept;
-  /// Returns the "x" of "?name=x" in the query, or nothing if that name is not there.
+  /// Returns the "x" of "?name=x" in the query; nothing without that name.
   std::optional<std::string_view> parameter(std::string_view name) const noexcept;
 };
 
@@ -39,7 +38,7 @@ struct HttpHead {
   HttpRequest request{};
 };
 
-/// Parses the head of a request. `bytes` must be everything that the client has sent so far.
+/// Parses the head of a request. `bytes` must be all bytes that the client has sent so far.
 HttpHead parse_head(std::string_view bytes);
 
 enum class Resource { page, model, picture, socket };
@@ -47,15 +46,15 @@ enum class Resource { page, model, picture, socket };
 struct Admission {
   int status = 200; ///< 200 if granted, otherwise the status of the refusal
   Resource resource = Resource::page;
-  std::string_view why; ///< the reason of a refusal; a line for people
+  std::string_view why; ///< the reason of a refusal, in one line for the user
 };
 
-/// Decides about a request. Host must be a numeric address or localhost, against DNS rebinding.
-/// Origin, if there is one, must be the same host. All but the page need `?token=`. The
-/// request for a WebSocket must conform to RFC 6455, section 4.2.1.
+/// Grants or refuses a request. Host must be a numeric address or localhost, against DNS rebinding.
+/// Origin, if given, must be the same host. All resources except the page need `?token=`. A
+/// WebSocket request must conform to RFC 6455, section 4.2.1.
 Admission admit(const HttpRequest& request, std::string_view token) noexcept;
 
-/// Compares two strings in a time that depends on their lengths only.
+/// Compares two strings in a time that depends only on their lengths.
 bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept;
 
 } // namespace nendo::web

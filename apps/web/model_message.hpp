@@ -1,7 +1,6 @@
 #pragma once
-// The messages that a client needs before it can follow frames: the model and its numbers, and the
-// weights of a field along its surface (PROTOCOL.md).
-// The model's textures, for clients.
+// The messages that a client needs before frames: the model, and the weights of a field along its
+// surface (PROTOCOL.md). Also the model's textures.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,37 +18,37 @@
 
 namespace nendo::web {
 
-/// By their numbers in deform::Appearance::textures; null where there is no picture.
+/// Index: as in deform::Appearance::textures; null: no picture.
 using Pictures = std::vector<std::shared_ptr<const std::string>>;
 
-/// Returns the textures as PNG or JPEG, which browsers show: a TGA or a BMP becomes a PNG, and
-/// takes its time. A file of another kind, which a model may name as well, is not sent to anyone.
-/// None if the model has no texture coordinates.
+/// Returns the textures as PNG or JPEG, for browsers. Slowly converts TGA and BMP to PNG. Files of
+/// other types, which a model may also name, are never sent. Empty if the model has no texture
+/// coordinates.
 Pictures pictures_of(const deform::Mesh& mesh);
-/// Returns whether a texture, by its first bytes alone, is among pictures_of(); a damaged one is
-/// not.
+/// Returns whether a texture's first bytes are of a type in pictures_of(), which omits damaged
+/// files.
 bool has_picture(const deform::Mesh& mesh, std::uint32_t texture) noexcept;
 
 /// Parses the number of a picture: up to six decimal digits.
 std::optional<std::size_t> picture_number(std::string_view text) noexcept;
 
 struct ModelFacts {
-  std::string name; ///< is displayed
+  std::string name; ///< the displayed name
   double rate_hz = 0.0;
   double units_per_metre = 1.0;
 };
 
-/// The greatest number of vertices that a browser can be expected to show.
+/// The max number of vertices that browsers can be expected to show.
 inline constexpr std::size_t max_vertices = 4'000'000;
 
-/// Returns the message. `layout` is that of the loop, and the loop was made from `mesh` and
-/// `hands`. Allocates.
+/// Returns the model message. `layout` is that of the loop, which was made from `mesh` and `hands`.
+/// Allocates.
 std::vector<std::byte> model_message(const deform::BlockLayout& layout, const deform::Mesh& mesh,
                                      std::span<const flow::HandInput> hands,
                                      const ModelFacts& facts);
 
-/// Returns the message with the field's terms, in the order of the model message. They stay in
-/// float: the error of a smaller type would be more than clients may have. Allocates.
+/// Returns the message with the field's terms, in the order of the model message, as float: a
+/// smaller type would exceed the clients' allowed error. Allocates.
 std::vector<std::byte> weights_message(const deform::SurfaceField& field);
 
 } // namespace nendo::web

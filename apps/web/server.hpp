@@ -1,7 +1,6 @@
 #pragma once
 // An HTTP server. It sends one page to browsers, and the frames of a running loop over WebSockets
-// to clients that have the token. PROTOCOL.md describes the bytes. One thread owns all sockets, and
-// no call on a socket blocks it.
+// to clients with the token (PROTOCOL.md). One thread owns all sockets, which are non-blocking.
 
 #include <array>
 #include <chrono>
@@ -22,33 +21,33 @@
 
 namespace nendo::web {
 
-/// What the server grants to each client, hostile ones included.
+/// The limits for each client, hostile ones included.
 struct ServerLimits {
   /// Open connections. A new one beyond this limit closes the oldest that is not a WebSocket.
   std::size_t max_connections = 32;
   std::size_t max_clients = 16; ///< open WebSockets; the next one is answered with 503
-  /// Bytes queued for a client, shapes not counted. A client that has more queued misses frames
-  /// until its queue is empty.
+  /// Bytes queued for a client, without shapes. A client with more queued bytes misses frames until
+  /// its queue is empty.
   std::size_t max_queued_bytes = std::size_t{256} << 10;
-  /// SO_SNDBUF of each socket. What waits there can no longer be skipped, so it is kept small.
+  /// SO_SNDBUF of each socket. It is small, because its contents can no longer be skipped.
   std::size_t send_buffer_bytes = std::size_t{256} << 10;
-  std::chrono::milliseconds request_timeout{5000};  ///< from the connection to the whole request
-  std::chrono::milliseconds stall_timeout{10000};   ///< without taking a byte of the queue
-  std::chrono::milliseconds lag_timeout{30000};     ///< how long a WebSocket's queue may be in use
-  std::chrono::milliseconds ping_period{10000};     ///< between pings of a WebSocket
-  std::chrono::milliseconds silence_timeout{30000}; ///< how long a WebSocket may be silent
-  /// Messages from a client, as a token bucket: its size, and how fast it fills. A client that
-  /// sends more is closed.
+  std::chrono::milliseconds request_timeout{5000}; ///< from the connection to the whole request
+  std::chrono::milliseconds stall_timeout{10000};  ///< max time without sending a byte of the queue
+  std::chrono::milliseconds lag_timeout{30000};    ///< max time with a non-empty WebSocket queue
+  std::chrono::milliseconds ping_period{10000};    ///< between pings of a WebSocket
+  std::chrono::milliseconds silence_timeout{30000}; ///< max silence of a WebSocket
+  /// The token bucket for a client's messages: its size and fill rate. A client that exceeds it is
+  /// closed.
   double message_burst = 512.0;
   double messages_per_second = 128.0;
 };
 
-/// Counts since the server was opened, except for `clients`.
+/// Counts since open(), except for `clients`.
 struct ServerCounters {
   std::uint64_t clients = 0;  ///< WebSockets that are open now
   std::uint64_t accepted = 0; ///< connections
   std::uint64_t refused = 0;  ///< requests that were answered with an error
-  std::uint64_t dropped = 0;  ///< connections that met a limit of time or number
+  std::uint64_t dropped = 0;  ///< connections closed at a limit of time or number
   std::uint64_t updates = 0;  ///< update messages to all clients, and their bytes
   std::uint64_t update_bytes = 0;
   std::uint64_t shapes = 0; ///< shape messages to all clients, and their bytes
@@ -59,57 +58,57 @@ struct ServerCounters {
 
 class Server {
 public:
-  /// Opens the port and starts the server's thread. Until present() is called, requests for the
-  /// model and for WebSockets are answered with 503. Error: failed (the port is taken, the address
-  /// is not one of this machine, the system has no random bytes for the token).
+  /// Opens the port and starts the server's thread. Until present() is called, answers requests for
+  /// the model and for WebSockets with 503. Error: failed (the port is taken, the address is not
+  /// one of this machine, the system has no random bytes for the token).
   static Result<std::unique_ptr<Server>> open(const Endpoint& endpoint, ServerLimits limits = {});
-  /// Sends what is left of the last frame, closes all connections and joins the thread. It does not
-  /// wait for slow clients.
+  /// Sends the rest of the last frame, closes all connections and joins the thread. Does not wait
+  /// for slow clients.
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
   /// Returns where the server listens, with the port that the system chose in place of 0.
   const Endpoint& endpoint() const noexcept;
-  /// Returns the token: 128 random bits in hexadecimal digits. A client that has it may watch and
-  /// send commands.
+  /// Returns the token: 128 random bits in hexadecimal digits. A client with the token may watch
+  /// and send commands.
   const std::string& token() const noexcept;
-  /// Returns the address for a browser. The token follows "#", a part that browsers do not send.
+  /// Returns the address for a browser. The token is in the fragment, which browsers do not send.
   std::string url() const;
 
-  // Any thread may call the following functions but next_command(). They do not wait for the
+  // The following functions, except next_command(), are thread-safe. They do not wait for the
   // network.
 
-  /// Serves another loop, which must not have begun yet, by its frames, its model_message() and its
-  /// pictures_of(). Clients of the previous loop are closed with code 1012 and may connect again.
+  /// Serves another loop, which must not have begun yet: its frames, model_message() and
+  /// pictures_of(). Closes clients of the previous loop with code 1012; they may reconnect.
   void present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model,
                Pictures pictures = {});
-  /// Adds a weights_message(), by its number (Record::weights). It keeps the last ones, and the one
-  /// that frames need.
+  /// Adds a weights_message(), by its number (Record::weights). Keeps the newest ones, and the one
+  /// in use by frames.
   void add_weights(std::uint64_t number, std::vector<std::byte> message);
-  /// Returns the next command of any client, in the order in which they came, or nothing if there
-  /// is none now. Only one thread may call it; wait-free.
+  /// Returns the next command of all clients, in order of arrival, or nothing. Only for one thread;
+  /// wait-free.
   std::optional<ClientCommand> next_command() noexcept;
   /// Sends a report to all clients.
   void report(std::string message);
-  // The following functions notify clients when they connect and when the values change.
+  // The server sends the following values to clients when they connect, and after changes.
   void set_settings(const flow::LoopSettings& settings);
-  /// Sets which commands of the table are on, and which are not possible, with the reason.
+  /// Sets which commands of the table are on, and the refusals of others.
   void set_commands(const commands::Situation& now);
   void set_steps(const flow::StepList& steps);
-  /// Sets the puppet that is played, by the loop's number for it; null: none.
+  /// Sets the played puppet, with the loop's number for it; null: none.
   void set_puppet(std::uint32_t number, const puppet::Rig* rig);
-  /// Sets what the page shows of clay. Notifies clients at most 30 times per second.
+  /// Sets the state of clay. Notifies clients at most 30 times per second.
   void set_clay(const flow::Frame& frame);
-  /// Sets what the page shows of each glove. Wait-free.
+  /// Sets the state of each glove. Wait-free.
   void set_gloves(const GloveStates& gloves) noexcept;
-  /// Returns the counters. Each number is right by itself, but they are not all of the same moment.
+  /// Returns the counters. Each number is atomic; together they are not a consistent snapshot.
   /// Wait-free.
   ServerCounters counters() const noexcept;
 
 private:
   class Work;
-  /// The same, but calls make() for the message only if the version differs from the last one.
+  /// Does the same, but calls make() for the message only if the version differs from the last one.
   template <class Make>
   void set_fact(std::size_t fact, std::uint64_t version, const Make& make);
   void set_fact(std::size_t fact, std::vector<std::byte> message);

@@ -1,5 +1,5 @@
 #pragma once
-// The server's thread and everything that it owns.
+// The server's thread, and all that it owns.
 
 #include <array>
 #include <atomic>
@@ -24,7 +24,7 @@ namespace nendo::web {
 using SharedBytes = std::shared_ptr<const std::vector<std::byte>>;
 SharedBytes shared_bytes(std::string_view text);
 
-/// The messages that each client gets when it comes and whenever they change.
+/// The messages that each client gets when it connects and after changes.
 enum Fact : std::size_t {
   settings_fact,
   history_fact,
@@ -35,16 +35,15 @@ enum Fact : std::size_t {
 };
 using Facts = std::array<SharedBytes, fact_count>;
 
-/// The bytes that a client has sent, the queue of bytes that wait for it, and its deadlines. No
-/// call blocks.
+/// A client's received bytes, its send queue, and its deadlines. No call blocks.
 class Connection {
 public:
   enum class Stage {
-    head,   ///< its HTTP request is coming in
-    answer, ///< it is sent an HTTP answer, after which the connection ends
-    socket, ///< it is a WebSocket
-    linger, ///< everything is sent; what it still sends is discarded until it closes
-    ended,  ///< it can be destroyed
+    head,   ///< receives the HTTP request
+    answer, ///< sends an HTTP answer, after which the connection ends
+    socket, ///< a WebSocket
+    linger, ///< everything is sent; discards input until the client closes
+    ended,  ///< can be destroyed
   };
 
   /// `limits` must outlive the connection.
@@ -52,14 +51,14 @@ public:
 
   int fd() const noexcept { return socket_.get(); }
   Stage stage() const noexcept { return stage_; }
-  short events() const noexcept; ///< that poll() must wait for
-  /// Appends what the socket has to incoming(), as far as there is space. Returns false if the
-  /// connection has ended. A client that has shut down its sending side may still get an answer.
+  short events() const noexcept; ///< the events for poll()
+  /// Appends received bytes to incoming(), up to its capacity. Returns false if the connection has
+  /// ended. A client that has shut down its sending side may still get an answer.
   bool receive(HostTime now);
   std::string& incoming() noexcept { return incoming_; }
-  /// Reports that the request is incomplete. Ends the connection if no more bytes can come.
+  /// Waits for the rest of a request. Ends the connection if no more bytes can come.
   void await_more() noexcept;
-  /// Sends from the queue. To be called when poll() reports that the socket takes bytes again.
+  /// Sends from the queue. Call it when poll() reports POLLOUT.
   void resume_sending(HostTime now);
 
   /// Queues an HTTP answer, after which the connection ends. `body` may be null.
@@ -73,18 +72,18 @@ public:
   /// Queues a close frame, after which the connection ends.
   void close(CloseCode code, HostTime now, std::string_view reason = {});
 
-  /// Takes one message from the client's allowance. Returns false if there was none left.
+  /// Takes a token from the client's bucket. Returns false if it is empty.
   bool within_message_rate(HostTime now) noexcept;
-  /// Returns false from the moment when the queue has become too long until it is empty.
+  /// Returns false after the queue became too long, until it is empty.
   bool accepts_updates() const noexcept { return !catching_up_; }
   bool has_queued_shape() const noexcept { return queued_shapes_ > 0; }
-  bool is_expired(HostTime now) const noexcept; ///< one of the time limits has passed
-  /// Sends a ping if it is time for one.
+  bool is_expired(HostTime now) const noexcept; ///< a time limit has passed
+  /// Sends a ping if one is due.
   void keep_alive(HostTime now);
 
   ClientReader reader;
   Feed feed;
-  Facts sent_facts; ///< the last messages that it was sent
+  Facts sent_facts; ///< the last sent messages
 
 private:
   struct Part {
@@ -102,17 +101,17 @@ private:
   HostTime stage_since_;
   std::string incoming_;
   std::deque<Part> queue_;
-  std::size_t sent_of_first_ = 0; ///< bytes of the queue's first part
-  std::size_t queued_bytes_ = 0;  ///< without shapes
-  std::size_t queued_shapes_ = 0; ///< parts that belong to shapes
+  std::size_t sent_of_first_ = 0; ///< sent bytes of the queue's first part
+  std::size_t queued_bytes_ = 0;  ///< queued bytes without shapes
+  std::size_t queued_shapes_ = 0; ///< queued parts of shapes
   bool catching_up_ = false;
   bool peer_closed_ = false; ///< the client has shut down its sending side
-  bool closing_ = false;     ///< the connection ends when the queue is empty
-  HostTime last_progress_;   ///< when the client last took a byte, or the queue was empty
-  HostTime queue_empty_;     ///< when the queue was empty last
-  HostTime last_heard_;      ///< when a WebSocket last gave a sign of life
+  bool closing_ = false;     ///< ends the connection when the queue is empty
+  HostTime last_progress_;   ///< the last time a byte was sent, or the queue was empty
+  HostTime queue_empty_;     ///< the last time the queue was empty
+  HostTime last_heard_;      ///< the last time a WebSocket received bytes
   HostTime last_ping_;
-  double messages_left_; ///< the rest of the client's allowance
+  double messages_left_; ///< the tokens in the client's bucket
   HostTime last_message_;
 };
 
@@ -129,13 +128,12 @@ public:
 
   const Endpoint endpoint;
   const std::string token;
-  // The following members are written by this thread, or shared with it.
-  /// Space for what 16 clients may send in half a second. Further commands are dropped.
+  // The server's thread writes or shares the following members.
+  /// Enough for commands of 16 clients in half a second. Further commands are dropped.
   SpscRing<ClientCommand> commands{1024};
-  /// For `missed` of a glove that does not report it: all bits are set, also of the 32 that are
-  /// sent.
+  /// `missed` of a glove that does not report it: all bits set, also in the 32 that are sent.
   static constexpr std::uint64_t unknown_count = ~std::uint64_t{0};
-  /// Each number is right by itself; they need not be all of the same moment.
+  /// Each number is atomic; together they are not a consistent snapshot.
   struct SharedGloveState {
     std::atomic<std::uint64_t> delivered{0}, missed{0}, refused{0}, bad{0};
     std::atomic<bool> uncalibrated{false};
@@ -146,30 +144,29 @@ public:
         update_bytes{0}, shapes{0}, shape_bytes{0}, weights{0}, skipped{0};
   } counts;
 
-  /// A loop that is served. Its model is shared with the connections to which it is sent.
+  /// The served loop. Connections share its model while they send it.
   struct Presented {
     std::shared_ptr<FrameStream> stream;
     SharedBytes model;
     Pictures pictures;
-    std::uint16_t loop = 0; ///< its number within the run, which the model and shapes contain
+    std::uint16_t loop = 0; ///< the loop's number within the run, in model and shape messages
   };
 
-  /// A weights message, and its number.
   struct Weights {
     std::uint64_t number = 0;
     SharedBytes message;
   };
 
-  /// What other threads pass to this thread.
+  /// Data from other threads for the server's thread.
   struct Inbox {
     std::mutex mutex;              ///< guards the other members
-    std::optional<Presented> next; ///< set by present() and not taken yet
+    std::optional<Presented> next; ///< set by present(), not taken yet
     std::uint16_t loops = 0;
-    std::string report;   ///< the newest one; empty if it has been sent
+    std::string report;   ///< the newest report; empty: already sent
     HostTime next_clay{}; ///< the earliest time of the next clay message
-    Facts facts;          ///< as messages; null before they are known
-    std::array<std::uint64_t, fact_count> versions{}; ///< the last versions of facts that have them
-    std::vector<Weights> weights;                     ///< the newest last
+    Facts facts;          ///< messages; null until they are set
+    std::array<std::uint64_t, fact_count> versions{}; ///< the last versions of versioned facts
+    std::vector<Weights> weights;                     ///< oldest first
     std::uint64_t weights_in_use = 0;
   } inbox;
 
@@ -199,7 +196,7 @@ private:
   const ServerLimits limits_;
   UniqueFd listener_, waker_;
   Presented presented_;
-  std::list<Connection> connections_; ///< the oldest first
+  std::list<Connection> connections_; ///< oldest first
   std::vector<pollfd> polled_;
   std::vector<Record> records_;
   FeedCounters feed_counters_;

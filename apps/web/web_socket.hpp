@@ -1,7 +1,7 @@
 #pragma once
 // A WebSocket (RFC 6455): the server's part of the handshake (section 4.2.2), which needs SHA-1
 // (RFC 3174) and base64 (RFC 4648), a parser for a client's frames (section 5) and the encoding of
-// the server's. Nothing secret depends on SHA-1 here. Nothing here reads or writes a socket.
+// the server's. No secret depends on SHA-1. Does no I/O.
 
 #include <array>
 #include <cstddef>
@@ -21,11 +21,11 @@ bool is_socket_key(std::string_view text) noexcept;
 /// Returns the Sec-WebSocket-Accept that answers a Sec-WebSocket-Key.
 std::string accept_of(std::string_view key);
 
-/// Returns random bytes from the system in hexadecimal digits, or an empty string if the system has
-/// none. Tokens and nonces are made of them.
+/// Returns random bytes from the system in hexadecimal digits, for tokens and nonces; empty if the
+/// system has none.
 std::string random_hex(std::size_t bytes);
 
-/// The longest message that a client may send, in bytes. Commands are far shorter.
+/// The max size of a client's message, in bytes. Commands are far shorter.
 inline constexpr std::size_t max_client_message = 1024;
 
 enum class Opcode : std::uint8_t {
@@ -50,13 +50,13 @@ enum class CloseCode : std::uint16_t {
 
 struct ClientEvent {
   enum class Kind {
-    nothing, ///< there is no whole message or control frame yet
+    nothing, ///< no complete message or control frame yet
     text,
     binary,
     ping,
     pong,
     close,
-    fault, ///< the client broke the protocol; the connection must be closed with `code`
+    fault, ///< a protocol error; the connection must be closed with `code`
   };
   Kind kind = Kind::nothing;
   std::string payload{}; ///< at most max_client_message
@@ -66,10 +66,10 @@ struct ClientEvent {
 /// Assembles the messages of one client from its frames.
 class ClientReader {
 public:
-  /// Removes whole frames from the front of `bytes` until one of them makes an event. After a fault
+  /// Removes complete frames from the front of `bytes` until one makes an event. After a fault
   /// there are no more events.
   ClientEvent next(std::string& bytes);
-  /// The most bytes that can be received before a frame is complete.
+  /// The max number of received bytes before a frame is complete.
   static constexpr std::size_t max_pending = max_client_message + 14;
 
 private:
@@ -77,17 +77,16 @@ private:
   ClientEvent fault(CloseCode code);
   ClientEvent take(const Head& head, std::string payload);
 
-  std::string parts_;                  ///< the begin of an incomplete message
-  Opcode kind_ = Opcode::continuation; ///< its kind; `continuation` if there is none
+  std::string parts_;                  ///< the received part of an incomplete message
+  Opcode kind_ = Opcode::continuation; ///< its opcode; `continuation`: no message
   bool failed_ = false;
 };
 
-/// Returns the bytes before the payload of a whole, unmasked message. `length` is that of the
-/// payload.
+/// Returns the header of an unmasked message in one frame. `length` is the payload's.
 std::string server_head(Opcode opcode, std::uint64_t length);
-/// Returns a whole control frame. `payload` may have at most 125 bytes.
+/// Returns a control frame. `payload` may have at most 125 bytes.
 std::string control_frame(Opcode opcode, std::string_view payload);
-/// `reason` is for people; only its first max_close_reason bytes are sent.
+/// `reason` is for users, and is truncated to max_close_reason bytes.
 inline constexpr std::size_t max_close_reason = 123;
 std::string close_frame(CloseCode code, std::string_view reason = {});
 

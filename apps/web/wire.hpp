@@ -1,5 +1,5 @@
 #pragma once
-// The encoding that PROTOCOL.md describes. It is used in the tick, so nothing here allocates.
+// The encoding of PROTOCOL.md. The tick uses it, so nothing allocates unless stated.
 
 #include <bit>
 #include <cassert>
@@ -35,11 +35,10 @@ enum class StepContent : std::uint8_t { fields = 0, vectors = 1 };
 /// The head of an update message, in PROTOCOL.md's order and without gaps.
 struct UpdateHead {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::update);
-  /// Bit 0: the hands hold the model; 1, 2: left, right is uncalibrated; 3: StepList::in_hand.
-  /// Of a puppet: 4, 5: left, right has released it; 6: one hand plays both sides; 7: there is
-  /// one.
+  /// Bit 0: the hands hold the model; 1, 2: left, right is uncalibrated; 3: StepList::in_hand; 4,
+  /// 5: left, right has released the puppet; 6: symmetric; 7: there is a puppet.
   std::uint8_t state = 0;
-  /// Bits 0, 1: left, right is there; 2, 3: silent; 4, 5: other bones.
+  /// Bits 0, 1: left, right is present; 2, 3: silent; 4, 5: swapped bones.
   std::uint8_t hands = 0;
   std::uint8_t status = 0;
   std::uint32_t steps = 0;
@@ -84,7 +83,7 @@ struct ModelHead {
   double origin[3]{};
   double units_per_metre = 1.0;
   double diagonal = 0.0;
-  std::uint16_t loop = 0; ///< the number of the loop within its server; the server sets it
+  std::uint16_t loop = 0; ///< the loop's number within the server, which sets it
   /// Bits 0, 1: left, right hand's bones follow; 2: vertices' colours; 3: texture coordinates.
   std::uint8_t flags = 0;
   std::uint8_t spare = 0;
@@ -92,7 +91,7 @@ struct ModelHead {
 };
 static_assert(sizeof(ModelHead) == 88);
 
-/// Triangles that follow each other and look alike, in the model message.
+/// Consecutive triangles with the same material, in the model message.
 struct CoatHead {
   std::uint32_t triangles = 0;
   std::uint32_t texture = deform::no_index;
@@ -123,14 +122,13 @@ struct ClayMessage {
 };
 static_assert(sizeof(ClayMessage) == 24);
 
-inline constexpr std::size_t text_head_bytes = 4; ///< the type, and three that are 0
-/// Of the history's message.
+inline constexpr std::size_t text_head_bytes = 4; ///< the type, and three zeros
+/// The history message.
 inline constexpr std::size_t history_head_bytes = 8;
 inline constexpr std::size_t history_step_bytes = 8;
-inline constexpr std::size_t puppet_head_bytes = 8; ///< the puppet's message
+inline constexpr std::size_t puppet_head_bytes = 8; ///< the puppet message
 
-/// Returns whether a joint's rotation is sent with each frame. The other joints do not move
-/// relative to their parents.
+/// Returns whether each frame has this joint's rotation. Other joints are fixed to their parents.
 constexpr bool rotation_is_sent(hand::Joint joint) noexcept {
   using hand::Joint;
   for (const Joint fixed :
@@ -139,24 +137,24 @@ constexpr bool rotation_is_sent(hand::Joint joint) noexcept {
     if (joint == fixed) return false;
   return true;
 }
-/// The number of rotations that are sent: that of the forearm and those of these joints.
+/// The number of sent rotations: the forearm's and those of these joints.
 inline constexpr std::size_t sent_rotations = 1 + 18;
 inline constexpr std::size_t hand_bytes = 12 + sent_rotations * 6;
-/// The bytes of the bones of a hand, twice: for the glove that the loop began with, and for the
-/// glove that may replace it. Each joint has its position and rotation in the axes of its parent.
+/// The bytes of a hand's bones, twice: for the initial glove, and for a glove of the other side.
+/// Each joint has its position and rotation relative to its parent.
 inline constexpr std::size_t bones_bytes = 2 * hand::joint_count * 7 * 4;
 inline constexpr std::size_t step_head_bytes = 4;
-/// Returns the bytes of a step's content, if it is so many vectors for the weights.
+/// Returns the bytes of a step with this number of vectors.
 constexpr std::size_t vectors_bytes(std::size_t vectors) noexcept {
   return 4 + vectors * 12;
 }
 
-/// Returns the most bytes that a field of this number of functions takes.
+/// Returns the max bytes of a field with this number of functions.
 constexpr std::size_t field_bytes(std::size_t functions) noexcept {
   return 8 + 48 + functions * 28;
 }
 
-/// Writes values one after another into a buffer, which must be large enough.
+/// Appends values to a buffer, which must be large enough.
 class WireWriter {
 public:
   explicit WireWriter(std::span<std::byte> buffer) noexcept : buffer_(buffer) {}
@@ -174,22 +172,22 @@ private:
   std::size_t used_ = 0;
 };
 
-/// Returns what a client can draw: numbers that are not finite or too large for float are replaced.
+/// Converts to float. Replaces numbers that are not finite or too large.
 float as_float(double value) noexcept;
 
 UpdateHead head_of(const flow::Frame& frame) noexcept;
-/// Returns a message that is a text: the report, the settings, or the commands. Allocates.
+/// Returns a text message: report, settings or commands. Allocates.
 std::vector<std::byte> text_message(MessageType type, std::string_view text);
-/// Returns the message with the steps of the history. Allocates.
+/// Returns the history message. Allocates.
 std::vector<std::byte> message_of(const flow::StepList& steps);
-/// Returns the message with the functions of a puppet, or that there is none. Allocates.
+/// Returns the message with the puppet's functions; null: no puppet. Allocates.
 std::vector<std::byte> message_of(std::uint32_t number, const puppet::Rig* rig);
-/// Returns the message about clay: where hands touch it, and its volume. Allocates.
+/// Returns the message with the clay's contacts and volume. Allocates.
 std::vector<std::byte> clay_message(const flow::Frame& frame);
 void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept;
-/// Writes the frame's step: the vectors of its surface, if it has one, or else its fields. `origin`
-/// and `unit` are those of the loop's BlockLayout. Functions whose coefficient is zero are left
-/// out, and so are centres that follow from the previous field.
+/// Writes the frame's step: the vectors of its surface move, if any, or else its fields. `origin`
+/// and `unit` are those of the loop's BlockLayout. Omits functions with a zero coefficient, and
+/// centres that follow from the previous field.
 void write_step(StepKind kind, const flow::Frame& frame, const Eigen::Vector3d& origin, double unit,
                 WireWriter& out) noexcept;
 
