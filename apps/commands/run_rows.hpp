@@ -1,5 +1,5 @@
 #pragma once
-// The rows of the table of commands for a run.
+// The rows of the command table.
 
 #include <array>
 
@@ -7,13 +7,13 @@
 
 namespace nendo::commands {
 
-/// Makes a row's array. All of it is initialised, or else GCC 12 cannot read it in a static_assert.
+/// Makes a row's keys. Initialises unused ones, because GCC 12 needs it in a static_assert.
 consteval std::array<std::string_view, 3> keys(std::string_view first, std::string_view second = {},
                                                std::string_view third = {}) {
   return {first, second, third};
 }
 
-/// Makes a row of a timeline's window.
+/// Makes a row of the timeline editor.
 consteval Row edit_row(std::string_view name, const std::array<std::string_view, 3>& keys,
                        std::string_view help, const Edit& edit, Buttons group = Buttons::none,
                        std::string_view button = {}, std::string_view button_on = {}) {
@@ -184,7 +184,7 @@ inline void choose_next_mode(flow::WantedSettings& wanted, const flow::Frame& fr
   wanted.next_mode(frame.function_count > 0);
 }
 
-/// Makes a row that a run executes, by `make`.
+/// Makes a row that the run executes.
 consteval Row run_row(std::string_view name, const std::array<std::string_view, 3>& keys,
                       std::string_view help, flow::Command (*make)(bool on),
                       Buttons group = Buttons::none, std::string_view button = {},

@@ -17,9 +17,9 @@ namespace nendo::session {
 
 struct RunOptions;
 
-/// The options --over, --layer, --punch and --loop, as they are given.
+/// The values of the options --over, --layer, --punch and --loop.
 struct OverdubArguments {
-  std::string take;  ///< empty: live gloves alone
+  std::string take;  ///< empty: only live gloves
   std::string layer; ///< empty: the hands that the take lacks, or all
   std::string punch; ///< IN:OUT; empty: from the beginning to the end
   std::string loop;  ///< A:B; empty: the take plays once

@@ -122,7 +122,7 @@ private:
   void dispatch(const Rig& rig) { puppet_ = rig; } // only the newest counts
   void execute(flow::Request request) { for_loop_.push(request); }
   void execute(const flow::WristMove& move);
-  void execute(const flow::ChangeSettings& change) { settings_ = change.settings; } // the newest
+  void execute(const flow::ChangeSettings& change) { settings_ = change.settings; } // newest only
   void execute(const flow::SetRecording& recording) { record_ = recording.on; }
   void execute(const flow::SaveShape& save) { saving_.add(save); }
   void execute(const flow::SavePuppet& save) { saving_.add(save); }
@@ -174,8 +174,7 @@ private:
   Rig puppet_;                                 ///< not passed on yet
   std::optional<std::uint32_t> taken_puppet_;  ///< the take's number, not passed on yet
   std::uint64_t take_refused_ = 0; ///< the reported number of the take's dropped commands
-  std::map<std::uint32_t, std::uint32_t>
-      taken_puppets_;                     ///< the loop's puppet number for each of the take's
+  std::map<std::uint32_t, std::uint32_t> taken_puppets_; ///< maps the take's numbers to the loop's
   std::vector<flow::Command> mask_edits_; ///< edits of masks and symmetry, not passed on yet
   std::optional<bool> record_;            ///< the requested recording, not passed on yet
   std::uint32_t wires_ = 0;               ///< number of completed wires

@@ -51,7 +51,7 @@ struct RunOptions {
   std::shared_ptr<Overdub> over{}; ///< the take that is played; null: none
   LivePart live{};                 ///< the angles that the gloves play; nothing: all
   RecordingOptions recording;
-  flow::RealtimeOptions realtime; ///< the rights of the loop's thread
+  flow::RealtimeOptions realtime; ///< real-time rights of the loop's thread
 };
 
 } // namespace nendo::session

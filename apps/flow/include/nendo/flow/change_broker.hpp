@@ -60,9 +60,9 @@ public:
   Result<void> change_to(const Awaited& awaited);
 
   /// Logs the input to `log` from a coming tick on; null: ends logging. That tick keeps the shape,
-  /// and the hands re-grab; undo cannot go back before a log's beginning. take_state() then returns
-  /// a state, until when both logs must exist. `like` is the shape of a recent frame: the tick
-  /// copies only the blocks that differ from it.
+  /// and the hands re-grab; undo cannot go back before a log's beginning. Both logs must exist
+  /// until take_state() returns a state. `like` is the shape of a recent frame: the tick copies
+  /// only the blocks that differ from it.
   void change_log(InputLog* log, const deform::BlockShape& like);
   /// Returns the state at the log's beginning, or at its end, once for each change_log() that the
   /// loop has taken.
@@ -86,7 +86,7 @@ public:
   const std::shared_ptr<const puppet::Rig>& puppet(std::uint32_t number) const noexcept;
   /// Returns the number of the last requested puppet.
   std::uint32_t newest_puppet() const noexcept;
-  /// Returns the puppet with which the loop began; null if the hands touched the model.
+  /// Returns the loop's initial puppet; null: the hands touched the model.
   const puppet::Rig* first_puppet() const noexcept;
 
   // A change of the model has two stages, so that the hands can shape while it is made, and no work

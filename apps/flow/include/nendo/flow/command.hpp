@@ -26,8 +26,7 @@ enum class Request : std::uint8_t {
   undo,   ///< reverts the last step (deform::HistoryMove)
   redo,   ///< reverts the last undo, if nothing was committed since
   reset,  ///< restores the loaded model; an undo reverts this
-  /// The hands that hold the model re-grab where they are, without a commit
-  /// (Shaping::ask()).
+  /// hands that hold the model re-grab at their current poses, without a commit (Shaping::ask())
   take_hold,
 };
 
@@ -71,7 +70,7 @@ struct SetRecording {
 struct SaveShape {
   friend bool operator==(const SaveShape&, const SaveShape&) = default;
 };
-/// Writes the puppet that is played to its file.
+/// Writes the played puppet to its file.
 struct SavePuppet {
   friend bool operator==(const SavePuppet&, const SavePuppet&) = default;
 };
@@ -113,7 +112,7 @@ enum class MaskEdit : std::uint8_t {
 };
 NENDO_API std::string_view name_of(MaskEdit edit) noexcept;
 NENDO_API std::optional<MaskEdit> mask_edit_named(std::string_view name) noexcept;
-/// Edits the masks of the fingertips, or of the puppet that is played.
+/// Edits the masks of the fingertips, or of the played puppet.
 struct NENDO_API SetMask {
   MaskEdit edit = MaskEdit::clear;
   std::array<double, 3> at{}; ///< the ball's centre on the undeformed model, model units
@@ -198,8 +197,8 @@ struct ChangePuppet {
   friend bool operator==(const ChangePuppet&, const ChangePuppet&) = default;
 };
 
-/// A loop executes Request, WristMove, SetLayer, DrawWire and commands of puppets at the beginning
-/// of its next tick, and logs a Mark. The code that runs the loop executes all others. HoldStill,
+/// A loop executes Request, WristMove, SetLayer, DrawWire and puppet commands at the beginning of
+/// its next tick, and logs a Mark. The code that runs the loop executes all others. HoldStill,
 /// ChangeModel and ChangePuppet are only for the log.
 using Command =
     std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape, SaveRecording, EndRun,
@@ -222,8 +221,8 @@ constexpr std::optional<ChangeModel> model_asked_by(const Command& command) noex
                        edit->part};
   return std::nullopt;
 }
-/// Returns the command that requests a change. It must be is_new(), and not a cut, which needs a
-/// wire.
+/// Returns the command that requests a change. The change must be is_new(), and not a cut, which
+/// needs a wire.
 constexpr Command asking_for(const ChangeModel& change) noexcept {
   if (change.source == ModelSource::copied || change.source == ModelSource::removed)
     return EditPart{change.source == ModelSource::removed, change.part};

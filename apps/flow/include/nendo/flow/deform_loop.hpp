@@ -53,7 +53,7 @@ struct LoopOptions : PaceOptions {
   };
   std::optional<WireTime> wire_time{};
   std::size_t undo_max_bytes = 0; ///< UndoSpace::max_bytes for all versions together
-  /// The sinks that are shown every frame. They must outlive the loop.
+  /// The sinks of every frame. They must outlive the loop.
   std::vector<FrameSink*> sinks;
   /// Is notified of each sample. OverrunPolicy::sample needs it. It must outlive the loop.
   EventCount* event_count = nullptr;
@@ -75,7 +75,7 @@ struct LoopOptions : PaceOptions {
   bool begins_held() const noexcept { return held.value_or(switch_action != SwitchAction::grab); }
 };
 
-/// The loop's thread runs its ticks; the asking thread reads frames and asks for changes. Neither
+/// The loop's thread runs its ticks; the asking thread reads frames and requests changes. Neither
 /// waits for the other.
 class NENDO_API DeformLoop {
 public:
@@ -91,8 +91,7 @@ public:
 
   /// Runs ticks on the calling thread, which is then the loop's thread, until `stop` or for
   /// `max_ticks` deadlines of the grid, skipped ones included. A tick does not allocate or lock;
-  /// its only system call is the sleep. Call make_thread_realtime() first to make wake-ups
-  /// punctual.
+  /// its only system call is the sleep. Call make_thread_realtime() first, for low wake-up latency.
   void run(const std::atomic<bool>& stop,
            std::uint64_t max_ticks = std::numeric_limits<std::uint64_t>::max()) noexcept;
   /// Runs one tick without sleep, for callers with their own clock. Loop's thread.
@@ -106,7 +105,7 @@ public:
 
   /// The frames. A reader can take the newest one while the loop runs. Asking thread.
   FrameExchange& frames() noexcept;
-  /// Returns ok or merged if the hands could grab the model. Thread-safe.
+  /// Returns the first grab's status: ok or merged on success. Thread-safe.
   deform::FieldStatus grab_status() const noexcept;
 
   // Loop's thread, or any thread after run() has returned:

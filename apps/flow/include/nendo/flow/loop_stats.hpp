@@ -35,8 +35,7 @@ struct LoopStats {
   std::array<SampleRate, 2> rates{};
   std::array<std::uint64_t, 2> silences{};
   std::array<std::uint64_t, 2> switch_uses{}; ///< how often a hand's switch was turned on
-  std::array<std::array<std::uint64_t, sensor_slots>, 2>
-      spikes{};                               ///< counts that the gate rejected, by sensor
+  std::array<std::array<std::uint64_t, sensor_slots>, 2> spikes{}; ///< rejected, by sensor
   std::array<hand::SensorRanges, 2> ranges{}; ///< the learned ranges; zeros without adaptation
   std::array<SensorMask, 2> left_out{};       ///< stuck sensors, which are left out now
   std::array<SensorMask, 2> was_left_out{};   ///< sensors that were left out at any time

@@ -36,8 +36,8 @@ struct ModelOrigin {
   std::vector<deform::WirePlace> wire{}; ///< the wire that cut it
   double seam_width = 0.0;               ///< JoinParts::seam_width, if it was joined
   std::uint32_t part = 0;                ///< the copied or removed part
-  bool keeps_rest =
-      false; ///< with a puppet, the shape does not become the rest shape (kept_rest())
+  /// The shape is a puppet's, and does not become the rest shape (kept_rest()).
+  bool keeps_rest = false;
 };
 /// Makes a version again, at rest, from the previous version's mesh. Error: bad_input, without the
 /// mesh's name.
@@ -100,12 +100,10 @@ public:
   /// join(), copied_part(), removed_part() and change_topology().
   Result<std::unique_ptr<ModelVersion>> finish(std::uint32_t number, const UndoSpace& undo,
                                                bool keeps_rest = false);
-  bool found_nothing() const noexcept {
-    return found_nothing_;
-  } ///< finish() found nothing to change
-  /// Returns whether the shape becomes the rest shape.
+  bool found_nothing() const noexcept { return found_nothing_; } ///< in finish()
+  /// Returns whether it is made from the shape.
   bool is_of_shape() const noexcept { return std::holds_alternative<Remaking>(making_); }
-  /// Returns the change to that version.
+  /// Returns the ChangeModel for the log.
   ChangeModel change_to(const ModelVersion& version) const noexcept;
   /// Returns deform::Refiner::count_unfit() of a shape of `from`. 0 unless it refines. Thread-safe.
   /// Allocates.

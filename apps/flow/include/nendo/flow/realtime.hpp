@@ -29,8 +29,7 @@ NENDO_API Result<std::vector<unsigned>> parse_cpus(const std::string& text,
 
 /// The result of requesting a right.
 struct Grant {
-  std::string
-      name; ///< a stable id: "policy", "affinity", "memory_lock", "dma_latency", "timer_slack"
+  std::string name;   ///< stable: "policy", "affinity", "memory_lock", "dma_latency", "timer_slack"
   std::string wanted; ///< "SCHED_FIFO 80"
   bool granted = false;
   std::string why;    ///< the system's message; empty if granted

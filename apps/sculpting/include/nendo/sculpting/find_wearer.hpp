@@ -73,13 +73,13 @@ NENDO_API std::optional<hand::CalibrationChoice>
 best_calibration(const hand::CalibrationList& stored, const driver::GloveInfo& glove, Side side,
                  const std::string& user);
 
-/// Finds the calibrations of a glove for `side`. For that side it takes the requested, stored or
-/// recorded (if the glove replays) calibration, and notes the file, and whether it may be for
-/// another glove, or that there is none. A simulated glove gets a stored one only on request. For
-/// the other side it takes the stored or the default one, without a note. A user with calibrations,
-/// but none for this hand and glove, gets the default one, with a note. Sets `found`, if given, to
-/// the source for `side`. Blocks. Errors: bad_input (a missing or unreadable file, one for the
-/// other hand, or a user without calibrations), usage.
+/// Finds the calibrations of a glove that is made for `side`. For that side it takes the requested,
+/// stored or recorded (if the glove replays) calibration, and notes the file, and whether it may be
+/// for another glove, or that there is none. A simulated glove gets a stored one only on request.
+/// For the other side it takes the stored or the default one, without a note. A user with
+/// calibrations, but none for this hand and glove, gets the default one, with a note. Sets `found`,
+/// if given, to the source for `side`. Blocks. Errors: bad_input (a missing or unreadable file, one
+/// for the other hand, or a user without calibrations), usage.
 NENDO_API Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
                                            const CalibrationOptions& options, const Note& note,
                                            FoundCalibration* found = nullptr);

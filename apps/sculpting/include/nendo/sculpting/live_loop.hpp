@@ -39,8 +39,8 @@ struct LiveOptions {
   std::optional<double> model_size_m{};
   /// The fingertips' radius on the stage, within flow::setting::radius. Nothing: usual_supports().
   std::optional<double> radius_m{};
-  flow::PaceOptions pace{};                                   ///< 90 Hz
-  flow::RealtimeOptions realtime{};                           ///< the rights of the loop's thread
+  flow::PaceOptions pace{};         ///< 90 Hz
+  flow::RealtimeOptions realtime{}; ///< real-time rights of the loop's thread
   hand::FilterOptions filter = flow::usual_settings().filter; ///< no filter; closes pinches
   std::optional<std::size_t> undo_bytes{}; ///< max undo memory; nothing: deform::half_of_memory()
   driver::GloveContext context{};          ///< the context for driver::open_glove()
@@ -68,7 +68,7 @@ public:
   /// Returns the frame's vertices in the order of model(), 3 by #vertices in model units. Valid
   /// until the next call.
   const deform::Points& vertices();
-  /// Returns the model as it was loaded, and its faces.
+  /// Returns the loaded model.
   const deform::Mesh& model() const noexcept;
 
   /// Sends a command, such as a flow::Request, flow::ChangeSettings or flow::WristMove. The loop
@@ -80,8 +80,7 @@ public:
 
   /// Returns whether all gloves are recordings that have ended, and the loop has taken all samples.
   bool has_ended() const noexcept;
-  std::span<const OpenHand>
-  hands() const noexcept; ///< left first; only the loop may drain their rings
+  std::span<const OpenHand> hands() const noexcept; ///< left first; the loop drains their rings
   /// Returns messages for the user, such as found calibrations and refused rights.
   const std::vector<std::string>& notes() const noexcept;
 
