@@ -9,11 +9,35 @@
 namespace nendo::calibrate {
 namespace {
 
-/// The end of each joint's range in a free motion, by slot: the usual ranges of motion, degrees.
-constexpr std::array<double, sensor_slots> reaches_deg{75, 58,  80, 50, 90, 103, 75, 0,
-                                                       90, 103, 75, 22, 90, 103, 75, 18,
-                                                       90, 103, 75, 22, 20, 70,  20, 0};
-constexpr double pitch_begins_deg = -60.0, yaw_begins_deg = -30.0; // the others' at 0
+/// The range of each joint in a free motion, degrees: the usual ranges of motion.
+struct Reach {
+  Sensor sensor;
+  double min_deg, max_deg;
+};
+constexpr std::array<Reach, 22> reaches{{
+    {Sensor::thumb_roll, 0, 75},
+    {Sensor::thumb_mcp, 0, 58},
+    {Sensor::thumb_ip, 0, 80},
+    {Sensor::thumb_abduction, 0, 50},
+    {Sensor::index_mcp, 0, 90},
+    {Sensor::index_pip, 0, 103},
+    {Sensor::index_dip, 0, 75},
+    {Sensor::middle_mcp, 0, 90},
+    {Sensor::middle_pip, 0, 103},
+    {Sensor::middle_dip, 0, 75},
+    {Sensor::index_middle_abduction, 0, 22},
+    {Sensor::ring_mcp, 0, 90},
+    {Sensor::ring_pip, 0, 103},
+    {Sensor::ring_dip, 0, 75},
+    {Sensor::middle_ring_abduction, 0, 18},
+    {Sensor::little_mcp, 0, 90},
+    {Sensor::little_pip, 0, 103},
+    {Sensor::little_dip, 0, 75},
+    {Sensor::ring_little_abduction, 0, 22},
+    {Sensor::palm_arch, 0, 20},
+    {Sensor::wrist_pitch, -60, 70},
+    {Sensor::wrist_yaw, -30, 20},
+}};
 
 /// The standard's distributions differ between libraries; the engine itself does not.
 double uniform(std::mt19937& random, double low, double high) {
@@ -141,17 +165,15 @@ void PracticeHand::keep_from_ends() {
 hand::SensorAngles PracticeHand::free_motion(double time_s) const {
   constexpr double period_s = 2.6;
   hand::SensorAngles angles{};
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const double begins_deg = slot == index_of(Sensor::wrist_pitch) ? pitch_begins_deg
-                              : slot == index_of(Sensor::wrist_yaw) ? yaw_begins_deg
-                                                                    : 0.0;
+  for (std::size_t n = 0; n < reaches.size(); ++n) {
+    const Reach& reach = reaches[n];
     // Fingers go together; the thumb, the gaps and the wrist at other times.
-    const std::size_t n = slot < index_of(Sensor::index_abduction) ? slot : slot - 1;
+    const std::size_t slot = index_of(reach.sensor);
     const bool flexes = slot >= 4 && slot < 20 && slot % 4 != 3;
     const double phase =
         flexes ? 0.02 * static_cast<double>(slot / 4) : 0.13 * static_cast<double>(n);
     const double bend = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (time_s / period_s - phase));
-    angles[slot] = from_degrees(begins_deg + bend * (reaches_deg[slot] - begins_deg));
+    angles[slot] = from_degrees(reach.min_deg + bend * (reach.max_deg - reach.min_deg));
   }
   return angles;
 }
