@@ -294,7 +294,7 @@ TEST_SUITE("type1") {
     }
   }
 
-  /// Room for two commits of ten, or for none.
+  /// Space for two commits of ten, or for none.
   static DeformerOptions with_undo(std::size_t steps) {
     DeformerOptions options;
     options.supports = one_radius(6.0);

@@ -8,7 +8,7 @@ using namespace nendo;
 using nendo::session::LoopCommands;
 
 TEST_SUITE("loop_commands") {
-  TEST_CASE("what finds no room is named, each once, until something finds room again") {
+  TEST_CASE("each command that finds no space is named once, until a command finds space again") {
     LoopCommands commands(2);
     CHECK(commands.push(flow::Request::commit));
     CHECK(commands.push(flow::Mark{}));
@@ -35,7 +35,7 @@ TEST_SUITE("loop_commands") {
     CHECK(commands.dropped() == "The loop is not responding; dropped: undo.");
   }
 
-  TEST_CASE("what was dropped just before something found room is named all the same") {
+  TEST_CASE("a command dropped just before another finds space is also named") {
     LoopCommands commands(2);
     CHECK(commands.push(flow::Request::grab));
     CHECK(commands.push(flow::Request::grab));

@@ -140,7 +140,7 @@ TEST_SUITE("run_session") {
 
     auto opened = run.open_over(file("take.nendo"), file("over.nendo"));
     CHECK(run.options.over->take.puppets.size() >= 3);
-    Asker asker({}); // a sink, whose room the puppets must fit
+    Asker asker({}); // a sink, whose space the puppets must fit
     const RunParticipants participants{[](const auto&, double) {}, {&asker}, {}};
     REQUIRE(run_session(run.options, opened->hands, run.mesh, participants));
     replay(file("over.nendo"));

@@ -68,7 +68,7 @@ inline std::vector<deform::ContactPart> moved(std::vector<deform::ContactPart> p
   return moved(std::move(parts), Eigen::Isometry3d(Eigen::Translation3d(by)));
 }
 
-/// Two fingers of one hand, above each other, with that much room between them; millimetres.
+/// Two fingers of one hand, above each other, at this distance from each other; millimetres.
 inline std::vector<deform::ContactPart> pinch(double gap, const Eigen::Vector3d& middle) {
   const double up = 0.5 * gap + 8.0;
   return moved({cone({0, 0, up}, {40, 0, up}, 8.0, 9.0), cone({0, 0, -up}, {40, 0, -up}, 8.0, 9.0)},

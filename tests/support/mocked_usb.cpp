@@ -180,11 +180,11 @@ void MockedUsb::Device::fill(Urb& urb, Clock::time_point now) {
     rest = *report;
     next_report = std::max(next_report + report_period, now);
   }
-  const auto room = static_cast<std::size_t>((*urb).buffer_length);
-  const std::size_t count = std::min(room, rest.size());
+  const auto space = static_cast<std::size_t>((*urb).buffer_length);
+  const std::size_t count = std::min(space, rest.size());
   std::memcpy(urb.buffer->data, rest.data(), count);
   rest.erase(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(count));
-  const bool overflow = !rest.empty() && room % glove.packet_bytes != 0;
+  const bool overflow = !rest.empty() && space % glove.packet_bytes != 0;
   if (overflow) rest.clear();
   urb.finish(overflow ? -EOVERFLOW : 0, count);
 }

@@ -11,7 +11,7 @@
 
 #include "bench/bench.hpp"
 #include "bench/deform_trial.hpp"
-#include "bench/plane_room.hpp"
+#include "bench/plane_memory.hpp"
 #include "bench/simd_choice.hpp"
 #include "cli/cli.hpp"
 #include "reference/table1.hpp"
@@ -92,7 +92,7 @@ void print_large(const LargeTimes& times, bool json) {
 }
 
 void bench_large(int cells, int repetitions, bool json) {
-  if (has_room_for_plane(cells, "bench deform"))
+  if (has_memory_for_plane(cells, "bench deform"))
     print_large(measure_large(cells, repetitions), json);
 }
 

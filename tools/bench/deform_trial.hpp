@@ -47,7 +47,7 @@ struct VolumeTimes {
   double air_ns = 0.0;     ///< an influence
   double between_ns = 0.0; ///< with keep_volume of a half
   double clay_ns = 0.0;
-  double type1_us = 0.0;      ///< a tick, with weights if there is room for them
+  double type1_us = 0.0;      ///< a tick, with weights if there is memory for them
   double evaluated1_us = 0.0; ///< without
   double type1_clay_us = 0.0;
   double type2_us = 0.0; ///< a piece of a twentieth of a radius

@@ -17,7 +17,7 @@
 #include <nendo/flow/realtime.hpp>
 
 #include "bench/bench.hpp"
-#include "bench/plane_room.hpp"
+#include "bench/plane_memory.hpp"
 #include "cli/cli.hpp"
 #include "reference/table1.hpp"
 
@@ -248,7 +248,7 @@ int run(const Options& options) {
   if (options.cells < 10 || options.cells > 1000 || options.repetitions < 1)
     return cli::report(
         {Errc::usage, "--cells, --repetitions: use 10 to 1000 cells a side, and at least once"});
-  if (!has_room_for_plane(static_cast<int>(2 * options.cells), "models"))
+  if (!has_memory_for_plane(static_cast<int>(2 * options.cells), "models"))
     return static_cast<int>(Errc::failed);
   cli::install_stop_signals();
   const deform::Mesh model = plane(options.cells);

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/bench.hpp"
-#include "bench/plane_room.hpp"
+#include "bench/plane_memory.hpp"
 #include "bench/scale_trial.hpp"
 #include "bench/simd_choice.hpp"
 #include "cli/cli.hpp"
@@ -82,7 +82,7 @@ void bench_growth(const Options& options, int repetitions) {
       "  B/vert.\n");
   for (const int cells : {315, 999, 3161}) {
     if (options.short_form && cells > 315) break;
-    if (has_room_for_plane(cells, "bench scale"))
+    if (has_memory_for_plane(cells, "bench scale"))
       print(measure_growth(cells, repetitions), options.json);
   }
 }

@@ -66,9 +66,8 @@ function(nendo_settings target scope)
   endif()
 endfunction()
 
-# nendo_kind(<target> <kind>): what differs between a `library`, a `room` of the program, a `test` and an `optimised_test`.
-# What takes time when the program runs is in the libraries and in rooms that are OPTIMISED as they are. The other rooms take
-# a quarter less time to compile as they are compiled here.
+# nendo_kind(<target> <kind>): the differences between a `library`, a `module` of the program, a `test` and an `optimised_test`.
+# Libraries, and modules with OPTIMISED, do the program's heavy work. Other modules are compiled with -O1, in a quarter less time.
 # Where NENDO_PCH is on, the headers that most files see are read once for all targets of a kind. The preset dev has it off,
 # and clang-tidy and clangd read that preset's flags: they show whether each file includes what it uses.
 function(nendo_kind target kind)
@@ -81,12 +80,12 @@ function(nendo_kind target kind)
 endfunction()
 
 function(nendo_kind_options target kind)
-  if(kind MATCHES "library|room")
+  if(kind MATCHES "library|module")
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   endif()
   if(kind STREQUAL "test")
     target_compile_options(${target} PRIVATE -O0)
-  elseif(kind MATCHES "room|optimised_test")
+  elseif(kind MATCHES "module|optimised_test")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
 endfunction()
@@ -140,9 +139,9 @@ function(nendo_library name)
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 endfunction()
 
-# nendo_room(<name> [OPTIMISED] SOURCES ... LIBRARIES ...): a room of the program's own, nendo::<name>, which is not
-# installed. Its includes are quoted and begin with the room's folder.
-function(nendo_room name)
+# nendo_module(<name> [OPTIMISED] SOURCES ... LIBRARIES ...): makes a module of the program, nendo::<name>, which is not
+# installed. Its headers are included with quotes, by paths that begin with the module's folder.
+function(nendo_module name)
   cmake_parse_arguments(ARG "OPTIMISED" "" "SOURCES;LIBRARIES" ${ARGN})
   set(target nendo_${name})
   add_library(${target} STATIC ${ARG_SOURCES})
@@ -151,7 +150,7 @@ function(nendo_room name)
   if(ARG_OPTIMISED)
     nendo_kind(${target} library)
   else()
-    nendo_kind(${target} room)
+    nendo_kind(${target} module)
   endif()
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/apps)
   if(ARG_LIBRARIES)

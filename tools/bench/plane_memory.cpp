@@ -1,4 +1,4 @@
-#include "bench/plane_room.hpp"
+#include "bench/plane_memory.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -23,14 +23,14 @@ std::size_t available_bytes() {
 
 } // namespace
 
-bool has_room_for_plane(int cells, const std::string& benchmark) {
+bool has_memory_for_plane(int cells, const std::string& benchmark) {
   constexpr std::size_t bytes_a_vertex = 300; // most of it while vertices are put in order
   const auto side = static_cast<std::size_t>(cells) + 1;
   const std::size_t vertices = side * side;
-  const bool has_room = std::min(available_bytes(), usable_memory()) >= bytes_a_vertex * vertices;
-  if (!has_room)
+  const bool has_memory = std::min(available_bytes(), usable_memory()) >= bytes_a_vertex * vertices;
+  if (!has_memory)
     cli::note(benchmark + ": too little memory left for " + std::to_string(vertices) + " vertices");
-  return has_room;
+  return has_memory;
 }
 
 } // namespace nendo::bench

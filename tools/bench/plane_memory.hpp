@@ -7,6 +7,6 @@ namespace nendo::bench {
 
 /// Returns true if there is enough free memory for deformers of table1_plane(cells). Otherwise
 /// prints a note that names the benchmark.
-bool has_room_for_plane(int cells, const std::string& benchmark);
+bool has_memory_for_plane(int cells, const std::string& benchmark);
 
 } // namespace nendo::bench
