@@ -34,21 +34,4 @@ void install_stop_signals() noexcept;
 /// Returns the path of a shipped model, relative to the executable (../share/nendo/models).
 std::filesystem::path shipped_model(std::string_view file_name);
 
-/// Makes the C library request huge pages if the kernel gives them only on request
-/// (transparent_hugepage/enabled is "madvise"). For commands that fill large memory once, where
-/// faults of 4 KiB pages can take more time than the model (../../deform/CUTTING.md has
-/// measurements). The library reads the option at program start (GLIBC_TUNABLES,
-/// glibc.malloc.hugetlb=1, glibc 2.35 and newer), so this executes the program again, in the same
-/// process. Keeps an existing value of glibc.malloc.hugetlb, such as 0. On failure it returns,
-/// without effect. Call it first in main().
-void use_huge_pages(char** argv) noexcept;
-
-struct TwoProcessors {
-  int first = 0;
-  int second = 0;
-};
-
-/// Returns the first two processors that this process may use. Error: failed (only one).
-Result<TwoProcessors> two_processors();
-
 } // namespace nendo::cli

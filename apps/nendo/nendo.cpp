@@ -12,7 +12,8 @@
 
 #include <nendo/base/result.hpp>
 
-#include "cli/cli.hpp"
+#include "cli/command.hpp"
+#include "cli/huge_pages.hpp"
 #include "nendo/commands.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/cli.hpp"
+#include "cli/processors.hpp"
 
 namespace nendo::session {
 

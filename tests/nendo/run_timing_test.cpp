@@ -9,7 +9,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/cli.hpp"
+#include "cli/processors.hpp"
 #include "support/json_lines.hpp"
 #include "support/program.hpp"
 

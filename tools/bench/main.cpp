@@ -11,7 +11,8 @@
 #include <nendo/base/result.hpp>
 
 #include "bench/bench.hpp"
-#include "cli/cli.hpp"
+#include "cli/command.hpp"
+#include "cli/huge_pages.hpp"
 
 namespace {
 

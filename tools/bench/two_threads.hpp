@@ -9,7 +9,7 @@
 
 #include <nendo/base/atomics.hpp>
 
-#include "cli/cli.hpp"
+#include "cli/processors.hpp"
 
 namespace nendo::bench {
 
