@@ -99,14 +99,14 @@ void draw_row(cli::SvgDrawing& drawing, Sensor sensor, const hand::SensorFit& qu
   const double residual_deg = to_degrees(quality.residual_rad);
   const double bar = pixels_a_degree * std::min(residual_deg, max_degrees);
   const char* colour = kept_text(quality).empty() ? "#2a6f97" : "#b0b0b0";
-  drawing.words(10.0, y + 11.0, std::string(name_of(sensor)), name);
+  drawing.text(10.0, y + 11.0, std::string(name_of(sensor)), name);
   drawing.box(range_left, y, range_width, bar_height, "#eeeeee", 1.0);
   drawing.box(low, y, std::max(high - low, 1.0), bar_height, colour, 1.0);
-  drawing.words(high + 4.0, y + 10.0,
-                angle_text(quality.low_counts) + " to " + angle_text(quality.high_counts) + " deg",
-                number);
+  drawing.text(high + 4.0, y + 10.0,
+               angle_text(quality.low_counts) + " to " + angle_text(quality.high_counts) + " deg",
+               number);
   drawing.box(residual_left, y, bar, bar_height, "#c1121f", 1.0);
-  drawing.words(residual_left + 4.0 + bar, y + 10.0, number_text(residual_deg, 1) + " deg", number);
+  drawing.text(residual_left + 4.0 + bar, y + 10.0, number_text(residual_deg, 1) + " deg", number);
 }
 
 } // namespace
@@ -142,16 +142,16 @@ Result<void> write_report_picture(const std::filesystem::path& path,
                                   const hand::WearerCalibration& wearer, SensorMask sensors) {
   const auto rows = static_cast<double>(std::popcount(sensors.bits));
   cli::SvgDrawing drawing(picture_width, top + row_height * rows + 20.0);
-  drawing.words(10.0, 24.0,
-                "Calibration of " + wearer.user + ", " + std::string(name_of(wearer.side)) +
-                    " hand, " + hand::rfc3339(wearer.made),
-                {15.0, "#000000", "start", true});
+  drawing.text(10.0, 24.0,
+               "Calibration of " + wearer.user + ", " + std::string(name_of(wearer.side)) +
+                   " hand, " + hand::rfc3339(wearer.made),
+               {15.0, "#000000", "start", true});
   const cli::SvgText heading{12.0};
-  drawing.words(
+  drawing.text(
       range_left, 50.0,
       fmt::format("counts that were covered, of {}, and angles; grey: kept", wearer.counts.most),
       heading);
-  drawing.words(residual_left, 50.0, "residual of the poses", heading);
+  drawing.text(residual_left, 50.0, "residual of the poses", heading);
   double y = top;
   for (const Sensor sensor : sensors) {
     draw_row(drawing, sensor, fit.sensors[index_of(sensor)], fit.calibration[sensor],

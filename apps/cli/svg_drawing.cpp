@@ -31,12 +31,12 @@ SvgDrawing::SvgDrawing(double width, double height)
 )",
           width, height)) {}
 
-void SvgDrawing::words(double x, double y, const std::string& words, const SvgText& style) {
+void SvgDrawing::text(double x, double y, const std::string& text, const SvgText& style) {
   text_ += fmt::format(
       R"(<text x="{:.2f}" y="{:.2f}" font-size="{:g}" fill="{}" text-anchor="{}"{}>{}</text>)"
       "\n",
       x, y, style.size, style.colour, style.anchor, style.bold ? R"( font-weight="bold")" : "",
-      escaped(words));
+      escaped(text));
 }
 
 void SvgDrawing::line(double x0, double y0, double x1, double y1, const char* colour, double width,

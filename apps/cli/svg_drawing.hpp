@@ -18,7 +18,7 @@ public:
   SvgDrawing(double width, double height);
 
   /// Draws a text, escaped for XML.
-  void words(double x, double y, const std::string& words, const SvgText& style);
+  void text(double x, double y, const std::string& text, const SvgText& style);
   void line(double x0, double y0, double x1, double y1, const char* colour, double width = 1.0,
             const char* dashes = "none");
   void box(double x, double y, double width, double height, const char* colour, double opacity);

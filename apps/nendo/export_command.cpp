@@ -123,7 +123,7 @@ std::vector<std::string> uncalibrated_notes(const Options& options, const record
   return notes;
 }
 
-bool wants_samples(const Options& options, const std::string& format, bool has_loop) {
+bool exports_samples(const Options& options, const std::string& format, bool has_loop) {
   return format == "csv" && (options.samples || !has_loop);
 }
 
@@ -149,7 +149,7 @@ Result<Take> read_recorded(const Options& options, const std::string& format) {
   if (!reader) return reader.error();
   const recording::Setup& setup = reader->setup();
   Take take;
-  take.has_samples = wants_samples(options, format, setup.loop.has_value());
+  take.has_samples = exports_samples(options, format, setup.loop.has_value());
   if (take.has_samples) {
     take.notes = uncalibrated_notes(options, setup, "its angles are left out");
     return take;

@@ -49,9 +49,11 @@ struct Monitored {
   std::vector<std::string> news{}; ///< what the latest sample shows of stuck sensors
   std::uint64_t shown = 0;
 
-  bool wanted() const { return !cli::stop_requested() && (max_shown == 0 || shown < max_shown); }
+  bool may_continue() const {
+    return !cli::stop_requested() && (max_shown == 0 || shown < max_shown);
+  }
   bool next(GloveSample& sample) {
-    if (!wanted() || !ring.try_pop(sample)) return false;
+    if (!may_continue() || !ring.try_pop(sample)) return false;
     const hand::Calibration& followed = calibrations.follow(sample);
     if (wearer != nullptr) active = &followed;
     left_out = calibrations.left_out(sample);
@@ -82,7 +84,7 @@ void show_lines(Monitored& monitored) {
   GloveSample sample;
   gloves::GloveChanges gloves;
   bool ended = false;
-  while (monitored.wanted() && !ended) {
+  while (monitored.may_continue() && !ended) {
     ended = monitored.glove.has_ended(); // then all that it sent is in the ring
     bool any = false;
     for (; monitored.next(sample); any = true) {
@@ -125,7 +127,7 @@ void show_screen(Monitored& monitored) {
   std::vector<std::string> lines;
   bool continues = true;
   bool ended = false;
-  while (continues && !ended && monitored.wanted() && !terminal.is_gone()) {
+  while (continues && !ended && monitored.may_continue() && !terminal.is_gone()) {
     ended = monitored.glove.has_ended(); // then all that it sent is in the ring
     for (; monitored.next(sample); any = true)
       seen.add(sample);

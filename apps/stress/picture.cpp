@@ -90,13 +90,13 @@ void draw_decades(cli::SvgDrawing& drawing, const Axes& axes, bool times_on_y) {
     const double value = std::pow(10.0, decade);
     const double y = axes.y(value);
     drawing.line(axes.left, y, axes.left + axes.width, y, grid_line);
-    drawing.words(axes.left - 8, y + 4,
-                  times_on_y ? time_text(value) : fmt::format("{:.0f}", value), {11, faint, "end"});
+    drawing.text(axes.left - 8, y + 4, times_on_y ? time_text(value) : fmt::format("{:.0f}", value),
+                 {11, faint, "end"});
   }
   for (int decade = whole(axes.x_low); axes.log_x && decade <= whole(axes.x_high); ++decade) {
     const double x = axes.x(std::pow(10.0, decade));
     drawing.line(x, axes.top, x, axes.bottom(), grid_line);
-    drawing.words(x, axes.bottom() + 18, time_text(std::pow(10.0, decade)), {11, faint, "middle"});
+    drawing.text(x, axes.bottom() + 18, time_text(std::pow(10.0, decade)), {11, faint, "middle"});
   }
 }
 
@@ -115,8 +115,8 @@ void draw_percentiles(cli::SvgDrawing& drawing, const Axes& axes, const flow::Hi
     last_x = x;
     drawing.line(x, axes.top, x, axes.bottom(), scheduled, 1.0, "3 3");
     const bool at_edge = x > axes.left + axes.width - 110;
-    drawing.words(at_edge ? x - 4 : x + 4, row, std::string(mark.name) + " " + time_text(us),
-                  {11, ink, at_edge ? "end" : "start"});
+    drawing.text(at_edge ? x - 4 : x + 4, row, std::string(mark.name) + " " + time_text(us),
+                 {11, ink, at_edge ? "end" : "start"});
   }
 }
 
@@ -131,7 +131,7 @@ void draw_histogram(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
   const Axes axes{80,   130,           1080,
                   230,  min_us_decade, max_us_decade,
                   true, -0.4,          std::ceil(std::log10(most))}; // a single tick shows
-  drawing.words(80, 112, "How late ticks were", heading);
+  drawing.text(80, 112, "How late ticks were", heading);
   draw_decades(drawing, axes, false);
   for (std::size_t k = 0; k < those_ran.size(); ++k) {
     if (those_ran[k] <= 0.0) continue;
@@ -164,7 +164,7 @@ void draw_trace(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
                   false,
                   std::max(min_us_decade, std::floor(std::log10(std::max(min_us, 1e-3)))),
                   std::ceil(std::log10(max_us))};
-  drawing.words(80, 432, "When", heading);
+  drawing.text(80, 432, "When", heading);
   draw_decades(drawing, axes, true);
   const double slice_s = to_seconds(trace.slice_length());
   const double width = std::max(1.0, axes.x(slice_s) - axes.x(0.0));
@@ -181,8 +181,8 @@ void draw_trace(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
   drawing.path(means, ran, 1.8);
   for (int k = 0; k <= 5; ++k) {
     const double at_s = length_s * k / 5.0;
-    drawing.words(axes.x(at_s), axes.bottom() + 18, fmt::format("{:.3g} s", at_s),
-                  {11, faint, "middle"});
+    drawing.text(axes.x(at_s), axes.bottom() + 18, fmt::format("{:.3g} s", at_s),
+                 {11, faint, "middle"});
   }
 }
 
@@ -192,7 +192,7 @@ void draw_key(cli::SvgDrawing& drawing, double y,
   double right = 1160;
   for (const auto& [colour, name] : entries) {
     right -= 6.6 * static_cast<double>(std::string_view(name).size());
-    drawing.words(right, y, name, {12, faint});
+    drawing.text(right, y, name, {12, faint});
     drawing.box(right - 20, y - 9, 14, 9, colour, 0.8);
     right -= 44;
   }
@@ -210,17 +210,17 @@ std::string summary(const StressOptions& options, const StressOutcome& outcome) 
 
 std::string stress_picture(const StressOptions& options, const StressOutcome& outcome) {
   cli::SvgDrawing drawing(1200, 720);
-  drawing.words(40, 46, "nendo stress", {24, ink, "start", true});
-  drawing.words(40, 72, summary(options, outcome), {14, ink});
+  drawing.text(40, 46, "nendo stress", {24, ink, "start", true});
+  drawing.text(40, 72, summary(options, outcome), {14, ink});
   const Environment& about = outcome.environment;
-  drawing.words(1160, 46, "Linux " + about.kernel + (about.hypervisor ? ", virtual machine" : ""),
-                at_right);
-  drawing.words(1160, 66, about.processor, at_right);
+  drawing.text(1160, 46, "Linux " + about.kernel + (about.hypervisor ? ", virtual machine" : ""),
+               at_right);
+  drawing.text(1160, 66, about.processor, at_right);
   std::string rights;
   for (const auto& grant : outcome.grants) {
     if (!grant.granted) rights += (rights.empty() ? "refused: " : ", ") + grant.wanted;
   }
-  drawing.words(1160, 86, rights, at_right);
+  drawing.text(1160, 86, rights, at_right);
   draw_histogram(drawing, outcome);
   draw_key(drawing, 112,
            {{machine, "gaps that this machine leaves"},
@@ -228,8 +228,8 @@ std::string stress_picture(const StressOptions& options, const StressOutcome& ou
             {ran, "ticks that ran"}});
   draw_trace(drawing, outcome);
   draw_key(drawing, 432, {{scheduled, "up to the latest"}, {ran, "mean"}});
-  drawing.words(600, 396, "lateness, and how many ticks had it", below);
-  drawing.words(600, 702, "since the start", below);
+  drawing.text(600, 396, "lateness, and how many ticks had it", below);
+  drawing.text(600, 702, "since the start", below);
   return std::move(drawing).finished();
 }
 

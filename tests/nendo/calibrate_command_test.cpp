@@ -344,10 +344,10 @@ TEST_SUITE("calibrate") {
     const auto file = hand::calibration_file_name("dora", "", Side::right) + ".unfinished";
     write_file(stored / file, "nonsense\n");
     TerminalProgram refused({"calibrate", "sim", "--user", "dora"}, 200, 26);
-    REQUIRE(refused.tells("--fresh"));
+    REQUIRE(refused.prints("--fresh"));
     CHECK(refused.wait() == 5);
     TerminalProgram fresh({"calibrate", "sim", "--user", "dora", "--fresh"}, 100, 26);
-    REQUIRE(fresh.sees("Pose 1 of"));
+    REQUIRE(fresh.shows("Pose 1 of"));
     REQUIRE(fresh.press('q'));
     CHECK(fresh.wait() == 0);
   }
@@ -371,10 +371,10 @@ TEST_SUITE("calibrate") {
       TerminalProgram program(again, 200, 26);
       for (const char* word : {"Pose 2 of 2", "No calibration yet", "contradict", "n restarts"}) {
         CAPTURE(word);
-        REQUIRE(program.sees(word));
+        REQUIRE(program.shows(word));
       }
       REQUIRE(program.press('w')); // with a pose missing it is no end
-      REQUIRE(program.sees("fist is missing"));
+      REQUIRE(program.shows("fist is missing"));
       REQUIRE(program.press('q'));
       CHECK(program.wait() == 0);
       CHECK(program.screen().transcript().find("1 pose is kept") != std::string::npos);
@@ -384,17 +384,17 @@ TEST_SUITE("calibrate") {
     CHECK(kept->readings.size() == 1);
     {
       TerminalProgram program(again, 100, 26);
-      REQUIRE(program.sees("Pose 2 of 2"));
+      REQUIRE(program.shows("Pose 2 of 2"));
       REQUIRE(program.press('n'));
-      REQUIRE(program.sees("n once more"));
+      REQUIRE(program.shows("n once more"));
       REQUIRE(program.press(' ')); // something else was meant
-      REQUIRE(program.sees([](const VtScreen& screen) { return !screen.shows("n once more"); }));
+      REQUIRE(program.shows([](const VtScreen& screen) { return !screen.shows("n once more"); }));
       CHECK(program.screen().shows("Pose 2 of 2"));
       REQUIRE(program.press('n'));
-      REQUIRE(program.sees("n once more"));
+      REQUIRE(program.shows("n once more"));
       REQUIRE(program.press('n'));
-      REQUIRE(program.sees("Pose 1 of 2"));
-      REQUIRE(program.sees("SPACE begins"));
+      REQUIRE(program.shows("Pose 1 of 2"));
+      REQUIRE(program.shows("SPACE begins"));
       REQUIRE(program.press('q'));
       CHECK(program.wait() == 0);
     }
@@ -406,11 +406,11 @@ TEST_SUITE("calibrate") {
     const TemporaryFolder folder;
     REQUIRE(::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1) == 0);
     TerminalProgram program({"calibrate", "sim:wave", "--user", "gus"}, 40, 26);
-    REQUIRE(program.sees("Pose 1 of"));
+    REQUIRE(program.shows("Pose 1 of"));
     REQUIRE(program.press('w'));
     for (const char* word : {"No calibration yet", "the pose flat is", "Pose 1 of"}) {
       CAPTURE(word);
-      REQUIRE(program.sees(word));
+      REQUIRE(program.shows(word));
     }
     REQUIRE(program.press('q'));
     CHECK(program.wait() == 0);
@@ -425,14 +425,14 @@ TEST_SUITE("calibrate") {
     // A picture may arrive in parts: each word is waited for.
     for (const char* word : {"Pose 1 of", "cleo", "SPACE begins", "q quit"}) {
       CAPTURE(word);
-      REQUIRE(program.sees(word));
+      REQUIRE(program.shows(word));
     }
     REQUIRE(program.press(' '));
-    REQUIRE(program.sees("Hold still"));
+    REQUIRE(program.shows("Hold still"));
     REQUIRE(program.press('s')); // flat is skipped for now
-    REQUIRE(program.sees("Pose 2 of"));
+    REQUIRE(program.shows("Pose 2 of"));
     REQUIRE(program.press('b'));
-    REQUIRE(program.sees("Pose 1 of"));
+    REQUIRE(program.shows("Pose 1 of"));
     REQUIRE(program.press('q'));
     CHECK(program.wait() == 0);
     CHECK_FALSE(program.screen().on_page());

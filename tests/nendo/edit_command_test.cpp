@@ -211,7 +211,7 @@ TEST_SUITE("edit_command") {
     const std::string played = run.path("played.obj");
     test::write_file(played, "old");
     test::Program playing({"edit", "play", run.timeline, "--out", played});
-    REQUIRE(playing.comes_to_catch(SIGINT));
+    REQUIRE(playing.gets_handler_of(SIGINT));
     playing.signal(SIGINT);
     const auto done = playing.wait();
     CHECK(done.exit_code == 1);
@@ -295,7 +295,7 @@ TEST_SUITE("edit_command") {
 
     const std::string last = run.path("last.png");
     test::Program looking({"edit", "view", run.timeline, "--screenshot", last});
-    REQUIRE(looking.comes_to_catch(SIGTERM));
+    REQUIRE(looking.gets_handler_of(SIGTERM));
     looking.signal(SIGTERM);
     CHECK(looking.wait().exit_code == 0);
     CHECK(render::read_png(last));

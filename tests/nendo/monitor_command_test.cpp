@@ -129,12 +129,12 @@ TEST_SUITE("monitor") {
     TerminalProgram program({"monitor", "serial:" + link.string()}, 80, 24);
     // To the end of the last line: a picture may arrive in parts.
     REQUIRE(
-        program.sees([](const VtScreen& s) { return s.line_of("wrist_yaw ").ends_with(" deg"); }));
+        program.shows([](const VtScreen& s) { return s.line_of("wrist_yaw ").ends_with(" deg"); }));
     CHECK(program.is_raw());
     CHECK(program.screen().on_page());
     CHECK_FALSE(program.screen().cursor_shown());
     CHECK(program.screen().shows("left hand, uncalibrated"));
-    REQUIRE(program.sees("q quit"));
+    REQUIRE(program.shows("q quit"));
     for (const auto& name : names_in(nendo::sensors_22)) {
       const std::string line = program.screen().line_of(name + " ");
       CAPTURE(name);
@@ -156,22 +156,22 @@ TEST_SUITE("monitor") {
   TEST_CASE("the picture follows the window's size, and is drawn thirty times a second at most") {
     const auto start = std::chrono::steady_clock::now();
     TerminalProgram program({"monitor", "sim:wave"}, 80, 24);
-    REQUIRE(program.sees("wrist_yaw"));
+    REQUIRE(program.shows("wrist_yaw"));
     program.resize(100, 30);
-    REQUIRE(program.sees([](const VtScreen& s) {
+    REQUIRE(program.shows([](const VtScreen& s) {
       const auto line = s.line_of("wrist_yaw");
       return line.size() == 100 && line.ends_with(" deg");
     }));
     program.resize(80, 13);
-    REQUIRE(program.sees([](const VtScreen& s) {
+    REQUIRE(program.shows([](const VtScreen& s) {
       return s.line_of("thumb_roll").find("ring_mcp") == 41; // two columns
     }));
-    REQUIRE(program.sees("wrist_yaw"));
+    REQUIRE(program.shows("wrist_yaw"));
     program.resize(40, 10);
-    REQUIRE(program.sees("and 15 more"));
+    REQUIRE(program.shows("and 15 more"));
     program.resize(1, 1);
     program.resize(20, 3);
-    REQUIRE(program.sees("and 22 more: make t~"));
+    REQUIRE(program.shows("and 22 more: make t~"));
     CHECK(program.screen().faults().empty());
     program.press('q');
     CHECK(program.wait() == 0);
@@ -188,14 +188,14 @@ TEST_SUITE("monitor") {
       return from == std::string::npos ? -1 : static_cast<int>(to - from);
     };
     TerminalProgram program({"monitor", "sim:wave?rate=30", "--raw"}, 80, 24);
-    REQUIRE(program.sees([&](const VtScreen& s) { return range_width(s) > 12; }));
+    REQUIRE(program.shows([&](const VtScreen& s) { return range_width(s) > 12; }));
     CHECK_FALSE(program.screen().shows(" deg"));
     program.press('r');
-    CHECK(
-        program.sees([&](const VtScreen& s) { return range_width(s) >= 0 && range_width(s) < 6; }));
+    CHECK(program.shows(
+        [&](const VtScreen& s) { return range_width(s) >= 0 && range_width(s) < 6; }));
     program.press('x'); // nothing
     program.press('l'); // it has no light
-    CHECK(program.sees([&](const VtScreen& s) { return range_width(s) > 12; }));
+    CHECK(program.shows([&](const VtScreen& s) { return range_width(s) > 12; }));
     program.press('q');
     CHECK(program.wait() == 0);
   }
@@ -211,7 +211,7 @@ TEST_SUITE("monitor") {
                           Case{"q", [](TerminalProgram& p) { p.press('q'); }}}) {
       CAPTURE(c.how);
       TerminalProgram program({"monitor", "sim"}, 80, 24);
-      REQUIRE(program.sees("wrist_yaw"));
+      REQUIRE(program.shows("wrist_yaw"));
       CHECK_FALSE(program.is_restored());
       c.end(program);
       CHECK(program.wait() == 0);
@@ -229,19 +229,19 @@ TEST_SUITE("monitor") {
     const std::string script =
         std::string(NENDO_PROGRAM) + " monitor sim; echo suspended-now; read x; fg; echo over-now";
     TerminalProgram shell({"-mc", script}, 80, 24, "xterm", "/bin/bash");
-    REQUIRE(shell.sees("index_mcp"));
+    REQUIRE(shell.shows("index_mcp"));
     CHECK(shell.is_raw());
     REQUIRE(shell.press('\x1a'));
-    REQUIRE(shell.tells("suspended-now"));
+    REQUIRE(shell.prints("suspended-now"));
     CHECK_FALSE(shell.screen().on_page());
     CHECK(shell.screen().cursor_shown());
     CHECK(shell.has_lines_and_echo());
     REQUIRE(shell.press('\n'));
-    REQUIRE(shell.sees([](const VtScreen& screen) { return screen.on_page(); }));
-    REQUIRE(shell.sees("index_mcp"));
+    REQUIRE(shell.shows([](const VtScreen& screen) { return screen.on_page(); }));
+    REQUIRE(shell.shows("index_mcp"));
     CHECK(shell.is_raw());
     REQUIRE(shell.press('q'));
-    CHECK(shell.tells("over-now"));
+    CHECK(shell.prints("over-now"));
     CHECK(shell.wait() == 0);
     CHECK(shell.is_restored());
   }
@@ -249,7 +249,7 @@ TEST_SUITE("monitor") {
   TEST_CASE("a terminal that is dumb gets lines, and not one control code") {
     for (const std::string term : {"dumb", ""}) {
       TerminalProgram program({"monitor", "sim"}, 80, 24, term);
-      REQUIRE(program.tells("delivered"));
+      REQUIRE(program.prints("delivered"));
       CHECK_FALSE(program.screen().on_page());
       CHECK(program.screen().cursor_shown());
       REQUIRE(program.press('q'));
@@ -276,7 +276,7 @@ TEST_SUITE("monitor") {
     const EmulatedGlove glove(link, "left", "22");
     const std::string spec = "serial:" + link.string();
     TerminalProgram first({"monitor", spec}, 80, 24);
-    REQUIRE(first.sees("wrist_yaw"));
+    REQUIRE(first.shows("wrist_yaw"));
     const auto second = nendo::test::nendo({"monitor", spec, "--count", "1"});
     CHECK(second.exit_code == 3);
     CHECK(is_one_line_about(second.err, "in use by another program, "));

@@ -100,7 +100,7 @@ TEST_SUITE("replay_end") {
     for (const auto& arguments : lasting)
       programs.push_back(std::make_unique<test::Program>(arguments));
     for (const auto& program : programs)
-      CHECK(program->comes_to_catch(SIGINT));
+      CHECK(program->gets_handler_of(SIGINT));
     std::this_thread::sleep_for(std::chrono::seconds(4)); // eight times as long as the recording
     for (std::size_t at = 0; at < lasting.size(); ++at) {
       CAPTURE(lasting[at].front());

@@ -307,7 +307,7 @@ TEST_SUITE("run") {
       nendo::test::Program run({"run", "--right", "sim", "--duration", "6", "--json", "--out",
                                 (folder.path() / "shape.ply").string()});
       std::signal(SIGHUP, before);
-      REQUIRE(run.comes_to_tell_progress());
+      REQUIRE(run.reports_progress());
       run.signal(SIGHUP);
       const auto done = run.wait();
       CHECK(done.exit_code == 0);
@@ -406,7 +406,7 @@ TEST_SUITE("run") {
     const auto out = folder.path() / "shape.ply";
     nendo::test::Program program(
         {"run", "--right", "sim:wave?seed=4", "--out", out.string(), "--json"});
-    REQUIRE(program.comes_to_tell_progress());
+    REQUIRE(program.reports_progress());
     program.signal(SIGINT);
     const auto done = program.wait();
     CAPTURE(done.err);
@@ -423,7 +423,7 @@ TEST_SUITE("run") {
     const auto gone = folder.path() / "gone";
     std::filesystem::create_directory(gone);
     nendo::test::Program program({"run", "--left", "sim", "--out", (gone / name).string()});
-    REQUIRE(program.comes_to_tell_progress());
+    REQUIRE(program.reports_progress());
     std::filesystem::remove(gone);
     program.signal(SIGTERM);
     const auto done = program.wait();

@@ -31,24 +31,24 @@ TEST_SUITE("run_keys") {
     const auto out = folder.path() / "shape.obj";
     std::ofstream(folder.path() / "shape-1.obj") << "somebody else's";
     TerminalProgram program({"run", "--right", "sim:sculpt", "--out", out.string()}, 200, 24);
-    REQUIRE(program.tells("keys: ? lists them"));
-    REQUIRE(program.tells("ticks"));
+    REQUIRE(program.prints("keys: ? lists them"));
+    REQUIRE(program.prints("ticks"));
     CHECK(program.is_raw());
     CHECK(program.press('l'));
-    REQUIRE(program.tells("  released"));
+    REQUIRE(program.prints("  released"));
     CHECK(program.press('s'));
-    REQUIRE(program.tells("shape-2.obj")); // what is there stays
+    REQUIRE(program.prints("shape-2.obj")); // what is there stays
     CHECK(program.press('g'));
-    REQUIRE(program.sees([](const VtScreen& screen) {
+    REQUIRE(program.shows([](const VtScreen& screen) {
       const std::string& text = screen.transcript();
       return text.rfind("ticks") > text.rfind("released") + 20; // a line of progress without it
     }));
     CHECK(program.press('?'));
-    CHECK(program.tells("k  Saves the most recent input as a recording"));
+    CHECK(program.prints("k  Saves the most recent input as a recording"));
     CHECK(program.press('r'));
-    CHECK(program.tells("There is nothing to redo."));
+    CHECK(program.prints("There is nothing to redo."));
     CHECK(program.press('.'));
-    CHECK(program.tells("There is no recording to mark; begin one with t."));
+    CHECK(program.prints("There is no recording to mark; begin one with t."));
     CHECK(program.press('B')); // is nothing
     CHECK(program.press('c'));
     CHECK(program.press('u'));
@@ -69,27 +69,27 @@ TEST_SUITE("run_keys") {
     const TemporaryFolder folder;
     const auto out = folder.path() / "shape.obj";
     TerminalProgram program({"run", "--right", "sim:sculpt", "--out", out.string()}, 200, 24);
-    REQUIRE(program.tells("keys: "));
-    REQUIRE(program.tells("ticks"));
+    REQUIRE(program.prints("keys: "));
+    REQUIRE(program.prints("ticks"));
     CHECK(program.press('t'));
     REQUIRE(
         test::eventually([&] { return std::filesystem::exists(folder.path() / "shape.nendo"); }));
     CHECK(program.press(']'));
-    CHECK(program.tells("type1, wendland-c2, never folds, radius 17.6 cm"));
+    CHECK(program.prints("type1, wendland-c2, never folds, radius 17.6 cm"));
     CHECK(program.press('['));
     CHECK(program.press('['));
-    CHECK(program.tells("radius 14.5 cm"));
+    CHECK(program.prints("radius 14.5 cm"));
     CHECK(program.press('m'));
     CHECK(program.press('n'));
-    CHECK(program.tells("type2, wendland-c4, never folds, radius 14.5 cm"));
+    CHECK(program.prints("type2, wendland-c4, never folds, radius 14.5 cm"));
     CHECK(program.press('i'));
-    CHECK(program.tells("type2, wendland-c4, may fold"));
+    CHECK(program.prints("type2, wendland-c4, may fold"));
     CHECK(program.press('x'));
     CHECK(program.press('u'));
     CHECK(program.press('t'));
     CHECK(program.press('q'));
     CHECK(program.wait() == 0);
-    CHECK(program.tells(" s, type2, wendland-c4")); // of the summary: the last counts, too
+    CHECK(program.prints(" s, type2, wendland-c4")); // of the summary: the last counts, too
     const auto info =
         test::nendo({"recording", "info", "--json", (folder.path() / "shape.nendo").string()});
     REQUIRE(info.exit_code == 0);
@@ -110,9 +110,9 @@ TEST_SUITE("run_keys") {
       TerminalProgram program({"run", "--left", "sim:sculpt", "--right", "sim:sculpt", "--duration",
                                "1000s", "--out", (folder.path() / "shape.obj").string()},
                               columns, 24);
-      REQUIRE(program.tells(" left"));
+      REQUIRE(program.prints(" left"));
       CHECK(program.press('l'));
-      if (columns == 80) REQUIRE(program.tells("  released"));
+      if (columns == 80) REQUIRE(program.prints("  released"));
       CHECK(program.press('q'));
       CHECK(program.wait() == 0);
       const std::string& all = program.screen().transcript();

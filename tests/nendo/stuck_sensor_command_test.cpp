@@ -234,10 +234,10 @@ TEST_SUITE("stuck_sensor_command") {
     TerminalProgram calibrate({"calibrate", glove.spec(), "--user", "anna", "--quick", "--out",
                                (folder.path() / "anna.toml").string()},
                               130, 40);
-    REQUIRE(calibrate.sees("Then SPACE begins"));
+    REQUIRE(calibrate.shows("Then SPACE begins"));
     std::this_thread::sleep_for(std::chrono::seconds(6));
     calibrate.press(' ');
-    REQUIRE(calibrate.sees("index_pip is stuck"));
+    REQUIRE(calibrate.shows("index_pip is stuck"));
     CHECK(calibrate.wait() == 0);
     CHECK(calibrate.is_restored());
     const auto written = hand::read_calibration(folder.path() / "anna.toml");
@@ -249,18 +249,18 @@ TEST_SUITE("stuck_sensor_command") {
     const TemporaryFolder folder;
     const std::string link = (folder.path() / "glove").string();
     TerminalProgram emulate({"emulate", "--link", link, "--motion", "poses"}, 100, 30);
-    REQUIRE(emulate.tells("SPACE"));
+    REQUIRE(emulate.prints("SPACE"));
     REQUIRE(appears(link));
     TerminalProgram calibrate({"calibrate", "serial:" + link, "--user", "anna", "--quick", "--out",
                                (folder.path() / "anna.toml").string()},
                               130, 40);
-    REQUIRE(calibrate.sees("Then SPACE begins"));
+    REQUIRE(calibrate.shows("Then SPACE begins"));
     std::this_thread::sleep_for(std::chrono::seconds(4));
     calibrate.press(' ');
-    REQUIRE(calibrate.sees("Pose 1 of 2: flat"));
+    REQUIRE(calibrate.shows("Pose 1 of 2: flat"));
     emulate.press(' ');
-    REQUIRE(emulate.tells("pose 1 of 34: flat"));
-    REQUIRE(calibrate.sees("Pose 2 of 2: fist"));
+    REQUIRE(emulate.prints("pose 1 of 34: flat"));
+    REQUIRE(calibrate.shows("Pose 2 of 2: fist"));
     emulate.press(' ');
     CHECK(calibrate.wait() == 0);
     emulate.press('q');

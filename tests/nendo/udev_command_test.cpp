@@ -41,7 +41,7 @@ private:
   TemporaryFolder folder_;
 };
 
-bool says(const Finished& done, std::string_view text) {
+bool contains(const Finished& done, std::string_view text) {
   return done.out.find(text) != std::string::npos;
 }
 
@@ -52,7 +52,7 @@ TEST_SUITE("udev command") {
     const FakeRoot root;
     const auto dry = root.udev({"install", "--dry-run"});
     CHECK(dry.exit_code == 0);
-    CHECK(says(dry, "would write"));
+    CHECK(contains(dry, "would write"));
     CHECK(root.files() == 0);
     ::umask(077);
     const auto first = root.udev({"install"});
@@ -68,8 +68,8 @@ TEST_SUITE("udev command") {
     const auto written = fs::last_write_time(root.etc("60-nendo.rules"));
     const auto second = root.udev({"install"});
     CHECK(second.exit_code == 0);
-    CHECK(says(second, "unchanged"));
-    CHECK_FALSE(says(second, "wrote"));
+    CHECK(contains(second, "unchanged"));
+    CHECK_FALSE(contains(second, "wrote"));
     CHECK(fs::last_write_time(root.etc("60-nendo.rules")) == written);
     CHECK(root.files() == 2);
   }
@@ -77,27 +77,27 @@ TEST_SUITE("udev command") {
   TEST_CASE("uninstall removes what install wrote, and a second one says that nothing is there") {
     const FakeRoot root;
     CHECK(root.udev({"install"}).exit_code == 0);
-    CHECK(says(root.udev({"uninstall", "--dry-run"}), "would remove"));
+    CHECK(contains(root.udev({"uninstall", "--dry-run"}), "would remove"));
     CHECK(root.files() == 2);
-    CHECK(says(root.udev({"uninstall"}), "removed"));
+    CHECK(contains(root.udev({"uninstall"}), "removed"));
     CHECK(root.files() == 0);
     const auto again = root.udev({"uninstall"});
     CHECK(again.exit_code == 0);
-    CHECK(says(again, "missing"));
+    CHECK(contains(again, "missing"));
   }
 
   TEST_CASE("a package's rules are enough, and are not touched") {
     const FakeRoot root;
     for (const auto& file : nendo::udev::shipped_rules())
       write_file(root.package(std::string(file.name)), file.text);
-    CHECK(says(root.udev({"install"}), "unchanged"));
+    CHECK(contains(root.udev({"install"}), "unchanged"));
     CHECK(root.files() == 2);
-    CHECK(says(root.udev({"uninstall"}), "kept"));
+    CHECK(contains(root.udev({"uninstall"}), "kept"));
     CHECK(root.files() == 2);
     // An older package's are overridden from /etc.
     write_file(root.package("60-nendo.rules"), "# Made by nendo: long ago\n");
-    CHECK(says(root.udev({"show"}), "of another version"));
-    CHECK(says(root.udev({"install"}), "wrote " + root.etc("60-nendo.rules").string()));
+    CHECK(contains(root.udev({"show"}), "of another version"));
+    CHECK(contains(root.udev({"install"}), "wrote " + root.etc("60-nendo.rules").string()));
     CHECK(root.files() == 3);
   }
 

@@ -60,11 +60,11 @@ public:
   void signal(int number) const { ::kill(pid_, number); }
   pid_t id() const noexcept { return pid_; }
   /// Waits until the program has a handler for a signal. Returns false if it has none in time.
-  bool comes_to_catch(int number) const {
+  bool gets_handler_of(int number) const {
     return eventually([&] { return catches(number); });
   }
-  /// Waits until a run tells its progress, on standard error or, as JSON, on standard output.
-  bool comes_to_tell_progress() const {
+  /// Waits until a run reports its progress, on standard error or, as JSON, on standard output.
+  bool reports_progress() const {
     return eventually([&] {
       return err_so_far().find("samples") != std::string::npos ||
              contents(folder_.path() / "out").find("progress") != std::string::npos;

@@ -22,7 +22,7 @@ namespace nendo::test {
 
 class TerminalProgram {
 public:
-  /// `term` is the kind of terminal that the program is told of.
+  /// `term` is the value of TERM for the program.
   TerminalProgram(std::vector<std::string> arguments, unsigned short columns, unsigned short rows,
                   const std::string& term = "xterm", const std::string& program = NENDO_PROGRAM)
       : screen_(columns, rows) {
@@ -63,7 +63,7 @@ public:
   const VtScreen& screen() const { return screen_; }
 
   /// Reads until the screen is as wanted. Returns false if that takes too long.
-  bool sees(const std::function<bool(const VtScreen&)>& wanted) {
+  bool shows(const std::function<bool(const VtScreen&)>& wanted) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (!wanted(screen_)) {
       if (std::chrono::steady_clock::now() > end) return false;
@@ -71,12 +71,12 @@ public:
     }
     return true;
   }
-  bool sees(const std::string& text) {
-    return sees([&](const VtScreen& screen) { return screen.shows(text); });
+  bool shows(const std::string& text) {
+    return shows([&](const VtScreen& screen) { return screen.shows(text); });
   }
   /// Reads until `text` was printed outside the page. Returns false if that takes too long.
-  bool tells(const std::string& text) {
-    return sees([&](const VtScreen& screen) {
+  bool prints(const std::string& text) {
+    return shows([&](const VtScreen& screen) {
       return screen.transcript().find(text) != std::string::npos;
     });
   }

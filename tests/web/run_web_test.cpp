@@ -256,7 +256,7 @@ TEST_SUITE("run_web") {
                                    "--keep-last", "10s", "--out", out.string()},
                                   200, 24);
     Address address;
-    REQUIRE(program.sees([&](const test::VtScreen& screen) {
+    REQUIRE(program.shows([&](const test::VtScreen& screen) {
       address = address_in(screen.transcript());
       return address.port != 0;
     }));
@@ -267,7 +267,7 @@ TEST_SUITE("run_web") {
       REQUIRE(program.press(answer.first));
       browser.follow_until(
           [&] { return browser.follower->report.find(what) != std::string::npos; });
-      CHECK(program.tells(what));
+      CHECK(program.prints(what));
     }
     CHECK(program.press('q'));
     CHECK(program.wait() == 0);

@@ -86,7 +86,7 @@ void draw_axes(cli::SvgDrawing& drawing) {
   for (const auto& [value, label] : {std::pair{1e3, "1000"}, {1e4, "10 000"}, {1e5, "100 000"}}) {
     const double x = evaluations_x(value);
     drawing.line(x, plot_top, x, plot_top + plot_height, grid);
-    drawing.words(x, plot_top + plot_height + 18.0, label, tick_in_middle);
+    drawing.text(x, plot_top + plot_height + 18.0, label, tick_in_middle);
   }
   for (const auto& [value, label] : {std::pair{1e-3, "0.001"},
                                      {1e-2, "0.01"},
@@ -96,19 +96,19 @@ void draw_axes(cli::SvgDrawing& drawing) {
                                      {1e2, "100"}}) {
     const double y = ms_y(value);
     drawing.line(plot_left, y, plot_left + plot_width, y, grid);
-    drawing.words(plot_left - 8.0, y + 4.0, label, tick_at_end);
+    drawing.text(plot_left - 8.0, y + 4.0, label, tick_at_end);
   }
   const double bottom = plot_top + plot_height;
   drawing.line(plot_left, plot_top, plot_left, bottom, "#444444");
   drawing.line(plot_left, bottom, plot_left + plot_width, bottom, "#444444");
-  drawing.words(plot_left + plot_width / 2.0, bottom + 42.0,
-                "evaluations a frame: vertices times control points, where nearer than the radius",
-                axis_title);
-  drawing.words(plot_left - 8.0, plot_top - 12.0, "ms a frame", {13, "#000000", "middle"});
+  drawing.text(plot_left + plot_width / 2.0, bottom + 42.0,
+               "evaluations a frame: vertices times control points, where nearer than the radius",
+               axis_title);
+  drawing.text(plot_left - 8.0, plot_top - 12.0, "ms a frame", {13, "#000000", "middle"});
   // The loop's time for a tick.
   const double y = ms_y(1e3 / 90.0);
   drawing.line(plot_left, y, plot_left + plot_width, y, "#c9a227", 1.0, "5 4");
-  drawing.words(plot_left + 6.0, y - 5.0, "11 ms: 90 frames a second", {11, "#8a6d10"});
+  drawing.text(plot_left + 6.0, y - 5.0, "11 ms: 90 frames a second", {11, "#8a6d10"});
 }
 
 void draw_series(cli::SvgDrawing& drawing, const Series& series, std::size_t type,
@@ -139,10 +139,9 @@ void name_meshes(cli::SvgDrawing& drawing, const std::vector<Table1Entry>& entri
     if (entry.radius != 0) continue;
     const double ms =
         1e3 / std::sqrt(paper_type1.at(entry.plane).at(0) * paper_type2.at(entry.plane).at(0));
-    drawing.words(evaluations_x(static_cast<double>(paper_evaluations.at(entry.plane).at(0))) -
-                      10.0,
-                  ms_y(ms) + 4.0, fmt::format("{} triangles", table1_triangles.at(entry.plane)),
-                  {12, "#7a2f1f", "end"});
+    drawing.text(evaluations_x(static_cast<double>(paper_evaluations.at(entry.plane).at(0))) - 10.0,
+                 ms_y(ms) + 4.0, fmt::format("{} triangles", table1_triangles.at(entry.plane)),
+                 {12, "#7a2f1f", "end"});
   }
 }
 
@@ -150,32 +149,32 @@ void draw_key(cli::SvgDrawing& drawing, const std::array<Series, 3>& series) {
   double x = plot_left;
   for (const Series& one : series) {
     drawing.dot(x + 4.0, 70.0, 4.0, one.colour, one.colour);
-    drawing.words(x + 16.0, 74.0, one.words, {13});
+    drawing.text(x + 16.0, 74.0, one.words, {13});
     x += 6.9 * static_cast<double>(std::string_view(one.words).size()) + 40.0;
   }
   x = plot_left;
   for (std::size_t type = 0; type < 2; ++type) {
     drawing.line(x, 92.0, x + 28.0, 92.0, "#444444", 1.5, type == 0 ? "none" : "4 3");
     drawing.dot(x + 14.0, 92.0, 4.0, type == 0 ? "#444444" : "white", "#444444");
-    drawing.words(x + 36.0, 96.0,
-                  type == 0 ? "Type-1: start points frozen" : "Type-2: solved anew in every frame",
-                  {13});
+    drawing.text(x + 36.0, 96.0,
+                 type == 0 ? "Type-1: start points frozen" : "Type-2: solved anew in every frame",
+                 {13});
     x += 250.0;
   }
-  drawing.words(plot_left + plot_width, 96.0,
-                "left to right on each line: radius 10, 20, 40, 60, 80", {12, "#444444", "end"});
+  drawing.text(plot_left + plot_width, 96.0,
+               "left to right on each line: radius 10, 20, 40, 60, 80", {12, "#444444", "end"});
 }
 
 } // namespace
 
 std::string figure4_picture(const std::vector<Table1Entry>& entries, const std::string& layout) {
   cli::SvgDrawing drawing(figure_width, figure_height);
-  drawing.words(plot_left, 30.0,
-                "Time of a frame over its evaluations: ten fingertips deform a plane", {18});
-  drawing.words(plot_left, 49.0,
-                fmt::format("The paper: Athlon 64 3400+. Nendo: one thread, layout {}, {}.", layout,
-                            whole_frame_drawing),
-                {12, "#444444"});
+  drawing.text(plot_left, 30.0,
+               "Time of a frame over its evaluations: ten fingertips deform a plane", {18});
+  drawing.text(plot_left, 49.0,
+               fmt::format("The paper: Athlon 64 3400+. Nendo: one thread, layout {}, {}.", layout,
+                           whole_frame_drawing),
+               {12, "#444444"});
   draw_axes(drawing);
   const std::array<Series, 3> series = all_series();
   for (const Series& one : series)

@@ -66,11 +66,11 @@ void draw_scale(cli::SvgDrawing& drawing, double top) {
                                      {1e5, "100 000"},
                                      {1e6, "1 000 000"}}) {
     rule(drawing, top, value, "#e2e2e2", "none");
-    drawing.words(panel_left - 6.0, y_of(value, top) + 4.0, label, small_at_end);
+    drawing.text(panel_left - 6.0, y_of(value, top) + 4.0, label, small_at_end);
   }
   // The rate of the loop, below which a hand sees single frames.
   rule(drawing, top, 90.0, "#c9a227", "5 4");
-  drawing.words(panel_left + panel_width, y_of(90.0, top) - 4.0, "90 a second", small_at_end);
+  drawing.text(panel_left + panel_width, y_of(90.0, top) - 4.0, "90 a second", small_at_end);
 }
 
 void draw_column(cli::SvgDrawing& drawing, const Table1Entry& entry, std::size_t type, double paper,
@@ -88,28 +88,28 @@ void draw_column(cli::SvgDrawing& drawing, const Table1Entry& entry, std::size_t
   drawing.dot(x, ours, 3.0, one_colour, one_colour);
   // Like for like: only whole frames are compared.
   const double times = cell.whole_frame[type] / paper;
-  drawing.words(x + 6.0, y_of(cell.whole_frame[type], top) - 5.0,
-                times < 9.95 ? fmt::format("{:.1f} x", times) : fmt::format("{:.0f} x", times),
-                finest);
-  drawing.words(x, top + panel_height + 14.0,
-                fmt::format("{:.0f}", reference::table1_radii.at(entry.radius)), small_in_middle);
+  drawing.text(x + 6.0, y_of(cell.whole_frame[type], top) - 5.0,
+               times < 9.95 ? fmt::format("{:.1f} x", times) : fmt::format("{:.0f} x", times),
+               finest);
+  drawing.text(x, top + panel_height + 14.0,
+               fmt::format("{:.0f}", reference::table1_radii.at(entry.radius)), small_in_middle);
 }
 
 void draw_panel(cli::SvgDrawing& drawing, const std::vector<Table1Entry>& entries, std::size_t type,
                 double top) {
   const auto& paper = type == 0 ? paper_type1 : paper_type2;
   draw_scale(drawing, top);
-  drawing.words(panel_left, top - 10.0,
-                type == 0 ? "Type-1: the fingertips stay frozen to the model"
-                          : "Type-2: solved anew in every frame",
-                title_text);
+  drawing.text(panel_left, top - 10.0,
+               type == 0 ? "Type-1: the fingertips stay frozen to the model"
+                         : "Type-2: solved anew in every frame",
+               title_text);
   for (const Table1Entry& entry : entries)
     draw_column(drawing, entry, type, paper.at(entry.plane).at(entry.radius), top);
   for (std::size_t plane = 0; plane < reference::table1_planes.size(); ++plane) {
     const double group = panel_width / static_cast<double>(reference::table1_planes.size());
     const double middle = panel_left + group * (static_cast<double>(plane) + 0.5);
-    drawing.words(middle, top + panel_height + 30.0,
-                  fmt::format("radius; {} triangles", table1_triangles.at(plane)), small_in_middle);
+    drawing.text(middle, top + panel_height + 30.0,
+                 fmt::format("radius; {} triangles", table1_triangles.at(plane)), small_in_middle);
   }
 }
 
@@ -126,7 +126,7 @@ void draw_legend(cli::SvgDrawing& drawing, double y) {
         Item{3.0, one_colour, one_colour, "Nendo"},
         Item{5.5, "white", two_colour, "two threads"}}) {
     drawing.dot(x, y - 4.0, item.size, item.fill, item.edge);
-    drawing.words(x + 10.0, y, item.words, {12});
+    drawing.text(x + 10.0, y, item.words, {12});
     x += 6.3 * static_cast<double>(std::string_view(item.words).size()) + 30.0;
   }
 }
@@ -135,11 +135,11 @@ void draw_legend(cli::SvgDrawing& drawing, double y) {
 
 std::string table1_picture(const std::vector<Table1Entry>& entries, const std::string& layout) {
   cli::SvgDrawing drawing(width, height);
-  drawing.words(panel_left, 30.0,
-                fmt::format("The paper's Table 1 in frames a second: ten fingertips on a plane "
-                            "(layout {})",
-                            layout),
-                {18});
+  drawing.text(panel_left, 30.0,
+               fmt::format("The paper's Table 1 in frames a second: ten fingertips on a plane "
+                           "(layout {})",
+                           layout),
+               {18});
   draw_legend(drawing, 56.0);
   draw_panel(drawing, entries, 0, first_panel_top);
   draw_panel(drawing, entries, 1, first_panel_top + panel_height + panel_gap);
