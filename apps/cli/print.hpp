@@ -14,5 +14,10 @@ template <class... Values>
 void print(std::FILE* out, fmt::format_string<Values...> format, Values&&... values) {
   std::fputs(fmt::format(format, std::forward<Values>(values)...).c_str(), out);
 }
+/// Prints to standard output.
+template <class... Values>
+void print(fmt::format_string<Values...> format, Values&&... values) {
+  cli::print(stdout, format, std::forward<Values>(values)...);
+}
 
 } // namespace nendo::cli

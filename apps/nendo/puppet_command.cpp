@@ -83,14 +83,13 @@ std::string travel_text(const Function& function) {
 
 void print_function(const OpenRig& open, std::size_t at) {
   const Function& function = open.functions()[at];
-  cli::print(stdout, "{}: {}, {} for 1; values {:g} to {:g}{}\n", function.name,
-             function.input.name(), travel_text(function), function.least, function.most,
-             function.eases ? ", eased" : "");
+  cli::print("{}: {}, {} for 1; values {:g} to {:g}{}\n", function.name, function.input.name(),
+             travel_text(function), function.least, function.most, function.eases ? ", eased" : "");
   const Points& vectors = open.rig().vectors_of(at);
   for (std::size_t point = 0; point < open.rig().puppet().points.size(); ++point) {
     const Eigen::Vector3d vector = vectors.col(static_cast<Eigen::Index>(point));
     if (vector.isZero(0.0)) continue;
-    cli::print(stdout, "  {:<20} by {}  ({:.4g})\n", open.rig().puppet().points[point].name,
+    cli::print("  {:<20} by {}  ({:.4g})\n", open.rig().puppet().points[point].name,
                vector_text(vector), vector.norm());
   }
 }
@@ -106,11 +105,11 @@ std::string radii_text(const puppet::PuppetPoint& point) {
 }
 
 void print_points(const OpenRig& open) {
-  cli::print(stdout, "points\n");
+  cli::print("points\n");
   for (std::size_t at = 0; at < open.rig().puppet().points.size(); ++at) {
     const puppet::PuppetPoint& point = open.rig().puppet().points[at];
     cli::print(
-        stdout, "  {:<20} at {}  radius {}{}\n", point.name,
+        "  {:<20} at {}  radius {}{}\n", point.name,
         place_text(open.rig().starts().col(static_cast<Eigen::Index>(at)), open.model.offset),
         radii_text(point), point.is_pin ? ", pin" : "");
   }
@@ -119,7 +118,7 @@ void print_points(const OpenRig& open) {
 void print_head(const OpenRig& open) {
   const auto& puppet = open.rig().puppet();
   cli::print(
-      stdout, "{} on {}: {} vertices, {}, {}, distances {}\n", printable(open.file.path),
+      "{} on {}: {} vertices, {}, {}, distances {}\n", printable(open.file.path),
       printable(puppet.model), open.model.vertices.cols(),
       count_text(puppet.points.size(), "point"), count_text(puppet.functions.size(), "function"),
       puppet.distance == puppet::Distance::surface ? "along the surface" : "through the air");
@@ -146,7 +145,7 @@ void print_clutches(const OpenRig& open) {
   for (const Side side : {Side::left, Side::right}) {
     const std::string words = gesture_text(clutch, clutch.means[static_cast<std::size_t>(side)]);
     if (!words.empty())
-      cli::print(stdout, "the {} hand releases and grabs again by {}\n", name_of(side), words);
+      cli::print("the {} hand releases and grabs again by {}\n", name_of(side), words);
   }
 }
 
@@ -253,7 +252,7 @@ std::string turned_text(const puppet::LimitCheck& limit) {
 void print_turned(const OpenRig& open, const puppet::RigCheck& check) {
   for (const puppet::LimitCheck& limit : check.alone)
     if (limit.turned > 0 || limit.moved == 0)
-      cli::print(stdout, "{}: {}{}\n", limit_text(open, limit.one), turned_text(limit),
+      cli::print("{}: {}{}\n", limit_text(open, limit.one), turned_text(limit),
                  puppet::RigCheck::folds(limit) ? "; too many" : "");
   const puppet::LimitCheck* worst = nullptr;
   std::size_t pairs = 0;
@@ -262,32 +261,30 @@ void print_turned(const OpenRig& open, const puppet::RigCheck& check) {
     ++pairs;
     if (worst == nullptr || pair.turned > worst->turned) worst = &pair;
   }
-  cli::print(stdout, "{} of {} reverse triangles", pairs, count_text(check.pairs.size(), "pair"));
+  cli::print("{} of {} reverse triangles", pairs, count_text(check.pairs.size(), "pair"));
   if (worst != nullptr)
-    cli::print(stdout, "; the worst is {} with {}: {}", limit_text(open, worst->one),
+    cli::print("; the worst is {} with {}: {}", limit_text(open, worst->one),
                limit_text(open, *worst->other), turned_text(*worst));
-  cli::print(stdout, "\n");
+  cli::print("\n");
 }
 
 void print_twins(const OpenRig& open, const puppet::RigCheck& check) {
   if (check.twins.empty()) return;
   if (check.lone_vertices > 0)
-    cli::print(stdout,
-               "the model itself is not symmetric: {} of {} vertices have no mirror image\n",
+    cli::print("the model itself is not symmetric: {} of {} vertices have no mirror image\n",
                check.lone_vertices, open.model.vertices.cols());
   if (check.lone_vertices == static_cast<std::size_t>(open.model.vertices.cols())) return;
   double apart = 0.0;
   for (const puppet::TwinCheck& twins : check.twins) {
     apart = std::max(apart, twins.apart);
     if (!check.are_symmetric(twins))
-      cli::print(stdout, "{} and {} are not symmetric: {:.2g} of the diagonal apart\n",
+      cli::print("{} and {} are not symmetric: {:.2g} of the diagonal apart\n",
                  open.functions()[twins.left].name, open.functions()[twins.right].name,
                  twins.apart);
   }
   if (std::all_of(check.twins.begin(), check.twins.end(),
                   [&](const auto& twins) { return check.are_symmetric(twins); }))
-    cli::print(stdout,
-               "{} are symmetric within {:.2g} of the diagonal, and the model within {:.2g}\n",
+    cli::print("{} are symmetric within {:.2g} of the diagonal, and the model within {:.2g}\n",
                count_text(check.twins.size(), "pair") + " of twins", apart, check.model_apart);
 }
 
@@ -296,7 +293,7 @@ Result<void> check(const Options& options) {
   if (!open) return open.error();
   print_head(*open);
   if (open->shapes->condition() > 0.0)
-    cli::print(stdout, "condition {:.3g}, of at most {:g}\n", open->shapes->condition(),
+    cli::print("condition {:.3g}, of at most {:g}\n", open->shapes->condition(),
                deform::SurfaceField::max_condition);
   const auto check = puppet::check_rig(*open->shapes, open->model);
   print_turned(*open, check);
@@ -321,7 +318,7 @@ Result<void> make(const Options& options) {
   const auto made = puppet::make_face_puppet(model->mesh, *name);
   if (!made) return Error{made.error().code, options.file + ": " + made.error().message};
   for (const std::string& line : made->found)
-    cli::print(stdout, "{}\n", line);
+    cli::print("{}\n", line);
   if (options.up == "z")
     cli::note(options.out + ": play it with --up z, because z is up in its model");
   std::string text = made->text;

@@ -207,10 +207,10 @@ void print_histogram(const flow::Histogram& lateness, unsigned max_us) {
     const auto us = static_cast<std::uint64_t>(value.count()) / 1000;
     us < max_us ? counts[us] += count : beyond += count;
   });
-  cli::print(stdout, "\n# Histogram\n");
+  cli::print("\n# Histogram\n");
   for (std::size_t us = 0; us < counts.size(); ++us)
-    cli::print(stdout, "{:06} {:06}\n", us, counts[us]);
-  cli::print(stdout, "# Histogram Overflows: {}\n", beyond);
+    cli::print("{:06} {:06}\n", us, counts[us]);
+  cli::print("# Histogram Overflows: {}\n", beyond);
 }
 
 std::string hgrm(const flow::Histogram& lateness) {

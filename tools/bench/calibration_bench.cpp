@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
@@ -19,6 +18,7 @@
 #include "bench/judge_bench.hpp"
 #include "bench/text_table.hpp"
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 
 namespace nendo::bench::calibration_bench {
 namespace {
@@ -73,16 +73,15 @@ void print_json(const TrialErrors& errors, std::uint64_t refused, const Options&
           {"median_deg", deg.median}, {"p95_deg", deg.p95}};
     }
   }
-  const nlohmann::ordered_json object{
-      {"wearers", options.wearers},
-      {"first_seed", options.seed},
-      {"refused", refused},
-      {"fit_ms",
-       {{"median", figures_of(errors.fit_ms).median}, {"p95", figures_of(errors.fit_ms).p95}}},
-      {"condition_median", figures_of(errors.condition).median},
-      {"touch_gap_m_p95", figures_of(errors.touch_gap_m).p95},
-      {"groups", groups}};
-  std::cout << object.dump() << std::endl;
+  cli::print_line(
+      {{"wearers", options.wearers},
+       {"first_seed", options.seed},
+       {"refused", refused},
+       {"fit_ms",
+        {{"median", figures_of(errors.fit_ms).median}, {"p95", figures_of(errors.fit_ms).p95}}},
+       {"condition_median", figures_of(errors.condition).median},
+       {"touch_gap_m_p95", figures_of(errors.touch_gap_m).p95},
+       {"groups", groups}});
 }
 
 void print_table(const TrialErrors& errors, bool markdown) {
@@ -102,16 +101,15 @@ void print_table(const TrialErrors& errors, bool markdown) {
 }
 
 void print_text(const TrialErrors& errors, std::uint64_t refused, const Options& options) {
-  std::printf("%llu synthetic wearers, seeds %llu to %llu, %llu refused; error of the joints' "
-              "angles over free motion in degrees, median / 95th percentile%s\n",
-              static_cast<unsigned long long>(options.wearers),
-              static_cast<unsigned long long>(options.seed),
-              static_cast<unsigned long long>(options.seed + options.wearers - 1),
-              static_cast<unsigned long long>(refused), options.markdown ? "\n" : "");
+  cli::print("{} synthetic wearers, seeds {} to {}, {} refused; error of the joints' "
+             "angles over free motion in degrees, median / 95th percentile{}\n",
+             options.wearers, options.seed, options.seed + options.wearers - 1, refused,
+             options.markdown ? "\n" : "");
   print_table(errors, options.markdown);
-  std::printf("%sfit: %.1f ms, condition %.0f (medians); 95%% of touches are closed to %.1f mm\n",
-              options.markdown ? "\n" : "", figures_of(errors.fit_ms).median,
-              figures_of(errors.condition).median, 1e3 * figures_of(errors.touch_gap_m).p95);
+  cli::print(
+      "{}fit: {:.1f} ms, condition {:.0f} (medians); 95% of touches are closed to {:.1f} mm\n",
+      options.markdown ? "\n" : "", figures_of(errors.fit_ms).median,
+      figures_of(errors.condition).median, 1e3 * figures_of(errors.touch_gap_m).p95);
 }
 
 int bench_calibration(const Options& options) {

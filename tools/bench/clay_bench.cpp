@@ -1,7 +1,6 @@
 // nendo bench clay: what it takes to press clay with hands, beside a plain program of the method.
 
 #include <cstdio>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -18,6 +17,7 @@
 #include "bench/clay_trial.hpp"
 #include "bench/simd_choice.hpp"
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 
 namespace nendo::bench::clay_bench {
 namespace {
@@ -39,38 +39,37 @@ struct Row {
 };
 
 void print_json(const Row& row, const ClayTrial& trial) {
-  const nlohmann::ordered_json object{
-      {"row", row.name},
-      {"plain", row.is_plain},
-      {"vertices", trial.vertices},
-      {"mean_edge_mm", trial.mean_edge_mm},
-      {"hands", row.trial.hands},
-      {"speed_m_s", row.trial.speed_m_s},
-      {"radius_mm", row.trial.radius_mm},
-      {"ticks", trial.ticks},
-      {"constraints", trial.constraints},
-      {"max_constraints", trial.max_constraints},
-      {"passes", trial.passes},
-      {"distances", trial.distances},
-      {"mean_us", trial.mean_us},
-      {"p99_us", trial.p99_us},
-      {"worst_us", trial.worst_us},
-      {"penetration_p99_mm", trial.penetration_p99_mm},
-      {"penetration_p99_of_edge", trial.penetration_p99_mm / trial.mean_edge_mm},
-      {"inside_p99_mm", trial.inside_p99_mm},
-      {"worst_volume", trial.worst_volume},
-      {"last_volume", trial.last_volume},
-      {"worst_behind_mm", trial.worst_behind_mm}};
-  std::cout << object.dump() << std::endl;
+  cli::print_line({{"row", row.name},
+                   {"plain", row.is_plain},
+                   {"vertices", trial.vertices},
+                   {"mean_edge_mm", trial.mean_edge_mm},
+                   {"hands", row.trial.hands},
+                   {"speed_m_s", row.trial.speed_m_s},
+                   {"radius_mm", row.trial.radius_mm},
+                   {"ticks", trial.ticks},
+                   {"constraints", trial.constraints},
+                   {"max_constraints", trial.max_constraints},
+                   {"passes", trial.passes},
+                   {"distances", trial.distances},
+                   {"mean_us", trial.mean_us},
+                   {"p99_us", trial.p99_us},
+                   {"worst_us", trial.worst_us},
+                   {"penetration_p99_mm", trial.penetration_p99_mm},
+                   {"penetration_p99_of_edge", trial.penetration_p99_mm / trial.mean_edge_mm},
+                   {"inside_p99_mm", trial.inside_p99_mm},
+                   {"worst_volume", trial.worst_volume},
+                   {"last_volume", trial.last_volume},
+                   {"worst_behind_mm", trial.worst_behind_mm}});
 }
 
 void print_text(const Row& row, const ClayTrial& trial) {
-  std::printf("%-26s %8zu %6.1f %4d %7.1f %8.0f %8.2f %8.2f %9.4f %8.4f %7.3f %8.4f %6.1f\n",
-              row.name, trial.vertices, trial.constraints, trial.max_constraints, trial.passes,
-              trial.distances / 1e3, trial.mean_us / 1e3, trial.p99_us / 1e3,
-              trial.penetration_p99_mm / trial.mean_edge_mm,
-              trial.inside_p99_mm / trial.mean_edge_mm, 100.0 * trial.worst_volume,
-              100.0 * trial.last_volume, trial.worst_behind_mm);
+  cli::print("{:26} {:8} {:6.1f} {:4} {:7.1f} {:8.0f} {:8.2f} {:8.2f} {:9.4f} {:8.4f} {:7.3f} "
+             "{:8.4f} {:6.1f}\n",
+             row.name, trial.vertices, trial.constraints, trial.max_constraints, trial.passes,
+             trial.distances / 1e3, trial.mean_us / 1e3, trial.p99_us / 1e3,
+             trial.penetration_p99_mm / trial.mean_edge_mm,
+             trial.inside_p99_mm / trial.mean_edge_mm, 100.0 * trial.worst_volume,
+             100.0 * trial.last_volume, trial.worst_behind_mm);
   std::fflush(stdout);
 }
 
@@ -111,12 +110,13 @@ int make_thing(const Options& options) {
   const KneadedClay made =
       knead(thing->second, {.level = options.short_form ? 4 : 6, .refines = options.refines});
   const Eigen::Vector3d size = extents_mm(made.shape.vertices);
-  std::printf("%s: %zu vertices; %.2f ms a tick, p99 %.2f; left p99 %.4f mm; volume %% worst %.4f, "
-              "at the end %.4f; places held %zu; turned %.0f degrees; %.0f x %.0f x %.0f mm\n",
-              options.thing.c_str(), static_cast<std::size_t>(made.shape.vertices.cols()),
-              made.mean_us / 1e3, made.p99_us / 1e3, made.penetration_p99_mm,
-              100.0 * made.worst_volume, 100.0 * made.last_volume, made.max_held,
-              made.turned_rad * 180.0 / std::numbers::pi, size.x(), size.y(), size.z());
+  cli::print(
+      "{}: {} vertices; {:.2f} ms a tick, p99 {:.2f}; left p99 {:.4f} mm; volume % worst {:.4f}, "
+      "at the end {:.4f}; places held {}; turned {:.0f} degrees; {:.0f} x {:.0f} x {:.0f} mm\n",
+      options.thing, static_cast<std::size_t>(made.shape.vertices.cols()), made.mean_us / 1e3,
+      made.p99_us / 1e3, made.penetration_p99_mm, 100.0 * made.worst_volume,
+      100.0 * made.last_volume, made.max_held, made.turned_rad * 180.0 / std::numbers::pi, size.x(),
+      size.y(), size.z());
   if (options.save.empty()) return 0;
   const auto written = deform::write_mesh(options.save, made.shape);
   return written ? 0 : cli::report(written.error());
@@ -132,13 +132,13 @@ int bench_clay(const Options& options) {
   if (rows.empty())
     return cli::report({Errc::usage, "--only " + options.only + ": no row's name contains that"});
   if (!options.json)
-    std::printf("two hands press a ball of 120 mm by 25 mm each, scrape it, and leave, at 90 Hz\n"
-                "constraints: mean and most of a pass; distances in thousands; times in ms a tick; "
-                "penetration before the last\npush and inside triangles after it: p99, of the mean "
-                "edge; volume in %%: the worst, and the last; behind in mm\n"
-                "%-26s %8s %6s %4s %7s %8s %8s %8s %9s %8s %7s %8s %6s\n",
-                "", "vertices", "constr", "most", "passes", "dist k", "mean", "p99", "left",
-                "inside", "volume", "at end", "behind");
+    cli::print("two hands press a ball of 120 mm by 25 mm each, scrape it, and leave, at 90 Hz\n"
+               "constraints: mean and most of a pass; distances in thousands; times in ms a tick; "
+               "penetration before the last\npush and inside triangles after it: p99, of the mean "
+               "edge; volume in %: the worst, and the last; behind in mm\n"
+               "{:26} {:>8} {:>6} {:>4} {:>7} {:>8} {:>8} {:>8} {:>9} {:>8} {:>7} {:>8} {:>6}\n",
+               "", "vertices", "constr", "most", "passes", "dist k", "mean", "p99", "left",
+               "inside", "volume", "at end", "behind");
   for (const Row& row : rows) {
     const ClayTrial trial = row.is_plain ? measure_plain_clay(row.trial) : measure_clay(row.trial);
     options.json ? print_json(row, trial) : print_text(row, trial);

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <ctime>
-#include <iostream>
 #include <memory>
 #include <vector>
 
@@ -14,6 +12,7 @@
 
 #include "bench/bench.hpp"
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 
 namespace nendo::bench::cut_bench {
 namespace {
@@ -102,29 +101,28 @@ int run(const Options& options) {
   const CutWire wire = bent_wire();
   cli::install_stop_signals();
   if (!options.json)
-    std::puts("Cuts of a bumpy ball with texture coordinates, colours and materials: own "
-              "time, best (median) in ms");
+    cli::print("Cuts of a bumpy ball with texture coordinates, colours and materials: own "
+               "time, best (median) in ms\n");
   for (const std::uint32_t rings : {87U, 287U}) {
     const Mesh mesh = bumpy_ball(rings, 2 * rings);
     const Timing by_plane = time_of(mesh, plane, options.repetitions);
     const Timing by_wire = time_of(mesh, wire, options.repetitions);
     if (options.json) {
       const auto figures = [](const Timing& timing) {
-        return nlohmann::json{{"best_ms", timing.best_ms},
-                              {"median_ms", timing.median_ms},
-                              {"cut_faces", timing.cut_faces}};
+        return nlohmann::ordered_json{{"best_ms", timing.best_ms},
+                                      {"cut_faces", timing.cut_faces},
+                                      {"median_ms", timing.median_ms}};
       };
-      std::cout << nlohmann::json{{"triangles", mesh.face_count()},
-                                  {"plane", figures(by_plane)},
-                                  {"wire", figures(by_wire)}}
-                       .dump()
-                << '\n';
+      cli::print_line({{"plane", figures(by_plane)},
+                       {"triangles", mesh.face_count()},
+                       {"wire", figures(by_wire)}});
       continue;
     }
-    std::printf("%7zu triangles: plane %.1f (%.1f), %zu cut faces; bent wire %.1f (%.1f), %zu cut "
-                "faces\n",
-                mesh.face_count(), by_plane.best_ms, by_plane.median_ms, by_plane.cut_faces,
-                by_wire.best_ms, by_wire.median_ms, by_wire.cut_faces);
+    cli::print(
+        "{:7} triangles: plane {:.1f} ({:.1f}), {} cut faces; bent wire {:.1f} ({:.1f}), {} cut "
+        "faces\n",
+        mesh.face_count(), by_plane.best_ms, by_plane.median_ms, by_plane.cut_faces,
+        by_wire.best_ms, by_wire.median_ms, by_wire.cut_faces);
   }
   return 0;
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <iostream>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include "bench/plane_memory.hpp"
 #include "bench/simd_choice.hpp"
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 #include "reference/table1.hpp"
 
 namespace nendo::bench::deform_bench {
@@ -31,64 +31,61 @@ double ratio(double plain_us, double us) {
 }
 
 void print_cell_json(Eigen::Index vertices, double radius, const CellTimes& times) {
-  const nlohmann::ordered_json object{
-      {"vertices", vertices},
-      {"radius", radius},
-      {"plain_type1_us", times.plain1_us},
-      {"plain_type2_us", times.plain2_us},
-      {"type1_us", times.type1_us},
-      {"type1_evaluated_us", times.evaluated1_us},
-      {"type2_us", times.type2_us},
-      {"type1_two_threads_us", times.type1_2threads_us},
-      {"type2_two_threads_us", times.type2_2threads_us},
-      {"grab_us", times.grab_us},
-      {"weight_bytes", times.weight_bytes},
-      {"apart_of_diagonal", times.apart},
-      {"ratio",
-       {{"type1", ratio(times.plain1_us, times.type1_us)},
-        {"type1_evaluated", ratio(times.plain1_us, times.evaluated1_us)},
-        {"type2", ratio(times.plain2_us, times.type2_us)}}}};
-  std::cout << object.dump() << std::endl;
+  cli::print_line({{"vertices", vertices},
+                   {"radius", radius},
+                   {"plain_type1_us", times.plain1_us},
+                   {"plain_type2_us", times.plain2_us},
+                   {"type1_us", times.type1_us},
+                   {"type1_evaluated_us", times.evaluated1_us},
+                   {"type2_us", times.type2_us},
+                   {"type1_two_threads_us", times.type1_2threads_us},
+                   {"type2_two_threads_us", times.type2_2threads_us},
+                   {"grab_us", times.grab_us},
+                   {"weight_bytes", times.weight_bytes},
+                   {"apart_of_diagonal", times.apart},
+                   {"ratio",
+                    {{"type1", ratio(times.plain1_us, times.type1_us)},
+                     {"type1_evaluated", ratio(times.plain1_us, times.evaluated1_us)},
+                     {"type2", ratio(times.plain2_us, times.type2_us)}}}});
 }
 
 void print_cell_text(Eigen::Index vertices, double radius, const CellTimes& times) {
-  std::printf("%8lld %6.0f %9.1f %9.1f %9.1f %9.1f %9.1f %8.1f x %6.1f x %6.1f x %9.0f %7.1f\n",
-              static_cast<long long>(vertices), radius, times.plain1_us, times.type1_us,
-              times.type1_2threads_us, times.type2_us, times.type2_2threads_us,
-              ratio(times.plain1_us, times.type1_us), ratio(times.plain1_us, times.evaluated1_us),
-              ratio(times.plain2_us, times.type2_us), times.grab_us,
-              static_cast<double>(times.weight_bytes) / 1024.0);
+  cli::print("{:8} {:6.0f} {:9.1f} {:9.1f} {:9.1f} {:9.1f} {:9.1f} {:8.1f} x {:6.1f} x {:6.1f} x "
+             "{:9.0f} {:7.1f}\n",
+             vertices, radius, times.plain1_us, times.type1_us, times.type1_2threads_us,
+             times.type2_us, times.type2_2threads_us, ratio(times.plain1_us, times.type1_us),
+             ratio(times.plain1_us, times.evaluated1_us), ratio(times.plain2_us, times.type2_us),
+             times.grab_us, static_cast<double>(times.weight_bytes) / 1024.0);
   std::fflush(stdout);
 }
 
 void print_large(const LargeTimes& times, bool json) {
   const double floor_us = std::max(times.memory_us, times.arithmetic_us);
   if (json) {
-    const nlohmann::ordered_json object{{"vertices", times.vertices},
-                                        {"reached", times.reached},
-                                        {"influences", times.influences},
-                                        {"type1_us", times.type1_us},
-                                        {"type1_evaluated_us", times.evaluated1_us},
-                                        {"type2_us", times.type2_us},
-                                        {"memory_floor_us", times.memory_us},
-                                        {"arithmetic_floor_us", times.arithmetic_us},
-                                        {"of_floor",
-                                         {{"type1", times.type1_us / floor_us},
-                                          {"type1_evaluated", times.evaluated1_us / floor_us},
-                                          {"type2", times.type2_us / floor_us}}}};
-    std::cout << object.dump() << std::endl;
+    cli::print_line({{"vertices", times.vertices},
+                     {"reached", times.reached},
+                     {"influences", times.influences},
+                     {"type1_us", times.type1_us},
+                     {"type1_evaluated_us", times.evaluated1_us},
+                     {"type2_us", times.type2_us},
+                     {"memory_floor_us", times.memory_us},
+                     {"arithmetic_floor_us", times.arithmetic_us},
+                     {"of_floor",
+                      {{"type1", times.type1_us / floor_us},
+                       {"type1_evaluated", times.evaluated1_us / floor_us},
+                       {"type2", times.type2_us / floor_us}}}});
     return;
   }
-  std::printf("\n%zu vertices, ten supports of a fifth of the model: %zu vertices reached, %zu "
-              "influences\n",
-              times.vertices, times.reached, times.influences);
-  std::printf("  floors: memory %.0f us (24 bytes a reached vertex), arithmetic %.0f us\n",
-              times.memory_us, times.arithmetic_us);
-  std::printf(
-      "  type 1 %.0f us, %.2f of the larger floor; evaluated %.0f us, %.2f; type 2 %.0f us, "
-      "%.2f\n",
-      times.type1_us, times.type1_us / floor_us, times.evaluated1_us,
-      times.evaluated1_us / floor_us, times.type2_us, times.type2_us / floor_us);
+  cli::print("\n{} vertices, ten supports of a fifth of the model: {} vertices reached, {} "
+             "influences\n",
+             times.vertices, times.reached, times.influences);
+  cli::print("  floors: memory {:.0f} us (24 bytes a reached vertex), arithmetic {:.0f} us\n",
+             times.memory_us, times.arithmetic_us);
+  cli::print("  type 1 {:.0f} us, {:.2f} of the larger floor; evaluated {:.0f} us, {:.2f}; type 2 "
+             "{:.0f} us, "
+             "{:.2f}\n",
+             times.type1_us, times.type1_us / floor_us, times.evaluated1_us,
+             times.evaluated1_us / floor_us, times.type2_us, times.type2_us / floor_us);
 }
 
 void bench_large(int cells, int repetitions, bool json) {
@@ -98,34 +95,34 @@ void bench_large(int cells, int repetitions, bool json) {
 
 void print_volume(const VolumeTimes& times, bool json) {
   if (json) {
-    const nlohmann::ordered_json object{{"vertices", times.vertices},
-                                        {"air_ns_an_influence", times.air_ns},
-                                        {"between_ns_an_influence", times.between_ns},
-                                        {"clay_ns_an_influence", times.clay_ns},
-                                        {"type1_us", times.type1_us},
-                                        {"type1_evaluated_us", times.evaluated1_us},
-                                        {"type1_clay_us", times.type1_clay_us},
-                                        {"type2_us", times.type2_us},
-                                        {"type2_clay_us", times.type2_clay_us}};
-    std::cout << object.dump() << std::endl;
+    cli::print_line({{"vertices", times.vertices},
+                     {"air_ns_an_influence", times.air_ns},
+                     {"between_ns_an_influence", times.between_ns},
+                     {"clay_ns_an_influence", times.clay_ns},
+                     {"type1_us", times.type1_us},
+                     {"type1_evaluated_us", times.evaluated1_us},
+                     {"type1_clay_us", times.type1_clay_us},
+                     {"type2_us", times.type2_us},
+                     {"type2_clay_us", times.type2_clay_us}});
     return;
   }
-  std::printf("\n%zu vertices, ten supports that reach all of them, a way of a third of a radius\n"
-              "  an influence: air %.3f ns, half of each %.3f ns, clay %.3f ns, %.2f times air\n"
-              "  type 1: air %.0f us, evaluated %.0f us, clay %.0f us\n"
-              "  type 2, a piece of a twentieth of a radius: air %.0f us, clay %.0f us\n",
-              times.vertices, times.air_ns, times.between_ns, times.clay_ns,
-              times.clay_ns / times.air_ns, times.type1_us, times.evaluated1_us,
-              times.type1_clay_us, times.type2_us, times.type2_clay_us);
+  cli::print(
+      "\n{} vertices, ten supports that reach all of them, a way of a third of a radius\n"
+      "  an influence: air {:.3f} ns, half of each {:.3f} ns, clay {:.3f} ns, {:.2f} times air\n"
+      "  type 1: air {:.0f} us, evaluated {:.0f} us, clay {:.0f} us\n"
+      "  type 2, a piece of a twentieth of a radius: air {:.0f} us, clay {:.0f} us\n",
+      times.vertices, times.air_ns, times.between_ns, times.clay_ns, times.clay_ns / times.air_ns,
+      times.type1_us, times.evaluated1_us, times.type1_clay_us, times.type2_us,
+      times.type2_clay_us);
 }
 
 int bench_deform(const Options& options) {
   if (const auto chosen = choose_simd(options.simd); !chosen) return cli::report(chosen.error());
   const int repetitions = options.short_form ? 3 : 60;
   if (!options.json) {
-    std::printf("microseconds a frame, the best of many; x: times as fast as the plain loop\n"
-                "vertices radius     plain    type 1  2 threads   type 2  2 threads   type 1 "
-                "evaluated  type 2      grab kB kept\n");
+    cli::print("microseconds a frame, the best of many; x: times as fast as the plain loop\n"
+               "vertices radius     plain    type 1  2 threads   type 2  2 threads   type 1 "
+               "evaluated  type 2      grab kB kept\n");
   }
   for (const reference::Table1Plane& mesh : reference::table1_planes) {
     if (options.short_form && mesh.cells > 64) continue;

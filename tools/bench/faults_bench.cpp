@@ -11,6 +11,7 @@
 #include "bench/bench.hpp"
 #include "bench/fault_matrix.hpp"
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 
 namespace nendo::bench::faults_bench {
 namespace {
@@ -24,30 +25,31 @@ struct Options {
 
 void print_json(const FaultOutcome& outcome) {
   const driver::GloveStats& stats = outcome.stats;
-  const nlohmann::ordered_json object{{"fault", outcome.fault->name},
-                                      {"glove", outcome.glove->name},
-                                      {"sent", outcome.sent},
-                                      {"faulted", outcome.faulted},
-                                      {"delivered", outcome.delivered},
-                                      {"missed", stats.missed},
-                                      {"bad_records", stats.bad_records},
-                                      {"implausible", stats.implausible},
-                                      {"unplugged", stats.unplugged},
-                                      {"silences", stats.silences},
-                                      {"reopened", stats.reopened},
-                                      {"flipped", outcome.flipped},
-                                      {"broken", outcome.broken},
-                                      {"longest_gap_s", outcome.longest_gap_s},
-                                      {"allowed_gap_s", outcome.fault->longest_gap_s},
-                                      {"complaint", outcome.complaint}};
-  std::cout << object.dump() << '\n';
+  cli::print_line({{"fault", outcome.fault->name},
+                   {"glove", outcome.glove->name},
+                   {"sent", outcome.sent},
+                   {"faulted", outcome.faulted},
+                   {"delivered", outcome.delivered},
+                   {"missed", stats.missed},
+                   {"bad_records", stats.bad_records},
+                   {"implausible", stats.implausible},
+                   {"unplugged", stats.unplugged},
+                   {"silences", stats.silences},
+                   {"reopened", stats.reopened},
+                   {"flipped", outcome.flipped},
+                   {"broken", outcome.broken},
+                   {"longest_gap_s", outcome.longest_gap_s},
+                   {"allowed_gap_s", outcome.fault->longest_gap_s},
+                   {"complaint", outcome.complaint}});
 }
 
 /// A line a fault, over all gloves: sums, and the longest gap.
 void print_summary(const std::vector<FaultOutcome>& outcomes, bool markdown) {
-  std::cout << (markdown ? "| fault | what happens | sent | delivered | missed | bad | flipped | "
-                           "broken | longest gap, s |\n|---|---|---|---|---|---|---|---|---|\n"
-                         : "fault            sent delivered missed   bad flipped broken  gap s\n");
+  cli::print("{}", markdown
+                       ? "| fault | what happens | sent | delivered | missed | bad | flipped | "
+                         "broken | longest gap, s "
+                         "|\n|---|---|---|---|---|---|---|---|---|\n"
+                       : "fault            sent delivered missed   bad flipped broken  gap s\n");
   for (std::size_t k = 0; k < outcomes.size(); k += glove_cases().size()) {
     FaultOutcome sum = outcomes[k];
     for (std::size_t glove = 1; glove < glove_cases().size(); ++glove) {
@@ -60,13 +62,10 @@ void print_summary(const std::vector<FaultOutcome>& outcomes, bool markdown) {
       sum.broken += other.broken;
       sum.longest_gap_s = std::max(sum.longest_gap_s, other.longest_gap_s);
     }
-    const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
-    std::printf(markdown ? "| %s | %s | %llu | %llu | %llu | %llu | %llu | %llu | %.2f |\n"
-                         : "%-15s %.0s %4llu %9llu %6llu %5llu %7llu %6llu %6.2f\n",
-                std::string(sum.fault->name).c_str(), std::string(sum.fault->happens).c_str(),
-                number(sum.sent), number(sum.delivered), number(sum.stats.missed),
-                number(sum.stats.bad_records), number(sum.flipped), number(sum.broken),
-                sum.longest_gap_s);
+    cli::print(fmt::runtime(markdown ? "| {} | {} | {} | {} | {} | {} | {} | {} | {:.2f} |\n"
+                                     : "{:15} {:.0} {:4} {:9} {:6} {:5} {:7} {:6} {:6.2f}\n"),
+               sum.fault->name, sum.fault->happens, sum.sent, sum.delivered, sum.stats.missed,
+               sum.stats.bad_records, sum.flipped, sum.broken, sum.longest_gap_s);
   }
   std::fflush(stdout);
 }

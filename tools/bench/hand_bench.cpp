@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
-#include <iostream>
 #include <memory>
 #include <random>
 #include <string>
@@ -18,6 +16,7 @@
 #include "bench/bench.hpp"
 #include "bench/plain_hand.hpp"
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 
 namespace nendo::bench::hand_bench {
 namespace {
@@ -204,32 +203,32 @@ Inverse measure_inverse(const Hands& hands, std::uint64_t solves) {
 }
 
 void print_json(const Forward& forward, const Inverse& inverse) {
-  const nlohmann::ordered_json object{{"pose_pair_ns", forward.pose_ns},
-                                      {"plain_pair_ns", forward.plain_ns},
-                                      {"plain_to_pose", forward.plain_ns / forward.pose_ns},
-                                      {"apart_m", forward.apart_m},
-                                      {"open_pair_ns", forward.open_ns},
-                                      {"pinching_pair_ns", forward.pinch_ns},
-                                      {"solves", inverse.solves},
-                                      {"converged", inverse.converged},
-                                      {"solves_a_second", inverse.solves_a_second},
-                                      {"median_residual_m", inverse.median_residual_m},
-                                      {"worst_residual_m", inverse.worst_residual_m}};
-  std::cout << object.dump() << std::endl;
+  cli::print_line({{"pose_pair_ns", forward.pose_ns},
+                   {"plain_pair_ns", forward.plain_ns},
+                   {"plain_to_pose", forward.plain_ns / forward.pose_ns},
+                   {"apart_m", forward.apart_m},
+                   {"open_pair_ns", forward.open_ns},
+                   {"pinching_pair_ns", forward.pinch_ns},
+                   {"solves", inverse.solves},
+                   {"converged", inverse.converged},
+                   {"solves_a_second", inverse.solves_a_second},
+                   {"median_residual_m", inverse.median_residual_m},
+                   {"worst_residual_m", inverse.worst_residual_m}});
 }
 
 void print_text(const Forward& forward, const Inverse& inverse) {
-  std::printf("a pose of both hands, 52 joints: %.0f ns; plain products of matrices: %.0f ns, %.1f "
-              "times as long\n",
-              forward.pose_ns, forward.plain_ns, forward.plain_ns / forward.pose_ns);
-  std::printf("they differ by %.1e m at most\n", forward.apart_m);
-  std::printf("closing pinches of both hands: %.0f ns where pads are apart, %.0f ns in a pinch\n",
-              forward.open_ns, forward.pinch_ns);
-  std::printf("a hand from its five fingertips: %.0f a second on one core, %llu of %llu reached\n",
-              inverse.solves_a_second, static_cast<unsigned long long>(inverse.converged),
-              static_cast<unsigned long long>(inverse.solves));
-  std::printf("fingertips off their targets: %.1e m at the median, %.1e m at worst\n",
-              inverse.median_residual_m, inverse.worst_residual_m);
+  cli::print(
+      "a pose of both hands, 52 joints: {:.0f} ns; plain products of matrices: {:.0f} ns, {:.1f} "
+      "times as long\n",
+      forward.pose_ns, forward.plain_ns, forward.plain_ns / forward.pose_ns);
+  cli::print("they differ by {:.1e} m at most\n", forward.apart_m);
+  cli::print(
+      "closing pinches of both hands: {:.0f} ns where pads are apart, {:.0f} ns in a pinch\n",
+      forward.open_ns, forward.pinch_ns);
+  cli::print("a hand from its five fingertips: {:.0f} a second on one core, {} of {} reached\n",
+             inverse.solves_a_second, inverse.converged, inverse.solves);
+  cli::print("fingertips off their targets: {:.1e} m at the median, {:.1e} m at worst\n",
+             inverse.median_residual_m, inverse.worst_residual_m);
 }
 
 int bench_hand(const Options& options) {

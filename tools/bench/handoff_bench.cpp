@@ -7,8 +7,6 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <cstdio>
-#include <iostream>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -19,6 +17,8 @@
 
 #include "bench/rt_bench.hpp"
 #include "bench/two_threads.hpp"
+#include "cli/cli.hpp"
+#include "cli/print.hpp"
 
 namespace nendo::bench {
 namespace {
@@ -143,21 +143,20 @@ void print(std::size_t frame_bytes, std::size_t publishes, const Cost& exchanged
            const Cost& notified, bool json) {
   const double ratio = notified.p50_ns / std::max(exchanged.p50_ns, 1.0);
   if (json) {
-    std::cout << nlohmann::ordered_json{{"part", "handoff"},
-                                        {"frame_bytes", frame_bytes},
-                                        {"publishes", publishes},
-                                        {"publish_p50_ns", exchanged.p50_ns},
-                                        {"publish_p999_ns", exchanged.p999_ns},
-                                        {"notify_p50_ns", notified.p50_ns},
-                                        {"notify_p999_ns", notified.p999_ns},
-                                        {"notify_to_publish_p50", ratio},
-                                        {"round_trip_ns", exchanged.round_trip_p50_ns}}
-                     .dump()
-              << std::endl;
+    cli::print_line({{"part", "handoff"},
+                     {"frame_bytes", frame_bytes},
+                     {"publishes", publishes},
+                     {"publish_p50_ns", exchanged.p50_ns},
+                     {"publish_p999_ns", exchanged.p999_ns},
+                     {"notify_p50_ns", notified.p50_ns},
+                     {"notify_p999_ns", notified.p999_ns},
+                     {"notify_to_publish_p50", ratio},
+                     {"round_trip_ns", exchanged.round_trip_p50_ns}});
   } else {
-    std::printf(
-        "publishing %zu bytes, %zu times: p50 %.0f ns, p99.9 %.0f ns (a cache line's round trip: "
-        "%.0f ns)\n  by a mutex and a condition variable: %.0f ns, %.0f ns; %.0f times as long at "
+    cli::print(
+        "publishing {} bytes, {} times: p50 {:.0f} ns, p99.9 {:.0f} ns (a cache line's round trip: "
+        "{:.0f} ns)\n  by a mutex and a condition variable: {:.0f} ns, {:.0f} ns; {:.0f} times as "
+        "long at "
         "the median\n",
         frame_bytes, publishes, exchanged.p50_ns, exchanged.p999_ns, exchanged.round_trip_p50_ns,
         notified.p50_ns, notified.p999_ns, ratio);

@@ -1,7 +1,6 @@
 // nendo bench join: how long it takes to join two models.
 
 #include <cstdio>
-#include <iostream>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -9,6 +8,7 @@
 #include "bench/bench.hpp"
 #include "bench/join_trial.hpp"
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 
 namespace nendo::bench::join_bench {
 namespace {
@@ -19,19 +19,18 @@ struct Options {
 };
 
 void print_json(const JoinTrial& trial) {
-  const nlohmann::ordered_json object{{"triangles", trial.triangles},
-                                      {"crossings", trial.crossings},
-                                      {"sharp_ms", trial.sharp_ms},
-                                      {"smeared_ms", trial.smeared_ms},
-                                      {"volume_error", trial.volume_error}};
-  std::cout << object.dump() << std::endl;
+  cli::print_line({{"triangles", trial.triangles},
+                   {"crossings", trial.crossings},
+                   {"sharp_ms", trial.sharp_ms},
+                   {"smeared_ms", trial.smeared_ms},
+                   {"volume_error", trial.volume_error}});
 }
 
 int bench_join(const Options& options) {
   if (!options.json)
-    std::printf("two balls with texture coordinates, colours and materials, half a diameter apart; "
-                "ms, the best of five\n%12s %10s %10s %10s %12s\n",
-                "triangles", "crossings", "sharp", "smeared", "volume off");
+    cli::print("two balls with texture coordinates, colours and materials, half a diameter apart; "
+               "ms, the best of five\n{:>12} {:>10} {:>10} {:>10} {:>12}\n",
+               "triangles", "crossings", "sharp", "smeared", "volume off");
   for (const std::size_t rings : {40U, 87U, 160U, 400U}) {
     if (options.short_form && rings > 40) break;
     const JoinTrial trial = measure_join(rings, options.short_form ? 1 : 5);
@@ -39,8 +38,8 @@ int bench_join(const Options& options) {
     if (options.json)
       print_json(trial);
     else
-      std::printf("2 x %8zu %10zu %10.1f %10.1f %12.1e\n", trial.triangles, trial.crossings,
-                  trial.sharp_ms, trial.smeared_ms, trial.volume_error);
+      cli::print("2 x {:8} {:10} {:10.1f} {:10.1f} {:12.1e}\n", trial.triangles, trial.crossings,
+                 trial.sharp_ms, trial.smeared_ms, trial.volume_error);
     std::fflush(stdout);
   }
   return 0;

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
-#include <iostream>
 #include <memory>
 #include <vector>
 
@@ -20,6 +18,7 @@
 #include "bench/text_table.hpp"
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "cli/print.hpp"
 
 namespace nendo::bench {
 namespace judge_bench {
@@ -85,12 +84,10 @@ void print_judged_json(const Verdict& verdict) {
     row["worse_than_two_pose"] = verdict.worse[group];
     if (has_floor(verdict)) row["floor_worse_than_two_pose"] = verdict.floor_worse[group];
   }
-  std::cout << nlohmann::ordered_json{{"wearers", verdict.wearers},
-                                      {"refused", verdict.refused},
-                                      {"fit_ms_median", percentile(verdict.fit_ms, 0.5)},
-                                      {"groups", groups}}
-                   .dump()
-            << std::endl;
+  cli::print_line({{"wearers", verdict.wearers},
+                   {"refused", verdict.refused},
+                   {"fit_ms_median", percentile(verdict.fit_ms, 0.5)},
+                   {"groups", groups}});
 }
 
 void print_judged_table(const Verdict& verdict, bool markdown) {
@@ -144,10 +141,10 @@ int judge_file(const std::string& path, const Output& output) {
   }
   for (const std::string& refused : verdict.refused)
     cli::note("refused: " + refused);
-  std::printf("%d wearers, %zu refused; errors in degrees, median / 95th percentile; fit %.0f ms "
-              "(median)%s\n",
-              verdict.wearers, verdict.refused.size(), percentile(verdict.fit_ms, 0.5),
-              output.markdown ? "\n" : "");
+  cli::print("{} wearers, {} refused; errors in degrees, median / 95th percentile; fit {:.0f} ms "
+             "(median){}\n",
+             verdict.wearers, verdict.refused.size(), percentile(verdict.fit_ms, 0.5),
+             output.markdown ? "\n" : "");
   print_judged_table(verdict, output.markdown);
   return 0;
 }

@@ -1,8 +1,6 @@
 // nendo bench driver: the driver's latency, beside that of the least that any program can do.
 
 #include <array>
-#include <cstdio>
-#include <iostream>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -12,6 +10,7 @@
 #include "bench/bench.hpp"
 #include "bench/latency_probe.hpp"
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 
 namespace nendo::bench::latency_bench {
 namespace {
@@ -42,32 +41,31 @@ void print_json(const char* line, const flow::Histogram& driver, const flow::His
     values["max"] = to_microseconds(histogram.max());
     return values;
   };
-  const nlohmann::ordered_json object{
-      {"line", line},
-      {"driver_us", row(driver)},
-      {"bare_us", row(bare)},
-      {"ratio", {{"p50", ratio(driver, bare, 0.5)}, {"p99", ratio(driver, bare, 0.99)}}}};
-  std::cout << object.dump() << std::endl;
+  cli::print_line(
+      {{"line", line},
+       {"driver_us", row(driver)},
+       {"bare_us", row(bare)},
+       {"ratio", {{"p50", ratio(driver, bare, 0.5)}, {"p99", ratio(driver, bare, 0.99)}}}});
 }
 
 void print_row(const char* name, const flow::Histogram& histogram) {
-  std::printf("  %-22s %8.1f", name, to_microseconds(histogram.min()));
+  cli::print("  {:22} {:8.1f}", name, to_microseconds(histogram.min()));
   for (const Column& column : columns)
-    std::printf(" %8.1f", to_microseconds(histogram.percentile(column.fraction)));
-  std::printf(" %8.1f\n", to_microseconds(histogram.max()));
+    cli::print(" {:8.1f}", to_microseconds(histogram.percentile(column.fraction)));
+  cli::print(" {:8.1f}\n", to_microseconds(histogram.max()));
 }
 
 void print_text(const char* line, const flow::Histogram& driver, const flow::Histogram& bare) {
-  std::printf("%s, %llu records: from the write of the last byte to the sample in the ring, us\n",
-              line, static_cast<unsigned long long>(driver.count()));
-  std::printf("  %-22s %8s", "", "min");
+  cli::print("{}, {} records: from the write of the last byte to the sample in the ring, us\n",
+             line, driver.count());
+  cli::print("  {:22} {:>8}", "", "min");
   for (const Column& column : columns)
-    std::printf(" %8s", column.name);
-  std::printf(" %8s\n", "max");
+    cli::print(" {:>8}", column.name);
+  cli::print(" {:>8}\n", "max");
   print_row("bare poll() and read()", bare);
   print_row("CyberGlove driver", driver);
-  std::printf("  driver / bare: %.2f at the median, %.2f at the 99th percentile\n",
-              ratio(driver, bare, 0.5), ratio(driver, bare, 0.99));
+  cli::print("  driver / bare: {:.2f} at the median, {:.2f} at the 99th percentile\n",
+             ratio(driver, bare, 0.5), ratio(driver, bare, 0.99));
 }
 
 int bench_driver(DriverOptions& options) {

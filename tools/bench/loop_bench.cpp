@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -14,6 +13,7 @@
 #include "bench/cyclictest.hpp"
 #include "bench/rt_bench.hpp"
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 #include "stress/stress_session.hpp"
 
 namespace nendo::bench {
@@ -86,13 +86,16 @@ void report_figure(const RtOptions& options, const std::string& part, const std:
                    double value, double at_most) {
   const bool met = value <= at_most;
   if (options.json) {
-    const nlohmann::ordered_json line{{"part", "loop"}, {"of", part},         {"figure", figure},
-                                      {"value", value}, {"at_most", at_most}, {"met", met}};
-    std::cout << line.dump() << std::endl;
+    cli::print_line({{"part", "loop"},
+                     {"of", part},
+                     {"figure", figure},
+                     {"value", value},
+                     {"at_most", at_most},
+                     {"met", met}});
     return;
   }
-  std::printf("  %-34s %-24s %9.3f, goal at most %-7g %s\n", part.c_str(), figure.c_str(), value,
-              at_most, met ? "met" : "MISSED");
+  cli::print("  {:34} {:24} {:9.3f}, goal at most {:<7g} {}\n", part, figure, value, at_most,
+             met ? "met" : "MISSED");
   std::fflush(stdout);
 }
 
@@ -118,9 +121,10 @@ Result<void> beside_cyclictest(const RtOptions& options, const deform::Mesh& mod
     (*outcome)->tally[stress::Measure::lateness].raw.for_each(add(ours));
   }
   if (!options.json) {
-    std::printf("  loop p50 %.1f us, p99 %.1f us; cyclictest %.0f us, %.0f us (whole microseconds "
-                "begun)\n",
-                us(ours, 0.5), us(ours, 0.99), us(theirs, 0.5), us(theirs, 0.99));
+    cli::print(
+        "  loop p50 {:.1f} us, p99 {:.1f} us; cyclictest {:.0f} us, {:.0f} us (whole microseconds "
+        "begun)\n",
+        us(ours, 0.5), us(ours, 0.99), us(theirs, 0.5), us(theirs, 0.99));
   }
   report_figure(options, "loop / cyclictest", "p50 ratio", us(ours, 0.5) / us(theirs, 0.5), 1.2);
   report_figure(options, "loop / cyclictest", "p99 ratio", us(ours, 0.99) / us(theirs, 0.99), 1.2);
@@ -159,8 +163,8 @@ Result<void> whole_pipeline(const RtOptions& options, const deform::Mesh& model)
 Result<void> measure_loop(const RtOptions& options) {
   const deform::Mesh model = paper_sized_ball();
   if (!options.json) {
-    std::printf("the loop at %u Hz under SCHED_FIFO 80, %u s a measurement\n",
-                1'000'000 / interval_us, options.seconds);
+    cli::print("the loop at {} Hz under SCHED_FIFO 80, {} s a measurement\n",
+               1'000'000 / interval_us, options.seconds);
   }
   for (const auto part : {beside_cyclictest, spinning, whole_pipeline}) {
     if (auto done = part(options, model); !done) return done;

@@ -5,8 +5,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
-#include <iostream>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -19,6 +17,7 @@
 #include "bench/bench.hpp"
 #include "bench/plane_memory.hpp"
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 #include "reference/table1.hpp"
 
 namespace nendo::bench::models_bench {
@@ -168,29 +167,30 @@ void tell(const Options& options, bool held, const Figures& figures) {
     return values.empty() ? 0.0 : median(values);
   };
   if (options.json) {
-    const nlohmann::ordered_json line{{"measured", "models"},
-                                      {"vertices", figures.vertices},
-                                      {"held", held},
-                                      {"ordinary_us", of(figures.ordinary_us)},
-                                      {"commit_us", of(figures.commit_us)},
-                                      {"new_us", of(figures.new_us)},
-                                      {"undo_us", of(figures.undo_us)},
-                                      {"redo_us", of(figures.redo_us)},
-                                      {"mask_us", of(figures.mask_us)},
-                                      {"make_ms", of(figures.make_us) / 1e3},
-                                      {"finish_ms", of(figures.finish_us) / 1e3}};
-    std::cout << line.dump() << std::endl;
+    cli::print_line({{"measured", "models"},
+                     {"vertices", figures.vertices},
+                     {"held", held},
+                     {"ordinary_us", of(figures.ordinary_us)},
+                     {"commit_us", of(figures.commit_us)},
+                     {"new_us", of(figures.new_us)},
+                     {"undo_us", of(figures.undo_us)},
+                     {"redo_us", of(figures.redo_us)},
+                     {"mask_us", of(figures.mask_us)},
+                     {"make_ms", of(figures.make_us) / 1e3},
+                     {"finish_ms", of(figures.finish_us) / 1e3}});
     return;
   }
-  std::printf("%zu vertices, hands that %s the model; medians, us a tick\n", figures.vertices,
-              held ? "hold" : "have let go of");
-  std::printf("  an ordinary tick %10.1f\n  a commit         %10.1f\n  a new version    %10.1f\n",
-              of(figures.ordinary_us), of(figures.commit_us), of(figures.new_us));
+  cli::print("{} vertices, hands that {} the model; medians, us a tick\n", figures.vertices,
+             held ? "hold" : "have let go of");
+  cli::print(
+      "  an ordinary tick {:10.1f}\n  a commit         {:10.1f}\n  a new version    {:10.1f}\n",
+      of(figures.ordinary_us), of(figures.commit_us), of(figures.new_us));
   if (!held)
-    std::printf("  back by an undo  %10.1f\n  forth by a redo  %10.1f\n  other masks      %10.1f\n",
-                of(figures.undo_us), of(figures.redo_us), of(figures.mask_us));
-  std::printf("  beside the loop: %.0f ms to make it, and %.0f ms while the loop holds still\n",
-              of(figures.make_us) / 1e3, of(figures.finish_us) / 1e3);
+    cli::print(
+        "  back by an undo  {:10.1f}\n  forth by a redo  {:10.1f}\n  other masks      {:10.1f}\n",
+        of(figures.undo_us), of(figures.redo_us), of(figures.mask_us));
+  cli::print("  beside the loop: {:.0f} ms to make it, and {:.0f} ms while the loop holds still\n",
+             of(figures.make_us) / 1e3, of(figures.finish_us) / 1e3);
 }
 
 /// A loop at 1 kHz, in whose second half the radius changes 1,000 times a minute.
@@ -225,23 +225,20 @@ void measure_changes(const Options& options) {
   stop = cli::stop_requested().load();
   thread.join();
   if (options.json) {
-    const nlohmann::ordered_json line{{"measured", "changes"},
-                                      {"seconds", options.seconds},
-                                      {"changes", changes},
-                                      {"taken", loop.stats().changes},
-                                      {"missed_without", missed[0]},
-                                      {"missed_with", missed[1]},
-                                      {"overruns_without", overruns[0]},
-                                      {"overruns_with", overruns[1]}};
-    std::cout << line.dump() << std::endl;
+    cli::print_line({{"measured", "changes"},
+                     {"seconds", options.seconds},
+                     {"changes", changes},
+                     {"taken", loop.stats().changes},
+                     {"missed_without", missed[0]},
+                     {"missed_with", missed[1]},
+                     {"overruns_without", overruns[0]},
+                     {"overruns_with", overruns[1]}});
     return;
   }
-  std::printf(
-      "at 1 kHz, %u s without and %u s with %llu changes of radius: %llu and %llu missed "
-      "deadlines, %llu and %llu ticks that took too long\n",
-      options.seconds, options.seconds, static_cast<unsigned long long>(changes),
-      static_cast<unsigned long long>(missed[0]), static_cast<unsigned long long>(missed[1]),
-      static_cast<unsigned long long>(overruns[0]), static_cast<unsigned long long>(overruns[1]));
+  cli::print("at 1 kHz, {} s without and {} s with {} changes of radius: {} and {} missed "
+             "deadlines, {} and {} ticks that took too long\n",
+             options.seconds, options.seconds, changes, missed[0], missed[1], overruns[0],
+             overruns[1]);
 }
 
 int run(const Options& options) {

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
-#include <iostream>
 #include <memory>
 #include <vector>
 
@@ -14,6 +12,8 @@
 #include "bench/contending_rings.hpp"
 #include "bench/rt_bench.hpp"
 #include "bench/two_threads.hpp"
+#include "cli/cli.hpp"
+#include "cli/print.hpp"
 
 namespace nendo::bench {
 namespace {
@@ -153,19 +153,17 @@ Row row_of(const Contender& contender, double round_trip_ns) {
 void print(const Row& row, const Row& plain, double round_trip_ns, bool json) {
   const double to_plain = plain.samples > 0 ? row.elements_a_second / plain.elements_a_second : 0.0;
   if (json) {
-    std::cout << nlohmann::ordered_json{{"part", "rings"},
-                                        {"ring", row.name},
-                                        {"element_bytes", sizeof(Element)},
-                                        {"elements_a_second", row.elements_a_second},
-                                        {"to_plain", to_plain},
-                                        {"samples", row.samples},
-                                        {"dropped", row.dropped},
-                                        {"round_trip_ns", round_trip_ns}}
-                     .dump()
-              << std::endl;
+    cli::print_line({{"part", "rings"},
+                     {"ring", row.name},
+                     {"element_bytes", sizeof(Element)},
+                     {"elements_a_second", row.elements_a_second},
+                     {"to_plain", to_plain},
+                     {"samples", row.samples},
+                     {"dropped", row.dropped},
+                     {"round_trip_ns", round_trip_ns}});
   } else {
-    std::printf("  %-28s %7.1f million/s  %5.2f  %4zu samples, %zu dropped\n", row.name,
-                row.elements_a_second / 1e6, to_plain, row.samples, row.dropped);
+    cli::print("  {:28} {:7.1f} million/s  {:5.2f}  {:4} samples, {} dropped\n", row.name,
+               row.elements_a_second / 1e6, to_plain, row.samples, row.dropped);
   }
 }
 
@@ -187,8 +185,8 @@ Result<void> measure_rings(const RtOptions& options) {
       if (sample.steady) trips_ns.push_back(sample.round_trip_ns);
   const double round_trip_ns = median(std::move(trips_ns));
   if (!options.json) {
-    std::printf(
-        "elements of %zu bytes from processor %d to %d, whose round trip takes %.0f ns; beside "
+    cli::print(
+        "elements of {} bytes from processor {} to {}, whose round trip takes {:.0f} ns; beside "
         "a plain ring\n",
         sizeof(Element), processors->first, processors->second, round_trip_ns);
   }

@@ -1,7 +1,6 @@
 // nendo bench scale: how the deformation's cost grows with vertices and control points.
 
 #include <cstdio>
-#include <iostream>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include "bench/scale_trial.hpp"
 #include "bench/simd_choice.hpp"
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 
 namespace nendo::bench::scale_bench {
 namespace {
@@ -28,50 +28,51 @@ double per(double what, std::size_t count) {
 
 void print(const GrowthTimes& times, bool json) {
   if (json) {
-    const nlohmann::ordered_json object{
-        {"measured", "vertices"},          {"vertices", times.vertices},
-        {"influences", times.influences},  {"type1_evaluated_us", times.type1_us},
-        {"type2_us", times.type2_us},      {"type1_bytes", times.type1_bytes},
-        {"type2_bytes", times.type2_bytes}};
-    std::cout << object.dump() << std::endl;
+    cli::print_line({{"measured", "vertices"},
+                     {"vertices", times.vertices},
+                     {"influences", times.influences},
+                     {"type1_evaluated_us", times.type1_us},
+                     {"type2_us", times.type2_us},
+                     {"type1_bytes", times.type1_bytes},
+                     {"type2_bytes", times.type2_bytes}});
     return;
   }
-  std::printf("%9zu %11zu %9.0f %9.0f %9.2f %9.2f %9.0f %9.0f\n", times.vertices, times.influences,
-              times.type1_us, times.type2_us, per(1e3 * times.type1_us, times.vertices),
-              per(1e3 * times.type2_us, times.vertices),
-              per(static_cast<double>(times.type1_bytes), times.vertices),
-              per(static_cast<double>(times.type2_bytes), times.vertices));
+  cli::print("{:9} {:11} {:9.0f} {:9.0f} {:9.2f} {:9.2f} {:9.0f} {:9.0f}\n", times.vertices,
+             times.influences, times.type1_us, times.type2_us,
+             per(1e3 * times.type1_us, times.vertices), per(1e3 * times.type2_us, times.vertices),
+             per(static_cast<double>(times.type1_bytes), times.vertices),
+             per(static_cast<double>(times.type2_bytes), times.vertices));
   std::fflush(stdout);
 }
 
 void print(const CrowdTimes& times, bool json) {
   if (json) {
-    const nlohmann::ordered_json object{
-        {"measured", "centres"},
-        {"vertices", times.vertices},
-        {"centres", times.centres},
-        {"influences", times.influences},
-        {"build_us", times.build_us},
-        {"solve_us", times.solve_us},
-        {"list_us", times.list_us},
-        {"evaluate_us", times.evaluate_us},
-        {"influence_ns", times.ns_an_influence()},
-        {"influence_of_ten_ns", times.ten_ns},
-        {"ratio",
-         {{"influence_to_ten", times.ns_an_influence() / times.ten_ns},
-          {"list_to_evaluation", times.list_us / (times.evaluate_us - times.list_us)}}}};
-    std::cout << object.dump() << std::endl;
+    cli::print_line(
+        {{"measured", "centres"},
+         {"vertices", times.vertices},
+         {"centres", times.centres},
+         {"influences", times.influences},
+         {"build_us", times.build_us},
+         {"solve_us", times.solve_us},
+         {"list_us", times.list_us},
+         {"evaluate_us", times.evaluate_us},
+         {"influence_ns", times.ns_an_influence()},
+         {"influence_of_ten_ns", times.ten_ns},
+         {"ratio",
+          {{"influence_to_ten", times.ns_an_influence() / times.ten_ns},
+           {"list_to_evaluation", times.list_us / (times.evaluate_us - times.list_us)}}}});
     return;
   }
-  std::printf("%9zu %8zu %11.1f %9.0f %9.0f %9.0f %9.0f %9.3f %9.3f %6.2f x\n", times.vertices,
-              times.centres, per(static_cast<double>(times.influences), times.vertices),
-              times.build_us, times.solve_us, times.list_us, times.evaluate_us,
-              times.ns_an_influence(), times.ten_ns, times.ns_an_influence() / times.ten_ns);
+  cli::print("{:9} {:8} {:11.1f} {:9.0f} {:9.0f} {:9.0f} {:9.0f} {:9.3f} {:9.3f} {:6.2f} x\n",
+             times.vertices, times.centres,
+             per(static_cast<double>(times.influences), times.vertices), times.build_us,
+             times.solve_us, times.list_us, times.evaluate_us, times.ns_an_influence(),
+             times.ten_ns, times.ns_an_influence() / times.ten_ns);
   std::fflush(stdout);
 }
 
 void heading(const Options& options, const char* text) {
-  if (!options.json) std::printf("%s", text);
+  if (!options.json) cli::print("{}", text);
 }
 
 void bench_growth(const Options& options, int repetitions) {

@@ -1,9 +1,7 @@
 // nendo bench soak: days of records in minutes, through a pseudo-terminal and the real driver, with
 // faults; every record has to be accounted for, and memory must not grow.
 
-#include <cstdio>
 #include <fstream>
-#include <iostream>
 #include <memory>
 #include <thread>
 
@@ -17,6 +15,7 @@
 #include "bench/bench.hpp"
 #include "bench/test_pattern.hpp"
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 #include <nendo/emulator/served_emulator.hpp>
 
 namespace nendo::bench::soak_bench {
@@ -119,33 +118,30 @@ std::string complaint_about(const Tally& tally) {
 void print(const Tally& tally, bool json) {
   const driver::GloveStats& stats = tally.stats;
   if (json) {
-    const nlohmann::ordered_json object{{"sent", tally.sent},
-                                        {"faulted", tally.faulted},
-                                        {"delivered", stats.records},
-                                        {"missed", stats.missed},
-                                        {"bad_records", stats.bad_records},
-                                        {"implausible", stats.implausible},
-                                        {"ring_refused", stats.ring_refused},
-                                        {"flipped", tally.flipped},
-                                        {"broken", tally.broken},
-                                        {"bytes", stats.bytes},
-                                        {"seconds", tally.seconds},
-                                        {"memory_begin_kb", tally.memory_begin_kb},
-                                        {"memory_end_kb", tally.memory_end_kb}};
-    std::cout << object.dump() << std::endl;
+    cli::print_line({{"sent", tally.sent},
+                     {"faulted", tally.faulted},
+                     {"delivered", stats.records},
+                     {"missed", stats.missed},
+                     {"bad_records", stats.bad_records},
+                     {"implausible", stats.implausible},
+                     {"ring_refused", stats.ring_refused},
+                     {"flipped", tally.flipped},
+                     {"broken", tally.broken},
+                     {"bytes", stats.bytes},
+                     {"seconds", tally.seconds},
+                     {"memory_begin_kb", tally.memory_begin_kb},
+                     {"memory_end_kb", tally.memory_end_kb}});
     return;
   }
-  const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
-  std::printf("%llu records sent in %.1f s, %llu of them touched by a fault\n", number(tally.sent),
-              tally.seconds, number(tally.faulted));
-  std::printf("%llu delivered + %llu missed; %llu bad frames, %llu of them well formed; %llu "
-              "samples found the ring full\n",
-              number(stats.records), number(stats.missed), number(stats.bad_records),
-              number(stats.implausible), number(stats.ring_refused));
-  std::printf("delivered with one wrong bit in a sensor: %llu; of wrong structure: %llu\n",
-              number(tally.flipped), number(tally.broken));
-  std::printf("memory: %ld kB after a twentieth, %ld kB at the end\n", tally.memory_begin_kb,
-              tally.memory_end_kb);
+  cli::print("{} records sent in {:.1f} s, {} of them touched by a fault\n", tally.sent,
+             tally.seconds, tally.faulted);
+  cli::print("{} delivered + {} missed; {} bad frames, {} of them well formed; {} "
+             "samples found the ring full\n",
+             stats.records, stats.missed, stats.bad_records, stats.implausible, stats.ring_refused);
+  cli::print("delivered with one wrong bit in a sensor: {}; of wrong structure: {}\n",
+             tally.flipped, tally.broken);
+  cli::print("memory: {} kB after a twentieth, {} kB at the end\n", tally.memory_begin_kb,
+             tally.memory_end_kb);
 }
 
 int bench_soak(const Options& options) {

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <iostream>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -19,6 +17,7 @@
 
 #include "bench/bench.hpp"
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 #include "reference/bumpy_sheet.hpp"
 #include "solver/solver_choices.hpp"
 
@@ -115,56 +114,53 @@ Measured measure(const Method& method, const Points& starts, double radius, std:
 
 void print_ten(const Ten& one, const Ten& several, bool json) {
   if (json) {
-    const nlohmann::ordered_json object{{"points", 10},
-                                        {"build_us", one.build_us},
-                                        {"solve_us", one.solve_us},
-                                        {"several_radii_build_us", several.build_us},
-                                        {"several_radii_solve_us", several.solve_us}};
-    std::cout << object.dump() << std::endl;
+    cli::print_line({{"points", 10},
+                     {"build_us", one.build_us},
+                     {"solve_us", one.solve_us},
+                     {"several_radii_build_us", several.build_us},
+                     {"several_radii_solve_us", several.solve_us}});
     return;
   }
-  std::printf("ten fingertips: assembly and factor %.2f us, each solution %.2f us; with a radius a "
-              "finger %.2f and %.2f us\n",
-              one.build_us, one.solve_us, several.build_us, several.solve_us);
+  cli::print(
+      "ten fingertips: assembly and factor {:.2f} us, each solution {:.2f} us; with a radius a "
+      "finger {:.2f} and {:.2f} us\n",
+      one.build_us, one.solve_us, several.build_us, several.solve_us);
 }
 
 void print_json(std::uint64_t points, std::uint64_t neighbours, const Measured& one) {
-  const nlohmann::ordered_json object{{"points", points},
-                                      {"neighbours", neighbours},
-                                      {"method", one.method},
-                                      {"build_ms", 1e3 * one.build_s},
-                                      {"order_ms", 1e3 * one.effort.order_s},
-                                      {"assembly_ms", 1e3 * one.effort.assembly_s},
-                                      {"analysis_ms", 1e3 * one.effort.analysis_s},
-                                      {"factor_ms", 1e3 * one.effort.factor_s},
-                                      {"solve_ms", 1e3 * one.solve_s},
-                                      {"matrix_entries", one.effort.matrix_entries},
-                                      {"factor_entries", one.effort.factor_entries}};
-  std::cout << object.dump() << std::endl;
+  cli::print_line({{"points", points},
+                   {"neighbours", neighbours},
+                   {"method", one.method},
+                   {"build_ms", 1e3 * one.build_s},
+                   {"order_ms", 1e3 * one.effort.order_s},
+                   {"assembly_ms", 1e3 * one.effort.assembly_s},
+                   {"analysis_ms", 1e3 * one.effort.analysis_s},
+                   {"factor_ms", 1e3 * one.effort.factor_s},
+                   {"solve_ms", 1e3 * one.solve_s},
+                   {"matrix_entries", one.effort.matrix_entries},
+                   {"factor_entries", one.effort.factor_entries}});
 }
 
 void print_text(std::uint64_t points, std::uint64_t neighbours,
                 const std::vector<Measured>& measured) {
-  std::printf("\n%llu control vectors with %llu in reach of each; in ms\n",
-              static_cast<unsigned long long>(points), static_cast<unsigned long long>(neighbours));
-  std::printf("%-15s %8s %9s %9s %9s %9s %8s %15s %6s\n", "", "octree", "assembly", "analysis",
-              "factor", "all", "solve", "factor entries", "fill");
+  cli::print("\n{} control vectors with {} in reach of each; in ms\n", points, neighbours);
+  cli::print("{:15} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8} {:>15} {:>6}\n", "", "octree", "assembly",
+             "analysis", "factor", "all", "solve", "factor entries", "fill");
   const auto best =
       std::min_element(measured.begin(), measured.end(),
                        [](const Measured& a, const Measured& b) { return a.build_s < b.build_s; });
   for (const Measured& one : measured) {
     const SolverEffort& effort = one.effort;
-    std::printf("%-15s %8.2f %9.2f %9.2f %9.2f %9.2f %8.2f %15lld %6.1f\n", one.method.c_str(),
-                1e3 * effort.order_s, 1e3 * effort.assembly_s, 1e3 * effort.analysis_s,
-                1e3 * effort.factor_s, 1e3 * one.build_s, 1e3 * one.solve_s,
-                static_cast<long long>(effort.factor_entries),
-                static_cast<double>(effort.factor_entries) /
-                    static_cast<double>(effort.matrix_entries));
+    cli::print("{:15} {:8.2f} {:9.2f} {:9.2f} {:9.2f} {:9.2f} {:8.2f} {:15} {:6.1f}\n", one.method,
+               1e3 * effort.order_s, 1e3 * effort.assembly_s, 1e3 * effort.analysis_s,
+               1e3 * effort.factor_s, 1e3 * one.build_s, 1e3 * one.solve_s, effort.factor_entries,
+               static_cast<double>(effort.factor_entries) /
+                   static_cast<double>(effort.matrix_entries));
   }
   for (const Measured& one : measured)
     if (&one != &*best)
-      std::printf("%s takes %.1f times as long as %s\n", one.method.c_str(),
-                  one.build_s / best->build_s, best->method.c_str());
+      cli::print("{} takes {:.1f} times as long as {}\n", one.method, one.build_s / best->build_s,
+                 best->method);
 }
 
 void measure_many(std::uint64_t points, const Options& options) {

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <memory>
 #include <vector>
 
@@ -19,6 +18,7 @@
 #include "bench/whole_frame.hpp"
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "cli/print.hpp"
 #include "reference/table1.hpp"
 
 namespace nendo::bench::table1_bench {
@@ -60,40 +60,40 @@ void print_json(const Place& place, const Table1Entry& entry) {
       if (cell.plain_loop[type] > 0.0)
         object["plain_loop_frames_per_second"] = cell.plain_loop[type];
       if (threads == 1) object["whole_frames_per_second"] = cell.whole_frame[type];
-      std::cout << object.dump() << std::endl;
+      cli::print_line(object);
     }
 }
 
 void print_heading() {
-  std::printf("The paper's Table 1 in frames a second. The paper: Athlon 64 3400+; p(x), normals "
-              "and drawing included.\nHere, the best of many. whole: the same in the frame, one "
-              "thread, %s.\nOthers only solve and move all vertices, without p(x). plain: a loop "
-              "that the compiler vectorises; 2 thr: two threads.\n",
-              whole_frame_drawing);
+  cli::print("The paper's Table 1 in frames a second. The paper: Athlon 64 3400+; p(x), normals "
+             "and drawing included.\nHere, the best of many. whole: the same in the frame, one "
+             "thread, {}.\nOthers only solve and move all vertices, without p(x). plain: a loop "
+             "that the compiler vectorises; 2 thr: two threads.\n",
+             whole_frame_drawing);
 }
 
 void print_layout(const reference::Table1Layout& layout) {
-  std::printf("\nlayout %s: ten control points at z = %.0f\n", layout.name, layout.height);
-  std::printf("%25s %17s  %42s  %42s\n", "", "evaluations",
-              "---------------- Type-1 ------------------",
-              "---------------- Type-2 ------------------");
-  std::printf("%9s %8s %6s %8s %8s", "triangles", "vertices", "radius", "here", "paper");
+  cli::print("\nlayout {}: ten control points at z = {:.0f}\n", layout.name, layout.height);
+  cli::print("{:>25} {:>17}  {:>42}  {:>42}\n", "", "evaluations",
+             "---------------- Type-1 ------------------",
+             "---------------- Type-2 ------------------");
+  cli::print("{:>9} {:>8} {:>6} {:>8} {:>8}", "triangles", "vertices", "radius", "here", "paper");
   for (int type = 0; type < 2; ++type)
-    std::printf("  %6s %6s %8s %9s %9s", "paper", "whole", "plain", "1 thread", "2 thr");
-  std::printf("\n");
+    cli::print("  {:>6} {:>6} {:>8} {:>9} {:>9}", "paper", "whole", "plain", "1 thread", "2 thr");
+  cli::print("\n");
 }
 
 void print_text(const Place& place, const Table1Entry& entry) {
   const Table1Cell& cell = entry.cell;
-  std::printf("%9zu %8zu %6.0f %8zu %8zu", place.triangles, place.vertices,
-              reference::table1_radii.at(entry.radius), cell.evaluations,
-              paper_evaluations.at(entry.plane).at(entry.radius));
+  cli::print("{:9} {:8} {:6.0f} {:8} {:8}", place.triangles, place.vertices,
+             reference::table1_radii.at(entry.radius), cell.evaluations,
+             paper_evaluations.at(entry.plane).at(entry.radius));
   for (std::size_t type = 0; type < 2; ++type)
-    std::printf("  %6.1f %6.0f %8.0f %9.0f %9.0f",
-                (type == 0 ? paper_type1 : paper_type2).at(entry.plane).at(entry.radius),
-                cell.whole_frame[type], cell.plain_loop[type], cell.one_thread[type],
-                cell.two_threads[type]);
-  std::printf("\n");
+    cli::print("  {:6.1f} {:6.0f} {:8.0f} {:9.0f} {:9.0f}",
+               (type == 0 ? paper_type1 : paper_type2).at(entry.plane).at(entry.radius),
+               cell.whole_frame[type], cell.plain_loop[type], cell.one_thread[type],
+               cell.two_threads[type]);
+  cli::print("\n");
   std::fflush(stdout);
 }
 

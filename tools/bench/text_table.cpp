@@ -1,14 +1,14 @@
 #include "bench/text_table.hpp"
 
-#include <cstdio>
+#include "cli/print.hpp"
 
 namespace nendo::bench {
 
 void print_row(std::string_view about, std::span<const std::string> cells, bool markdown) {
-  std::printf("%s%-16s", markdown ? "| " : "", std::string(about).c_str());
+  cli::print("{}{:16}", markdown ? "| " : "", about);
   for (const std::string& cell : cells)
-    std::printf("%s%13s", markdown ? " | " : "  ", cell.c_str());
-  std::puts(markdown ? " |" : "");
+    cli::print("{}{:>13}", markdown ? " | " : "  ", cell);
+  cli::print("{}\n", markdown ? " |" : "");
 }
 
 void print_head(std::string_view about, std::span<const std::string> cells, bool markdown) {
@@ -17,7 +17,7 @@ void print_head(std::string_view about, std::span<const std::string> cells, bool
   std::string rule = "|---|";
   for (std::size_t column = 0; column < cells.size(); ++column)
     rule += "---:|";
-  std::puts(rule.c_str());
+  cli::print("{}\n", rule);
 }
 
 } // namespace nendo::bench
