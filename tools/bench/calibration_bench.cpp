@@ -16,6 +16,7 @@
 #include "bench/bench.hpp"
 #include "bench/calibration_trial.hpp"
 #include "bench/judge_bench.hpp"
+#include "bench/percentiles.hpp"
 #include "bench/text_table.hpp"
 #include "cli/cli.hpp"
 #include "cli/print.hpp"
@@ -38,14 +39,8 @@ struct Figures {
 };
 
 template <class Number>
-Figures figures_of(std::vector<Number> values) {
-  if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double part) {
-    return static_cast<double>(
-        values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))]);
-  };
-  return {at(0.5), at(0.95)};
+Figures figures_of(const std::vector<Number>& values) {
+  return {percentile(values, 0.5), percentile(values, 0.95)};
 }
 
 /// Groups, and then families of them.
@@ -61,7 +56,7 @@ Figures row_figures(const TrialErrors& errors, std::size_t method, std::size_t r
   std::vector<float> all;
   for (std::size_t group = family.first_group; group < family.end_group; ++group)
     all.insert(all.end(), errors.deg[method][group].begin(), errors.deg[method][group].end());
-  return figures_of(std::move(all));
+  return figures_of(all);
 }
 
 void print_json(const TrialErrors& errors, std::uint64_t refused, const Options& options) {

@@ -15,6 +15,7 @@
 #include <nendo/hand/range_capture.hpp>
 #include <nendo/hand/skeleton.hpp>
 
+#include "bench/percentiles.hpp"
 #include "bench/stranger_floor.hpp"
 
 namespace nendo::bench {
@@ -221,13 +222,6 @@ hand::Calibration best_lines(const JudgedWearer& wearer) {
   return best;
 }
 
-double p95(std::vector<float> values) {
-  if (values.empty()) return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return static_cast<double>(values[static_cast<std::size_t>(at)]);
-}
-
 } // namespace
 
 void judge(const JudgedWearer& wearer, Verdict& verdict, const StrangerHand* hand) {
@@ -286,9 +280,9 @@ void judge(const JudgedWearer& wearer, Verdict& verdict, const StrangerHand* han
   for (std::size_t group = 0; group < judged_groups.size(); ++group) {
     constexpr double tolerance = 0.3;
     const double two_pose =
-        p95(errors[static_cast<std::size_t>(Judged::two_pose)][group]) + tolerance;
-    if (p95(errors[0][group]) > two_pose) ++verdict.worse[group];
-    if (p95(of_floor[group]) > two_pose) ++verdict.floor_worse[group];
+        percentile(errors[static_cast<std::size_t>(Judged::two_pose)][group], 0.95) + tolerance;
+    if (percentile(errors[0][group], 0.95) > two_pose) ++verdict.worse[group];
+    if (percentile(of_floor[group], 0.95) > two_pose) ++verdict.floor_worse[group];
     for (std::size_t method = 0; method < errors.size(); ++method) {
       auto& all = verdict.errors[method][group];
       all.insert(all.end(), errors[method][group].begin(), errors[method][group].end());

@@ -6,6 +6,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -14,6 +15,7 @@
 #include <nendo/hand/pinch_closing.hpp>
 
 #include "bench/bench.hpp"
+#include "bench/percentiles.hpp"
 #include "bench/plain_hand.hpp"
 #include "cli/cli.hpp"
 #include "cli/print.hpp"
@@ -91,9 +93,7 @@ double median_ns(std::uint64_t count, const Work& work) {
     const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - begin;
     times_ns.push_back(took.count() / static_cast<double>(size));
   }
-  const auto middle = times_ns.begin() + static_cast<std::ptrdiff_t>(times_ns.size() / 2);
-  std::nth_element(times_ns.begin(), middle, times_ns.end());
-  return *middle;
+  return median(std::move(times_ns));
 }
 
 struct Forward {

@@ -15,6 +15,7 @@
 
 #include <nendo/base/triple_buffer.hpp>
 
+#include "bench/percentiles.hpp"
 #include "bench/rt_bench.hpp"
 #include "bench/two_threads.hpp"
 #include "cli/cli.hpp"
@@ -131,12 +132,9 @@ struct Cost {
   double round_trip_p50_ns = 0.0;
 };
 
-Cost cost_of(Times& times) {
-  const auto at = [](std::vector<double>& times_ns, std::size_t thousandths) {
-    std::sort(times_ns.begin(), times_ns.end());
-    return times_ns[(times_ns.size() - 1) * thousandths / 1000];
-  };
-  return {at(times.publishes_ns, 500), at(times.publishes_ns, 999), at(times.round_trips_ns, 500)};
+Cost cost_of(const Times& times) {
+  return {percentile(times.publishes_ns, 0.5), percentile(times.publishes_ns, 0.999),
+          percentile(times.round_trips_ns, 0.5)};
 }
 
 void print(std::size_t frame_bytes, std::size_t publishes, const Cost& exchanged,

@@ -14,6 +14,7 @@
 
 #include "bench/bench.hpp"
 #include "bench/calibration_judge.hpp"
+#include "bench/percentiles.hpp"
 #include "bench/stranger.hpp"
 #include "bench/text_table.hpp"
 #include "cli/cli.hpp"
@@ -54,14 +55,6 @@ Result<StrangerHand> true_hand(const JudgedWearer& wearer) {
     if (!(std::abs(hand.pads()[digit].depth - wearer.pads[digit].depth_m) < rounded_m))
       return other;
   return hand;
-}
-
-template <class Number>
-double percentile(std::vector<Number> values, double part) {
-  if (values.empty()) return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return static_cast<double>(values[static_cast<std::size_t>(at)]);
 }
 
 bool has_floor(const Verdict& verdict) {

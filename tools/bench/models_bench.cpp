@@ -15,6 +15,7 @@
 #include <nendo/flow/realtime.hpp>
 
 #include "bench/bench.hpp"
+#include "bench/percentiles.hpp"
 #include "bench/plane_memory.hpp"
 #include "cli/cli.hpp"
 #include "cli/print.hpp"
@@ -119,12 +120,6 @@ private:
   std::uint64_t number_ = 0;
 };
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 struct Figures {
   std::size_t vertices = 0;
   std::vector<double> ordinary_us, commit_us, new_us, undo_us, redo_us, make_us, finish_us, mask_us;
@@ -163,34 +158,31 @@ Figures measure(const deform::Mesh& model, bool held, unsigned repetitions) {
 }
 
 void tell(const Options& options, bool held, const Figures& figures) {
-  const auto of = [](const std::vector<double>& values) {
-    return values.empty() ? 0.0 : median(values);
-  };
   if (options.json) {
     cli::print_line({{"measured", "models"},
                      {"vertices", figures.vertices},
                      {"held", held},
-                     {"ordinary_us", of(figures.ordinary_us)},
-                     {"commit_us", of(figures.commit_us)},
-                     {"new_us", of(figures.new_us)},
-                     {"undo_us", of(figures.undo_us)},
-                     {"redo_us", of(figures.redo_us)},
-                     {"mask_us", of(figures.mask_us)},
-                     {"make_ms", of(figures.make_us) / 1e3},
-                     {"finish_ms", of(figures.finish_us) / 1e3}});
+                     {"ordinary_us", median(figures.ordinary_us)},
+                     {"commit_us", median(figures.commit_us)},
+                     {"new_us", median(figures.new_us)},
+                     {"undo_us", median(figures.undo_us)},
+                     {"redo_us", median(figures.redo_us)},
+                     {"mask_us", median(figures.mask_us)},
+                     {"make_ms", median(figures.make_us) / 1e3},
+                     {"finish_ms", median(figures.finish_us) / 1e3}});
     return;
   }
   cli::print("{} vertices, hands that {} the model; medians, us a tick\n", figures.vertices,
              held ? "hold" : "have let go of");
   cli::print(
       "  an ordinary tick {:10.1f}\n  a commit         {:10.1f}\n  a new version    {:10.1f}\n",
-      of(figures.ordinary_us), of(figures.commit_us), of(figures.new_us));
+      median(figures.ordinary_us), median(figures.commit_us), median(figures.new_us));
   if (!held)
     cli::print(
         "  back by an undo  {:10.1f}\n  forth by a redo  {:10.1f}\n  other masks      {:10.1f}\n",
-        of(figures.undo_us), of(figures.redo_us), of(figures.mask_us));
+        median(figures.undo_us), median(figures.redo_us), median(figures.mask_us));
   cli::print("  beside the loop: {:.0f} ms to make it, and {:.0f} ms while the loop holds still\n",
-             of(figures.make_us) / 1e3, of(figures.finish_us) / 1e3);
+             median(figures.make_us) / 1e3, median(figures.finish_us) / 1e3);
 }
 
 /// A loop at 1 kHz, in whose second half the radius changes 1,000 times a minute.

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/contending_rings.hpp"
+#include "bench/percentiles.hpp"
 #include "bench/rt_bench.hpp"
 #include "bench/two_threads.hpp"
 #include "cli/cli.hpp"
@@ -28,13 +29,6 @@ struct Sample {
   double round_trip_ns = 0.0;
   bool steady = false; ///< the round trip was the same before and after
 };
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 template <class Contender>
 void send_all(Contender& ring) {
