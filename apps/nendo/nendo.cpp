@@ -1,4 +1,4 @@
-// The nendo program: one command a file.
+// The nendo program: one file per command.
 
 #include <algorithm>
 #include <array>
@@ -18,8 +18,8 @@
 
 namespace {
 
-/// Of a command. Loops with deadlines go without: with huge pages some runs of the stress test had
-/// ticks of several milliseconds.
+/// Returns whether a command has no deadlines. Loops with deadlines use no huge pages: with them,
+/// some runs of the stress test had ticks of several milliseconds.
 bool works_without_a_clock(std::string_view command) {
   constexpr std::array<std::string_view, 7> all{"cut",     "deform", "export", "join",
                                                 "picture", "repair", "replay"};

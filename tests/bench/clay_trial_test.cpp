@@ -46,19 +46,19 @@ TEST_SUITE("clay_trial") {
     const auto size_of = [](const KneadedClay& clay) -> Eigen::Vector3d {
       return clay.shape.vertices.rowwise().maxCoeff() - clay.shape.vertices.rowwise().minCoeff();
     };
-    for (const KneadedThing thing : {KneadedThing::cake, KneadedThing::bowl, KneadedThing::nose}) {
-      const double before = 2.0 * ClayKneading(thing).ball_radius_mm();
-      const KneadedClay clay = knead(thing, {.level = 4});
+    for (const KneadedShape shape : {KneadedShape::cake, KneadedShape::bowl, KneadedShape::nose}) {
+      const double before = 2.0 * ClayKneading(shape).ball_radius_mm();
+      const KneadedClay clay = knead(shape, {.level = 4});
       CHECK(clay.shape.vertices.allFinite());
       CHECK(nendo::test::count_self_intersections(clay.shape) == 0);
       CHECK(clay.worst_volume < 1.5e-3);
       CHECK(std::abs(clay.last_volume) < 1e-4);
       CHECK(clay.penetration_p99_mm < 0.05);
       const Eigen::Vector3d size = size_of(clay);
-      if (thing == KneadedThing::cake) {
+      if (shape == KneadedShape::cake) {
         CHECK(size.z() < 0.5 * before);
         CHECK(size.x() > 1.4 * before);
-      } else if (thing == KneadedThing::bowl) {
+      } else if (shape == KneadedShape::bowl) {
         // A wall all round, and nothing above the bottom in its middle.
         double highest = -1e9;
         for (const auto vertex : clay.shape.vertices.colwise())
@@ -76,7 +76,7 @@ TEST_SUITE("clay_trial") {
     std::vector<double> lengths, flatnesses;
     for (int ball = 0; ball < 9; ++ball) {
       const KneadedClay clay =
-          knead(KneadedThing::sausage, {.level = 4, .scale = 1.0 + 1e-6 * ball});
+          knead(KneadedShape::sausage, {.level = 4, .scale = 1.0 + 1e-6 * ball});
       CHECK(nendo::test::count_self_intersections(clay.shape) == 0);
       CHECK(clay.shape.vertices.allFinite());
       CHECK(clay.worst_volume < 1.5e-3);
@@ -94,7 +94,7 @@ TEST_SUITE("clay_trial") {
   }
 
   TEST_CASE("triangles of what is kneaded follow its shape, if asked") {
-    const KneadedClay clay = knead(KneadedThing::sausage, {.level = 4, .refines = true});
+    const KneadedClay clay = knead(KneadedShape::sausage, {.level = 4, .refines = true});
     CHECK(clay.shape.vertices.cols() > 2562);
     CHECK(nendo::test::count_self_intersections(clay.shape) == 0);
     CHECK(clay.worst_volume < 1.5e-3);

@@ -109,17 +109,18 @@ void print_text(const TrialErrors& errors, std::uint64_t refused, const Options&
 
 int bench_calibration(const Options& options) {
   if (options.floor && options.judge.empty())
-    return cli::report({Errc::usage, "--floor needs --judge FILE, of nendo bench wearers"});
+    return cli::report(
+        {Errc::usage, "--floor: needs --judge FILE, a file of `nendo bench wearers`"});
   if (!options.judge.empty())
     return judge_bench::judge_file(options.judge, {options.json, options.markdown, options.floor});
   if (options.wearers == 0 || options.wearers > 10'000)
-    return cli::report({Errc::usage, "--wearers: from 1 to 10000"});
+    return cli::report({Errc::usage, "--wearers: use 1 to 10000"});
   cli::install_stop_signals();
   TrialErrors errors;
   std::uint64_t refused = 0;
   for (std::uint64_t n = 0; n < options.wearers; ++n) {
     if (cli::stop_requested())
-      return cli::report({Errc::failed, "ended before all wearers were calibrated"});
+      return cli::report({Errc::failed, "stopped before all wearers were calibrated"});
     const auto done = try_wearer(options.seed + n, errors);
     if (done) continue;
     ++refused;
@@ -135,17 +136,19 @@ int bench_calibration(const Options& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
-      "calibration", "How well guided poses calibrate, on synthetic wearers with known joints");
-  command.add_option("--wearers", options->wearers, "How many, 1 to 10000");
-  command.add_option("--seed", options->seed, "The first wearer's; 1 to 60 were used for tuning");
+      "calibration",
+      "Measures the accuracy of guided calibration, on synthetic wearers with known joints");
+  command.add_option("--wearers", options->wearers, "Number of wearers, 1 to 10000");
+  command.add_option("--seed", options->seed,
+                     "Seed of the first wearer; 1 to 60 were used for tuning");
   command.add_flag("--json", options->json, "One JSON object");
   command.add_flag("--markdown", options->markdown, "A table in Markdown");
   command.add_flag("--floor", options->floor,
-                   "With --judge FILE of nendo bench wearers: also the floor, of an estimator that "
-                   "is told the true hand and the form of the errors");
+                   "With --judge: also report the floor, the accuracy of an estimator that has the "
+                   "true hand and the form of the errors");
   command.add_option("--judge", options->judge,
-                     "Judges by the wearers of this file instead, as nendo bench wearers writes "
-                     "them");
+                     "Calibrate the wearers of this file, which `nendo bench wearers` writes, in "
+                     "place of new ones");
   command.on_chosen([options] { return bench_calibration(*options); });
 }
 

@@ -73,26 +73,27 @@ double pads_apart_mm(const hand::HandPose& pose, const JudgedWearer::Pads& pads,
 }
 
 /// What is made of a moment.
-struct Told {
+struct Estimate {
   JointAngles angles;
   double apart_mm, drawn_apart_mm; ///< the pads that touch
 };
 
-template <class Tell>
-GroupErrors errors_of(const JudgedWearer& wearer, const JudgedSession& session, Tell&& tell) {
+template <class EstimateAt>
+GroupErrors errors_of(const JudgedWearer& wearer, const JudgedSession& session,
+                      EstimateAt&& estimate_at) {
   GroupErrors errors;
   const hand::AngleSources sources = hand::angle_sources(wearer.sensors);
   for (const JudgedMoment& moment : session.motion) {
-    const Told told = tell(moment);
+    const Estimate estimate = estimate_at(moment);
     for (std::size_t n = 0; n < hand::angle_count; ++n) {
       const auto group = group_of(n);
       if (!group || sources[n] == hand::AngleSource::zero) continue;
-      const double error = to_degrees(told.angles[hand::angle_at(n)]) - moment.angles_deg[n];
+      const double error = to_degrees(estimate.angles[hand::angle_at(n)]) - moment.angles_deg[n];
       errors[*group].push_back(static_cast<float>(std::abs(error)));
     }
     if (moment.touching == 0) continue;
-    errors[judged_groups.size() - 2].push_back(static_cast<float>(told.apart_mm));
-    errors.back().push_back(static_cast<float>(told.drawn_apart_mm));
+    errors[judged_groups.size() - 2].push_back(static_cast<float>(estimate.apart_mm));
+    errors.back().push_back(static_cast<float>(estimate.drawn_apart_mm));
   }
   return errors;
 }
@@ -103,12 +104,12 @@ GroupErrors errors_of(const JudgedWearer& wearer, const JudgedSession& session,
   return errors_of(wearer, session, [&](const JudgedMoment& moment) {
     JointAngles angles = hand::joint_angles(judged_sample(moment.counts, wearer), calibration);
     if (closes_pinches) angles = hand::close_pinches(angles, skeleton, wearer.sensors);
-    if (moment.touching == 0) return Told{angles, 0.0, 0.0};
+    if (moment.touching == 0) return Estimate{angles, 0.0, 0.0};
     const auto pose = skeleton.pose(angles, Eigen::Isometry3d::Identity());
     JudgedWearer::Pads drawn;
     drawn.fill({-skeleton.pad().y(), skeleton.pad().z()});
-    return Told{angles, pads_apart_mm(pose, wearer.pads, moment.touching),
-                pads_apart_mm(pose, drawn, moment.touching)};
+    return Estimate{angles, pads_apart_mm(pose, wearer.pads, moment.touching),
+                    pads_apart_mm(pose, drawn, moment.touching)};
   });
 }
 
@@ -127,9 +128,9 @@ GroupErrors errors_of_floor(const JudgedWearer& wearer, const StrangerHand* hand
     const JointAngles joints = joints_at(angles, wearer);
     for (std::size_t f = 0; f < joints.fingers.size(); ++f)
       angles[4 * f + 6] = joints.fingers[f].dip_flexion_rad; // by rule, where there is no sensor
-    if (moment.touching == 0) return Told{joints, 0.0, 0.0};
+    if (moment.touching == 0) return Estimate{joints, 0.0, 0.0};
     const double apart_mm = 1e3 * floor.pads_apart_m(angles, moment.touching);
-    return Told{joints, apart_mm, apart_mm};
+    return Estimate{joints, apart_mm, apart_mm};
   });
 }
 

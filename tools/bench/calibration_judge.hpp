@@ -21,8 +21,8 @@ enum class Judged : std::uint8_t {
   lines,      ///< the best line of each sensor, by the true angles of the motion itself: a bound
   worn_again, ///< the full calibration, after the glove was put on again
   touched_up, ///< that, touched up
-  floor,      ///< what StrangerFloor reaches on the captures of full, told the hand
-  no_hand,    ///< the same, not told the hand
+  floor,      ///< StrangerFloor on the captures of full, with the true hand
+  no_hand,    ///< the same without the true hand
 };
 inline constexpr std::array<std::string_view, 8> judged_names{
     "full", "closed", "two_pose", "best lines", "worn again", "touched up", "floor", "no hand"};

@@ -132,25 +132,25 @@ Calibration min_max_calibration(const hand::CountRanges& ranges) {
   return calibration;
 }
 
-void add_errors(const JointAngles& told, const JointAngles& truth,
+void add_errors(const JointAngles& estimate, const JointAngles& truth,
                 std::array<std::vector<float>, group_names.size()>& groups) {
   const auto add = [&](std::size_t group, double a, double b) {
     groups[group].push_back(static_cast<float>(to_degrees(std::abs(a - b))));
   };
   for (std::size_t f = 0; f < 4; ++f) {
-    add(0, told.fingers[f].mcp_flexion_rad, truth.fingers[f].mcp_flexion_rad);
-    add(1, told.fingers[f].pip_flexion_rad, truth.fingers[f].pip_flexion_rad);
-    add(2, told.fingers[f].dip_flexion_rad, truth.fingers[f].dip_flexion_rad);
+    add(0, estimate.fingers[f].mcp_flexion_rad, truth.fingers[f].mcp_flexion_rad);
+    add(1, estimate.fingers[f].pip_flexion_rad, truth.fingers[f].pip_flexion_rad);
+    add(2, estimate.fingers[f].dip_flexion_rad, truth.fingers[f].dip_flexion_rad);
     // The middle finger's is straight by definition, here and there.
-    if (f != 1) add(3, told.fingers[f].mcp_abduction_rad, truth.fingers[f].mcp_abduction_rad);
+    if (f != 1) add(3, estimate.fingers[f].mcp_abduction_rad, truth.fingers[f].mcp_abduction_rad);
   }
-  add(4, told.thumb_roll_rad, truth.thumb_roll_rad);
-  add(5, told.thumb_abduction_rad, truth.thumb_abduction_rad);
-  add(6, told.thumb_mcp_flexion_rad, truth.thumb_mcp_flexion_rad);
-  add(6, told.thumb_ip_flexion_rad, truth.thumb_ip_flexion_rad);
-  add(7, told.palm_arch_rad, truth.palm_arch_rad);
-  add(8, told.wrist_pitch_rad, truth.wrist_pitch_rad);
-  add(8, told.wrist_yaw_rad, truth.wrist_yaw_rad);
+  add(4, estimate.thumb_roll_rad, truth.thumb_roll_rad);
+  add(5, estimate.thumb_abduction_rad, truth.thumb_abduction_rad);
+  add(6, estimate.thumb_mcp_flexion_rad, truth.thumb_mcp_flexion_rad);
+  add(6, estimate.thumb_ip_flexion_rad, truth.thumb_ip_flexion_rad);
+  add(7, estimate.palm_arch_rad, truth.palm_arch_rad);
+  add(8, estimate.wrist_pitch_rad, truth.wrist_pitch_rad);
+  add(8, estimate.wrist_yaw_rad, truth.wrist_yaw_rad);
 }
 
 } // namespace
@@ -169,7 +169,7 @@ Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors) {
       two.push_back(reading);
   }
   const Watched watched = watch(wearer, random());
-  hand::FitOptions full_options; // which is not told how large the hand is
+  hand::FitOptions full_options; // without the size of the hand
   full_options.free_motion = watched.ranges;
   const auto begin = std::chrono::steady_clock::now();
   const auto full = hand::fit_calibration(*readings, wearer.side(), sensors_22, full_options);

@@ -39,8 +39,8 @@ inline constexpr std::array<JointFamily, 2> families{
 struct TrialErrors {
   std::array<std::array<std::vector<float>, group_names.size()>, method_names.size()> deg;
   std::vector<double> fit_ms;      ///< what the full fit took
-  std::vector<double> condition;   ///< of the full fit
-  std::vector<double> touch_gap_m; ///< of the performed touches, the truth
+  std::vector<double> condition;   ///< condition numbers of the full fit
+  std::vector<double> touch_gap_m; ///< true gaps of the performed touches
 };
 
 /// Adds the errors of the wearer with this seed over another minute of free motion. Fails if a

@@ -23,7 +23,7 @@ namespace nendo::bench::clay_bench {
 namespace {
 
 struct Options {
-  std::string thing;
+  std::string made_shape;
   std::string save;
   std::string simd;
   std::string only;
@@ -78,7 +78,7 @@ std::vector<Row> rows_of(bool short_form) {
     return {{"both hands, 0.5 m/s", {.level = 4}}, {"the same, plain", {.level = 4}, true}};
   constexpr int scenes = 30; // of a dozen ticks each
   return {{"both hands, 0.5 m/s", {.judges_inside = true, .scenes = scenes}},
-          {"the same, 90 ticks a second", {.rests = true, .scenes = scenes}},
+          {"the same, 90 ticks per second", {.rests = true, .scenes = scenes}},
           {"the same, plain", {.judges_inside = true}, true},
           {"the same, no volume kept", {.keeps_volume = false, .scenes = scenes}},
           {"0.075 m/s", {.speed_m_s = 0.075, .scenes = 4}},
@@ -96,27 +96,26 @@ std::vector<Row> rows_of(bool short_form) {
           {"2.6 million vertices", {.level = 9}}};
 }
 
-/// Makes one thing, and writes it.
-int make_thing(const Options& options) {
-  const std::map<std::string, KneadedThing> things{{"cake", KneadedThing::cake},
-                                                   {"bowl", KneadedThing::bowl},
-                                                   {"nose", KneadedThing::nose},
-                                                   {"sausage", KneadedThing::sausage}};
-  const auto thing = things.find(options.thing);
-  if (thing == things.end())
-    return cli::report(
-        {Errc::usage,
-         "--make " + options.thing + ": there is no such thing; use cake, bowl, nose or sausage"});
+/// Makes one shape, and writes it.
+int make_shape(const Options& options) {
+  const std::map<std::string, KneadedShape> shapes{{"cake", KneadedShape::cake},
+                                                   {"bowl", KneadedShape::bowl},
+                                                   {"nose", KneadedShape::nose},
+                                                   {"sausage", KneadedShape::sausage}};
+  const auto shape = shapes.find(options.made_shape);
+  if (shape == shapes.end())
+    return cli::report({Errc::usage, "--make " + options.made_shape +
+                                         ": no such shape; use cake, bowl, nose or sausage"});
   const KneadedClay made =
-      knead(thing->second, {.level = options.short_form ? 4 : 6, .refines = options.refines});
+      knead(shape->second, {.level = options.short_form ? 4 : 6, .refines = options.refines});
   const Eigen::Vector3d size = extents_mm(made.shape.vertices);
-  cli::print(
-      "{}: {} vertices; {:.2f} ms a tick, p99 {:.2f}; left p99 {:.4f} mm; volume % worst {:.4f}, "
-      "at the end {:.4f}; places held {}; turned {:.0f} degrees; {:.0f} x {:.0f} x {:.0f} mm\n",
-      options.thing, static_cast<std::size_t>(made.shape.vertices.cols()), made.mean_us / 1e3,
-      made.p99_us / 1e3, made.penetration_p99_mm, 100.0 * made.worst_volume,
-      100.0 * made.last_volume, made.max_held, made.turned_rad * 180.0 / std::numbers::pi, size.x(),
-      size.y(), size.z());
+  cli::print("{}: {} vertices; {:.2f} ms per tick, p99 {:.2f}; penetration p99 {:.4f} mm; volume "
+             "error {:.4f} % at most, {:.4f} % at the end; at most {} places held; turned by "
+             "{:.0f} degrees; {:.0f} x {:.0f} x {:.0f} mm\n",
+             options.made_shape, static_cast<std::size_t>(made.shape.vertices.cols()),
+             made.mean_us / 1e3, made.p99_us / 1e3, made.penetration_p99_mm,
+             100.0 * made.worst_volume, 100.0 * made.last_volume, made.max_held,
+             made.turned_rad * 180.0 / std::numbers::pi, size.x(), size.y(), size.z());
   if (options.save.empty()) return 0;
   const auto written = deform::write_mesh(options.save, made.shape);
   return written ? 0 : cli::report(written.error());
@@ -124,21 +123,21 @@ int make_thing(const Options& options) {
 
 int bench_clay(const Options& options) {
   if (const auto chosen = choose_simd(options.simd); !chosen) return cli::report(chosen.error());
-  if (!options.thing.empty()) return make_thing(options);
+  if (!options.made_shape.empty()) return make_shape(options);
   std::vector<Row> rows = rows_of(options.short_form);
   std::erase_if(rows, [&](const Row& row) {
     return std::string_view(row.name).find(options.only) == std::string_view::npos;
   });
   if (rows.empty())
-    return cli::report({Errc::usage, "--only " + options.only + ": no row's name contains that"});
+    return cli::report({Errc::usage, "--only " + options.only + ": no row has this in its name"});
   if (!options.json)
     cli::print("two hands press a ball of 120 mm by 25 mm each, scrape it, and leave, at 90 Hz\n"
-               "constraints: mean and most of a pass; distances in thousands; times in ms a tick; "
-               "penetration before the last\npush and inside triangles after it: p99, of the mean "
-               "edge; volume in %: the worst, and the last; behind in mm\n"
+               "constraints: mean and max per pass; distances in thousands; times in ms per tick; "
+               "penetration before the last\npush, and depth inside triangles after it: p99, in "
+               "mean edges; volume error in %: max, and at the end; lag in mm\n"
                "{:26} {:>8} {:>6} {:>4} {:>7} {:>8} {:>8} {:>8} {:>9} {:>8} {:>7} {:>8} {:>6}\n",
-               "", "vertices", "constr", "most", "passes", "dist k", "mean", "p99", "left",
-               "inside", "volume", "at end", "behind");
+               "", "vertices", "constr", "max", "passes", "dist k", "mean", "p99", "left", "inside",
+               "volume", "at end", "lag");
   for (const Row& row : rows) {
     const ClayTrial trial = row.is_plain ? measure_plain_clay(row.trial) : measure_clay(row.trial);
     options.json ? print_json(row, trial) : print_text(row, trial);
@@ -151,18 +150,18 @@ int bench_clay(const Options& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command =
-      bench.add_command("clay", "Pressing clay with whole hands, beside a plain program");
-  command.add_option("--make", options->thing,
-                     "Knead a ball into a thing instead: cake, bowl, nose or sausage");
+      bench.add_command("clay", "Measures clay that whole hands press, beside a plain program");
+  command.add_option(
+      "--make", options->made_shape,
+      "Knead a ball into a shape, and measure only that: cake, bowl, nose or sausage");
   command.add_option("--save", options->save,
-                     "Where to write what --make made: .obj, .ply or .stl");
+                     "Where to write the shape of --make, .obj, .ply or .stl");
   command.add_flag("--refine", options->refines,
-                   "Let the triangles of what --make makes follow its shape");
-  command.add_option("--simd", options->simd,
-                     "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
-  command.add_option("--only", options->only, "Only rows whose names contain this");
-  command.add_flag("--short", options->short_form, "A small ball only");
-  command.add_flag("--json", options->json, "One JSON object a line");
+                   "With --make: refine the triangles as the shape changes");
+  add_simd_option(command, options->simd);
+  command.add_option("--only", options->only, "Measure only rows with this in their names");
+  command.add_flag("--short", options->short_form, "Measure only a small ball");
+  command.add_flag("--json", options->json, "One JSON object per line");
   command.on_chosen([options] { return bench_clay(*options); });
 }
 

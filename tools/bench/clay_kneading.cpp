@@ -13,6 +13,7 @@
 
 #include "bench/clay_trial.hpp"
 #include "bench/deform_frames.hpp"
+#include "bench/percentiles.hpp"
 #include "bench/refined_clay.hpp"
 #include "reference/icosphere.hpp"
 
@@ -38,10 +39,10 @@ double ease(double time, double from, double to) {
 struct Plan {
   double ball_mm, softness_mm, seconds;
 };
-Plan plan_of(KneadedThing thing) {
-  if (thing == KneadedThing::cake) return {25.0, 18.0, 10.7};
-  if (thing == KneadedThing::bowl) return {32.0, 18.0, 10.6};
-  if (thing == KneadedThing::sausage) return {22.0, 18.0, 11.4};
+Plan plan_of(KneadedShape shape) {
+  if (shape == KneadedShape::cake) return {25.0, 18.0, 10.7};
+  if (shape == KneadedShape::bowl) return {32.0, 18.0, 10.6};
+  if (shape == KneadedShape::sausage) return {22.0, 18.0, 11.4};
   return {34.0, 18.0, 3.4};
 }
 
@@ -75,8 +76,8 @@ hand::JointAngles pointing_hand() {
 
 } // namespace
 
-ClayKneading::ClayKneading(KneadedThing thing)
-    : thing_(thing), skeleton_(Side::right), body_(skeleton_),
+ClayKneading::ClayKneading(KneadedShape shape)
+    : shape_(shape), skeleton_(Side::right), body_(skeleton_),
       parts_(bodies * HandBody::part_count) {
   for (auto& finger : pinch_.fingers)
     finger = {1.2, 0.0, 1.4, 0.9};
@@ -86,13 +87,13 @@ ClayKneading::ClayKneading(KneadedThing thing)
 }
 
 double ClayKneading::ball_radius_mm() const noexcept {
-  return plan_of(thing_).ball_mm;
+  return plan_of(shape_).ball_mm;
 }
 double ClayKneading::softness_mm() const noexcept {
-  return plan_of(thing_).softness_mm;
+  return plan_of(shape_).softness_mm;
 }
 int ClayKneading::ticks() const noexcept {
-  return static_cast<int>(plan_of(thing_).seconds * rate_hz);
+  return static_cast<int>(plan_of(shape_).seconds * rate_hz);
 }
 
 void ClayKneading::place_hand(std::size_t body, const hand::JointAngles& angles,
@@ -242,16 +243,16 @@ Vector3d extents_mm(const Eigen::Matrix3Xd& vertices) {
 
 std::span<const deform::ContactPart> ClayKneading::at(int tick) {
   const double time = tick / rate_hz;
-  if (thing_ == KneadedThing::cake) pose_cake(time);
-  if (thing_ == KneadedThing::bowl) pose_bowl(time);
-  if (thing_ == KneadedThing::nose) pose_nose(time);
-  if (thing_ == KneadedThing::sausage) pose_sausage(time);
+  if (shape_ == KneadedShape::cake) pose_cake(time);
+  if (shape_ == KneadedShape::bowl) pose_bowl(time);
+  if (shape_ == KneadedShape::nose) pose_nose(time);
+  if (shape_ == KneadedShape::sausage) pose_sausage(time);
   return parts_;
 }
 
-KneadedClay knead(KneadedThing thing, const KneadingOptions& options) {
+KneadedClay knead(KneadedShape shape, const KneadingOptions& options) {
   constexpr int refine_ticks = 9;
-  ClayKneading hands(thing);
+  ClayKneading hands(shape);
   KneadedClay result;
   RefinedClay clay(reference::icosphere(options.level, options.scale * hands.ball_radius_mm()),
                    ClayKneading::bodies, HandBody::part_count,
@@ -278,8 +279,8 @@ KneadedClay knead(KneadedThing thing, const KneadingOptions& options) {
   }
   result.shape = clay.shown();
   result.mean_us /= static_cast<double>(std::max<std::size_t>(1, times_us.size()));
-  result.p99_us = percentile_99(times_us);
-  result.penetration_p99_mm = percentile_99(left_mm);
+  result.p99_us = percentile(times_us, 0.99);
+  result.penetration_p99_mm = percentile(left_mm, 0.99);
   return result;
 }
 

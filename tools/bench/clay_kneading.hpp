@@ -1,5 +1,5 @@
 #pragma once
-// Scripted hands that make things of a ball of clay: a flat cake, a bowl, a nose and a sausage.
+// Scripted hands that make shapes of a ball of clay: a flat cake, a bowl, a nose and a sausage.
 
 #include <cstddef>
 #include <span>
@@ -14,7 +14,7 @@
 
 namespace nendo::bench {
 
-enum class KneadedThing { cake, bowl, nose, sausage };
+enum class KneadedShape { cake, bowl, nose, sausage };
 
 /// Lengths are in millimetres, and the ball is about the origin.
 class ClayKneading {
@@ -22,14 +22,14 @@ public:
   static constexpr double rate_hz = 90.0;
   static constexpr std::size_t bodies = 2;
 
-  explicit ClayKneading(KneadedThing thing);
+  explicit ClayKneading(KneadedShape shape);
 
   double ball_radius_mm() const noexcept;
   /// How soft the clay is: ClayOptions::radius_mm.
   double softness_mm() const noexcept;
   int ticks() const noexcept;
   /// Otherwise the hands carry and turn it.
-  bool lies_on_table() const noexcept { return thing_ != KneadedThing::sausage; }
+  bool lies_on_table() const noexcept { return shape_ != KneadedShape::sausage; }
   /// Returns where the vertices of the clay are, 3 x n. The hands that roll it stay about its
   /// middle, and across its long axis.
   void see(const Eigen::Matrix3Xd& vertices);
@@ -46,7 +46,7 @@ private:
   void pose_nose(double time_s);
   void pose_sausage(double time_s);
 
-  KneadedThing thing_;
+  KneadedShape shape_;
   hand::HandSkeleton skeleton_;
   hand::HandBody body_;
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero(); ///< that the hands stay about
@@ -69,12 +69,12 @@ struct KneadedClay {
 Eigen::Vector3d extents_mm(const Eigen::Matrix3Xd& vertices);
 
 struct KneadingOptions {
-  int level = 6;        ///< of the ball (reference/icosphere.hpp)
-  double scale = 1.0;   ///< of the ball
+  int level = 6;        ///< level of the ball (reference/icosphere.hpp)
+  double scale = 1.0;   ///< scale of the ball
   bool refines = false; ///< ten times a second (deform::Refiner)
 };
 
-/// Makes a thing of a ball.
-KneadedClay knead(KneadedThing thing, const KneadingOptions& options);
+/// Makes a shape of a ball.
+KneadedClay knead(KneadedShape shape, const KneadingOptions& options);
 
 } // namespace nendo::bench

@@ -10,6 +10,7 @@
 
 #include "bench/clay_scene.hpp"
 #include "bench/deform_frames.hpp"
+#include "bench/percentiles.hpp"
 #include "bench/plain_clay.hpp"
 #include "reference/icosphere.hpp"
 
@@ -102,10 +103,10 @@ ClayTrial run_scene(const ClayTrialOptions& options, Mesh mesh, ClayScene& scene
   }
   for (const double time_us : times_us)
     trial.mean_us += time_us / static_cast<double>(times_us.size());
-  trial.p99_us = percentile_99(times_us);
+  trial.p99_us = percentile(times_us, 0.99);
   trial.worst_us = times_us.empty() ? 0.0 : *std::max_element(times_us.begin(), times_us.end());
-  trial.penetration_p99_mm = percentile_99(left_mm);
-  trial.inside_p99_mm = percentile_99(inside_mm);
+  trial.penetration_p99_mm = percentile(left_mm, 0.99);
+  trial.inside_p99_mm = percentile(inside_mm, 0.99);
   trial.shape = std::move(mesh);
   return trial;
 }
@@ -119,12 +120,6 @@ double clay_volume(const Mesh& mesh) {
                .dot(mesh.vertices.col(corners[1]).cross(mesh.vertices.col(corners[2])));
   });
   return sum / 6.0;
-}
-
-double percentile_99(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[(values.size() - 1) * 99 / 100];
 }
 
 ClayTrial measure_clay(const ClayTrialOptions& options) {

@@ -1,8 +1,7 @@
 #pragma once
-// What pressing clay takes: the library, and a plain scalar program of the same method.
+// Measures pressed clay: the library, and a plain scalar program of the same method.
 
 #include <cstddef>
-#include <vector>
 
 #include <nendo/deform/mesh.hpp>
 
@@ -29,22 +28,20 @@ struct ClayTrial {
 };
 
 struct ClayTrialOptions {
-  int level = 6; ///< of the icosphere
+  int level = 6; ///< level of the icosphere
   int hands = 2;
   double speed_m_s = 0.5;
   double radius_mm = 30.0;
   double friction = 0.5; ///< the plain program has none
   bool keeps_volume = true;
   bool grips = true;
-  int max_constraints = 256;  ///< of a pass
+  int max_constraints = 256;  ///< per pass
   bool judges_inside = false; ///< takes long
   bool rests = false; ///< sleeps between ticks, as a loop at 90 Hz does: the caches are cold then
-  int scenes = 1;     ///< how often it is played, each time from the ball on, for the times
+  int scenes = 1;     ///< repetitions from the ball, for the times
 };
 
 double clay_volume(const deform::Mesh& mesh);
-/// Returns the value below which 99 % lie; 0 if there are none.
-double percentile_99(std::vector<double> values);
 
 ClayTrial measure_clay(const ClayTrialOptions& options);
 /// Computes the same by plain loops in double, one vertex and one part after the other.

@@ -101,7 +101,7 @@ int run(const Options& options) {
   const CutWire wire = bent_wire();
   cli::install_stop_signals();
   if (!options.json)
-    cli::print("Cuts of a bumpy ball with texture coordinates, colours and materials: own "
+    cli::print("Cuts of a bumpy ball with texture coordinates, colours and materials: processor "
                "time, best (median) in ms\n");
   for (const std::uint32_t rings : {87U, 287U}) {
     const Mesh mesh = bumpy_ball(rings, 2 * rings);
@@ -132,9 +132,9 @@ int run(const Options& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command =
-      bench.add_command("cut", "How long it takes to cut models of 30,000 and 330,000 triangles");
-  command.add_option("--repetitions", options->repetitions, "Cuts of each kind");
-  command.add_flag("--json", options->json, "Print one JSON object for each model");
+      bench.add_command("cut", "Measures the time to cut models of 30,000 and 330,000 triangles");
+  command.add_option("--repetitions", options->repetitions, "Number of cuts of each kind");
+  command.add_flag("--json", options->json, "One JSON object per line");
   command.on_chosen([options] { return run(*options); });
 }
 

@@ -14,7 +14,7 @@ namespace nendo::bench {
 /// A running cyclictest with one thread, SCHED_FIFO 80 and locked memory. The destructor ends it.
 class Cyclictest {
 public:
-  /// Starts it on that CPU, for that many seconds, with a wake-up every `interval_us`. Error:
+  /// Starts it on that CPU, for this number of seconds, with a wake-up every `interval_us`. Error:
   /// failed, with the package's name, if it is not installed.
   static Result<Cyclictest> start(unsigned cpu, unsigned seconds, unsigned interval_us);
   ~Cyclictest();

@@ -79,7 +79,7 @@ void print_large(const LargeTimes& times, bool json) {
   cli::print("\n{} vertices, ten supports of a fifth of the model: {} vertices reached, {} "
              "influences\n",
              times.vertices, times.reached, times.influences);
-  cli::print("  floors: memory {:.0f} us (24 bytes a reached vertex), arithmetic {:.0f} us\n",
+  cli::print("  floors: memory {:.0f} us (24 bytes per reached vertex), arithmetic {:.0f} us\n",
              times.memory_us, times.arithmetic_us);
   cli::print("  type 1 {:.0f} us, {:.2f} of the larger floor; evaluated {:.0f} us, {:.2f}; type 2 "
              "{:.0f} us, "
@@ -107,10 +107,10 @@ void print_volume(const VolumeTimes& times, bool json) {
     return;
   }
   cli::print(
-      "\n{} vertices, ten supports that reach all of them, a way of a third of a radius\n"
-      "  an influence: air {:.3f} ns, half of each {:.3f} ns, clay {:.3f} ns, {:.2f} times air\n"
+      "\n{} vertices, ten supports that reach all of them, displacements of a third of a radius\n"
+      "  per influence: air {:.3f} ns, half of each {:.3f} ns, clay {:.3f} ns, {:.2f} times air\n"
       "  type 1: air {:.0f} us, evaluated {:.0f} us, clay {:.0f} us\n"
-      "  type 2, a piece of a twentieth of a radius: air {:.0f} us, clay {:.0f} us\n",
+      "  type 2, steps of a twentieth of a radius: air {:.0f} us, clay {:.0f} us\n",
       times.vertices, times.air_ns, times.between_ns, times.clay_ns, times.clay_ns / times.air_ns,
       times.type1_us, times.evaluated1_us, times.type1_clay_us, times.type2_us,
       times.type2_clay_us);
@@ -120,9 +120,10 @@ int bench_deform(const Options& options) {
   if (const auto chosen = choose_simd(options.simd); !chosen) return cli::report(chosen.error());
   const int repetitions = options.short_form ? 3 : 60;
   if (!options.json) {
-    cli::print("microseconds a frame, the best of many; x: times as fast as the plain loop\n"
-               "vertices radius     plain    type 1  2 threads   type 2  2 threads   type 1 "
-               "evaluated  type 2      grab kB kept\n");
+    cli::print(
+        "microseconds per frame, the best of many; x: how many times as fast as the plain loop\n"
+        "vertices radius     plain    type 1  2 threads   type 2  2 threads   type 1 "
+        "evaluated  type 2      grab kB kept\n");
   }
   for (const reference::Table1Plane& mesh : reference::table1_planes) {
     if (options.short_form && mesh.cells > 64) continue;
@@ -148,11 +149,11 @@ int bench_deform(const Options& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
-      "deform", "Both types of deformation, beside a plain loop and the machine's floors");
-  command.add_option("--simd", options->simd,
-                     "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
-  command.add_flag("--short", options->short_form, "The two smaller meshes, a few repetitions");
-  command.add_flag("--json", options->json, "One JSON object a line");
+      "deform", "Measures both types of deformation, beside a plain loop and the machine's floors");
+  add_simd_option(command, options->simd);
+  command.add_flag("--short", options->short_form,
+                   "Measure only the two smaller meshes, with few repetitions");
+  command.add_flag("--json", options->json, "One JSON object per line");
   command.on_chosen([options] { return bench_deform(*options); });
 }
 

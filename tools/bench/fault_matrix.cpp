@@ -96,15 +96,16 @@ std::string complaint_about(const FaultOutcome& outcome, const Watch& watch, dou
   if (outcome.broken > 0) return "records of wrong structure were delivered";
   if (outcome.flipped > 0 && !fault.flips) return "wrong counts were delivered";
   if (outcome.delivered == 0) return "nothing was delivered";
-  if (outcome.longest_gap_s > fault.longest_gap_s) return "it took too long to come back";
-  if (end_gap_s > 0.5) return "it did not come back";
-  if ((watch.side == Side::left) != fault.swaps_hand) return "it is taken for the other hand";
+  if (outcome.longest_gap_s > fault.longest_gap_s) return "the glove took too long to come back";
+  if (end_gap_s > 0.5) return "the glove did not come back";
+  if ((watch.side == Side::left) != fault.swaps_hand) return "the hand is the wrong one";
   const bool few = (outcome.glove->sensors == 18) != fault.swaps_sensors;
   if (!fine && !(watch.present == (few ? sensors_18 : sensors_22)))
-    return "its sensors are taken for others";
+    return "the sensors are wrong ones";
   const std::uint64_t accounted = outcome.stats.records + outcome.stats.missed;
   const bool counted = accounted <= outcome.sent && accounted + edge_records >= outcome.sent;
-  if (fault.counts_all && !counted) return "records sent are not those delivered and missed";
+  if (fault.counts_all && !counted)
+    return "the records sent are not the sum of those delivered and missed";
   return {};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // Runs every fault that a line, an interface unit or a person can cause against every model of
-// CyberGlove, through the real driver over a pseudo-terminal. Tells what it cost, how soon it was
+// CyberGlove, through the real driver over a pseudo-terminal. Measures its cost, how soon it was
 // over, and whether anything wrong was delivered.
 
 #include <atomic>
@@ -31,7 +31,7 @@ struct GloveCase {
   std::string_view name;
   unsigned model;
   unsigned sensors;
-  std::string_view options; ///< of the GLOVE specification
+  std::string_view options; ///< options of the GLOVE specification
 };
 const std::vector<GloveCase>& glove_cases();
 
@@ -39,7 +39,7 @@ struct FaultOutcome {
   const FaultCase* fault = nullptr;
   const GloveCase* glove = nullptr;
   std::uint64_t sent = 0;    ///< whole records, by the emulator's count
-  std::uint64_t faulted = 0; ///< of these, touched by the fault
+  std::uint64_t faulted = 0; ///< number of these that the fault changed
   std::uint64_t delivered = 0;
   std::uint64_t flipped = 0; ///< delivered with one wrong bit in one sensor
   std::uint64_t broken = 0;  ///< delivered though their structure was wrong: must be 0

@@ -43,7 +43,7 @@ void print_json(const FaultOutcome& outcome) {
                    {"complaint", outcome.complaint}});
 }
 
-/// A line a fault, over all gloves: sums, and the longest gap.
+/// Prints a line per fault, over all gloves: sums, and the longest gap.
 void print_summary(const std::vector<FaultOutcome>& outcomes, bool markdown) {
   cli::print("{}", markdown
                        ? "| fault | what happens | sent | delivered | missed | bad | flipped | "
@@ -73,16 +73,17 @@ void print_summary(const std::vector<FaultOutcome>& outcomes, bool markdown) {
 int bench_faults(const Options& options) {
   if (!(options.seconds >= 6.0 && options.seconds <= 3600.0)) {
     return cli::report(
-        {Errc::usage, "--seconds: 6 to 3600 for each case; a fault begins after 2 s"});
+        {Errc::usage, "--seconds: use 6 to 3600 per case; a fault begins after 2 s"});
   }
   if (options.at_once == 0 || options.at_once > 64) {
-    return cli::report({Errc::usage, "--at-once: 1 to 64 cases at a time"});
+    return cli::report({Errc::usage, "--at-once: use 1 to 64 cases"});
   }
   cli::install_stop_signals();
-  spdlog::set_level(spdlog::level::off); // the drivers tell of every fault
+  spdlog::set_level(spdlog::level::off); // the drivers log each fault
   const auto outcomes = run_fault_matrix(options.seconds, options.at_once, cli::stop_requested());
   if (!outcomes) return cli::report(outcomes.error());
-  if (cli::stop_requested()) return cli::report({Errc::failed, "ended before all cases were run"});
+  if (cli::stop_requested())
+    return cli::report({Errc::failed, "stopped before all cases were run"});
   if (!options.json) print_summary(*outcomes, options.markdown);
   std::size_t complaints = 0;
   for (const FaultOutcome& outcome : *outcomes) {
@@ -96,8 +97,7 @@ int bench_faults(const Options& options) {
   }
   if (complaints == 0) return 0;
   return cli::report({Errc::failed, std::to_string(complaints) + " of " +
-                                        std::to_string(outcomes->size()) +
-                                        " cases were not as they should be"});
+                                        std::to_string(outcomes->size()) + " cases failed"});
 }
 
 } // namespace
@@ -105,11 +105,12 @@ int bench_faults(const Options& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
-      "faults", "Every fault against every CyberGlove, through the real driver: what it costs");
-  command.add_duration("--seconds", options->seconds, "For each case");
-  command.add_option("--at-once", options->at_once, "Cases that run at the same time");
-  command.add_flag("--json", options->json, "One JSON object for each case");
-  command.add_flag("--markdown", options->markdown, "The table of the documents");
+      "faults",
+      "Measures the records that each fault costs each CyberGlove, through the real driver");
+  command.add_duration("--seconds", options->seconds, "Seconds per case");
+  command.add_option("--at-once", options->at_once, "Number of cases that run at the same time");
+  command.add_flag("--json", options->json, "One JSON object per case");
+  command.add_flag("--markdown", options->markdown, "A table in Markdown");
   command.on_chosen([options] { return bench_faults(*options); });
 }
 

@@ -101,14 +101,15 @@ void draw_axes(cli::SvgDrawing& drawing) {
   const double bottom = plot_top + plot_height;
   drawing.line(plot_left, plot_top, plot_left, bottom, "#444444");
   drawing.line(plot_left, bottom, plot_left + plot_width, bottom, "#444444");
-  drawing.text(plot_left + plot_width / 2.0, bottom + 42.0,
-               "evaluations a frame: vertices times control points, where nearer than the radius",
-               axis_title);
-  drawing.text(plot_left - 8.0, plot_top - 12.0, "ms a frame", {13, "#000000", "middle"});
+  drawing.text(
+      plot_left + plot_width / 2.0, bottom + 42.0,
+      "evaluations per frame: pairs of a vertex and a control point nearer than the radius",
+      axis_title);
+  drawing.text(plot_left - 8.0, plot_top - 12.0, "ms per frame", {13, "#000000", "middle"});
   // The loop's time for a tick.
   const double y = ms_y(1e3 / 90.0);
   drawing.line(plot_left, y, plot_left + plot_width, y, "#c9a227", 1.0, "5 4");
-  drawing.text(plot_left + 6.0, y - 5.0, "11 ms: 90 frames a second", {11, "#8a6d10"});
+  drawing.text(plot_left + 6.0, y - 5.0, "11 ms: 90 frames per second", {11, "#8a6d10"});
 }
 
 void draw_series(cli::SvgDrawing& drawing, const Series& series, std::size_t type,
@@ -157,7 +158,7 @@ void draw_key(cli::SvgDrawing& drawing, const std::array<Series, 3>& series) {
     drawing.line(x, 92.0, x + 28.0, 92.0, "#444444", 1.5, type == 0 ? "none" : "4 3");
     drawing.dot(x + 14.0, 92.0, 4.0, type == 0 ? "#444444" : "white", "#444444");
     drawing.text(x + 36.0, 96.0,
-                 type == 0 ? "Type-1: start points frozen" : "Type-2: solved anew in every frame",
+                 type == 0 ? "Type-1: start points frozen" : "Type-2: solved again in each frame",
                  {13});
     x += 250.0;
   }
@@ -170,7 +171,7 @@ void draw_key(cli::SvgDrawing& drawing, const std::array<Series, 3>& series) {
 std::string figure4_picture(const std::vector<Table1Entry>& entries, const std::string& layout) {
   cli::SvgDrawing drawing(figure_width, figure_height);
   drawing.text(plot_left, 30.0,
-               "Time of a frame over its evaluations: ten fingertips deform a plane", {18});
+               "Time per frame over its evaluations: ten fingertips deform a plane", {18});
   drawing.text(plot_left, 49.0,
                fmt::format("The paper: Athlon 64 3400+. Nendo: one thread, layout {}, {}.", layout,
                            whole_frame_drawing),

@@ -30,7 +30,7 @@ struct Options {
 };
 constexpr std::uint64_t most = 100'000'000;
 
-/// Enough different ones that no branch is learnt by heart, few enough to stay in the cache.
+/// Enough that the branch predictor cannot learn them, and few enough to stay in the cache.
 constexpr std::size_t hands_made = 256;
 
 struct Hands {
@@ -77,10 +77,11 @@ Hands make_hands() {
   return hands;
 }
 
-/// Keeps the compiler from leaving out what nobody looks at.
+/// Prevents the compiler from removing unused results.
 volatile double seen = 0.0;
 
-/// The median over blocks, which no interruption moves. `work(n)` does the n-th pair of hands.
+/// Returns the median over blocks, so that interruptions do not change it. `work(n)` does the n-th
+/// pair of hands.
 template <class Work>
 double median_ns(std::uint64_t count, const Work& work) {
   constexpr std::uint64_t block = 200;
@@ -97,10 +98,10 @@ double median_ns(std::uint64_t count, const Work& work) {
 }
 
 struct Forward {
-  double pose_ns = 0.0; ///< of both hands, 52 joints
+  double pose_ns = 0.0; ///< time for both hands, 52 joints
   double plain_ns = 0.0;
-  double apart_m = 0.0;  ///< the farthest that a joint of one is from that of the other
-  double open_ns = 0.0;  ///< of hand::close_pinches() for both hands, whose pads are apart
+  double apart_m = 0.0;  ///< max distance between the same joints of both
+  double open_ns = 0.0;  ///< time of hand::close_pinches() for both hands, whose pads are apart
   double pinch_ns = 0.0; ///< the same where a finger's pad is near the thumb's
 };
 
@@ -156,9 +157,9 @@ Forward measure_forward(const Hands& hands, std::uint64_t poses) {
 }
 
 struct Inverse {
-  double solves_a_second = 0.0; ///< of a whole hand
+  double solves_a_second = 0.0; ///< whole hands
   double median_residual_m = 0.0;
-  double worst_residual_m = 0.0; ///< of any fingertip, by forward kinematics
+  double worst_residual_m = 0.0; ///< that of any fingertip, by forward kinematics
   std::uint64_t solves = 0;
   std::uint64_t converged = 0;
 };
@@ -225,15 +226,15 @@ void print_text(const Forward& forward, const Inverse& inverse) {
   cli::print(
       "closing pinches of both hands: {:.0f} ns where pads are apart, {:.0f} ns in a pinch\n",
       forward.open_ns, forward.pinch_ns);
-  cli::print("a hand from its five fingertips: {:.0f} a second on one core, {} of {} reached\n",
+  cli::print("a hand from its five fingertips: {:.0f} per second on one core, {} of {} converged\n",
              inverse.solves_a_second, inverse.converged, inverse.solves);
-  cli::print("fingertips off their targets: {:.1e} m at the median, {:.1e} m at worst\n",
+  cli::print("fingertips miss their targets by {:.1e} m (median), {:.1e} m (max)\n",
              inverse.median_residual_m, inverse.worst_residual_m);
 }
 
 int bench_hand(const Options& options) {
   const auto complain = [](const char* option) {
-    return cli::report({Errc::usage, std::string(option) + ": from 1 to 100000000"});
+    return cli::report({Errc::usage, std::string(option) + ": use 1 to 100000000"});
   };
   if (options.poses == 0 || options.poses > most) return complain("--poses");
   if (options.solves == 0 || options.solves > most) return complain("--solves");
@@ -249,9 +250,11 @@ int bench_hand(const Options& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
-      "hand", "Poses of both hands, beside plain products of matrices, and inverse kinematics");
-  command.add_option("--poses", options->poses, "Pairs of hands to pose");
-  command.add_option("--solves", options->solves, "Hands to find from their fingertips");
+      "hand",
+      "Measures poses of both hands, beside plain products of matrices, and inverse kinematics");
+  command.add_option("--poses", options->poses, "Number of poses of both hands");
+  command.add_option("--solves", options->solves,
+                     "Number of hands to compute from their fingertips");
   command.add_flag("--json", options->json, "One JSON object");
   command.on_chosen([options] { return bench_hand(*options); });
 }

@@ -31,7 +31,7 @@ constexpr std::uint64_t publishes_a_round = 200;
 constexpr std::chrono::microseconds period{500};
 constexpr std::chrono::milliseconds poll_period{1};
 
-/// Keeps the compiler from leaving out what nobody looks at.
+/// Prevents the compiler from removing unused results.
 std::atomic<std::uint64_t> sum_seen{0};
 
 void read(const Frame& frame) {
@@ -41,7 +41,7 @@ void read(const Frame& frame) {
   sum_seen.store(sum, std::memory_order_relaxed);
 }
 
-/// The triple buffer: filled in its place, read by one who polls.
+/// The triple buffer: filled in its place, read by a thread that polls.
 class Exchanged {
 public:
   explicit Exchanged(std::size_t words) : value_(Frame(words)) {}
@@ -98,7 +98,7 @@ private:
 
 struct Times {
   std::vector<double> publishes_ns;
-  std::vector<double> round_trips_ns; ///< of a cache line, before each round
+  std::vector<double> round_trips_ns; ///< round trips of a cache line, before each round
 };
 
 template <class Publisher>

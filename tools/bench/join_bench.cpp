@@ -30,7 +30,7 @@ int bench_join(const Options& options) {
   if (!options.json)
     cli::print("two balls with texture coordinates, colours and materials, half a diameter apart; "
                "ms, the best of five\n{:>12} {:>10} {:>10} {:>10} {:>12}\n",
-               "triangles", "crossings", "sharp", "smeared", "volume off");
+               "triangles", "crossings", "sharp", "blended", "volume err");
   for (const std::size_t rings : {40U, 87U, 160U, 400U}) {
     if (options.short_form && rings > 40) break;
     const JoinTrial trial = measure_join(rings, options.short_form ? 1 : 5);
@@ -49,9 +49,10 @@ int bench_join(const Options& options) {
 
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
-  cli::Command command = bench.add_command("join", "Joining two models, sharp and smeared");
-  command.add_flag("--short", options->short_form, "Small models only, once");
-  command.add_flag("--json", options->json, "One JSON object a line");
+  cli::Command command = bench.add_command(
+      "join", "Measures the join of two models, with a sharp and with a blended seam");
+  command.add_flag("--short", options->short_form, "Measure only small models, once");
+  command.add_flag("--json", options->json, "One JSON object per line");
   command.on_chosen([options] { return bench_join(*options); });
 }
 

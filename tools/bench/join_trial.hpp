@@ -6,7 +6,7 @@
 namespace nendo::bench {
 
 struct JoinTrial {
-  std::size_t triangles = 0; ///< of each ball
+  std::size_t triangles = 0; ///< triangles of each ball
   std::size_t crossings = 0;
   double sharp_ms = 0.0;     ///< the best of the runs
   double smeared_ms = 0.0;   ///< with a seam of a tenth of the radius

@@ -45,9 +45,10 @@ Result<StrangerHand> true_hand(const JudgedWearer& wearer) {
   const char* const end = name.data() + name.size();
   const bool numbered = name.starts_with(before) &&
                         std::from_chars(name.data() + before.size(), end, seed).ptr == end;
-  const Error other{Errc::bad_input,
-                    wearer.name + ": not of nendo bench wearers, so that its true hand is unknown; "
-                                  "leave out --floor"};
+  const Error other{
+      Errc::bad_input,
+      wearer.name +
+          ": not written by `nendo bench wearers`, so its true hand is unknown; leave out --floor"};
   if (!numbered) return other;
   StrangerHand hand = hand_of_stranger(seed);
   constexpr double rounded_m = 1e-5; // in the file
@@ -115,7 +116,7 @@ int judge_file(const std::string& path, const Output& output) {
   Verdict verdict;
   for (;;) {
     if (cli::stop_requested())
-      return cli::report({Errc::failed, "ended before all wearers were judged"});
+      return cli::report({Errc::failed, "stopped before all wearers were calibrated"});
     const auto wearer = wearers->next();
     if (!wearer) return cli::report(wearer.error());
     if (!*wearer) break;
@@ -127,7 +128,7 @@ int judge_file(const std::string& path, const Output& output) {
       judge(**wearer, verdict);
     }
   }
-  if (verdict.wearers == 0) return cli::report({Errc::bad_input, path + ": no wearers"});
+  if (verdict.wearers == 0) return cli::report({Errc::bad_input, path + ": has no wearers"});
   if (output.json) {
     print_judged_json(verdict);
     return 0;
@@ -174,7 +175,7 @@ Result<StrangerErrors> errors_of(const Options& options) {
     if (name.empty() || name == "none") continue;
     double* const term = term_of(errors, name);
     if (term == nullptr)
-      return Error{Errc::usage, name + " is no error term: use curvature, hysteresis, creep, "
+      return Error{Errc::usage, name + ": no such error term; use curvature, hysteresis, creep, "
                                        "cross-talk, scatter, slip or none"};
     *term = part;
   }
@@ -183,9 +184,9 @@ Result<StrangerErrors> errors_of(const Options& options) {
 
 int write_wearers(const Options& options) {
   if (options.wearers == 0 || options.wearers > 10'000)
-    return cli::report({Errc::usage, "--wearers: from 1 to 10000"});
+    return cli::report({Errc::usage, "--wearers: use 1 to 10000"});
   if (options.sensors != 22 && options.sensors != 18)
-    return cli::report({Errc::usage, "--sensors: 18 or 22"});
+    return cli::report({Errc::usage, "--sensors: use 18 or 22"});
   const auto errors = errors_of(options);
   if (!errors) return cli::report(errors.error());
   if (options.out.empty())
@@ -197,7 +198,7 @@ int write_wearers(const Options& options) {
     file << line_of(
         make_stranger(options.seed + n, options.sensors == 22 ? sensors_22 : sensors_18, *errors));
   file.close();
-  return file ? 0 : cli::report({Errc::failed, options.out + ": could not be written"});
+  return file ? 0 : cli::report({Errc::failed, options.out + ": cannot be written"});
 }
 
 } // namespace
@@ -205,11 +206,14 @@ int write_wearers(const Options& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
-      "wearers", "Writes synthetic wearers of another make, for nendo bench calibration --judge");
-  command.add_option("--out", options->out, "The file to write, a JSON object a line");
-  command.add_option("--wearers", options->wearers, "How many, 1 to 10000");
-  command.add_option("--seed", options->seed, "The first wearer's; 1 to 300 were used for tuning");
-  command.add_option("--sensors", options->sensors, "22, or 18 for a glove without DIP sensors");
+      "wearers",
+      "Writes synthetic wearers of another model, for `nendo bench calibration --judge`");
+  command.add_option("--out", options->out, "The file to write, one JSON object per line");
+  command.add_option("--wearers", options->wearers, "Number of wearers, 1 to 10000");
+  command.add_option("--seed", options->seed,
+                     "Seed of the first wearer; 1 to 300 were used for tuning");
+  command.add_option("--sensors", options->sensors,
+                     "Number of sensors: 22, or 18 for a glove without DIP sensors");
   command.add_option("--without", options->without, "An error term that these wearers do not have");
   command.add_option("--only", options->only, "The only error term that they have, or none");
   command.on_chosen([options] { return write_wearers(*options); });

@@ -129,15 +129,16 @@ JudgedWearer wearer_of(const Json& object) {
   if (side != "left" && side != "right") throw Wrong{"\"hand\" is neither left nor right"};
   wearer.side = side == "left" ? Side::left : Side::right;
   for (const Json& name : list(object, "sensors", sensor_slots)) {
-    if (!name.is_string()) throw Wrong{"sensors: not names"};
+    if (!name.is_string()) throw Wrong{"sensors: not a list of names"};
     const auto sensor = sensor_named(name.get<std::string>());
     if (!sensor) throw Wrong{"no sensor is called " + name.dump()};
     wearer.sensors.add(*sensor);
   }
   const Json& pads = list(object, "pads_mm", 5);
-  if (pads.size() != 5) throw Wrong{"pads_mm: not five"};
+  if (pads.size() != 5) throw Wrong{"pads_mm: not five pads"};
   for (std::size_t n = 0; n < 5; ++n) {
-    if (!pads[n].is_array() || pads[n].size() != 2) throw Wrong{"pads_mm: not depth and behind"};
+    if (!pads[n].is_array() || pads[n].size() != 2)
+      throw Wrong{"pads_mm: not a depth and a distance behind"};
     wearer.pads[n] = {1e-3 * number(pads[n][0], -50.0, 50.0, "pads_mm"),
                       1e-3 * number(pads[n][1], -50.0, 50.0, "pads_mm")};
   }
@@ -174,7 +175,7 @@ Result<JudgedWearers> JudgedWearers::open(const std::filesystem::path& path) {
   if (std::filesystem::is_regular_file(path, ignored)) wearers.file_.open(path);
   if (!wearers.file_.is_open())
     return Error{Errc::bad_input,
-                 wearers.name_ + ": cannot be read; nendo bench wearers --out FILE makes one"};
+                 wearers.name_ + ": cannot be read; `nendo bench wearers --out FILE` makes one"};
   return wearers;
 }
 
@@ -192,7 +193,7 @@ Result<std::optional<JudgedWearer>> JudgedWearers::next() {
   } catch (const judged_file::Wrong& caught) {
     return wrong(caught.what);
   } catch (const nlohmann::json::exception&) {
-    return wrong("not a wearer; see nendo bench wearers --out FILE");
+    return wrong("not a wearer; see `nendo bench wearers --out FILE`");
   }
 }
 

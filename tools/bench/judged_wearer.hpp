@@ -30,7 +30,7 @@ struct JudgedMoment {
 
 /// Poses that were held, and a motion afterwards, all with the glove on and not moved.
 struct JudgedSession {
-  std::vector<CountRow> free_motion; ///< before the poses; every joint from end to end
+  std::vector<CountRow> free_motion; ///< motion before the poses, of each joint from end to end
   std::vector<hand::PoseReading> takes;
   std::vector<JudgedMoment> motion;
 };

@@ -70,7 +70,7 @@ void print_text(const char* line, const flow::Histogram& driver, const flow::His
 
 int bench_driver(DriverOptions& options) {
   if (options.latency.records == 0) {
-    return cli::report({Errc::usage, "--records 0: measure at least one"});
+    return cli::report({Errc::usage, "--records: use 1 or more"});
   }
   cli::install_stop_signals();
   constexpr std::array<std::pair<Line, const char*>, 2> lines{
@@ -94,10 +94,11 @@ int bench_driver(DriverOptions& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<DriverOptions>();
   cli::Command command = bench.add_command(
-      "driver", "Latency of the CyberGlove driver, beside that of a bare poll()+read() thread");
-  command.add_option("--records", options->latency.records, "Records to measure on each line");
-  command.add_rate("--rate", options->latency.rate_hz, "Records a second, 1 to 480");
-  command.add_flag("--json", options->json, "One JSON object a line");
+      "driver",
+      "Measures the latency of the CyberGlove driver, beside that of a bare poll()+read() thread");
+  command.add_option("--records", options->latency.records, "Number of records on each line");
+  command.add_rate("--rate", options->latency.rate_hz, "Records per second, 1 to 480");
+  command.add_flag("--json", options->json, "One JSON object per line");
   command.on_chosen([options] { return bench_driver(*options); });
 }
 

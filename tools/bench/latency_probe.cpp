@@ -166,7 +166,7 @@ private:
 Result<void> measure_latency(const LatencyOptions& options, const LatencySinks& sinks,
                              const std::atomic<bool>& stop) {
   if (!(options.rate_hz >= 1.0 && options.rate_hz <= CyberGloveUnit::max_rate_hz)) {
-    return Error{Errc::usage, "the rate must be from 1 to 480 records a second"};
+    return Error{Errc::usage, "--rate: use 1 to 480 records per second"};
   }
   auto driver_wire = make_wire(options.line);
   if (!driver_wire) return driver_wire.error();
@@ -199,7 +199,7 @@ Result<void> measure_latency(const LatencyOptions& options, const LatencySinks& 
       [&](const std::stop_token& token) { read_barely(token, bare_wire->host.get(), bare_ring); });
   if (!device.measure(driver_ring, bare_ring, sinks, stop)) {
     return Error{Errc::failed,
-                 "a record did not arrive within a second; is the machine that busy?"};
+                 "a record did not arrive within a second; stop other programs and try again"};
   }
   return {};
 }

@@ -99,7 +99,7 @@ void report_figure(const RtOptions& options, const std::string& part, const std:
   std::fflush(stdout);
 }
 
-// Both at once, each on a CPU, and then the other way round: what the CPUs differ by cancels.
+// Both run at once, each on a CPU, and then exchange CPUs, so that differences of the CPUs cancel.
 Result<void> beside_cyclictest(const RtOptions& options, const deform::Mesh& model) {
   if (std::thread::hardware_concurrency() < 2)
     return Error{Errc::failed, "beside cyclictest: needs two CPUs"};
@@ -121,10 +121,9 @@ Result<void> beside_cyclictest(const RtOptions& options, const deform::Mesh& mod
     (*outcome)->tally[stress::Measure::lateness].raw.for_each(add(ours));
   }
   if (!options.json) {
-    cli::print(
-        "  loop p50 {:.1f} us, p99 {:.1f} us; cyclictest {:.0f} us, {:.0f} us (whole microseconds "
-        "begun)\n",
-        us(ours, 0.5), us(ours, 0.99), us(theirs, 0.5), us(theirs, 0.99));
+    cli::print("  loop p50 {:.1f} us, p99 {:.1f} us; cyclictest {:.0f} us, {:.0f} us (rounded up "
+               "to microseconds)\n",
+               us(ours, 0.5), us(ours, 0.99), us(theirs, 0.5), us(theirs, 0.99));
   }
   report_figure(options, "loop / cyclictest", "p50 ratio", us(ours, 0.5) / us(theirs, 0.5), 1.2);
   report_figure(options, "loop / cyclictest", "p99 ratio", us(ours, 0.99) / us(theirs, 0.99), 1.2);
@@ -163,7 +162,7 @@ Result<void> whole_pipeline(const RtOptions& options, const deform::Mesh& model)
 Result<void> measure_loop(const RtOptions& options) {
   const deform::Mesh model = paper_sized_ball();
   if (!options.json) {
-    cli::print("the loop at {} Hz under SCHED_FIFO 80, {} s a measurement\n",
+    cli::print("the loop at {} Hz under SCHED_FIFO 80, {} s per measurement\n",
                1'000'000 / interval_us, options.seconds);
   }
   for (const auto part : {beside_cyclictest, spinning, whole_pipeline}) {

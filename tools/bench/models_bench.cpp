@@ -157,7 +157,7 @@ Figures measure(const deform::Mesh& model, bool held, unsigned repetitions) {
   return figures;
 }
 
-void tell(const Options& options, bool held, const Figures& figures) {
+void print(const Options& options, bool held, const Figures& figures) {
   if (options.json) {
     cli::print_line({{"measured", "models"},
                      {"vertices", figures.vertices},
@@ -172,17 +172,18 @@ void tell(const Options& options, bool held, const Figures& figures) {
                      {"finish_ms", median(figures.finish_us) / 1e3}});
     return;
   }
-  cli::print("{} vertices, hands that {} the model; medians, us a tick\n", figures.vertices,
-             held ? "hold" : "have let go of");
+  cli::print("{} vertices, hands that {} the model; medians in us per tick\n", figures.vertices,
+             held ? "hold" : "have released");
   cli::print(
       "  an ordinary tick {:10.1f}\n  a commit         {:10.1f}\n  a new version    {:10.1f}\n",
       median(figures.ordinary_us), median(figures.commit_us), median(figures.new_us));
   if (!held)
     cli::print(
-        "  back by an undo  {:10.1f}\n  forth by a redo  {:10.1f}\n  other masks      {:10.1f}\n",
+        "  an undo          {:10.1f}\n  a redo           {:10.1f}\n  other masks      {:10.1f}\n",
         median(figures.undo_us), median(figures.redo_us), median(figures.mask_us));
-  cli::print("  beside the loop: {:.0f} ms to make it, and {:.0f} ms while the loop holds still\n",
-             median(figures.make_us) / 1e3, median(figures.finish_us) / 1e3);
+  cli::print(
+      "  beside the loop: {:.0f} ms to make the version, and {:.0f} ms while the loop waits\n",
+      median(figures.make_us) / 1e3, median(figures.finish_us) / 1e3);
 }
 
 /// A loop at 1 kHz, in whose second half the radius changes 1,000 times a minute.
@@ -228,21 +229,20 @@ void measure_changes(const Options& options) {
     return;
   }
   cli::print("at 1 kHz, {} s without and {} s with {} changes of radius: {} and {} missed "
-             "deadlines, {} and {} ticks that took too long\n",
+             "deadlines, {} and {} overruns\n",
              options.seconds, options.seconds, changes, missed[0], missed[1], overruns[0],
              overruns[1]);
 }
 
 int run(const Options& options) {
   if (options.cells < 10 || options.cells > 1000 || options.repetitions < 1)
-    return cli::report(
-        {Errc::usage, "--cells, --repetitions: use 10 to 1000 cells a side, and at least once"});
+    return cli::report({Errc::usage, "--cells: use 10 to 1000; --repetitions: use 1 or more"});
   if (!has_memory_for_plane(static_cast<int>(2 * options.cells), "models"))
     return static_cast<int>(Errc::failed);
   cli::install_stop_signals();
   const deform::Mesh model = plane(options.cells);
   for (const bool held : {false, true})
-    tell(options, held, measure(model, held, options.repetitions));
+    print(options, held, measure(model, held, options.repetitions));
   if (options.seconds > 0) measure_changes(options);
   return 0;
 }
@@ -252,14 +252,16 @@ int run(const Options& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
-      "models", "What it costs a tick to go on with a model that was subdivided, or to go back");
+      "models",
+      "Measures the cost of a subdivided model for the tick that accepts it, and of its undo");
   command.add_option("--cells", options->cells,
-                     "The plane has so many cells a side before it is subdivided");
-  command.add_option("--repetitions", options->repetitions, "Loops of which the median is told");
+                     "Cells per side of the plane, before it is subdivided");
+  command.add_option("--repetitions", options->repetitions,
+                     "Number of loops, of which the median is reported");
   command.add_option(
       "--seconds", options->seconds,
-      "How long a loop runs without, and then with changes of radius; 0: not at all");
-  command.add_flag("--json", options->json, "A JSON line for each table");
+      "Seconds that a loop runs without, and then with changes of the radius; 0: none");
+  command.add_flag("--json", options->json, "One JSON object per line");
   command.on_chosen([options] { return run(*options); });
 }
 

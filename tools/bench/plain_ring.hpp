@@ -1,9 +1,9 @@
 #pragma once
 // The baseline of `nendo bench rt`: a ring like published designs. Indices wrap, one slot stays
-// empty to tell full from empty, each side caches the other's index, and every index has a cache
-// line of its own. Such designs let the allocator decide where the slots lie: glibc puts a large
-// block 16 bytes behind a cache line's beginning, and a smaller one anywhere. Here the place is a
-// parameter, so that all runs are alike.
+// empty to distinguish full from empty, each side caches the other's index, and every index has a
+// cache line of its own. Such designs let the allocator decide where the slots lie: glibc puts a
+// large block 16 bytes after a cache line's beginning, and a smaller one anywhere. Here the place
+// is a parameter, so that all runs are alike.
 
 #include <atomic>
 #include <cstddef>

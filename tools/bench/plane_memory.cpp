@@ -29,7 +29,7 @@ bool has_memory_for_plane(int cells, const std::string& benchmark) {
   const std::size_t vertices = side * side;
   const bool has_memory = std::min(available_bytes(), usable_memory()) >= bytes_a_vertex * vertices;
   if (!has_memory)
-    cli::note(benchmark + ": too little memory left for " + std::to_string(vertices) + " vertices");
+    cli::note(benchmark + ": not enough free memory for " + std::to_string(vertices) + " vertices");
   return has_memory;
 }
 

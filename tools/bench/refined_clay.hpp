@@ -33,7 +33,7 @@ private:
   std::size_t bodies_;
   std::size_t parts_a_body_;
   deform::ClayOptions options_;
-  deform::Mesh model_; ///< before it was pressed
+  deform::Mesh model_; ///< the model before it was pressed
   deform::Mesh shown_;
   std::unique_ptr<deform::SculptedShape> shape_;
   std::unique_ptr<deform::ClayDeformer> clay_;

@@ -1,6 +1,6 @@
-// nendo bench rt, the rings: elements of 64 bytes a second from one processor to another. A sample
-// counts only if a cache line's round trip took the same time before and after it, and the
-// throughput is the median over a thousand elements each, which no interruption moves.
+// nendo bench rt, the rings: elements of 64 bytes per second from one processor to another. A
+// sample counts only if a cache line's round trip took the same time before and after it, and the
+// throughput is the median over a thousand elements each, so that interruptions do not change it.
 
 #include <algorithm>
 #include <chrono>
@@ -40,7 +40,7 @@ void send_all(Contender& ring) {
   }
 }
 
-/// Keeps the compiler from leaving out what nobody looks at.
+/// Prevents the compiler from removing unused results.
 volatile std::uint64_t ring_sum_seen = 0;
 
 /// Reads every byte of every element, and returns the median of the elements a second.
@@ -180,7 +180,7 @@ Result<void> measure_rings(const RtOptions& options) {
   const double round_trip_ns = median(std::move(trips_ns));
   if (!options.json) {
     cli::print(
-        "elements of {} bytes from processor {} to {}, whose round trip takes {:.0f} ns; beside "
+        "elements of {} bytes from processor {} to {}, with a round trip of {:.0f} ns; beside "
         "a plain ring\n",
         sizeof(Element), processors->first, processors->second, round_trip_ns);
   }

@@ -26,7 +26,7 @@ struct Options {
 
 int bench_rt(const Options& options) {
   if (options.rt.rounds == 0 || options.rt.rounds > 10'000)
-    return cli::report({Errc::usage, "--rounds: from 1 to 10000"});
+    return cli::report({Errc::usage, "--rounds: use 1 to 10000"});
   if (options.rt.seconds < 1 || options.rt.seconds > 3600)
     return cli::report({Errc::usage, "--seconds: use 1 to 3600"});
   cli::install_stop_signals();
@@ -43,12 +43,14 @@ int bench_rt(const Options& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command =
-      bench.add_command("rt", "Rings, frame hand-off and the loop, beside others in the same run");
-  command.add_option("--part", options->part, "What to measure")
+      bench.add_command("rt", "Measures rings, the hand-off of frames and the loop, beside other "
+                              "implementations in the same run");
+  command.add_option("--part", options->part, "The part to measure")
       .one_of({"all", "rings", "handoff", "loop"});
-  command.add_option("--rounds", options->rt.rounds, "Measurements of each ring and hand-off");
-  command.add_option("--seconds", options->rt.seconds, "How long each of the loop's takes");
-  command.add_flag("--json", options->rt.json, "One JSON object a line");
+  command.add_option("--rounds", options->rt.rounds,
+                     "Number of measurements of each ring and hand-off");
+  command.add_option("--seconds", options->rt.seconds, "Seconds per measurement of the loop");
+  command.add_flag("--json", options->rt.json, "One JSON object per line");
   command.on_chosen([options] { return bench_rt(*options); });
 }
 

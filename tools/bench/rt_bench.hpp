@@ -9,9 +9,9 @@
 namespace nendo::bench {
 
 struct RtOptions {
-  std::uint64_t rounds = 20;  ///< of every contender, in an order that rotates
-  std::uint32_t seconds = 10; ///< of each of the loop's measurements, 1 to 3600
-  bool json = false;          ///< one object a line in place of text
+  std::uint64_t rounds = 20;  ///< rounds of each contender, in an order that rotates
+  std::uint32_t seconds = 10; ///< duration of each measurement of the loop, 1 to 3600
+  bool json = false;          ///< one object per line in place of text
 };
 
 /// Measures SpscRing, one element at a time and in batches, beside other rings. Takes some 0.2 s a

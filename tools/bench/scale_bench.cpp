@@ -76,11 +76,10 @@ void heading(const Options& options, const char* text) {
 }
 
 void bench_growth(const Options& options, int repetitions) {
-  heading(
-      options,
-      "ten supports of a fifth of the model, microseconds a frame; memory of a deformer and the "
-      "shape it makes\n vertices  influences    type 1    type 2  ns/vert.  ns/vert.  B/vert.  "
-      "  B/vert.\n");
+  heading(options,
+          "ten supports of a fifth of the model, microseconds per frame; memory of a deformer and "
+          "of its shape\n vertices  influences    type 1    type 2  ns/vert.  ns/vert.  B/vert.  "
+          "  B/vert.\n");
   for (const int cells : {315, 999, 3161}) {
     if (options.short_form && cells > 315) break;
     if (has_memory_for_plane(cells, "bench scale"))
@@ -90,7 +89,7 @@ void bench_growth(const Options& options, int repetitions) {
 
 int bench_scale(const Options& options) {
   if (options.repetitions == 0 || options.repetitions > 10'000)
-    return cli::report({Errc::usage, "--repetitions: from 1 to 10000"});
+    return cli::report({Errc::usage, "--repetitions: use 1 to 10000"});
   if (const auto chosen = choose_simd(options.simd); !chosen) return cli::report(chosen.error());
   const auto repetitions = static_cast<int>(options.repetitions);
   bench_growth(options, repetitions);
@@ -109,12 +108,13 @@ int bench_scale(const Options& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
-      "scale", "How the deformation grows: ten million vertices, a thousand centres");
-  command.add_option("--simd", options->simd,
-                     "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
-  command.add_option("--repetitions", options->repetitions, "Take the best of so many");
-  command.add_flag("--short", options->short_form, "A hundred thousand vertices at most");
-  command.add_flag("--json", options->json, "A JSON object a line");
+      "scale",
+      "Measures how the cost of the deformation grows: ten million vertices, a thousand centres");
+  add_simd_option(command, options->simd);
+  command.add_option("--repetitions", options->repetitions,
+                     "Number of repetitions, of which the best counts");
+  command.add_flag("--short", options->short_form, "Measure at most a hundred thousand vertices");
+  command.add_flag("--json", options->json, "One JSON object per line");
   command.on_chosen([options] { return bench_scale(*options); });
 }
 

@@ -17,7 +17,7 @@ struct GrowthTimes {
   std::size_t type2_bytes = 0;
 };
 
-/// Measures on the plane of Table 1 with that many cells a side.
+/// Measures on the plane of Table 1 with this number of cells per side.
 GrowthTimes measure_growth(int cells, int repetitions);
 
 /// The times with many small supports, beside ten supports that reach every vertex.

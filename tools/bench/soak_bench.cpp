@@ -108,9 +108,9 @@ std::string complaint_about(const Tally& tally) {
   const std::uint64_t accounted = tally.stats.records + tally.stats.missed;
   if (tally.broken > 0) return "records of wrong structure were delivered";
   if (accounted > tally.sent || accounted + undecided < tally.sent)
-    return "records sent are not those delivered and missed";
+    return "the records sent are not the sum of those delivered and missed";
   if (tally.delivered + tally.stats.ring_refused != tally.stats.records)
-    return "samples taken and refused are not those delivered";
+    return "the samples taken and refused are not the sum of those delivered";
   if (tally.memory_end_kb > tally.memory_begin_kb + max_growth_kb) return "memory grew";
   return {};
 }
@@ -133,28 +133,27 @@ void print(const Tally& tally, bool json) {
                      {"memory_end_kb", tally.memory_end_kb}});
     return;
   }
-  cli::print("{} records sent in {:.1f} s, {} of them touched by a fault\n", tally.sent,
+  cli::print("{} records sent in {:.1f} s, {} of them changed by a fault\n", tally.sent,
              tally.seconds, tally.faulted);
-  cli::print("{} delivered + {} missed; {} bad frames, {} of them well formed; {} "
-             "samples found the ring full\n",
+  cli::print("{} delivered + {} missed; {} bad records, {} of them implausible; {} samples "
+             "refused, because the ring was full\n",
              stats.records, stats.missed, stats.bad_records, stats.implausible, stats.ring_refused);
   cli::print("delivered with one wrong bit in a sensor: {}; of wrong structure: {}\n",
              tally.flipped, tally.broken);
-  cli::print("memory: {} kB after a twentieth, {} kB at the end\n", tally.memory_begin_kb,
-             tally.memory_end_kb);
+  cli::print("memory: {} kB after a twentieth of the records, {} kB at the end\n",
+             tally.memory_begin_kb, tally.memory_end_kb);
 }
 
 int bench_soak(const Options& options) {
   if (options.records < 1000) {
-    return cli::report(
-        {Errc::usage, "--records: at least 1000, or there is nothing to account for"});
+    return cli::report({Errc::usage, "--records: use 1000 or more"});
   }
   cli::install_stop_signals();
   spdlog::set_level(spdlog::level::off);
   const auto tally = soak(options);
   if (!tally) return cli::report(tally.error());
   if (cli::stop_requested())
-    return cli::report({Errc::failed, "ended before all records were sent"});
+    return cli::report({Errc::failed, "stopped before all records were sent"});
   print(*tally, options.json);
   const std::string complaint = complaint_about(*tally);
   return complaint.empty() ? 0 : cli::report({Errc::failed, complaint});
@@ -164,10 +163,13 @@ int bench_soak(const Options& options) {
 
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
-  cli::Command command = bench.add_command(
-      "soak", "Millions of records with faults, as fast as they go: all accounted for?");
-  command.add_option("--records", options->records, "How many to send");
-  command.add_option("--fault", options->faults, "As for nendo emulate; together about 1 %");
+  cli::Command command =
+      bench.add_command("soak", "Sends millions of records with faults, as fast as possible, and "
+                                "checks that each is accounted for");
+  command.add_option("--records", options->records, "Number of records");
+  command.add_option(
+      "--fault", options->faults,
+      "A fault, as for `nendo emulate`; the default ones change about 1 % of the records");
   command.add_flag("--json", options->json, "One JSON object");
   command.on_chosen([options] { return bench_soak(*options); });
 }

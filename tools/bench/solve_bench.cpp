@@ -121,10 +121,9 @@ void print_ten(const Ten& one, const Ten& several, bool json) {
                      {"several_radii_solve_us", several.solve_us}});
     return;
   }
-  cli::print(
-      "ten fingertips: assembly and factor {:.2f} us, each solution {:.2f} us; with a radius a "
-      "finger {:.2f} and {:.2f} us\n",
-      one.build_us, one.solve_us, several.build_us, several.solve_us);
+  cli::print("ten fingertips: assembly and factor {:.2f} us, each solution {:.2f} us; with a "
+             "radius per finger {:.2f} and {:.2f} us\n",
+             one.build_us, one.solve_us, several.build_us, several.solve_us);
 }
 
 void print_json(std::uint64_t points, std::uint64_t neighbours, const Measured& one) {
@@ -180,10 +179,10 @@ void measure_many(std::uint64_t points, const Options& options) {
 
 int bench_solve(const Options& options) {
   const auto complain = [](const char* what) { return cli::report({Errc::usage, what}); };
-  if (options.points > 100'000) return complain("--points: at most 100000");
+  if (options.points > 100'000) return complain("--points: use at most 100000");
   if (options.neighbours == 0 || options.neighbours > 1000)
-    return complain("--neighbours: from 1 to 1000");
-  if (options.rounds == 0 || options.rounds > 1000) return complain("--rounds: from 1 to 1000");
+    return complain("--neighbours: use 1 to 1000");
+  if (options.rounds == 0 || options.rounds > 1000) return complain("--rounds: use 1 to 1000");
   const Ten one = measure_ten(Eigen::VectorXd::Constant(10, 40.0), options.rounds);
   const Ten several = measure_ten(Eigen::VectorXd::LinSpaced(10, 20.0, 60.0), options.rounds);
   print_ten(one, several, options.json);
@@ -201,12 +200,14 @@ int bench_solve(const Options& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
-      "solve", "Finding the field of ten fingertips, and of thousands of control vectors");
+      "solve",
+      "Measures the solve for the field of ten fingertips, and of thousands of control vectors");
   command.add_option("--points", options->points,
-                     "This many control vectors, instead of 1000 and then 10000");
-  command.add_option("--neighbours", options->neighbours, "How many lie in reach of each");
-  command.add_option("--rounds", options->rounds, "Take the best of so many");
-  command.add_flag("--json", options->json, "A JSON object a line");
+                     "Number of control vectors, in place of 1000 and then 10000");
+  command.add_option("--neighbours", options->neighbours,
+                     "Number of control vectors in reach of each");
+  command.add_option("--rounds", options->rounds, "Number of rounds, of which the best counts");
+  command.add_flag("--json", options->json, "One JSON object per line");
   command.on_chosen([options] { return bench_solve(*options); });
 }
 

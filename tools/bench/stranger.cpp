@@ -98,7 +98,7 @@ private:
                 from_degrees(uniform(StrangerSpread::min_lag_deg, StrangerSpread::max_lag_deg));
       creep_[n] = errors_.creep * uniform(0.0, 0.03);
       gain_[n] = 1e-3 * stranger_joints[n].gain * std::exp(normal(0.0, StrangerSpread::log_gain));
-      // Whoever sets a glove's gain sees to it that no count is at its end.
+      // Users set a glove's gain such that no count is at the end of its range.
       const double widest = 1.35 * (high_[n] - low_[n]);
       gain_[n] = std::max(gain_[n], widest / 225.0);
       const double below = (std::max(0.0, -low_[n]) + 0.12 * (high_[n] - low_[n])) / gain_[n];

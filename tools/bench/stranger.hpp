@@ -15,8 +15,8 @@ struct StrangerErrors {
   double curvature = 1.0;
   double hysteresis = 1.0;
   double creep = 1.0;
-  double cross_talk = 1.0; ///< what the product's couplings do not have, too
-  double scatter = 1.0;    ///< of poses
+  double cross_talk = 1.0; ///< also the cross-talk that the product's couplings do not have
+  double scatter = 1.0;    ///< scatter of poses
   double slip = 1.0;       ///< after the calibration
 };
 

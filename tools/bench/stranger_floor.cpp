@@ -139,7 +139,7 @@ void StrangerFloor::add_take(const hand::PoseReading& reading, const SensorAngle
 StrangerFloor::Expected StrangerFloor::expected_of(hand::PoseId id, std::size_t slot,
                                                    const std::vector<std::size_t>& touching) {
   const hand::CalibrationPose& pose = hand::pose_of(id);
-  // Whoever calibrates is not told where joints are of which a pose says nothing.
+  // A calibration does not know the angles that a pose leaves open.
   double asked_deg = 0.5 * (stranger_joints[slot].low + stranger_joints[slot].high);
   double scatter_deg = 0.3 * to_degrees(floor_range_rad(slot));
   bool has_habit = false;

@@ -1,8 +1,8 @@
 #pragma once
-// The floor of a calibration: what an estimator reaches on the same captures that is told the
-// wearer's true hand, the true form of the sensors' errors, and the true spreads of all that it
-// does not know. Whoever knows less cannot be asked for more. A second floor is not told the hand,
-// but how such hands differ, as nobody knows it of people.
+// The floor of a calibration: the accuracy, on the same captures, of an estimator that has the
+// wearer's true hand, the true form of the sensors' errors, and the true spreads of all unknowns.
+// An estimator with less cannot be better. A second floor has in place of the hand only the spreads
+// of such hands, which are unknown for people.
 
 #include <cstdint>
 #include <vector>
@@ -25,7 +25,7 @@ public:
   StrangerFloor(const JudgedWearer& wearer, const StrangerHand* hand);
 
   /// Takes the next moment of a motion, and returns the joints' angles by slot, in radians. The
-  /// moments before it tell where hysteresis stands. Angles of absent sensors are 0.
+  /// previous moments determine the state of hysteresis. Angles of absent sensors are 0.
   hand::SensorAngles angles_rad(const CountRow& counts);
   /// Returns how far the hand's pads of thumb and finger (1 to 4) are apart at these angles.
   double pads_apart_m(const hand::SensorAngles& angles_rad, int finger) const;
@@ -36,7 +36,7 @@ private:
     std::size_t slot;
     double asked_rad, scatter_rad;
     bool has_habit;
-    double deviation_rad; ///< of the angle that comes out, clamped to the joint's range
+    double deviation_rad; ///< that of the resulting angle, clamped to the joint's range
   };
   struct Take {
     hand::SensorAngles counts{};

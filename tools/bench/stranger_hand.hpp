@@ -40,20 +40,20 @@ public:
 private:
   struct FingerShape {
     Eigen::Vector3d knuckle; ///< from the wrist
-    Eigen::Vector3d base;    ///< of its metacarpal
+    Eigen::Vector3d base;    ///< base of its metacarpal
     Eigen::Matrix3d rest;    ///< where it points, and how its axis of flexion is tilted
-    double pip_tilt;         ///< of the axes of the last two joints against the knuckle's, radians
+    double pip_tilt;         ///< tilt of the last two joints' axes against the knuckle's, radians
     std::array<double, 3> bones;
     double arch_share;
   };
   struct ThumbShape {
     Eigen::Vector3d base;
-    Eigen::Matrix3d frame;       ///< of the axis about which the thumb rolls
+    Eigen::Matrix3d frame;       ///< frame of the axis about which the thumb rolls
     double rest_abduction;       ///< radians
-    Eigen::Vector3d first_axis;  ///< of flexion, fixed in the trapezium
-    Eigen::Vector3d second_axis; ///< of abduction, at rest; it moves with the metacarpal
+    Eigen::Vector3d first_axis;  ///< axis of flexion, fixed in the trapezium
+    Eigen::Vector3d second_axis; ///< axis of abduction at rest; it moves with the metacarpal
     double rest_turn;            ///< about its own axis, radians
-    double mcp_tilt, ip_tilt;    ///< of their axes, about the bone, radians
+    double mcp_tilt, ip_tilt;    ///< tilt of their axes about the bone, radians
     std::array<double, 3> bones;
   };
 

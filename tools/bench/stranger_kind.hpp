@@ -1,6 +1,6 @@
 #pragma once
-// What strangers have in common: the means and spreads from which each one's joints, sensors and
-// habits are drawn. The floor of calibration is told these, and nothing of the one at hand.
+// The means and spreads from which the joints, sensors and habits of each stranger are drawn. The
+// floor of calibration has these, and no value of a single stranger.
 
 #include <array>
 #include <cstddef>
@@ -54,17 +54,17 @@ inline constexpr std::array<StrangerJoint, sensor_slots> stranger_joints = [] {
 /// How far strangers differ: standard deviations, but `bow` and the lags, which are the ends of
 /// uniform distributions.
 struct StrangerSpread {
-  static constexpr double low = 0.03, high = 0.06; ///< of a joint's range
+  static constexpr double low = 0.03, high = 0.06; ///< fractions of a joint's range
   /// How far short of a joint's end a free motion stops: a normal variable's size.
   static constexpr double short_deg = 2.5;
   static constexpr double habit_deg = 2.5;
   static constexpr double scatter_deg = 5.0;
   static constexpr double side_by_side_deg = 1.5;
-  static constexpr double touch_deg = 9.0; ///< of the joints from which a touch is sought
+  static constexpr double touch_deg = 9.0; ///< spread of the joints from which a touch is sought
   static constexpr double relaxed_deg = 8.0;
   static constexpr double log_gain = 0.13;
   static constexpr double offset_counts = 14.0;
-  static constexpr double bow = 0.035; ///< of a joint's range
+  static constexpr double bow = 0.035; ///< fraction of a joint's range
   static constexpr double min_lag_deg = 0.3, max_lag_deg = 1.5;
 };
 
@@ -72,7 +72,7 @@ struct StrangerSpread {
 struct StrangerRead {
   Sensor of, by;
   double mean, spread;
-  bool is_cross_talk; ///< of which the product's couplings know nothing
+  bool is_cross_talk; ///< the product's couplings do not contain it
 };
 std::vector<StrangerRead> stranger_reads();
 

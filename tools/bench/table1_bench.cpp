@@ -65,7 +65,7 @@ void print_json(const Place& place, const Table1Entry& entry) {
 }
 
 void print_heading() {
-  cli::print("The paper's Table 1 in frames a second. The paper: Athlon 64 3400+; p(x), normals "
+  cli::print("The paper's Table 1 in frames per second. The paper: Athlon 64 3400+; p(x), normals "
              "and drawing included.\nHere, the best of many. whole: the same in the frame, one "
              "thread, {}.\nOthers only solve and move all vertices, without p(x). plain: a loop "
              "that the compiler vectorises; 2 thr: two threads.\n",
@@ -128,7 +128,7 @@ Result<void> draw_pictures(const Options& options, const std::vector<Table1Entry
 int bench_table1(const Options& options) {
   constexpr double longest_s = 600.0;
   if (!(options.seconds_per_cell > 0.0 && options.seconds_per_cell <= longest_s))
-    return cli::report({Errc::usage, "--seconds-per-cell: more than 0, at most 600"});
+    return cli::report({Errc::usage, "--seconds-per-cell: use more than 0, at most 600"});
   if (const auto fine = cli::check_place("--picture", options.picture); !fine)
     return cli::report(fine.error());
   if (const auto fine = cli::check_place("--figure4", options.figure4); !fine)
@@ -150,17 +150,17 @@ int bench_table1(const Options& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
-      "table1", "The paper's Table 1 on this machine, beside the paper's figures and a plain loop");
+      "table1",
+      "Measures the paper's Table 1 on this machine, beside the paper's figures and a plain loop");
   command.add_duration("--seconds-per-cell", options->seconds_per_cell,
-                       "Seconds for each mesh, radius and layout, of which there are forty");
+                       "Seconds per mesh, radius and layout, of which there are forty");
   command.add_option("--picture", options->picture,
                      "Also draw the layout 'near' beside the paper's figures, as FILE.svg");
   command.add_option("--figure4", options->figure4,
                      "Also draw the time of a whole frame over its evaluations, as the paper's "
                      "figure 4 does, beside the paper's, as FILE.svg");
-  command.add_option("--simd", options->simd,
-                     "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
-  command.add_flag("--json", options->json, "A JSON object a line");
+  add_simd_option(command, options->simd);
+  command.add_flag("--json", options->json, "One JSON object per line");
   command.on_chosen([options] { return bench_table1(*options); });
 }
 

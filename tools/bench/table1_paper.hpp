@@ -21,7 +21,7 @@ inline constexpr Table1Figures<std::size_t> paper_evaluations{{
     {20790, 74482, 225714, 309476, 330250},
 }};
 
-/// The frames a second.
+/// Frames per second.
 inline constexpr Table1Figures<double> paper_type1{{
     {496.3, 502.1, 499.2, 427.4, 423.6},
     {162.6, 138.0, 119.7, 113.1, 112.0},

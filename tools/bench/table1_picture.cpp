@@ -39,7 +39,7 @@ double y_of(double frames_per_second, double top) {
   return top + panel_height * (1.0 - std::clamp(share, 0.0, 1.0));
 }
 
-/// A mesh's five radii stand together.
+/// The five radii of a mesh are one group.
 double x_of(const Table1Entry& entry) {
   const double group = panel_width / static_cast<double>(reference::table1_planes.size());
   const double step = group / (static_cast<double>(reference::table1_radii.size()) + 1.0);
@@ -70,7 +70,7 @@ void draw_scale(cli::SvgDrawing& drawing, double top) {
   }
   // The rate of the loop, below which a hand sees single frames.
   rule(drawing, top, 90.0, "#c9a227", "5 4");
-  drawing.text(panel_left + panel_width, y_of(90.0, top) - 4.0, "90 a second", small_at_end);
+  drawing.text(panel_left + panel_width, y_of(90.0, top) - 4.0, "90 per second", small_at_end);
 }
 
 void draw_column(cli::SvgDrawing& drawing, const Table1Entry& entry, std::size_t type, double paper,
@@ -101,7 +101,7 @@ void draw_panel(cli::SvgDrawing& drawing, const std::vector<Table1Entry>& entrie
   draw_scale(drawing, top);
   drawing.text(panel_left, top - 10.0,
                type == 0 ? "Type-1: the fingertips stay frozen to the model"
-                         : "Type-2: solved anew in every frame",
+                         : "Type-2: solved again in each frame",
                title_text);
   for (const Table1Entry& entry : entries)
     draw_column(drawing, entry, type, paper.at(entry.plane).at(entry.radius), top);
@@ -121,7 +121,7 @@ void draw_legend(cli::SvgDrawing& drawing, double y) {
   double x = panel_left + 4.0;
   for (const Item& item :
        {Item{4.0, paper_colour, paper_colour, "the paper, 2004: p(x), normals, drawing"},
-        Item{4.0, whole_colour, whole_colour, "Nendo, likewise (times the paper's)"},
+        Item{4.0, whole_colour, whole_colour, "Nendo, the same (times the paper's)"},
         Item{4.0, "white", plain_colour, "without these: a plain loop"},
         Item{3.0, one_colour, one_colour, "Nendo"},
         Item{5.5, "white", two_colour, "two threads"}}) {
@@ -136,7 +136,7 @@ void draw_legend(cli::SvgDrawing& drawing, double y) {
 std::string table1_picture(const std::vector<Table1Entry>& entries, const std::string& layout) {
   cli::SvgDrawing drawing(width, height);
   drawing.text(panel_left, 30.0,
-               fmt::format("The paper's Table 1 in frames a second: ten fingertips on a plane "
+               fmt::format("The paper's Table 1 in frames per second: ten fingertips on a plane "
                            "(layout {})",
                            layout),
                {18});

@@ -15,9 +15,9 @@ struct Table1Entry {
   Table1Cell cell;
 };
 
-/// Returns an SVG of frames a second on a logarithmic scale, with a panel for each type. Each entry
-/// has the paper's figure, that of a whole frame here, and those of the deformation alone: the
-/// plain loop's and ours with one thread and two.
+/// Returns an SVG of frames per second on a logarithmic scale, with a panel for each type. Each
+/// entry has the paper's figure, that of a whole frame here, and those of the deformation alone:
+/// the plain loop's and ours with one thread and two.
 std::string table1_picture(const std::vector<Table1Entry>& entries, const std::string& layout);
 
 } // namespace nendo::bench

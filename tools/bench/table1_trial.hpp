@@ -9,7 +9,7 @@
 
 namespace nendo::bench {
 
-/// The frames a second, the best of many. A frame takes new displacements, solves, and moves all
+/// Frames per second, the best of many. A frame takes new displacements, solves, and moves all
 /// vertices; one of Type-2 also assembles and factorises. Nothing is drawn but in whole frames.
 struct Table1Cell {
   using Types = std::array<double, 2>; ///< Type-1, Type-2
@@ -21,7 +21,7 @@ struct Table1Cell {
   Types whole_frame{}; ///< one thread; p(x), normals and drawing included (whole_frame.hpp)
 };
 
-/// Measures for about that many seconds, but with at least one repetition of each measurement.
+/// Measures for about this number of seconds, but with at least one repetition of each measurement.
 Table1Cell measure_table1_cell(const deform::Mesh& plane, const deform::Points& starts,
                                double radius, double seconds);
 

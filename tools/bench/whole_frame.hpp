@@ -11,7 +11,7 @@
 
 namespace nendo::bench {
 
-/// What a frame of this kind draws, and by what, for people.
+/// Describes the drawing of a whole frame.
 inline constexpr auto whole_frame_drawing = "640x480 pixels by the processor";
 
 class WholeFrame {
@@ -20,8 +20,8 @@ public:
   WholeFrame(const deform::Mesh& mesh, const deform::Points& starts, double radius);
   ~WholeFrame();
 
-  /// Measures for about that many seconds, but at least one turn of each type. Returns the frames a
-  /// second of Type-1 and Type-2, on one thread.
+  /// Measures for about this number of seconds, but at least one turn of each type. Returns the
+  /// frames per second of Type-1 and Type-2, on one thread.
   std::array<double, 2> measure(double seconds);
   /// Returns the last picture, or null before the first.
   const render::Image* picture() const noexcept;

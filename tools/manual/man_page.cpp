@@ -121,7 +121,7 @@ std::string exit_status(const cli::CommandModel& program) {
 
 std::string program_page(const cli::CommandModel& program, const PageOrigin& origin) {
   std::string summary = first_line(program.summary);
-  summary.erase(0, summary.find(": ") + 2); // the name stands before it
+  summary.erase(0, summary.find(": ") + 2); // the name is before it
   while (summary.ends_with('.'))
     summary.pop_back();
   std::string text = head("nendo", summary, origin) + usage("nendo", program) + ".SH COMMANDS\n";
