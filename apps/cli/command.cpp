@@ -22,7 +22,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/fmt/ranges.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -31,6 +30,7 @@
 #include <nendo/version.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/figures.hpp"
 #include "cli/nearest_word.hpp"
 #include "cli/quantities.hpp"
 
@@ -132,7 +132,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
 }
 
 std::string list_of_commands(const CLI::App& app) {
-  return fmt::format("the commands are {}", fmt::join(command_names(app), ", "));
+  return "the commands are " + joined(command_names(app));
 }
 
 /// Returns the commands that the arguments chose, the program first.

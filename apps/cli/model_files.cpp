@@ -4,10 +4,8 @@
 #include <filesystem>
 #include <string_view>
 
-#include <spdlog/fmt/fmt.h>
-#include <spdlog/fmt/ranges.h>
-
 #include "cli/cli.hpp"
+#include "cli/figures.hpp"
 
 namespace nendo::cli {
 
@@ -32,7 +30,7 @@ std::vector<std::string>& kept_model_notes() {
 } // namespace
 
 std::string name_of_files(const std::vector<std::string>& files) {
-  return fmt::format("{}", fmt::join(files, between));
+  return joined(files, between);
 }
 
 // The name of a file may have the separator in it.

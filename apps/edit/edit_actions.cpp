@@ -228,12 +228,6 @@ Result<Eigen::Vector3d> parse_place(const std::string& text) {
   return Error{Errc::usage, "--to " + text + ": use X,Y,Z in the model's units"};
 }
 
-std::string fixed(double number, int decimals) {
-  char digits[400]; // the largest double has 309 before the point
-  std::snprintf(digits, sizeof digits, "%.*f", decimals, number);
-  return digits;
-}
-
 Result<std::string> edited_file(const std::string& file, const std::string& out) {
   if (!out.empty()) {
     if (const auto fine = cli::check_place("--out", out, {timeline::file_ending}); !fine)

@@ -13,6 +13,7 @@
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/version.hpp>
 
+#include "cli/figures.hpp"
 #include "commands/commands.hpp"
 #include "edit/edit_actions.hpp"
 #include "export/chosen_frames.hpp"
@@ -242,7 +243,8 @@ void EditSession::follow_export() {
   if (!result) return;
   export_.reset();
   if (*result)
-    report(export_file_ + ": " + fixed(static_cast<double>((*result)->bytes) / 1e6, 1) + " MB");
+    report(export_file_ + ": " + cli::fixed(static_cast<double>((*result)->bytes) / 1e6, 1) +
+           " MB");
   else
     report(Result<void>((*result).error()), {});
 }
@@ -344,7 +346,7 @@ void EditSession::try_out(const viewer::KeyDrag& drag) {
                                  : move_key(timeline, key->side, key->key, drag.to_s);
     return after(moved, key_at(timeline, key->side, drag.to_s));
   });
-  report(done, (drag.copy ? "copied to " : "moved to ") + fixed(drag.to_s, 3) + " s");
+  report(done, (drag.copy ? "copied to " : "moved to ") + cli::fixed(drag.to_s, 3) + " s");
   if (done) seek(drag.to_s);
 }
 
@@ -363,7 +365,7 @@ void EditSession::try_out(const viewer::TipDrag& drag) {
   constexpr double fine_m = 1e-3;
   report(done, std::string(name_of(drag.finger)) +
                    (set.off_m > fine_m ? " tip: out of reach, " : " tip: ") +
-                   fixed(1e3 * set.off_m, 3) + " mm off");
+                   cli::fixed(1e3 * set.off_m, 3) + " mm off");
 }
 
 void EditSession::try_out(const viewer::KeyBlend& blend) {
@@ -372,7 +374,7 @@ void EditSession::try_out(const viewer::KeyBlend& blend) {
     if (!key) return nothing_selected();
     return after(blend_key(timeline, key->side, key->key, blend.factor), key);
   }),
-         "blended with its neighbours, " + fixed(blend.factor, 2));
+         "blended with its neighbours, " + cli::fixed(blend.factor, 2));
 }
 
 /// Of the selected key's hand; with none selected, of all hands that have none there.
@@ -391,7 +393,7 @@ void EditSession::add_keys() {
     }
     return added;
   }),
-         "a key more, at " + fixed(at_s, 3) + " s");
+         "a key more, at " + cli::fixed(at_s, 3) + " s");
 }
 
 void EditSession::delete_key() {
@@ -409,7 +411,7 @@ void EditSession::copy_key() {
     const auto copied = timeline::copy_key(timeline, key.side, key.key, to_s);
     return after(copied, key_at(timeline, key.side, to_s));
   }),
-         "copied to " + fixed(to_s, 3) + " s");
+         "copied to " + cli::fixed(to_s, 3) + " s");
 }
 
 void EditSession::mirror() {
@@ -426,7 +428,7 @@ void EditSession::retime(const viewer::Retiming& times) {
     return after(timeline::retime(timeline, times.scale, times.from_s, times.to_s),
                  history_.selected());
   }),
-         "re-timed, " + fixed(times.scale, 3) + " times as long");
+         "re-timed, " + cli::fixed(times.scale, 3) + " times as long");
 }
 
 } // namespace nendo::edit

@@ -16,6 +16,7 @@
 #include <nendo/flow/setting.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/figures.hpp"
 #include "edit/edit_actions.hpp"
 #include "timeline/hand_curve.hpp"
 #include "timeline/timeline.hpp"
@@ -127,7 +128,8 @@ std::string values_text(const puppet::Puppet& puppet, std::span<const double> va
   });
   std::string text;
   for (const std::size_t at : order)
-    text += (text.empty() ? "" : ", ") + puppet.functions[at].name + " " + fixed(values[at], 2);
+    text +=
+        (text.empty() ? "" : ", ") + puppet.functions[at].name + " " + cli::fixed(values[at], 2);
   return text.empty() ? "at rest" : text;
 }
 

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <spdlog/fmt/fmt.h>
 
 #include <nendo/base/text.hpp>
 #include <nendo/sculpting/find_wearer.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/figures.hpp"
 #include "gloves/glove_json.hpp"
 #include "nendo/commands.hpp"
 
@@ -57,10 +57,6 @@ ordered_json sensors_json(const WearerCalibration& wearer) {
     sensor["confidence"] = quality->confidence;
   }
   return sensors;
-}
-
-std::string fixed(double value, int decimals) {
-  return fmt::format("{:.{}f}", value, decimals);
 }
 
 void print_table(const std::vector<std::vector<std::string>>& rows) {
@@ -125,9 +121,10 @@ void show_text(const StoredCalibration& file) {
       return to_degrees(line.gain_rad_per_count * (count - line.offset_counts));
     };
     const auto& quality = wearer.quality[slot];
-    rows.push_back({std::string(sensor_names[slot]), fixed(line.gain_rad_per_count, 5),
-                    fixed(line.offset_counts, 1), fixed(at(0.0), 1), fixed(at(max_count), 1),
-                    quality ? fixed(to_degrees(quality->residual_rad), 1) : "-"});
+    rows.push_back({std::string(sensor_names[slot]), cli::fixed(line.gain_rad_per_count, 5),
+                    cli::fixed(line.offset_counts, 1), cli::fixed(at(0.0), 1),
+                    cli::fixed(at(max_count), 1),
+                    quality ? cli::fixed(to_degrees(quality->residual_rad), 1) : "-"});
   }
   print_table(rows);
   if (wearer.left_out.bits != 0)
@@ -215,7 +212,7 @@ Result<void> diff(const Options& options) {
     }
     rows.push_back({name});
     for (const double angle_deg : deg)
-      rows.back().push_back(fixed(angle_deg, 1));
+      rows.back().push_back(cli::fixed(angle_deg, 1));
   }
   if (!options.json) print_table(rows);
   return {};

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/fmt/ranges.h>
 
 #include <nendo/deform/control_vectors.hpp>
 #include <nendo/deform/csrbf.hpp>
@@ -19,6 +18,7 @@
 #include <nendo/flow/setting.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/figures.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"
 #include "session/setting_options.hpp"
@@ -124,9 +124,9 @@ void print_report(const InjectiveChain& chain, double min_determinant) {
     if (wall.push > 0.0) pairs.push_back(fmt::format("{}-{}", wall.first + 1, wall.second + 1));
   std::cout << fmt::format(
       "injective: {}, bound {:.3g}{}, min determinant {:.3g}, {} held apart{}{}\n",
-      count_text(static_cast<std::size_t>(report.links), "link"), report.bound, whole,
-      min_determinant, count_text(static_cast<std::size_t>(report.held_pairs), "pair"),
-      pairs.empty() ? "" : ": ", fmt::join(pairs, ", "));
+      cli::count_text(static_cast<std::size_t>(report.links), "link"), report.bound, whole,
+      min_determinant, cli::count_text(static_cast<std::size_t>(report.held_pairs), "pair"),
+      pairs.empty() ? "" : ": ", cli::joined(pairs));
 }
 
 Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vectors,

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "cli/cli.hpp"
+#include "cli/figures.hpp"
 #include "edit/edit_actions.hpp"
 #include "nendo/commands.hpp"
 #include "takes/timeline_frames.hpp"
@@ -71,8 +72,8 @@ double time_for_key(const Timeline& timeline, Side side, double wanted_s,
                     std::optional<std::size_t> moved = {}) {
   const double time_s = timeline::time_near_end(timeline, side, wanted_s, moved);
   if (time_s != wanted_s)
-    cli::note(edit::fixed(wanted_s, 3) + " s is after the end, which is at " +
-              edit::fixed(timeline.duration_s, 3) + " s; the key is at " + edit::fixed(time_s, 3) +
+    cli::note(cli::fixed(wanted_s, 3) + " s is after the end, which is at " +
+              cli::fixed(timeline.duration_s, 3) + " s; the key is at " + cli::fixed(time_s, 3) +
               " s");
   return time_s;
 }

@@ -45,10 +45,6 @@ void report_model(const std::string& file, const deform::Mesh& mesh, const std::
             << std::flush;
 }
 
-std::string count_text(std::size_t count, std::string_view word) {
-  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
-}
-
 std::string volume_text(const deform::Mesh& mesh) {
   return fmt::format(", volume {:.9g}", deform::volume_of(mesh));
 }

@@ -32,8 +32,6 @@ struct ModelOutput {
 
 /// Reports on standard output that a model was written, with its sizes. `more` follows them.
 void report_model(const std::string& file, const deform::Mesh& mesh, const std::string& more = {});
-/// Returns "1 link" or "2 links".
-std::string count_text(std::size_t count, std::string_view word);
 /// Returns ", volume 12.5".
 std::string volume_text(const deform::Mesh& mesh);
 

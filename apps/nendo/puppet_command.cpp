@@ -17,6 +17,7 @@
 #include <nendo/puppet/rig_check.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/figures.hpp"
 #include "cli/output_place.hpp"
 #include "cli/print.hpp"
 #include "nendo/commands.hpp"
@@ -117,11 +118,12 @@ void print_points(const OpenRig& open) {
 
 void print_head(const OpenRig& open) {
   const auto& puppet = open.rig().puppet();
-  cli::print(
-      "{} on {}: {} vertices, {}, {}, distances {}\n", printable(open.file.path),
-      printable(puppet.model), open.model.vertices.cols(),
-      count_text(puppet.points.size(), "point"), count_text(puppet.functions.size(), "function"),
-      puppet.distance == puppet::Distance::surface ? "along the surface" : "through the air");
+  cli::print("{} on {}: {} vertices, {}, {}, distances {}\n", printable(open.file.path),
+             printable(puppet.model), open.model.vertices.cols(),
+             cli::count_text(puppet.points.size(), "point"),
+             cli::count_text(puppet.functions.size(), "function"),
+             puppet.distance == puppet::Distance::surface ? "along the surface"
+                                                          : "through the air");
 }
 
 std::string gesture_text(const puppet::ClutchOptions& clutch, puppet::ClutchTrigger means) {
@@ -246,7 +248,7 @@ std::string turned_text(const puppet::LimitCheck& limit) {
                                        : 100.0 * static_cast<double>(limit.turned) /
                                              static_cast<double>(limit.moved);
   return fmt::format("{} of {} that move are reversed ({:.2g} %)", limit.turned,
-                     count_text(limit.moved, "triangle"), part);
+                     cli::count_text(limit.moved, "triangle"), part);
 }
 
 void print_turned(const OpenRig& open, const puppet::RigCheck& check) {
@@ -261,7 +263,7 @@ void print_turned(const OpenRig& open, const puppet::RigCheck& check) {
     ++pairs;
     if (worst == nullptr || pair.turned > worst->turned) worst = &pair;
   }
-  cli::print("{} of {} reverse triangles", pairs, count_text(check.pairs.size(), "pair"));
+  cli::print("{} of {} reverse triangles", pairs, cli::count_text(check.pairs.size(), "pair"));
   if (worst != nullptr)
     cli::print("; the worst is {} with {}: {}", limit_text(open, worst->one),
                limit_text(open, *worst->other), turned_text(*worst));
@@ -285,7 +287,7 @@ void print_twins(const OpenRig& open, const puppet::RigCheck& check) {
   if (std::all_of(check.twins.begin(), check.twins.end(),
                   [&](const auto& twins) { return check.are_symmetric(twins); }))
     cli::print("{} are symmetric within {:.2g} of the diagonal, and the model within {:.2g}\n",
-               count_text(check.twins.size(), "pair") + " of twins", apart, check.model_apart);
+               cli::count_text(check.twins.size(), "pair") + " of twins", apart, check.model_apart);
 }
 
 Result<void> check(const Options& options) {

@@ -16,6 +16,7 @@
 #include <nendo/flow/setting.hpp>
 #include <nendo/sculpting/find_wearer.hpp>
 
+#include "cli/figures.hpp"
 #include "cli/terminal.hpp"
 
 namespace nendo::session {
@@ -72,16 +73,6 @@ std::string fitting(const std::string& line) {
   return line.substr(0, columns - 1);
 }
 
-/// Returns the whole part of a number, with a comma after each three digits.
-template <class Number>
-std::string thousands(Number value) {
-  std::string digits = std::to_string(static_cast<long long>(value));
-  for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3) {
-    digits.insert(static_cast<std::size_t>(at), ",");
-  }
-  return digits;
-}
-
 void print_row(std::string_view heading, const std::string& text) {
   std::cout << fmt::format("  {:14} {}\n", heading, text);
 }
@@ -109,9 +100,9 @@ void print_spikes(const std::array<std::uint64_t, sensor_slots>& spikes) {
   if (*worst == 0) return;
   const auto all = std::accumulate(spikes.begin(), spikes.end(), std::uint64_t{0});
   print_row("", fmt::format("{} spikes removed, most of them of {} ({}): check its cable or sensor",
-                            thousands(all),
+                            cli::thousands(all),
                             sensor_names[static_cast<std::size_t>(worst - spikes.begin())],
-                            thousands(*worst)));
+                            cli::thousands(*worst)));
 }
 
 void print_ranges(const hand::SensorRanges& ranges, SensorMask sensors) {
@@ -143,8 +134,9 @@ void print_hand(const gloves::OpenHand& hand, const RunOutcome& outcome) {
   const std::size_t slot = flow::Placement::index_of(hand.side);
   const driver::GloveInfo& info = hand.glove->info();
   print_row(fmt::format("{} hand", name_of(hand.side)),
-            fmt::format("{} samples ({:.1f}/s), {} silences; {}", thousands(stats.samples[slot]),
-                        stats.rates[slot].per_s(), stats.silences[slot], info.source));
+            fmt::format("{} samples ({:.1f}/s), {} silences; {}",
+                        cli::thousands(stats.samples[slot]), stats.rates[slot].per_s(),
+                        stats.silences[slot], info.source));
   print_row("", driver::in_words(driver::counts_of(hand.glove->stats())));
   print_spikes(stats.spikes[slot]);
   print_left_out(stats.left_out[slot],
@@ -198,7 +190,7 @@ void print_injective(const RunOptions& options, const flow::LoopStats& stats) {
                                        stats.held_apart_ticks));
   else if (stats.held_apart_ticks > 0)
     print_row("no folds", fmt::format("fingertips with crossing paths were held apart in {} ticks",
-                                      thousands(stats.held_apart_ticks)));
+                                      cli::thousands(stats.held_apart_ticks)));
 }
 
 void print_clay(const flow::LoopStats& stats, double units_per_metre) {
@@ -206,7 +198,7 @@ void print_clay(const flow::LoopStats& stats, double units_per_metre) {
   if (!clay.is_clay) return;
   print_row("clay",
             fmt::format("touched in {} ticks; max penetration {:.3f} mm, before it was corrected",
-                        thousands(stats.touching_ticks), stats.max_penetration_mm));
+                        cli::thousands(stats.touching_ticks), stats.max_penetration_mm));
   if (!(clay.first_volume > 0.0)) {
     print_row("volume",
               "not kept: the surface is not closed; `nendo repair IN --out OUT` may close it");
@@ -221,17 +213,17 @@ void print_clay(const flow::LoopStats& stats, double units_per_metre) {
 void print_recordings(const std::vector<RecordingOutcome>& recordings) {
   for (const auto& [file, recorded] : recordings) {
     const std::string name = file.empty() ? "" : file + ", ";
-    print_row("recording",
-              recorded ? fmt::format("{}{} bytes, {} entries not recorded, {} kept", name,
-                                     thousands(recorded->bytes), recorded->lost, recorded->kept)
-                       : name + "not complete; see the error above");
+    print_row("recording", recorded ? fmt::format("{}{} bytes, {} entries not recorded, {} kept",
+                                                  name, cli::thousands(recorded->bytes),
+                                                  recorded->lost, recorded->kept)
+                                    : name + "not complete; see the error above");
   }
 }
 
 void print_published(const RunOutcome& outcome) {
   for (const auto& to : outcome.published) {
     const std::string counts =
-        to.is_segment ? fmt::format("{} bytes{}", thousands(to.bytes),
+        to.is_segment ? fmt::format("{} bytes{}", cli::thousands(to.bytes),
                                     to.is_locked ? "" : ", not locked in memory (see --mlockall)")
                       : fmt::format("{} datagrams, {} refused, {} ticks lost", to.datagrams,
                                     to.refused_datagrams, to.lost_records);
@@ -249,8 +241,9 @@ void print_summary_text(const RunOptions& options, const std::vector<gloves::Ope
   for (const auto& hand : hands)
     print_hand(hand, outcome);
   print_holds(options, stats);
-  print_row("ticks", fmt::format("{} at {:g} Hz, {} overruns, {} missed", thousands(stats.ticks),
-                                 options.loop.rate_hz, stats.overruns, stats.missed));
+  print_row("ticks",
+            fmt::format("{} at {:g} Hz, {} overruns, {} missed", cli::thousands(stats.ticks),
+                        options.loop.rate_hz, stats.overruns, stats.missed));
   print_percentiles("wake-up", stats.wake_latency);
   print_percentiles("work per tick", stats.work);
   print_percentiles("end to end", stats.end_to_end);
@@ -258,10 +251,11 @@ void print_summary_text(const RunOptions& options, const std::vector<gloves::Ope
   print_filter(options.filter, stats);
   print_injective(options, stats);
   print_clay(stats, outcome.units_per_metre);
-  print_row("vertices", fmt::format("{} per second ({} in the model)",
-                                    thousands(static_cast<double>(outcome.vertices) *
-                                              static_cast<double>(stats.ticks) / outcome.elapsed_s),
-                                    thousands(outcome.vertices)));
+  print_row("vertices",
+            fmt::format("{} per second ({} in the model)",
+                        cli::thousands(static_cast<double>(outcome.vertices) *
+                                       static_cast<double>(stats.ticks) / outcome.elapsed_s),
+                        cli::thousands(outcome.vertices)));
   print_recordings(outcome.recordings);
   print_published(outcome);
   print_row("result", outcome.result);

@@ -11,6 +11,7 @@
 
 #include <nendo/driver/record_counts.hpp>
 
+#include "cli/figures.hpp"
 #include "cli/print.hpp"
 #include "stress/report.hpp"
 
@@ -90,13 +91,6 @@ void print_table(std::FILE* out, const StressOutcome& outcome, const ordered_jso
             part(part(earlier, "floor"), "gaps_us"));
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words)
-    text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 void print_environment(std::FILE* out, const StressOptions& options, const StressOutcome& outcome) {
   const Environment& machine = outcome.environment;
   const flow::LoopOptions& loop = options.run.loop;
@@ -109,9 +103,10 @@ void print_environment(std::FILE* out, const StressOptions& options, const Stres
              machine.hypervisor ? ", virtual: the host may stop it at any time" : "");
   cli::print(out, "  {:<14} {}, governor {}, clock {}\n", "", machine.processor,
              machine.governor.empty() ? "none" : machine.governor, machine.clock_source);
-  cli::print(out, "  {:<14} {}; {} vertices, {}{}{}\n", "ticks", joined(stage_names(loop.stages)),
-             outcome.vertices, flow::name_of(loop.sculptor.mode),
-             options.load.empty() ? "" : "; own load ", joined(options.load));
+  cli::print(out, "  {:<14} {}; {} vertices, {}{}{}\n", "ticks",
+             cli::joined(stage_names(loop.stages)), outcome.vertices,
+             flow::name_of(loop.sculptor.mode), options.load.empty() ? "" : "; own load ",
+             cli::joined(options.load));
   if (outcome.pictures > 0)
     cli::print(out, "  {:<14} {} pictures in the live window\n", "observer", outcome.pictures);
   for (const auto& grant : outcome.grants) {

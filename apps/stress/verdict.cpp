@@ -3,18 +3,11 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "cli/figures.hpp"
 #include "stress/report.hpp"
 
 namespace nendo::stress {
 namespace {
-
-/// 5000 as "5,000".
-std::string grouped(std::uint64_t number) {
-  std::string digits = std::to_string(number);
-  for (std::size_t at = digits.size(); at > 3;)
-    digits.insert(at -= 3, ",");
-  return digits;
-}
 
 std::string duration_text(double us) {
   if (us < 1000.0) return fmt::format("{:.0f} us", us);
@@ -181,18 +174,19 @@ std::string in_words(const Verdict& verdict, const StressOptions& options,
   if (!verdict.judged) {
     return fmt::format("Paced by samples: no rate to keep; {} ticks, each at most {} after its "
                        "sample had come, and 99.9 % of them within {}.",
-                       grouped(verdict.due), duration_text(verdict.max_late_us), usual);
+                       cli::thousands(verdict.due), duration_text(verdict.max_late_us), usual);
   }
   const std::string rate = rate_text(options.run.loop.rate_hz);
   if (verdict.punctual) {
     return fmt::format("{}: yes, with each of {} ticks on time: at most {} after its deadline, and "
                        "99.9 % of them within {}.",
-                       rate, grouped(verdict.due), duration_text(verdict.max_late_us), usual);
+                       rate, cli::thousands(verdict.due), duration_text(verdict.max_late_us),
+                       usual);
   }
   if (verdict.due == 0)
     return fmt::format("{}: not known: no tick ran; try {}.", rate, verdict.remedy);
   return fmt::format("{}: no: {} of {} ticks were late, by up to {}, because {}; try: {}.", rate,
-                     grouped(verdict.late), grouped(verdict.due),
+                     cli::thousands(verdict.late), cli::thousands(verdict.due),
                      duration_text(verdict.max_late_us), verdict.reason, verdict.remedy);
 }
 

@@ -1,14 +1,9 @@
 #include "manual/completions.hpp"
 
+#include "cli/figures.hpp"
+
 namespace nendo::manual {
 namespace {
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words)
-    text += (text.empty() ? "" : " ") + word;
-  return text;
-}
 
 /// The parts of the script, gathered from all commands.
 struct BashCases {
@@ -36,7 +31,8 @@ void gather_bash_cases(const cli::CommandModel& command, const std::string& path
       patterns += (patterns.empty() ? "" : "|") + bash_quoted(path + ' ' + name);
     }
     if (option.value.empty()) continue;
-    cases.values += "    " + patterns + ") words=" + bash_quoted(joined(option.choices)) + " ;;\n";
+    cases.values +=
+        "    " + patterns + ") words=" + bash_quoted(cli::joined(option.choices, " ")) + " ;;\n";
   }
   for (const cli::CommandModel& inner : command.commands) {
     others.push_back(inner.name);
@@ -44,8 +40,9 @@ void gather_bash_cases(const cli::CommandModel& command, const std::string& path
     cases.paths += (cases.paths.empty() ? "" : "|") + bash_quoted(inner_path);
     gather_bash_cases(inner, inner_path, cases);
   }
-  cases.words += "    " + bash_quoted(path) + ") options=" + bash_quoted(joined(options)) +
-                 " words=" + bash_quoted(joined(others)) + " ;;\n";
+  cases.words += "    " + bash_quoted(path) +
+                 ") options=" + bash_quoted(cli::joined(options, " ")) +
+                 " words=" + bash_quoted(cli::joined(others, " ")) + " ;;\n";
 }
 
 /// Returns the first line of a text, escaped for single quotes and for _arguments and _describe, to
@@ -66,7 +63,7 @@ std::string zsh_escaped(const std::string& text) {
 /// Returns ":TEXT:_files" or ":TEXT:(a b)".
 std::string zsh_value(const cli::OptionModel& option) {
   return ':' + option.value + ':' +
-         (option.choices.empty() ? "_files" : '(' + joined(option.choices) + ')');
+         (option.choices.empty() ? "_files" : '(' + cli::joined(option.choices, " ") + ')');
 }
 
 std::string zsh_arguments(const cli::CommandModel& command) {
@@ -129,7 +126,8 @@ std::string option_line(const cli::OptionModel& option, const std::string& where
     }
   }
   if (!option.choices.empty()) {
-    line += (option.is_positional() ? " -f -a " : " -x -a ") + fish_quoted(joined(option.choices));
+    line += (option.is_positional() ? " -f -a " : " -x -a ") +
+            fish_quoted(cli::joined(option.choices, " "));
   } else if (!option.is_positional() && !option.value.empty()) {
     line += " -r";
   }
