@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +18,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/figures.hpp"
+#include "cli/print.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"
 #include "session/setting_options.hpp"
@@ -122,11 +122,10 @@ void print_report(const InjectiveChain& chain, double min_determinant) {
   std::vector<std::string> pairs;
   for (const HeldPair& wall : chain.walls())
     if (wall.push > 0.0) pairs.push_back(fmt::format("{}-{}", wall.first + 1, wall.second + 1));
-  std::cout << fmt::format(
-      "injective: {}, bound {:.3g}{}, min determinant {:.3g}, {} held apart{}{}\n",
-      cli::count_text(static_cast<std::size_t>(report.links), "link"), report.bound, whole,
-      min_determinant, cli::count_text(static_cast<std::size_t>(report.held_pairs), "pair"),
-      pairs.empty() ? "" : ": ", cli::joined(pairs));
+  cli::print("injective: {}, bound {:.3g}{}, min determinant {:.3g}, {} held apart{}{}\n",
+             cli::count_text(static_cast<std::size_t>(report.links), "link"), report.bound, whole,
+             min_determinant, cli::count_text(static_cast<std::size_t>(report.held_pairs), "pair"),
+             pairs.empty() ? "" : ": ", cli::joined(pairs));
 }
 
 Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vectors,

@@ -16,6 +16,7 @@
 #include "cli/cli.hpp"
 #include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
+#include "cli/print.hpp"
 #include "cli/quantities.hpp"
 #include "export/gltf_export.hpp"
 #include "export/motion_files.hpp"
@@ -277,23 +278,22 @@ void print_no_functions(const exporting::MorphReport& morphs) {
 
 void print_morphs(const exporting::MorphReport& morphs) {
   if (morphs.models > 1)
-    std::cout << fmt::format("{} meshes, shown one after another, because the model or its puppet "
-                             "changed\n",
-                             morphs.models);
+    cli::print("{} meshes, shown one after another, because the model or its puppet "
+               "changed\n",
+               morphs.models);
   if (morphs.basis != exporting::MorphBasis::key_shapes) {
     const bool named = morphs.basis == exporting::MorphBasis::functions;
-    std::cout << fmt::format(
-        "{} morph targets{}; the max error of a vertex is {:.1e} of the model's diagonal\n",
-        morphs.targets, named ? ", named after the puppet's functions" : " of the control vectors",
-        morphs.greatest_error);
+    cli::print("{} morph targets{}; the max error of a vertex is {:.1e} of the model's diagonal\n",
+               morphs.targets,
+               named ? ", named after the puppet's functions" : " of the control vectors",
+               morphs.greatest_error);
     if (!named) print_no_functions(morphs);
     return;
   }
-  std::cout << fmt::format(
-      "{} morph targets of key shapes, within {:.3g} % of the model's diagonal, "
-      "{:.2g} mm on the stage (--tolerance); the max error is {:.2g} %\n",
-      morphs.targets, 100.0 * morphs.tolerance, 1e3 * morphs.tolerance * morphs.diagonal_m,
-      100.0 * morphs.greatest_error);
+  cli::print("{} morph targets of key shapes, within {:.3g} % of the model's diagonal, "
+             "{:.2g} mm on the stage (--tolerance); the max error is {:.2g} %\n",
+             morphs.targets, 100.0 * morphs.tolerance, 1e3 * morphs.tolerance * morphs.diagonal_m,
+             100.0 * morphs.greatest_error);
   print_no_functions(morphs);
 }
 
@@ -301,15 +301,15 @@ void print(const exporting::Exported& done, bool samples) {
   const std::string more = done.files.size() > 1 ? " to " + done.files.back() : std::string();
   const std::string rate =
       done.rate_hz ? fmt::format(", {:.4g} per second (--rate)", *done.rate_hz) : "";
-  std::cout << fmt::format("{}{}: {} {}{}, {:.2f} s, {:.1f} MB\n", done.files.front(), more,
-                           done.frames, samples ? "samples" : "frames", rate,
-                           done.last_s - done.first_s, static_cast<double>(done.bytes) / 1e6);
+  cli::print("{}{}: {} {}{}, {:.2f} s, {:.1f} MB\n", done.files.front(), more, done.frames,
+             samples ? "samples" : "frames", rate, done.last_s - done.first_s,
+             static_cast<double>(done.bytes) / 1e6);
   if (done.morphs) print_morphs(*done.morphs);
   for (std::size_t at = 1; at < done.begin_s.size(); ++at)
-    std::cout << fmt::format(
-        "the model changes at {0:.2f} s, where {1} begins; for its mesh, export "
-        "--from {0:.2f} --to {2:.2f} as NAME-%d.obj\n",
-        done.begin_s[at], done.files[at], done.begin_s[at] + 1.0 / done.rate_hz.value_or(1.0));
+    cli::print("the model changes at {0:.2f} s, where {1} begins; for its mesh, export "
+               "--from {0:.2f} --to {2:.2f} as NAME-%d.obj\n",
+               done.begin_s[at], done.files[at],
+               done.begin_s[at] + 1.0 / done.rate_hz.value_or(1.0));
   std::cout << std::flush;
 }
 

@@ -13,6 +13,7 @@
 #include <nendo/deform/join.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/print.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"
 
@@ -65,9 +66,8 @@ void report_step(const std::string& name, const Options& options, const JoinStep
                      "inner one was removed");
     return;
   }
-  std::cout << fmt::format("{}: {} crossings, volume {:.6g}", printable(name), step.crossings,
-                           step.volume);
-  if (step.seam_width > 0.0) std::cout << fmt::format(" ({:.6g} if sharp)", step.sharp_volume);
+  cli::print("{}: {} crossings, volume {:.6g}", printable(name), step.crossings, step.volume);
+  if (step.seam_width > 0.0) cli::print(" ({:.6g} if sharp)", step.sharp_volume);
   std::cout << '\n';
   if (step.seam_width < options.seam)
     cli::note(

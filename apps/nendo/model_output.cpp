@@ -1,5 +1,6 @@
 #include "nendo/model_output.hpp"
 
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <utility>
@@ -12,6 +13,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "cli/print.hpp"
 
 namespace nendo::app {
 
@@ -40,9 +42,9 @@ Result<void> ModelOutput::write(const std::string& file, const deform::Mesh& mes
 }
 
 void report_model(const std::string& file, const deform::Mesh& mesh, const std::string& more) {
-  std::cout << fmt::format("{}: {} vertices, {} faces{}\n", printable(file), mesh.vertices.cols(),
-                           mesh.face_count(), more)
-            << std::flush;
+  cli::print("{}: {} vertices, {} faces{}\n", printable(file), mesh.vertices.cols(),
+             mesh.face_count(), more);
+  std::fflush(stdout);
 }
 
 std::string volume_text(const deform::Mesh& mesh) {

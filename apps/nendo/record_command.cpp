@@ -1,6 +1,5 @@
 // nendo record: records what gloves send.
 
-#include <iostream>
 #include <memory>
 #include <thread>
 
@@ -11,6 +10,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "cli/print.hpp"
 #include "cli/quantities.hpp"
 #include "gloves/glove_json.hpp"
 #include "nendo/commands.hpp"
@@ -80,14 +80,14 @@ void copy_samples(const std::vector<gloves::OpenHand>& hands, flow::InputLog& in
 void print_summary(const Options& options, const std::vector<gloves::OpenHand>& hands,
                    const recording::Recorded& recorded, double elapsed_s) {
   if (!options.json) {
-    std::cout << fmt::format("recorded {} samples in {:.1f} s; {} bytes in {}\n", recorded.samples,
-                             elapsed_s, recorded.bytes, options.out);
+    cli::print("recorded {} samples in {:.1f} s; {} bytes in {}\n", recorded.samples, elapsed_s,
+               recorded.bytes, options.out);
     for (std::size_t at = 0; at < hands.size(); ++at)
-      std::cout << fmt::format("  {:14} {}\n", fmt::format("{} hand", name_of(hands[at].side)),
-                               driver::in_words(recorded.sent[at]));
+      cli::print("  {:14} {}\n", fmt::format("{} hand", name_of(hands[at].side)),
+                 driver::in_words(recorded.sent[at]));
     if (recorded.lost > 0)
-      std::cout << fmt::format("  {:14} {} of these samples, because the disk was too slow\n",
-                               "not recorded", recorded.lost);
+      cli::print("  {:14} {} of these samples, because the disk was too slow\n", "not recorded",
+                 recorded.lost);
     return;
   }
   nlohmann::ordered_json line{{"event", "recorded"},

@@ -1,12 +1,12 @@
 // nendo recording: shows, checks, repairs and cuts recordings.
 
-#include <iostream>
 #include <memory>
 
 #include <spdlog/fmt/fmt.h>
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "cli/print.hpp"
 #include "nendo/commands.hpp"
 #include "takes/joint_study.hpp"
 #include "takes/model_files.hpp"
@@ -51,9 +51,8 @@ Result<void> check(const Options& options) {
   const auto summary = recording::summarise(options.file);
   if (!summary) return summary.error();
   if (summary->is_whole()) {
-    std::cout << fmt::format(
-        "{}: intact, {} bytes, {} ticks{}\n", options.file, summary->bytes, summary->ticks,
-        summary->ending ? "" : "; it has no end, because the recorder was cut off");
+    cli::print("{}: intact, {} bytes, {} ticks{}\n", options.file, summary->bytes, summary->ticks,
+               summary->ending ? "" : "; it has no end, because the recorder was cut off");
     return {};
   }
   takes::print_damages(*summary);
@@ -64,7 +63,7 @@ Result<void> check(const Options& options) {
 
 void print_made(const Options& options, std::uint64_t count, const char* what,
                 std::uint64_t bytes) {
-  std::cout << fmt::format("{}: {} {}, {} bytes\n", options.out, count, what, bytes);
+  cli::print("{}: {} {}, {} bytes\n", options.out, count, what, bytes);
 }
 
 Result<void> repair(const Options& options) {

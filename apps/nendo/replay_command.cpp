@@ -17,6 +17,7 @@
 #include "cli/cli.hpp"
 #include "cli/model_files.hpp"
 #include "cli/output_place.hpp"
+#include "cli/print.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"
 #include "takes/model_files.hpp"
@@ -146,7 +147,7 @@ void print(const Options& options, const Replayed& done) {
     cli::print_line(line);
     return;
   }
-  std::cout << fmt::format("replayed {} ticks in {:.2f} s; ", done.ticks, done.elapsed_s);
+  cli::print("replayed {} ticks in {:.2f} s; ", done.ticks, done.elapsed_s);
   if (done.same_shape) {
     std::cout << (*done.same_shape ? "the shape is that of the live run, bit for bit\n"
                                    : "the shape is NOT that of the live run\n");
@@ -155,9 +156,8 @@ void print(const Options& options, const Replayed& done) {
                              : "something is missing in the recording, so the shape may differ\n");
   }
   if (done.shapes > 0)
-    std::cout << fmt::format(
-        "{} recorded shapes were compared; the max distance of a vertex is {:.3g}\n", done.shapes,
-        done.farthest);
+    cli::print("{} recorded shapes were compared; the max distance of a vertex is {:.3g}\n",
+               done.shapes, done.farthest);
   std::cout << std::flush;
 }
 

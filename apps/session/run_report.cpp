@@ -17,6 +17,7 @@
 #include <nendo/sculpting/find_wearer.hpp>
 
 #include "cli/figures.hpp"
+#include "cli/print.hpp"
 #include "cli/terminal.hpp"
 
 namespace nendo::session {
@@ -74,7 +75,7 @@ std::string fitting(const std::string& line) {
 }
 
 void print_row(std::string_view heading, const std::string& text) {
-  std::cout << fmt::format("  {:14} {}\n", heading, text);
+  cli::print("  {:14} {}\n", heading, text);
 }
 
 void print_percentiles(std::string_view name, const flow::Histogram& histogram) {
@@ -236,8 +237,8 @@ void print_summary_text(const RunOptions& options, const std::vector<gloves::Ope
   const auto& stats = outcome.stats;
   const auto settings =
       flow::settings_of(outcome.sculptor, options.filter, outcome.units_per_metre);
-  std::cout << fmt::format("\nnendo run: {:.1f} s, {}\n", outcome.elapsed_s,
-                           flow::in_words(settings, outcome.units_per_metre));
+  cli::print("\nnendo run: {:.1f} s, {}\n", outcome.elapsed_s,
+             flow::in_words(settings, outcome.units_per_metre));
   for (const auto& hand : hands)
     print_hand(hand, outcome);
   print_holds(options, stats);
