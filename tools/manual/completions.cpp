@@ -159,7 +159,7 @@ std::string bash_completion(const cli::CommandModel& program) {
   BashCases cases;
   gather_bash_cases(program, "nendo", cases);
   // Where nothing fits, complete -o default gives file names.
-  return "# Completion of nendo for bash. Made by nendo from its own --help.\n"
+  return "# Completion of nendo for bash, which nendo-manual made from the program's --help.\n"
          "_nendo() {\n"
          "  local now=${COMP_WORDS[COMP_CWORD]} path=nendo options= words= at\n"
          "  for ((at = 1; at < COMP_CWORD; ++at)); do\n"
@@ -184,13 +184,15 @@ std::string bash_completion(const cli::CommandModel& program) {
 }
 
 std::string zsh_completion(const cli::CommandModel& program) {
-  std::string text = "#compdef nendo\n# Made by nendo from its own --help.\n";
+  std::string text = "#compdef nendo\n# Completion of nendo for zsh, which nendo-manual made from "
+                     "the program's --help.\n";
   add_zsh_function(program, "_nendo", text);
   return text + "_nendo \"$@\"\n";
 }
 
 std::string fish_completion(const cli::CommandModel& program) {
-  std::string text = "# Completion of nendo for fish. Made by nendo from its own --help.\n";
+  std::string text =
+      "# Completion of nendo for fish, which nendo-manual made from the program's --help.\n";
   add_fish_lines(program, "true", text);
   return text;
 }

@@ -58,6 +58,6 @@ int write_all(const std::filesystem::path& folder, const std::string& date) {
 
 int main(int argc, char** argv) {
   if (argc == 3) return nendo::manual::write_all(argv[1], argv[2]);
-  std::cerr << "usage: nendo-manual FOLDER DATE    (the date that the pages bear: 2026-11-22)\n";
+  std::cerr << "usage: nendo-manual FOLDER DATE    (the date on the pages, such as 2026-11-22)\n";
   return static_cast<int>(nendo::Errc::usage);
 }

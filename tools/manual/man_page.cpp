@@ -105,8 +105,8 @@ std::string usage(const std::string& path, const cli::CommandModel& command) {
 }
 
 std::string head(const std::string& page, const std::string& summary, const PageOrigin& origin) {
-  return ".\\\" Made by nendo from its own --help.\n.TH " + plain(upper(page)) + " 1 " +
-         origin.date + " \"nendo " + origin.version + "\" \"User Commands\"\n.SH NAME\n" +
+  return ".\\\" nendo-manual made this page from the program's --help.\n.TH " + plain(upper(page)) +
+         " 1 " + origin.date + " \"nendo " + origin.version + "\" \"User Commands\"\n.SH NAME\n" +
          plain(page) + " \\- " + plain(summary) + "\n.SH SYNOPSIS\n";
 }
 
