@@ -4,7 +4,6 @@
 
 #include <span>
 #include <string>
-#include <string_view>
 
 #include <nendo/deform/face_box.hpp>
 #include <nendo/deform/mesh.hpp>

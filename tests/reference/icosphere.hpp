@@ -1,7 +1,6 @@
 #pragma once
 // A sphere of nearly even triangles.
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 

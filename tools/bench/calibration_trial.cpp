@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <span>
 #include <string>
 
 #include <nendo/hand/calibration_fit.hpp>

@@ -1,7 +1,6 @@
 #pragma once
 // Two hands that press a ball of clay from above and below, scrape it sideways, and leave.
 
-#include <array>
 #include <span>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "bench/fault_matrix.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <mutex>
 #include <thread>

@@ -3,7 +3,6 @@
 // a condition variable then wakes.
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>

@@ -2,7 +2,6 @@
 
 #include "bench/judge_bench.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>

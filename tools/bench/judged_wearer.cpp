@@ -1,7 +1,6 @@
 #include "bench/judged_wearer.hpp"
 
 #include <cmath>
-#include <utility>
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,6 @@
 // nendo bench models: what it costs a tick to continue with another version of the model or with
 // other masks, and whether changes of radius make a loop late.
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>

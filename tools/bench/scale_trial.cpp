@@ -1,11 +1,9 @@
 #include "bench/scale_trial.hpp"
 
 #include <cmath>
-#include <cstdint>
 #include <fstream>
 #include <numbers>
 #include <random>
-#include <string>
 
 #include <unistd.h>
 

@@ -4,7 +4,6 @@
 // An estimator with less cannot be better. A second floor has in place of the hand only the spreads
 // of such hands, which are unknown for people.
 
-#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>

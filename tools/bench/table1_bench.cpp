@@ -1,7 +1,6 @@
 // nendo bench table1: the paper's Table 1 on this machine, beside the paper's figures and a plain
 // loop that the compiler vectorises.
 
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <vector>

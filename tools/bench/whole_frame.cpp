@@ -1,7 +1,5 @@
 #include "bench/whole_frame.hpp"
 
-#include <algorithm>
-
 #include <nendo/deform/triangles.hpp>
 #include <nendo/deform/type1.hpp>
 

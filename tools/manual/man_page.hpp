@@ -2,8 +2,6 @@
 // Makes manual pages of commands, in the language of man(7).
 
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "cli/command_model.hpp"
 
