@@ -143,12 +143,12 @@ std::vector<const CLI::App*> chosen_commands(const CLI::App& program) {
   return chosen;
 }
 
-/// Says what is wrong with the first argument that no option of the chosen command takes.
+/// Returns what is wrong with the first argument that no option of the chosen command takes.
 std::string unexpected(const CLI::App& program) {
   const std::vector<std::string> extras = program.remaining(true);
   if (extras.empty()) return "an argument was not expected";
   const std::string name = extras.front().substr(0, extras.front().find('='));
-  if (!name.starts_with('-')) return name + ": not expected";
+  if (!name.starts_with('-')) return name + ": is not expected";
   std::vector<std::string> known;
   for (const CLI::Option* option : chosen_commands(program).back()->get_options())
     for (const std::string& each : option->get_lnames())

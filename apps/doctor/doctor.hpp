@@ -17,7 +17,7 @@
 namespace nendo::doctor {
 
 enum class Severity : std::uint8_t {
-  warning, ///< works, but worse than it could, or only if something else does not interfere
+  warning, ///< works, but not well, or only if no other program interferes
   failure, ///< will not work
 };
 

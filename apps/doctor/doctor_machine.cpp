@@ -74,8 +74,8 @@ void read_governors(const fs::path& root, MachineFacts& facts) {
   }
 }
 
-/// Returns whether the kernel's list of timers says that they are fine. Where only root may read
-/// the list, the clock's resolution says it: without fine timers it is the length of a tick.
+/// Returns whether the kernel's list of timers reports fine timers. Where only root may read
+/// the list, the clock's resolution is used: without fine timers it is the length of a tick.
 std::optional<bool> has_fine_timers(const fs::path& root) {
   for (const std::string& line : lines_of(root / "proc/timer_list")) {
     const std::size_t at = line.find(".hres_active");
@@ -107,16 +107,16 @@ void check_priority(const MachineFacts& facts, Findings& found) {
   const std::uint64_t wanted = flow::reader_priority(flow::usual_priority);
   if (facts.has_priority || !facts.priority_limit || *facts.priority_limit >= wanted) return;
   warn(found, "realtime",
-       "a real-time priority of " + std::to_string(wanted) + " is not allowed, " +
-           std::to_string(*facts.priority_limit) + " is (ulimit -r); the loop is less punctual",
+       "the max real-time priority is " + std::to_string(*facts.priority_limit) +
+           " (ulimit -r), and the loop needs " + std::to_string(wanted) + "; it is less punctual",
        limits_remedy(facts));
 }
 
 void check_memory(const MachineFacts& facts, Findings& found) {
   if (facts.has_memory || !facts.memory_limit || *facts.memory_limit == unlimited) return;
   warn(found, "memlock",
-       "memory may be locked up to " + std::to_string(*facts.memory_limit / 1024) +
-           " KiB only (ulimit -l), so --mlockall is refused",
+       "only " + std::to_string(*facts.memory_limit / 1024) +
+           " KiB of memory may be locked (ulimit -l), so --mlockall is refused",
        limits_remedy(facts));
 }
 
@@ -132,8 +132,9 @@ void check_governor(const MachineFacts& facts, Findings& found) {
 
 void check_timers(const MachineFacts& facts, Findings& found) {
   if (facts.fine_timers.value_or(true)) return;
-  warn(found, "timers", "the kernel has no high-resolution timers: ticks are late by milliseconds",
-       "boot without highres=off, or a kernel built with CONFIG_HIGH_RES_TIMERS, like Debian's");
+  warn(found, "timers",
+       "the kernel has no high-resolution timers, so ticks are late by milliseconds",
+       "boot without highres=off, or use a kernel with CONFIG_HIGH_RES_TIMERS, such as Debian's");
 }
 
 void check_rules(const MachineFacts& facts, Findings& found) {
@@ -151,7 +152,7 @@ void check_rules(const MachineFacts& facts, Findings& found) {
       finding.remedy = "sudo mv " + path + " " + path + ".old && " + as_root("udev install");
       break;
     default:
-      finding.what = "is not installed: gloves need root, a group, or luck";
+      finding.what = "is not installed, so gloves may need root or a group";
     }
     found.push_back(std::move(finding));
   }

@@ -28,18 +28,19 @@ Severity severity_for(const GloveCandidate& candidate, bool likely) {
 
 void check_presence(const PortFacts& facts, Findings& found) {
   if (!facts.candidates.empty()) return;
-  found.push_back(
-      {Severity::warning, "presence", "", "no serial port and no USB glove is plugged in",
-       "plug the glove in (nendo devices --watch shows whether it arrives); a container "
-       "needs its device handed in"});
+  found.push_back({Severity::warning, "presence", "",
+                   "no serial port and no USB glove is plugged in",
+                   "plug the glove in (`nendo devices --watch` reports it); a container needs "
+                   "access to its device"});
 }
 
 void check_nodes(const PortFacts& facts, Findings& found) {
   for (const GloveCandidate& candidate : facts.candidates) {
     if (!candidate.node_missing || candidate.kind == DeviceKind::portless_adapter) continue;
-    found.push_back({severity_for(candidate, candidate.usb.has_value()), "node", candidate.device,
-                     "the kernel has it, but there is no node for it here, so nothing can open it",
-                     candidate.remedy});
+    found.push_back(
+        {severity_for(candidate, candidate.usb.has_value()), "node", candidate.device,
+         "the kernel has found it, but its device node is missing, so no program can open it",
+         candidate.remedy});
   }
 }
 
@@ -74,7 +75,7 @@ void check_holders(const PortFacts& facts, Findings& found) {
       const std::string pid = std::to_string(holder.pid);
       found.push_back(
           {severity_for(candidate, false), "holder", candidate.device,
-           "held by " + holder.name + (holder.pid > 0 ? " (pid " + pid + ")" : ""),
+           "is held by " + holder.name + (holder.pid > 0 ? " (pid " + pid + ")" : ""),
            holder.pid > 0 ? "close that program, or: kill " + pid : "close that program"});
     }
   }
@@ -87,12 +88,13 @@ void check_grabbers(const PortFacts& facts, Findings& found) {
     std::string_view name;
     std::string_view harm;
     std::string_view units;
-    bool heeds_rules; ///< our udev rules make it keep off
+    bool follows_rules; ///< it leaves devices alone that our udev rules mark
   };
   constexpr std::array grabbers{
       Grabber{"ModemManager", "holds a new adapter for 10 to 20 s and sends modem commands to it",
               "ModemManager", true},
-      Grabber{"brltty", "may take an adapter for a Braille display's", "brltty brltty-udev", false},
+      Grabber{"brltty", "may use an adapter as that of a Braille display", "brltty brltty-udev",
+              false},
   };
   const auto unmarked = std::find_if(
       facts.candidates.begin(), facts.candidates.end(), [](const GloveCandidate& candidate) {
@@ -105,7 +107,7 @@ void check_grabbers(const PortFacts& facts, Findings& found) {
     const std::string bind = as_root("udev bind " + shell_word(unmarked->device) + " --as right");
     found.push_back({Severity::warning, "grabber", unmarked->device,
                      std::string(grabber.name) + " runs and " + std::string(grabber.harm),
-                     grabber.heeds_rules ? bind + " (or --as left), or " + mask : mask});
+                     grabber.follows_rules ? bind + " (or --as left), or " + mask : mask});
   }
 }
 
@@ -113,7 +115,7 @@ void check_latency(const PortFacts& facts, Findings& found) {
   for (const GloveCandidate& candidate : facts.candidates) {
     if (!candidate.latency_timer || *candidate.latency_timer <= 1ms) continue;
     found.push_back({Severity::warning, "latency_timer", candidate.device,
-                     "the adapter holds replies back for " +
+                     "the adapter delays replies by " +
                          std::to_string(candidate.latency_timer->count()) + " ms",
                      driver::latency_timer_remedy(candidate.device)});
   }

@@ -81,7 +81,7 @@ Result<void> check(const Options& options) {
   if (options.glove.empty() == options.from.empty())
     return Error{Errc::usage, "name a GLOVE, or a capture with --from FILE"};
   if (options.user.empty())
-    return Error{Errc::usage, "--user is missing: whose hand is it? e.g. --user anna"};
+    return Error{Errc::usage, "--user is missing: name the wearer, e.g. --user anna"};
   if (auto fine = gloves::HandLength{options.length_mm}.check(); !fine) return fine;
   if (!(options.breadth_mm >= 50.0 && options.breadth_mm <= 130.0))
     return Error{Errc::usage, "--hand-breadth: use 50 to 130 millimetres, across the knuckles"};
@@ -144,7 +144,7 @@ Result<void> begin_with_known(Wearer& wearer, const fs::path& stored) {
   if (known->counts != wearer.about.counts)
     return Error{Errc::bad_input,
                  printable(stored.string()) +
-                     ": is of another kind of glove; calibrate without --touch-up"};
+                     ": is for another kind of glove; calibrate without --touch-up"};
   const auto made = wearer.about.made;
   wearer.known = *known;
   known->made = made;
@@ -266,8 +266,8 @@ int calibrate_from_capture(const Options& options) {
     if (!guide.has_any()) guide.push_free_motion(sample);
     if (guide.push(sample) == calibrate::CalibrationGuide::Event::implausible &&
         !std::exchange(noted, true))
-      cli::note(options.from + ": a pose that was held is not " +
-                std::string(hand::pose_of(guide.asked()).name) + ", by " +
+      cli::note(options.from + ": a held pose is not " +
+                std::string(hand::pose_of(guide.asked()).name) + ", because of " +
                 std::string(name_of(*guide.implausible_sensor())) + "; such poses are left out");
   }
   if (!guide.is_done())
@@ -349,8 +349,8 @@ void nendo::app::add_calibrate(cli::Command& program) {
   cli::Command command =
       program.add_command("calibrate", "Calibrates a glove to a wearer's hand, by guided poses");
   command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, auto, ...");
-  command.add_option("--user", options->user, "Whose hand it is");
-  command.add_flag("--quick", options->quick, "Two poses only: the flat hand and the fist");
+  command.add_option("--user", options->user, "Name of the wearer");
+  command.add_flag("--quick", options->quick, "Use only two poses: the flat hand and the fist");
   command.add_flag("--touch-up", options->touch_up,
                    "Adjust the existing calibration after the glove was put on again: a free "
                    "motion, flat hand, fist and pinches");
@@ -364,7 +364,7 @@ void nendo::app::add_calibrate(cli::Command& program) {
                           "Millimetres from the wrist's crease to the tip of the middle finger");
   command.add_millimetres("--hand-breadth", options->breadth_mm, "Millimetres across the knuckles");
   command.add_option("--out", options->out,
-                     "Where to write it; without it, where other commands find it");
+                     "Where to write the calibration; without it, where other commands find it");
   command.add_option("--picture", options->picture, "Also draw ranges and residuals, as FILE.svg");
   command.add_flag("--fresh", options->fresh, "Do not continue a session that was quit");
   std::string footer = "The poses, in their order:\n";

@@ -128,8 +128,8 @@ void show_text(const StoredCalibration& file) {
   }
   print_table(rows);
   if (wearer.left_out.bits != 0)
-    std::cout << "left out because they are stuck: " << sculpting::sensors_in_words(wearer.left_out)
-              << '\n';
+    std::cout << "left out, because they are stuck: "
+              << sculpting::sensors_in_words(wearer.left_out) << '\n';
 }
 
 Result<void> show(const Options& options) {
@@ -197,7 +197,7 @@ Result<void> diff(const Options& options) {
   const auto b = sculpting::named_calibration(options.other, cli::note);
   if (!b) return b.error();
   if (a->wearer.side != b->wearer.side)
-    cli::note("A is of one hand and B of the other: the left and the right");
+    cli::note("A and B are for different hands, the left and the right");
   std::vector<std::vector<std::string>> rows{
       {"sensor", "a at 0", "b at 0", "change", "a at full", "b at full", "change"}};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
@@ -256,12 +256,12 @@ void nendo::app::add_calibration(cli::Command& program) {
     return added;
   };
   const char* const named = "Path, stored name or wearer";
-  add("list", "The stored calibrations, and which are in use", list)
+  add("list", "Lists the stored calibrations, and whether each is in use", list)
       .add_flag("--json", options->json, "One JSON object per line");
-  cli::Command showing = add("show", "One calibration, sensor by sensor", show);
+  cli::Command showing = add("show", "Shows one calibration, sensor by sensor", show);
   showing.add_option("NAME", options->name, named).required();
   showing.add_flag("--json", options->json, "One JSON object");
-  cli::Command comparing = add("diff", "Two calibrations' angles, in degrees", diff);
+  cli::Command comparing = add("diff", "Compares the angles of two calibrations, in degrees", diff);
   comparing.add_option("A", options->name, named).required();
   comparing.add_option("B", options->other, named).required();
   comparing.add_flag("--json", options->json, "One JSON object per sensor");

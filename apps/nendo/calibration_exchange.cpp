@@ -68,13 +68,13 @@ Result<Side> side_of(const ImportOptions& options, std::optional<Side> in_file) 
     const auto likely = likely_side(options.file);
     const std::string word(likely ? name_of(*likely) : "");
     return Error{Errc::usage, options.file + ": does not name its hand; " +
-                                  (likely ? "its file name says " + word +
-                                                "; if that is right, add --hand " + word
+                                  (likely ? "its file name has the word " + word +
+                                                "; if that is correct, add --hand " + word
                                           : "add --hand left or right")};
   }
   const Side wanted = options.hand == "left" ? Side::left : Side::right;
   if (in_file && *in_file != wanted) {
-    return Error{Errc::bad_input, options.file + ": is of a " + std::string(name_of(*in_file)) +
+    return Error{Errc::bad_input, options.file + ": is for a " + std::string(name_of(*in_file)) +
                                       " hand; leave --hand out or choose another file"};
   }
   return wanted;

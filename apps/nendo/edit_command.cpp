@@ -176,14 +176,14 @@ void add_reading(cli::Command& edit, const std::shared_ptr<Options>& options) {
                      "Also show the position of this finger's tip");
   showing.add_flag("--functions", options->show.functions,
                    "Show the values of the puppet's functions at the keys in place of the hands");
-  showing.add_flag("--json", options->show.json, "All of every key, as one JSON object");
+  showing.add_flag("--json", options->show.json, "Everything about each key, as one JSON object");
   showing.on_chosen([options] { return edit::show_timeline(options->show); });
 
   cli::Command playing = edit.add_command("play", "Plays a timeline and writes its shape");
   playing.add_option("FILE", options->play.file, "A timeline").required();
   playing.add_duration("--until", options->play.until_s,
                        "Seconds at which it stops; without it, the end");
-  playing.add_option("--mesh", options->play.mesh, "Another model than the timeline's");
+  playing.add_option("--mesh", options->play.mesh, "A model in place of the timeline's");
   playing.add_option("--out", options->play.out, "Where to write the shape, .obj, .ply or .stl");
   playing.add_flag("--json", options->play.json, "A summary as JSON");
   playing.add_option("--speed", options->play.speed,
@@ -244,7 +244,8 @@ void add_key_edits(cli::Command& edit, const std::shared_ptr<Options>& options) 
 void add_whole_edits(cli::Command& edit_command, const std::shared_ptr<Options>& options) {
   cli::Command retiming =
       add_edit_of(edit_command, "retime", "Makes a timeline slower or faster", options);
-  retiming.add_option("--scale", options->scale, "2: everything takes twice as long").required();
+  retiming.add_option("--scale", options->scale, "Factor of all times; 2: twice as long")
+      .required();
   retiming.add_duration("--from", options->from_s, "Seconds at which that begins");
   retiming.add_duration("--to", options->to_s,
                         "Seconds at which it ends; everything after is moved");
@@ -259,7 +260,7 @@ void add_whole_edits(cli::Command& edit_command, const std::shared_ptr<Options>&
   blending.add_option("--with", options->with, "Another timeline");
   blending.add_option("--hand", options->hand, "left or right, for --key");
   blending.add_option("--key", options->blended_key, "Number of the key");
-  blending.add_option("--factor", options->factor, "0: unchanged, to 1: as the others are");
+  blending.add_option("--factor", options->factor, "0 (unchanged) to 1 (as the others)");
   blending.on_chosen([options] { return blend(*options); });
   cli::Command mirroring = add_edit_of(
       edit_command, "mirror", "Exchanges the motions of the left and right hands", options);

@@ -68,14 +68,14 @@ std::optional<std::uint32_t> parse_mask(std::string_view text) {
   return mask;
 }
 
-/// With --motion poses the hand is led through the poses of nendo calibrate.
+/// With --motion poses, makes the hand that plays the poses of nendo calibrate.
 Result<void> practise(Options& options) {
   emulator::EmulatorOptions& emulator = options.emulator;
   const bool poses = emulator.motion == practice_name;
   if (!std::isfinite(options.hold_s) || options.hold_s < 0.0 || options.hold_s > 3600.0 ||
       (options.hold_s > 0.0 && options.hold_s < 3.0))
     return Error{Errc::usage, "--hold: use 3s to 1h; the hand needs up to 2.6 s to reach a pose, "
-                              "and nendo calibrate to record it"};
+                              "and `nendo calibrate` needs time to record it"};
   if (options.hold_s > 0.0 && !poses) return Error{Errc::usage, "--hold: needs --motion poses"};
   if (!poses) return {};
   if (emulator.glove != "cyberglove")
@@ -136,13 +136,13 @@ void print(const emulator::EmulatorStats& stats) {
   std::cout << stats.records_sent << " records sent, " << stats.bytes_received
             << " bytes received from the host\n";
   if (stats.bytes_refused > 0) {
-    std::cout << stats.bytes_refused << " bytes not sent, because no host read them\n";
+    std::cout << stats.bytes_refused << " bytes were not sent, because no host read them\n";
   }
   if (stats.faults.empty()) return;
   std::cout << "faults:";
   for (const emulator::FaultCount& fault : stats.faults)
     std::cout << ' ' << fault.name << ' ' << fault.done << ',';
-  std::cout << " which touched " << stats.records_faulted << " records\n";
+  std::cout << " in " << stats.records_faulted << " records\n";
 }
 
 int emulate(Options& options) {
@@ -212,17 +212,16 @@ void add_cyberglove_options(cli::Command command, Options& options) {
                   "Bit 7 of a time stamp's first byte: on: always set; off: set only if needed")
       .one_of({"on", "off"});
   command
-      .add_option(
-          "--hires-form", options.hires_form,
-          "1S of a III: as the hardware, which echoes it, and 0x03 after it, without NUL and "
-          "counts sub-frames from 0; terminated, with NUL and from 1")
+      .add_option("--hires-form", options.hires_form,
+                  "Reply to 1S of a III. hardware: it echoes 1S, and then 0x03, without NUL, and "
+                  "counts sub-frames from 0; terminated: with NUL, and from 1")
       .one_of({"hardware", "terminated"});
   command.add_duration(
       "--restart-time", glove.restart_s,
       "Duration of a restart of its firmware: 0.2s, which the maker's library expects, or "
       "1.75s as in the manual");
   command.add_flag("--overrun", glove.overrun,
-                   "Its first period is too short: each record of a stream has es");
+                   "Its first period is too short: each record of a stream reports es");
   command.add_flag("--streaming", glove.streaming,
                    "It streams at the start, as after a crash of the host");
   command.add_flag("--pattern", glove.pattern,

@@ -89,8 +89,9 @@ Result<Wanted> check(const Options& options) {
                "needs several pictures: --turntable, --strip, --key-poses or several times");
   const double pixels = 1.0 * size->width * size->height * panels;
   if (!options.numbered && pixels > 6e7)
-    return bad("--pixels " + options.size, "too large for " + std::to_string(panels) +
-                                               " pictures on one sheet; use less, or --numbered");
+    return bad("--pixels " + options.size,
+               "too large for " + std::to_string(panels) +
+                   " pictures on one sheet; use fewer pixels, or --numbered");
   if (options.colour != "model" && options.colour != "distance")
     return bad("--colour " + options.colour, "use model or distance");
   if (const auto fine = cli::check_place("--out", options.out, {".png"}); !fine)

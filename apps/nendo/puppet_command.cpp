@@ -355,7 +355,7 @@ void nendo::app::add_puppet(cli::Command& program) {
     return added;
   };
   const char* const puppet = "Puppet file, or the name of a shipped one";
-  cli::Command showing = add("show", "A puppet's functions and points", "FILE", puppet, show);
+  cli::Command showing = add("show", "Shows a puppet's functions and points", "FILE", puppet, show);
   showing.add_option("--picture", options->picture,
                      "Where to draw the model at rest and each function at its limits, .png");
   showing.add_option("--camera", options->view,

@@ -65,7 +65,7 @@ constexpr std::array kinds_known{Kind{"cpu", compute}, Kind{"mem", copy_memory},
 [[noreturn]] void be_worker(const Kind& kind, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(0); // the parent died before prctl()
-  // Ctrl-C reaches the whole group; the parent then ends the workers when it is done with them.
+  // Ctrl-C reaches the whole group. The parent ends the workers later.
   ::signal(SIGINT, SIG_IGN);
   ::signal(SIGTERM, SIG_DFL);
   const sched_param ordinary{};
@@ -104,7 +104,7 @@ Result<Load> Load::start(const std::vector<std::string>& kinds) {
       if (worker == 0) be_worker(*kind, parent);
       if (worker < 0) {
         return Error{Errc::failed,
-                     "--load " + name + ": no process for it: " + std::strerror(errno)};
+                     "--load " + name + ": cannot start a process: " + std::strerror(errno)};
       }
       load.workers_.push_back(worker);
     }

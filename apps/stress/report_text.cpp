@@ -32,7 +32,7 @@ std::string words(std::string_view name) {
 
 /// The explanation of each measure, above its figures.
 constexpr std::array<std::string_view, measure_names.size()> meanings{
-    "from a tick's deadline until it began", "what its length differs from the period by",
+    "from a tick's deadline until it began", "the difference of its length from the period",
     "from its beginning until its frame was published", "how long a sample waited for the tick",
     "from a sample's last byte to the frame that shows it"};
 
@@ -62,7 +62,7 @@ void print_table(std::FILE* out, const StressOutcome& outcome, const ordered_jso
   const TickTally& tally = outcome.tally;
   cli::print(out, "\n  p50: half of the values are no greater; p99: 99 % of them, and so on. The "
                   "first row counts the ticks\n  that ran, \"per scheduled tick\" each tick that "
-                  "was due, so that a long stall counts for all it prevented.\n");
+                  "was due, so that a long stall counts for each tick that it prevented.\n");
   cli::print(out, "\n  {:<26}", "microseconds");
   for (const auto column : Figures::names) {
     std::string heading(column);
@@ -110,7 +110,7 @@ void print_environment(std::FILE* out, const StressOptions& options, const Stres
   if (outcome.pictures > 0)
     cli::print(out, "  {:<14} {} pictures in the live window\n", "observer", outcome.pictures);
   for (const auto& grant : outcome.grants) {
-    const std::string how = " (" + grant.why + "); to have it, " + grant.remedy;
+    const std::string how = " (" + grant.why + "); to get it, " + grant.remedy;
     cli::print(out, "  {:<14} {}{}\n", grant.granted ? "granted" : "REFUSED", grant.wanted,
                grant.granted ? "" : how);
   }

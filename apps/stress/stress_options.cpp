@@ -1,7 +1,5 @@
 #include "stress/stress_options.hpp"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
@@ -31,7 +29,7 @@ Result<void> parse_loop(const StressArguments& arguments, session::RunOptions& r
   run.loop.stages = *stages;
   if (const auto fine = arguments.loop.parse(run.loop, run.realtime); !fine) return fine.error();
   if (run.loop.policy == flow::OverrunPolicy::sample && !stages->input)
-    return usage("--policy sample: needs the stage input, for samples are what it waits for");
+    return usage("--policy sample: needs the stage input, because it waits for samples");
   run.radius = arguments.radius;
   if (const auto supports = session::parse_radius(run.radius, 1.0); !supports)
     return supports.error();
@@ -90,7 +88,7 @@ Result<StressOptions> parse(const StressArguments& arguments) {
   if (!(arguments.changes_per_minute >= 0.0 && arguments.changes_per_minute <= max_changes))
     return usage("--changes: use 0 to 6000 per minute");
   if (arguments.changes_per_minute > 0.0 && !(run.loop.stages.input && run.loop.stages.deform))
-    return usage("--changes: needs the stages input and deform, which they change");
+    return usage("--changes: needs the stages input and deform");
   options.changes_per_minute = arguments.changes_per_minute;
   if (run.left.empty() && run.right.empty()) run.left = run.right = "sim";
   if (run.mesh.empty()) run.mesh = cli::shipped_model("moai.obj").string();

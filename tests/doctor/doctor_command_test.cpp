@@ -125,9 +125,9 @@ TEST_SUITE("doctor") {
     port.identified = true;
     const Finding finding = only_finding(port);
     CHECK(finding.severity == Severity::failure);
-    CHECK(finding.what == "held by gpsd (pid 812)");
+    CHECK(finding.what == "is held by gpsd (pid 812)");
     port.holders = {{0, "another user's program"}};
-    CHECK(only_finding(port).what == "held by another user's program");
+    CHECK(only_finding(port).what == "is held by another user's program");
   }
 
   TEST_CASE("an adapter without a port is a failure, and brltty's if that runs") {

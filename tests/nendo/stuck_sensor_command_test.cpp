@@ -224,7 +224,7 @@ TEST_SUITE("stuck_sensor_command") {
       CHECK(written->left_out == expected);
       CHECK(count_of(done.out, "is stuck: left out") == made.stuck.size());
       const auto shown = nendo::test::nendo({"calibration", "show", out});
-      CHECK(shown.out.find("left out because they are stuck: ") != std::string::npos);
+      CHECK(shown.out.find("left out, because they are stuck: ") != std::string::npos);
     }
   }
 
