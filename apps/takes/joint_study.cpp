@@ -6,11 +6,12 @@
 #include <span>
 #include <string>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 #include <nendo/base/text.hpp>
 #include <nendo/base/units.hpp>
+#include <nendo/hand/dense.hpp>
 #include <nendo/hand/joint_limits.hpp>
 
 #include "cli/cli.hpp"
@@ -110,7 +111,8 @@ struct Covariance {
         table(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
             samples[row][angles[column]];
     table.rowwise() -= table.colwise().mean().eval();
-    matrix = table.transpose() * table / static_cast<double>(samples.size());
+    // A lazy product, because that of large matrices takes seconds to compile.
+    matrix = table.transpose().lazyProduct(table) / static_cast<double>(samples.size());
   }
 
   Eigen::Index index_of(Angle angle) const {
@@ -136,11 +138,10 @@ void add_pairs(const Covariance& covariance, JointStudy& study) {
 void add_components(const Covariance& covariance, JointStudy& study) {
   const double all = covariance.matrix.trace();
   if (!(all > min_moved_rad * min_moved_rad)) return;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance.matrix,
-                                                              Eigen::EigenvaluesOnly);
+  const Eigen::VectorXd variances = hand::eigenvalues_of_symmetric(covariance.matrix);
   double sum = 0.0;
-  for (Eigen::Index at = solver.eigenvalues().size() - 1; at >= 0; --at)
-    study.components.push_back((sum += solver.eigenvalues()[at]) / all);
+  for (Eigen::Index at = variances.size() - 1; at >= 0; --at)
+    study.components.push_back((sum += variances[at]) / all);
 }
 
 } // namespace

@@ -9,7 +9,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "dense.hpp"
+#include <nendo/hand/dense.hpp>
 
 namespace nendo::hand {
 

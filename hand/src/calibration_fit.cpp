@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <nendo/base/units.hpp>
+#include <nendo/hand/dense.hpp>
 
-#include "dense.hpp"
 #include "fit_priors.hpp"
 #include "fit_problem.hpp"
 

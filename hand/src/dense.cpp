@@ -1,4 +1,4 @@
-#include "dense.hpp"
+#include <nendo/hand/dense.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include <nendo/base/units.hpp>
+#include <nendo/hand/dense.hpp>
 
-#include "dense.hpp"
 #include "fit_priors.hpp"
 
 namespace nendo::hand {

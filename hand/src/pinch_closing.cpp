@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include <nendo/hand/angle_sources.hpp>
+#include <nendo/hand/dense.hpp>
 #include <nendo/hand/joint_limits.hpp>
 
-#include "dense.hpp"
 #include "fingertip.hpp"
 
 namespace nendo::hand {

@@ -1,5 +1,6 @@
-# nendo_library(<name> SOURCES ... HEADERS ...) makes nendo_<name> with the alias nendo::<name>, its public headers
-# as a verified file set under include/, and everything in src/ private. With INTERNAL it is static and not installed.
+# nendo_library(<name> SOURCES ... [OPTIMISED ...] HEADERS ... [LIBRARIES ...]) makes nendo_<name> with the alias nendo::<name>,
+# its public headers as a verified file set under include/, and everything in src/ private. OPTIMISED names the sources that
+# compute in every tick, or for long. With INTERNAL it is static and not installed.
 # nendo_settings() is what every target gets.
 
 set(NENDO_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize takes them")
@@ -66,8 +67,9 @@ function(nendo_settings target scope)
   endif()
 endfunction()
 
-# nendo_kind(<target> <kind>): the differences between a `library`, a `module` of the program, a `test` and an `optimised_test`.
-# Libraries, and modules with OPTIMISED, do the program's heavy work. Other modules are compiled with -O1, in a quarter less time.
+# nendo_kind(<target> <kind>): the differences between `plain` and `optimised` sources, a `test` and an `optimised_test`.
+# Plain sources are compiled with -O1, which takes two thirds of the time of -O3. The level of GCC's precompiled header counts,
+# and not that of the source: each kind has a header of its own.
 # Where NENDO_PCH is on, the headers that most files see are read once for all targets of a kind. The preset dev has it off,
 # and clang-tidy and clangd read that preset's flags: they show whether each file includes what it uses.
 function(nendo_kind target kind)
@@ -80,12 +82,12 @@ function(nendo_kind target kind)
 endfunction()
 
 function(nendo_kind_options target kind)
-  if(kind MATCHES "library|module")
+  if(NOT kind MATCHES "test")
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   endif()
   if(kind STREQUAL "test")
     target_compile_options(${target} PRIVATE -O0)
-  elseif(kind MATCHES "module|optimised_test")
+  elseif(kind MATCHES "plain|optimised_test")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
 endfunction()
@@ -109,7 +111,7 @@ function(nendo_precompiled_headers kind)
 endfunction()
 
 function(nendo_library name)
-  cmake_parse_arguments(ARG "INTERNAL" "" "SOURCES;HEADERS" ${ARGN})
+  cmake_parse_arguments(ARG "INTERNAL" "" "SOURCES;OPTIMISED;HEADERS;LIBRARIES" ${ARGN})
   set(target nendo_${name})
   set(scope PUBLIC)
   set(kind "")
@@ -119,14 +121,25 @@ function(nendo_library name)
   if(ARG_SOURCES)
     add_library(${target} ${kind} ${ARG_SOURCES})
     nendo_settings(${target} PUBLIC)
-    nendo_kind(${target} library)
+    nendo_kind(${target} plain)
     target_include_directories(${target} PRIVATE src)
+    if(ARG_OPTIMISED)
+      add_library(${target}_optimised OBJECT ${ARG_OPTIMISED})
+      nendo_settings(${target}_optimised PRIVATE)
+      nendo_kind(${target}_optimised optimised)
+      target_include_directories(${target}_optimised PRIVATE src include)
+      target_link_libraries(${target}_optimised ${ARG_LIBRARIES})
+      target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_optimised>)
+    endif()
     set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION}
       SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   else()
     add_library(${target} INTERFACE)
     nendo_settings(${target} INTERFACE)
     set(scope INTERFACE)
+  endif()
+  if(ARG_LIBRARIES)
+    target_link_libraries(${target} ${ARG_LIBRARIES})
   endif()
   add_library(nendo::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERIFY_INTERFACE_HEADER_SETS ON)
@@ -148,9 +161,9 @@ function(nendo_module name)
   add_library(nendo::${name} ALIAS ${target})
   nendo_settings(${target} PRIVATE)
   if(ARG_OPTIMISED)
-    nendo_kind(${target} library)
+    nendo_kind(${target} optimised)
   else()
-    nendo_kind(${target} module)
+    nendo_kind(${target} plain)
   endif()
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/apps)
   if(ARG_LIBRARIES)

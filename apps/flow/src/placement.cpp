@@ -4,13 +4,14 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <nendo/deform/dense.hpp>
 
 namespace nendo::flow {
 namespace {
 
+using deform::Matrix6d;
 using deform::Points;
+using deform::Vector6d;
 using Eigen::Index;
 using Eigen::Isometry3d;
 using Eigen::Matrix3d;
@@ -95,9 +96,8 @@ Isometry3d first_guess(const Surface& surface, Side side, const Fingertips& tips
   const Matrix3d held = holding_orientation(side);
   const Vector3d inwards = -outwards_of(side) * Vector3d::UnitX();
   const Fingertips spread = tips.colwise() - tips.rowwise().mean();
-  Eigen::SelfAdjointEigenSolver<Matrix3d> principal;
-  principal.computeDirect(spread * spread.transpose()); // the first axis is that of least extent
-  Vector3d facing = held * principal.eigenvectors().col(0);
+  // The first principal axis is that of least extent.
+  Vector3d facing = held * deform::eigen3_direct(spread * spread.transpose()).vectors.col(0);
   if (facing.dot(inwards) < 0.0) facing = -facing;
   const Vector3d axis = facing.cross(inwards);
   const double angle_rad = std::atan2(axis.norm(), facing.dot(inwards));
@@ -123,8 +123,6 @@ void register_step(const Surface& surface, const Fingertips& tips_wrist, bool an
                    Registration& at) {
   constexpr double turn_weight_m = 0.05;
   constexpr double slide_weight = 0.3;
-  using Matrix6d = Eigen::Matrix<double, 6, 6>;
-  using Vector6d = Eigen::Matrix<double, 6, 1>;
   const Fingertips tips = moved(at.T, tips_wrist);
   const Vector3d centre = tips.rowwise().mean();
   Vector6d weights;
@@ -142,7 +140,7 @@ void register_step(const Surface& surface, const Fingertips& tips_wrist, bool an
     H += J * J.transpose();
     g += J * normal.dot(tips.col(i) - surface.points.col(nearest));
   }
-  Vector6d step = -H.ldlt().solve(g);
+  Vector6d step = -deform::solve_spd6(H, g);
   step *= std::min(
       1.0, 0.1 / std::max(step.head<3>().norm(), 1e-12)); // nearest points change on the way
   const Eigen::AngleAxisd turn(step.head<3>().norm(), step.head<3>().stableNormalized());

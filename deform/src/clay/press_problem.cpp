@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/dense.hpp"
+#include <nendo/deform/dense.hpp>
 
 namespace nendo::deform {
 

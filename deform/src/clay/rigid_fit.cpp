@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/dense.hpp"
+#include <nendo/deform/dense.hpp>
 
 namespace nendo::deform {
 

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "solver/dense.hpp"
+#include <nendo/deform/dense.hpp>
 
 namespace nendo::deform {
 

@@ -43,13 +43,28 @@ double near_zero(double angle) noexcept {
   return std::remainder(angle, 2.0 * std::numbers::pi);
 }
 
+/// The shortest rotation from one direction to another. Eigen's Quaternion::FromTwoVectors() is the
+/// same, but for opposite directions it has a singular value decomposition, which takes ten seconds
+/// to compile.
+Quaterniond rotation_between(const Vector3d& before, const Vector3d& after) noexcept {
+  const Vector3d from = before.normalized(), to = after.normalized();
+  const double cosine = to.dot(from);
+  if (cosine < -1.0 + Eigen::NumTraits<double>::dummy_precision())
+    return Quaterniond(Eigen::AngleAxisd(std::numbers::pi, from.unitOrthogonal()));
+  const double twice_real = std::sqrt((1.0 + cosine) * 2.0);
+  Quaterniond rotation;
+  rotation.vec() = from.cross(to) * (1.0 / twice_real);
+  rotation.w() = 0.5 * twice_real;
+  return rotation;
+}
+
 Quaterniond turn_of_two(const HeldFrame& one, const HeldFrame& other) noexcept {
   const Vector3d before = other.from.translation() - one.from.translation();
   const Vector3d after = other.now.translation() - one.now.translation();
   const Quaterniond first = turn_of(one), second = turn_of(other);
   if (!(before.norm() > 0.0) || !(after.norm() > 0.0)) return first.slerp(0.5, second);
   const Vector3d axis = after.normalized();
-  const Quaterniond along = Quaterniond::FromTwoVectors(before, after);
+  const Quaterniond along = rotation_between(before, after);
   const double of_first = near_zero(angle_about(axis, first * along.conjugate()));
   const double of_second = near_zero(angle_about(axis, second * along.conjugate()));
   // From the one to the other on the shorter way.

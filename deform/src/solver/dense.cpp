@@ -1,4 +1,4 @@
-#include "solver/dense.hpp"
+#include <nendo/deform/dense.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -13,6 +13,12 @@ EigenPairs<3> eigen3(const Eigen::Matrix3d& symmetric) noexcept {
 
 EigenPairs<4> eigen4(const Eigen::Matrix4d& symmetric) noexcept {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(symmetric);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+EigenPairs<3> eigen3_direct(const Eigen::Matrix3d& symmetric) noexcept {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(symmetric);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 

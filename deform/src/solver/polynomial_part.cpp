@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <nendo/deform/dense.hpp>
+
 #include "geometry/usable.hpp"
-#include "solver/dense.hpp"
 
 namespace nendo::deform {
 

@@ -4,15 +4,18 @@
 
 #include <Eigen/Core>
 
+#include <nendo/base/api.hpp>
+
 namespace nendo::hand {
 
 /// Solves `matrix` x = `right` for a symmetric positive definite matrix, of which the lower half is
 /// used. `right` becomes x, and `matrix` its Cholesky factor. No allocation.
-void solve_positive_definite(Eigen::Ref<Eigen::MatrixXd> matrix, Eigen::Ref<Eigen::VectorXd> right);
+NENDO_API void solve_positive_definite(Eigen::Ref<Eigen::MatrixXd> matrix,
+                                       Eigen::Ref<Eigen::VectorXd> right);
 
-Eigen::MatrixXd inverse_of_positive_definite(const Eigen::MatrixXd& matrix);
+NENDO_API Eigen::MatrixXd inverse_of_positive_definite(const Eigen::MatrixXd& matrix);
 
 /// Returns the eigenvalues of a symmetric matrix, which is not empty, in ascending order.
-Eigen::VectorXd eigenvalues_of_symmetric(const Eigen::MatrixXd& matrix);
+NENDO_API Eigen::VectorXd eigenvalues_of_symmetric(const Eigen::MatrixXd& matrix);
 
 } // namespace nendo::hand
