@@ -39,17 +39,9 @@ Eigen::Matrix3Xf columns_of(const std::vector<float>& values) {
                                             static_cast<Eigen::Index>(values.size() / 3));
 }
 
-void add_channel(GlbFile::Index times, GlbFile::Index values, GlbFile::Index node, const char* path,
-                 Json& animation) {
-  animation["samplers"].push_back(
-      {{"input", times}, {"output", values}, {"interpolation", "LINEAR"}});
-  animation["channels"].push_back({{"sampler", animation["samplers"].size() - 1},
-                                   {"target", {{"node", node}, {"path", path}}}});
-}
-
 /// The 26 nodes; gives that of joint 0, the others follow.
-GlbFile::Index add_joints(const HandTrack& track, GlbFile::Index times, GlbFile& file,
-                          Json& animation) {
+GlbFile::Index add_joints(const HandTrack& track, GlbFile::Index times, GltfAnimation& document) {
+  GlbFile& file = document.file;
   const GlbFile::Index base = file["nodes"].size();
   const std::string suffix = track.side() == Side::left ? "_L" : "_R";
   for (std::size_t at = 0; at < hand::joint_count; ++at) {
@@ -60,13 +52,12 @@ GlbFile::Index add_joints(const HandTrack& track, GlbFile::Index times, GlbFile&
     for (std::size_t child = 0; child < hand::joint_count; ++child)
       if (parent_of(joint_at(child)) == joint_at(at)) node["children"].push_back(base + child);
     file.add("nodes", std::move(node));
-    if (moves(joint.places, 3, min_displacement_m)) {
-      const auto places =
-          file.add_vectors(columns_of(joint.places), GlbFile::Use::animation, false);
-      add_channel(times, places, base + at, "translation", animation);
-    }
+    if (moves(joint.places, 3, min_displacement_m))
+      document.animate(base + at, "translation", "LINEAR", times,
+                       file.add_vectors(columns_of(joint.places), GlbFile::Use::animation, false));
     if (moves(joint.rotations, 4, min_turn))
-      add_channel(times, file.add_quaternions(joint.rotations), base + at, "rotation", animation);
+      document.animate(base + at, "rotation", "LINEAR", times,
+                       file.add_quaternions(joint.rotations));
   }
   return base;
 }
@@ -125,10 +116,10 @@ GlbFile::Index add_mesh(const HandTrack& track, const hand::HandPose& bind, GlbF
 /// Adds a tree of 26 nodes, one for each joint of OpenXR, that turn over time, under a node of the
 /// hand's own ("left hand"), and a skin that follows them ("left hand skin"). The root nodes go to
 /// `roots`. `times` is the accessor of the track's moments, of which there must be at least one.
-void add_hand(const HandTrack& track, GlbFile::Index times, GlbFile& file, Json& animation,
-              Json& roots) {
+void add_hand(const HandTrack& track, GlbFile::Index times, GltfAnimation& document, Json& roots) {
+  GlbFile& file = document.file;
   const hand::HandPose bind = track.first_as(render::HandSkin::bind_pose(track.side()));
-  const GlbFile::Index base = add_joints(track, times, file, animation);
+  const GlbFile::Index base = add_joints(track, times, document);
   const GlbFile::Index skin = add_skin(track, bind, base, file);
   const GlbFile::Index mesh = add_mesh(track, bind, file);
   const std::string name = std::string(name_of(track.side())) + " hand";
@@ -289,7 +280,7 @@ Result<Exported> write_hands(const GltfJob& job, const PlayedFrames& played, Glb
   const bool has_hands = played.hands[0] || played.hands[1];
   if (has_hands) times = file.add_scalars(played.times_s, true);
   for (const auto& hand : played.hands)
-    if (hand) add_hand(*hand, times, file, document.animation, roots);
+    if (hand) add_hand(*hand, times, document, roots);
   const takes::FrameSource& source = job.frames.source();
   put_at(source.model(0).offset / played.units_per_metre, roots, file);
   file["scene"] = 0;
