@@ -416,7 +416,7 @@ void EditSession::copy_key() {
 
 void EditSession::mirror() {
   Selection key = history_.selected();
-  if (key) key->side = key->side == Side::left ? Side::right : Side::left;
+  if (key) key->side = opposite(key->side);
   report(history_.apply([&](Timeline& timeline) {
     return after(timeline::mirror(timeline, takes::middle_plane_m(timeline, model_)), key);
   }),

@@ -88,10 +88,6 @@ std::string name_of_key(Side side, std::size_t key) {
   return std::string(name_of(side)) + " hand, key " + std::to_string(key);
 }
 
-Side other_of(Side side) noexcept {
-  return side == Side::left ? Side::right : Side::left;
-}
-
 void mirror_key(Key& key, double plane_x_m) {
   key.wrist_m.x() = 2.0 * plane_x_m - key.wrist_m.x();
   // The turn seen in a mirror whose hand is mirrored: about x as before, about y and z the
@@ -114,7 +110,7 @@ void mirror_roles(Timeline& timeline) {
         before[at].asked, before[at].input.mirrored(), before[at].held};
   for (Event& event : timeline.events) {
     if (auto* const clutch = std::get_if<flow::SetClutch>(&event.command))
-      clutch->side = other_of(clutch->side);
+      clutch->side = opposite(clutch->side);
     if (auto* const role = std::get_if<flow::SetRole>(&event.command))
       *role = {static_cast<std::uint16_t>(twin_number(puppet, role->function)),
                role->input.mirrored()};
@@ -248,7 +244,7 @@ Result<void> blend(Timeline& one, const Timeline& other, double factor) {
 Result<void> mirror(Timeline& timeline, double plane_x_m) {
   Timeline result = timeline;
   for (HandTrack& hand : result.hands) {
-    hand.side = other_of(hand.side);
+    hand.side = opposite(hand.side);
     for (Key& key : hand.keys)
       mirror_key(key, plane_x_m);
   }

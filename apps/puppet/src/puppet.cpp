@@ -54,7 +54,7 @@ std::optional<HandSignal> HandSignal::numbered(Side side, std::uint8_t number) n
 }
 
 HandSignal HandSignal::mirrored() const noexcept {
-  return {side_ == Side::left ? Side::right : Side::left, number_};
+  return {opposite(side_), number_};
 }
 
 std::string HandSignal::name() const {
