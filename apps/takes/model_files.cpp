@@ -64,6 +64,37 @@ Result<deform::ReadModel> read_alone(const std::string& file, const deform::Read
   return model;
 }
 
+/// Reads the files of a name as read_models() does, but prints nothing.
+Result<deform::ReadModel> read_models_silently(const std::string& name,
+                                               const deform::ReadOptions& options) {
+  std::vector<deform::Mesh> models;
+  deform::ReadModel all;
+  const std::vector<std::string> files = cli::files_of_name(name);
+  for (const std::string& file : files) {
+    auto model = read_alone(file, options);
+    if (!model) return model;
+    models.push_back(std::move(model->mesh));
+    for (const std::string& what : model->notes)
+      all.notes.push_back(files.size() == 1 ? what : file + ": " + what);
+  }
+  if (models.size() == 1) {
+    all.mesh = std::move(models.front());
+  } else {
+    add_other_units(files, models, all.notes);
+    auto both = deform::side_by_side(models);
+    if (!both) return Error{both.error().code, name + ": " + both.error().message};
+    all.mesh = *std::move(both);
+  }
+  deform::count_from(deform::usual_offset(all.mesh), all.mesh);
+  return all;
+}
+
+/// Says on standard error what the notes say of the model of that name.
+void note_all(const std::string& name, const std::vector<std::string>& notes) {
+  for (const std::string& what : notes)
+    cli::note_model(printable(name + ": " + what));
+}
+
 /// The ways to read a file of which a recording does not say which one it was: the usual one first.
 /// Each says which axis is up, so no note asks.
 constexpr std::array<deform::ReadOptions, 4> readings{{{deform::UpAxis::y, true},
@@ -123,35 +154,6 @@ Result<deform::ReadModel> read_models(const std::string& name, const deform::Rea
   auto model = read_models_silently(name, options);
   if (model) note_all(name, model->notes);
   return model;
-}
-
-void note_all(const std::string& name, const std::vector<std::string>& notes) {
-  for (const std::string& what : notes)
-    cli::note_model(printable(name + ": " + what));
-}
-
-Result<deform::ReadModel> read_models_silently(const std::string& name,
-                                               const deform::ReadOptions& options) {
-  std::vector<deform::Mesh> models;
-  deform::ReadModel all;
-  const std::vector<std::string> files = cli::files_of_name(name);
-  for (const std::string& file : files) {
-    auto model = read_alone(file, options);
-    if (!model) return model;
-    models.push_back(std::move(model->mesh));
-    for (const std::string& what : model->notes)
-      all.notes.push_back(files.size() == 1 ? what : file + ": " + what);
-  }
-  if (models.size() == 1) {
-    all.mesh = std::move(models.front());
-  } else {
-    add_other_units(files, models, all.notes);
-    auto both = deform::side_by_side(models);
-    if (!both) return Error{both.error().code, name + ": " + both.error().message};
-    all.mesh = *std::move(both);
-  }
-  deform::count_from(deform::usual_offset(all.mesh), all.mesh);
-  return all;
 }
 
 Result<void> write_model(const std::string& file, const deform::Mesh& mesh, deform::UpAxis up) {

@@ -2,7 +2,6 @@
 // Reads the model of a run, which may be in several files.
 
 #include <string>
-#include <vector>
 
 #include <nendo/base/result.hpp>
 #include <nendo/deform/mesh_file.hpp>
@@ -23,12 +22,6 @@ Result<deform::ReadModel> read_model(const std::string& file,
 /// deform::read_mesh(); bad_input (too large together).
 Result<deform::ReadModel> read_models(const std::string& name,
                                       const deform::ReadOptions& options = {});
-/// Does the same, but prints nothing.
-Result<deform::ReadModel> read_models_silently(const std::string& name,
-                                               const deform::ReadOptions& options = {});
-
-/// Says on standard error what the notes say of the model of that name.
-void note_all(const std::string& name, const std::vector<std::string>& notes);
 
 /// Writes the mesh into a file whose axis `up` points up, and notes on standard error what such a
 /// file cannot keep. Errors: those of deform::write_mesh().
@@ -48,7 +41,7 @@ struct RecordedModel {
   deform::Mesh mesh;
   bool is_recorded = true;       ///< it is made of the file as it was then
   deform::ReadOptions reading{}; ///< how the file was read
-  deform::UpAxis up() const noexcept { return reading.up.value_or(deform::UpAxis::y); }
+  deform::UpAxis up() const noexcept { return axis_of(reading); }
 };
 /// Reads the model from the file `named`, or from the recorded file name if `named` is empty, and
 /// subdivides and refines it as it was before the recording began. It is read as it was then: of
