@@ -123,13 +123,8 @@ bool read_setup_chunk(ChunkType type, std::span<const std::byte> payload, Setup&
 
 namespace {
 
-constexpr double farthest_wrist_m = 1e6; // as setup_loop.cpp reads
-constexpr double largest_readable = 1e100;
-constexpr double min_readable = 1e-100;
-constexpr std::size_t max_puppet_text = std::size_t{1} << 20;
-
 bool is_in_range(double value) noexcept {
-  return value >= min_readable && value <= largest_readable;
+  return value >= min_number && value <= max_number;
 }
 
 /// The value of a loop that is out of its range, and what to do.
@@ -153,7 +148,7 @@ std::string reason_of(ChunkType type, const Setup& setup) {
     return "a hand's size, calibration or filter has a number that no hand has; calibrate again, "
            "or use --calibration none";
   if (type == loop_chunk && setup.loop) return reason_of_loop(*setup.loop);
-  if (type == puppet_chunk && setup.loop && setup.loop->puppet.text.size() > max_puppet_text)
+  if (type == puppet_chunk && setup.loop && setup.loop->puppet.text.size() > max_text_bytes)
     return "its puppet is longer than 1 MiB; take functions or masks out of it";
   if (type == puppet_chunk)
     return "its puppet has a number that is out of its range; correct its file";
@@ -186,7 +181,6 @@ namespace {
 
 constexpr std::size_t operation_bytes = 9;
 constexpr std::size_t vertex_bytes = 24;
-constexpr double largest_coordinate = 1e100;
 
 } // namespace
 
@@ -204,7 +198,7 @@ namespace {
 
 /// The values of an origin that only its first chunk has.
 void change_fields(auto& fields, auto& origin) {
-  fields.number(origin.seam_width, 0.0, largest_coordinate);
+  fields.number(origin.seam_width, 0.0, max_number);
   fields.u32(origin.part);
   auto places = static_cast<std::uint32_t>(origin.wire.size());
   fields.whole(places, 0, flow::WirePath::max_places);
@@ -213,7 +207,7 @@ void change_fields(auto& fields, auto& origin) {
   for (auto& place : origin.wire)
     for (auto* const end : {&place.from, &place.to})
       for (auto& coordinate : *end)
-        fields.number(coordinate, -largest_coordinate, largest_coordinate);
+        fields.number(coordinate, -max_number, max_number);
 }
 
 void operation_fields(auto& fields, auto& operation) {
@@ -236,7 +230,7 @@ void read_vertices(ByteReader& reader, FieldReader& fields, ModelOrigin& origin)
       3, first + static_cast<Eigen::Index>(reader.remaining() / vertex_bytes));
   for (Eigen::Index at = first; at < origin.shape.cols(); ++at)
     for (Eigen::Index axis = 0; axis < 3; ++axis)
-      fields.number(origin.shape(axis, at), -largest_coordinate, largest_coordinate);
+      fields.number(origin.shape(axis, at), -max_number, max_number);
 }
 
 std::size_t max_of_chunk(const ModelOrigin& origin) noexcept {

@@ -19,32 +19,29 @@ constexpr std::uint64_t max_memory = std::uint64_t{1} << 28;
 constexpr std::uint32_t max_links = 1024;
 constexpr std::uint32_t max_catch_up = 1000; // as parse_policy()
 constexpr std::uint32_t max_points =
-    puppet::Puppet::max_points;          // two hands' fingertips, or a puppet's
-constexpr double largest_number = 1e100; // as the solver takes
+    puppet::Puppet::max_points; // two hands' fingertips, or a puppet's
 // Rules of the loop, which unreleased programs did not have: an undo reverts a pull in type 1 as a
 // step of its own; type 2 measures along the surface, and clay of few vertices is scaled.
 constexpr std::uint8_t pull_rule = 1, sculptor_rules = 3;
 
 void placement_fields(auto& fields, auto& placement) {
-  constexpr double min_scale = 1e-100;
-  constexpr double farthest_m = 1e6;
-  fields.number(placement.units_per_metre, min_scale, largest_number);
+  fields.number(placement.units_per_metre, min_number, max_number);
   for (auto& pose : placement.T_stage_wrist) {
     for (Eigen::Index row = 0; row < 3; ++row)
       for (Eigen::Index column = 0; column < 4; ++column)
-        fields.number(pose(row, column), -farthest_m, farthest_m);
+        fields.number(pose(row, column), -farthest_wrist_m, farthest_wrist_m);
   }
 }
 
 void table_fields(auto& fields, auto& table) {
   for (auto& coordinate : table.top)
     fields.number(coordinate, -deform::max_units, deform::max_units);
-  fields.number(table.half_side, 0.0, largest_number);
+  fields.number(table.half_side, 0.0, max_number);
 }
 
 void support_fields(auto& fields, auto& support) {
-  fields.number(support.radius, 0.0, largest_number);
-  fields.number(support.weight, 0.0, largest_number);
+  fields.number(support.radius, 0.0, max_number);
+  fields.number(support.weight, 0.0, max_number);
 }
 
 void deformer_fields(auto& fields, auto& options) {
@@ -105,7 +102,6 @@ void hold_fields(auto& fields, auto& settings) {
 
 void loop_fields(auto& fields, auto& loop) {
   constexpr bool reads = std::remove_cvref_t<decltype(fields)>::reads;
-  constexpr double min_piece = 1e-100;
   auto& options = loop.options;
   fields.text(loop.mesh);
   fields.u64(loop.mesh_sum.vertices);
@@ -117,7 +113,7 @@ void loop_fields(auto& fields, auto& loop) {
   fields.time_span(options.silent_after);
   fields.one_of(options.switch_action, flow::SwitchAction::keep);
   fields.one_of(options.sculptor.mode, flow::Mode::parts);
-  fields.number(options.sculptor.piece_length, min_piece, largest_number);
+  fields.number(options.sculptor.piece_length, min_number, max_number);
   deformer_fields(fields, options.sculptor.deformer);
   fields.text(loop.simd);
   fields.u64(options.undo_max_bytes);
@@ -230,7 +226,7 @@ void starts_fields(auto& fields, auto& starts) {
     starts.resize(3, static_cast<Eigen::Index>(count));
   for (Eigen::Index at = 0; at < starts.cols(); ++at)
     for (Eigen::Index axis = 0; axis < 3; ++axis)
-      fields.number(starts(axis, at), -largest_number, largest_number);
+      fields.number(starts(axis, at), -max_number, max_number);
 }
 
 void puppet_fields(auto& fields, auto& puppet, auto& state) {

@@ -32,6 +32,13 @@ constexpr bool is_setup_chunk(ChunkType type) noexcept {
 void put_signal(ByteWriter& writer, const puppet::HandSignal& signal);
 std::optional<puppet::HandSignal> read_signal(ByteReader& reader);
 
+// Limits of readers. A recorder refuses a setup that exceeds them (check_readable()). The solver
+// takes no greater numbers.
+inline constexpr double min_number = 1e-100;
+inline constexpr double max_number = 1e100;
+inline constexpr double farthest_wrist_m = 1e6;
+inline constexpr std::size_t max_text_bytes = std::size_t{1} << 20;
+
 /// Added to a filter's kind where pinches are closed.
 inline constexpr unsigned pinches_bit = 128;
 
@@ -137,9 +144,8 @@ public:
   void reserved() { reader_->u16_le(); }
   void text(std::string& value) { value = reader_->text(); }
   void long_text(std::string& value) {
-    constexpr std::uint32_t max_text = std::uint32_t{1} << 20;
     const std::uint32_t size = reader_->u32_le();
-    require(size > 0 && size <= max_text && size <= reader_->remaining());
+    require(size > 0 && size <= max_text_bytes && size <= reader_->remaining());
     if (!fine_) return;
     const auto text = reader_->take(size);
     value.assign(reinterpret_cast<const char*>(text.data()), text.size());
