@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/recording/sample_record.hpp>
+#include <nendo/recording/take_reader.hpp>
 
 #include "support/eventually.hpp"
 #include "support/required.hpp"
@@ -53,9 +53,9 @@ struct Take {
       sample.sequence = static_cast<std::uint64_t>(1000 + at + (at >= 3 ? 1 : 0));
       sample.set(Sensor::index_mcp, RawCount{static_cast<std::uint16_t>(50 + at)});
       right.push_back(sample);
-      put_sample(writer, {1, sample});
+      put_entry(writer, RecordedSample{1, sample});
       sample.side = Side::left;
-      put_sample(writer, {0, sample});
+      put_entry(writer, RecordedSample{0, sample});
       append_chunk(bytes, log_chunk, chunk++, payload);
     }
     std::ofstream(path, std::ios::binary)

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include <nendo/recording/take_reader.hpp>
+
 namespace sample_record_test {
 
 using namespace nendo;
@@ -47,7 +49,7 @@ TEST_SUITE("sample_record") {
     std::vector<RecordedSample> samples;
     for (int turn = 0; turn < 500; ++turn) {
       samples.push_back({static_cast<std::uint8_t>(turn % 2), random_sample(random)});
-      put_sample(writer, samples.back());
+      put_entry(writer, samples.back());
       writer.u8(200); // a kind of the future, of three bytes
       writer.u8(3);
       writer.bytes(std::array<std::byte, 3>{});
@@ -68,7 +70,7 @@ TEST_SUITE("sample_record") {
   TEST_CASE("an input log that ends in the middle of an entry says so") {
     std::vector<std::byte> payload;
     ByteWriter writer(payload);
-    put_sample(writer, {});
+    put_entry(writer, RecordedSample{});
     for (std::size_t size = 1; size < payload.size(); ++size) {
       LogEntries records{std::span(payload).first(size)};
       CHECK_FALSE(records.next().has_value());
@@ -80,7 +82,7 @@ TEST_SUITE("sample_record") {
     const auto accepted = [](const GloveSample& sample) {
       std::vector<std::byte> payload;
       ByteWriter writer(payload);
-      put_sample(writer, {0, sample});
+      put_entry(writer, RecordedSample{0, sample});
       return sample_of(*LogEntries(payload).next()).has_value();
     };
     GloveSample sample;

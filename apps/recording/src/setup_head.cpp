@@ -1,8 +1,9 @@
 #include "setup_parts.hpp"
 
+#include <type_traits>
 #include <utility>
 
-#include <nendo/recording/sample_record.hpp>
+#include <nendo/flow/setting.hpp>
 
 namespace nendo::recording {
 namespace {
@@ -63,12 +64,9 @@ bool has_stuck(const hand::Wearer& wearer) {
 }
 
 void stuck_fields(auto& fields, auto& wearer) {
-  constexpr std::uint32_t all_slots = (1U << sensor_slots) - 1U;
   fields.counts(wearer.watched);
-  for (auto* mask : {&wearer.stuck, &wearer.left.left_out, &wearer.right.left_out}) {
-    fields.u32(mask->bits);
-    fields.require((mask->bits & ~all_slots) == 0);
-  }
+  for (auto* mask : {&wearer.stuck, &wearer.left.left_out, &wearer.right.left_out})
+    fields.bits(mask->bits, sensor_slots);
 }
 
 void size_fields(auto& fields, auto& size) {
@@ -90,8 +88,7 @@ void shape_fields(auto& fields, auto& own, auto& other) {
 
 void layer_fields(auto& fields, auto& layer) {
   constexpr double max_rad = 7.0; // a turn
-  fields.u32(layer.joints.bits);
-  fields.require((layer.joints.bits & ~flow::AngleSet::all().bits) == 0);
+  fields.bits(layer.joints.bits, hand::angle_count);
   fields.flag(layer.on);
   fields.number(layer.weight, 0.0, 1.0);
   fields.optional(layer.below, [&](auto& below) {
@@ -100,73 +97,72 @@ void layer_fields(auto& fields, auto& layer) {
   });
 }
 
+void head_fields(auto& fields, auto& setup) {
+  fields.time(setup.begun);
+  fields.time(setup.begun_host);
+  fields.text(setup.program);
+  fields.text(setup.wearer);
+}
+
+/// `own` and `other`: the hands of the wearer for gloves of the first sample's side, and of the
+/// other side.
+void hand_fields(auto& fields, auto& hand, auto& own, auto& other, std::uint8_t number) {
+  constexpr bool reads = std::remove_cvref_t<decltype(fields)>::reads;
+  auto& wearer = hand.wearer;
+  fields.one_of(hand.side, Side::right);
+  size_fields(fields, own.size);
+  RecordedSample first{number, hand.first};
+  sample_fields(fields, first);
+  fields.require(first.glove == number);
+  if constexpr (reads) hand.first = first.sample;
+  fields.flag(hand.gated);
+  if (fields.filter_kind(hand.filter, ends_bit, wearer.ends.has_value())) {
+    if constexpr (reads) wearer.ends.emplace();
+  }
+  filter_fields(fields, hand.filter);
+  fields.counts(wearer.adapt);
+  calibration_fields(fields, own.calibration);
+  calibration_fields(fields, other.calibration);
+  size_fields(fields, other.size);
+  fields.optional(wearer.learned, [&](auto& learned) { learned_fields(fields, learned); });
+  fields.optional(hand.layer, [&](auto& layer) { layer_fields(fields, layer); });
+  bool differs = !own.size.shape.is_average() || !other.size.shape.is_average();
+  fields.flag(differs);
+  if (differs) shape_fields(fields, own.size.shape, other.size.shape);
+  if (wearer.ends) ends_fields(fields, *wearer.ends);
+  if (fields.has_end(has_stuck(wearer))) stuck_fields(fields, wearer);
+}
+
 } // namespace
 
 void put_head(ByteWriter& writer, const Setup& setup) {
-  writer.i64_le(setup.begun.time_since_epoch().count());
-  put_time(writer, setup.begun_host);
-  writer.text(setup.program);
-  writer.text(setup.wearer);
+  FieldWriter fields(writer);
+  head_fields(fields, setup);
 }
 
 bool read_head(ByteReader& reader, Setup& setup) {
-  const std::chrono::nanoseconds begun(reader.i64_le());
-  const HostTime begun_host = read_time(reader);
-  const std::string_view program = reader.text();
-  const std::string_view wearer = reader.text();
-  if (reader.overrun() || !is_usable_time(begun) || !is_usable_time(begun_host.time_since_epoch()))
-    return false;
-  setup.begun = std::chrono::sys_time<std::chrono::nanoseconds>(begun);
-  setup.begun_host = begun_host;
-  setup.program = program;
-  setup.wearer = wearer;
+  FieldReader fields(reader);
+  Setup read;
+  head_fields(fields, read);
+  if (!fields.fine()) return false;
+  setup.begun = read.begun;
+  setup.begun_host = read.begun_host;
+  setup.program = std::move(read.program);
+  setup.wearer = std::move(read.wearer);
   return true;
 }
 
 void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& hand) {
-  const hand::WearerHand& own = hand.wearer.of(hand.first.side);
-  const hand::WearerHand& other = hand.wearer.of(opposite(hand.first.side));
   FieldWriter fields(writer);
-  fields.one_of(hand.side, Side::right);
-  size_fields(fields, own.size);
-  put_sample_body(writer, {number, hand.first});
-  fields.flag(hand.gated);
-  fields.filter_kind(hand.filter, hand.wearer.ends ? ends_bit : 0);
-  filter_fields(fields, hand.filter);
-  fields.counts(hand.wearer.adapt);
-  calibration_fields(fields, own.calibration);
-  calibration_fields(fields, other.calibration);
-  size_fields(fields, other.size);
-  fields.optional(hand.wearer.learned, [&](auto& learned) { learned_fields(fields, learned); });
-  fields.optional(hand.layer, [&](auto& layer) { layer_fields(fields, layer); });
-  const bool average = own.size.shape.is_average() && other.size.shape.is_average();
-  fields.flag(!average);
-  if (!average) shape_fields(fields, own.size.shape, other.size.shape);
-  if (hand.wearer.ends) ends_fields(fields, *hand.wearer.ends);
-  if (has_stuck(hand.wearer)) stuck_fields(fields, hand.wearer);
+  hand_fields(fields, hand, hand.wearer.of(hand.first.side),
+              hand.wearer.of(opposite(hand.first.side)), number);
 }
 
 bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
   FieldReader fields(reader);
   flow::HandInput hand;
   hand::WearerHand own, other;
-  fields.one_of(hand.side, Side::right);
-  size_fields(fields, own.size);
-  const auto first = read_sample_body(reader);
-  if (!first || first->glove != hands.size()) return false;
-  hand.first = first->sample;
-  fields.flag(hand.gated);
-  const bool ends_follow = fields.filter_kind(hand.filter, ends_bit) != 0;
-  filter_fields(fields, hand.filter);
-  fields.counts(hand.wearer.adapt);
-  calibration_fields(fields, own.calibration);
-  calibration_fields(fields, other.calibration);
-  size_fields(fields, other.size);
-  fields.optional(hand.wearer.learned, [&](auto& learned) { learned_fields(fields, learned); });
-  fields.optional(hand.layer, [&](auto& layer) { layer_fields(fields, layer); });
-  if (reader.u8() != 0) shape_fields(fields, own.size.shape, other.size.shape);
-  if (ends_follow) ends_fields(fields, hand.wearer.ends.emplace());
-  if (reader.remaining() > 0) stuck_fields(fields, hand.wearer);
+  hand_fields(fields, hand, own, other, static_cast<std::uint8_t>(hands.size()));
   if (!fields.fine()) return false;
   own.left_out = hand.wearer.of(hand.first.side).left_out;
   other.left_out = hand.wearer.of(opposite(hand.first.side)).left_out;

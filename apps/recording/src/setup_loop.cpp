@@ -79,7 +79,7 @@ void settings_fields(auto& fields, auto& settings) {
   fields.one_of(setting::mode.of(settings), flow::Mode::parts);
   fields.one_of(setting::kernel.of(settings), deform::Wendland::c6);
   fields.flag(setting::injective.of(settings));
-  fields.filter_kind(settings.filter, 0);
+  fields.filter_kind(settings.filter);
   for (auto& radius : setting::radius.of(settings))
     fields.number(radius, setting::radius.range.min, setting::radius.range.max);
   number_field(fields, setting::piece_fraction, settings);
@@ -100,6 +100,12 @@ void hold_fields(auto& fields, auto& settings) {
   fields.one_of(flow::setting::hold.of(settings), flow::Hold::hand);
 }
 
+void all_settings_fields(auto& fields, auto& settings) {
+  settings_fields(fields, settings);
+  brush_fields(fields, settings);
+  hold_fields(fields, settings);
+}
+
 void loop_fields(auto& fields, auto& loop) {
   constexpr bool reads = std::remove_cvref_t<decltype(fields)>::reads;
   auto& options = loop.options;
@@ -111,6 +117,7 @@ void loop_fields(auto& fields, auto& loop) {
   fields.one_of(options.policy, flow::OverrunPolicy::sample);
   fields.whole(options.max_catch_up, 1, max_catch_up);
   fields.time_span(options.silent_after);
+  fields.require(options.silent_after >= HostClock::duration::zero());
   fields.one_of(options.switch_action, flow::SwitchAction::keep);
   fields.one_of(options.sculptor.mode, flow::Mode::parts);
   fields.number(options.sculptor.piece_length, min_number, max_number);
@@ -163,21 +170,12 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
   return true;
 }
 
-void put_settings_entry(ByteWriter& writer, const flow::LoopSettings& settings) {
-  FieldWriter fields(writer);
-  settings_fields(fields, settings);
-  brush_fields(fields, settings);
-  hold_fields(fields, settings);
+void settings_body(FieldWriter& fields, const flow::LoopSettings& settings) {
+  all_settings_fields(fields, settings);
 }
 
-std::optional<flow::LoopSettings> read_settings_entry(ByteReader& reader) {
-  FieldReader fields(reader);
-  flow::LoopSettings settings;
-  settings_fields(fields, settings);
-  brush_fields(fields, settings);
-  hold_fields(fields, settings);
-  if (!fields.fine()) return std::nullopt;
-  return settings;
+void settings_body(FieldReader& fields, flow::LoopSettings& settings) {
+  all_settings_fields(fields, settings);
 }
 
 void put_rest(ByteWriter& writer, std::span<const deform::VertexBlock> blocks) {
@@ -203,18 +201,6 @@ bool read_rest(std::span<const std::byte> payload, std::optional<LoopSetup>& loo
   }
   if (usable) loop->rest.insert(loop->rest.end(), blocks.begin(), blocks.end());
   return usable;
-}
-
-void put_signal(ByteWriter& writer, const puppet::HandSignal& signal) {
-  writer.u8(static_cast<std::uint8_t>(signal.side()));
-  writer.u8(signal.number());
-}
-
-std::optional<puppet::HandSignal> read_signal(ByteReader& reader) {
-  const std::uint8_t side = reader.u8();
-  const std::uint8_t number = reader.u8();
-  if (side > static_cast<std::uint8_t>(Side::right)) return std::nullopt;
-  return puppet::HandSignal::numbered(static_cast<Side>(side), number);
 }
 
 namespace {

@@ -20,6 +20,20 @@ template <class One>
 struct Format;
 
 template <>
+struct Format<RecordedSample> {
+  static constexpr EntryKind kind = EntryKind::sample;
+  static constexpr std::size_t bytes = sample_bytes;
+  static void put(auto& fields, auto& sample) { sample_fields(fields, sample); }
+};
+
+template <>
+struct Format<flow::LoopSettings> {
+  static constexpr EntryKind kind = EntryKind::settings;
+  static constexpr std::size_t bytes = settings_bytes;
+  static void put(auto& fields, auto& settings) { settings_body(fields, settings); }
+};
+
+template <>
 struct Format<flow::Request> {
   static constexpr EntryKind kind = EntryKind::request;
   static constexpr std::size_t bytes = 1;
@@ -145,22 +159,6 @@ struct Format<Gap> {
   static void put(auto& fields, auto& gap) { fields.u64(gap.entries); }
 };
 
-struct EntryWriter {
-  ByteWriter& writer;
-
-  void operator()(const RecordedSample& sample) const { put_sample(writer, sample); }
-  void operator()(const flow::LoopSettings& settings) const {
-    put_entry_head(writer, EntryKind::settings, settings_bytes);
-    put_settings_entry(writer, settings);
-  }
-  template <class One>
-  void operator()(const One& one) const {
-    put_entry_head(writer, Format<One>::kind, Format<One>::bytes);
-    FieldWriter fields(writer);
-    Format<One>::put(fields, one);
-  }
-};
-
 /// Returns nothing if the entry's body is not usable.
 template <class One>
 std::optional<Entry> read_entry(const LogEntry& record) {
@@ -174,9 +172,9 @@ std::optional<Entry> read_entry(const LogEntry& record) {
 
 using EntryReader = std::optional<Entry> (*)(const LogEntry& record);
 
-/// Returns null if the entry is not of one of these types.
+/// Returns null if the entry is none of the variant's types.
 template <class... Types>
-EntryReader reader_of(const LogEntry& record) {
+EntryReader reader_of(const LogEntry& record, std::type_identity<std::variant<Types...>>) {
   EntryReader found = nullptr;
   ((found = record.is(Format<Types>::kind) ? read_entry<Types> : found), ...);
   return found;
@@ -226,7 +224,14 @@ std::optional<std::vector<driver::RecordCounts>> sent_of(std::span<const std::by
 } // namespace
 
 void put_entry(ByteWriter& writer, const Entry& entry) {
-  std::visit(EntryWriter{writer}, entry);
+  std::visit(
+      [&]<class One>(const One& one) {
+        writer.u8(static_cast<std::uint8_t>(Format<One>::kind));
+        writer.u8(static_cast<std::uint8_t>(Format<One>::bytes));
+        FieldWriter fields(writer);
+        Format<One>::put(fields, one);
+      },
+      entry);
 }
 
 void put_ending(ByteWriter& writer, const Ending& ending) {
@@ -308,27 +313,16 @@ bool TakeReader::take_chunk(const Chunk& chunk) {
 /// Returns nothing if the kind of the entry is unknown. Returns nothing, and makes a gap due, if
 /// the entry cannot be used.
 std::optional<Entry> TakeReader::entry_of(const LogEntry& record) {
-  std::optional<Entry> entry;
-  if (record.is(EntryKind::sample)) {
-    const auto sample = sample_of(record);
-    if (sample && sample->glove < setup_.gloves.size()) entry = *sample;
-  } else if (record.is(EntryKind::settings)) {
-    ByteReader reader(record.body);
-    if (const auto settings = read_settings_entry(reader)) entry = *settings;
-  } else if (const auto read =
-                 reader_of<flow::Request, flow::LoggedTick, flow::WristMove, flow::HoldStill,
-                           flow::ChangeModel, flow::Mark, flow::SetClutch, flow::SetRole,
-                           flow::SetSymmetry, flow::SetLayer, flow::DrawWire, PuppetChange, Gap>(
-                     record)) {
-    entry = read(record);
-  } else {
-    return std::nullopt;
-  }
+  const EntryReader read = reader_of(record, std::type_identity<Entry>());
+  if (read == nullptr) return std::nullopt;
+  std::optional<Entry> entry = read(record);
   if (auto* const change = entry ? std::get_if<PuppetChange>(&*entry) : nullptr) {
     if (const auto known = puppets_.find(change->number); known != puppets_.end())
       change->puppet = known->second;
   } else if (const auto* const layer = entry ? std::get_if<flow::SetLayer>(&*entry) : nullptr) {
     if (layer->input >= setup_.hands.size() || !setup_.hands[layer->input].layer) entry.reset();
+  } else if (const auto* const sample = entry ? std::get_if<RecordedSample>(&*entry) : nullptr) {
+    if (sample->glove >= setup_.gloves.size()) entry.reset();
   }
   if (!entry) {
     ++unknown_entries_;

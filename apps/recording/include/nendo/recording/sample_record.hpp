@@ -56,28 +56,14 @@ private:
   ByteReader reader_;
 };
 
-/// Writes the kind and length with which every entry begins.
-NENDO_API void put_entry_head(ByteWriter& writer, EntryKind kind, std::size_t body_bytes);
-
 struct RecordedSample {
   std::uint8_t glove = 0; ///< number from the glove's GLOV chunk
   GloveSample sample;
 };
 
-/// Returns whether a time is within 2^61 ns (73 years) of the clock's zero. Readers refuse other
-/// times, so that differences of times never overflow.
-NENDO_API bool is_usable_time(std::chrono::nanoseconds since_epoch) noexcept;
-NENDO_API void put_time(ByteWriter& writer, HostTime time);
-NENDO_API HostTime read_time(ByteReader& reader) noexcept;
-
-/// Writes a sample as a whole entry.
-NENDO_API void put_sample(ByteWriter& writer, const RecordedSample& recorded);
 /// Returns the sample of an entry; nullopt if the entry is no sample, or has values that no glove
 /// sends.
 NENDO_API std::optional<RecordedSample> sample_of(const LogEntry& record) noexcept;
-/// Writes or reads a sample without the kind and length of an entry, for other chunks.
-NENDO_API void put_sample_body(ByteWriter& writer, const RecordedSample& recorded);
-NENDO_API std::optional<RecordedSample> read_sample_body(ByteReader& reader) noexcept;
 
 struct RecordedGlove {
   std::uint8_t number = 0;
