@@ -1,6 +1,7 @@
 #include <nendo/recording/chunk_file.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -20,15 +21,13 @@ constexpr std::array<std::uint8_t, 8> file_magic{0x89, 'N', 'E', 'N', 'D', 'O', 
 constexpr ChunkType chunk_magic = chunk_type("NCHK");
 constexpr std::size_t window_bytes = std::size_t{1} << 18;
 
-void put_u32(std::span<std::byte> to, std::uint32_t value) noexcept {
-  for (unsigned at = 0; at < 4; ++at)
-    to[at] = static_cast<std::byte>((value >> (8 * at)) & 0xFFU);
-}
+// Numbers are little-endian, so they are copied as they are in memory.
+static_assert(std::endian::native == std::endian::little);
 
 template <std::size_t size>
 void seal(std::array<std::byte, size>& header) noexcept {
-  const std::span bytes(header);
-  put_u32(bytes.last(4), crc32c(bytes.first(size - 4)));
+  const std::uint32_t sum = crc32c(std::span(header).first(size - 4));
+  std::memcpy(header.data() + size - 4, &sum, sizeof sum);
 }
 
 template <std::size_t size>
@@ -41,9 +40,9 @@ bool is_sealed(std::span<const std::byte> header) noexcept {
 
 std::array<std::byte, file_header_bytes> file_header() noexcept {
   std::array<std::byte, file_header_bytes> header{};
-  std::transform(file_magic.begin(), file_magic.end(), header.begin(),
-                 [](std::uint8_t byte) { return std::byte{byte}; });
-  put_u32(std::span(header).subspan(8), format_major | std::uint32_t{format_minor} << 16U);
+  constexpr std::array version{format_major, format_minor};
+  std::memcpy(header.data(), file_magic.data(), file_magic.size());
+  std::memcpy(header.data() + file_magic.size(), version.data(), sizeof version);
   seal(header);
   return header;
 }
@@ -51,11 +50,8 @@ std::array<std::byte, file_header_bytes> file_header() noexcept {
 std::array<std::byte, chunk_header_bytes>
 chunk_header(ChunkType type, std::uint32_t number, std::span<const std::byte> payload) noexcept {
   std::array<std::byte, chunk_header_bytes> header{};
-  const std::span bytes(header);
-  put_u32(bytes, chunk_magic);
-  put_u32(bytes.subspan(4), type);
-  put_u32(bytes.subspan(8), static_cast<std::uint32_t>(payload.size()));
-  put_u32(bytes.subspan(12), number);
+  const std::array words{chunk_magic, type, static_cast<std::uint32_t>(payload.size()), number};
+  std::memcpy(header.data(), words.data(), sizeof words);
   seal(header);
   return header;
 }

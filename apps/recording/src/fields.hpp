@@ -215,4 +215,15 @@ private:
   bool fine_ = true;
 };
 
+/// Calls describe(fields, value) to read a payload. Returns nothing if it is not usable.
+template <class Value>
+std::optional<Value> read_value(std::span<const std::byte> payload, const auto& describe) {
+  ByteReader reader(payload);
+  FieldReader fields(reader);
+  Value value{};
+  describe(fields, value);
+  if (!fields.fine()) return std::nullopt;
+  return value;
+}
+
 } // namespace nendo::recording

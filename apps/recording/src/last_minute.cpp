@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <climits>
 #include <cstring>
 #include <fcntl.h>
@@ -27,20 +28,12 @@ constexpr std::size_t slot_count = 4096;
 
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free); // or a signal handler must not touch them
-
-template <std::size_t size>
-void put_le(std::array<std::byte, size>& to, std::size_t at, std::uint64_t value,
-            std::size_t count) noexcept {
-  for (std::size_t byte = 0; byte < count; ++byte, value >>= 8U)
-    to[at + byte] = static_cast<std::byte>(value & 0xFFU);
-}
+static_assert(std::endian::native == std::endian::little); // numbers are copied into chunks
 
 bool write_chunk(int fd, std::uint32_t number, std::span<const std::byte> payload,
                  std::uint32_t crc) noexcept {
-  std::array<std::byte, 4> sum{};
-  put_le(sum, 0, crc, 4);
   return write_all(fd, chunk_header(log_chunk, number, payload)) && write_all(fd, payload) &&
-         write_all(fd, sum);
+         write_all(fd, std::as_bytes(std::span(&crc, 1)));
 }
 
 } // namespace
@@ -126,7 +119,7 @@ bool LastMinute::write(int fd) const noexcept {
     std::array<std::byte, 10> gap{}; // an entry's head, and how many entries
     gap[0] = static_cast<std::byte>(EntryKind::gap);
     gap[1] = std::byte{8};
-    put_le(gap, 2, dropped, 8);
+    std::memcpy(gap.data() + 2, &dropped, sizeof dropped);
     if (!write_chunk(fd, number++, gap, crc32c(gap))) return false;
   }
   const std::uint64_t end = end_.load(std::memory_order_acquire);

@@ -17,8 +17,7 @@ namespace {
 constexpr std::size_t ring_size = 4096;
 
 bool points_exist(const deform::Supports& supports, Eigen::Index points) {
-  return std::all_of(supports.own.begin(), supports.own.end(),
-                     [&](const auto& own) { return own.point < points; });
+  return std::ranges::all_of(supports.own, [&](const auto& own) { return own.point < points; });
 }
 
 /// Puts the recorded puppet, if there is one, into the options.

@@ -225,9 +225,8 @@ Result<RecordedGlove> choose(const driver::GloveSpec& spec, std::vector<Recorded
   if (gloves.empty())
     return error_of(spec, Errc::bad_input, "no glove was recorded, or its description is damaged");
   const std::optional<Side> side = asked ? asked : wanted;
-  const auto found = std::find_if(gloves.begin(), gloves.end(), [&](const RecordedGlove& glove) {
-    return side && glove.info.side == *side;
-  });
+  const auto found = std::ranges::find(
+      gloves, side, [](const auto& glove) { return std::optional(glove.info.side); });
   if (found != gloves.end()) return std::move(*found);
   if (asked)
     return error_of(spec, Errc::no_device,

@@ -100,12 +100,7 @@ void sample_fields(FieldReader& fields, RecordedSample& recorded) {
 
 std::optional<RecordedSample> sample_of(const LogEntry& record) noexcept {
   if (!record.is(EntryKind::sample)) return std::nullopt;
-  ByteReader reader(record.body);
-  FieldReader fields(reader);
-  RecordedSample recorded;
-  sample_fields(fields, recorded);
-  if (!fields.fine()) return std::nullopt;
-  return recorded;
+  return read_value<RecordedSample>(record.body, fields_of_sample<FieldReader, RecordedSample>);
 }
 
 void put_glove(ByteWriter& writer, const RecordedGlove& glove) {
@@ -114,12 +109,7 @@ void put_glove(ByteWriter& writer, const RecordedGlove& glove) {
 }
 
 std::optional<RecordedGlove> glove_of(std::span<const std::byte> payload) {
-  ByteReader reader(payload);
-  FieldReader fields(reader);
-  RecordedGlove glove;
-  glove_fields(fields, glove);
-  if (!fields.fine()) return std::nullopt;
-  return glove;
+  return read_value<RecordedGlove>(payload, glove_fields<FieldReader, RecordedGlove>);
 }
 
 } // namespace nendo::recording

@@ -126,7 +126,7 @@ private:
         columns_.unit = unit;
       }
       const auto& names = table_.names();
-      if (std::find(names.begin(), names.end(), word) != names.end()) without_unit = word;
+      if (std::ranges::find(names, word) != names.end()) without_unit = word;
     }
     if (columns_.time || wishes_.rate_hz) return {};
     if (!without_unit.empty())
@@ -208,8 +208,7 @@ private:
   }
 
   bool has(Side side) const {
-    return std::any_of(rows_.begin(), rows_.end(),
-                       [&](const GloveSample& row) { return row.side == side; });
+    return std::ranges::find(rows_, side, &GloveSample::side) != rows_.end();
   }
 
   Result<SampleTable> finish() {

@@ -53,7 +53,7 @@ void continue_from(const flow::LoopState& state, const deform::BlockLayout& layo
   const deform::BlockShape original = layout.pack();
   const auto unchanged = std::as_bytes(std::span(original.data(), original.block_count()));
   loop.rest.clear();
-  if (!std::equal(blocks.begin(), blocks.end(), unchanged.begin(), unchanged.end()))
+  if (!std::ranges::equal(blocks, unchanged))
     loop.rest.assign(state.shape.data(), state.shape.data() + state.shape.block_count());
 }
 
@@ -185,13 +185,11 @@ constexpr std::size_t vertex_bytes = 24;
 } // namespace
 
 std::size_t plain_origins(const LoopSetup& loop) noexcept {
-  const auto most = std::min(loop.origins.size(), max_plain_origins);
-  const auto first = loop.origins.begin();
-  const auto end = first + static_cast<std::ptrdiff_t>(most);
-  return static_cast<std::size_t>(
-      std::find_if(first, end,
-                   [](const auto& origin) { return origin->source != ModelSource::subdivided; }) -
-      first);
+  const std::size_t max = std::min(loop.origins.size(), max_plain_origins);
+  std::size_t count = 0;
+  while (count < max && loop.origins[count]->source == ModelSource::subdivided)
+    ++count;
+  return count;
 }
 
 namespace {

@@ -259,12 +259,9 @@ void put_puppet_version(ByteWriter& writer, std::uint32_t number, const Recorded
 }
 
 std::optional<NumberedPuppet> read_puppet_version(std::span<const std::byte> payload) {
-  ByteReader reader(payload);
-  FieldReader fields(reader);
-  NumberedPuppet read;
-  puppet_version_fields(fields, read.number, read.puppet);
-  if (!fields.fine()) return std::nullopt;
-  return read;
+  return read_value<NumberedPuppet>(payload, [](auto& fields, auto& read) {
+    puppet_version_fields(fields, read.number, read.puppet);
+  });
 }
 
 } // namespace nendo::recording

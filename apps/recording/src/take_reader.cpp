@@ -162,12 +162,7 @@ struct Format<Gap> {
 /// Returns nothing if the entry's body is not usable.
 template <class One>
 std::optional<Entry> read_entry(const LogEntry& record) {
-  ByteReader reader(record.body);
-  FieldReader fields(reader);
-  One one{};
-  Format<One>::put(fields, one);
-  if (!fields.fine()) return std::nullopt;
-  return one;
+  return read_value<One>(record.body, Format<One>::template put<FieldReader, One>);
 }
 
 using EntryReader = std::optional<Entry> (*)(const LogEntry& record);
@@ -203,22 +198,13 @@ void sent_fields(auto& fields, auto& gloves) {
   }
 }
 
-std::optional<Ending> ending_of(std::span<const std::byte> payload) {
-  ByteReader reader(payload);
-  FieldReader fields(reader);
-  Ending ending;
-  ending_fields(fields, ending);
-  if (!fields.fine()) return std::nullopt;
-  return ending;
-}
-
 std::optional<std::vector<driver::RecordCounts>> sent_of(std::span<const std::byte> payload) {
-  ByteReader reader(payload);
-  FieldReader fields(reader);
-  std::vector<driver::RecordCounts> gloves(reader.u8());
-  sent_fields(fields, gloves);
-  if (!fields.fine()) return std::nullopt;
-  return gloves;
+  return read_value<std::vector<driver::RecordCounts>>(payload, [](auto& fields, auto& gloves) {
+    std::uint8_t count = 0;
+    fields.u8(count);
+    gloves.resize(count);
+    sent_fields(fields, gloves);
+  });
 }
 
 } // namespace
@@ -286,7 +272,7 @@ bool TakeReader::next_chunk() {
 /// Takes a chunk that is no input log's. Returns false if nendo does not write such a one.
 bool TakeReader::take_chunk(const Chunk& chunk) {
   if (chunk.type == ending_chunk) {
-    ending_ = ending_of(chunk.payload);
+    ending_ = read_value<Ending>(chunk.payload, ending_fields<FieldReader, Ending>);
     return ending_.has_value();
   }
   if (chunk.type == shape_chunk) {
@@ -372,9 +358,8 @@ std::optional<RecordedShape> read_shape(std::span<const std::byte> payload) {
   shape.xyz.resize(3 * vertices);
   for (float& coordinate : shape.xyz)
     coordinate = std::bit_cast<float>(reader.u32_le());
-  const bool finite = std::all_of(shape.xyz.begin(), shape.xyz.end(),
-                                  [](float coordinate) { return std::isfinite(coordinate); });
-  if (!finite) return std::nullopt;
+  if (!std::ranges::all_of(shape.xyz, [](float number) { return std::isfinite(number); }))
+    return std::nullopt;
   return shape;
 }
 

@@ -41,34 +41,25 @@ public:
   }
   /// Appends a shape after all entries so far.
   Result<void> put(const RecordedShape& shape) {
-    if (auto flushed = flush(); !flushed) return flushed;
     ++made_.shapes;
-    std::vector<std::byte> payload;
-    ByteWriter writer(payload);
-    put_shape(writer, shape);
-    return file_.append(shape_chunk, payload);
+    return append(shape_chunk, [&](ByteWriter& writer) { put_shape(writer, shape); });
   }
   /// Appends what the gloves have sent, if anybody has counted.
   Result<void> put(std::span<const driver::RecordCounts> sent) {
     if (sent.empty()) return {};
-    if (auto flushed = flush(); !flushed) return flushed;
-    std::vector<std::byte> payload;
-    ByteWriter writer(payload);
-    put_sent(writer, sent);
-    return file_.append(sent_chunk, payload);
+    return append(sent_chunk, [&](ByteWriter& writer) { put_sent(writer, sent); });
   }
   /// Writes the ending, whose time is `host`. All of it except the counts is taken from
   /// `of_original`, if given.
   Result<NewTake> end(HostTime host, const std::optional<Ending>& of_original = {}) {
-    if (const auto flushed = flush(); !flushed) return flushed.error();
     ending_.host = host;
     if (of_original) {
       ending_.lost = of_original->lost;
       ending_.shape = of_original->shape;
     }
-    ByteWriter writer(payload_);
-    put_ending(writer, ending_);
-    if (const auto written = file_.append(ending_chunk, payload_); !written) return written.error();
+    const auto written =
+        append(ending_chunk, [this](ByteWriter& writer) { put_ending(writer, ending_); });
+    if (!written) return written.error();
     if (const auto synced = file_.sync(); !synced) return synced.error();
     made_.bytes = file_.bytes();
     return made_;
@@ -85,15 +76,21 @@ private:
     payload_.clear();
     return written;
   }
+  /// Appends a chunk that `fill` writes, after all entries so far.
+  Result<void> append(ChunkType type, const auto& fill) {
+    if (auto flushed = flush(); !flushed) return flushed;
+    std::vector<std::byte> payload;
+    ByteWriter writer(payload);
+    fill(writer);
+    return file_.append(type, payload);
+  }
 
   /// Its text precedes it, once.
   Result<void> put_puppet(const PuppetChange& change) {
     if (!change.puppet || !puppets_.insert(change.number).second) return {};
-    if (auto flushed = flush(); !flushed) return flushed;
-    std::vector<std::byte> payload;
-    ByteWriter writer(payload);
-    put_puppet_version(writer, change.number, *change.puppet);
-    return file_.append(puppet_version_chunk, payload);
+    return append(puppet_version_chunk, [&](ByteWriter& writer) {
+      put_puppet_version(writer, change.number, *change.puppet);
+    });
   }
 
   TakeFile file_;
@@ -371,8 +368,7 @@ HostClock::duration TakeSummary::duration() const noexcept {
 
 bool TakeSummary::is_whole() const noexcept {
   return damage_count == 0 && unknown_entries == 0 && counts_agree && ticks_out_of_order == 0 &&
-         std::all_of(gloves.begin(), gloves.end(),
-                     [](const auto& glove) { return glove.out_of_order == 0; });
+         std::ranges::all_of(gloves, [](const auto& glove) { return glove.out_of_order == 0; });
 }
 
 Result<TakeSummary> summarise(const std::filesystem::path& path) {
