@@ -28,8 +28,7 @@ std::string seconds_text(double seconds) {
 }
 
 auto place_of(std::vector<Key>& keys, double time_s) {
-  return std::lower_bound(keys.begin(), keys.end(), time_s,
-                          [](const Key& key, double time) { return key.time_s < time; });
+  return std::ranges::lower_bound(keys, time_s, {}, &Key::time_s);
 }
 
 Result<void> check_place(const Timeline& timeline, std::vector<Key>& keys, double to_s) {

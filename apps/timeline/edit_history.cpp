@@ -34,8 +34,7 @@ struct TimelineChange {
 template <class T>
 Splice<T> splice_between(const std::vector<T>& before, const std::vector<T>& after) {
   const auto alike = [](const T& one, const T& other) { return same_bits(one, other); };
-  const auto [left, left_after] =
-      std::mismatch(before.begin(), before.end(), after.begin(), after.end(), alike);
+  const auto [left, left_after] = std::ranges::mismatch(before, after, alike);
   const auto [right, right_after] =
       std::mismatch(before.rbegin(), std::make_reverse_iterator(left), after.rbegin(),
                     std::make_reverse_iterator(left_after), alike);
@@ -82,8 +81,7 @@ TimelineChange change_between(const Timeline& before, const Timeline& after) {
 
 bool is_empty(const TimelineChange& change) noexcept {
   return same_bits(change.duration_before_s, change.duration_after_s) && change.events.is_empty() &&
-         change.functions.is_empty() &&
-         std::all_of(change.hands.begin(), change.hands.end(), [](const auto& hand) {
+         change.functions.is_empty() && std::ranges::all_of(change.hands, [](const auto& hand) {
            return hand.side_before == hand.side_after && hand.keys.is_empty();
          });
 }
@@ -102,8 +100,6 @@ struct EditHistory::Base {
 
 EditHistory::EditHistory(Timeline timeline) : timeline_(std::move(timeline)) {}
 EditHistory::~EditHistory() = default;
-EditHistory::EditHistory(EditHistory&&) noexcept = default;
-EditHistory& EditHistory::operator=(EditHistory&&) noexcept = default;
 
 void EditHistory::select(std::optional<KeyRef> key) noexcept {
   selected_ = key && find_key(timeline_, *key) != nullptr ? key : std::nullopt;

@@ -18,8 +18,8 @@ class EditHistory {
 public:
   explicit EditHistory(Timeline timeline);
   ~EditHistory();
-  EditHistory(EditHistory&&) noexcept;
-  EditHistory& operator=(EditHistory&&) noexcept;
+  EditHistory(const EditHistory&) = delete;
+  EditHistory& operator=(const EditHistory&) = delete;
 
   const Timeline& timeline() const noexcept { return timeline_; }
   /// Returns a number that changes with each change of timeline().

@@ -50,9 +50,7 @@ Timeline begin_timeline(const Setup& setup, const std::filesystem::path& take) {
   timeline.sculptor = loop.options.sculptor;
   timeline.sculptor.deformer.undo_bytes = 0;
   for (const auto& hand : setup.hands) {
-    if (std::any_of(timeline.hands.begin(), timeline.hands.end(),
-                    [&](const auto& known) { return known.side == hand.side; }))
-      continue; // a layer over it
+    if (timeline.track(hand.side) != nullptr) continue; // a layer over it
     const auto& T_stage_wrist = loop.placement.T_stage_wrist[flow::Placement::index_of(hand.side)];
     timeline.hands.push_back({hand.side,
                               hand.wearer.of(hand.first.side).size,
@@ -107,7 +105,7 @@ void keep_puppet(const flow::DeformLoop& loop, const puppet::RigState& state,
 std::optional<std::uint16_t> number_in(const puppet::Rig& timelines, const puppet::Rig& played,
                                        std::uint16_t function) {
   const auto from = puppet::functions_before(played.puppet(), timelines.puppet());
-  const auto found = std::find(from.begin(), from.end(), std::size_t{function});
+  const auto found = std::ranges::find(from, std::size_t{function});
   if (found == from.end()) return std::nullopt;
   return static_cast<std::uint16_t>(found - from.begin());
 }

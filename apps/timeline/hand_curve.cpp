@@ -5,22 +5,21 @@
 #include <utility>
 
 namespace nendo::timeline {
+namespace {
+
+template <class AnyKey>
+auto& channel(AnyKey& key, std::size_t at) noexcept {
+  return at < hand::angle_count ? key.angles[hand::angle_at(at)]
+                                : key.wrist_m[static_cast<Eigen::Index>(at - hand::angle_count)];
+}
+
+} // namespace
 
 HandCurve::HandCurve(std::vector<Key> keys) : keys_(std::move(keys)), slopes_(keys_.size()) {
   assert(!keys_.empty());
   for (std::size_t key = 0; key < keys_.size(); ++key)
     for (std::size_t at = 0; at < channel_count; ++at)
       slopes_[key][at] = slope(key, at);
-}
-
-double& HandCurve::channel(Key& key, std::size_t at) noexcept {
-  return at < hand::angle_count ? key.angles[hand::angle_at(at)]
-                                : key.wrist_m[static_cast<Eigen::Index>(at - hand::angle_count)];
-}
-
-double HandCurve::channel(const Key& key, std::size_t at) noexcept {
-  return at < hand::angle_count ? key.angles[hand::angle_at(at)]
-                                : key.wrist_m[static_cast<Eigen::Index>(at - hand::angle_count)];
 }
 
 double HandCurve::secant(std::size_t interval, std::size_t at) const noexcept {
@@ -44,9 +43,7 @@ double HandCurve::slope(std::size_t key, std::size_t at) const noexcept {
 }
 
 Key HandCurve::at(double time_s) const noexcept {
-  const auto after =
-      std::upper_bound(keys_.begin(), keys_.end(), time_s,
-                       [](double time, const Key& key) { return time < key.time_s; });
+  const auto after = std::ranges::upper_bound(keys_, time_s, {}, &Key::time_s);
   const auto held = [time_s](Key key) {
     key.time_s = time_s;
     return key;

@@ -32,8 +32,6 @@ private:
   static constexpr std::size_t channel_count = hand::angle_count + 3;
   using Channels = std::array<double, channel_count>;
 
-  static double& channel(Key& key, std::size_t at) noexcept;
-  static double channel(const Key& key, std::size_t at) noexcept;
   double secant(std::size_t interval, std::size_t at) const noexcept;
   double slope(std::size_t key, std::size_t at) const noexcept;
 

@@ -102,9 +102,7 @@ private:
   // behind it.
   void keep_holds(const std::vector<double>& times_s) {
     for (const double time_s : times_s) {
-      const auto after =
-          std::upper_bound(frames_.begin(), frames_.end(), time_s,
-                           [](double time, const Key& frame) { return time < frame.time_s; });
+      const auto after = std::ranges::upper_bound(frames_, time_s, {}, &Key::time_s);
       const auto behind = static_cast<std::size_t>(after - frames_.begin());
       const std::size_t first = behind - std::min<std::size_t>(behind, 2);
       for (std::size_t at = first; at <= std::min(behind, frames_.size() - 1); ++at)

@@ -160,8 +160,7 @@ ShapeCache::Progress ShapeCache::progress() const {
   progress.done = done_;
   progress.error = error_;
   progress.stride = stride_;
-  progress.shapes = static_cast<std::size_t>(std::count_if(
-      slots_.begin(), slots_.end(), [](const Shape& shape) { return shape != nullptr; }));
+  progress.shapes = slots_.size() - static_cast<std::size_t>(std::ranges::count(slots_, nullptr));
   if (frames_ == 0) return progress;
   progress.duration_s = static_cast<double>(frames_ - 1) / rate_hz_;
   if (settled_ == number_ && fresh_ > 0)
@@ -179,9 +178,8 @@ namespace {
 // The frame before the one in which the first of the events that differ is due.
 std::uint64_t frames_before_events(const Timeline& before, const Timeline& after,
                                    std::uint64_t most) {
-  const auto [one, other] = std::mismatch(
-      before.events.begin(), before.events.end(), after.events.begin(), after.events.end(),
-      [](const Event& a, const Event& b) { return same_bits(a, b); });
+  const auto [one, other] = std::ranges::mismatch(
+      before.events, after.events, [](const Event& a, const Event& b) { return same_bits(a, b); });
   double first_s = longest_s;
   if (one != before.events.end()) first_s = std::min(first_s, one->time_s);
   if (other != after.events.end()) first_s = std::min(first_s, other->time_s);

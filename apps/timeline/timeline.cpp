@@ -23,9 +23,7 @@ bool within(double value, double least, double most) noexcept {
 }
 
 bool is_place(const Eigen::Vector3d& place_m) noexcept {
-  return within(place_m.x(), -farthest_m, farthest_m) &&
-         within(place_m.y(), -farthest_m, farthest_m) &&
-         within(place_m.z(), -farthest_m, farthest_m);
+  return (place_m.array().abs() <= farthest_m).all(); // false for NaN
 }
 
 std::string complaint_about(const HandTrack& track) {
@@ -263,14 +261,12 @@ std::string in_words(const Timeline& timeline, const Event& event) {
 }
 
 HandTrack* Timeline::track(Side side) noexcept {
-  const auto found = std::find_if(hands.begin(), hands.end(),
-                                  [side](const HandTrack& hand) { return hand.side == side; });
+  const auto found = std::ranges::find(hands, side, &HandTrack::side);
   return found == hands.end() ? nullptr : &*found;
 }
 
 const HandTrack* Timeline::track(Side side) const noexcept {
-  const auto found = std::find_if(hands.begin(), hands.end(),
-                                  [side](const HandTrack& hand) { return hand.side == side; });
+  const auto found = std::ranges::find(hands, side, &HandTrack::side);
   return found == hands.end() ? nullptr : &*found;
 }
 
@@ -325,11 +321,6 @@ std::string complaint_about(const Timeline& timeline) {
 
 namespace {
 
-auto first_from(const std::vector<Key>& keys, double time_s) noexcept {
-  return std::lower_bound(keys.begin(), keys.end(), time_s,
-                          [](const Key& key, double time) { return key.time_s < time; });
-}
-
 std::size_t index_in(const std::vector<Key>& keys, std::vector<Key>::const_iterator key) noexcept {
   return static_cast<std::size_t>(key - keys.begin());
 }
@@ -344,7 +335,7 @@ const Key* find_key(const Timeline& timeline, const KeyRef& key) noexcept {
 std::optional<KeyRef> key_at(const Timeline& timeline, Side side, double time_s) noexcept {
   const HandTrack* const track = timeline.track(side);
   if (track == nullptr) return std::nullopt;
-  const auto found = first_from(track->keys, time_s);
+  const auto found = std::ranges::lower_bound(track->keys, time_s, {}, &Key::time_s);
   if (found == track->keys.end() || found->time_s != time_s) return std::nullopt;
   return KeyRef{side, index_in(track->keys, found)};
 }
@@ -354,8 +345,7 @@ std::optional<KeyRef> key_after(const Timeline& timeline, double time_s,
   std::optional<KeyRef> nearest;
   for (const HandTrack& hand : timeline.hands) {
     if (side && hand.side != *side) continue;
-    auto found = first_from(hand.keys, time_s);
-    if (found != hand.keys.end() && found->time_s == time_s) ++found;
+    const auto found = std::ranges::upper_bound(hand.keys, time_s, {}, &Key::time_s);
     if (found == hand.keys.end()) continue;
     if (!nearest || found->time_s < find_key(timeline, *nearest)->time_s)
       nearest = KeyRef{hand.side, index_in(hand.keys, found)};
@@ -368,7 +358,7 @@ std::optional<KeyRef> key_before(const Timeline& timeline, double time_s,
   std::optional<KeyRef> nearest;
   for (const HandTrack& hand : timeline.hands) {
     if (side && hand.side != *side) continue;
-    const auto after = first_from(hand.keys, time_s);
+    const auto after = std::ranges::lower_bound(hand.keys, time_s, {}, &Key::time_s);
     if (after == hand.keys.begin()) continue;
     if (!nearest || (after - 1)->time_s > find_key(timeline, *nearest)->time_s)
       nearest = KeyRef{hand.side, index_in(hand.keys, after - 1)};

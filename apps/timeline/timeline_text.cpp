@@ -130,7 +130,7 @@ std::string key_text(const Key& key) {
 
 /// Of several lines, as it is if TOML can have it so.
 std::string toml_lines(const std::string& text) {
-  const bool is_plain = std::all_of(text.begin(), text.end(), [](char c) {
+  const bool is_plain = std::ranges::all_of(text, [](char c) {
     const auto byte = static_cast<unsigned char>(c);
     return c == '\n' || c == '\t' || (byte >= 0x20 && byte != 0x7F);
   });

@@ -331,8 +331,7 @@ deform::Points read_starts(TomlReader& reader, const toml::table& table,
   if (places == nullptr) return starts;
   for (const auto& [key, node] : *places) {
     const std::string name(key.str());
-    if (std::none_of(puppet.points.begin(), puppet.points.end(),
-                     [&name](const auto& point) { return point.name == name; }))
+    if (std::ranges::find(puppet.points, name, &puppet::PuppetPoint::name) == puppet.points.end())
       reader.complain(node, "the puppet has no point '" + name + "'");
   }
   for (std::size_t at = 0; at < puppet.points.size(); ++at) {
