@@ -255,11 +255,11 @@ void EditSession::follow_history() {
   followed_ = history_.revision();
   const Timeline& timeline = history_.timeline();
   cache_.follow(timeline);
-  curves_.clear();
+  hands_.clear();
   view_.lanes.clear();
   view_.marks.clear();
   for (const HandTrack& hand : timeline.hands) {
-    curves_.emplace_back(hand.keys);
+    hands_.emplace_back(hand);
     auto& lane = view_.lanes.emplace_back();
     lane.side = hand.side;
     for (const Key& key : hand.keys)
@@ -303,7 +303,6 @@ const viewer::TimelineView& EditSession::view() {
 }
 
 const render::SceneFrame& EditSession::scene_frame() {
-  const auto& hands = history_.timeline().hands;
   const auto found = shape();
   scene_frame_.time_s = head_.time_s();
   // Fingertips that play a puppet do not touch the model.
@@ -311,16 +310,12 @@ const render::SceneFrame& EditSession::scene_frame() {
       found.shape != nullptr && found.shape->held && history_.timeline().rig == nullptr;
   if (found.shape != nullptr) scene_frame_.radius_m = found.shape->radius_m;
   scene_frame_.hands = {};
-  for (std::size_t at = 0; at < hands.size(); ++at) {
-    const hand::HandSkeleton skeleton = hands[at].skeleton();
-    const auto pose_at = [&](double time_s) {
-      const Key key = curves_[at].at(time_s);
-      return skeleton.pose(key.angles, key.wrist_pose());
-    };
-    render::SceneHand seen{pose_at(scene_frame_.time_s), {}};
-    seen.starts =
-        (scene_frame_.held ? pose_at(found.shape->held_since_s) : seen.pose).fingertip_positions();
-    scene_frame_.hands[flow::Placement::index_of(hands[at].side)] = seen;
+  for (const MovingHand& hand : hands_) {
+    render::SceneHand seen{hand.at(scene_frame_.time_s).pose, {}};
+    const hand::HandPose& held =
+        scene_frame_.held ? hand.at(found.shape->held_since_s).pose : seen.pose;
+    seen.starts = held.fingertip_positions();
+    scene_frame_.hands[flow::Placement::index_of(hand.side)] = seen;
   }
   return scene_frame_;
 }

@@ -82,8 +82,8 @@ private:
   timeline::ShapeCache cache_;
   timeline::PlayHead head_;
   std::unique_ptr<GlbExport> export_;
-  std::vector<timeline::HandCurve> curves_; ///< in the order of the timeline's hands
-  std::optional<std::uint64_t> followed_; ///< the revision of the history to which curves_ belongs
+  std::vector<timeline::MovingHand> hands_; ///< in the order of the timeline's hands
+  std::optional<std::uint64_t> followed_;   ///< the revision of the history to which hands_ belong
   viewer::TimelineView view_;
   render::SceneFrame scene_frame_;
   bool ended_ = false;

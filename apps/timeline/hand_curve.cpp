@@ -71,6 +71,12 @@ Key HandCurve::at(double time_s) const noexcept {
   return key;
 }
 
+puppet::HandState MovingHand::at(double time_s) const noexcept {
+  const Key key = curve.at(time_s);
+  const Eigen::Isometry3d T_stage_wrist = key.wrist_pose();
+  return {key.angles, skeleton.pose(key.angles, T_stage_wrist), T_stage_wrist};
+}
+
 namespace {
 
 /// Of a frame; gestures are seen from the second one on, as by Player.
@@ -83,9 +89,8 @@ std::optional<HostTime> time_of(double time_s) {
 class FunctionPlayer {
 public:
   explicit FunctionPlayer(const Timeline& timeline)
-      : timeline_(timeline), hands_(timeline), is_held_(timeline.held), will_hold_(is_held_) {
-    for (const HandTrack& track : timeline.hands)
-      tracks_.push_back({track.side, track.skeleton(), HandCurve(track.keys)});
+      : timeline_(timeline), moving_(timeline.hands.begin(), timeline.hands.end()),
+        hands_(timeline), is_held_(timeline.held), will_hold_(is_held_) {
     pose(hands_, 0.0);
     hands_.take_hold();
   }
@@ -112,12 +117,6 @@ public:
   bool is_held() const noexcept { return is_held_; }
 
 private:
-  struct Track {
-    Side side;
-    hand::HandSkeleton skeleton;
-    HandCurve curve;
-  };
-
   /// Returns true if the functions re-grab at the end of the frame.
   bool ask(const flow::Command& command) {
     hands_.apply(command);
@@ -129,16 +128,12 @@ private:
   }
 
   void pose(PuppetHands& hands, double time_s) const {
-    for (const Track& track : tracks_) {
-      const Key key = track.curve.at(time_s);
-      const Eigen::Isometry3d T_stage_wrist = key.wrist_pose();
-      hands.pose(track.side,
-                 {key.angles, track.skeleton.pose(key.angles, T_stage_wrist), T_stage_wrist});
-    }
+    for (const MovingHand& hand : moving_)
+      hands.pose(hand.side, hand.at(time_s));
   }
 
   const Timeline& timeline_;
-  std::vector<Track> tracks_;
+  std::vector<MovingHand> moving_;
   PuppetHands hands_;
   bool is_held_;   ///< the hands hold the model
   bool will_hold_; ///< from the next frame on

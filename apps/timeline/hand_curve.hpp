@@ -39,6 +39,18 @@ private:
   std::vector<Channels> slopes_; ///< per second, at the keys
 };
 
+/// A hand of a timeline, for its poses at all times.
+struct MovingHand {
+  explicit MovingHand(const HandTrack& track)
+      : side(track.side), skeleton(track.skeleton()), curve(track.keys) {}
+
+  puppet::HandState at(double time_s) const noexcept;
+
+  Side side;
+  hand::HandSkeleton skeleton;
+  HandCurve curve;
+};
+
 /// The functions of a puppet without its model. For one thread.
 class PuppetHands {
 public:

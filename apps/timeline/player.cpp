@@ -87,12 +87,9 @@ Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Me
 }
 
 Player::Player(Timeline timeline, const deform::Mesh& model, const flow::CoreOptions& options)
-    : timeline_(std::move(timeline)), changes_(model, options), core_(changes_, options),
-      frame_(core_.first_frame()),
+    : timeline_(std::move(timeline)), hands_(timeline_.hands.begin(), timeline_.hands.end()),
+      changes_(model, options), core_(changes_, options), frame_(core_.first_frame()),
       frames_(static_cast<std::uint64_t>(timeline_.duration_s * timeline_.rate_hz + a_hair) + 1) {
-  for (const auto& track : timeline_.hands)
-    hands_.push_back({track.side, track.skeleton(), HandCurve(track.keys),
-                      flow::Placement::index_of(track.side)});
   frame_.held = timeline_.held;
 }
 
@@ -109,13 +106,10 @@ double Player::last_time_s() const noexcept {
 }
 
 void Player::pose_hands(double time_s) {
-  for (const Hand& hand : hands_) {
-    const Key key = hand.curve.at(time_s);
-    puppet::HandState& pose = poses_[hand.slot];
-    pose.angles = key.angles;
-    pose.T_world_wrist = key.wrist_pose();
-    pose.pose = hand.skeleton.pose(key.angles, pose.T_world_wrist);
-    flow::HandFrame& shown = frame_.hands[hand.slot];
+  for (const MovingHand& hand : hands_) {
+    const std::size_t slot = flow::Placement::index_of(hand.side);
+    const puppet::HandState& pose = poses_[slot] = hand.at(time_s);
+    flow::HandFrame& shown = frame_.hands[slot];
     shown.angles = pose.angles;
     shown.T_stage_wrist = pose.T_world_wrist;
     shown.pose = pose.pose;
@@ -126,8 +120,10 @@ void Player::pose_hands(double time_s) {
 
 flow::ShapingCore::Hands Player::hands() const noexcept {
   flow::ShapingCore::Hands hands{};
-  for (const Hand& hand : hands_)
-    hands[hand.slot] = &poses_[hand.slot];
+  for (const MovingHand& hand : hands_) {
+    const std::size_t slot = flow::Placement::index_of(hand.side);
+    hands[slot] = &poses_[slot];
+  }
   return hands;
 }
 

@@ -53,13 +53,6 @@ public:
   deform::Points final_shape() { return core_.final_shape(); }
 
 private:
-  struct Hand {
-    Side side;
-    hand::HandSkeleton skeleton;
-    HandCurve curve;
-    std::size_t slot;
-  };
-
   Player(Timeline timeline, const deform::Mesh& model, const flow::CoreOptions& options);
   double time_of(std::uint64_t frame) const noexcept;
   void pose_hands(double time_s);
@@ -72,7 +65,7 @@ private:
   void describe(std::uint64_t number);
 
   Timeline timeline_;
-  std::vector<Hand> hands_;
+  std::vector<MovingHand> hands_;
   std::array<puppet::HandState, 2> poses_; ///< indexed by slot
   flow::ChangeBroker changes_;
   flow::ShapingCore core_;
