@@ -9,8 +9,8 @@
 
 #include <nendo/deform/triangles.hpp>
 
-#include "export/exact_morphs.hpp"
 #include "export/gltf_animation.hpp"
+#include "export/morphs.hpp"
 
 namespace nendo::exporting {
 namespace {

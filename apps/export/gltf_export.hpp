@@ -12,7 +12,7 @@
 // - Any other take of Type-1 is exact. For each control vector it has targets along each axis and
 //   against it (ControlMorphs).
 // - All other takes (with commits, motion in several links, or Type-2) have key shapes
-//   (exact_morphs.hpp). Each key shape is a target, and at any time two of them are mixed. As long
+//   (morphs.hpp). Each key shape is a target, and at any time two of them are mixed. As long
 //   as such a take is a sum of functions or of control vectors, its frames are that sum, which is
 //   off by ControlMorphs::max_error at most and mostly by 1e-7 of the diagonal. The tolerance and
 //   the report include that.

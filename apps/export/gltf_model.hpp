@@ -9,8 +9,8 @@
 #include <nendo/deform/mesh.hpp>
 
 #include "export/chosen_frames.hpp"
-#include "export/exact_morphs.hpp"
 #include "export/glb_file.hpp"
+#include "export/morphs.hpp"
 
 namespace nendo::exporting {
 

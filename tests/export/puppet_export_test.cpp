@@ -9,8 +9,8 @@
 
 #include <nendo/puppet/puppet_edit.hpp>
 
-#include "export/exact_morphs.hpp"
 #include "export/gltf_export.hpp"
+#include "export/morphs.hpp"
 #include "support/counted_frames.hpp"
 #include "support/glb_reader.hpp"
 #include "support/recorded_motion.hpp"

@@ -1,4 +1,4 @@
-#include "export/exact_morphs.hpp"
+#include "export/morphs.hpp"
 
 #include <algorithm>
 #include <cmath>
