@@ -70,6 +70,13 @@ Result<bool> ChosenFrames::next() {
   return true;
 }
 
+Exported ChosenFrames::report() const {
+  Exported report{{}, made_, first_s_, time_s_};
+  report.rate_hz = choice_.rate_hz;
+  report.exact = source_->is_exact();
+  return report;
+}
+
 /// Whether the source's frame is nearer to the moment than the one that is held. Where frames are
 /// missing the one before stays: none comes early by more than three quarters of a period, which no
 /// nearest one does between frames that are less than one and a half apart.
@@ -95,20 +102,13 @@ Result<Exported> export_to_one_file(ChosenFrames& frames, const std::filesystem:
                                     const PutFrame& put) {
   auto file = FileReplacement::begin(path);
   if (!file) return file.error();
-  Exported done{{path.string()}, 0, frames.first_s(), frames.first_s()};
-  for (;;) {
-    const auto more = frames.next();
-    if (!more) return more.error();
-    if (!*more) break;
-    if (const auto written = put(*file); !written) return written.error();
-    done.last_s = frames.time_s();
-  }
+  const auto done = frames.for_each([&] { return put(*file); });
+  if (!done) return done.error();
   if (const auto finished = file->finish(); !finished) return finished.error();
-  done.frames = frames.made();
-  done.bytes = file->size();
-  done.rate_hz = frames.rate_hz();
-  done.exact = frames.source().is_exact();
-  return done;
+  Exported report = frames.report();
+  report.files = {path.string()};
+  report.bytes = file->size();
+  return report;
 }
 
 } // namespace nendo::exporting

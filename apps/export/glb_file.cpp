@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include <nendo/base/byte_writer.hpp>
 #include <nendo/base/files.hpp>
@@ -39,18 +40,9 @@ void bound(GlbFile::Json& accessor, const Eigen::Matrix3Xf& vectors) {
   accessor["max"] = list_of(vectors.rowwise().maxCoeff());
 }
 
-std::vector<std::uint16_t> narrowed(std::span<const std::uint32_t> indices) {
-  std::vector<std::uint16_t> narrow;
-  narrow.reserve(indices.size());
-  for (const std::uint32_t index : indices)
-    narrow.push_back(static_cast<std::uint16_t>(index));
-  return narrow;
-}
-
 // 65535 itself would be a primitive's restart.
 bool are_narrow(std::span<const std::uint32_t> indices) {
-  return std::all_of(indices.begin(), indices.end(),
-                     [](std::uint32_t index) { return index < UINT16_MAX; });
+  return std::ranges::all_of(indices, [](std::uint32_t index) { return index < UINT16_MAX; });
 }
 
 } // namespace
@@ -80,6 +72,14 @@ GlbFile::Index GlbFile::add_view(std::span<const std::byte> bytes, std::optional
   return views_.size() - 1;
 }
 
+/// Returns the index of the view, and the type of its numbers.
+std::pair<GlbFile::Index, int> GlbFile::add_index_view(std::span<const std::uint32_t> indices,
+                                                       std::optional<Use> use) {
+  if (!are_narrow(indices)) return {add_view(std::as_bytes(indices), use), component_u32};
+  const std::vector<std::uint16_t> narrow(indices.begin(), indices.end());
+  return {add_view(std::as_bytes(std::span(narrow)), use), component_u16};
+}
+
 GlbFile::Index GlbFile::add_accessor(Index view, int component, std::size_t count,
                                      const char* type) {
   accessors_.push_back(
@@ -96,15 +96,10 @@ GlbFile::Index GlbFile::add_vectors(const Eigen::Matrix3Xf& vectors, Use use, bo
 
 GlbFile::Json GlbFile::sparse(std::span<const std::uint32_t> places,
                               std::span<const float> values) {
-  const bool narrow = are_narrow(places);
-  const Index indices =
-      narrow
-          ? add_view(std::as_bytes(std::span<const std::uint16_t>(narrowed(places))), std::nullopt)
-          : add_view(std::as_bytes(places), std::nullopt);
+  const auto [indices, component] = add_index_view(places, std::nullopt);
   const Index numbers = add_view(std::as_bytes(values), std::nullopt);
   return {{"count", places.size()},
-          {"indices",
-           {{"bufferView", indices}, {"componentType", narrow ? component_u16 : component_u32}}},
+          {"indices", {{"bufferView", indices}, {"componentType", component}}},
           {"values", {{"bufferView", numbers}}}};
 }
 
@@ -130,16 +125,20 @@ GlbFile::Index GlbFile::add_sparse_vectors(const Eigen::Matrix3Xf& vectors) {
   return accessors_.size() - 1;
 }
 
-GlbFile::Index GlbFile::add_quaternions(std::span<const float> xyzw) {
-  return add_accessor(add_view(std::as_bytes(xyzw), Use::animation), component_f32, xyzw.size() / 4,
-                      "VEC4");
+GlbFile::Index GlbFile::add_numbers(std::span<const float> numbers, std::size_t width,
+                                    std::optional<Use> use) {
+  const char* const type = width == 1   ? "SCALAR"
+                           : width == 2 ? "VEC2"
+                           : width == 4 ? "VEC4"
+                                        : "MAT4";
+  return add_accessor(add_view(std::as_bytes(numbers), use), component_f32, numbers.size() / width,
+                      type);
 }
 
 GlbFile::Index GlbFile::add_scalars(std::span<const float> numbers, bool bounded) {
-  const Index accessor = add_accessor(add_view(std::as_bytes(numbers), Use::animation),
-                                      component_f32, numbers.size(), "SCALAR");
+  const Index accessor = add_numbers(numbers, 1, Use::animation);
   if (bounded) {
-    const auto [least, greatest] = std::minmax_element(numbers.begin(), numbers.end());
+    const auto [least, greatest] = std::ranges::minmax_element(numbers);
     accessors_.back()["min"] = {*least};
     accessors_.back()["max"] = {*greatest};
   }
@@ -155,35 +154,12 @@ GlbFile::Index GlbFile::add_ones(std::size_t count, std::span<const std::uint32_
 }
 
 GlbFile::Index GlbFile::add_indices(std::span<const std::uint32_t> indices, Use use) {
-  const bool narrow = are_narrow(indices);
-  const Index view =
-      narrow ? add_view(std::as_bytes(std::span<const std::uint16_t>(narrowed(indices))), use)
-             : add_view(std::as_bytes(indices), use);
-  return add_accessor(view, narrow ? component_u16 : component_u32, indices.size(), "SCALAR");
+  const auto [view, component] = add_index_view(indices, use);
+  return add_accessor(view, component, indices.size(), "SCALAR");
 }
 
 GlbFile::Index GlbFile::add_joints(std::span<const std::uint8_t> fours) {
   return add_accessor(add_view(std::as_bytes(fours), Use::vertices), component_u8, fours.size() / 4,
-                      "VEC4");
-}
-
-GlbFile::Index GlbFile::add_weights(std::span<const float> fours) {
-  return add_accessor(add_view(std::as_bytes(fours), Use::vertices), component_f32,
-                      fours.size() / 4, "VEC4");
-}
-
-GlbFile::Index GlbFile::add_matrices(std::span<const float> sixteens) {
-  return add_accessor(add_view(std::as_bytes(sixteens), std::nullopt), component_f32,
-                      sixteens.size() / 16, "MAT4");
-}
-
-GlbFile::Index GlbFile::add_texcoords(std::span<const float> pairs) {
-  return add_accessor(add_view(std::as_bytes(pairs), Use::vertices), component_f32,
-                      pairs.size() / 2, "VEC2");
-}
-
-GlbFile::Index GlbFile::add_colours(std::span<const float> rgba) {
-  return add_accessor(add_view(std::as_bytes(rgba), Use::vertices), component_f32, rgba.size() / 4,
                       "VEC4");
 }
 

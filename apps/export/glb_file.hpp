@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -42,17 +43,14 @@ public:
   /// Adds vectors of which most are zero, with their minimum and maximum. Uses a sparse accessor if
   /// that is smaller.
   Index add_sparse_vectors(const Eigen::Matrix3Xf& vectors);
-  Index add_quaternions(std::span<const float> xyzw);
+  /// Adds items of `width` numbers: 1; vectors of 2 or 4; or matrices of 16, column by column.
+  Index add_numbers(std::span<const float> numbers, std::size_t width, std::optional<Use> use);
   Index add_scalars(std::span<const float> numbers, bool bounded);
   /// Adds `count` zeros, with ones at `places`, which must increase.
   Index add_ones(std::size_t count, std::span<const std::uint32_t> places);
   /// Uses 16 bits for each index if all of them fit.
   Index add_indices(std::span<const std::uint32_t> indices, Use use);
   Index add_joints(std::span<const std::uint8_t> fours);
-  Index add_weights(std::span<const float> fours);
-  Index add_matrices(std::span<const float> sixteens); ///< column by column
-  Index add_texcoords(std::span<const float> pairs);
-  Index add_colours(std::span<const float> rgba);
 
   /// Adds bytes that are no numbers, such as an image, and returns the index of their bufferView.
   Index add_bytes(std::string_view bytes);
@@ -63,6 +61,8 @@ public:
 
 private:
   Index add_view(std::span<const std::byte> bytes, std::optional<Use> use);
+  std::pair<Index, int> add_index_view(std::span<const std::uint32_t> indices,
+                                       std::optional<Use> use);
   Index add_accessor(Index view, int component, std::size_t count, const char* type);
   Json sparse(std::span<const std::uint32_t> places, std::span<const float> values);
 

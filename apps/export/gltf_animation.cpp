@@ -57,7 +57,7 @@ GlbFile::Index add_joints(const HandTrack& track, GlbFile::Index times, GltfAnim
                        file.add_vectors(columns_of(joint.places), GlbFile::Use::animation, false));
     if (moves(joint.rotations, 4, min_turn))
       document.animate(base + at, "rotation", "LINEAR", times,
-                       file.add_quaternions(joint.rotations));
+                       file.add_numbers(joint.rotations, 4, GlbFile::Use::animation));
   }
   return base;
 }
@@ -74,7 +74,7 @@ GlbFile::Index add_skin(const HandTrack& track, const hand::HandPose& bind, GlbF
   return file.add("skins", {{"name", std::string(name_of(track.side())) + " hand"},
                             {"joints", std::move(joints)},
                             {"skeleton", base + hand::index_of(Joint::wrist)},
-                            {"inverseBindMatrices", file.add_matrices(inverses)}});
+                            {"inverseBindMatrices", file.add_numbers(inverses, 16, {})}});
 }
 
 GlbFile::Index add_mesh(const HandTrack& track, const hand::HandPose& bind, GlbFile& file) {
@@ -100,7 +100,7 @@ GlbFile::Index add_mesh(const HandTrack& track, const hand::HandPose& bind, GlbF
   Json attributes{{"POSITION", file.add_vectors(places, Use::vertices, true)},
                   {"NORMAL", file.add_vectors(normals, Use::vertices, false)},
                   {"JOINTS_0", file.add_joints(joints)},
-                  {"WEIGHTS_0", file.add_weights(weights)}};
+                  {"WEIGHTS_0", file.add_numbers(weights, 4, Use::vertices)}};
   const auto material = file.add("materials", {{"name", "hand"},
                                                {"pbrMetallicRoughness",
                                                 {{"baseColorFactor", {0.33, 0.345, 0.37, 1.0}},
@@ -222,22 +222,21 @@ Result<PlayedFrames> play_frames(const GltfJob& job, const AddFrame& add) {
   ChosenFrames& frames = job.frames;
   PlayedFrames played;
   deform::Points vertices;
-  for (;;) {
-    const auto more = frames.next();
-    if (!more) return more.error();
-    if (!*more) return played;
+  const auto done = frames.for_each([&]() -> Result<void> {
     const auto time_s = static_cast<float>(frames.time_s() - frames.first_s());
     // Ticks that followed each other at once; a player wants times that rise.
-    if (!played.times_s.empty() && !(time_s > played.times_s.back())) continue;
+    if (!played.times_s.empty() && !(time_s > played.times_s.back())) return {};
     const flow::Frame& frame = frames.frame();
     frames.vertices(vertices);
     played.times_s.push_back(time_s);
     if (!vertices.cast<float>().allFinite() || (job.options.hands && !follow_hands(frame, played)))
       return not_finite(frames.time_s());
-    if (const auto added = add(frame, time_s, vertices); !added) return added.error();
     played.units_per_metre = frame.units_per_metre;
     played.last_s = frames.time_s();
-  }
+    return add(frame, time_s, vertices);
+  });
+  if (!done) return done.error();
+  return played;
 }
 
 Result<Exported> write_models(const GltfJob& job, const PlayedFrames& played,

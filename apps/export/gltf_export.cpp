@@ -1,6 +1,7 @@
 #include "export/gltf_export.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -317,15 +318,8 @@ Result<Exported> export_hands(const GltfJob& job) {
 } // namespace
 
 std::string_view name_of(MorphBasis basis) noexcept {
-  switch (basis) {
-  case MorphBasis::functions:
-    return "functions";
-  case MorphBasis::control_vectors:
-    return "control vectors";
-  case MorphBasis::key_shapes:
-    break;
-  }
-  return "key shapes";
+  constexpr std::array<std::string_view, 3> names{"key shapes", "control vectors", "functions"};
+  return names[static_cast<std::size_t>(basis)];
 }
 
 Result<Exported> export_gltf(takes::FrameSource& source, const Choice& choice,

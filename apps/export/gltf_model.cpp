@@ -63,9 +63,7 @@ Json material_named(const std::string& name, const Eigen::Vector4f& colour) {
 } // namespace
 
 const deform::Appearance& richest_of(std::span<const deform::Appearance* const> looks) noexcept {
-  return **std::max_element(looks.begin(), looks.end(), [](const auto* one, const auto* other) {
-    return one->materials.size() < other->materials.size();
-  });
+  return **std::ranges::max_element(looks, {}, [](auto* look) { return look->materials.size(); });
 }
 
 GltfMaterials::GltfMaterials(const deform::Appearance& look, GlbFile& file) {
@@ -81,9 +79,7 @@ GltfMaterials::GltfMaterials(const deform::Appearance& look, GlbFile& file) {
     indices_.push_back(file.add("materials", std::move(material)));
   }
   const auto& of_face = look.face_materials;
-  if (!of_face.empty() &&
-      std::find(of_face.begin(), of_face.end(), deform::no_index) == of_face.end())
-    return;
+  if (!of_face.empty() && std::ranges::find(of_face, deform::no_index) == of_face.end()) return;
   plain_ = file.add("materials", look.has_colours() // they multiply it
                                      ? material_named("white", Eigen::Vector4f::Ones())
                                      : material_named("clay", clay));
@@ -283,9 +279,9 @@ GltfModel::GltfModel(const deform::Mesh& mesh, GlbFile& file)
     Json attributes;
     attributes["POSITION"] = file.add_vectors(columns_of(vertices, part), Use::vertices, true);
     if (deform::has_texture_places(mesh))
-      attributes["TEXCOORD_0"] = file.add_texcoords(texcoords_of(mesh, part));
+      attributes["TEXCOORD_0"] = file.add_numbers(texcoords_of(mesh, part), 2, Use::vertices);
     if (const std::vector<float> colours = colours_of(mesh, part); !colours.empty())
-      attributes["COLOR_0"] = file.add_colours(colours);
+      attributes["COLOR_0"] = file.add_numbers(colours, 4, Use::vertices);
     if (part.triangles.empty()) {
       primitives_.push_back({{"attributes", attributes}, {"mode", points_mode}});
       continue;

@@ -200,9 +200,8 @@ std::optional<FunctionMorphs> FunctionMorphs::make(const takes::PlayedPuppet& pu
       if (way.col(v).norm() < least) way.col(v).setZero();
     add_targets(at, rig.puppet().functions[at], way, targets);
   }
-  const bool finite = std::all_of(targets.begin(), targets.end(),
-                                  [](const Target& target) { return target.way.allFinite(); });
-  if (!finite) return std::nullopt;
+  if (!std::ranges::all_of(targets, [](const Target& target) { return target.way.allFinite(); }))
+    return std::nullopt;
   FunctionMorphs morphs(std::move(targets), layout);
   Eigen::Matrix3Xf rest = vertices.cast<float>() - morphs.moved_by(morphs.weights_of(first));
   const double apart = (rest - morphs.rest_).cast<double>().colwise().norm().maxCoeff();

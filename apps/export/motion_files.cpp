@@ -60,21 +60,10 @@ private:
 
 constexpr std::array<Side, 2> sides{Side::left, Side::right};
 
-/// As the page of exports has it.
+/// The page of exports lists them in this order.
 std::uint64_t code_of(deform::FieldStatus status) {
-  switch (status) {
-  case deform::FieldStatus::ok:
-    return 0;
-  case deform::FieldStatus::merged:
-    return 1;
-  case deform::FieldStatus::singular:
-    return 2;
-  case deform::FieldStatus::too_dense:
-    return 3;
-  case deform::FieldStatus::not_finite:
-    return 4;
-  }
-  return 5;
+  static_assert(static_cast<int>(deform::FieldStatus::not_finite) == 4);
+  return static_cast<std::uint64_t>(status);
 }
 
 const flow::HandFrame& hand_of(const flow::Frame& frame, Side side) {
@@ -292,33 +281,27 @@ Result<Exported> export_hands_bvh(ChosenFrames& frames, const Skeletons& skeleto
   assert(frames.count());
   auto files = begin(frames, skeletons, path);
   if (!files) return files.error();
-  Exported done;
-  done.first_s = frames.first_s();
   std::string line;
-  for (;;) {
-    const auto more = frames.next();
-    if (!more) return more.error();
-    if (!*more) break;
+  const auto written = frames.for_each([&]() -> Result<void> {
     for (HandFile& hand : *files) {
       line.clear();
       if (!hand.format.append_frame(frames.frame().hands[hand.slot].pose, line)) {
         return Error{Errc::bad_input, hand.path.string() + ": a pose at " +
                                           std::to_string(frames.time_s()) + " s is not finite"};
       }
-      if (const auto written = hand.file.write(line); !written) return written.error();
+      if (auto fine = hand.file.write(line); !fine) return fine;
     }
-    done.last_s = frames.time_s();
-  }
+    return {};
+  });
+  if (!written) return written.error();
   for (HandFile& hand : *files) // both hands, or what was there stays
     if (const auto synced = hand.file.sync(); !synced) return synced.error();
+  Exported done = frames.report();
   for (HandFile& hand : *files) {
     if (const auto finished = hand.file.finish(); !finished) return finished.error();
     done.files.push_back(hand.path.string());
     done.bytes += hand.file.size();
   }
-  done.frames = frames.made();
-  done.rate_hz = frames.rate_hz();
-  done.exact = frames.source().is_exact();
   return done;
 }
 

@@ -59,17 +59,9 @@ Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& p
   if (!name) return name.error();
   deform::Mesh mesh;
   std::optional<std::uint32_t> version; // that it is of
-  Exported done{{}, 0, frames.first_s(), frames.first_s()};
-  const auto so_far = [&](const Error& error) {
-    const std::string count = std::to_string(done.frames);
-    return Error{error.code, done.frames == 0
-                                 ? error.message
-                                 : error.message + "; " + count + " frames before it are whole"};
-  };
-  for (;;) {
-    const auto more = frames.next();
-    if (!more) return so_far(more.error());
-    if (!*more) break;
+  std::vector<std::string> files;
+  std::uint64_t bytes = 0;
+  const auto written = frames.for_each([&]() -> Result<void> {
     if (version != frames.frame().model) {
       version = frames.frame().model;
       mesh = frames.source().model(*version);
@@ -77,21 +69,25 @@ Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& p
     frames.vertices(mesh.vertices);
     const std::string file = name->of(frames.made());
     // One file of materials for all of them.
-    const auto materials = std::filesystem::path(done.files.empty() ? file : done.files.front())
-                               .replace_extension(".mtl");
-    if (const auto written = deform::write_mesh(file, mesh, materials, frames.source().up());
-        !written)
-      return so_far(written.error());
+    const auto materials =
+        std::filesystem::path(files.empty() ? file : files.front()).replace_extension(".mtl");
+    auto fine = deform::write_mesh(file, mesh, materials, frames.source().up());
+    if (!fine) return fine;
     std::error_code unknown;
-    const auto bytes = std::filesystem::file_size(file, unknown);
-    if (!unknown) done.bytes += bytes;
-    done.files.push_back(file);
-    done.frames = frames.made();
-    done.last_s = frames.time_s();
-  }
-  done.rate_hz = frames.rate_hz();
-  done.exact = frames.source().is_exact();
-  return done;
+    const auto size = std::filesystem::file_size(file, unknown);
+    if (!unknown) bytes += size;
+    files.push_back(file);
+    return {};
+  });
+  if (!written && !files.empty())
+    return Error{written.error().code, written.error().message + "; " +
+                                           std::to_string(files.size()) +
+                                           " frames before it are whole"};
+  if (!written) return written.error();
+  Exported report = frames.report();
+  report.files = std::move(files);
+  report.bytes = bytes;
+  return report;
 }
 
 namespace {
@@ -134,15 +130,15 @@ struct Part {
 /// Goes through all frames.
 Result<std::vector<Part>> parts_of(ChosenFrames& frames) {
   std::vector<Part> parts;
-  for (;;) {
-    const auto more = frames.next();
-    if (!more) return more.error();
-    if (!*more) return parts;
+  const auto counted = frames.for_each([&]() -> Result<void> {
     const std::uint32_t version = frames.frame().model;
     if (parts.empty() || parts.back().version != version)
       parts.push_back({frames.made(), 0, version, frames.time_s()});
     ++parts.back().count;
-  }
+    return {};
+  });
+  if (!counted) return counted.error();
+  return parts;
 }
 
 void put_head(PointCache format, const ChosenFrames& frames, std::uint32_t count,
