@@ -41,15 +41,32 @@ std::string export_name(const std::string& out) {
 class GlbExport {
 public:
   /// Starts the export. The file appears only when it is complete.
-  GlbExport(const timeline::Timeline& timeline, const deform::Mesh& model, const std::string& path);
+  GlbExport(const Timeline& timeline, const deform::Mesh& model, const std::string& path)
+      : thread_([this, timeline, model, path] {
+          const auto frames = takes::TimelineFrames::make(timeline, model);
+          const exporting::Choice choice{.rate_hz = exporting::animators_rate_hz, .stop = &stop_};
+          exporting::GltfOptions options;
+          options.generator = "Nendo " NENDO_VERSION;
+          if (frames)
+            result_ = exporting::export_gltf(**frames, choice, options, path);
+          else
+            result_ = frames.error();
+          done_ = true;
+        }) {}
   /// Stops the export if it is still running, and waits for its thread.
-  ~GlbExport();
+  ~GlbExport() {
+    stop_ = true;
+    thread_.join();
+  }
   GlbExport(const GlbExport&) = delete;
   GlbExport& operator=(const GlbExport&) = delete;
 
   /// Returns the result of the export, or nothing while it is running. Errors: those of
   /// export_gltf().
-  std::optional<Result<exporting::Exported>> result() const;
+  std::optional<Result<exporting::Exported>> result() const {
+    if (!done_) return std::nullopt;
+    return result_;
+  }
 
 private:
   std::atomic<bool> stop_ = false;
@@ -57,29 +74,6 @@ private:
   std::optional<Result<exporting::Exported>> result_; ///< once done_
   std::thread thread_;
 };
-
-GlbExport::GlbExport(const Timeline& timeline, const deform::Mesh& model, const std::string& path)
-    : thread_([this, timeline, model, path] {
-        const auto frames = takes::TimelineFrames::make(timeline, model);
-        const exporting::Choice choice{.rate_hz = exporting::animators_rate_hz, .stop = &stop_};
-        exporting::GltfOptions options;
-        options.generator = "Nendo " NENDO_VERSION;
-        if (frames)
-          result_ = exporting::export_gltf(**frames, choice, options, path);
-        else
-          result_ = frames.error();
-        done_ = true;
-      }) {}
-
-GlbExport::~GlbExport() {
-  stop_ = true;
-  thread_.join();
-}
-
-std::optional<Result<exporting::Exported>> GlbExport::result() const {
-  if (!done_) return std::nullopt;
-  return result_;
-}
 
 EditSession::EditSession(Timeline timeline, deform::Mesh model, std::string out)
     : model_(std::move(model)), out_(std::move(out)), export_file_(export_name(out_)),
@@ -125,8 +119,8 @@ void EditSession::handle(const viewer::EditActions& actions) {
     handle(command);
   follow_history();
   // Who wanted to save before, and could not, stays.
-  const bool saves = std::find(actions.commands.begin(), actions.commands.end(),
-                               EditCommand::save) != actions.commands.end();
+  const bool saves =
+      std::ranges::find(actions.commands, EditCommand::save) != actions.commands.end();
   ended_ = ended_ || (actions.quit && !(saves && history_.is_modified()));
 }
 

@@ -31,18 +31,65 @@ constexpr double cells_a_side = 800.0;
 class FrontMap {
 public:
   /// Allocates a cell for each 1/800 of the model's height, or of its width if that is more.
-  explicit FrontMap(const deform::Mesh& model);
+  explicit FrontMap(const deform::Mesh& model) : box_(deform::finite_box_of(model.vertices)) {
+    const Eigen::Vector3d size = box_.highest - box_.lowest;
+    const double longest = std::max(size.x(), size.y());
+    cell_ = longest > 0.0 ? longest / cells_a_side : 1.0;
+    columns_ = static_cast<std::ptrdiff_t>(size.x() / cell_) + 2;
+    rows_ = static_cast<std::ptrdiff_t>(size.y() / cell_) + 2;
+    cells_.assign(static_cast<std::size_t>(columns_ * rows_), nothing);
+    deform::for_each_triangle(model, [&](const std::array<std::uint32_t, 3>& triangle) {
+      Eigen::Matrix3d corners;
+      for (std::size_t k = 0; k < 3; ++k)
+        corners.col(static_cast<Eigen::Index>(k)) = model.vertices.col(triangle[k]);
+      if (corners.allFinite()) draw(corners);
+    });
+  }
 
   double cell() const noexcept { return cell_; } ///< the side of a cell, model units
   /// Returns z there; nothing where there is no surface. All in model units.
-  std::optional<double> z(double x, double y) const noexcept;
+  std::optional<double> z(double x, double y) const noexcept {
+    const double column = std::floor((x - box_.lowest.x()) / cell_);
+    const double row = std::floor((y - box_.lowest.y()) / cell_);
+    if (!(column >= 0.0 && row >= 0.0 && column < static_cast<double>(columns_) &&
+          row < static_cast<double>(rows_)))
+      return std::nullopt;
+    const double z = cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                            static_cast<std::size_t>(column)];
+    if (z == nothing) return std::nullopt;
+    return z;
+  }
   /// Returns the place there; where there is no surface, that at z = 0.
   Eigen::Vector3d place(double x, double y) const noexcept { return {x, y, z(x, y).value_or(0.0)}; }
   double lowest_y() const noexcept { return box_.lowest.y(); }
   double highest_y() const noexcept { return box_.highest.y(); }
 
 private:
-  void draw(const Eigen::Matrix3d& corners);
+  void draw(const Eigen::Matrix3d& corners) {
+    const Eigen::Matrix2d sides =
+        (Eigen::Matrix2d() << corners.col(1).head<2>() - corners.col(0).head<2>(),
+         corners.col(2).head<2>() - corners.col(0).head<2>())
+            .finished();
+    const double area = sides.determinant();
+    if (std::abs(area) < 1e-12 * cell_ * cell_) return; // seen from its edge
+    const Eigen::Matrix2d inverse = sides.inverse();
+    const Eigen::Vector3d low = (corners.rowwise().minCoeff() - box_.lowest) / cell_;
+    const Eigen::Vector3d high = (corners.rowwise().maxCoeff() - box_.lowest) / cell_;
+    const auto last_column = std::min(columns_ - 1, static_cast<std::ptrdiff_t>(high.x()) + 1);
+    const auto last_row = std::min(rows_ - 1, static_cast<std::ptrdiff_t>(high.y()) + 1);
+    for (auto row = static_cast<std::ptrdiff_t>(low.y()); row <= last_row; ++row)
+      for (auto column = static_cast<std::ptrdiff_t>(low.x()); column <= last_column; ++column) {
+        const Eigen::Vector2d at =
+            box_.lowest.head<2>() + cell_ * Eigen::Vector2d(static_cast<double>(column) + 0.5,
+                                                            static_cast<double>(row) + 0.5);
+        const Eigen::Vector2d part = inverse * (at - corners.col(0).head<2>());
+        if (part.minCoeff() < -1e-9 || part.sum() > 1.0 + 1e-9) continue;
+        const double z = corners(2, 0) + part.x() * (corners(2, 1) - corners(2, 0)) +
+                         part.y() * (corners(2, 2) - corners(2, 0));
+        double& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
+        cell = std::max(cell, z);
+      }
+  }
 
   deform::Box box_;
   double cell_ = 1.0;
@@ -50,59 +97,6 @@ private:
   std::ptrdiff_t rows_ = 0;
   std::vector<double> cells_; ///< row by row from the lowest y
 };
-
-FrontMap::FrontMap(const deform::Mesh& model) : box_(deform::finite_box_of(model.vertices)) {
-  const Eigen::Vector3d size = box_.highest - box_.lowest;
-  const double longest = std::max(size.x(), size.y());
-  cell_ = longest > 0.0 ? longest / cells_a_side : 1.0;
-  columns_ = static_cast<std::ptrdiff_t>(size.x() / cell_) + 2;
-  rows_ = static_cast<std::ptrdiff_t>(size.y() / cell_) + 2;
-  cells_.assign(static_cast<std::size_t>(columns_ * rows_), nothing);
-  deform::for_each_triangle(model, [&](const std::array<std::uint32_t, 3>& triangle) {
-    Eigen::Matrix3d corners;
-    for (std::size_t k = 0; k < 3; ++k)
-      corners.col(static_cast<Eigen::Index>(k)) = model.vertices.col(triangle[k]);
-    if (corners.allFinite()) draw(corners);
-  });
-}
-
-void FrontMap::draw(const Eigen::Matrix3d& corners) {
-  const Eigen::Matrix2d sides =
-      (Eigen::Matrix2d() << corners.col(1).head<2>() - corners.col(0).head<2>(),
-       corners.col(2).head<2>() - corners.col(0).head<2>())
-          .finished();
-  const double area = sides.determinant();
-  if (std::abs(area) < 1e-12 * cell_ * cell_) return; // seen from its edge
-  const Eigen::Matrix2d inverse = sides.inverse();
-  const Eigen::Vector3d low = (corners.rowwise().minCoeff() - box_.lowest) / cell_;
-  const Eigen::Vector3d high = (corners.rowwise().maxCoeff() - box_.lowest) / cell_;
-  const auto last_column = std::min(columns_ - 1, static_cast<std::ptrdiff_t>(high.x()) + 1);
-  const auto last_row = std::min(rows_ - 1, static_cast<std::ptrdiff_t>(high.y()) + 1);
-  for (auto row = static_cast<std::ptrdiff_t>(low.y()); row <= last_row; ++row)
-    for (auto column = static_cast<std::ptrdiff_t>(low.x()); column <= last_column; ++column) {
-      const Eigen::Vector2d at =
-          box_.lowest.head<2>() + cell_ * Eigen::Vector2d(static_cast<double>(column) + 0.5,
-                                                          static_cast<double>(row) + 0.5);
-      const Eigen::Vector2d part = inverse * (at - corners.col(0).head<2>());
-      if (part.minCoeff() < -1e-9 || part.sum() > 1.0 + 1e-9) continue;
-      const double z = corners(2, 0) + part.x() * (corners(2, 1) - corners(2, 0)) +
-                       part.y() * (corners(2, 2) - corners(2, 0));
-      double& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
-      cell = std::max(cell, z);
-    }
-}
-
-std::optional<double> FrontMap::z(double x, double y) const noexcept {
-  const double column = std::floor((x - box_.lowest.x()) / cell_);
-  const double row = std::floor((y - box_.lowest.y()) / cell_);
-  if (!(column >= 0.0 && row >= 0.0 && column < static_cast<double>(columns_) &&
-        row < static_cast<double>(rows_)))
-    return std::nullopt;
-  const double z = cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                          static_cast<std::size_t>(column)];
-  if (z == nothing) return std::nullopt;
-  return z;
-}
 
 // The proportions of a face as people have, in units (FaceLandmarks::unit).
 constexpr double nose_to_jaw = 1.16;
@@ -170,9 +164,7 @@ private:
     for (const std::uint32_t part : parts)
       ++sizes[part];
     const auto largest =
-        std::max_element(sizes.begin(), sizes.end(), [](const auto& one, const auto& other) {
-          return one.second < other.second;
-        });
+        std::ranges::max_element(sizes, {}, [](const auto& part) { return part.second; });
     Mesh skin;
     skin.vertices = model.vertices;
     for (const std::uint32_t part : parts)
@@ -247,8 +239,8 @@ private:
   void find_symmetry() {
     const auto images = mirror_images(model_.vertices, RigCheck::image_within *
                                                            deform::diagonal_of(model_.vertices));
-    found_.lone_vertices = static_cast<std::size_t>(std::count_if(
-        images.begin(), images.end(), [](const auto& image) { return image.empty(); }));
+    found_.lone_vertices = static_cast<std::size_t>(
+        std::ranges::count_if(images, [](const auto& image) { return image.empty(); }));
     std::vector<double> differences;
     for (double y = found_.jaw.y(); y < found_.nose.y() + unit(); y += 0.02 * unit())
       for (double x = 0.02 * unit(); x < 0.8 * unit(); x += 0.02 * unit()) {
