@@ -91,9 +91,7 @@ std::vector<KeyTime> key_times(const Timeline& timeline) {
     for (std::size_t at = 0; at < hand.keys.size(); ++at)
       times.push_back(
           {hand.keys[at].time_s, std::string(name_of(hand.side)) + " " + std::to_string(at)});
-  std::stable_sort(times.begin(), times.end(), [](const KeyTime& one, const KeyTime& other) {
-    return one.time_s < other.time_s;
-  });
+  std::ranges::stable_sort(times, {}, &KeyTime::time_s);
   std::vector<KeyTime> merged;
   for (KeyTime& time : times) {
     if (merged.empty() || merged.back().time_s != time.time_s)
@@ -109,8 +107,7 @@ using ValuesAtKeys = std::function<void(const KeyTime& time, std::span<const dou
 void for_each_key_time(const Timeline& timeline, const ValuesAtKeys& see) {
   const std::vector<KeyTime> keys = key_times(timeline);
   std::vector<double> times_s(keys.size());
-  std::transform(keys.begin(), keys.end(), times_s.begin(),
-                 [](const KeyTime& key) { return key.time_s; });
+  std::ranges::transform(keys, times_s.begin(), &KeyTime::time_s);
   timeline::play_functions(timeline, times_s,
                            [&](std::size_t at, const timeline::PuppetMoment& moment) {
                              see(keys[at], moment.hands.player().values());
@@ -123,9 +120,8 @@ std::string values_text(const puppet::Puppet& puppet, std::span<const double> va
   std::vector<std::size_t> order;
   for (std::size_t at = 0; at < values.size(); ++at)
     if (std::abs(values[at]) > least) order.push_back(at);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t one, std::size_t other) {
-    return std::abs(values[one]) > std::abs(values[other]);
-  });
+  std::ranges::stable_sort(order, std::greater<>(),
+                           [&](std::size_t at) { return std::abs(values[at]); });
   std::string text;
   for (const std::size_t at : order)
     text +=
@@ -173,14 +169,6 @@ void print_json(const ShowOptions& options, const Timeline& timeline) {
             << std::endl;
 }
 
-// How far a finger is bent, degrees.
-double bend_deg(const hand::JointAngles& angles, hand::Finger finger) {
-  if (finger == hand::Finger::thumb)
-    return to_degrees(angles.thumb_mcp_flexion_rad + angles.thumb_ip_flexion_rad);
-  return to_degrees(angles[finger].mcp_flexion_rad + angles[finger].pip_flexion_rad +
-                    angles[finger].dip_flexion_rad);
-}
-
 void print_hand(const Timeline& timeline, const HandTrack& hand,
                 std::optional<hand::Finger> shown) {
   std::printf("%s hand: how far the fingers are bent, degrees%s\n",
@@ -194,7 +182,7 @@ void print_hand(const Timeline& timeline, const HandTrack& hand,
     const Key& key = hand.keys[number];
     std::printf("%6zu %9.3f", number, key.time_s);
     for (std::size_t at = 0; at < hand::finger_count; ++at)
-      std::printf(" %6.0f", bend_deg(key.angles, static_cast<hand::Finger>(at)));
+      std::printf(" %6.0f", to_degrees(key.angles.flexion_rad(static_cast<hand::Finger>(at))));
     if (shown) {
       const Eigen::Vector3d tip =
           tips_of(timeline, hand, key).col(static_cast<Eigen::Index>(*shown));

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -66,11 +67,9 @@ std::size_t EditedPuppet::source_of_function(std::size_t function) const {
 }
 
 std::size_t EditedPuppet::mover_of(std::size_t point) const {
-  const auto mover =
-      std::find_if(puppet_.functions.begin(), puppet_.functions.end(), [&](const auto& function) {
-        return std::any_of(function.moves.begin(), function.moves.end(),
-                           [&](const Move& move) { return move.point == point; });
-      });
+  const auto mover = std::ranges::find_if(puppet_.functions, [&](const Function& function) {
+    return std::ranges::find(function.moves, point, &Move::point) != function.moves.end();
+  });
   return static_cast<std::size_t>(mover - puppet_.functions.begin());
 }
 
@@ -195,8 +194,8 @@ private:
   }
   int side_of(const Function& function) const {
     const int side = sides_[function.moves.front().point];
-    const bool all = std::all_of(function.moves.begin(), function.moves.end(),
-                                 [&](const Move& move) { return sides_[move.point] == side; });
+    const bool all = std::ranges::all_of(
+        function.moves, [&](const Move& move) { return sides_[move.point] == side; });
     return all ? side : 0;
   }
   static void flip(Function& function) {
@@ -249,12 +248,12 @@ constexpr double max_alone = 0.05; // of them
 double part_alone(const Points& vertices, const std::vector<Index>& by_x, double at) {
   const double near = tolerance * deform::diagonal_of(vertices);
   const Index step = std::max<Index>(1, vertices.cols() / max_looked_at);
+  const auto x_of = [&](Index at) { return vertices(0, at); };
   Index looked_at = 0, alone = 0;
   for (Index v = 0; v < vertices.cols(); v += step, ++looked_at) {
     Vector3d image = vertices.col(v);
     image.x() = 2.0 * at - image.x();
-    auto other = std::lower_bound(by_x.begin(), by_x.end(), image.x() - near,
-                                  [&](Index one, double x) { return vertices(0, one) < x; });
+    auto other = std::ranges::lower_bound(by_x, image.x() - near, {}, x_of);
     bool found = false;
     for (; !found && other != by_x.end() && vertices(0, *other) <= image.x() + near; ++other)
       found = (vertices.col(*other) - image).norm() <= near;
@@ -270,10 +269,8 @@ double plane_of_symmetry(const Points& vertices) {
   const double middle = 0.5 * (vertices.row(0).minCoeff() + vertices.row(0).maxCoeff());
   if (std::abs(middle) <= tolerance * deform::diagonal_of(vertices)) return 0.0;
   std::vector<Index> by_x(static_cast<std::size_t>(vertices.cols()));
-  for (std::size_t at = 0; at < by_x.size(); ++at)
-    by_x[at] = static_cast<Index>(at);
-  std::sort(by_x.begin(), by_x.end(),
-            [&](Index one, Index other) { return vertices(0, one) < vertices(0, other); });
+  std::iota(by_x.begin(), by_x.end(), Index{0});
+  std::ranges::sort(by_x, {}, [&](Index at) { return vertices(0, at); });
   return part_alone(vertices, by_x, middle) <= max_alone ? middle : 0.0;
 }
 

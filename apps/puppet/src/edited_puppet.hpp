@@ -24,7 +24,7 @@ Error refused(std::string message);
 
 template <class List>
 auto find_named(List& list, std::string_view name) {
-  return std::find_if(list.begin(), list.end(), [&](const auto& one) { return one.name == name; });
+  return std::ranges::find_if(list, [&](const auto& one) { return one.name == name; });
 }
 
 /// A puppet in the making, with its twins. The text brings them in line again.

@@ -11,10 +11,6 @@ constexpr double nearly_open = 0.03;             // of the way that a closing ha
 constexpr double still_rad = from_degrees(10.0); // fingers at rest tremble by less
 constexpr double still_m = 0.004;
 
-double flexion(const hand::FingerAngles& finger) noexcept {
-  return finger.mcp_flexion_rad + finger.pip_flexion_rad + finger.dip_flexion_rad;
-}
-
 double smooth(double part) noexcept {
   return part * part * (3.0 - 2.0 * part);
 }
@@ -23,9 +19,9 @@ double smooth(double part) noexcept {
 
 double gesture_strength(ClutchTrigger means, const HandState& hand) noexcept {
   if (means == ClutchTrigger::fist) {
-    double least = flexion(hand.angles.fingers.front());
+    double least = hand.angles.fingers.front().flexion_rad();
     for (const hand::FingerAngles& finger : hand.angles.fingers)
-      least = std::min(least, flexion(finger));
+      least = std::min(least, finger.flexion_rad());
     return least;
   }
   if (means != ClutchTrigger::pinch) return 0.0;
@@ -134,7 +130,7 @@ void GestureClutch::Watch::look_back(const RigPlayer& player, double strength) n
   each_followed([&](const Moment& moment) {
     if (is_found || moment.strength > open + nearly_open * (strength - open)) return;
     is_found = true;
-    std::copy(moment.asked.begin(), moment.asked.end(), kept.begin());
+    std::ranges::copy(moment.asked, kept.begin());
   });
 }
 

@@ -269,9 +269,7 @@ private:
     bool is_needed = false;
     for (Eigen::Index v = 0; v < model_.vertices.cols() && !is_needed; ++v) {
       const Vector3d at = model_.vertices.col(v);
-      is_needed = !face_.is_skin[static_cast<std::size_t>(v)] &&
-                  (at.array() >= box.lowest.array()).all() &&
-                  (at.array() <= box.highest.array()).all();
+      is_needed = !face_.is_skin[static_cast<std::size_t>(v)] && box.contains(at);
     }
     if (!is_needed) return;
     draft_.parts += "\n# " + comment + "\n[[parts]]\ninside = [[" + place_words(box.lowest) +

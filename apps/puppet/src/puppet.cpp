@@ -22,12 +22,6 @@ std::string finger_name(std::size_t finger) {
   return std::string(hand::name_of(static_cast<hand::Finger>(finger)));
 }
 
-double flexion(const hand::JointAngles& angles, std::size_t finger) noexcept {
-  if (finger == 0) return angles.thumb_mcp_flexion_rad + angles.thumb_ip_flexion_rad;
-  const hand::FingerAngles& bent = angles.fingers[finger - 1];
-  return bent.mcp_flexion_rad + bent.pip_flexion_rad + bent.dip_flexion_rad;
-}
-
 std::string name_of(std::size_t number) {
   if (number < hand::finger_count) return finger_name(number) + "_flexion";
   if (number < first_tip) return std::string(hand::angle_names[number - hand::finger_count]);
@@ -80,7 +74,8 @@ Eigen::Vector3d HandSignal::direction() const noexcept {
 }
 
 double HandSignal::of(const HandState& hand) const noexcept {
-  if (number_ < hand::finger_count) return flexion(hand.angles, number_);
+  if (number_ < hand::finger_count)
+    return hand.angles.flexion_rad(static_cast<hand::Finger>(number_));
   if (number_ < first_tip) return hand.angles[hand::angle_at(number_ - hand::finger_count)];
   const std::size_t tip = number_ - first_tip;
   const Eigen::Vector3d world =
@@ -97,11 +92,6 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::array<std::string_view, 4> means_names{"none", "fist", "pinch", "switch"};
-
-bool is_in(const deform::Box& box, const Vector3d& place) {
-  return (place.array() >= box.lowest.array()).all() &&
-         (place.array() <= box.highest.array()).all();
-}
 
 /// Vertices on parts of the surface without a point.
 std::vector<std::uint32_t> vertices_without_points(const std::vector<std::uint32_t>& parts,
@@ -129,11 +119,10 @@ following_parts(const Puppet& puppet, const Mesh& model,
   if (parts.empty()) return parts;
   for (const std::uint32_t vertex : vertices_without_points(parts_of_surface, places)) {
     const Vector3d place = model.vertices.col(vertex);
-    const auto takes =
-        std::find_if(puppet.parts.begin(), puppet.parts.end(), [&](const PuppetPart& part) {
-          return vertex >= part.first && vertex <= part.last &&
-                 (!part.inside || is_in(*part.inside, place));
-        });
+    const auto takes = std::ranges::find_if(puppet.parts, [&](const PuppetPart& part) {
+      return vertex >= part.first && vertex <= part.last &&
+             (!part.inside || part.inside->contains(place));
+    });
     if (takes != puppet.parts.end())
       parts[static_cast<std::size_t>(takes - puppet.parts.begin())].vertices.push_back(vertex);
   }
@@ -199,19 +188,9 @@ std::vector<SurfacePlace> places_on(const Puppet& puppet, const Mesh& model,
 } // namespace
 
 std::optional<std::size_t> Puppet::function_named(std::string_view name) const noexcept {
-  const auto found = std::find_if(functions.begin(), functions.end(),
-                                  [&](const Function& known) { return known.name == name; });
+  const auto found = std::ranges::find(functions, name, &Function::name);
   if (found == functions.end()) return std::nullopt;
   return static_cast<std::size_t>(found - functions.begin());
-}
-
-bool operator==(const PuppetPart& one, const PuppetPart& other) noexcept {
-  const auto rest = [](const PuppetPart& part) {
-    return std::tie(part.first, part.last, part.points, part.is_affine);
-  };
-  if (one.inside.has_value() != other.inside.has_value() || rest(one) != rest(other)) return false;
-  return !one.inside || (one.inside->lowest == other.inside->lowest &&
-                         one.inside->highest == other.inside->highest);
 }
 
 bool operator==(const Puppet& one, const Puppet& other) noexcept {

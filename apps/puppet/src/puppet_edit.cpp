@@ -139,8 +139,7 @@ void set_turn(Function& function, std::size_t point, const AxisTurn& turn) {
   std::erase_if(moves, [&](const Move& move) { return move.point == point && !move.part; });
   for (Move& move : moves)
     if (!turned_before) move = {move.point, Vector3d::Zero(), 1.0};
-  if (std::none_of(moves.begin(), moves.end(),
-                   [&](const Move& move) { return move.point == point; }))
+  if (std::ranges::find(moves, point, &Move::point) == moves.end())
     moves.insert(moves.begin(), {point, Vector3d::Zero(), 1.0});
 }
 
@@ -208,7 +207,7 @@ Result<void> add_masks(std::span<const Vector3d> stroke, double radius, Puppet& 
   std::vector<Mask>& masks = puppet.masks;
   const auto add = [&](const Vector3d& at) {
     constexpr double near = 0.35; // of the radius: what is masked by one is masked by the other
-    const bool is_there = std::any_of(masks.begin(), masks.end(), [&](const Mask& mask) {
+    const bool is_there = std::ranges::any_of(masks, [&](const Mask& mask) {
       return mask.radius >= radius && (mask.at - at).norm() < near * radius;
     });
     if (!is_there && at.allFinite())
@@ -226,7 +225,7 @@ Result<void> add_masks(std::span<const Vector3d> stroke, double radius, Puppet& 
 
 void erase_masks(std::span<const Vector3d> stroke, double radius, Puppet& puppet) {
   std::erase_if(puppet.masks, [&](const Mask& mask) {
-    return std::any_of(stroke.begin(), stroke.end(), [&](const Vector3d& at) {
+    return std::ranges::any_of(stroke, [&](const Vector3d& at) {
       return (mask.at - at).norm() <= radius ||
              (puppet.mirrors && (mask.at - flipped(at, puppet.mirror_at)).norm() <= radius);
     });

@@ -179,7 +179,7 @@ private:
     if (reader_.error()) return;
     for (std::size_t at = 0; at < radii.size(); ++at)
       point.mix.push_back({radii[at], weights[at]});
-    point.radius = *std::max_element(radii.begin(), radii.end());
+    point.radius = std::ranges::max(radii);
   }
   std::vector<double> positive_numbers(const toml::table& table, std::string_view key) {
     const toml::array* const list = reader_.array(table, key);
@@ -205,8 +205,7 @@ private:
     }
   }
   std::optional<std::size_t> find(std::string_view name) const {
-    const auto found = std::find_if(puppet_.points.begin(), puppet_.points.end(),
-                                    [&](const auto& point) { return point.name == name; });
+    const auto found = std::ranges::find(puppet_.points, name, &PuppetPoint::name);
     if (found == puppet_.points.end()) return std::nullopt;
     return static_cast<std::size_t>(found - puppet_.points.begin());
   }
@@ -290,9 +289,7 @@ private:
       Function twin = puppet_.functions[at];
       if (!twin.name.ends_with(left)) continue;
       twin.name = twin_of(twin.name);
-      if (std::any_of(puppet_.functions.begin(), puppet_.functions.end(),
-                      [&](const Function& known) { return known.name == twin.name; }))
-        continue;
+      if (puppet_.function_named(twin.name)) continue;
       twin.input = twin.input.mirrored();
       twin.is_twin = true;
       if (twin.turn) {

@@ -101,7 +101,7 @@ deform::Supports Rig::supports() const {
 
 std::vector<std::size_t> functions_before(const Puppet& before, const Puppet& after) {
   const auto number_of = [&](const auto& is_it) {
-    const auto found = std::find_if(before.functions.begin(), before.functions.end(), is_it);
+    const auto found = std::ranges::find_if(before.functions, is_it);
     return found == before.functions.end()
                ? no_function
                : static_cast<std::size_t>(found - before.functions.begin());
@@ -116,21 +116,16 @@ std::vector<std::size_t> functions_before(const Puppet& before, const Puppet& af
       named.name = other.name;
       return named == other;
     });
-    if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) numbers[at] = number;
+    if (std::ranges::find(numbers, number) == numbers.end()) numbers[at] = number;
   }
   return numbers;
 }
 
 RigPlayer::RigPlayer(std::shared_ptr<const Rig> rig)
     : rig_(std::move(rig)), holds_(rig_->puppet().functions.size()), values_(holds_.size(), 0.0) {
-  const auto& functions = rig_->puppet().functions;
-  for (const Function& function : functions) {
-    const auto twin = std::find_if(functions.begin(), functions.end(), [&](const Function& other) {
-      return other.name == twin_of(function.name);
-    });
-    const auto own = static_cast<std::size_t>(&function - functions.data());
-    twins_.push_back(twin == functions.end() ? own
-                                             : static_cast<std::size_t>(twin - functions.begin()));
+  const Puppet& puppet = rig_->puppet();
+  for (const Function& function : puppet.functions) {
+    twins_.push_back(puppet.function_named(twin_of(function.name)).value_or(twins_.size()));
     state_.functions.push_back({0.0, function.input, true});
   }
 }
@@ -249,14 +244,14 @@ void RigPlayer::go_on_from(const RigPlayer& before, std::span<const std::size_t>
 }
 
 bool RigPlayer::has_let_go(Side side) const noexcept {
-  return std::none_of(state_.functions.begin(), state_.functions.end(), [&](const auto& state) {
+  return std::ranges::none_of(state_.functions, [&](const auto& state) {
     return state.input.side() == side && is_held(state);
   });
 }
 
 void RigPlayer::set_state(const RigState& state) noexcept {
   if (state.functions.size() != holds_.size()) return;
-  std::copy(state.functions.begin(), state.functions.end(), state_.functions.begin());
+  std::ranges::copy(state.functions, state_.functions.begin());
   state_.symmetric = state.symmetric;
   state_.hand_holds = state.hand_holds;
   set_values();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -196,28 +197,23 @@ void check_twins(RigShapes& shapes, const deform::Mesh& model, RigCheck& check) 
   const auto images = nearest_images(model.vertices, diagonal);
   if (diagonal > 0.0) check.model_apart = apart(model.vertices, images) / diagonal;
   check.lone_vertices = static_cast<std::size_t>(
-      std::count_if(images.begin(), images.end(), [](const auto& image) { return image.empty(); }));
-  const auto& functions = shapes.rig().puppet().functions;
-  for (std::size_t left = 0; left < functions.size(); ++left) {
-    const std::string& name = functions[left].name;
-    if (!name.ends_with("Left")) continue;
-    const std::string twin = name.substr(0, name.size() - 4) + "Right";
-    for (std::size_t right = 0; right < functions.size(); ++right) {
-      if (functions[right].name != twin) continue;
-      const Points shape =
-          shape_at(shapes, {left, functions[left].most}, {right, functions[right].most});
-      check.twins.push_back({left, right, diagonal > 0.0 ? apart(shape, images) / diagonal : 0.0});
-    }
+      std::ranges::count_if(images, [](const auto& image) { return image.empty(); }));
+  const Puppet& puppet = shapes.rig().puppet();
+  for (std::size_t left = 0; left < puppet.functions.size(); ++left) {
+    const Function& function = puppet.functions[left];
+    const auto right = puppet.function_named(twin_of(function.name));
+    if (!function.name.ends_with("Left") || !right) continue;
+    const Points shape =
+        shape_at(shapes, {left, function.most}, {*right, puppet.functions[*right].most});
+    check.twins.push_back({left, *right, diagonal > 0.0 ? apart(shape, images) / diagonal : 0.0});
   }
 }
 
 /// Points by their x, so that those near a mirror image are found by a binary search.
 std::vector<std::uint32_t> by_x(const Points& points) {
   std::vector<std::uint32_t> order(static_cast<std::size_t>(points.cols()));
-  for (std::size_t at = 0; at < order.size(); ++at)
-    order[at] = static_cast<std::uint32_t>(at);
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return points(0, a) < points(0, b); });
+  std::iota(order.begin(), order.end(), std::uint32_t{0});
+  std::ranges::sort(order, {}, [&](std::uint32_t at) { return points(0, at); });
   return order;
 }
 
@@ -229,8 +225,8 @@ std::vector<std::vector<std::uint32_t>> mirror_images(const Points& points, doub
   for (std::size_t v = 0; v < images.size(); ++v) {
     Vector3d image = points.col(static_cast<Index>(v));
     image.x() = -image.x();
-    auto at = std::lower_bound(order.begin(), order.end(), image.x() - tolerance,
-                               [&](std::uint32_t point, double x) { return points(0, point) < x; });
+    auto at = std::ranges::lower_bound(order, image.x() - tolerance, {},
+                                       [&](std::uint32_t point) { return points(0, point); });
     for (; at != order.end() && points(0, *at) <= image.x() + tolerance; ++at)
       if ((points.col(*at) - image).norm() <= tolerance) images[v].push_back(*at);
   }
@@ -238,7 +234,7 @@ std::vector<std::vector<std::uint32_t>> mirror_images(const Points& points, doub
 }
 
 bool RigCheck::passes() const noexcept {
-  return std::none_of(alone.begin(), alone.end(), folds);
+  return std::ranges::none_of(alone, folds);
 }
 
 RigCheck check_rig(RigShapes& shapes, const deform::Mesh& model) {

@@ -45,6 +45,11 @@ struct Mesh {
 
 struct Box {
   Eigen::Vector3d lowest, highest; ///< lowest[0] > highest[0] if the box is empty
+
+  bool contains(const Eigen::Vector3d& place) const noexcept {
+    return (place.array() >= lowest.array()).all() && (place.array() <= highest.array()).all();
+  }
+  friend bool operator==(const Box&, const Box&) = default;
 };
 
 /// Returns the axis-aligned bounding box of the points that are finite.

@@ -18,6 +18,10 @@ struct FingerAngles {
   double mcp_abduction_rad = 0.0;
   double pip_flexion_rad = 0.0;
   double dip_flexion_rad = 0.0;
+
+  double flexion_rad() const noexcept {
+    return mcp_flexion_rad + pip_flexion_rad + dip_flexion_rad;
+  }
 };
 
 /// The angles of all joints. All zero is the flat hand with closed fingers and the thumb beside the
@@ -37,6 +41,11 @@ struct NENDO_API JointAngles {
   }
   const FingerAngles& operator[](Finger finger) const noexcept {
     return fingers[static_cast<std::size_t>(finger) - 1];
+  }
+  /// Returns the sum of the flexions of a finger, or of the thumb.
+  double flexion_rad(Finger finger) const noexcept {
+    if (finger == Finger::thumb) return thumb_mcp_flexion_rad + thumb_ip_flexion_rad;
+    return (*this)[finger].flexion_rad();
   }
   double& operator[](Angle angle) noexcept;
   const double& operator[](Angle angle) const noexcept;

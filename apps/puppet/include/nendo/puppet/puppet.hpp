@@ -132,7 +132,7 @@ struct PuppetPart {
   std::uint32_t last = 0xFFFFFFFF;     ///< last vertex, inclusive
   std::vector<std::size_t> points;     ///< points that they follow; empty: the surface
   bool is_affine = true;               ///< deform::FollowingPart::is_affine
-  NENDO_API friend bool operator==(const PuppetPart&, const PuppetPart&) noexcept;
+  friend bool operator==(const PuppetPart&, const PuppetPart&) = default;
 };
 
 /// Protects the vertices within a radius of a position.
