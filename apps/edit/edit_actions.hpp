@@ -9,7 +9,6 @@
 
 #include "cli/command.hpp"
 #include "timeline/reduce.hpp"
-#include "timeline/timeline.hpp"
 
 namespace nendo::edit {
 

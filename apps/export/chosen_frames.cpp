@@ -1,7 +1,6 @@
 #include "export/chosen_frames.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 namespace nendo::exporting {

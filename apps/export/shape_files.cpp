@@ -2,7 +2,6 @@
 
 #include <bit>
 #include <cassert>
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <optional>

@@ -6,8 +6,6 @@
 #include <memory>
 #include <string>
 
-#include <nendo/deform/mesh.hpp>
-
 #include "export/chosen_frames.hpp"
 
 namespace nendo::exporting {

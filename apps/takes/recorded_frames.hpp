@@ -1,7 +1,6 @@
 #pragma once
 // The frames of recordings.
 
-#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <memory>

@@ -3,7 +3,6 @@
 // unchanged. All errors are usage errors, in one line without the file's name. Keys are counted
 // from 0.
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>

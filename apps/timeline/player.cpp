@@ -1,6 +1,5 @@
 #include "timeline/player.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include <nendo/deform/undo_memory.hpp>

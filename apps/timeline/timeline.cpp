@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <numbers>
 
 #include <nendo/flow/pacer.hpp>

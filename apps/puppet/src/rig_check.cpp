@@ -1,8 +1,6 @@
 #include <nendo/puppet/rig_check.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>

@@ -1,6 +1,5 @@
 #include "last_minute.hpp"
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>

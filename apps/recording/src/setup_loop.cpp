@@ -9,7 +9,6 @@
 
 #include <nendo/flow/pacer.hpp>
 #include <nendo/flow/setting.hpp>
-#include <nendo/recording/sample_record.hpp>
 
 namespace nendo::recording {
 namespace {

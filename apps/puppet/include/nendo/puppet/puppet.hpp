@@ -16,7 +16,6 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/base/side.hpp>
-#include <nendo/base/units.hpp>
 #include <nendo/deform/supports.hpp>
 #include <nendo/deform/surface_field.hpp>
 #include <nendo/deform/vertex_mask.hpp>

@@ -7,11 +7,9 @@
 #include <array>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 
 #include <nendo/base/result.hpp>
-#include <nendo/hand/skeleton.hpp>
 #include <nendo/puppet/rig.hpp>
 
 namespace nendo::puppet {
