@@ -231,7 +231,7 @@ inline constexpr std::array run_rows{
     run_row("grab", keys("g"), "The hands grab the model.", request_of<flow::Request::grab>,
             Buttons::hands, "Grab"),
     run_row("let go", keys("l"), "The hands release the model; the shape stays.",
-            request_of<flow::Request::let_go>, Buttons::hands, "Release"),
+            request_of<flow::Request::release>, Buttons::hands, "Release"),
     repeating(
         refused_if(run_row("undo", keys("u", "Ctrl Z"),
                            "Undoes the last step, as far back as there is memory (--undo-memory).",

@@ -256,7 +256,7 @@ private:
     const bool committed = stats.commits > commits_;
     if (!held_ && (frame.held || committed)) add(time_s, flow::Request::grab);
     if (committed && frame.held) add(time_s, flow::Request::commit);
-    if (committed && !frame.held) add(time_s, flow::Request::let_go);
+    if (committed && !frame.held) add(time_s, flow::Request::release);
     if (settings_) add(time_s, flow::ChangeSettings{*std::exchange(settings_, {})});
     if (masks_due_) add(time_s, flow::ChangePuppet{*std::exchange(masks_due_, {})});
     for (const flow::Command& mark : marks_)

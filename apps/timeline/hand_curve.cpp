@@ -122,7 +122,7 @@ private:
     hands_.apply(command);
     if (const auto* request = std::get_if<flow::Request>(&command)) {
       if (*request == flow::Request::grab) will_hold_ = true;
-      if (*request == flow::Request::let_go) will_hold_ = false;
+      if (*request == flow::Request::release) will_hold_ = false;
     }
     return std::holds_alternative<flow::ChangeSettings>(command);
   }

@@ -208,7 +208,7 @@ TEST_SUITE("clay_loop") {
     presses.go(0.6, 1);
     REQUIRE(presses.frame().clay.touching > 0);
     presses.ask(Request::undo);
-    presses.ask(Request::let_go);
+    presses.ask(Request::release);
     presses.go(0.6, 1);
     presses.go(0.6, 2);
     CHECK(presses.frame().steps.undoable + presses.frame().redo_steps > 0);
@@ -222,7 +222,7 @@ TEST_SUITE("clay_loop") {
 
   TEST_CASE("hands that have released clay go through it") {
     Presses presses;
-    presses.ask(Request::let_go);
+    presses.ask(Request::release);
     presses.press();
     CHECK(presses.shape() == presses.test().model.vertices);
     CHECK(presses.frame().clay.is_clay);

@@ -118,7 +118,7 @@ TEST_SUITE("exchange") {
       CHECK(loop.frame().commits == 1);
       CHECK(loop.frame().rest_changes == 2);
       loop.stroke(25, 10);
-      REQUIRE(loop.test.commands.try_push(Request::let_go));
+      REQUIRE(loop.test.commands.try_push(Request::release));
       loop.bent(10);
       CHECK(loop.frame().commits == 2);
       CHECK(loop.frame().rest_changes == 3);
@@ -214,7 +214,7 @@ TEST_SUITE("exchange") {
         if (random() % 8 == 0) loop.test.commands.try_push(Request::reset);
         loop.bent(counts, random() % 2 == 0 ? 11ms : 2000ms);
       }
-      loop.test.commands.try_push(Request::let_go);
+      loop.test.commands.try_push(Request::release);
       loop.bent(counts);
       const deform::Points shape = loop.bent(counts);
       const LoopSettings settings = loop.frame().settings;

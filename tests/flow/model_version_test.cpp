@@ -105,7 +105,7 @@ TEST_SUITE("model_version") {
     LoopSettings settings = run.loop().changes().settings();
     settings.radius_m.fill(0.3);
     REQUIRE(run.loop().changes().change_settings(settings));
-    REQUIRE(run.test.commands.try_push(Request::let_go));
+    REQUIRE(run.test.commands.try_push(Request::release));
     CHECK(gap(run.bent(15), still) == 0.0);
     CHECK(run.frame().held);
     REQUIRE(run.loop().changes().change_model(finer));

@@ -70,7 +70,7 @@ TEST_SUITE("request") {
     CHECK(regrabbed.undo_steps == 0);
     // As a person whose hands were there when they grabbed first.
     Person other(Mode::type1);
-    other.ask(Request::let_go, 0);
+    other.ask(Request::release, 0);
     other.move(0, 15);
     other.ask(Request::grab, 15);
     person.move(15, 25);
@@ -100,7 +100,7 @@ TEST_SUITE("request") {
     for (const Mode mode : modes) {
       Person person(mode);
       person.move(0, 15);
-      person.ask(Request::let_go, 15);
+      person.ask(Request::release, 15);
       const Points kept = person.shape();
       CHECK_FALSE(person.ask(Request::take_hold, 15).held);
       CHECK(person.ask(Request::grab, 15).held);
@@ -112,7 +112,7 @@ TEST_SUITE("request") {
     for (const Mode mode : modes) {
       Person person(mode);
       CHECK(person.move(0, 15).held);
-      CHECK_FALSE(person.ask(Request::let_go, 15).held);
+      CHECK_FALSE(person.ask(Request::release, 15).held);
       const Points kept = person.shape();
       CHECK((kept - person.test.model.vertices).cwiseAbs().maxCoeff() > 0.02);
       person.move(15, 0);
@@ -132,12 +132,12 @@ TEST_SUITE("request") {
       std::vector<Points> shapes{person.test.model.vertices};
       for (int round = 1; round <= 3; ++round) {
         person.move(0, 5 * round);
-        person.ask(Request::let_go, 5 * round);
+        person.ask(Request::release, 5 * round);
         shapes.push_back(person.shape());
         person.move(5 * round, 0);
         person.ask(Request::grab, 0);
       }
-      person.ask(Request::let_go, 0);
+      person.ask(Request::release, 0);
       for (std::uint64_t undos = 1; undos <= 3; ++undos) {
         // Releasing was a commit without a change, for type 1; type 2 keeps changes alone.
         if (undos == 1 && mode == Mode::type1) person.ask(Request::undo, 0);
@@ -260,7 +260,7 @@ TEST_SUITE("request") {
       const auto pull = [&](int to) {
         person.ask(Request::grab, 0);
         person.move(0, to);
-        person.ask(Request::let_go, to);
+        person.ask(Request::release, to);
         person.move(to, 0);
         return person.shape();
       };
@@ -294,7 +294,7 @@ TEST_SUITE("request") {
     for (const Mode mode : modes) {
       Person person(mode);
       person.move(0, 15);
-      person.ask(Request::let_go, 15);
+      person.ask(Request::release, 15);
       const Points shaped = person.shape();
       for (const Request request : {Request::redo, Request::undo, Request::redo})
         person.test.commands.try_push(request);
@@ -348,7 +348,7 @@ TEST_SUITE("request") {
           ask(Request::commit, at % 2 == 0 ? 12 : 0);
           shapes.push_back(person.shape());
         }
-        ask(Request::let_go, 0);
+        ask(Request::release, 0);
         const auto& stats = person.test.loop->stats();
         CHECK((stats.forgotten_steps > 0) != refills);
         CHECK(stats.undo_steps + stats.forgotten_steps >= commits - 1);
@@ -383,7 +383,7 @@ TEST_SUITE("request") {
     constexpr std::uint64_t commits = 60;
     for (std::uint64_t at = 1; at < commits; ++at)
       person.ask(Request::commit, at % 2 == 0 ? 12 : 0);
-    person.ask(Request::let_go, 12);
+    person.ask(Request::release, 12);
     const auto& stats = person.test.loop->stats();
     const std::uint64_t steps = stats.undo_steps;
     CHECK(steps >= 3); // more, the more often the other thread had its turn
@@ -418,7 +418,7 @@ TEST_SUITE("request") {
       person.move(12, 5);
       CHECK(person.ask(Request::commit, 5).undo_steps == 1);
       person.move(5, 15);
-      person.ask(Request::let_go, 15);
+      person.ask(Request::release, 15);
       const Points end = person.shape();
       const std::uint64_t steps = person.bend(15).undo_steps;
       CHECK(steps >= 2);
@@ -438,7 +438,7 @@ TEST_SUITE("request") {
 
   TEST_CASE("a commit without a hand that holds is none") {
     Person person(Mode::type1);
-    person.ask(Request::let_go, 0);
+    person.ask(Request::release, 0);
     const std::uint64_t commits = person.test.loop->stats().commits;
     person.ask(Request::commit, 0);
     person.ask(Request::grab, 0);

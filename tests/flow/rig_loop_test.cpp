@@ -57,7 +57,7 @@ TEST_SUITE("rig_loop") {
     };
     after(0);
     const deform::Points bent = after(20);
-    test.commands.try_push(Request::let_go);
+    test.commands.try_push(Request::release);
     CHECK((after(20) - bent).cwiseAbs().maxCoeff() < 1e-6);
     CHECK((after(0) - bent).cwiseAbs().maxCoeff() < 1e-6); // as one lifts a mouse
     test.commands.try_push(Request::grab);

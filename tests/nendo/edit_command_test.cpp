@@ -191,7 +191,7 @@ TEST_SUITE("edit_command") {
     REQUIRE(timeline);
     timeline->duration_s = 0.6; // frame 12 of 20 a second, but for rounding
     timeline->held = true;
-    timeline->events = {{0.6, flow::Request::let_go}};
+    timeline->events = {{0.6, flow::Request::release}};
     REQUIRE(timeline::write_timeline(run.timeline, *timeline));
     const json all = json::parse(run.fine({"play", run.timeline, "--json"}));
     CHECK(all["frames"] == 13);

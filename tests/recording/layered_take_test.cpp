@@ -125,7 +125,7 @@ TEST_SUITE("layered_take") {
         LayeredTake first(like, name(0), like.inputs);
         for (std::uint64_t tick = 0; tick < ticks; ++tick) {
           if (tick == 40) first.played.commands.try_push(flow::Request::commit);
-          if (tick == 60) first.played.commands.try_push(flow::Request::let_go);
+          if (tick == 60) first.played.commands.try_push(flow::Request::release);
           if (tick == 70) first.played.commands.try_push(flow::Request::grab);
           if (tick == 90) first.played.commands.try_push(flow::Request::undo);
           if (tick == 80)

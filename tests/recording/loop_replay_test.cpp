@@ -222,7 +222,7 @@ TEST_SUITE("loop_replay") {
       };
       for (int at = 0; at < 60; ++at)
         ask(flow::Request::commit);
-      ask(flow::Request::let_go);
+      ask(flow::Request::release);
       for (int at = 0; at < 55; ++at)
         ask(flow::Request::undo);
       for (int at = 0; at < 30; ++at)

@@ -104,7 +104,7 @@ TEST_SUITE("scene") {
       CHECK(holds.starts(0) == tips(step(request == flow::Request::commit ? 25 : 5)));
       CHECK(holds.starts(0) != tips(step(12)));
     }
-    REQUIRE(test.commands.try_push(flow::Request::let_go));
+    REQUIRE(test.commands.try_push(flow::Request::release));
     for (int turn = 0; turn < 3; ++turn)
       step(15);
     SceneFrame scene_frame;

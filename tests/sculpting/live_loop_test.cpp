@@ -82,7 +82,7 @@ TEST_SUITE("live_loop") {
     auto live = LiveLoop::begin(test::sphere(12, 24, 1.0), simulated());
     REQUIRE(live);
     REQUIRE(comes(*live, [](const flow::Frame& frame) { return frame.held; }));
-    REQUIRE(live->ask(flow::Request::let_go));
+    REQUIRE(live->ask(flow::Request::release));
     CHECK(comes(*live, [](const flow::Frame& frame) { return !frame.held; }));
     flow::LoopSettings wanted = live->settings();
     REQUIRE(wanted.mode == flow::Mode::type1);

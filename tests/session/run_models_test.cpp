@@ -21,7 +21,7 @@ TEST_SUITE("run_models") {
     Run run;
     run.options.recording.file = (run.folder.path() / "take.nendo").string();
     REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
-    Asker asker(Changes{{flow::Request::let_go},
+    Asker asker(Changes{{flow::Request::release},
                         {flow::Subdivide{}},
                         {flow::SaveShape{}, change(other_settings)},
                         {flow::Request::undo, flow::Request::undo},
@@ -48,7 +48,7 @@ TEST_SUITE("run_models") {
     Run run;
     run.options.recording.file = (run.folder.path() / "take.nendo").string();
     REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
-    Asker asker(Changes{{flow::Request::let_go},
+    Asker asker(Changes{{flow::Request::release},
                         {flow::Refine{}},
                         {flow::SaveShape{}},
                         {flow::Request::undo},
@@ -187,7 +187,7 @@ TEST_SUITE("run_models") {
   TEST_CASE("what was undone is not forgotten because the model refines itself") {
     Run run;
     run.options.refine_to = 5000;
-    Asker asker(Changes{{flow::Request::let_go},
+    Asker asker(Changes{{flow::Request::release},
                         {flow::Request::undo},
                         {flow::Request::redo},
                         {flow::Request::undo},

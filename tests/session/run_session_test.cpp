@@ -99,7 +99,7 @@ public:
                                  *puppet::HandSignal::named("left.index_flexion"), 0.5),
            asks);
     if (step == 4) {
-      asks.emplace_back(flow::Request::let_go);
+      asks.emplace_back(flow::Request::release);
       asks.emplace_back(flow::Request::undo);
     }
     if (step == 6) asks.emplace_back(flow::EndRun{});

@@ -118,7 +118,7 @@ inline timeline::Timeline waved_timeline(const deform::Mesh& model, flow::Mode m
     }
   }
   const std::array at_s{0.3, 0.4, 0.5, 0.62, 0.7};
-  const std::array asked{flow::Request::let_go, flow::Request::grab, flow::Request::commit,
+  const std::array asked{flow::Request::release, flow::Request::grab, flow::Request::commit,
                          flow::Request::undo, flow::Request::redo};
   for (std::size_t at = 0; at < asked.size(); ++at)
     made.events.push_back({at_s[at], asked[at]});

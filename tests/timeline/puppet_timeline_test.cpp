@@ -137,7 +137,7 @@ TEST_SUITE("puppet_timeline") {
         if (tick == 75)
           test.commands.try_push(flow::SetRole{0, *puppet::HandSignal::named("left.ring_flexion")});
         if (tick == 90) edit(puppet::with_move(now(), 0, 0, {0.3, 0.0, 0.1}));
-        if (tick == 105) test.commands.try_push(flow::Request::let_go);
+        if (tick == 105) test.commands.try_push(flow::Request::release);
         if (tick == 108) test.commands.try_push(flow::Request::undo); // of the stroke
         if (tick == 111) test.commands.try_push(flow::Request::undo); // of the edit
         if (tick == 116) test.commands.try_push(flow::Request::grab);
@@ -240,7 +240,7 @@ TEST_SUITE("puppet_timeline") {
         take.live.test.bend(static_cast<int>(15.0 - 15.0 * std::cos(phase)),
                             begin + tick * std::chrono::milliseconds(11));
         if (tick % 30 == 17) take.live.test.commands.try_push(test::any_role(random));
-        if (tick % 70 == 40) take.live.test.commands.try_push(flow::Request::let_go);
+        if (tick % 70 == 40) take.live.test.commands.try_push(flow::Request::release);
         if (tick % 70 == 60) take.live.test.commands.try_push(flow::Request::grab);
         take.see(take.live.test.frame_after_tick(tick));
       }
@@ -441,7 +441,7 @@ TEST_SUITE("puppet_timeline") {
     CHECK(refused("frownLeft", 4, 2.0).find("ends where") != std::string::npos); // -60 degrees
     timeline.events = {{0.1, flow::SetClutch{Side::left, 0, false}}};
     CHECK(refused("pucker", 4, 0.5).find("released") != std::string::npos);
-    timeline.events = {{0.1, flow::Request::let_go}};
+    timeline.events = {{0.1, flow::Request::release}};
     CHECK(refused("pucker", 4, 0.5).find("released") != std::string::npos);
     timeline.rig.reset();
     timeline.rig_state = {};

@@ -130,7 +130,7 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     REQUIRE(person.frame.undo_steps == 0);
     const Commands without = person.click_all();
     CHECK(has(without, Request::grab));
-    CHECK(has(without, Request::let_go));
+    CHECK(has(without, Request::release));
     CHECK(has(without, Request::commit));
     CHECK_FALSE(has(without, Request::undo));
     CHECK_FALSE(has(without, Request::redo));
@@ -153,7 +153,7 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     person.frame.redo_steps = 1;
     // The page's order, two in a line.
     const Commands order = person.click_all();
-    CHECK(order == Commands{Request::grab, Request::let_go, Request::undo, Request::redo,
+    CHECK(order == Commands{Request::grab, Request::release, Request::undo, Request::redo,
                             Request::commit, Request::reset});
     CHECK(person.type(GLFW_KEY_U) == Commands{Request::undo});
     CHECK(person.type(GLFW_KEY_Z, true) == Commands{Request::undo});

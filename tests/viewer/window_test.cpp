@@ -124,7 +124,7 @@ TEST_SUITE("window") {
     };
     using flow::Request;
     for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
-                                       {GLFW_KEY_L, Request::let_go},
+                                       {GLFW_KEY_L, Request::release},
                                        {GLFW_KEY_C, Request::commit},
                                        {GLFW_KEY_U, Request::undo},
                                        {GLFW_KEY_R, Request::redo},

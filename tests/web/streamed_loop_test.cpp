@@ -49,7 +49,7 @@ TEST_SUITE("streamed_loop" * doctest::skip(!nendo::test::restraint_is_counted)) 
       std::thread([&] {
         flow::make_thread_realtime({});
         constexpr std::array asked{flow::Request::commit, flow::Request::undo,
-                                   flow::Request::let_go, flow::Request::grab};
+                                   flow::Request::release, flow::Request::grab};
         const auto run = [&](std::uint64_t first, std::uint64_t ticks) {
           for (std::uint64_t tick = first; tick < first + ticks; ++tick) {
             const int bent = static_cast<int>(tick % 60);

@@ -370,7 +370,7 @@ void DeformLoop::Ticker::update_switches() noexcept {
     return hand.wrist_switch.is_on() && !core_.has_clutch(hand.input.side);
   });
   if (on != switch_on_) // in between, requests are heard
-    core_.ask(on ? Request::grab : Request::let_go);
+    core_.ask(on ? Request::grab : Request::release);
   switch_on_ = on;
 }
 

@@ -54,7 +54,7 @@ Shaping::Shaping(ModelVersion& model, const SculptorSetup& setup, Eigen::Index c
 
 void Shaping::ask(Request request) noexcept {
   if (request == Request::grab) hold_wanted_ = true;
-  if (request == Request::let_go) hold_wanted_ = false;
+  if (request == Request::release) hold_wanted_ = false;
   if (request == Request::commit) commit_due_ = held_ || hold_wanted_;
   if (request == Request::take_hold) regrab_due_ = true;
   if (!goes_through_history(request)) return;

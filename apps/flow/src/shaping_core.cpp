@@ -168,7 +168,7 @@ void ShapingCore::draw(const DrawWire& draw) noexcept {
   }
   if (!blade_->is_drawing()) holds_after_blade_ = shaping_.is_held();
   blade_->begin(draw.blade);
-  shaping_.ask(Request::let_go);
+  shaping_.ask(Request::release);
 }
 
 void ShapingCore::place(const Hands& hands, std::optional<HostTime> time, bool with_bodies,

@@ -20,18 +20,18 @@ namespace nendo::flow {
 
 /// Recordings keep the numbers, so new values are added at the end.
 enum class Request : std::uint8_t {
-  grab,   ///< the hands grab the model
-  let_go, ///< the hands release the model; the shape stays
-  commit, ///< the shape becomes the rest shape, and the hands hold it again
-  undo,   ///< reverts the last step (deform::HistoryMove)
-  redo,   ///< reverts the last undo, if nothing was committed since
-  reset,  ///< restores the loaded model; an undo reverts this
+  grab,    ///< the hands grab the model
+  release, ///< the hands release the model; the shape stays
+  commit,  ///< the shape becomes the rest shape, and the hands hold it again
+  undo,    ///< reverts the last step (deform::HistoryMove)
+  redo,    ///< reverts the last undo, if nothing was committed since
+  reset,   ///< restores the loaded model; an undo reverts this
   /// hands that hold the model re-grab at their current poses, without a commit (Shaping::ask())
   take_hold,
 };
 
-inline constexpr std::array requests{Request::grab,     Request::let_go, Request::commit,
-                                     Request::undo,     Request::redo,   Request::reset,
+inline constexpr std::array requests{Request::grab,     Request::release, Request::commit,
+                                     Request::undo,     Request::redo,    Request::reset,
                                      Request::take_hold};
 
 /// Returns whether a request is an undo, redo or reset. Shaping executes these in sequence.
