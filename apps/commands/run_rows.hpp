@@ -247,7 +247,7 @@ inline constexpr std::array run_rows{
             request_of<flow::Request::reset>, Buttons::hands, "Reset"),
     refused_if(run_row("take hold", keys("a"),
                        "The hands grab the model again where they are, without a commit.",
-                       request_of<flow::Request::take_hold>, Buttons::hands, "Re-grab"),
+                       request_of<flow::Request::regrab>, Buttons::hands, "Re-grab"),
                without_hold),
     run_row("save", keys("s", "Ctrl S"), "Saves the current model to a new file.",
             simple<flow::SaveShape>, Buttons::hands, "Save"),

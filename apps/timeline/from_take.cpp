@@ -120,11 +120,11 @@ public:
 
   void record(flow::Request request) {
     if (flow::goes_through_history(request)) steps_.push_back(request);
-    if (request != flow::Request::take_hold) return;
+    if (request != flow::Request::regrab) return;
     if (timeline_.rig)
       puppet_commands_.emplace_back(request);
     else
-      takes_hold_ = true;
+      regrabs_ = true;
   }
 
   /// Commands of the puppet that is played then, and marks. A loop ignores roles of functions that
@@ -252,7 +252,7 @@ private:
 
   void add_events(double time_s, const flow::Frame& frame, const flow::LoopStats& stats) {
     add_steps(time_s, frame, stats);
-    if (!is_still_ && std::exchange(takes_hold_, false)) add(time_s, flow::Request::take_hold);
+    if (!is_still_ && std::exchange(regrabs_, false)) add(time_s, flow::Request::regrab);
     const bool committed = stats.commits > commits_;
     if (!held_ && (frame.held || committed)) add(time_s, flow::Request::grab);
     if (committed && frame.held) add(time_s, flow::Request::commit);
@@ -275,7 +275,7 @@ private:
   std::vector<flow::Command> puppet_commands_; ///< to the puppet since the last tick
   std::vector<flow::Command> marks_;           ///< since the last tick
   std::vector<flow::Request> steps_;           ///< undos, redos and resets since the last tick
-  bool takes_hold_ = false;                    ///< it was asked for since the last tick
+  bool regrabs_ = false;                       ///< it was asked for since the last tick
   std::optional<flow::LoopSettings> settings_; ///< a change since the last tick
   std::uint32_t masks_ = 0;                    ///< their number
   std::optional<std::uint32_t> masks_due_;     ///< a change since the last tick

@@ -92,19 +92,19 @@ public:
       : timeline_(timeline), moving_(timeline.hands.begin(), timeline.hands.end()),
         hands_(timeline), is_held_(timeline.held), will_hold_(is_held_) {
     pose(hands_, 0.0);
-    hands_.take_hold();
+    hands_.regrab();
   }
 
   /// Makes the frame of that time, with all that is due until then.
   void make_frame(double time_s, double due_until_s) {
-    bool takes_hold = false;
+    bool regrabs = false;
     for (; next_ < timeline_.events.size() && timeline_.events[next_].time_s <= due_until_s;
          ++next_)
-      takes_hold = ask(timeline_.events[next_].command) || takes_hold;
+      regrabs = ask(timeline_.events[next_].command) || regrabs;
     pose(hands_, time_s);
     hands_.play(is_held_, time_of(time_s));
     is_held_ = will_hold_;
-    if (takes_hold) hands_.take_hold();
+    if (regrabs) hands_.regrab();
   }
 
   /// Returns the functions at a time between the last frame and the next one.
@@ -176,7 +176,7 @@ puppet::RigPlayer::Hands PuppetHands::hands() const noexcept {
 
 void PuppetHands::apply(const flow::Command& command) noexcept {
   if (flow::is_for_puppet(command)) puppet_.apply(command, hands());
-  if (command == flow::Command(flow::Request::take_hold)) take_hold();
+  if (command == flow::Command(flow::Request::regrab)) regrab();
 }
 
 double PuppetHands::signal(const puppet::HandSignal& input) const noexcept {

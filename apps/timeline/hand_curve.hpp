@@ -60,7 +60,7 @@ public:
   /// Poses a hand, which then is there.
   void pose(Side side, const puppet::HandState& hand);
   /// Lets the functions grab the hands as they are.
-  void take_hold() noexcept { puppet_.player().take_hold(hands()); }
+  void regrab() noexcept { puppet_.player().regrab(hands()); }
   /// Handles the command, if it is about a puppet.
   void apply(const flow::Command& command) noexcept;
   /// As flow::PuppetPlayer::play().

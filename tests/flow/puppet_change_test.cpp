@@ -219,7 +219,7 @@ TEST_SUITE("puppet change") {
       CHECK(gap(without, whole) > 1e-2);
       const int edits = static_cast<int>(loop.test.loop->changes().newest_puppet());
       if (grabs_again) {
-        REQUIRE(loop.test.commands.try_push(Request::take_hold));
+        REQUIRE(loop.test.commands.try_push(Request::regrab));
         loop.bent(12);
       }
       const auto settled = [&](Request request) {

@@ -62,7 +62,7 @@ TEST_SUITE("request") {
     Person person(Mode::type1);
     person.move(0, 15);
     const Points pulled = person.shape();
-    const Frame regrabbed = person.ask(Request::take_hold, 15);
+    const Frame regrabbed = person.ask(Request::regrab, 15);
     CHECK(regrabbed.held);
     CHECK(regrabbed.rest_changes == 0);
     CHECK((person.shape() - person.test.model.vertices).cwiseAbs().maxCoeff() <= test::float_gap);
@@ -79,7 +79,7 @@ TEST_SUITE("request") {
     CHECK((person.shape() - person.test.model.vertices).cwiseAbs().maxCoeff() > 0.01);
     Person third(Mode::type1);
     third.move(0, 15);
-    third.ask(Request::take_hold, 15);
+    third.ask(Request::regrab, 15);
     third.ask(Request::redo, 15);
     CHECK((third.shape() - pulled).cwiseAbs().maxCoeff() <= test::float_gap);
   }
@@ -88,7 +88,7 @@ TEST_SUITE("request") {
     Person person(Mode::type2);
     person.move(0, 15);
     const Points before = person.shape();
-    CHECK(person.ask(Request::take_hold, 15).rest_changes == 0);
+    CHECK(person.ask(Request::regrab, 15).rest_changes == 0);
     CHECK(person.shape() == before);
     person.move(15, 22);
     CHECK((person.shape() - before).cwiseAbs().maxCoeff() > 0.005);
@@ -102,7 +102,7 @@ TEST_SUITE("request") {
       person.move(0, 15);
       person.ask(Request::release, 15);
       const Points kept = person.shape();
-      CHECK_FALSE(person.ask(Request::take_hold, 15).held);
+      CHECK_FALSE(person.ask(Request::regrab, 15).held);
       CHECK(person.ask(Request::grab, 15).held);
       CHECK(person.shape() == kept);
     }

@@ -136,7 +136,7 @@ TEST_SUITE("rig_loop") {
       after(counts);
     after(60);
     const auto far = after(60); // beyond its limits
-    test.commands.try_push(Request::take_hold);
+    test.commands.try_push(Request::regrab);
     CHECK(after(60) == far);
     const auto back = after(50); // at once, and not only when it is within the limits again
     for (std::size_t at = 0; at < 4; ++at)

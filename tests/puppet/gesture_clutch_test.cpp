@@ -63,8 +63,8 @@ struct Played {
       : player(rig_with(clutch)), plain(rig_with(clutch)), gestures(player.rig()) {
     for (HandState& state : states)
       bend(state, 0.0);
-    player.take_hold(hands());
-    plain.take_hold(hands());
+    player.regrab(hands());
+    plain.regrab(hands());
   }
   RigPlayer::Hands hands() const { return {&states[0], &states[1]}; }
   double value(std::size_t at) const { return player.values()[at]; }

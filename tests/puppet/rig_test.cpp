@@ -142,7 +142,7 @@ TEST_SUITE("rig") {
     const auto rig = rig_of(text, mesh);
     RigPlayer player(rig);
     const TwoHands relaxed(0.3, 0.4);
-    player.take_hold(relaxed.hands());
+    player.regrab(relaxed.hands());
     player.follow(relaxed.hands());
     Points places;
     player.write(places);
@@ -156,7 +156,7 @@ TEST_SUITE("rig") {
     const deform::Mesh mesh = ball();
     const auto rig = rig_of(text, mesh);
     RigPlayer player(rig);
-    player.take_hold(TwoHands(0.0, 0.0).hands());
+    player.regrab(TwoHands(0.0, 0.0).hands());
     const std::size_t up = number_of(*rig, "up"), out = number_of(*rig, "outLeft");
     const double travel = 50.0 * 3.14159265358979 / 180.0;
     player.follow(TwoHands(0.5 * travel, 0.4 * travel).hands());
@@ -173,11 +173,11 @@ TEST_SUITE("rig") {
   TEST_CASE("a release and a grab elsewhere keep the values") {
     const deform::Mesh mesh = ball();
     RigPlayer player(rig_of(text, mesh));
-    player.take_hold(TwoHands(0.0, 0.0).hands());
+    player.regrab(TwoHands(0.0, 0.0).hands());
     player.follow(TwoHands(0.3, 0.2).hands());
     const std::vector<double> before(player.values().begin(), player.values().end());
     const TwoHands elsewhere(1.0, -0.4);
-    player.take_hold(elsewhere.hands());
+    player.regrab(elsewhere.hands());
     player.follow(elsewhere.hands());
     for (std::size_t at = 0; at < before.size(); ++at)
       CHECK(player.values()[at] == doctest::Approx(before[at]));
@@ -187,7 +187,7 @@ TEST_SUITE("rig") {
     const deform::Mesh mesh = ball();
     const auto rig = rig_of(text, mesh);
     RigPlayer player(rig);
-    player.take_hold(TwoHands(0.0, 0.0).hands());
+    player.regrab(TwoHands(0.0, 0.0).hands());
     player.follow(TwoHands(0.2, 0.2).hands());
     const double held = player.values()[number_of(*rig, "up")];
     const TwoHands bent(0.6, 0.6);

@@ -24,7 +24,7 @@ void PuppetPlayer::play(bool is_held, const Hands& hands, std::optional<HostTime
     player_.follow(hands);
   } else {
     gestures_.reset(player_);
-    player_.take_hold(hands);
+    player_.regrab(hands);
   }
 }
 
@@ -49,7 +49,7 @@ void PuppetPlayer::take_over(const PuppetPlayer* before, std::span<const std::si
     for (std::size_t at = 0; at < held_at_.size(); ++at)
       if (from[at] < before->held_at_.size()) held_at_[at] = before->held_at_[from[at]];
   } else {
-    player_.take_hold(hands);
+    player_.regrab(hands);
   }
   player_.rig().place(held_at_, starts);
 }

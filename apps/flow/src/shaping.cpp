@@ -56,7 +56,7 @@ void Shaping::ask(Request request) noexcept {
   if (request == Request::grab) hold_wanted_ = true;
   if (request == Request::release) hold_wanted_ = false;
   if (request == Request::commit) commit_due_ = held_ || hold_wanted_;
-  if (request == Request::take_hold) regrab_due_ = true;
+  if (request == Request::regrab) regrab_due_ = true;
   if (!goes_through_history(request)) return;
   if (steps_due_.size() < steps_due_.capacity())
     steps_due_.push_back(request);

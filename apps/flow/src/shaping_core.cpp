@@ -141,7 +141,7 @@ Frame ShapingCore::first_frame() const {
 }
 
 deform::FieldStatus ShapingCore::begin(const Hands& hands, Frame& frame) noexcept {
-  if (puppet_) puppet_->player().take_hold(hands);
+  if (puppet_) puppet_->player().regrab(hands);
   place(hands, std::nullopt, true, frame);
   const deform::FieldStatus status = shaping_.begin(tips_);
   keep_held_values();
@@ -149,7 +149,7 @@ deform::FieldStatus ShapingCore::begin(const Hands& hands, Frame& frame) noexcep
 }
 
 void ShapingCore::apply(const Command& command, const Hands& hands) noexcept {
-  if (puppet_ && command == Command(Request::take_hold)) return puppet_->player().take_hold(hands);
+  if (puppet_ && command == Command(Request::regrab)) return puppet_->player().regrab(hands);
   if (const auto* request = std::get_if<Request>(&command)) return shaping_.ask(*request);
   if (const auto* wire = std::get_if<DrawWire>(&command)) return draw(*wire);
   if (puppet_ && is_for_puppet(command)) puppet_->apply(command, hands);
@@ -247,7 +247,7 @@ void ShapingCore::finish(PreparedChange& change, const Hands& hands, Frame& fram
 
 /// A puppet's points stay where they are.
 void ShapingCore::place_again(const Hands& hands) noexcept {
-  if (puppet_) return puppet_->player().take_hold(hands);
+  if (puppet_) return puppet_->player().regrab(hands);
   place_tips(hands, tips_);
   place_bodies(hands);
 }

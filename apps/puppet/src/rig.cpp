@@ -130,7 +130,7 @@ RigPlayer::RigPlayer(std::shared_ptr<const Rig> rig)
   }
 }
 
-void RigPlayer::take_hold(std::size_t function, const Hands& hands) noexcept {
+void RigPlayer::regrab(std::size_t function, const Hands& hands) noexcept {
   FunctionState& state = state_.functions[function];
   const HandState* const hand = hands[static_cast<std::size_t>(state.input.side())];
   if (hand == nullptr) return;
@@ -138,11 +138,11 @@ void RigPlayer::take_hold(std::size_t function, const Hands& hands) noexcept {
   holds_[function] = {state.input.of(*hand), state.asked};
 }
 
-void RigPlayer::take_hold(const Hands& hands) noexcept {
+void RigPlayer::regrab(const Hands& hands) noexcept {
   for (std::uint32_t& grips : grips_)
     ++grips;
   for (std::size_t at = 0; at < holds_.size(); ++at)
-    take_hold(at, hands);
+    regrab(at, hands);
 }
 
 void RigPlayer::follow(const Hands& hands) noexcept {
@@ -180,7 +180,7 @@ void RigPlayer::set_clutch(Side side, std::uint8_t finger, bool holds,
     const bool is_meant = finger == all_fingers || finger == state.input.finger();
     if (is_meant && (holds || finger != all_fingers)) state.held = holds;
     if (!is_meant && is_alone) state.held = false;
-    if (is_meant && was_held != holds) take_hold(at, hands);
+    if (is_meant && was_held != holds) regrab(at, hands);
   }
   if (finger == all_fingers || is_alone) hand_holds = holds;
 }
@@ -191,8 +191,7 @@ void RigPlayer::toggle_clutch(Side side, const Hands& hands) noexcept {
   hand_holds = !hand_holds;
   ++grips_[static_cast<std::size_t>(side)];
   for (std::size_t at = 0; at < holds_.size(); ++at)
-    if (state_.functions[at].input.side() == side && state_.functions[at].held)
-      take_hold(at, hands);
+    if (state_.functions[at].input.side() == side && state_.functions[at].held) regrab(at, hands);
 }
 
 void RigPlayer::set_kept(Side side, double part, std::span<const double> kept) noexcept {
@@ -202,7 +201,7 @@ void RigPlayer::set_kept(Side side, double part, std::span<const double> kept) n
 void RigPlayer::set_input(std::size_t function, HandSignal input, const Hands& hands) noexcept {
   if (function >= holds_.size()) return;
   state_.functions[function].input = input;
-  take_hold(function, hands);
+  regrab(function, hands);
 }
 
 void RigPlayer::set_symmetric(bool on) noexcept {
@@ -234,7 +233,7 @@ void RigPlayer::go_on_from(const RigPlayer& before, std::span<const std::size_t>
       const auto slot = static_cast<std::size_t>(state.input.side());
       if ((*known_)[slot] == before.grips_[slot]) continue;
     }
-    take_hold(at, hands);
+    regrab(at, hands);
   }
   state_.symmetric = before.state_.symmetric;
   state_.hand_holds = before.state_.hand_holds;

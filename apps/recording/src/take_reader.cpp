@@ -37,7 +37,7 @@ template <>
 struct Format<flow::Request> {
   static constexpr EntryKind kind = EntryKind::request;
   static constexpr std::size_t bytes = 1;
-  static void put(auto& fields, auto& request) { fields.one_of(request, flow::Request::take_hold); }
+  static void put(auto& fields, auto& request) { fields.one_of(request, flow::Request::regrab); }
 };
 
 template <>

@@ -27,12 +27,12 @@ enum class Request : std::uint8_t {
   redo,    ///< reverts the last undo, if nothing was committed since
   reset,   ///< restores the loaded model; an undo reverts this
   /// hands that hold the model re-grab at their current poses, without a commit (Shaping::ask())
-  take_hold,
+  regrab,
 };
 
-inline constexpr std::array requests{Request::grab,     Request::release, Request::commit,
-                                     Request::undo,     Request::redo,    Request::reset,
-                                     Request::take_hold};
+inline constexpr std::array requests{Request::grab,  Request::release, Request::commit,
+                                     Request::undo,  Request::redo,    Request::reset,
+                                     Request::regrab};
 
 /// Returns whether a request is an undo, redo or reset. Shaping executes these in sequence.
 constexpr bool goes_through_history(Request request) noexcept {

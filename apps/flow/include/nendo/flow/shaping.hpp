@@ -62,7 +62,7 @@ public:
   deform::FieldStatus begin(const deform::Points& tips) noexcept { return sculptor_->grab(tips); }
   /// Sets the time of the next calls, since the first tick.
   void set_time(HostClock::duration time) noexcept { time_ = time; }
-  /// Requests an action of the next shape(). Wait-free. Request::take_hold makes hands that hold
+  /// Requests an action of the next shape(). Wait-free. Request::regrab makes hands that hold
   /// the model re-grab it at the current fingertips; the paper separates this from a commit
   /// (2.3.1). In type 1 it undoes the current deformation, which a redo restores, and keeps the
   /// rest shape. In type 2 it keeps the shape, joins the strokes before and after into one step,
@@ -177,7 +177,7 @@ private:
   bool held_;        ///< the fingertips shape the model
   bool hold_wanted_; ///< the requested value of held_
   bool commit_due_ = false;
-  bool regrab_due_ = false;         ///< Request::take_hold
+  bool regrab_due_ = false;         ///< Request::regrab
   bool shaped_ = false;             ///< has shaped since the grab or the last commit
   std::uint64_t strokes_ended_ = 0; ///< strokes that ended without a commit
   std::uint64_t refused_steps_ = 0; ///< LoopStats::refused_steps

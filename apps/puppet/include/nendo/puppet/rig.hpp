@@ -74,7 +74,7 @@ public:
 
   /// Attaches all functions, at their current values, to the current hand poses: relaxed hands then
   /// do not change the model.
-  void take_hold(const Hands& hands) noexcept;
+  void regrab(const Hands& hands) noexcept;
   /// Follows the hands. Functions of an absent hand keep their values.
   void follow(const Hands& hands) noexcept;
   /// Writes the point positions (Rig::place()).
@@ -101,7 +101,7 @@ public:
   /// Returns the value of each function.
   std::span<const double> values() const noexcept { return values_; }
   const RigState& state() const noexcept { return state_; }
-  /// Continues from a state with the same number of functions; ignores others. Call take_hold()
+  /// Continues from a state with the same number of functions; ignores others. Call regrab()
   /// then.
   void set_state(const RigState& state) noexcept;
   /// Copies from an earlier player of the same rig the state that go_on_from() needs for restored
@@ -130,7 +130,7 @@ private:
     double signal = 0.0; ///< signal at the grab
     double value = 0.0;  ///< requested value at the grab
   };
-  void take_hold(std::size_t function, const Hands& hands) noexcept;
+  void regrab(std::size_t function, const Hands& hands) noexcept;
   void set_values() noexcept;
 
   std::shared_ptr<const Rig> rig_;
