@@ -85,7 +85,7 @@ TEST_SUITE("clay_go_on") {
     after->clay.begin(pinch(16.0, 22.0));
     {
       const nendo::test::Restraint restraint; // the loop does it in a tick
-      after->clay.go_on_from(before->clay, true);
+      after->clay.continue_from(before->clay, true);
       CHECK(restraint.counts().allocations + restraint.counts().frees == 0);
       CHECK(restraint.counts().locks == 0);
     }
@@ -103,7 +103,7 @@ TEST_SUITE("clay_go_on") {
     const auto before = held_ball();
     Clay after(before->mesh, &before->clay.shape());
     after.clay.begin(pinch(16.0, 22.0));
-    after.clay.go_on_from(before->clay, true);
+    after.clay.continue_from(before->clay, true);
     pull(*straight);
     pull(after);
     // What vertices remember of the pressure, for friction, is gone.
@@ -116,7 +116,7 @@ TEST_SUITE("clay_go_on") {
     before->clay.press_to(pinch(55.0, 22.0));
     Clay after(before->mesh, &before->clay.shape());
     after.clay.begin(pinch(16.0, 22.0)); // as if they had jumped into the clay
-    after.clay.go_on_from(before->clay, true);
+    after.clay.continue_from(before->clay, true);
     after.clay.press_to(pinch(16.0, 22.0));
     CHECK(after.clay.report().sub_steps > 4);
     CHECK(after.clay.report().penetration_mm <= 0.02);
@@ -130,7 +130,7 @@ TEST_SUITE("clay_go_on") {
     REQUIRE(std::abs(volume_of(before->now()) / whole - 1.0) > 3e-4);
     Clay after(before->mesh, &before->clay.shape());
     after.clay.begin(pinch(4.0, 0.0));
-    after.clay.go_on_from(before->clay, true);
+    after.clay.continue_from(before->clay, true);
     for (int call = 0; call < 60; ++call)
       after.clay.press_to(pinch(4.0, 0.0));
     CHECK(std::abs(volume_of(after.now()) / whole - 1.0) < 2e-5);
@@ -145,7 +145,7 @@ TEST_SUITE("clay_go_on") {
     const Parts others = moved(pinch(16.0, 22.0), Vector3d(0.0, 200.0, 0.0));
     parts.insert(parts.end(), others.begin(), others.end());
     two.begin(parts);
-    two.go_on_from(before->clay, true);
+    two.continue_from(before->clay, true);
     CHECK(two.press_to(parts).held == 0);
     CHECK(two.report().behind_mm == 0.0);
   }

@@ -32,7 +32,7 @@ void RefinedClay::refine(std::span<const deform::ContactPart> parts) {
   const auto clay_before = std::move(clay_);
   take(std::move(layout), &first);
   clay_->begin(parts);
-  clay_->go_on_from(*clay_before, true);
+  clay_->continue_from(*clay_before, true);
 }
 
 const deform::Mesh& RefinedClay::shown() {

@@ -45,7 +45,7 @@ void PuppetPlayer::remember(const PuppetPlayer& earlier) {
 void PuppetPlayer::take_over(const PuppetPlayer* before, std::span<const std::size_t> from,
                              const Hands& hands, deform::Points& starts) noexcept {
   if (before != nullptr) {
-    player_.go_on_from(before->player_, from, hands);
+    player_.continue_from(before->player_, from, hands);
     for (std::size_t at = 0; at < held_at_.size(); ++at)
       if (from[at] < before->held_at_.size()) held_at_[at] = before->held_at_[from[at]];
   } else {

@@ -207,10 +207,11 @@ FieldStatus Sculptor::continue_grab(const Points& tips) noexcept {
   return counted(std::visit([&](auto& deformer) { return deformer.grab(tips); }, deformer_));
 }
 
-void Sculptor::go_on_from(const Sculptor& before, bool keeps_volume) noexcept {
+void Sculptor::continue_from(const Sculptor& before, bool keeps_volume) noexcept {
   auto* hands = std::get_if<ClayHands>(&deformer_);
   const ClayHands* hands_before = before.clay();
-  if (hands != nullptr && hands_before != nullptr) hands->go_on_from(*hands_before, keeps_volume);
+  if (hands != nullptr && hands_before != nullptr)
+    hands->continue_from(*hands_before, keeps_volume);
 }
 
 void Sculptor::release(bool is_step) noexcept {

@@ -259,8 +259,8 @@ bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
   // Hands that cannot grab now try again at each tick.
   if (held_) held_ = is_solved(sculptor_->continue_grab(held_points(ready, tips, holds_on)));
   if (held_ && is_change)
-    sculptor_->go_on_from(*ready.sculptor,
-                          ready.model == model_ || model_->origin->source == ModelSource::refined);
+    sculptor_->continue_from(*ready.sculptor, ready.model == model_ ||
+                                                  model_->origin->source == ModelSource::refined);
   is_still_ = false;
   if (frame.model != model_->number) {
     make_space(frame);

@@ -216,8 +216,8 @@ void RigPlayer::remember(const RigPlayer& earlier) {
   known_ = earlier.grips_;
 }
 
-void RigPlayer::go_on_from(const RigPlayer& before, std::span<const std::size_t> from,
-                           const Hands& hands) noexcept {
+void RigPlayer::continue_from(const RigPlayer& before, std::span<const std::size_t> from,
+                              const Hands& hands) noexcept {
   const auto& functions = rig_->puppet().functions;
   for (std::size_t at = 0; at < holds_.size() && at < from.size(); ++at) {
     FunctionState& state = state_.functions[at];

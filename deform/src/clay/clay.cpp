@@ -88,8 +88,8 @@ FieldStatus ClayDeformer::begin(std::span<const ContactPart> parts) {
   return grab(parts);
 }
 
-void ClayDeformer::go_on_from(const ClayDeformer& before, bool keeps_volume) noexcept {
-  work_->go_on_from(*before.work_, keeps_volume);
+void ClayDeformer::continue_from(const ClayDeformer& before, bool keeps_volume) noexcept {
+  work_->continue_from(*before.work_, keeps_volume);
 }
 
 void ClayDeformer::release(bool is_step) noexcept {
@@ -164,7 +164,7 @@ bool ClayDeformer::Work::holds_any() const noexcept {
   return std::any_of(grips_.begin(), grips_.end(), [](const Grip& grip) { return grip.holds(); });
 }
 
-void ClayDeformer::Work::go_on_from(const Work& before, bool keeps_volume) noexcept {
+void ClayDeformer::Work::continue_from(const Work& before, bool keeps_volume) noexcept {
   if (before.from_.size() != from_.size() || before.parts_per_body_ != parts_per_body_ ||
       before.options_.units_per_mm != options_.units_per_mm)
     return;

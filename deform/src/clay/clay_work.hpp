@@ -30,7 +30,7 @@ public:
   bool accepts(std::span<const ContactPart> parts) const noexcept;
   /// Puts the bodies there, and takes the shape's volume as the one to keep.
   void take_hold(const BoundedShape& shape, std::span<const ContactPart> parts) noexcept;
-  void go_on_from(const Work& before, bool keeps_volume) noexcept;
+  void continue_from(const Work& before, bool keeps_volume) noexcept;
   void release() noexcept {
     holds_ = false;
     contacts_.clear();

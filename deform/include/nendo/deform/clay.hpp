@@ -87,7 +87,7 @@ public:
   /// Takes over the contacts and grips of `before`, the previous deformer of this clay, whose
   /// triangles may differ, and with `keeps_volume` also the volume to keep. Call after begin() or
   /// grab(). Does nothing if the bodies' numbers or scales differ. Does not allocate.
-  void go_on_from(const ClayDeformer& before, bool keeps_volume) noexcept;
+  void continue_from(const ClayDeformer& before, bool keeps_volume) noexcept;
   /// Releases the shape until the next begin() or grab(). With `is_step`, ends the stroke.
   void release(bool is_step) noexcept;
   /// Moves the bodies to `parts`, in sub-steps so short that no body passes through a thin part,

@@ -110,8 +110,8 @@ public:
 
   deform::FieldStatus begin(const deform::Points&) { return clay_.begin(parts()); }
   deform::FieldStatus grab(const deform::Points&) { return clay_.grab(parts()); }
-  void go_on_from(const ClayHands& before, bool keeps_volume) noexcept {
-    clay_.go_on_from(before.clay_, keeps_volume);
+  void continue_from(const ClayHands& before, bool keeps_volume) noexcept {
+    clay_.continue_from(before.clay_, keeps_volume);
   }
   /// Pushes the surface out of the bodies. With `ends`, completes their whole path.
   deform::FieldStatus follow(const deform::Points&, bool ends);

@@ -38,7 +38,7 @@ public:
 
   /// Restores the state of `earlier`, which played this puppet before. Allocates.
   void remember(const PuppetPlayer& earlier);
-  /// Continues from the state of `before` (`from`: see puppet::RigPlayer::go_on_from()); null:
+  /// Continues from the state of `before` (`from`: see puppet::RigPlayer::continue_from()); null:
   /// grabs with the hands. Common functions keep their values at the grab. Writes the points at
   /// these values to `starts`.
   void take_over(const PuppetPlayer* before, std::span<const std::size_t> from, const Hands& hands,

@@ -105,7 +105,7 @@ public:
   deform::FieldStatus continue_grab(const deform::Points& tips) noexcept;
   /// Call after continue_grab(). Hands in clay keep their contacts of `before` and, with
   /// `keeps_volume`, the clay's target volume.
-  void go_on_from(const Sculptor& before, bool keeps_volume) noexcept;
+  void continue_from(const Sculptor& before, bool keeps_volume) noexcept;
   /// Writes the shape for the current `tips` to `out`, except blocks that `out` already has.
   /// Wait-free, except that it may wait for a second thread to finish its part. It does not
   /// allocate if `out` has the right size.

@@ -104,15 +104,15 @@ public:
   /// Continues from a state with the same number of functions; ignores others. Call regrab()
   /// then.
   void set_state(const RigState& state) noexcept;
-  /// Copies from an earlier player of the same rig the state that go_on_from() needs for restored
-  /// functions, for example after an undo. Call it before go_on_from().
+  /// Copies from an earlier player of the same rig the state that continue_from() needs for
+  /// restored functions, for example after an undo. Call it before continue_from().
   void remember(const RigPlayer& earlier);
   /// Continues from a player of another rig. from: for each function, its index there
   /// (functions_before()). Values are kept within their limits, and so are inputs that were chosen
   /// since. Restored functions (remember()) continue as if never removed, or, if their hand has
   /// re-grabbed meanwhile, from their last values; new functions begin at 0. Does not allocate.
-  void go_on_from(const RigPlayer& before, std::span<const std::size_t> from,
-                  const Hands& hands) noexcept;
+  void continue_from(const RigPlayer& before, std::span<const std::size_t> from,
+                     const Hands& hands) noexcept;
   /// Returns whether all functions of a hand are released.
   bool has_let_go(Side side) const noexcept;
   /// Returns the requested value of a function, before clamping.
