@@ -104,7 +104,7 @@ const Row& row_of(EditCommand command) noexcept {
                        [&](const Row& row) { return row.edit && row.edit->command == command; });
 }
 
-Answer press(const Row& row, const Situation& now, flow::WantedSettings& wanted) {
+Answer press(const Row& row, const Situation& now, flow::PendingSettings& wanted) {
   Answer answer{std::nullopt, row.refusal_in(now)};
   if (row.choose != nullptr) {
     row.choose(wanted, now.frame);

@@ -52,7 +52,7 @@ struct Row {
   bool repeats = false; ///< the key repeats while it is held down in the window
   /// Makes the command. `on`: is_on(), which the command then turns off.
   flow::Command (*make)(bool on) = nullptr;
-  void (*choose)(flow::WantedSettings& wanted, const flow::Frame& frame) = nullptr;
+  void (*choose)(flow::PendingSettings& wanted, const flow::Frame& frame) = nullptr;
   std::optional<Edit> edit{};
   bool (*is_on)(const Situation& now) = nullptr;
   /// Returns why the command is not possible now, as a sentence; null: it is possible.
@@ -99,7 +99,7 @@ struct Answer {
 };
 /// Returns the command of a row that is_for_run(). `wanted` is the caller's, after follow() with
 /// the frame. Does not allocate.
-Answer press(const Row& row, const Situation& now, flow::WantedSettings& wanted);
+Answer press(const Row& row, const Situation& now, flow::PendingSettings& wanted);
 
 // Refusals, for code that gets these commands without the table.
 inline constexpr const char* no_layers = "The gloves play whole hands here, and no layer; --layer "

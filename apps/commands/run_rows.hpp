@@ -122,8 +122,8 @@ template <Side side>
 bool plays(const Situation& now) {
   return !now.frame.let_go[flow::Placement::index_of(side)];
 }
-template <void (flow::WantedSettings::*change)() noexcept>
-void choose(flow::WantedSettings& wanted, const flow::Frame&) {
+template <void (flow::PendingSettings::*change)() noexcept>
+void choose(flow::PendingSettings& wanted, const flow::Frame&) {
   (wanted.*change)();
 }
 
@@ -180,7 +180,7 @@ inline flow::Command toggle_symmetry(bool on) {
 inline bool is_symmetric(const Situation& now) {
   return now.frame.symmetric;
 }
-inline void choose_next_mode(flow::WantedSettings& wanted, const flow::Frame& frame) {
+inline void choose_next_mode(flow::PendingSettings& wanted, const flow::Frame& frame) {
   wanted.next_mode(frame.function_count > 0);
 }
 
@@ -200,7 +200,7 @@ consteval Row run_row(std::string_view name, const std::array<std::string_view, 
 /// Makes a row that changes the settings of a run.
 consteval Row setting_row(std::string_view name, const std::array<std::string_view, 3>& keys,
                           std::string_view help,
-                          void (*choose)(flow::WantedSettings& wanted, const flow::Frame& frame)) {
+                          void (*choose)(flow::PendingSettings& wanted, const flow::Frame& frame)) {
   return {.name = name, .keys = keys, .help = help, .choose = choose};
 }
 /// Makes a row that the window or the page executes itself.
@@ -328,28 +328,28 @@ inline constexpr std::array run_rows{
                 choose_next_mode),
     setting_row("next kernel", keys("n"),
                 "Chooses the next kernel, which shapes a fingertip's influence.",
-                choose<&flow::WantedSettings::next_kernel>),
+                choose<&flow::PendingSettings::next_kernel>),
     repeating(setting_row("smaller radii", keys("["), "Makes the radii smaller.",
-                          choose<&flow::WantedSettings::reduce_radii>)),
+                          choose<&flow::PendingSettings::reduce_radii>)),
     repeating(setting_row("larger radii", keys("]"), "Makes the radii larger.",
-                          choose<&flow::WantedSettings::enlarge_radii>)),
+                          choose<&flow::PendingSettings::enlarge_radii>)),
     setting_row("next brush", keys("w"), "Chooses the next brush of type 2 for all fingers.",
-                choose<&flow::WantedSettings::next_brush>),
+                choose<&flow::PendingSettings::next_brush>),
     repeating(setting_row("weaker brush", keys("-"),
                           "Makes the brushes weaker; below 0 their effect is reversed.",
-                          choose<&flow::WantedSettings::weaken>)),
+                          choose<&flow::PendingSettings::weaken>)),
     repeating(setting_row("stronger brush", keys("="), "Makes the brushes stronger.",
-                          choose<&flow::WantedSettings::strengthen>)),
+                          choose<&flow::PendingSettings::strengthen>)),
     setting_row("folding", keys("i"), "Turns fold prevention on or off.",
-                choose<&flow::WantedSettings::toggle_folding>),
+                choose<&flow::PendingSettings::toggle_folding>),
     setting_row("more clay", keys(";"),
                 "Keeps a quarter more of the volume; after all of it, wraps to 0.",
-                choose<&flow::WantedSettings::next_volume>),
+                choose<&flow::PendingSettings::next_volume>),
     setting_row("whole hand", keys("j"),
                 "Holds the model with whole hands, or only with fingertips, in type 1.",
-                choose<&flow::WantedSettings::toggle_hold>),
+                choose<&flow::PendingSettings::toggle_hold>),
     setting_row("filter", keys("F"), "Turns smoothing of the joint angles (one-euro) on or off.",
-                choose<&flow::WantedSettings::toggle_filter>),
+                choose<&flow::PendingSettings::toggle_filter>),
     shown_at(
         run_row("end run", keys("q"), "Ends the run, and writes the shape.", simple<flow::EndRun>),
         in_terminal | in_window),

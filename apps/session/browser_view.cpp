@@ -97,7 +97,7 @@ private:
 
   std::unique_ptr<web::Server> server_;
   VersionTarget<web::FrameStream> streams_;
-  flow::WantedSettings wanted_;       ///< the settings of all clients
+  flow::PendingSettings wanted_;      ///< the settings of all clients
   std::uint64_t weights_ = 0;         ///< deform::SurfaceField::number() of the last weights
   web::Pictures pictures_;            ///< the textures of all versions of the model
   std::vector<std::byte> next_model_; ///< the message of the last prepared version

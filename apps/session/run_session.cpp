@@ -122,7 +122,7 @@ public:
 private:
   cli::Keys keys_;
   milliseconds timeout_;
-  flow::WantedSettings wanted_;
+  flow::PendingSettings wanted_;
 };
 
 std::size_t max_undo_bytes(const RunOptions& options) noexcept {

@@ -13,7 +13,7 @@
 namespace nendo::viewer {
 
 using flow::Request;
-using Wanted = flow::WantedSettings;
+using Pending = flow::PendingSettings;
 using hand::Joint;
 
 namespace {
@@ -23,8 +23,8 @@ constexpr float label_width = 58.0F; // of "strength" and of fingers, beside wha
 
 const char* kernel_words(deform::Wendland kernel) {
   constexpr std::array words{"Wendland C0", "Wendland C2", "Wendland C4", "Wendland C6"};
-  const auto* const first = Wanted::kernels.begin();
-  return words[static_cast<std::size_t>(std::find(first, Wanted::kernels.end(), kernel) - first)];
+  const auto* const first = Pending::kernels.begin();
+  return words[static_cast<std::size_t>(std::find(first, Pending::kernels.end(), kernel) - first)];
 }
 
 // How far two joints that follow each other are turned, degrees.
@@ -177,7 +177,7 @@ void LiveWindow::Panel::settings() {
   chosen.mode = static_cast<flow::Mode>(mode);
   ImGui::PushItemWidth(-label_width);
   if (ImGui::BeginCombo(flow::setting::kernel.label.data(), kernel_words(chosen.kernel))) {
-    for (const auto kernel : Wanted::kernels)
+    for (const auto kernel : Pending::kernels)
       if (ImGui::Selectable(kernel_words(kernel), kernel == chosen.kernel)) chosen.kernel = kernel;
     ImGui::EndCombo();
   }

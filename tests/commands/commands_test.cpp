@@ -46,7 +46,7 @@ struct State {
 };
 
 commands::Answer press(const Row& row, const State& state) {
-  flow::WantedSettings wanted;
+  flow::PendingSettings wanted;
   wanted.follow(state.frame.settings);
   return commands::press(row, state.now(), wanted);
 }
@@ -206,7 +206,7 @@ TEST_SUITE("commands") {
     frame.settings.filter.min_cutoff_hz = 3.5;
     const commands::RunFacts facts;
     for (const auto kind : {hand::FilterKind::one_euro, hand::FilterKind::off}) {
-      flow::WantedSettings wanted;
+      flow::PendingSettings wanted;
       wanted.follow(frame.settings);
       const auto answer =
           commands::press(*commands::with_key("F", commands::in_terminal), {frame, facts}, wanted);

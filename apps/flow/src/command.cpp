@@ -41,36 +41,36 @@ bool SetMask::is_usable() const noexcept {
          std::all_of(at.begin(), at.end(), [](double one) { return std::abs(one) <= largest; });
 }
 
-bool WantedSettings::follow(const LoopSettings& in_effect) noexcept {
+bool PendingSettings::follow(const LoopSettings& in_effect) noexcept {
   if (in_effect == now || HostClock::now() - asked_at_ < patience) return false;
   now = asked_ = in_effect;
   return true;
 }
 
-std::optional<Command> WantedSettings::ask() noexcept {
+std::optional<Command> PendingSettings::ask() noexcept {
   if (now == asked_) return std::nullopt;
   asked_ = now;
   asked_at_ = HostClock::now();
   return ChangeSettings{now};
 }
 
-void WantedSettings::next_mode(bool is_puppet) noexcept {
+void PendingSettings::next_mode(bool is_puppet) noexcept {
   do
     now.mode = static_cast<Mode>((static_cast<unsigned>(now.mode) + 1U) % mode_count);
   while (is_puppet && is_by_hands(now.mode));
 }
 
-void WantedSettings::next_volume() noexcept {
+void PendingSettings::next_volume() noexcept {
   const double more = std::floor(4.0 * now.keep_volume + 1.0) / 4.0;
   now.keep_volume = more > 1.0 ? 0.0 : more;
 }
 
-void WantedSettings::next_kernel() noexcept {
+void PendingSettings::next_kernel() noexcept {
   const auto* const at = std::find(kernels.begin(), kernels.end(), now.kernel);
   now.kernel = kernels[static_cast<std::size_t>(at - kernels.begin() + 1) % kernels.size()];
 }
 
-void WantedSettings::next_brush() noexcept {
+void PendingSettings::next_brush() noexcept {
   auto brush =
       static_cast<std::uint8_t>((static_cast<int>(now.brushes[1]) + 1) % deform::brush_count);
   if (static_cast<deform::Brush>(brush) == deform::Brush::none) ++brush;
@@ -79,22 +79,22 @@ void WantedSettings::next_brush() noexcept {
 }
 
 /// In whole tenths, so that it comes back to where it was.
-void WantedSettings::add_strength(double more) noexcept {
+void PendingSettings::add_strength(double more) noexcept {
   now.brush_strength =
       setting::brush_strength.range.nearest(std::round(10.0 * (now.brush_strength + more)) / 10.0);
 }
 
-void WantedSettings::scale_radii(double factor) noexcept {
+void PendingSettings::scale_radii(double factor) noexcept {
   for (double& radius_m : now.radius_m)
     radius_m = setting::radius.handy.nearest(factor * radius_m);
 }
 
-bool WantedSettings::has_one_radius() const noexcept {
+bool PendingSettings::has_one_radius() const noexcept {
   return std::all_of(now.radius_m.begin(), now.radius_m.end(),
                      [this](double radius_m) { return radius_m == now.radius_m[0]; });
 }
 
-bool WantedSettings::has_one_brush() const noexcept {
+bool PendingSettings::has_one_brush() const noexcept {
   return std::all_of(now.brushes.begin(), now.brushes.end(),
                      [this](deform::Brush brush) { return brush == now.brushes[0]; });
 }

@@ -250,7 +250,7 @@ constexpr bool is_for_loop(const Command& command) noexcept {
 
 /// The settings that a client shows: the requested ones until the loop has had time to take them,
 /// then those in effect. Asking thread; does not allocate.
-class NENDO_API WantedSettings {
+class NENDO_API PendingSettings {
 public:
   static constexpr std::array kernels{deform::Wendland::c0, deform::Wendland::c2,
                                       deform::Wendland::c4, deform::Wendland::c6};
