@@ -400,7 +400,7 @@ void Type1Deformer::draw(BlockShape& out) {
     evaluator_->set_field(field_);
     evaluator_->displace(rest_shape(), out);
   }
-  if (is_masked()) masked_->mask()->hold(rest, out);
+  if (is_masked()) masked_->mask()->apply(rest, out);
 }
 
 /// Makes the applied shape the rest shape.

@@ -48,7 +48,7 @@ VertexMask::VertexMask(const BlockLayout& layout, const Eigen::VectorXd& weights
   }
 }
 
-void VertexMask::hold(const BlockShape& from, BlockShape& to) const noexcept {
+void VertexMask::apply(const BlockShape& from, BlockShape& to) const noexcept {
   for (const Part& part : parts_) {
     if (part.is_still)
       to.follow(from, part.block);

@@ -33,7 +33,7 @@ public:
   }
   /// Scales the displacement of `to` from `from`, which has as many blocks, by the weights. Blocks
   /// that do not move are copied from `from`, with their stamps. Wait-free, without allocation.
-  void hold(const BlockShape& from, BlockShape& to) const noexcept;
+  void apply(const BlockShape& from, BlockShape& to) const noexcept;
 
 private:
   std::vector<Part> parts_;
