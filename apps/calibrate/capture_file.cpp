@@ -67,9 +67,10 @@ bool read_reading(const json& line, hand::PoseReading& reading, CountScale& coun
   reading.pose = *pose;
   hand::HeldPose& held = reading.held;
   const bool noise =
-      for_each_count(line, "noise_counts", counts.most,
+      for_each_count(line, "noise_counts", counts.max_count,
                      [&](std::size_t slot, double n) { held.noise_counts[slot] = n; });
-  return noise && for_each_count(line, "mean_counts", counts.most, [&](std::size_t slot, double n) {
+  return noise &&
+         for_each_count(line, "mean_counts", counts.max_count, [&](std::size_t slot, double n) {
            held.mean_counts[slot] = n;
            held.present.add(static_cast<Sensor>(slot));
          });
@@ -78,12 +79,13 @@ bool read_reading(const json& line, hand::PoseReading& reading, CountScale& coun
 bool read_free_motion(const json& line, hand::CountRanges& motion, CountScale& counts) {
   if (!read_scale(line, counts)) return false;
   SensorMask high;
-  const bool low = for_each_count(line, "low_counts", counts.most, [&](std::size_t slot, double n) {
-    motion.low_counts[slot] = n;
-    motion.present.add(static_cast<Sensor>(slot));
-  });
+  const bool low =
+      for_each_count(line, "low_counts", counts.max_count, [&](std::size_t slot, double n) {
+        motion.low_counts[slot] = n;
+        motion.present.add(static_cast<Sensor>(slot));
+      });
   return low &&
-         for_each_count(line, "high_counts", counts.most,
+         for_each_count(line, "high_counts", counts.max_count,
                         [&](std::size_t slot, double n) {
                           motion.high_counts[slot] = n;
                           high.add(static_cast<Sensor>(slot));
@@ -162,7 +164,7 @@ Result<void> write_readings(const std::filesystem::path& path,
   std::string text;
   const auto add = [&](ordered_json line) {
     line["hand"] = name_of(side);
-    line["counts_most"] = counts.most;
+    line["counts_most"] = counts.max_count;
     line["whole_range"] = counts.whole_range;
     text += line.dump() + "\n";
   };

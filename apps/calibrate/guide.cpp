@@ -235,7 +235,7 @@ std::optional<Sensor> CalibrationGuide::find_unbent(const HeldPose& held) const 
   const HeldPose* other = kept(now == PoseId::flat ? PoseId::fist : PoseId::flat);
   if (other == nullptr) return std::nullopt;
   const hand::Calibration usual = hand::default_calibration(scale_);
-  const double min_counts = hand::PoseCapture::min_change_counts * scale_.most / 255.0;
+  const double min_counts = hand::PoseCapture::min_change_counts * scale_.max_count / 255.0;
   std::optional<Sensor> worst;
   double worst_counts = min_counts;
   int judged = 0, unbent = 0;
@@ -326,7 +326,7 @@ bool StillSensors::others_moved(std::size_t slot, double counts, int part) const
   for (std::size_t other = 0; other < sensor_slots; ++other) {
     if (other == slot || !present_.has(static_cast<Sensor>(other))) continue;
     ++others;
-    if (seen_[other].most - seen_[other].least >= counts * scale_.most / 255.0) ++moved;
+    if (seen_[other].most - seen_[other].least >= counts * scale_.max_count / 255.0) ++moved;
   }
   return moved >= 4 && 100 * moved >= part * others;
 }
@@ -370,7 +370,7 @@ SensorMask still_in(const std::vector<hand::PoseReading>& readings, CountScale s
       least = std::min(least, held.mean_counts[slot]);
       most = std::max(most, held.mean_counts[slot]);
     }
-    if (!hand::rests_at_end(least, most, scale) && most - least <= scale.most / 1024.0 &&
+    if (!hand::rests_at_end(least, most, scale) && most - least <= scale.max_count / 1024.0 &&
         most - least < 1.0 && asks_to_move(poses, slot))
       found.add(sensor);
   }

@@ -153,7 +153,7 @@ void PracticeHand::keep_from_ends() {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto& [gain, offset] = typical.sensors[slot];
     const double min_rad = gain * (margin_counts - offset) - offsets_rad_[slot];
-    const double max_rad = gain * (counts.most - margin_counts - offset) - offsets_rad_[slot];
+    const double max_rad = gain * (counts.max_count - margin_counts - offset) - offsets_rad_[slot];
     for (const hand::SensorAngles& pose : poses_) {
       const double end_rad = pose[slot] > 0.0 ? max_rad : min_rad;
       if (gain > 0.0 && std::abs(gains_[slot] * pose[slot]) > std::abs(end_rad))

@@ -147,15 +147,15 @@ Result<void> write_report_picture(const std::filesystem::path& path,
                    " hand, " + hand::rfc3339(wearer.made),
                {15.0, "#000000", "start", true});
   const cli::SvgText heading{12.0};
-  drawing.text(
-      range_left, 50.0,
-      fmt::format("counts that were covered, of {}, and angles; grey: kept", wearer.counts.most),
-      heading);
+  drawing.text(range_left, 50.0,
+               fmt::format("counts that were covered, of {}, and angles; grey: kept",
+                           wearer.counts.max_count),
+               heading);
   drawing.text(residual_left, 50.0, "residual of the poses", heading);
   double y = top;
   for (const Sensor sensor : sensors) {
     draw_row(drawing, sensor, fit.sensors[index_of(sensor)], fit.calibration[sensor],
-             wearer.counts.most, y);
+             wearer.counts.max_count, y);
     y += row_height;
   }
   return replace_file(path, std::move(drawing).finished());

@@ -237,7 +237,7 @@ std::vector<std::string> bars(const CalibrationPicture& picture, int width, int 
         fitted((left_out ? "(" : "") + std::string(name_of(sensor)) + (left_out ? ")" : ""),
                name_width) +
         gloves::count_bar(width - name_width, (*picture.sample)[sensor].value,
-                          (*picture.seen)[sensor], picture.info->counts.most));
+                          (*picture.seen)[sensor], picture.info->counts.max_count));
   }
   return lines;
 }

@@ -151,7 +151,8 @@ std::string sensor_text(const MonitorPicture& picture, Sensor sensor, int width)
   const bool with_angle = picture.calibration != nullptr && space - angle_width >= min_bar;
   if (with_angle) space -= angle_width;
   if (space >= min_bar) {
-    text += " " + count_bar(space, count.value, (*picture.seen)[sensor], picture.info->counts.most);
+    text += " " +
+            count_bar(space, count.value, (*picture.seen)[sensor], picture.info->counts.max_count);
   }
   if (with_angle) text += angle_text(picture, sensor);
   return cut(text, width);

@@ -111,7 +111,7 @@ void show_text(const StoredCalibration& file) {
                          (wearer.glove_model.empty() ? "any model" : wearer.glove_model) + ", " +
                          file.path.string())
             << "\n\n";
-  const double max_count = wearer.counts.most;
+  const double max_count = wearer.counts.max_count;
   std::vector<std::vector<std::string>> rows{
       {"sensor", "gain rad/count", "offset counts", "deg at 0", "deg at full", "residual deg"}};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
@@ -141,7 +141,7 @@ Result<void> show(const Options& options) {
   }
   const WearerCalibration& wearer = file->wearer;
   ordered_json line = summary_json(*file);
-  line["counts"] = {{"most", wearer.counts.most}, {"whole_range", wearer.counts.whole_range}};
+  line["counts"] = {{"most", wearer.counts.max_count}, {"whole_range", wearer.counts.whole_range}};
   line["hand_length_m"] = wearer.size.length_m;
   line["hand_breadth_m"] = wearer.size.breadth_m;
   if (!wearer.size.shape.is_average()) {
@@ -173,7 +173,7 @@ std::vector<double> changes_deg(const WearerCalibration& a, const WearerCalibrat
   for (const bool full : {false, true}) {
     for (const auto* wearer : {&a, &b}) {
       const auto& line = wearer->calibration.sensors[slot];
-      const double count = full ? wearer->counts.most : 0.0;
+      const double count = full ? wearer->counts.max_count : 0.0;
       deg.push_back(to_degrees(line.gain_rad_per_count * (count - line.offset_counts)));
     }
     deg.push_back(deg.back() - deg[deg.size() - 2]);

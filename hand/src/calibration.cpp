@@ -77,8 +77,8 @@ SensorAngles Calibration::angles_rad(const GloveSample& sample) const noexcept {
 
 Calibration default_calibration(CountScale scale) noexcept {
   Calibration calibration;
-  if (scale.most == 0) return calibration;
-  const double most = scale.most;
+  if (scale.max_count == 0) return calibration;
+  const double most = scale.max_count;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     calibration.sensors[slot] =
         scale.whole_range ? spread_over(typical[slot], most) : scaled(typical[slot], most);

@@ -112,7 +112,7 @@ std::string complaint_about(Sensor sensor, const SensorCalibration& line, CountS
   if (sensor == Sensor::unused) return "no glove has this sensor; leave it out";
   const double gain = line.gain_rad_per_count;
   if (gain == 0.0) return "a gain of 0 measures nothing; calibrate it or leave the sensor out";
-  const double most = 255.0 / counts.most; // 1 rad a count of 8 bits
+  const double most = 255.0 / counts.max_count; // 1 rad a count of 8 bits
   if (!lies_within(std::abs(gain), 0.0, most))
     return "a gain of " + decimal_text(gain) + " is absurd; it must lie within " +
            decimal_text(most) + " rad a count";
@@ -155,7 +155,7 @@ std::string complaint_about_bias(double middle_bias) {
 std::string complaint_about(const WearerCalibration& wearer) {
   using std::chrono::sys_days;
   using namespace std::chrono_literals;
-  if (wearer.counts.most == 0) return "counts_most must lie within 1 and 65535";
+  if (wearer.counts.max_count == 0) return "counts_most must lie within 1 and 65535";
   if (wearer.made < sys_days{1970y / 1 / 1} || wearer.made >= sys_days{10000y / 1 / 1})
     return "made must lie within the years 1970 and 9999";
   std::string complaint = complaint_about_strings(wearer);

@@ -197,7 +197,7 @@ Result<std::string> calibration_text(const WearerCalibration& wearer) {
                      left_out_line(wearer.left_out) + mixed_in_lines(wearer.calibration);
   text += "\n[glove]\nmodel = " + toml_string(wearer.glove_model) +
           "\nserial = " + toml_string(wearer.glove_serial) +
-          "\ncounts_most = " + std::to_string(wearer.counts.most) +
+          "\ncounts_most = " + std::to_string(wearer.counts.max_count) +
           "\nwhole_range = " + (wearer.counts.whole_range ? "true" : "false") + "\n";
   text += "\n[hand_size]\nlength_m = " + decimal_text(wearer.size.length_m) +
           "\nbreadth_m = " + decimal_text(wearer.size.breadth_m) + "\n" +
@@ -258,7 +258,7 @@ bool is_earlier_version(const fs::path& path) {
 
 void move_ends(SensorQuality& quality, double by_counts, CountScale glove) noexcept {
   for (double* const end : {&quality.min_counts, &quality.max_counts})
-    *end = std::clamp(*end + by_counts, 0.0, static_cast<double>(glove.most));
+    *end = std::clamp(*end + by_counts, 0.0, static_cast<double>(glove.max_count));
 }
 
 CountRanges reached_ends(const WearerCalibration& wearer) noexcept {
@@ -275,10 +275,10 @@ CountRanges reached_ends(const WearerCalibration& wearer) noexcept {
 
 Calibration calibration_for(const WearerCalibration& wearer, CountScale glove) noexcept {
   Calibration calibration = default_calibration(glove);
-  const bool comparable =
-      wearer.counts.whole_range == glove.whole_range && wearer.counts.most > 0 && glove.most > 0;
+  const bool comparable = wearer.counts.whole_range == glove.whole_range &&
+                          wearer.counts.max_count > 0 && glove.max_count > 0;
   if (!comparable) return calibration;
-  const double scale = static_cast<double>(glove.most) / wearer.counts.most;
+  const double scale = static_cast<double>(glove.max_count) / wearer.counts.max_count;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto& line = wearer.calibration.sensors[slot];
     if (line.gain_rad_per_count == 0.0) continue;

@@ -45,10 +45,10 @@ Result<void> check_reading(const PoseReading& reading, SensorMask sensors, Count
     if (!reading.held.present.has(sensor))
       return about(where + "no reading; hold the pose again with the whole glove connected");
     const double counts = reading.held.mean_counts[slot];
-    if (!(counts >= 0.0 && counts <= scale.most))
-      return about(where + "not a count from 0 to " + std::to_string(scale.most) +
+    if (!(counts >= 0.0 && counts <= scale.max_count))
+      return about(where + "not a count from 0 to " + std::to_string(scale.max_count) +
                    "; hold the pose again");
-    const bool at_end = counts <= 1.0 || counts >= scale.most;
+    const bool at_end = counts <= 1.0 || counts >= scale.max_count;
     if (at_end && !scale.whole_range)
       return about(where + "at the end of its counts; set the glove's gain and hold it again");
   }
@@ -62,7 +62,7 @@ Result<void> check(std::span<const PoseReading> readings, SensorMask sensors,
         size.breadth_m <= 0.15))
     return about("a hand is 0.1 to 0.3 m long and 0.04 to 0.15 m broad: measure it again");
   if (sensors.bits == 0) return about("a glove without sensors: nothing to calibrate");
-  if (options.scale.most == 0) return about("a scale without counts: nothing to calibrate");
+  if (options.scale.max_count == 0) return about("a scale without counts: nothing to calibrate");
   for (const PoseId id : quick_poses()) {
     const bool there = std::any_of(readings.begin(), readings.end(),
                                    [&](const PoseReading& r) { return r.pose == id; });

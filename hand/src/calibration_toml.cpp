@@ -144,7 +144,8 @@ void read_glove(TomlReader& reader, const toml::table& root, WearerCalibration& 
   complain_if(reader, *glove, "glove model", complaint_about_text(wearer.glove_model, true));
   wearer.glove_serial = reader.text(*glove, "serial");
   complain_if(reader, *glove, "glove serial", complaint_about_text(wearer.glove_serial, true));
-  wearer.counts.most = static_cast<std::uint16_t>(reader.count(*glove, "counts_most", 65535, 1));
+  wearer.counts.max_count =
+      static_cast<std::uint16_t>(reader.count(*glove, "counts_most", 65535, 1));
   wearer.counts.whole_range = reader.truth(*glove, "whole_range");
 }
 

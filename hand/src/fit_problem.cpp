@@ -138,7 +138,7 @@ FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorM
       sensors_(sensors), stiff_(options.stiff), side_(side), start_size_(options.size),
       size_known_(options.size_known),
       start_(options.start.value_or(default_calibration(options.scale))),
-      max_counts_(options.scale.most), touch_is_set_aside_(readings.size()) {
+      max_counts_(options.scale.max_count), touch_is_set_aside_(readings.size()) {
   for (const Sensor sensor : sensors_) {
     const std::size_t slot = index_of(sensor);
     double mean = 0.0;
@@ -146,7 +146,7 @@ FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorM
       mean += reading.held.mean_counts[slot] / static_cast<double>(readings_.size());
     const auto [gain, offset] = start_.sensors[slot];
     lines_[slot] = {gain, gain * (mean - offset),
-                    gain * offset_deviation_of_range * options.scale.most, mean};
+                    gain * offset_deviation_of_range * options.scale.max_count, mean};
   }
   for (const auto& reading : readings_) {
     const CalibrationPose& pose = pose_of(reading.pose);

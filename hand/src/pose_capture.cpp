@@ -12,7 +12,7 @@ constexpr double noise_memory_s = 0.3;
 } // namespace
 
 PoseCapture::PoseCapture(CountScale scale) noexcept
-    : scale_(scale), unit_(std::max(scale.most / 255.0, 0.5)) {}
+    : scale_(scale), unit_(std::max(scale.max_count / 255.0, 0.5)) {}
 
 void PoseCapture::begin_window(const GloveSample& sample, HostTime now) noexcept {
   begun_ = now;
@@ -52,7 +52,7 @@ void PoseCapture::add(const GloveSample& sample) noexcept {
     watched.mean_counts += off / samples_;
     watched.squares += off * (counts - watched.mean_counts);
     // 8-bit gloves never send 0. Gloves that know their whole range may well be at its end.
-    const bool end = counts <= 1.0 || counts >= scale_.most;
+    const bool end = counts <= 1.0 || counts >= scale_.max_count;
     if (end && !scale_.whole_range) ++watched.at_end;
   }
 }

@@ -104,7 +104,7 @@ bool RangeAdaptation::Learner::can_have_learned(const LearnedRanges::Sensor& sen
   constexpr double max_gain_rad = 1e3;
   constexpr double max_offset = 1e6;
   return usual_span > 0.0 && sensor.low_counts >= -rounding &&
-         sensor.high_counts <= counts.most + rounding &&
+         sensor.high_counts <= counts.max_count + rounding &&
          sensor.high_counts - sensor.low_counts >= (1.0 - rounding) * min_span * usual_span &&
          sensor.line.gain_rad_per_count >= min_gain_rad &&
          sensor.line.gain_rad_per_count <= max_gain_rad &&
@@ -136,7 +136,7 @@ void RangeAdaptation::Learner::learn(const SwingFinder::End& end) noexcept {
 void RangeAdaptation::drift(std::size_t slot, double interval_s) noexcept {
   const Learner& learner = learners_[slot];
   auto& [gain_rad, offset] = calibration_.sensors[slot];
-  const double most = counts_.most;
+  const double most = counts_.max_count;
   const double goal_gain_rad = learner.usual.gain_rad_per_count / (learner.high - learner.low);
   const double at_zero = -gain_rad * offset;
   const double to_zero =
@@ -158,7 +158,7 @@ void RangeAdaptation::push(const GloveSample& sample) noexcept {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     Learner& learner = learners_[slot];
     if (learner.usual_span == 0.0) continue;
-    const std::uint16_t count = std::min(sample.raw[slot].value, counts_.most);
+    const std::uint16_t count = std::min(sample.raw[slot].value, counts_.max_count);
     if (!sample.present.has(static_cast<Sensor>(slot))) {
       learner.swings.reset();
     } else if (const auto end = learner.swings.push(count, min_swing * learner.usual_span)) {
@@ -186,8 +186,9 @@ SlipAdaptation::SlipAdaptation(const Calibration& made, const CalibratedRange& e
     const double low = ends.counts.low_counts[slot], high = ends.counts.high_counts[slot];
     // How far gaps between fingers go depends on how the fingers are bent, so they show no slip.
     // Written so that a NaN is not followed; ends may come from a file.
-    if (ends.counts.present.has(sensor) && !is_gap(sensor) && low >= 0.0 && high <= counts.most &&
-        high - low >= min_span * counts.most && made.sensors[slot].gain_rad_per_count != 0.0)
+    if (ends.counts.present.has(sensor) && !is_gap(sensor) && low >= 0.0 &&
+        high <= counts.max_count && high - low >= min_span * counts.max_count &&
+        made.sensors[slot].gain_rad_per_count != 0.0)
       followed_.add(sensor);
     learners_[slot].low = low;
     learners_[slot].high = high;
@@ -203,7 +204,7 @@ SlipAdaptation::SlipAdaptation(const Calibration& made, const CalibratedRange& e
     const double span = ends.counts.high_counts[slot] - ends.counts.low_counts[slot];
     const double slipped = sensor.line.offset_counts - made.sensors[slot].offset_counts;
     const bool can_be = followed_.has(static_cast<Sensor>(slot)) && sensor.low_counts >= 0.0 &&
-                        sensor.high_counts <= counts.most &&
+                        sensor.high_counts <= counts.max_count &&
                         sensor.low_counts <= sensor.high_counts &&
                         std::abs(slipped) <= max_slip * span;
     if (!can_be) continue;
@@ -235,7 +236,7 @@ void SlipAdaptation::push(const GloveSample& sample) noexcept {
       continue;
     }
     const double span = ends_.counts.high_counts[slot] - ends_.counts.low_counts[slot];
-    const std::uint16_t count = std::min(sample.raw[slot].value, counts_.most);
+    const std::uint16_t count = std::min(sample.raw[slot].value, counts_.max_count);
     if (const auto end = learner.swings.push(count, RangeAdaptation::min_swing * span)) {
       double& bound = end->is_top ? learner.high : learner.low;
       const double part = std::min(end->amplitude / span, 1.0);

@@ -175,11 +175,11 @@ template <class JointText>
 Result<ExportedCalibration> written(const Calibration& calibration, CountScale counts,
                                     std::string text, const JointText& joint_text,
                                     std::string_view end) {
-  if (counts.whole_range || counts.most == 0)
+  if (counts.whole_range || counts.max_count == 0)
     return Error{Errc::bad_input,
                  "the ROS forms are for a CyberGlove's bare counts, and this glove "
                  "calibrates itself; export as toml or csv"};
-  const double scale = 255.0 / counts.most;
+  const double scale = 255.0 / counts.max_count;
   ExportedCalibration result{std::move(text), {}};
   bool any = false;
   std::string missing;

@@ -138,7 +138,7 @@ bool StuckWatch::is_shown(std::size_t slot, const GloveSample& sample) const noe
 void StuckWatch::push(const GloveSample& sample) noexcept {
   if (number_ == 0 || sample.side != side_ || sample.present != present_) reset(sample);
   ++number_;
-  const double min_swing = min_swing_counts * scale_.most / 255.0;
+  const double min_swing = min_swing_counts * scale_.max_count / 255.0;
   bool any = false;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     if (!present_.has(static_cast<Sensor>(slot))) continue;

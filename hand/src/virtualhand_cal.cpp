@@ -190,10 +190,10 @@ Result<ImportedCalibration> parse_virtualhand(std::string_view text, std::string
 }
 
 Result<ExportedCalibration> virtualhand_text(const Calibration& calibration, CountScale counts) {
-  if (counts.whole_range || counts.most == 0)
+  if (counts.whole_range || counts.max_count == 0)
     return Error{Errc::bad_input, "a .cal file is for a CyberGlove's bare counts, and this glove "
                                   "calibrates itself; export as toml or csv"};
-  const double scale = 255.0 / counts.most;
+  const double scale = 255.0 / counts.max_count;
   std::array<SensorCalibration, sensor_slots> lines{};
   for (std::size_t slot = 0; slot + 1 < sensor_slots; ++slot) { // slot 23 is nothing's
     const SensorCalibration& line = calibration.sensors[slot];

@@ -250,7 +250,7 @@ TEST_SUITE("cyberglove_driver") {
       const ServedEmulator emulator(options);
       SampleRing ring(4096);
       auto glove = required(open_glove("serial:" + emulator->tty_path() + "?hires=on"));
-      CHECK(glove->info().counts.most == 4095);
+      CHECK(glove->info().counts.max_count == 4095);
       test::require_ok(glove->start(ring));
       CHECK(eventually([&] { return ring.size() >= 20; }));
       glove->set_feedback({true, {}, {}});

@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if ((sample.present.bits & ~table->info.sensors.bits) != 0) std::abort();
     if (at > 0 && sample.arrival < table->samples[at - 1].arrival) std::abort();
     for (const nendo::RawCount& count : sample.raw)
-      if (count.value > table->info.counts.most) std::abort();
+      if (count.value > table->info.counts.max_count) std::abort();
   }
   return 0;
 }

@@ -381,7 +381,7 @@ TEST_SUITE("calibration exchange") {
     for (int turn = 0; turn < 500; ++turn) {
       auto wearer = nendo::test::random_calibration(random);
       Calibration calibration = default_calibration();
-      if (wearer.counts.most <= 255) calibration = wearer.calibration;
+      if (wearer.counts.max_count <= 255) calibration = wearer.calibration;
       calibration.coupling_gains.fill(0.0);
       calibration.middle_bias = 0.0;
       for (auto& line : calibration.sensors) {

@@ -239,7 +239,7 @@ TEST_SUITE("calibration file") {
     refused([](auto& w) { w.calibration.sensors[23].gain_rad_per_count = 0.01; });
     refused([&](auto& w) { w.size.length_m = nan; });
     refused([](auto& w) { w.quality[7] = SensorQuality{}; }); // of a sensor without a gain
-    refused([](auto& w) { w.counts.most = 0; });
+    refused([](auto& w) { w.counts.max_count = 0; });
     refused([](auto& w) { w.made = std::chrono::sys_seconds::max(); });
   }
 

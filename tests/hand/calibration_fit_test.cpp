@@ -219,7 +219,7 @@ TEST_SUITE("calibration_fit") {
         counts *= ratio;
     }
     FitOptions options;
-    options.scale.most = 4095;
+    options.scale.max_count = 4095;
     const Calibration coarse_fit = fitted(readings), fine_fit = fitted(fine, options);
     for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
       CHECK(fine_fit.sensors[slot].gain_rad_per_count * ratio ==
@@ -289,7 +289,7 @@ TEST_SUITE("calibration_fit") {
     CHECK(names(fit({good[0]}), "fist"));
     CHECK(names(fit(good, SensorMask{}), "sensors"));
     FitOptions options;
-    options.scale.most = 0;
+    options.scale.max_count = 0;
     CHECK(names(fit(good, sensors_22, options), "scale"));
     options = {};
     options.size.length_m = std::numeric_limits<double>::quiet_NaN();

@@ -27,7 +27,7 @@ struct Stream {
   GloveSample sample(double counts) const {
     GloveSample sample;
     sample.arrival = sample.measured = now;
-    sample.raw.fill(RawCount{static_cast<std::uint16_t>(scale.most * 100 / 255)});
+    sample.raw.fill(RawCount{static_cast<std::uint16_t>(scale.max_count * 100 / 255)});
     sample.present = sensors_22;
     sample.raw[pip].value = static_cast<std::uint16_t>(std::lround(counts));
     return sample;

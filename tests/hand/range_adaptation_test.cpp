@@ -79,7 +79,7 @@ TEST_SUITE("range_adaptation") {
       const RangeAdaptation adaptation(counts);
       CHECK(same_lines(adaptation.calibration(), default_calibration(counts)));
       const SensorRange range = adaptation.ranges()[pip];
-      const double scale = counts.most / 255.0;
+      const double scale = counts.max_count / 255.0;
       CHECK(range.low_counts == doctest::Approx(counts.whole_range ? 0.0 : 60.0 * scale));
       CHECK(range.high_counts ==
             doctest::Approx(counts.whole_range ? 4095.0 : (60.0 + usual_span) * scale));
@@ -362,7 +362,7 @@ TEST_SUITE("range_adaptation") {
         const bool used = default_calibration(counts).sensors[slot].gain_rad_per_count != 0.0;
         REQUIRE((gain_rad > 0.0) == used);
         REQUIRE(range.low_counts >= -1e-9);
-        REQUIRE(range.high_counts <= std::max<double>(counts.most, 0.0) + 1e-9);
+        REQUIRE(range.high_counts <= std::max<double>(counts.max_count, 0.0) + 1e-9);
       }
     }
   }

@@ -67,7 +67,7 @@ TEST_SUITE("sample_table") {
       CHECK(last.sequence == 1);
       CHECK(table->info.side == Side::right);
       CHECK(table->info.sensors == mask_of(std::array{Sensor::index_mcp, Sensor::thumb_roll}));
-      CHECK(table->info.counts.most == 4095); // the next converter that counts so far
+      CHECK(table->info.counts.max_count == 4095); // the next converter that counts so far
       CHECK(table->info.kind == driver::GloveKind::recorded);
       CHECK(table->info.rate_hz == doctest::Approx(2.0));
     }

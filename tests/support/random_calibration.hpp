@@ -49,7 +49,7 @@ inline hand::WearerCalibration random_calibration(std::mt19937_64& random) {
   for (double& gain : wearer.calibration.coupling_gains)
     gain = random() % 4 == 0 ? -0.0 : random_number(random, 10.0);
   for (std::size_t slot = 0; slot + 1 < sensor_slots; ++slot) {
-    const double gain = std::abs(random_number(random, 255.0 / wearer.counts.most));
+    const double gain = std::abs(random_number(random, 255.0 / wearer.counts.max_count));
     if (gain == 0.0 || random() % 8 == 0) {
       if (random() % 2 == 0) wearer.left_out.add(static_cast<Sensor>(slot));
       continue;

@@ -85,7 +85,7 @@ inline void samples_are_in_order_and_add_up(const Kind& kind) {
     CHECK(sample.side == glove->info().side);
     CHECK(sample.wrist_switch == WristSwitch::unknown);
     for (const RawCount count : sample.raw)
-      CHECK(count.value <= glove->info().counts.most);
+      CHECK(count.value <= glove->info().counts.max_count);
   });
   CHECK(last <= HostClock::now());
   const driver::GloveStats stats = glove->stats();

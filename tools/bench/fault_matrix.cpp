@@ -121,7 +121,7 @@ Result<FaultOutcome> run_case(const FaultCase& fault, const GloveCase& glove, do
   const HostTime begin = HostClock::now();
   auto opened = driver::open_glove("serial:" + link + std::string(glove.options));
   auto started = opened ? (*opened)->start(ring) : Result<void>(opened.error());
-  const unsigned steps = opened && (*opened)->info().counts.most > 255 ? 16 : 1;
+  const unsigned steps = opened && (*opened)->info().counts.max_count > 255 ? 16 : 1;
   while (started && !stop && to_seconds(HostClock::now() - begin) < seconds) {
     GloveSample sample;
     while (ring.try_pop(sample))

@@ -59,7 +59,7 @@ void glove_fields(auto& fields, auto& glove) {
   fields.line(info.model);
   fields.bits(info.sensors.bits, sensor_slots);
   fields.number(info.rate_hz, 0.0, max_rate_hz);
-  fields.u16(info.counts.most);
+  fields.u16(info.counts.max_count);
   fields.flag(info.counts.whole_range);
   auto& has = info.abilities;
   const std::array flags{&has.wrist_switch, &has.light, &has.vibration, &has.resistance};

@@ -232,8 +232,9 @@ private:
                              "or leave the column out"};
       table.info.sensors.bits |= row.present.bits;
       for (const RawCount& count : row.raw)
-        while (count.value > table.info.counts.most)
-          table.info.counts.most = static_cast<std::uint16_t>(table.info.counts.most * 16 + 15);
+        while (count.value > table.info.counts.max_count)
+          table.info.counts.max_count =
+              static_cast<std::uint16_t>(table.info.counts.max_count * 16 + 15);
     }
     const double span_s = to_seconds(rows_.back().arrival - rows_.front().arrival);
     table.info.rate_hz = span_s > 0.0 ? static_cast<double>(rows_.size() - 1) / span_s : 0.0;

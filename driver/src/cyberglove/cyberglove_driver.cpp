@@ -53,7 +53,7 @@ public:
     info.side = identity_.side;
     info.sensors = identity_.channels.sensors();
     info.rate_hz = identity_.rate_hz;
-    if (identity_.hires) info.counts.most = max_hires_count;
+    if (identity_.hires) info.counts.max_count = max_hires_count;
     info.abilities = identity_.abilities;
     info.facts = identity_.facts;
     return info;

@@ -130,9 +130,9 @@ inline constexpr SensorMask sensors_18{0x7BBB3F};
 
 /// The scale of a glove's counts before calibration to a wearer.
 struct CountScale {
-  std::uint16_t most = 255; ///< the largest count
-  /// True: 0 is a straight (closed) joint and `most` a fully bent (spread) one, as self-calibrating
-  /// gloves report. False: counts of a CyberGlove's A/D converter.
+  std::uint16_t max_count = 255;
+  /// True: 0 is a straight (closed) joint and `max_count` a fully bent (spread) one, as
+  /// self-calibrating gloves report. False: counts of a CyberGlove's A/D converter.
   bool whole_range = false;
   friend constexpr bool operator==(CountScale, CountScale) = default;
 };

@@ -111,7 +111,7 @@ struct CalibratedRange {
 
 /// Returns the smallest slip worth reporting: half a count of a glove that counts to 255.
 constexpr double min_slip_counts(CountScale counts) noexcept {
-  return 0.5 * counts.most / 255.0;
+  return 0.5 * counts.max_count / 255.0;
 }
 
 class NENDO_API SlipAdaptation {

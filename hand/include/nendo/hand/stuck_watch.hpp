@@ -64,20 +64,20 @@ private:
 /// Returns whether a count is at an end of an A/D converter's range, as usual for a broken sensor.
 /// False for self-calibrating gloves, which are at an end whenever a joint is.
 constexpr bool is_at_end(std::uint16_t count, CountScale scale) noexcept {
-  return !scale.whole_range && (count <= 1 || count + 1 >= scale.most);
+  return !scale.whole_range && (count <= 1 || count + 1 >= scale.max_count);
 }
 
 /// Returns whether counts from `low` to `high` are only flicker: of a twelve-bit converter's last
 /// two bits, or of the last bit at an end.
 constexpr bool is_still(std::uint16_t low, std::uint16_t high, CountScale scale) noexcept {
   const bool same_end = high - low <= 1 && is_at_end(low, scale) && is_at_end(high, scale);
-  return high - low <= scale.most / 1024 || same_end;
+  return high - low <= scale.max_count / 1024 || same_end;
 }
 
 /// Returns whether counts reach an end of a self-calibrating glove's scale, to which it clamps
 /// straight or fully bent joints: a constant count there means nothing.
 constexpr bool rests_at_end(double low, double high, CountScale scale) noexcept {
-  return scale.whole_range && (low <= 0.0 || high >= scale.most);
+  return scale.whole_range && (low <= 0.0 || high >= scale.max_count);
 }
 
 } // namespace nendo::hand
