@@ -65,6 +65,15 @@ public:
     if (!node->is_array()) complain(*node, std::string(key) + " must be a list in brackets");
     return node->as_array();
   }
+  /// Calls read(table) for each table of a list, up to the first error. `what` names one of them.
+  template <class Read>
+  void each_table(const toml::array& list, std::string_view what, const Read& read) {
+    for (const toml::node& node : list) {
+      const toml::table* one = as_table(node, what);
+      if (error_) return;
+      read(*one);
+    }
+  }
   std::string text(const toml::table& table, std::string_view key) {
     return value<std::string>(table, key, " must be a text in quotes");
   }

@@ -202,8 +202,7 @@ int view_timeline(const Options&) {
 } // namespace
 
 Result<Side> parse_hand(const std::string& text) {
-  if (text == "left") return Side::left;
-  if (text == "right") return Side::right;
+  if (const auto side = side_named(text)) return *side;
   return Error{Errc::usage, "--hand " + text + ": use left or right"};
 }
 

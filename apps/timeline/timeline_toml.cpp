@@ -35,13 +35,11 @@ void read_supports(TomlReader& reader, const toml::table& table, std::string_vie
     return reader.complain(table, "there are more than 1000 supports of a kind");
   for (const toml::node& node : *shared)
     supports.shared.push_back(read_support(reader, node));
-  for (const toml::node& node : *own) {
-    const toml::table* const one = reader.as_table(node, "an own support");
-    if (one == nullptr) return;
-    reader.allow_only(*one, {of_own, "radius", "weight"});
-    const auto point = static_cast<Eigen::Index>(reader.count(*one, of_own, max_supports));
-    supports.own.push_back({point, {reader.number(*one, "radius"), reader.number(*one, "weight")}});
-  }
+  reader.each_table(*own, "an own support", [&](const toml::table& one) {
+    reader.allow_only(one, {of_own, "radius", "weight"});
+    const auto point = static_cast<Eigen::Index>(reader.count(one, of_own, max_supports));
+    supports.own.push_back({point, {reader.number(one, "radius"), reader.number(one, "weight")}});
+  });
 }
 
 void read_injective(TomlReader& reader, const toml::table& table,
@@ -156,12 +154,6 @@ Key read_key(TomlReader& reader, const toml::table& table) {
   return key;
 }
 
-std::optional<Side> side_named(std::string_view name) {
-  if (name == "left") return Side::left;
-  if (name == "right") return Side::right;
-  return std::nullopt;
-}
-
 void read_hand_shape(TomlReader& reader, const toml::table& table, hand::WearerShape& shape) {
   const toml::array* const terms = reader.array(table, "shape");
   if (terms == nullptr) return;
@@ -179,13 +171,9 @@ HandTrack read_hand(TomlReader& reader, const toml::table& table) {
   hand.size.length_m = reader.number(table, "length_m");
   hand.size.breadth_m = reader.number(table, "breadth_m");
   if (table.get("shape") != nullptr) read_hand_shape(reader, table, hand.size.shape);
-  const toml::array* const keys = reader.array(table, "keys");
-  if (keys == nullptr) return hand;
-  for (const toml::node& node : *keys) {
-    const toml::table* const key = reader.as_table(node, "a key");
-    if (key == nullptr || reader.error()) return hand;
-    hand.keys.push_back(read_key(reader, *key));
-  }
+  if (const toml::array* const keys = reader.array(table, "keys"))
+    reader.each_table(*keys, "a key",
+                      [&](const toml::table& key) { hand.keys.push_back(read_key(reader, key)); });
   return hand;
 }
 
@@ -309,18 +297,16 @@ flow::Command read_command(TomlReader& reader, const toml::table& event, const p
 void read_events(TomlReader& reader, const toml::table& root, Timeline& timeline) {
   const toml::array* const events = reader.array(root, "events");
   if (events == nullptr) return;
-  for (const toml::node& node : *events) {
-    const toml::table* const event = reader.as_table(node, "an event");
-    if (event == nullptr || reader.error()) return;
-    reader.allow_only(*event, {"time_s", "request", "settings", "clutch", "role", "symmetric",
-                               "masks", "refine", "cut", "join", "copy_part", "remove_part"});
+  reader.each_table(*events, "an event", [&](const toml::table& event) {
+    reader.allow_only(event, {"time_s", "request", "settings", "clutch", "role", "symmetric",
+                              "masks", "refine", "cut", "join", "copy_part", "remove_part"});
     Event read;
-    read.time_s = reader.number(*event, "time_s");
-    read.command = read_command(reader, *event, timeline.rig.get());
+    read.time_s = reader.number(event, "time_s");
+    read.command = read_command(reader, event, timeline.rig.get());
     timeline.events.push_back(read);
     if (!reader.error() && flow::is_for_puppet(read.command) && timeline.rig == nullptr)
-      reader.complain(*event, "is about a puppet, and there is none; add [puppet]");
-  }
+      reader.complain(event, "is about a puppet, and there is none; add [puppet]");
+  });
 }
 
 /// Where the points are on the model, by their names.
@@ -350,14 +336,12 @@ void read_rig_state(TomlReader& reader, const toml::table& table, const puppet::
   if (!table.contains("functions")) return;
   const toml::array* const functions = reader.array(table, "functions");
   if (functions == nullptr) return;
-  for (const toml::node& node : *functions) {
-    const toml::table* const one = reader.as_table(node, "a function");
-    if (one == nullptr || reader.error()) return;
-    reader.allow_only(*one, {"name", "input", "asked", "held"});
-    state.functions[read_function(reader, *one, "name", puppet)] = {
-        reader.number(*one, "asked"), reader.named(*one, "input", puppet::HandSignal::named),
-        reader.truth(*one, "held")};
-  }
+  reader.each_table(*functions, "a function", [&](const toml::table& one) {
+    reader.allow_only(one, {"name", "input", "asked", "held"});
+    state.functions[read_function(reader, one, "name", puppet)] = {
+        reader.number(one, "asked"), reader.named(one, "input", puppet::HandSignal::named),
+        reader.truth(one, "held")};
+  });
 }
 
 void read_puppet(TomlReader& reader, const toml::table& root, Timeline& timeline) {
@@ -405,11 +389,9 @@ Timeline read_root(TomlReader& reader, const toml::table& root) {
   read_sculptor(reader, root, timeline.rig != nullptr, timeline.sculptor);
   const toml::array* const hands = reader.array(root, "hands");
   if (hands == nullptr) return timeline;
-  for (const toml::node& node : *hands) {
-    const toml::table* const hand = reader.as_table(node, "a hand");
-    if (hand == nullptr || reader.error()) break;
-    timeline.hands.push_back(read_hand(reader, *hand));
-  }
+  reader.each_table(*hands, "a hand", [&](const toml::table& hand) {
+    timeline.hands.push_back(read_hand(reader, hand));
+  });
   if (const std::string wrong = complaint_about(timeline); !wrong.empty())
     reader.complain(root, wrong);
   return timeline;

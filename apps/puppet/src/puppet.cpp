@@ -31,12 +31,11 @@ std::string name_of(std::size_t number) {
 
 std::optional<HandSignal> HandSignal::named(std::string_view name) noexcept {
   const auto point = name.find('.');
-  const std::string_view side = name.substr(0, point);
-  if (point == std::string_view::npos || (side != "left" && side != "right")) return std::nullopt;
+  const auto side = side_named(name.substr(0, point));
+  if (point == std::string_view::npos || !side) return std::nullopt;
   for (std::size_t number = 0; number < count; ++number)
     if (name.substr(point + 1) == name_of(number))
-      return HandSignal(side == "left" ? Side::left : Side::right,
-                        static_cast<std::uint8_t>(number));
+      return HandSignal(*side, static_cast<std::uint8_t>(number));
   return std::nullopt;
 }
 

@@ -76,11 +76,7 @@ private:
     if (list == nullptr) return;
     if (list->size() > max_entries)
       return reader_.complain(*list, "there are more than 1000 " + std::string(key));
-    for (const toml::node& node : *list) {
-      const toml::table* const one = reader_.as_table(node, key);
-      if (one == nullptr || reader_.error()) return;
-      read(*one);
-    }
+    reader_.each_table(*list, key, read);
   }
   double length(const toml::table& table, std::string_view key) {
     const double value = reader_.number(table, key);

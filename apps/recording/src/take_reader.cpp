@@ -18,32 +18,29 @@ namespace {
 /// What an entry has in a file: its kind, the size of its body, and the body's fields.
 template <class One>
 struct Format;
+template <EntryKind of_entry, std::size_t of_body>
+struct FormatOf {
+  static constexpr EntryKind kind = of_entry;
+  static constexpr std::size_t bytes = of_body;
+};
 
 template <>
-struct Format<RecordedSample> {
-  static constexpr EntryKind kind = EntryKind::sample;
-  static constexpr std::size_t bytes = sample_bytes;
+struct Format<RecordedSample> : FormatOf<EntryKind::sample, sample_bytes> {
   static void put(auto& fields, auto& sample) { sample_fields(fields, sample); }
 };
 
 template <>
-struct Format<flow::LoopSettings> {
-  static constexpr EntryKind kind = EntryKind::settings;
-  static constexpr std::size_t bytes = settings_bytes;
+struct Format<flow::LoopSettings> : FormatOf<EntryKind::settings, settings_bytes> {
   static void put(auto& fields, auto& settings) { settings_body(fields, settings); }
 };
 
 template <>
-struct Format<flow::Request> {
-  static constexpr EntryKind kind = EntryKind::request;
-  static constexpr std::size_t bytes = 1;
+struct Format<flow::Request> : FormatOf<EntryKind::request, 1> {
   static void put(auto& fields, auto& request) { fields.one_of(request, flow::Request::regrab); }
 };
 
 template <>
-struct Format<flow::LoggedTick> {
-  static constexpr EntryKind kind = EntryKind::tick;
-  static constexpr std::size_t bytes = 24;
+struct Format<flow::LoggedTick> : FormatOf<EntryKind::tick, 24> {
   static void put(auto& fields, auto& tick) {
     fields.u64(tick.number);
     fields.time(tick.scheduled);
@@ -52,9 +49,7 @@ struct Format<flow::LoggedTick> {
 };
 
 template <>
-struct Format<flow::WristMove> {
-  static constexpr EntryKind kind = EntryKind::wrist;
-  static constexpr std::size_t bytes = 57;
+struct Format<flow::WristMove> : FormatOf<EntryKind::wrist, 57> {
   static void put(auto& fields, auto& move) {
     fields.one_of(move.side, Side::right);
     for (auto& number : move.position_m)
@@ -66,16 +61,12 @@ struct Format<flow::WristMove> {
 };
 
 template <>
-struct Format<flow::HoldStill> {
-  static constexpr EntryKind kind = EntryKind::hold_still;
-  static constexpr std::size_t bytes = 0;
+struct Format<flow::HoldStill> : FormatOf<EntryKind::hold_still, 0> {
   static void put(auto& /*fields*/, auto& /*still*/) {}
 };
 
 template <>
-struct Format<flow::ChangeModel> {
-  static constexpr EntryKind kind = EntryKind::model;
-  static constexpr std::size_t bytes = 21;
+struct Format<flow::ChangeModel> : FormatOf<EntryKind::model, 21> {
   static void put(auto& fields, auto& change) {
     fields.u32(change.number);
     fields.one_of(change.source, flow::ModelSource::topology);
@@ -86,16 +77,12 @@ struct Format<flow::ChangeModel> {
 };
 
 template <>
-struct Format<flow::Mark> {
-  static constexpr EntryKind kind = EntryKind::mark;
-  static constexpr std::size_t bytes = 0;
+struct Format<flow::Mark> : FormatOf<EntryKind::mark, 0> {
   static void put(auto& /*fields*/, auto& /*mark*/) {}
 };
 
 template <>
-struct Format<flow::SetClutch> {
-  static constexpr EntryKind kind = EntryKind::clutch;
-  static constexpr std::size_t bytes = 3;
+struct Format<flow::SetClutch> : FormatOf<EntryKind::clutch, 3> {
   static void put(auto& fields, auto& clutch) {
     fields.one_of(clutch.side, Side::right);
     fields.u8(clutch.finger);
@@ -104,9 +91,7 @@ struct Format<flow::SetClutch> {
 };
 
 template <>
-struct Format<flow::SetRole> {
-  static constexpr EntryKind kind = EntryKind::role;
-  static constexpr std::size_t bytes = 4;
+struct Format<flow::SetRole> : FormatOf<EntryKind::role, 4> {
   static void put(auto& fields, auto& role) {
     fields.u16(role.function);
     fields.signal(role.input);
@@ -114,16 +99,12 @@ struct Format<flow::SetRole> {
 };
 
 template <>
-struct Format<flow::SetSymmetry> {
-  static constexpr EntryKind kind = EntryKind::symmetry;
-  static constexpr std::size_t bytes = 1;
+struct Format<flow::SetSymmetry> : FormatOf<EntryKind::symmetry, 1> {
   static void put(auto& fields, auto& symmetry) { fields.flag(symmetry.on); }
 };
 
 template <>
-struct Format<flow::SetLayer> {
-  static constexpr EntryKind kind = EntryKind::layer;
-  static constexpr std::size_t bytes = 2;
+struct Format<flow::SetLayer> : FormatOf<EntryKind::layer, 2> {
   static void put(auto& fields, auto& layer) {
     fields.u8(layer.input);
     fields.flag(layer.on);
@@ -131,9 +112,7 @@ struct Format<flow::SetLayer> {
 };
 
 template <>
-struct Format<flow::DrawWire> {
-  static constexpr EntryKind kind = EntryKind::wire;
-  static constexpr std::size_t bytes = 1;
+struct Format<flow::DrawWire> : FormatOf<EntryKind::wire, 1> {
   static void put(auto& fields, auto& wire) {
     auto blade = static_cast<std::uint8_t>(wire.on ? 1U + static_cast<unsigned>(wire.blade) : 0U);
     fields.u8(blade);
@@ -146,16 +125,12 @@ struct Format<flow::DrawWire> {
 };
 
 template <>
-struct Format<PuppetChange> {
-  static constexpr EntryKind kind = EntryKind::puppet;
-  static constexpr std::size_t bytes = 4;
+struct Format<PuppetChange> : FormatOf<EntryKind::puppet, 4> {
   static void put(auto& fields, auto& change) { fields.u32(change.number); }
 };
 
 template <>
-struct Format<Gap> {
-  static constexpr EntryKind kind = EntryKind::gap;
-  static constexpr std::size_t bytes = 8;
+struct Format<Gap> : FormatOf<EntryKind::gap, 8> {
   static void put(auto& fields, auto& gap) { fields.u64(gap.entries); }
 };
 
