@@ -113,8 +113,8 @@ std::optional<std::uint16_t> number_in(const puppet::Rig& timelines, const puppe
 // Follows a replay, and keeps a key a tick of each hand, and what the ticks did.
 class TickRecorder {
 public:
-  TickRecorder(Timeline& timeline, const flow::LoopOptions& options)
-      : timeline_(timeline), held_(timeline.held),
+  TickRecorder(Timeline& timeline, const flow::LoopOptions& options, const flow::DeformLoop& loop)
+      : timeline_(timeline), loop_(loop), held_(timeline.held),
         on_grid_(options.policy == flow::OverrunPolicy::skip ||
                  options.policy == flow::OverrunPolicy::catch_up) {}
 
@@ -127,45 +127,46 @@ public:
       regrabs_ = true;
   }
 
-  /// Commands of the puppet that is played then, and marks. A loop ignores roles of functions that
-  /// the puppet does not have.
-  void add_puppet_command(const flow::Command& command, const flow::DeformLoop& loop) {
-    const auto& played = loop.changes().puppet(loop.changes().newest_puppet());
-    const auto* role = std::get_if<flow::SetRole>(&command);
-    if (role != nullptr && played && timeline_.rig) {
-      if (const auto number = number_in(*timeline_.rig, *played, role->function))
-        puppet_commands_.emplace_back(flow::SetRole{*number, role->input});
-    } else if (flow::is_for_puppet(command)) {
-      puppet_commands_.push_back(command);
-    }
-    if (std::holds_alternative<flow::Mark>(command)) marks_.push_back(command);
+  void record(const flow::Mark& mark) { marks_.emplace_back(mark); }
+  void record(const flow::SetClutch& clutch) { puppet_commands_.emplace_back(clutch); }
+  void record(const flow::SetSymmetry& symmetry) { puppet_commands_.emplace_back(symmetry); }
+  /// A loop ignores roles of functions that the puppet which is played then does not have.
+  void record(const flow::SetRole& role) {
+    const auto& played = loop_.changes().puppet(loop_.changes().newest_puppet());
+    const auto number = played && timeline_.rig ? number_in(*timeline_.rig, *played, role.function)
+                                                : std::optional(role.function);
+    if (number) puppet_commands_.emplace_back(flow::SetRole{*number, role.input});
   }
 
   void record(const flow::HoldStill&) { is_still_ = true; }
   /// The model is made of the shape of the tick in which the loop began to hold still; a cut one by
-  /// that wire.
-  void record(const flow::ChangeModel& change, const flow::WirePath& wire) {
+  /// the drawn wire.
+  void record(const flow::ChangeModel& change) {
     is_still_ = false;
     if (!change.is_new()) return;
     if (change.source != flow::ModelSource::cut)
       return timeline_.events.push_back({still_at_s_, flow::asking_for(change)});
     const auto number = static_cast<std::uint32_t>(timeline_.wires.size());
-    timeline_.wires.emplace_back(wire.places().begin(), wire.places().end());
+    const auto places = loop_.drawn_wire().places();
+    timeline_.wires.emplace_back(places.begin(), places.end());
     timeline_.events.push_back({still_at_s_, flow::ChangeModel{number, change.source}});
   }
 
-  /// Returns false if a timeline has no such settings.
-  bool record(const flow::LoopSettings& settings, const flow::LoopSettings& in_force) {
-    if (settings.filter != in_force.filter) return false;
-    if (settings == in_force) return true;
+  void record(const flow::LoopSettings& settings) {
+    const flow::LoopSettings& current = loop_.changes().settings();
+    changes_filter_ = changes_filter_ || settings.filter != current.filter;
+    if (settings == current) return;
     settings_ = settings;
     settings_->filter = {};
     answers_step_ = awaited_ && awaited_->settings == settings;
-    return true;
   }
+  /// Returns whether the settings changed the filter, which those of a timeline do not have.
+  bool changes_filter() const noexcept { return changes_filter_; }
+  template <class Other>
+  void record(const Other&) {}
 
   /// The fingertips have other masks; `number` is the replay's.
-  void record(std::uint32_t number, const std::shared_ptr<const puppet::Rig>& masks) {
+  void record_masks(std::uint32_t number, const std::shared_ptr<const puppet::Rig>& masks) {
     if (std::exchange(masks_, number) == number) return; // recorders repeat it
     auto& all = timeline_.masks;
     all.resize(std::max<std::size_t>(all.size(), number + 1));
@@ -267,6 +268,7 @@ private:
   }
 
   Timeline& timeline_;
+  const flow::DeformLoop& loop_;
   bool held_;
   bool on_grid_;
   std::uint64_t commits_ = 0;
@@ -279,24 +281,14 @@ private:
   std::optional<flow::LoopSettings> settings_; ///< a change since the last tick
   std::uint32_t masks_ = 0;                    ///< their number
   std::optional<std::uint32_t> masks_due_;     ///< a change since the last tick
-  bool answers_step_ = false;                  ///< an undo or a redo has waited for these changes
-  bool is_still_ = false;                      ///< from the next tick on
-  double still_at_s_ = 0.0;                    ///< the end of the last tick that shaped
-  std::optional<flow::Awaited> awaited_;       ///< after the last tick, by an undo or a redo
-  std::uint32_t puppet_ = 0;                   ///< in the last tick
+  bool changes_filter_ = false;
+  bool answers_step_ = false;            ///< an undo or a redo has waited for these changes
+  bool is_still_ = false;                ///< from the next tick on
+  double still_at_s_ = 0.0;              ///< the end of the last tick that shaped
+  std::optional<flow::Awaited> awaited_; ///< after the last tick, by an undo or a redo
+  std::uint32_t puppet_ = 0;             ///< in the last tick
   std::optional<flow::LoggedTick> first_;
 };
-
-void add_puppet_command(const recording::Entry& entry, const flow::DeformLoop& loop,
-                        TickRecorder& recorder) {
-  const auto record = [&](const auto* command) {
-    if (command != nullptr) recorder.add_puppet_command(*command, loop);
-  };
-  record(std::get_if<flow::Mark>(&entry));
-  record(std::get_if<flow::SetClutch>(&entry));
-  record(std::get_if<flow::SetRole>(&entry));
-  record(std::get_if<flow::SetSymmetry>(&entry));
-}
 
 // Of frames or of events; empty if nothing does.
 std::string what_exceeds(const Timeline& timeline, std::size_t most) {
@@ -349,31 +341,24 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
   }
   made.has_last_puppet = change.has_value();
   keep_puppet((*replay)->loop(), setup.loop->options.rig_state, std::move(last), made.timeline);
-  TickRecorder recorder(made.timeline, setup.loop->options);
+  flow::DeformLoop& loop = (*replay)->loop();
+  TickRecorder recorder(made.timeline, setup.loop->options, loop);
   while (const auto entry = reader->next()) {
-    if (const auto* request = std::get_if<flow::Request>(&*entry)) recorder.record(*request);
-    add_puppet_command(*entry, (*replay)->loop(), recorder);
-    if (const auto* still = std::get_if<flow::HoldStill>(&*entry)) recorder.record(*still);
-    if (const auto* model_change = std::get_if<flow::ChangeModel>(&*entry))
-      recorder.record(*model_change, (*replay)->loop().drawn_wire());
-    const auto* settings = std::get_if<flow::LoopSettings>(&*entry);
-    if (settings != nullptr && !recorder.record(*settings, (*replay)->loop().changes().settings()))
+    std::visit([&](const auto& one) { recorder.record(one); }, *entry);
+    if (recorder.changes_filter())
       return bad("changes the filter of the hands on the way, which a timeline cannot; cut out the "
                  "part before that with `nendo recording cut`");
     const bool ticked = (*replay)->feed(*entry);
     if (std::holds_alternative<recording::PuppetChange>(*entry) && !made.timeline.rig) {
-      const flow::DeformLoop& loop = (*replay)->loop();
       const auto& masks = loop.changes().puppet(loop.changes().newest_puppet());
       if (flow::is_played(masks.get()))
         return bad("begins a puppet on the way, and a timeline has one from the beginning on; save "
                    "the puppet, and record a run with it by --puppet FILE");
-      recorder.record(loop.changes().newest_puppet(), masks);
+      recorder.record_masks(loop.changes().newest_puppet(), masks);
     }
     if (!ticked) continue;
-    auto& frames = (*replay)->loop().frames();
-    frames.update();
-    recorder.record_tick(std::get<flow::LoggedTick>(*entry), frames.front(),
-                         (*replay)->loop().stats());
+    loop.frames().update();
+    recorder.record_tick(std::get<flow::LoggedTick>(*entry), loop.frames().front(), loop.stats());
     if (const std::string many = what_exceeds(made.timeline, most); !many.empty())
       return bad("has more than " + many + "; cut a part with `nendo recording cut`");
   }
