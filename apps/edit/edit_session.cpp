@@ -103,14 +103,14 @@ commands::EditFacts EditSession::facts() const noexcept {
 }
 
 void EditSession::handle(const viewer::EditActions& actions) {
-  if (actions.select) go_to_key(key_of(*actions.select));
+  if (actions.select) select(key_of(*actions.select));
   if (actions.seek_s) seek(*actions.seek_s);
   if (actions.speed) head_.set_speed(*actions.speed);
   if (actions.tried) std::visit([this](const auto& tried) { try_out(tried); }, *actions.tried);
   if (actions.keep) history_.keep();
   if (actions.drop) {
     history_.drop();
-    go_to_key(history_.selected());
+    select(history_.selected());
     report("given up");
   }
   if (actions.retiming) retime(*actions.retiming);
@@ -179,7 +179,7 @@ void EditSession::execute(EditCommand command) {
 void EditSession::step_history(bool redoes) {
   redoes ? history_.redo() : history_.undo();
   report(redoes ? "redone" : "undone");
-  if (view_.at_selected) go_to_key(history_.selected());
+  if (view_.at_selected) select(history_.selected());
 }
 
 void EditSession::advance(double elapsed_s) {
@@ -192,11 +192,7 @@ void EditSession::seek(double time_s) {
   head_.seek(time_s, head_limit_s());
 }
 
-void EditSession::select(const KeyRef& key) {
-  go_to_key(key);
-}
-
-void EditSession::go_to_key(const Selection& key) {
+void EditSession::select(const Selection& key) {
   history_.select(key);
   if (history_.selected()) seek(find_key(history_.timeline(), *history_.selected())->time_s);
 }
@@ -207,7 +203,7 @@ void EditSession::go_to_neighbour(bool next) {
   const auto side = selected ? std::optional(selected->side) : std::nullopt;
   const auto key = (next ? key_after : key_before)(history_.timeline(), head_.time_s(), side);
   if (!key) return report(next ? "there is no later key" : "there is no earlier key", true);
-  go_to_key(key);
+  select(key);
 }
 
 void EditSession::step(double frames) {

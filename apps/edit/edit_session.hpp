@@ -34,7 +34,7 @@ public:
   /// Moves the play head on by the time that has passed.
   void advance(double elapsed_s);
   /// These do what `select` and `seek_s` of EditActions do.
-  void select(const timeline::KeyRef& key);
+  void select(const std::optional<timeline::KeyRef>& key);
   void seek(double time_s);
 
   /// Returns the view of the present state. It is valid until the next call.
@@ -65,7 +65,6 @@ private:
   void retime(const viewer::Retiming& times);
   void save();
   void begin_export();
-  void go_to_key(const std::optional<timeline::KeyRef>& key);
   void go_to_neighbour(bool next);
   void step(double frames);
   void step_history(bool redoes);

@@ -86,7 +86,6 @@ GltfMaterials::GltfMaterials(const deform::Appearance& look, GlbFile& file) {
 }
 
 using Eigen::Index;
-using Json = GlbFile::Json;
 using Use = GlbFile::Use;
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -62,14 +63,14 @@ void print_loop(const TakeSummary& summary) {
                 std::string(flow::name_of(request)).c_str(),
                 request == flow::requests.back() ? "" : ",");
   }
-  if (summary.wrist_moves > 0) std::printf(", %llu wrist moves", number(summary.wrist_moves));
-  if (summary.settings_changes > 0)
-    std::printf(", %llu changes of settings", number(summary.settings_changes));
-  if (summary.model_changes > 0)
-    std::printf(", %llu changes of the model", number(summary.model_changes));
-  if (summary.puppet_changes > 0)
-    std::printf(", %llu changes of the puppet", number(summary.puppet_changes));
-  if (summary.shapes > 0) std::printf(", %llu shapes", number(summary.shapes));
+  const std::pair<std::uint64_t, const char*> counts[]{
+      {summary.wrist_moves, "wrist moves"},
+      {summary.settings_changes, "changes of settings"},
+      {summary.model_changes, "changes of the model"},
+      {summary.puppet_changes, "changes of the puppet"},
+      {summary.shapes, "shapes"}};
+  for (const auto& [count, what] : counts)
+    if (count > 0) std::printf(", %llu %s", number(count), what);
   std::printf("\n");
 }
 

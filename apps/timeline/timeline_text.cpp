@@ -236,10 +236,7 @@ std::string head_text(const Timeline& timeline) {
 /// Empty for an average hand.
 std::string shape_text(const hand::WearerShape& shape) {
   if (shape.is_average()) return {};
-  std::string list;
-  for (const double term : shape.terms)
-    list += (list.empty() ? "[" : ", ") + decimal_text(term);
-  return line("shape", list + "]");
+  return line("shape", list(shape.terms));
 }
 
 } // namespace

@@ -236,7 +236,6 @@ Result<Puppet> with_mirror(const Rig& rig, bool mirrors) {
 
 using deform::Points;
 using Eigen::Index;
-using Eigen::Vector3d;
 
 namespace {
 

@@ -232,24 +232,25 @@ void erase_masks(std::span<const Vector3d> stroke, double radius, Puppet& puppet
   });
 }
 
-} // namespace
-
-Result<Puppet> with_masks(const Rig& rig, std::span<const Vector3d> stroke, double radius) {
+/// Where masks are inverted, those are erased that would be added, and the other way.
+Result<Puppet> painted(const Rig& rig, std::span<const Vector3d> stroke, bool protects,
+                       double add_radius, double erase_radius) {
   EditedPuppet draft(rig);
-  if (draft.puppet().inverted)
-    erase_masks(stroke, half_of_mask * radius, draft.puppet());
-  else if (const auto added = add_masks(stroke, radius, draft.puppet()); !added)
+  if (protects == draft.puppet().inverted)
+    erase_masks(stroke, erase_radius, draft.puppet());
+  else if (const auto added = add_masks(stroke, add_radius, draft.puppet()); !added)
     return added.error();
   return draft.done();
 }
 
+} // namespace
+
+Result<Puppet> with_masks(const Rig& rig, std::span<const Vector3d> stroke, double radius) {
+  return painted(rig, stroke, true, radius, half_of_mask * radius);
+}
+
 Result<Puppet> without_masks(const Rig& rig, std::span<const Vector3d> stroke, double radius) {
-  EditedPuppet draft(rig);
-  if (!draft.puppet().inverted)
-    erase_masks(stroke, radius, draft.puppet());
-  else if (const auto added = add_masks(stroke, radius / half_of_mask, draft.puppet()); !added)
-    return added.error();
-  return draft.done();
+  return painted(rig, stroke, false, radius / half_of_mask, radius);
 }
 
 Result<Puppet> without_any_mask(const Rig& rig) {

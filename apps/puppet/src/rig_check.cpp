@@ -90,7 +90,6 @@ const Rig& RigShapes::rig() const noexcept {
   return *parts_->rig;
 }
 
-using deform::Points;
 using Eigen::Index;
 using Eigen::Vector3d;
 
