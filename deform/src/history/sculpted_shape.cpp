@@ -18,8 +18,7 @@ constexpr std::size_t min_slab = 64; // blocks
 constexpr std::size_t max_slabs_waiting = 64;
 constexpr std::size_t slabs_ahead = 4;
 
-} // namespace
-
+/// Allocates `count` > 0 blocks and touches them all, so that their first use causes no page fault.
 std::unique_ptr<SavedBlock[]> make_saved_blocks(std::size_t count, SavedChain& chain) {
   auto blocks = std::make_unique<SavedBlock[]>(count);
   for (std::size_t at = 0; at + 1 < count; ++at)
@@ -27,6 +26,8 @@ std::unique_ptr<SavedBlock[]> make_saved_blocks(std::size_t count, SavedChain& c
   chain = {&blocks[0], &blocks[count - 1], count};
   return blocks;
 }
+
+} // namespace
 
 UndoMemory::UndoMemory(std::size_t blocks_ahead, std::size_t max_bytes)
     : blocks_ahead_(blocks_ahead),

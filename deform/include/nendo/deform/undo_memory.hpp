@@ -20,8 +20,6 @@ struct SavedChain {
   SavedBlock* last = nullptr;
   std::size_t count = 0;
 };
-/// Allocates `count` > 0 blocks and touches them all, so that their first use causes no page fault.
-NENDO_API std::unique_ptr<SavedBlock[]> make_saved_blocks(std::size_t count, SavedChain& chain);
 
 /// The memory of one deformer. The deformer keeps the blocks that it has taken and uses them again.
 class NENDO_API UndoMemory {
