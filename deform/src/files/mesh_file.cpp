@@ -19,6 +19,7 @@
 #include "files/number_text.hpp"
 #include "files/text_scanner.hpp"
 #include "geometry/usable.hpp"
+#include "mesh/columns.hpp"
 #include "repair/weld.hpp"
 
 namespace nendo::deform {
@@ -37,15 +38,6 @@ bool repeats_corner(CornerSpan corners) noexcept {
          std::adjacent_find(corners.begin(), corners.end()) != corners.end();
 }
 
-bool has_three_corners(CornerSpan corners) noexcept {
-  if (corners.size() < 3) return false;
-  const std::uint32_t one = corners.front();
-  const auto other = std::find_if(corners.begin(), corners.end(),
-                                  [&](std::uint32_t corner) { return corner != one; });
-  return std::any_of(other, corners.end(),
-                     [&](std::uint32_t corner) { return corner != one && corner != *other; });
-}
-
 /// Takes a corner that a face names twice in a row once only, and leaves out faces with fewer than
 /// three different corners. Adds a note for each of both, if there are any. Other faces, and all
 /// vertices, stay as they are.
@@ -55,7 +47,7 @@ void tidy_faces(Mesh& mesh, ReadNotes& notes) {
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const CornerSpan corners = span_of(mesh, face);
     const auto own = std::span(keeps).subspan(mesh.face_starts[face], corners.size());
-    if (!has_three_corners(corners)) {
+    if (!has_three(corners)) {
       left_out.add(face + 1);
       std::ranges::fill(own, std::uint8_t{0});
     } else if (repeats_corner(corners)) {

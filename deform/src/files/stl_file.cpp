@@ -14,6 +14,7 @@
 #include "files/number_text.hpp"
 #include "files/text_scanner.hpp"
 #include "geometry/usable.hpp"
+#include "mesh/columns.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -62,48 +63,34 @@ bool looks_binary(std::string_view text) noexcept {
 
 /// Faces that become a mesh.
 struct StlFaces {
-  std::vector<double> vertices; ///< three numbers each
+  std::vector<SpacePoint> vertices;
   Mesh mesh;
   std::size_t facets = 0;
   Tally left_out;
 
-  void add_vertex(const std::array<double, 3>& place) {
-    mesh.face_corners.push_back(static_cast<std::uint32_t>(vertices.size() / 3));
-    vertices.insert(vertices.end(), place.begin(), place.end());
+  void add_vertex(const SpacePoint& place) {
+    mesh.face_corners.push_back(to_index(vertices.size()));
+    vertices.push_back(place);
   }
   /// Returns false, and forgets the facet with its vertices, if it has fewer than three different
   /// places.
   bool end_face() {
     ++facets;
     const std::size_t begin = mesh.face_starts.back();
-    if (has_three_places(begin)) {
+    if (has_three(std::span(vertices).subspan(begin))) {
       mesh.face_starts.push_back(to_index(mesh.face_corners.size()));
       return true;
     }
     left_out.add(facets);
     mesh.face_corners.resize(begin);
-    vertices.resize(3 * begin); // each corner has a vertex of its own
-    return false;
-  }
-  bool has_three_places(std::size_t begin) const noexcept {
-    const std::size_t end = mesh.face_corners.size();
-    const auto differ = [&](std::size_t one, std::size_t other) {
-      return !std::equal(vertices.begin() + static_cast<std::ptrdiff_t>(3 * one),
-                         vertices.begin() + static_cast<std::ptrdiff_t>(3 * one + 3),
-                         vertices.begin() + static_cast<std::ptrdiff_t>(3 * other));
-    };
-    std::size_t second = begin;
-    while (second < end && !differ(begin, second))
-      ++second;
-    for (std::size_t third = second; third < end; ++third)
-      if (differ(begin, third) && differ(second, third)) return true;
+    vertices.resize(begin); // each corner has a vertex of its own
     return false;
   }
   void note_left_out(ReadNotes& notes) const {
     if (left_out.count > 0) notes.push_back(left_out.without_three_corners("facet"));
   }
   Mesh take() && {
-    mesh.vertices = columns_of<3>(vertices);
+    mesh.vertices = points_of(vertices);
     return std::move(mesh);
   }
 };
@@ -151,7 +138,7 @@ private:
   }
   Result<void> vertex() {
     if (!in_loop_) return bad("a vertex is outside of a loop");
-    std::array<double, 3> place{};
+    SpacePoint place{};
     for (double& coordinate : place) {
       const std::string_view field = words_.field_on_any_line();
       if (field.empty()) return bad("the file is cut off within a vertex");
@@ -257,7 +244,7 @@ public:
   Result<Mesh> parse(ReadNotes& notes) {
     const auto count = count_facets(notes);
     if (!count) return count.error();
-    faces_.vertices.reserve(9 * *count);
+    faces_.vertices.reserve(3 * *count);
     faces_.mesh.face_corners.reserve(3 * *count);
     FacetColours colours(text_.substr(0, stl_header_bytes));
     Appearance& look = faces_.mesh.look;
@@ -301,7 +288,7 @@ private:
   Result<bool> facet(std::size_t number) {
     const std::size_t begin = facets_offset + facet_bytes * number;
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      std::array<double, 3> place{};
+      SpacePoint place{};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t at = begin + 12 + 12 * corner + 4 * axis; // after the normal
         const auto value = std::bit_cast<float>(little_endian(text_, at, 4));

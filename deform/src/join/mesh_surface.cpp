@@ -149,10 +149,7 @@ std::pair<TriangleSurface, Appearance> single_surface_of(const Mesh& mesh) {
 
 Mesh mesh_of(const TriangleSurface& surface, const Appearance& look) {
   Mesh mesh;
-  mesh.vertices.resize(3, static_cast<Eigen::Index>(surface.points.size()));
-  for (std::size_t i = 0; i < surface.points.size(); ++i)
-    mesh.vertices.col(static_cast<Eigen::Index>(i)) << surface.points[i][0], surface.points[i][1],
-        surface.points[i][2];
+  mesh.vertices = points_of(surface.points);
   mesh.face_corners.reserve(3 * surface.faces.size());
   mesh.face_starts.reserve(surface.faces.size() + 1);
   for (const Corners& corners : surface.faces) {

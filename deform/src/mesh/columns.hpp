@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <iterator>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -31,6 +33,12 @@ inline std::vector<SpacePoint> space_points(const Points& points) {
   return all;
 }
 
+/// Returns the same as columns.
+inline Points points_of(std::span<const SpacePoint> points) {
+  return Eigen::Map<const Points>(points.empty() ? nullptr : points.front().data(), 3,
+                                  static_cast<Eigen::Index>(points.size()));
+}
+
 /// Returns the columns with one entry per face. Each may be empty.
 inline std::array<std::vector<std::uint32_t>*, 3> face_columns(Appearance& look) noexcept {
   return {&look.face_materials, &look.groups.of_face, &look.objects.of_face};
@@ -51,6 +59,19 @@ std::vector<std::uint32_t> first_alike(std::size_t count, const Key& key) {
     first[order[at]] =
         at > 0 && key(order[at]) == key(order[at - 1]) ? first[order[at - 1]] : order[at];
   return first;
+}
+
+/// Returns whether three of the values, as `project` shows them, differ from each other.
+template <class Values, class Project = std::identity>
+bool has_three(const Values& values, const Project& project = {}) {
+  const auto first = std::begin(values);
+  auto second = first;
+  for (auto at = first; at != std::end(values); ++at) {
+    if (project(*at) == project(*first) || project(*at) == project(*second)) continue;
+    if (second != first) return true;
+    second = at;
+  }
+  return false;
 }
 
 /// Returns 1 for each vertex that a face has, and 0 for the others. Allocates.

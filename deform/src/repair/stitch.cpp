@@ -23,16 +23,6 @@ SpacePoint face_area(const Mesh& mesh, std::uint32_t face) noexcept {
   return sum;
 }
 
-bool has_three_places(std::span<const std::uint32_t> places) {
-  std::uint32_t second = places[0];
-  for (const std::uint32_t place : places) {
-    if (place == places[0] || place == second) continue;
-    if (second != places[0]) return true;
-    second = place;
-  }
-  return false;
-}
-
 /// More faces at one edge are no walls, and each would be compared with each.
 constexpr std::size_t max_sides = 64;
 
@@ -160,7 +150,7 @@ std::vector<PlacedEdge> placed_edges(const Mesh& mesh, std::span<const std::uint
   edges.reserve(mesh.face_corners.size());
   for (std::uint32_t face = 0; face < mesh.face_count(); ++face) {
     const std::uint32_t begin = mesh.face_starts[face], end = mesh.face_starts[face + 1];
-    if (end - begin < 3 || !has_three_places(place_of.subspan(begin, end - begin))) continue;
+    if (!has_three(place_of.subspan(begin, end - begin))) continue;
     for (std::uint32_t at = begin; at < end; ++at) {
       const std::uint32_t next = at + 1 < end ? at + 1 : begin;
       const std::uint32_t from = place_of[at], to = place_of[next];

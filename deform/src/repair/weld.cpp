@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <map>
 #include <utility>
 
 #include <nendo/deform/corner_colours.hpp>
@@ -26,12 +25,8 @@ std::vector<std::uint32_t> places_in_groups(const std::vector<std::uint32_t>& pl
   if (group_of_vertex.empty() ||
       std::ranges::adjacent_find(group_of_vertex, std::not_equal_to<>()) == group_of_vertex.end())
     return place;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first;
-  std::vector<std::uint32_t> alike;
-  alike.reserve(place.size());
-  for (std::uint32_t at = 0; at < place.size(); ++at)
-    alike.push_back(first.emplace(std::pair(place[at], group_of_vertex[at]), at).first->second);
-  return alike;
+  return first_alike(place.size(),
+                     [&](std::uint32_t at) { return std::pair(place[at], group_of_vertex[at]); });
 }
 
 /// Faces with fewer than three places hold nothing together: their vertices become one with the
@@ -41,15 +36,9 @@ void join_thin_faces(const Mesh& mesh, std::span<const std::uint32_t> place, Uni
   std::vector<std::uint32_t> first(place.size(), no_index); // by place
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const std::uint32_t begin = mesh.face_starts[face], end = mesh.face_starts[face + 1];
-    std::uint32_t different = 0;
-    for (std::uint32_t at = begin; at < end && different < 3; ++at) {
-      bool is_new = true;
-      for (std::uint32_t before = begin; before < at && is_new; ++before)
-        is_new = place[mesh.face_corners[before]] != place[mesh.face_corners[at]];
-      different += is_new ? 1U : 0U;
-    }
-    is_thin[face] = different < 3 ? 1 : 0;
-    for (std::uint32_t at = begin; at < end && different >= 3; ++at) {
+    const auto corners = std::span(mesh.face_corners).subspan(begin, end - begin);
+    is_thin[face] = has_three(corners, [&](std::uint32_t at) { return place[at]; }) ? 0 : 1;
+    for (std::uint32_t at = begin; at < end && is_thin[face] == 0; ++at) {
       std::uint32_t& of = first[place[mesh.face_corners[at]]];
       if (of == no_index) of = mesh.face_corners[at];
     }
@@ -118,14 +107,12 @@ DroppedCorners renumber_corners(Mesh& mesh, std::span<const std::uint32_t> verte
       else
         own.push_back(mesh.face_corners[at]);
     }
-    const auto left = to_index(own.size());
-    std::sort(own.begin(), own.end());
-    if (std::unique(own.begin(), own.end()) - own.begin() < 3) {
+    if (!has_three(own)) {
       std::fill(keeps.begin() + begin, keeps.begin() + end, std::uint8_t{0});
       ++dropped.faces;
       continue;
     }
-    dropped.corners += end - begin - left;
+    dropped.corners += end - begin - own.size();
   }
   keep_corners(mesh, keeps);
   return dropped;

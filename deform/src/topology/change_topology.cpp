@@ -10,6 +10,7 @@
 #include "geometry/point_grid.hpp"
 #include "join/mesh_surface.hpp"
 #include "join/self_intersections.hpp"
+#include "mesh/columns.hpp"
 #include "topology/thin_surface.hpp"
 
 namespace nendo::deform {
@@ -96,18 +97,14 @@ std::vector<SpacePoint> area_vectors(const ThinSurface& surface) {
 std::vector<ThinPlace> thin_places(const ThinSurface& surface) {
   std::vector<ThinPlace> places;
   const std::uint32_t count = surface.point_count();
-  if (count == 0) return places;
   std::vector<SpacePoint> normals = area_vectors(surface);
-  Points points(3, static_cast<Eigen::Index>(count));
   double widest = 0.0;
   for (std::uint32_t at = 0; at < count; ++at) {
     normals[at] = unit_of(normals[at]);
-    points.col(static_cast<Eigen::Index>(at)) << surface.point(at)[0], surface.point(at)[1],
-        surface.point(at)[2];
     widest = std::max(widest, (goes_on.through_wall + goes_on.aside) * surface.wanted(at));
   }
   if (!(widest > 0.0)) return places;
-  const PointGrid grid(points, widest);
+  const PointGrid grid(points_of(surface.points()), widest);
   for (std::uint32_t at = 0; at < count; ++at) {
     if (dot(normals[at], normals[at]) == 0.0) continue;
     add_necks(surface, at, places);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "join/triangle_surface.hpp"
@@ -25,6 +26,7 @@ public:
   using SurfaceMesh::last;
   using SurfaceMesh::point_count;
 
+  std::span<const SpacePoint> points() const noexcept { return surface_.points; }
   const SpacePoint& point(std::uint32_t number) const noexcept { return surface_.points[number]; }
   /// How long edges should be at a point.
   double wanted(std::uint32_t number) const noexcept {
