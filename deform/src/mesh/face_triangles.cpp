@@ -65,8 +65,6 @@ bool is_fan(const std::vector<SpacePoint>& places, const SpacePoint& normal) noe
   return true;
 }
 
-} // namespace
-
 struct CornerBox {
   PlanePoint lowest, highest;
 };
@@ -411,6 +409,8 @@ private:
   CornerTree tree_;
   double margin_ = 0.0; ///< more than the places in the tree are off
 };
+
+} // namespace
 
 struct FaceTriangles::Parts {
   std::vector<SpacePoint> places; ///< a face's corners

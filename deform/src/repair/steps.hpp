@@ -1,6 +1,7 @@
 #pragma once
-// The steps of repairing a model (repair.cpp), in the order in which they are taken: double faces,
-// vertices in edges of other faces as CAD programs leave them, directions of faces, holes.
+// The steps of repairing a model (repair.cpp): steps.cpp splits edges at vertices that lie on them,
+// as CAD programs leave them, and drops double faces; turning.cpp orients faces; holes.cpp fills
+// holes.
 
 #include <cstddef>
 #include <cstdint>
@@ -51,10 +52,6 @@ struct FilledHoles {
 /// crooked. Faces around each vertex must form one fan, open or closed. Error: bad_input, with the
 /// place: they do not. Allocates.
 Result<FilledHoles> fill_holes(Mesh& mesh);
-
-/// Reverses a face: its corners, with all that belongs to them. The first
-/// corner stays the first.
-void turn_face(Mesh& mesh, std::size_t face);
 
 struct TurnedAlike {
   std::size_t turned = 0;
