@@ -108,7 +108,7 @@ TEST_SUITE("cut") {
       // The volume shows that the blade was displaced by no more than it may be.
       const auto parts = separate(*cut);
       CHECK(std::abs(volume_of(parts[0]) - volume_of(parts[1])) < 1e-5);
-      CHECK(std::abs(cut->give) <= 1e-6 * std::sqrt(3.0));
+      CHECK(std::abs(cut->blade_offset) <= 1e-6 * std::sqrt(3.0));
     }
   }
 

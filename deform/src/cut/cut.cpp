@@ -163,7 +163,7 @@ std::vector<double> gaps_within(const std::vector<double>& sides, double band) {
 /// The blade's displacement in an attempt, counted from 0. The band grows threefold each time. The
 /// first attempts take the widest gap; those after every second one take another gap or another
 /// place.
-double give_of(const std::vector<double>& sides, double diagonal, std::uint32_t attempt) {
+double offset_of_attempt(const std::vector<double>& sides, double diagonal, std::uint32_t attempt) {
   const double band = 1e-6 * diagonal * std::pow(3.0, attempt);
   const std::vector<double> places = gaps_within(sides, band);
   if (attempt == 0) return places.front();
@@ -174,11 +174,13 @@ double give_of(const std::vector<double>& sides, double diagonal, std::uint32_t 
 
 /// Mean length of the edges that a blade crosses, or of all if it crosses none.
 double edge_length_at(const Mesh& mesh, const HalfEdges& edges, const std::vector<double>& sides,
-                      double give) {
+                      double blade_offset) {
   const auto point = [&](std::uint32_t corner) {
     return space_point(mesh.vertices, mesh.face_corners[corner]);
   };
-  const auto is_up = [&](std::uint32_t corner) { return sides[mesh.face_corners[corner]] > give; };
+  const auto is_up = [&](std::uint32_t corner) {
+    return sides[mesh.face_corners[corner]] > blade_offset;
+  };
   const auto mean = [&](const auto& counts) {
     double total = 0.0;
     std::size_t count = 0;
@@ -210,15 +212,15 @@ public:
     faces_inwards_ = volume_of(mesh_) < 0.0;
     edge_ = options_.edge > 0.0
                 ? options_.edge
-                : edge_length_at(mesh_, edges_, sides_, give_of(sides_, diagonal_, 0));
+                : edge_length_at(mesh_, edges_, sides_, offset_of_attempt(sides_, diagonal_, 0));
     // A bend needs edges that can follow it; and no cut needs more than some 100,000 faces.
     if (blade_.bends()) edge_ = std::min(edge_, diagonal_ / 40.0);
     edge_ = std::max(edge_, diagonal_ / 400.0);
     for (std::uint32_t number = 0; number < max_attempts; ++number) {
-      give_ = give_of(sides_, diagonal_, number);
+      blade_offset_ = offset_of_attempt(sides_, diagonal_, number);
       result_ = {};
       result_.attempts = number + 1;
-      result_.give = give_;
+      result_.blade_offset = blade_offset_;
       const Outcome outcome = attempt();
       if (outcome == Outcome::cut) return std::move(result_);
       if (outcome == Outcome::refused) return error_;
@@ -240,7 +242,7 @@ private:
     return {};
   }
   Outcome attempt() {
-    CutSurface surface(mesh_, rest_, edges_, blade_, give_, sides_);
+    CutSurface surface(mesh_, rest_, edges_, blade_, blade_offset_, sides_);
     if (!surface.refine(0.02 * edge_))
       return refuse("cannot be cut here: the blade bends too often for its size");
     if (!surface.cross()) return Outcome::again;
@@ -250,7 +252,7 @@ private:
     // Loops that turn out not to part anything are left, and then everything is made again.
     for (std::size_t round = 0; round <= surface.loops().size(); ++round) {
       if (const Outcome outcome = make_cap_of(surface); outcome != Outcome::cut) return outcome;
-      const ChosenCut chosen{mesh_,  blade_,          give_,          diagonal_,
+      const ChosenCut chosen{mesh_,  blade_,          blade_offset_,  diagonal_,
                              keeps_, std::move(cap_), faces_inwards_, options_};
       CutAssembly assembly = assemble(chosen, surface);
       result_.parts = number_parts(assembly.mesh, result_.part_of_vertex);
@@ -342,7 +344,7 @@ private:
   double diagonal_ = 0.0;
   double edge_ = 0.0;
   bool faces_inwards_ = false;
-  double give_ = 0.0;
+  double blade_offset_ = 0.0;
   std::vector<std::uint8_t> keeps_;
   Cap cap_;
   CutModel result_;

@@ -98,7 +98,7 @@ private:
         for (int side = 0; side < 2; ++side)
           put(surface_.crossing_points()[at]);
     for (const PlanePoint& place : cut_.cap.inner) {
-      const SpacePoint point = cut_.blade.lift(place, cut_.give);
+      const SpacePoint point = cut_.blade.lift(place, cut_.blade_offset);
       put(point);
       put(point);
     }

@@ -16,7 +16,7 @@ namespace nendo::deform {
 struct ChosenCut {
   const Mesh& mesh;
   const Blade& blade;
-  double give;
+  double blade_offset;
   double diagonal;
   std::vector<std::uint8_t> keeps; ///< whether each loop is cut
   Cap cap;

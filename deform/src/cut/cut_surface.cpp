@@ -9,9 +9,9 @@
 namespace nendo::deform {
 
 CutSurface::CutSurface(const Mesh& mesh, const Points& rest, const HalfEdges& edges,
-                       const Blade& blade, double give, const std::vector<double>& sides)
-    : mesh_(mesh), triangles_(mesh, rest), edges_(edges), blade_(blade), give_(give), sides_(sides),
-      active_(mesh.face_count(), 0) {
+                       const Blade& blade, double blade_offset, const std::vector<double>& sides)
+    : mesh_(mesh), triangles_(mesh, rest), edges_(edges), blade_(blade),
+      blade_offset_(blade_offset), sides_(sides), active_(mesh.face_count(), 0) {
   for (std::uint32_t face = 0; face < mesh.face_count(); ++face) {
     const std::uint32_t begin = mesh.face_starts[face];
     const bool first = is_up(mesh.face_corners[begin]);
@@ -75,11 +75,11 @@ void CutSurface::activate_near_bends() {
     }
     if (nearest * nearest > longest) continue;
     const bool up = is_up(mesh_.face_corners[begin]);
-    bool bulges = (blade_.side(middle) > give_) != up;
+    bool bulges = (blade_.side(middle) > blade_offset_) != up;
     for (std::uint32_t at = begin; at < end && !bulges; ++at) {
       const SpacePoint half =
           between(point(mesh_.face_corners[at]), point(mesh_.face_corners[edges_.next[at]]), 0.5);
-      bulges = (blade_.side(half) > give_) != up;
+      bulges = (blade_.side(half) > blade_offset_) != up;
     }
     if (bulges) activate(face);
   }
@@ -95,7 +95,7 @@ double CutSurface::sag_of(const Piece& piece) const noexcept {
   double worst = 0.0;
   // Where the blade does not cut, its bends do not matter.
   const auto look_at = [&](const SpacePoint& at, double sign) {
-    const double height = blade_.side(at) - give_;
+    const double height = blade_.side(at) - blade_offset_;
     const double sag = sign == 0.0 ? std::abs(height) : sign * height;
     if (sag > worst && blade_.covers(at)) worst = sag;
   };
@@ -142,7 +142,7 @@ void CutSurface::halve(std::uint32_t from, std::uint32_t to, std::vector<std::ui
   double best = -1.0;
   for (const double candidate : {0.5, 0.46, 0.54, 0.42, 0.58}) {
     const SpacePoint at = between(point(from), point(to), candidate);
-    const double height = std::abs(blade_.side(at) - give_);
+    const double height = std::abs(blade_.side(at) - blade_offset_);
     if (height > best) {
       best = height;
       part = candidate;
@@ -225,7 +225,7 @@ double CutSurface::crossing_part(std::uint32_t from, std::uint32_t to) const noe
     part = round % 3 == 2
                ? (low + high) / 2.0
                : low + (high - low) * std::clamp(at_low / (at_low - at_high), 0.01, 0.99);
-    const double here = blade_.side(between(point(from), point(to), part)) - give_;
+    const double here = blade_.side(between(point(from), point(to), part)) - blade_offset_;
     if (here == 0.0) break;
     if ((here > 0.0) == (at_from > 0.0)) {
       low = part;

@@ -42,13 +42,13 @@ struct CrossedPiece {
   std::uint32_t after, before; ///< crossings of the edges that begin and end at the lone corner
 };
 
-/// The effect of a blade that is displaced by `give` on a model.
+/// The effect of a blade that is displaced by `blade_offset` on a model.
 class CutSurface {
 public:
-  /// `sides` has Blade::side() of all vertices. No vertex may be just `give` above the blade. The
-  /// places `rest` decide about triangles. All arguments must outlive this.
+  /// `sides` has Blade::side() of all vertices. No vertex may be just `blade_offset` above the
+  /// blade. The places `rest` decide about triangles. All arguments must outlive this.
   CutSurface(const Mesh& mesh, const Points& rest, const HalfEdges& edges, const Blade& blade,
-             double give, const std::vector<double>& sides);
+             double blade_offset, const std::vector<double>& sides);
 
   /// Halves edges until a blade that bends is nowhere farther than `sag` from the chord in which it
   /// crosses a triangle. Returns false if that takes too many vertices.
@@ -61,8 +61,8 @@ public:
   bool is_active(std::size_t face) const noexcept { return active_[face] != 0; }
   /// Returns whether refine() has split triangles of an active face.
   bool is_split(std::size_t face) const noexcept { return active_[face] == 2; }
-  bool is_up(std::uint32_t vertex) const noexcept { return sides_[vertex] > give_; }
-  double above(std::uint32_t vertex) const noexcept { return sides_[vertex] - give_; }
+  bool is_up(std::uint32_t vertex) const noexcept { return sides_[vertex] > blade_offset_; }
+  double above(std::uint32_t vertex) const noexcept { return sides_[vertex] - blade_offset_; }
   SpacePoint point(std::uint32_t vertex) const noexcept;
   std::uint32_t vertex_count() const noexcept { return to_index(sides_.size()); }
   const std::vector<Piece>& pieces() const noexcept { return pieces_; }
@@ -102,7 +102,7 @@ private:
   FaceTriangles triangles_;
   const HalfEdges& edges_;
   const Blade& blade_;
-  double give_;
+  double blade_offset_;
   std::vector<double> sides_;
   std::vector<SpacePoint> added_points_;
   std::vector<EdgePoint> added_;

@@ -187,7 +187,7 @@ constexpr std::array<SpacePoint, max_overlay_attempts> overlay_displacements{
      {-0.5591, 0.1873, -0.8077},
      {0.8911, 0.3671, 0.2663},
      {-0.1319, -0.6841, -0.7177}}};
-constexpr double give_part = 1e-7;
+constexpr double displacement_part = 1e-7;
 
 double size_of(std::span<const SpacePoint> points) {
   SpaceBox box{points[0], points[0]};
@@ -201,10 +201,10 @@ public:
   OverlayMaker(const TriangleSurface& first, const TriangleSurface& second, Overlay& result)
       : first_(first), second_(second), result_(result), first_tree_(first.points, first.faces) {}
 
-  bool attempt(const SpacePoint& give) {
+  bool attempt(const SpacePoint& displacement) {
     result_.second_points = second_.points;
     for (SpacePoint& point : result_.second_points)
-      point = point + give;
+      point = point + displacement;
     const BoxTree second_tree(result_.second_points, second_.faces);
     parts_ = {CrossedPart{first_.points, first_.faces, &first_tree_},
               CrossedPart{result_.second_points, second_.faces, &second_tree}};
@@ -295,7 +295,7 @@ Result<Overlay> overlay(const TriangleSurface& first, const TriangleSurface& sec
   for (int attempt = first_attempt; attempt < max_overlay_attempts; ++attempt) {
     result.attempts = attempt + 1;
     const auto way = static_cast<std::size_t>(attempt);
-    if (maker.attempt(std::ldexp(give_part * size, attempt) * overlay_displacements[way]))
+    if (maker.attempt(std::ldexp(displacement_part * size, attempt) * overlay_displacements[way]))
       return result;
   }
   return Error{Errc::failed, "no position was found in which the parts cross clearly; move one of "

@@ -53,8 +53,9 @@ struct CutModel {
   std::uint32_t loops = 0;       ///< intersection loops that were cut and closed on both sides
   std::uint32_t uncut_loops = 0; ///< intersection loops where the blade does not cut through
   std::uint32_t attempts = 1;
-  double give = 0.0; ///< displacement of the blade, in model units: at most 1e-6 of the diagonal in
-                     ///< the first attempt, and three times the previous limit in each further one
+  /// Displacement of the blade, in model units: at most 1e-6 of the diagonal in the first attempt,
+  /// and three times the previous limit in each further one.
+  double blade_offset = 0.0;
 };
 
 /// Cuts a closed two-manifold model. Every part is closed and two-manifold, and cut faces touch
