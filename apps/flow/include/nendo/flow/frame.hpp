@@ -47,15 +47,15 @@ struct Awaited {
 
 /// The contacts of hands with clay or with held parts.
 struct Contacts {
-  static constexpr std::size_t most = 128;
+  static constexpr std::size_t max_count = 128;
 
-  std::array<deform::ClayContact, most> places{};
+  std::array<deform::ClayContact, max_count> places{};
   std::uint32_t count = 0;
 
-  /// Copies the first `most` contacts. Their `body` is an index of the present hands, left hand
-  /// first.
+  /// Copies the first `max_count` contacts. Their `body` is an index of the present hands, left
+  /// hand first.
   void take(std::span<const deform::ClayContact> contacts) noexcept {
-    count = static_cast<std::uint32_t>(std::min(contacts.size(), most));
+    count = static_cast<std::uint32_t>(std::min(contacts.size(), max_count));
     std::copy_n(contacts.begin(), count, places.begin());
   }
   std::span<const deform::ClayContact> all() const noexcept { return {places.data(), count}; }
