@@ -137,7 +137,7 @@ TEST_SUITE("concave models") {
     const std::uint32_t first = model.face_corners[3]; // (2, 10)
     const std::uint32_t other = model.face_corners[6]; // (1, 10)
     const SurfaceGraph graph(model);
-    const auto distances = graph.distances(SurfacePlace::at_vertex(first), 100.0);
+    const auto distances = graph.distances(SurfacePosition::at_vertex(first), 100.0);
     CHECK(distances[other] == doctest::Approx(19.0).epsilon(0.02));
   }
 

@@ -118,7 +118,7 @@ TEST_SUITE("surface") {
   TEST_CASE("on a plane a distance is the straight one, or a few per cent more") {
     const Mesh mesh = test::grid(40, 10.0);
     const SurfaceGraph graph(mesh);
-    const SurfacePlace from = nearest_place(mesh, {3.21, 4.56, 0.0});
+    const SurfacePosition from = nearest_place(mesh, {3.21, 4.56, 0.0});
     const Eigen::VectorXd distances = graph.distances(from, infinity);
     const Eigen::VectorXd straight =
         (mesh.vertices.colwise() - from.in(mesh.vertices)).colwise().norm();
@@ -133,11 +133,11 @@ TEST_SUITE("surface") {
   TEST_CASE("round a sphere the way is along it, and no way leads to another part") {
     const Mesh ball = test::sphere(60, 120, 1.0);
     const Eigen::VectorXd distances =
-        SurfaceGraph(ball).distances(SurfacePlace::at_vertex(0), infinity);
+        SurfaceGraph(ball).distances(SurfacePosition::at_vertex(0), infinity);
     CHECK(distances[1] == doctest::Approx(3.14159265).epsilon(0.01)); // pole to pole
     const Mesh sheets = two_sheets(0.01);
     const SurfaceGraph graph(sheets);
-    const Eigen::VectorXd of_first = graph.distances(SurfacePlace::at_vertex(0), infinity);
+    const Eigen::VectorXd of_first = graph.distances(SurfacePosition::at_vertex(0), infinity);
     const Index half = sheets.vertices.cols() / 2;
     CHECK(of_first.head(half).maxCoeff() < infinity);
     CHECK(of_first.tail(half).minCoeff() == infinity);
@@ -148,9 +148,9 @@ TEST_SUITE("surface") {
 
   TEST_CASE("the nearest place of a surface is the foot of the point") {
     const Mesh mesh = test::grid(7, 10.0);
-    const SurfacePlace place = nearest_place(mesh, {3.3, 8.1, 2.0});
+    const SurfacePosition place = nearest_place(mesh, {3.3, 8.1, 2.0});
     CHECK((place.in(mesh.vertices) - Vector3d(3.3, 8.1, 0.0)).norm() < 1e-12);
-    const SurfacePlace corner = nearest_place(mesh, {-4.0, -1.0, 1.0});
+    const SurfacePosition corner = nearest_place(mesh, {-4.0, -1.0, 1.0});
     CHECK(corner.in(mesh.vertices).norm() < 1e-12);
   }
 
@@ -169,7 +169,7 @@ TEST_SUITE("surface") {
     }
     for (Index i = 0; i < 4; ++i) {
       at_points.row(i).setZero();
-      const SurfacePlace& place = setup.points[static_cast<std::size_t>(i)].place;
+      const SurfacePosition& place = setup.points[static_cast<std::size_t>(i)].place;
       for (std::size_t k = 0; k < 3; ++k)
         at_points.row(i) += place.weights[k] * functions.row(place.corners[k]);
     }
@@ -178,7 +178,7 @@ TEST_SUITE("surface") {
     const Points moved = made.displaced(vectors);
     CHECK((moved - dense).cwiseAbs().maxCoeff() < 1e-5);
     for (Index i = 0; i < 4; ++i) {
-      const SurfacePlace& place = setup.points[static_cast<std::size_t>(i)].place;
+      const SurfacePosition& place = setup.points[static_cast<std::size_t>(i)].place;
       CHECK((place.in(moved)-place.in(mesh.vertices) - vectors.col(i)).norm() < 1e-5);
     }
     const Index half = mesh.vertices.cols() / 2; // the other sheet is near, but not on the way
@@ -190,7 +190,7 @@ TEST_SUITE("surface") {
   TEST_CASE("a pinned vertex and a masked one stay, whatever the others do") {
     const Mesh mesh = test::grid(20, 10.0);
     SurfaceSetup setup = setup_on(mesh);
-    setup.points.push_back({SurfacePlace::at_vertex(110), 3.0}); // the pin
+    setup.points.push_back({SurfacePosition::at_vertex(110), 3.0}); // the pin
     setup.mask = Eigen::VectorXd::Ones(mesh.vertices.cols());
     setup.mask[200] = 0.0;
     setup.mask[201] = 0.5;
@@ -220,7 +220,7 @@ TEST_SUITE("surface") {
     const Mesh mesh = two_sheets(0.5);
     SurfaceSetup setup = setup_on(mesh);
     setup.points.push_back({nearest_place(mesh, {5.0, 2.0, 0.0}), 3.0});
-    setup.points[4].place = SurfacePlace::at_vertex(100);
+    setup.points[4].place = SurfacePosition::at_vertex(100);
     const auto half = static_cast<std::uint32_t>(mesh.vertices.cols() / 2);
     std::vector<std::uint32_t> others;
     for (std::uint32_t vertex = half; vertex < 2 * half; ++vertex)

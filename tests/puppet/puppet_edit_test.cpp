@@ -28,7 +28,7 @@ public:
   Puppet make() {
     Puppet puppet;
     puppet.model = "a \"model\"\\\n.obj";
-    puppet.distance = one_in(2) ? Distance::air : Distance::surface;
+    puppet.distance = one_in(2) ? Distance::euclidean : Distance::surface;
     for (int at = 0; at < 6; ++at)
       puppet.points.push_back(point(std::string(1, static_cast<char>('a' + at)), at < 4));
     for (int at = 0; at < 4; ++at)

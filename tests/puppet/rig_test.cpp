@@ -81,7 +81,7 @@ std::size_t number_of(const Rig& rig, std::string_view name) {
   return 0;
 }
 
-deform::SurfacePlace place_of(const Rig& rig, std::string_view name, const deform::Mesh& mesh) {
+deform::SurfacePosition place_of(const Rig& rig, std::string_view name, const deform::Mesh& mesh) {
   const auto& points = rig.puppet().points;
   const auto at = std::find_if(points.begin(), points.end(),
                                [&](const auto& point) { return point.name == name; });

@@ -330,7 +330,7 @@ void set_masks(const puppet::Rig* rig, const deform::Mesh& model, const deform::
 Result<std::shared_ptr<const deform::SurfaceField>>
 surface_for(const puppet::Rig& rig, const deform::Mesh& model, const deform::BlockLayout& layout,
             const deform::DeformerOptions& options) {
-  if (!rig.puppet().is_played() || rig.puppet().distance == puppet::Distance::air)
+  if (!rig.puppet().is_played() || rig.puppet().distance == puppet::Distance::euclidean)
     return std::shared_ptr<const deform::SurfaceField>();
   deform::SurfaceSetup setup = puppet::surface_setup(rig.puppet(), model, options.csrbf.kernel);
   for (deform::SurfacePoint& point : setup.points)

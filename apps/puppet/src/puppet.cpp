@@ -83,7 +83,7 @@ double HandSignal::of(const HandState& hand) const noexcept {
 }
 
 using deform::Mesh;
-using deform::SurfacePlace;
+using deform::SurfacePosition;
 using Eigen::Vector3d;
 
 namespace {
@@ -92,9 +92,9 @@ constexpr std::array<std::string_view, 4> means_names{"none", "fist", "pinch", "
 
 /// Vertices on parts of the surface without a point.
 std::vector<std::uint32_t> vertices_without_points(const std::vector<std::uint32_t>& parts,
-                                                   const std::vector<SurfacePlace>& places) {
+                                                   const std::vector<SurfacePosition>& places) {
   std::set<std::uint32_t> with_points;
-  for (const SurfacePlace& place : places)
+  for (const SurfacePosition& place : places)
     with_points.insert(parts[place.corners[0]]);
   std::vector<std::uint32_t> vertices;
   for (std::uint32_t vertex = 0; vertex < parts.size(); ++vertex)
@@ -106,7 +106,7 @@ std::vector<std::uint32_t> vertices_without_points(const std::vector<std::uint32
 std::vector<deform::FollowingPart>
 following_parts(const Puppet& puppet, const Mesh& model,
                 const std::vector<std::uint32_t>& parts_of_surface,
-                const std::vector<SurfacePlace>& places) {
+                const std::vector<SurfacePosition>& places) {
   std::vector<deform::FollowingPart> parts(puppet.parts.size());
   for (std::size_t part = 0; part < parts.size(); ++part) {
     parts[part].is_affine = puppet.parts[part].is_affine;
@@ -135,11 +135,11 @@ double passes(const Mask& mask, const Vector3d& place) {
 
 /// The nearest place of the edges in the plane x = 0, if they are about as near as any: a point in
 /// the middle then is its own mirror image, also where the nearest places are two, beside it.
-SurfacePlace nearest_in_middle(const Mesh& model, const Vector3d& at) {
-  const SurfacePlace nearest = deform::nearest_place(model, at);
+SurfacePosition nearest_in_middle(const Mesh& model, const Vector3d& at) {
+  const SurfacePosition nearest = deform::nearest_place(model, at);
   const double near = 1e-3 * deform::diagonal_of(model.vertices);
   double least = (nearest.in(model.vertices) - at).norm() + near;
-  SurfacePlace best = nearest;
+  SurfacePosition best = nearest;
   const auto is_middle = [&](std::uint32_t v) { return model.vertices(0, v) == 0.0; };
   deform::for_each_triangle(model, [&](const std::array<std::uint32_t, 3>& corners) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -158,10 +158,10 @@ SurfacePlace nearest_in_middle(const Mesh& model, const Vector3d& at) {
 }
 
 /// A twin is on the same part of the surface: beside the skin of a lid there are lashes and eyes.
-std::vector<SurfacePlace> places_on(const Puppet& puppet, const Mesh& model,
-                                    const std::vector<std::uint32_t>& parts) {
+std::vector<SurfacePosition> places_on(const Puppet& puppet, const Mesh& model,
+                                       const std::vector<std::uint32_t>& parts) {
   const auto vertices = static_cast<std::uint32_t>(model.vertices.cols());
-  std::vector<SurfacePlace> places;
+  std::vector<SurfacePosition> places;
   for (const PuppetPoint& point : puppet.points) {
     const bool at_vertex = point.vertex && *point.vertex < vertices;
     Vector3d at = at_vertex ? Vector3d(model.vertices.col(*point.vertex)) : point.at;
@@ -173,7 +173,7 @@ std::vector<SurfacePlace> places_on(const Puppet& puppet, const Mesh& model,
       continue;
     }
     if (at_vertex)
-      places.push_back(SurfacePlace::at_vertex(*point.vertex));
+      places.push_back(SurfacePosition::at_vertex(*point.vertex));
     else if (at.x() == 0.0)
       places.push_back(nearest_in_middle(model, at));
     else
@@ -236,7 +236,7 @@ Result<void> check_fits(const Puppet& puppet, const Mesh& model) {
   return {};
 }
 
-std::vector<SurfacePlace> places_on(const Puppet& puppet, const Mesh& model) {
+std::vector<SurfacePosition> places_on(const Puppet& puppet, const Mesh& model) {
   return places_on(puppet, model, deform::SurfaceGraph(model).parts());
 }
 

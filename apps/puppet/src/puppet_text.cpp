@@ -191,7 +191,8 @@ std::string text_of(const Puppet& puppet) {
   text += "version = 1\n";
   if (is_played || !puppet.model.empty()) text += "model = " + toml_text(puppet.model) + "\n";
   if (is_played)
-    text += puppet.distance == Distance::air ? "distance = \"air\"\n" : "distance = \"surface\"\n";
+    text += puppet.distance == Distance::euclidean ? "distance = \"air\"\n"
+                                                   : "distance = \"surface\"\n";
   if (puppet.mirrors) text += "mirror = \"x\"\n";
   if (puppet.mirrors && puppet.mirror_at != 0.0)
     text += "mirror_at = " + toml_number(puppet.mirror_at) + "\n";

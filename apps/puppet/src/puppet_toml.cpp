@@ -36,7 +36,7 @@ public:
     const bool is_played = root.contains("points") || root.contains("functions");
     if (is_played || root.contains("model")) puppet_.model = reader_.text(root, "model");
     const std::string distance = root.get("distance") ? reader_.text(root, "distance") : "surface";
-    puppet_.distance = distance == "air" ? Distance::air : Distance::surface;
+    puppet_.distance = distance == "air" ? Distance::euclidean : Distance::surface;
     if (distance != "air" && distance != "surface")
       reader_.complain(root, "distance must be \"surface\" or \"air\"");
     puppet_.mirrors = root.get("mirror") != nullptr;

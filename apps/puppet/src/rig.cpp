@@ -62,7 +62,7 @@ double asked_for(const Function& function, double value) noexcept {
 }
 
 Rig::Rig(Puppet puppet, const deform::Mesh& model) : puppet_(std::move(puppet)) {
-  std::vector<deform::SurfacePlace> places;
+  std::vector<deform::SurfacePosition> places;
   if (puppet_.is_played()) places = places_on(puppet_, model);
   starts_.resize(3, static_cast<Index>(places.size()));
   for (std::size_t at = 0; at < places.size(); ++at)

@@ -20,7 +20,7 @@ double norm_1(const MatrixXd& matrix) {
 
 /// Rows are places in the surface, columns the functions: a function's value is interpolated within
 /// a face as the place itself is.
-Eigen::RowVectorXd at_place(const MatrixXd& values, const SurfacePlace& place) {
+Eigen::RowVectorXd at_place(const MatrixXd& values, const SurfacePosition& place) {
   Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(values.cols());
   for (std::size_t k = 0; k < place.corners.size(); ++k)
     row += place.weights[k] * values.row(place.corners[k]);

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 namespace {
 
 struct NearPlace {
-  SurfacePlace place;
+  SurfacePosition place;
   double squared = std::numeric_limits<double>::infinity();
 };
 
@@ -102,22 +102,22 @@ double across(const Vector3d& low, const Vector3d& high, const Vector3d& one,
 
 } // namespace
 
-Vector3d SurfacePlace::in(const Points& vertices) const {
+Vector3d SurfacePosition::in(const Points& vertices) const {
   Vector3d place = Vector3d::Zero();
   for (std::size_t k = 0; k < corners.size(); ++k)
     place += weights[k] * vertices.col(corners[k]);
   return place;
 }
 
-SurfacePlace nearest_place(const Mesh& mesh, const Vector3d& to,
-                           std::span<const std::uint32_t> parts, std::uint32_t part) {
+SurfacePosition nearest_place(const Mesh& mesh, const Vector3d& to,
+                              std::span<const std::uint32_t> parts, std::uint32_t part) {
   NearPlace best;
   for_each_cut(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
     if (!parts.empty() && parts[corners[0]] != part) return;
     const Points& at = mesh.vertices;
     const Vector3d weights =
         nearest_weights(at.col(corners[0]), at.col(corners[1]), at.col(corners[2]), to);
-    const SurfacePlace place{corners, {weights.x(), weights.y(), weights.z()}};
+    const SurfacePosition place{corners, {weights.x(), weights.y(), weights.z()}};
     const double squared = (place.in(at)-to).squaredNorm();
     if (squared < best.squared) best = {place, squared};
   });
@@ -188,7 +188,7 @@ SurfaceGraph::SurfaceGraph(const Mesh& mesh) : vertices_(mesh.vertices) {
     starts_[at] += starts_[at - 1];
 }
 
-Eigen::VectorXd SurfaceGraph::distances(const SurfacePlace& from, double limit) const {
+Eigen::VectorXd SurfaceGraph::distances(const SurfacePosition& from, double limit) const {
   using Entry = std::pair<double, std::uint32_t>;
   constexpr double far = std::numeric_limits<double>::infinity();
   Eigen::VectorXd distance = Eigen::VectorXd::Constant(vertices_.cols(), far);
@@ -211,7 +211,7 @@ Eigen::VectorXd SurfaceGraph::distances(const SurfacePlace& from, double limit) 
   return distance;
 }
 
-std::vector<std::uint32_t> SurfaceGraph::about(const SurfacePlace& place) const {
+std::vector<std::uint32_t> SurfaceGraph::about(const SurfacePosition& place) const {
   constexpr double min_weight = 1e-9;
   std::vector<std::uint32_t> vertices;
   for (std::size_t k = 0; k < place.corners.size(); ++k)

@@ -15,11 +15,11 @@ namespace nendo::deform {
 
 /// A position on a surface: the corners of a triangle, and their barycentric weights, whose sum is
 /// 1. It moves with the surface.
-struct NENDO_API SurfacePlace {
+struct NENDO_API SurfacePosition {
   std::array<std::uint32_t, 3> corners{};
   std::array<double, 3> weights{1.0, 0.0, 0.0};
 
-  static SurfacePlace at_vertex(std::uint32_t vertex) noexcept {
+  static SurfacePosition at_vertex(std::uint32_t vertex) noexcept {
     return {{vertex, vertex, vertex}};
   }
   /// Returns its coordinates; vertices: 3 by #vertices.
@@ -28,9 +28,9 @@ struct NENDO_API SurfacePlace {
 
 /// Returns the position on the mesh's faces that is nearest to `to`, in model units. The mesh must
 /// have a face. With `parts` (SurfaceGraph::parts()), searches only `part`, which must have a face.
-NENDO_API SurfacePlace nearest_place(const Mesh& mesh, const Eigen::Vector3d& to,
-                                     std::span<const std::uint32_t> parts = {},
-                                     std::uint32_t part = 0);
+NENDO_API SurfacePosition nearest_place(const Mesh& mesh, const Eigen::Vector3d& to,
+                                        std::span<const std::uint32_t> parts = {},
+                                        std::uint32_t part = 0);
 
 /// The graph of paths along a surface: its edges, the diagonals of its faces, and the straight
 /// lines across an edge between two triangles. Shortest paths (Dijkstra 1959) are a few per cent
@@ -43,7 +43,7 @@ public:
   std::size_t vertex_count() const noexcept { return starts_.size() - 1; }
   /// Returns the distance of each vertex from `from`, in model units; infinity if it exceeds
   /// `limit`, or if there is no path. Allocates.
-  Eigen::VectorXd distances(const SurfacePlace& from, double limit) const;
+  Eigen::VectorXd distances(const SurfacePosition& from, double limit) const;
   /// Returns the part index of each vertex. Parts are the connected components of the graph,
   /// indexed from 0 by first vertex.
   std::vector<std::uint32_t> parts() const;
@@ -56,7 +56,7 @@ private:
   /// Returns the vertices that a straight line reaches: those of the position's face or edge, and
   /// their common neighbours. On an edge, these are on both sides, so that mirrored positions have
   /// mirrored paths.
-  std::vector<std::uint32_t> about(const SurfacePlace& place) const;
+  std::vector<std::uint32_t> about(const SurfacePosition& place) const;
 
   const Points& vertices_;
   std::vector<std::size_t> starts_; ///< index of each vertex's first entry in ways_
