@@ -82,10 +82,10 @@ PlanePoint WireBlade::chart(const SpacePoint& point) const noexcept {
 }
 
 SpacePoint WireBlade::lift(const PlanePoint& place, double above) const noexcept {
-  const auto behind =
+  const auto after =
       std::upper_bound(stations_.begin() + 1, stations_.end() - 1, place[0],
                        [](double along, const Station& other) { return along < other.along; });
-  const auto before = static_cast<std::size_t>(behind - stations_.begin()) - 1;
+  const auto before = static_cast<std::size_t>(after - stations_.begin()) - 1;
   const double step = stations_[before + 1].along - stations_[before].along;
   const double part = (place[0] - stations_[before].along) / step;
   const Passing wire = passing(before, part);

@@ -31,7 +31,7 @@ struct CutAssembly {
   std::size_t first_cut_face = 0; ///< half of the faces from here close the upper side, then the
                                   ///< lower
   std::vector<std::uint32_t> crossing_vertices; ///< each crossing's vertex on the upper side;
-                                                ///< the lower one is behind it
+                                                ///< the lower one follows
   std::vector<std::uint32_t> cut_pieces;        ///< faces that are parts of crossed ones
 };
 

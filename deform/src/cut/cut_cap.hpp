@@ -8,7 +8,6 @@
 
 #include "cut/blade.hpp"
 #include "geometry/constrained_triangulation.hpp"
-#include "geometry/triangle_meeting.hpp"
 
 namespace nendo::deform {
 

@@ -127,8 +127,8 @@ std::uint32_t CutSurface::piece_at(std::uint32_t from, std::uint32_t to) {
   if (found != piece_of_edge_.end()) return found->second;
   for (const std::uint32_t edge : edges_.out[from]) {
     if (mesh_.face_corners[edges_.next[edge]] != to) continue;
-    const auto behind = std::upper_bound(mesh_.face_starts.begin(), mesh_.face_starts.end(), edge);
-    activate(static_cast<std::uint32_t>(behind - mesh_.face_starts.begin() - 1));
+    const auto after = std::upper_bound(mesh_.face_starts.begin(), mesh_.face_starts.end(), edge);
+    activate(static_cast<std::uint32_t>(after - mesh_.face_starts.begin() - 1));
     break;
   }
   found = piece_of_edge_.find(edge_key(from, to));
@@ -266,7 +266,7 @@ bool CutSurface::cross() {
   return link_loops();
 }
 
-/// On a closed two-manifold each crossing has one before it and one behind it, so all form loops.
+/// On a closed two-manifold each crossing has one before it and one after it, so all form loops.
 /// Triangles are another surface than the faces where two diagonals have the same ends.
 bool CutSurface::link_loops() {
   next_.assign(crossings_.size(), no_index);

@@ -66,7 +66,7 @@ public:
   SpacePoint point(std::uint32_t vertex) const noexcept;
   std::uint32_t vertex_count() const noexcept { return to_index(sides_.size()); }
   const std::vector<Piece>& pieces() const noexcept { return pieces_; }
-  /// The vertices that refine() added, behind those of the mesh.
+  /// The vertices that refine() added, after those of the mesh.
   const std::vector<EdgePoint>& added() const noexcept { return added_; }
   const std::vector<CrossedPiece>& crossed() const noexcept { return crossed_; }
   const std::vector<EdgePoint>& crossings() const noexcept { return crossings_; }
@@ -76,7 +76,7 @@ public:
   /// Loops of crossings, and each crossing's loop.
   const std::vector<std::vector<std::uint32_t>>& loops() const noexcept { return loops_; }
   const std::vector<std::uint32_t>& loop_of() const noexcept { return loop_of_; }
-  /// Texture coordinates: the mesh's, and those of new corners behind them.
+  /// Texture coordinates: the mesh's, and those of new corners after them.
   const std::vector<TexturePoint>& new_texcoords() const noexcept { return new_texcoords_; }
   /// Returns the index of a texture coordinate between two others; one that
   /// was made for this point before is used again.

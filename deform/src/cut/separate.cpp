@@ -1,3 +1,5 @@
+// Makes the parts of a model meshes of their own.
+
 #include <nendo/deform/cut.hpp>
 
 #include "cut/cut_assembly.hpp"

@@ -1,3 +1,5 @@
+// Recognises files of formats that are not read, and says what to do with them.
+
 #include "files/mesh_formats.hpp"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 #include "files/ply_look.hpp"
 
-#include <algorithm>
 #include <tuple>
 
 #include "files/mesh_formats.hpp"

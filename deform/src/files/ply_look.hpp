@@ -4,7 +4,6 @@
 // each corner of a face, `comment TextureFile NAME`, and a face's number among these files.
 
 #include <array>
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -1,3 +1,5 @@
+// Reads STL, text and binary, and writes it.
+
 #include <algorithm>
 #include <bit>
 #include <cmath>

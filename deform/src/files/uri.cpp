@@ -1,3 +1,5 @@
+// Decodes the URIs of glTF documents.
+
 #include "files/gltf_document.hpp"
 
 namespace nendo::deform {

@@ -175,7 +175,7 @@ void ConstrainedTriangulation::split_edge(std::uint32_t edge, std::uint32_t poin
   }
 }
 
-/// Flips the edges on the stack, and those behind them, as far as Delaunay asks for it. The corner
+/// Flips the edges on the stack, and those beyond them, as far as Delaunay asks for it. The corner
 /// opposite to each is the new point.
 void ConstrainedTriangulation::legalise() {
   while (!stack_.empty()) {

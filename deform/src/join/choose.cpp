@@ -1,3 +1,5 @@
+// Chooses the pieces of two surfaces that make their union or intersection.
+
 #include "join/overlay.hpp"
 
 #include <algorithm>

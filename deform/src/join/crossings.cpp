@@ -103,8 +103,8 @@ private:
     const SpacePoint& from = point(name.part, name.from);
     const SpacePoint& to = point(name.part, name.to);
     const double before = dot(normal, from - a);
-    const double behind = dot(normal, to - a);
-    const double along = std::clamp(before / (before - behind), 0.0, 1.0);
+    const double after = dot(normal, to - a);
+    const double along = std::clamp(before / (before - after), 0.0, 1.0);
     crossings_.points.push_back(
         {name.part, name.from, name.to, name.face, along, from + along * (to - from)});
     return found->second;

@@ -4,7 +4,6 @@
 // tear a border between materials, names or texture islands.
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include <nendo/deform/refinement.hpp>

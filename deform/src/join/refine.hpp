@@ -9,8 +9,6 @@
 // bits.
 
 #include <cstddef>
-#include <cstdint>
-#include <span>
 #include <vector>
 
 #include "join/live_surface.hpp"

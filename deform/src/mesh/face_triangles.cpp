@@ -256,10 +256,10 @@ private:
       watch(corner, blocker);
   }
   void clip(std::uint32_t corner) {
-    const std::uint32_t before = last_[corner], behind = next_[corner];
-    triangles_->push_back({before, corner, behind});
-    next_[before] = behind;
-    last_[behind] = before;
+    const std::uint32_t before = last_[corner], after = next_[corner];
+    triangles_->push_back({before, corner, after});
+    next_[before] = after;
+    last_[after] = before;
     bend_[corner] = clipped;
     at_ = before;
     --left_;
@@ -267,15 +267,15 @@ private:
     stop_watching(corner);
     free_watchers(corner);
     look_again(before);
-    look_again(behind);
+    look_again(after);
   }
   /// The way to the corner and the way on are one, or one of them has no length. Angles become
   /// smaller by clipping, so where that comes about there is nothing between the two ways.
   bool is_thin(std::uint32_t corner) const noexcept {
     if (bend_[corner] != flat) return false;
-    const std::uint32_t before = last_[corner], behind = next_[corner];
-    return are_one(corner, before) || are_one(corner, behind) ||
-           product(corner, before, behind) > 0.0;
+    const std::uint32_t before = last_[corner], after = next_[corner];
+    return are_one(corner, before) || are_one(corner, after) ||
+           product(corner, before, after) > 0.0;
   }
   /// Of a tip that was there from the beginning: a spike leads outwards, a slit inwards. The
   /// polygon's other edges decide where it begins.
@@ -288,14 +288,14 @@ private:
           !ends_at_one && product(tip, other, other) < product(tip, one, one);
       const std::uint32_t root = other_is_nearer ? other : one;
       const std::uint32_t before = other_is_nearer ? one : last_[one];
-      const std::uint32_t behind = ends_at_one || other_is_nearer ? next_[other] : other;
-      const int bend = turn(before, root, behind);
-      const bool left = turn(root, behind, tip) > 0, right = turn(root, before, tip) < 0;
+      const std::uint32_t after = ends_at_one || other_is_nearer ? next_[other] : other;
+      const int bend = turn(before, root, after);
+      const bool left = turn(root, after, tip) > 0, right = turn(root, before, tip) < 0;
       if (bend > 0) return !(left && right);
       if (bend < 0) return !(left || right);
-      if (product(root, before, behind) < 0.0) return !left;
+      if (product(root, before, after) < 0.0) return !left;
       one = before;
-      other = behind;
+      other = after;
     }
     return true;
   }
@@ -377,9 +377,9 @@ private:
   void stop_watching(std::uint32_t corner) {
     const std::uint32_t blocker = watched_[corner];
     if (blocker == no_index) return;
-    const std::uint32_t before = last_watcher_[corner], behind = next_watcher_[corner];
-    (before == no_index ? watchers_[blocker] : next_watcher_[before]) = behind;
-    if (behind != no_index) last_watcher_[behind] = before;
+    const std::uint32_t before = last_watcher_[corner], after = next_watcher_[corner];
+    (before == no_index ? watchers_[blocker] : next_watcher_[before]) = after;
+    if (after != no_index) last_watcher_[after] = before;
     watched_[corner] = no_index;
   }
   void free_watchers(std::uint32_t blocker) {

@@ -103,7 +103,7 @@ void append_means(const Middles& middles, Columns& points) {
   }
 }
 
-/// Appends the corners of the faces that a face becomes. `ends_face` is called behind each.
+/// Appends the corners of the faces that a face becomes. `ends_face` is called after each.
 template <class EndsFace>
 void append_faces(const Mesh& mesh, const std::vector<std::uint32_t>& corner_values,
                   const Middles& middles, std::vector<std::uint32_t>& corners,
@@ -111,8 +111,8 @@ void append_faces(const Mesh& mesh, const std::vector<std::uint32_t>& corner_val
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const std::uint32_t begin = mesh.face_starts[face];
     const auto count = static_cast<std::uint32_t>(corners_of(mesh, face).size());
-    const auto behind = [&](std::uint32_t at) { return middles.of_corner[begin + at]; };
-    const auto before = [&](std::uint32_t at) { return behind((at + count - 1) % count); };
+    const auto after = [&](std::uint32_t at) { return middles.of_corner[begin + at]; };
+    const auto before = [&](std::uint32_t at) { return after((at + count - 1) % count); };
     if (count < 3) {
       corners.insert(corners.end(), corner_values.begin() + begin,
                      corner_values.begin() + begin + count);
@@ -120,13 +120,13 @@ void append_faces(const Mesh& mesh, const std::vector<std::uint32_t>& corner_val
       continue;
     }
     for (std::uint32_t at = 0; at < count; ++at) {
-      corners.insert(corners.end(), {corner_values[begin + at], behind(at)});
+      corners.insert(corners.end(), {corner_values[begin + at], after(at)});
       if (count > 3) corners.push_back(middles.of_face[face]);
       corners.push_back(before(at));
       ends_face();
     }
     if (count > 3) continue;
-    corners.insert(corners.end(), {behind(0), behind(1), behind(2)});
+    corners.insert(corners.end(), {after(0), after(1), after(2)});
     ends_face();
   }
 }

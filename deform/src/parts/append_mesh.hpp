@@ -5,7 +5,7 @@
 
 namespace nendo::deform {
 
-/// Puts `more` behind all of `mesh`. Its faces' materials and names are those of the lists of
+/// Puts `more` after all of `mesh`. Its faces' materials and names are those of the lists of
 /// `mesh`, and it has texture coordinates and colours if `mesh` has. Allocates.
 void append_mesh(const Mesh& more, Mesh& mesh);
 

@@ -1,3 +1,5 @@
+// Fills the holes of a mesh.
+
 #include "repair/steps.hpp"
 
 #include <algorithm>
