@@ -5,6 +5,7 @@
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/triangles.hpp>
 
+#include "mesh/columns.hpp"
 #include "mesh/surface_mesh.hpp"
 
 namespace nendo::deform {
@@ -23,6 +24,13 @@ private:
   ManifoldCheck check_;
 };
 
+/// Sorts the corners, and returns one that is there twice, or the end.
+auto find_repeated(std::span<const std::uint32_t> corners, std::vector<std::uint32_t>& sorted) {
+  sorted.assign(corners.begin(), corners.end());
+  std::sort(sorted.begin(), sorted.end());
+  return std::adjacent_find(sorted.begin(), sorted.end());
+}
+
 void check_faces(std::span<const std::uint32_t> starts, std::span<const std::uint32_t> corners,
                  FaultTally& tally) {
   std::vector<std::uint32_t> sorted;
@@ -34,9 +42,7 @@ void check_faces(std::span<const std::uint32_t> starts, std::span<const std::uin
       continue;
     }
     if (own.size() == 3 && own[0] != own[1] && own[1] != own[2] && own[2] != own[0]) continue;
-    sorted.assign(own.begin(), own.end());
-    std::sort(sorted.begin(), sorted.end());
-    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    const auto twice = find_repeated(own, sorted);
     if (twice != sorted.end()) tally.add(ManifoldFault::repeated_corner, face, *twice, *twice);
   }
 }
@@ -118,13 +124,9 @@ namespace {
 /// Returns whether a face goes through a vertex twice, but not twice in a row: as one with a
 /// bridge.
 bool has_bridge(const Mesh& mesh, std::size_t face, std::vector<std::uint32_t>& sorted) {
-  const std::uint32_t begin = mesh.face_starts[face], end = mesh.face_starts[face + 1];
-  if (end - begin < 4) return false;
-  for (std::uint32_t at = begin; at < end; ++at)
-    if (mesh.face_corners[at] == mesh.face_corners[at + 1 < end ? at + 1 : begin]) return false;
-  sorted.assign(mesh.face_corners.begin() + begin, mesh.face_corners.begin() + end);
-  std::sort(sorted.begin(), sorted.end());
-  return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+  const auto corners = mesh.corners_of(face);
+  return corners.size() >= 4 && !repeats_corner(corners) &&
+         find_repeated(corners, sorted) != sorted.end();
 }
 
 } // namespace

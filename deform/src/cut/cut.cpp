@@ -87,17 +87,15 @@ private:
     const std::uint32_t old = surface_.vertex_count();
     FaceTriangles of_faces(mesh_, rest_);
     for (std::size_t face = 0; face < assembly_.first_cut_face; ++face) {
-      const std::uint32_t begin = mesh_.face_starts[face];
-      const std::uint32_t end = mesh_.face_starts[face + 1];
+      const auto corners = mesh_.corners_of(face);
       double nearest = std::numeric_limits<double>::infinity();
       double longest = 0.0;
       bool belongs = true;
-      for (std::uint32_t at = begin; at < end && belongs; ++at) {
-        const std::uint32_t corner = mesh_.face_corners[at];
+      for (const std::uint32_t corner : corners) {
         belongs = corner < old && surface_.is_up(corner) == up;
         if (!belongs) break;
         nearest = std::min(nearest, std::abs(surface_.above(corner)));
-        const SpacePoint edge = points_[corner] - points_[mesh_.face_corners[begin]];
+        const SpacePoint edge = points_[corner] - points_[corners[0]];
         longest = std::max(longest, dot(edge, edge));
       }
       if (!belongs || nearest > reach_ + 1.5 * std::sqrt(longest)) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "geometry/union_find.hpp"
+#include "mesh/columns.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -288,12 +289,10 @@ CutAssembly assemble(const ChosenCut& cut, CutSurface& surface) {
 std::uint32_t number_parts(const Mesh& mesh, std::vector<std::uint32_t>& part_of_vertex) {
   const auto count = mesh.vertex_count();
   UnionFind sets(count);
-  std::vector<std::uint8_t> used(count, 0);
+  const std::vector<std::uint8_t> used = vertices_of_faces(mesh);
   for (std::size_t face = 0; face < mesh.face_count(); ++face)
-    for (std::uint32_t at = mesh.face_starts[face]; at < mesh.face_starts[face + 1]; ++at) {
-      used[mesh.face_corners[at]] = 1;
-      sets.join(mesh.face_corners[mesh.face_starts[face]], mesh.face_corners[at]);
-    }
+    for (const std::uint32_t vertex : mesh.corners_of(face))
+      sets.join(mesh.corners_of(face)[0], vertex);
   part_of_vertex.assign(count, no_index);
   std::uint32_t parts = 0;
   for (std::uint32_t vertex = 0; vertex < count; ++vertex) {

@@ -13,13 +13,10 @@ CutSurface::CutSurface(const Mesh& mesh, const Points& rest, const HalfEdges& ed
     : mesh_(mesh), triangles_(mesh, rest), edges_(edges), blade_(blade),
       blade_offset_(blade_offset), sides_(sides), active_(mesh.face_count(), 0) {
   for (std::uint32_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t begin = mesh.face_starts[face];
-    const bool first = is_up(mesh.face_corners[begin]);
-    for (std::uint32_t at = begin + 1; at < mesh.face_starts[face + 1]; ++at)
-      if (is_up(mesh.face_corners[at]) != first) {
-        activate(face);
-        break;
-      }
+    const auto corners = mesh.corners_of(face);
+    const bool first = is_up(corners[0]);
+    if (std::ranges::any_of(corners, [&](std::uint32_t at) { return is_up(at) != first; }))
+      activate(face);
   }
 }
 

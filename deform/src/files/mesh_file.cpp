@@ -25,19 +25,6 @@
 namespace nendo::deform {
 namespace {
 
-using CornerSpan = std::span<const std::uint32_t>;
-
-CornerSpan span_of(const Mesh& mesh, std::size_t face) noexcept {
-  return CornerSpan(mesh.face_corners)
-      .subspan(mesh.face_starts[face], mesh.face_starts[face + 1] - mesh.face_starts[face]);
-}
-
-/// Whether a corner follows itself; the first corner follows the last.
-bool repeats_corner(CornerSpan corners) noexcept {
-  return (corners.size() > 1 && corners.front() == corners.back()) ||
-         std::adjacent_find(corners.begin(), corners.end()) != corners.end();
-}
-
 /// Takes a corner that a face names twice in a row once only, and leaves out faces with fewer than
 /// three different corners. Adds a note for each of both, if there are any. Other faces, and all
 /// vertices, stay as they are.
@@ -45,7 +32,7 @@ void tidy_faces(Mesh& mesh, ReadNotes& notes) {
   Tally left_out, fixed;
   std::vector<std::uint8_t> keeps(mesh.face_corners.size(), 1);
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const CornerSpan corners = span_of(mesh, face);
+    const auto corners = mesh.corners_of(face);
     const auto own = std::span(keeps).subspan(mesh.face_starts[face], corners.size());
     if (!has_three(corners)) {
       left_out.add(face + 1);
@@ -211,12 +198,6 @@ Eigen::Index first_unusable_vertex(const Points& vertices) noexcept {
   return at;
 }
 
-bool has_polygons(const Mesh& mesh) noexcept {
-  for (std::size_t face = 0; face < mesh.face_count(); ++face)
-    if (mesh.face_starts[face + 1] - mesh.face_starts[face] > 3) return true;
-  return false;
-}
-
 /// Only what has y up says that Nendo wrote it, so that a reader asks of the other.
 std::string with_mark_of(UpAxis up, std::string text, std::string_view mark,
                          std::string_view mark_of_z) {
@@ -281,7 +262,7 @@ std::vector<std::string> lost_in_file(const std::filesystem::path& path, const M
   const auto add = [&](bool has, const char* what) {
     if (has) lost += (lost.empty() ? "" : ", ") + std::string(what);
   };
-  add(is_stl && has_polygons(mesh),
+  add(is_stl && max_corners(mesh) > 3,
       "faces of more than three corners (they are cut into triangles)");
   add(is_stl && look.has_colours(), "colours");
   add(!look.materials.empty(), "materials");

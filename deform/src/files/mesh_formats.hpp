@@ -62,6 +62,14 @@ Eigen::Matrix<Number, rows, Eigen::Dynamic> columns_of(const std::vector<Number>
       numbers.data(), rows, static_cast<Eigen::Index>(numbers.size()) / rows);
 }
 
+/// Returns the number of corners of the face that has the most.
+inline std::size_t max_corners(const Mesh& mesh) noexcept {
+  std::size_t most = 0;
+  for (std::size_t face = 0; face < mesh.face_count(); ++face)
+    most = std::max(most, mesh.corners_of(face).size());
+  return most;
+}
+
 /// Gives the mesh these texture coordinates, two numbers each. Corners that have none (no_index)
 /// share one more at (0, 0).
 inline void set_texcoords(std::vector<double>& numbers, Mesh& mesh) {

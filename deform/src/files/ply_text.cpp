@@ -23,12 +23,6 @@ void append_little_endian(std::string& text, Number number) {
   text.append(bytes, sizeof number);
 }
 
-bool has_large_face(const Mesh& mesh) noexcept {
-  for (std::size_t face = 0; face < mesh.face_count(); ++face)
-    if (mesh.face_starts[face + 1] - mesh.face_starts[face] > 255) return true;
-  return false;
-}
-
 void append_colour(std::string& text, const Eigen::Vector4f& colour) {
   for (Eigen::Index channel = 0; channel < 4; ++channel) {
     const float part = channel < 3 ? encoded_of(colour[channel]) : colour[channel];
@@ -42,7 +36,7 @@ void append_colour(std::string& text, const Eigen::Vector4f& colour) {
 std::string ply_text(const Mesh& mesh) {
   // uchar and int are what every reader knows; uint only where a face or the model is too large for
   // them.
-  const bool large_face = has_large_face(mesh);
+  const bool large_face = max_corners(mesh) > 255;
   const bool large_model = mesh.vertices.cols() > std::numeric_limits<std::int32_t>::max();
   const Eigen::Matrix4Xf colours = mean_vertex_colours(mesh);
   const bool coloured = colours.cols() > 0 && colours.cols() == mesh.vertices.cols();
@@ -61,14 +55,13 @@ std::string ply_text(const Mesh& mesh) {
     if (coloured) append_colour(text, colours.col(vertex));
   }
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t begin = mesh.face_starts[face];
-    const std::uint32_t end = mesh.face_starts[face + 1];
+    const auto corners = mesh.corners_of(face);
     if (large_face)
-      append_little_endian(text, end - begin);
+      append_little_endian(text, to_index(corners.size()));
     else
-      append_little_endian(text, static_cast<std::uint8_t>(end - begin));
-    for (std::uint32_t at = begin; at < end; ++at)
-      append_little_endian(text, mesh.face_corners[at]);
+      append_little_endian(text, static_cast<std::uint8_t>(corners.size()));
+    for (const std::uint32_t vertex : corners)
+      append_little_endian(text, vertex);
   }
   return text;
 }

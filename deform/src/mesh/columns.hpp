@@ -61,6 +61,22 @@ std::vector<std::uint32_t> first_alike(std::size_t count, const Key& key) {
   return first;
 }
 
+/// Calls visit(face, corner, next corner) for each edge of each face.
+template <class Visit>
+void for_each_face_edge(std::span<const std::uint32_t> face_starts, const Visit& visit) {
+  for (std::uint32_t face = 0; face + 1 < face_starts.size(); ++face) {
+    const std::uint32_t begin = face_starts[face], end = face_starts[face + 1];
+    for (std::uint32_t at = begin; at < end; ++at)
+      visit(face, at, at + 1 < end ? at + 1 : begin);
+  }
+}
+
+/// Returns whether a corner follows itself; the first corner follows the last.
+inline bool repeats_corner(std::span<const std::uint32_t> corners) noexcept {
+  return (corners.size() > 1 && corners.front() == corners.back()) ||
+         std::ranges::adjacent_find(corners) != corners.end();
+}
+
 /// Returns whether three of the values, as `project` shows them, differ from each other.
 template <class Values, class Project = std::identity>
 bool has_three(const Values& values, const Project& project = {}) {

@@ -80,20 +80,16 @@ std::string_view warning_about(const Mesh& mesh) noexcept {
 
 Points vertex_areas(const Mesh& mesh, const Points& places, double unit) {
   Points areas = Points::Zero(3, places.cols());
-  const auto corner = [&](std::uint32_t at) {
-    return static_cast<Eigen::Index>(mesh.face_corners[at]);
-  };
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t begin = mesh.face_starts[face];
-    const std::uint32_t end = mesh.face_starts[face + 1];
-    const auto edge_from_first = [&](std::uint32_t at) -> Eigen::Vector3d {
-      return (places.col(corner(at)) - places.col(corner(begin))) / unit;
+    const auto corners = mesh.corners_of(face);
+    const auto edge_from_first = [&](std::size_t at) -> Eigen::Vector3d {
+      return (places.col(corners[at]) - places.col(corners[0])) / unit;
     };
     Eigen::Vector3d area = Eigen::Vector3d::Zero();
-    for (std::uint32_t at = begin + 1; at + 1 < end; ++at)
+    for (std::size_t at = 1; at + 1 < corners.size(); ++at)
       area += edge_from_first(at).cross(edge_from_first(at + 1));
-    for (std::uint32_t at = begin; at < end; ++at)
-      areas.col(corner(at)) += area;
+    for (const std::uint32_t vertex : corners)
+      areas.col(vertex) += area;
   }
   return areas;
 }

@@ -20,25 +20,14 @@ struct Edge {
   std::uint32_t corner;
 };
 
-std::span<const std::uint32_t> corners_of(const Mesh& mesh, std::size_t face) {
-  return std::span(mesh.face_corners)
-      .subspan(mesh.face_starts[face], mesh.face_starts[face + 1] - mesh.face_starts[face]);
-}
-
 /// The edges of all faces by their ends, with the values of `corner_values` as ends.
 std::vector<Edge> sorted_edges(const Mesh& mesh, const std::vector<std::uint32_t>& corner_values) {
   std::vector<Edge> edges;
   edges.reserve(corner_values.size());
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t begin = mesh.face_starts[face];
-    const std::uint32_t end = mesh.face_starts[face + 1];
-    if (end - begin < 3) continue;
-    for (std::uint32_t at = begin; at < end; ++at) {
-      const std::uint32_t next = at + 1 < end ? at + 1 : begin;
-      const auto [low, high] = std::minmax(corner_values[at], corner_values[next]);
-      edges.push_back({edge_key(low, high), at});
-    }
-  }
+  for_each_face_edge(mesh.face_starts, [&](auto face, std::uint32_t at, std::uint32_t next) {
+    const auto [low, high] = std::minmax(corner_values[at], corner_values[next]);
+    if (mesh.corners_of(face).size() >= 3) edges.push_back({edge_key(low, high), at});
+  });
   std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
     return std::pair(a.ends, a.corner) < std::pair(b.ends, b.corner);
   });
@@ -63,10 +52,9 @@ struct Middles {
       of_corner[edges[at].corner] = first + count() - 1;
     }
     for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-      const std::uint32_t begin = mesh.face_starts[face];
-      const std::size_t corners = mesh.face_starts[face + 1] - begin;
+      const std::size_t corners = mesh.corners_of(face).size();
       if (corners < 4) continue;
-      add(std::span(corner_values).subspan(begin, corners));
+      add(std::span(corner_values).subspan(mesh.face_starts[face], corners));
       of_face[face] = first + count() - 1;
     }
   }
@@ -110,7 +98,7 @@ void append_faces(const Mesh& mesh, const std::vector<std::uint32_t>& corner_val
                   const EndsFace& ends_face) {
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const std::uint32_t begin = mesh.face_starts[face];
-    const auto count = static_cast<std::uint32_t>(corners_of(mesh, face).size());
+    const auto count = static_cast<std::uint32_t>(mesh.corners_of(face).size());
     const auto after = [&](std::uint32_t at) { return middles.of_corner[begin + at]; };
     const auto before = [&](std::uint32_t at) { return after((at + count - 1) % count); };
     if (count < 3) {
@@ -136,7 +124,7 @@ std::vector<std::uint32_t> faces_before(const Mesh& mesh) {
   std::vector<std::uint32_t> before;
   before.reserve(mesh.face_corners.size());
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::size_t corners = corners_of(mesh, face).size();
+    const std::size_t corners = mesh.corners_of(face).size();
     const std::size_t pieces = corners < 3 ? 1 : corners == 3 ? 4 : corners;
     before.insert(before.end(), pieces, static_cast<std::uint32_t>(face));
   }
@@ -163,7 +151,7 @@ std::vector<bool> faces_that_fold(const Mesh& mesh) {
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     if (triangles.is_convex(face)) continue;
     Eigen::Vector3d middle = Eigen::Vector3d::Zero(), area = Eigen::Vector3d::Zero();
-    const auto corners = corners_of(mesh, face);
+    const auto corners = mesh.corners_of(face);
     for (const std::uint32_t vertex : corners)
       middle += mesh.vertices.col(vertex) / static_cast<double>(corners.size());
     const auto area_at = [&](std::size_t at) -> Eigen::Vector3d {

@@ -52,8 +52,8 @@ Vector3d nearest_weights(const Vector3d& a, const Vector3d& b, const Vector3d& c
 bool is_open(const Mesh& mesh, FaceTriangles& triangles, std::size_t face) {
   constexpr double max_detour = 1.02;
   if (triangles.is_convex(face)) return true;
-  const std::uint32_t* const at = &mesh.face_corners[mesh.face_starts[face]];
-  if (mesh.face_starts[face + 1] - mesh.face_starts[face] != 4) return false;
+  const auto at = mesh.corners_of(face);
+  if (at.size() != 4) return false;
   const auto edge = [&](std::size_t from, std::size_t to) -> Vector3d {
     return mesh.vertices.col(at[to % 4]) - mesh.vertices.col(at[from % 4]);
   };
@@ -73,9 +73,8 @@ void for_each_cut(const Mesh& mesh, Visit visit) {
   for_each_triangle(mesh, visit);
   FaceTriangles triangles(mesh);
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t begin = mesh.face_starts[face];
-    if (mesh.face_starts[face + 1] - begin != 4 || !is_open(mesh, triangles, face)) continue;
-    const std::uint32_t* const at = &mesh.face_corners[begin];
+    const auto at = mesh.corners_of(face);
+    if (at.size() != 4 || !is_open(mesh, triangles, face)) continue;
     visit(std::array{at[1], at[2], at[3]});
     visit(std::array{at[1], at[3], at[0]});
   }
@@ -145,12 +144,11 @@ SurfaceGraph::SurfaceGraph(const Mesh& mesh) : vertices_(mesh.vertices) {
         }
       continue;
     }
-    for (std::uint32_t one = mesh.face_starts[face]; one < mesh.face_starts[face + 1]; ++one)
-      for (std::uint32_t other = one + 1; other < mesh.face_starts[face + 1]; ++other) {
-        if (other > one + 2 && one != mesh.face_starts[face])
-          break; // of large faces, few diagonals
-        const std::uint32_t a = mesh.face_corners[one], b = mesh.face_corners[other];
-        add(a, b, straight(a, b));
+    const auto corners = mesh.corners_of(face);
+    for (std::size_t one = 0; one < corners.size(); ++one)
+      for (std::size_t other = one + 1; other < corners.size(); ++other) {
+        if (other > one + 2 && one > 0) break; // of large faces, few diagonals
+        add(corners[one], corners[other], straight(corners[one], corners[other]));
       }
   }
   std::vector<Hinge> edges;

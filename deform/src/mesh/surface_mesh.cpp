@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "mesh/columns.hpp"
+
 namespace nendo::deform {
 namespace {
 
@@ -249,15 +251,11 @@ HalfEdges half_edges_of(std::span<const std::uint32_t> face_starts,
   edges.next.resize(count);
   edges.last.resize(count);
   std::vector<std::uint32_t> to(count);
-  for (std::size_t face = 0; face + 1 < face_starts.size(); ++face) {
-    const std::uint32_t begin = face_starts[face];
-    const std::uint32_t end = face_starts[face + 1];
-    for (std::uint32_t edge = begin; edge < end; ++edge) {
-      edges.next[edge] = edge + 1 < end ? edge + 1 : begin;
-      edges.last[edge] = edge > begin ? edge - 1 : end - 1;
-      to[edge] = face_corners[edges.next[edge]];
-    }
-  }
+  for_each_face_edge(face_starts, [&](auto, std::uint32_t edge, std::uint32_t next) {
+    edges.next[edge] = next;
+    edges.last[next] = edge;
+    to[edge] = face_corners[next];
+  });
   edges.out = rows_by_key<std::uint32_t>(vertices, [&](const auto& visit) {
     for (std::uint32_t edge = 0; edge < count; ++edge)
       visit(face_corners[edge], edge);

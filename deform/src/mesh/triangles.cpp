@@ -46,10 +46,9 @@ Mesh with_triangles_of(Mesh mesh, const Points& rest) {
   std::vector<bool> differs(mesh.face_count(), false);
   bool any = false;
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const auto begin = mesh.face_corners.begin() + mesh.face_starts[face];
-    const auto end = mesh.face_corners.begin() + mesh.face_starts[face + 1];
+    const auto corners = mesh.corners_of(face);
     const auto is_new = [&](std::uint32_t vertex) { return vertex >= rest.cols(); };
-    if (end - begin < 4 || std::any_of(begin, end, is_new)) continue;
+    if (corners.size() < 4 || std::ranges::any_of(corners, is_new)) continue;
     differs[face] = !std::ranges::equal(now.of(face), before.of(face));
     any = any || differs[face];
   }

@@ -95,13 +95,10 @@ public:
     for (const Rim& rim : *found)
       for (const std::uint32_t corner : rim)
         at_rim[mesh_.face_corners[corner]] = 1;
-    for (std::size_t face = 0; face < mesh_.face_count(); ++face)
-      for (std::uint32_t at = mesh_.face_starts[face]; at < mesh_.face_starts[face + 1]; ++at) {
-        const std::uint32_t next =
-            at + 1 < mesh_.face_starts[face + 1] ? at + 1 : mesh_.face_starts[face];
-        if (at_rim[mesh_.face_corners[at]] != 0 && at_rim[mesh_.face_corners[next]] != 0)
-          edges_.insert(std::minmax(mesh_.face_corners[at], mesh_.face_corners[next]));
-      }
+    for_each_face_edge(mesh_.face_starts, [&](auto, std::uint32_t at, std::uint32_t next) {
+      if (at_rim[mesh_.face_corners[at]] != 0 && at_rim[mesh_.face_corners[next]] != 0)
+        edges_.insert(std::minmax(mesh_.face_corners[at], mesh_.face_corners[next]));
+    });
     for (const Rim& rim : *found)
       fill(rim);
     return sum();

@@ -186,8 +186,7 @@ SplitJunctions split_at_junctions(Mesh& mesh, std::vector<std::uint32_t>& place_
 
 std::size_t drop_double_faces(Mesh& mesh, std::vector<std::uint32_t>& place_of) {
   const auto own = [&](std::size_t face) {
-    return std::span(place_of).subspan(mesh.face_starts[face],
-                                       mesh.face_starts[face + 1] - mesh.face_starts[face]);
+    return std::span(place_of).subspan(mesh.face_starts[face], mesh.corners_of(face).size());
   };
   std::vector<FacePlaces> keys;
   for (std::size_t face = 0; face < mesh.face_count(); ++face)

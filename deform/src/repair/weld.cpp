@@ -35,18 +35,15 @@ void join_thin_faces(const Mesh& mesh, std::span<const std::uint32_t> place, Uni
   std::vector<std::uint8_t> is_thin(mesh.face_count(), 0);
   std::vector<std::uint32_t> first(place.size(), no_index); // by place
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t begin = mesh.face_starts[face], end = mesh.face_starts[face + 1];
-    const auto corners = std::span(mesh.face_corners).subspan(begin, end - begin);
+    const auto corners = mesh.corners_of(face);
     is_thin[face] = has_three(corners, [&](std::uint32_t at) { return place[at]; }) ? 0 : 1;
-    for (std::uint32_t at = begin; at < end && is_thin[face] == 0; ++at) {
-      std::uint32_t& of = first[place[mesh.face_corners[at]]];
-      if (of == no_index) of = mesh.face_corners[at];
-    }
+    for (const std::uint32_t vertex : corners)
+      if (std::uint32_t& of = first[place[vertex]]; is_thin[face] == 0 && of == no_index)
+        of = vertex;
   }
   for (std::size_t face = 0; face < mesh.face_count(); ++face)
-    for (std::uint32_t at = mesh.face_starts[face]; at < mesh.face_starts[face + 1]; ++at) {
+    for (const std::uint32_t vertex : mesh.corners_of(face)) {
       if (is_thin[face] == 0) continue;
-      const std::uint32_t vertex = mesh.face_corners[at];
       const std::uint32_t other = first[place[vertex]];
       sets.join(vertex, other == no_index ? place[vertex] : other);
     }
@@ -54,14 +51,10 @@ void join_thin_faces(const Mesh& mesh, std::span<const std::uint32_t> place, Uni
 
 /// A face that has a place twice in a row has one corner there.
 void join_repeats(const Mesh& mesh, std::span<const std::uint32_t> place, UnionFind& sets) {
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t begin = mesh.face_starts[face], end = mesh.face_starts[face + 1];
-    for (std::uint32_t at = begin; at < end; ++at) {
-      const std::uint32_t vertex = mesh.face_corners[at];
-      const std::uint32_t next = mesh.face_corners[at + 1 < end ? at + 1 : begin];
-      if (place[vertex] == place[next]) sets.join(vertex, next);
-    }
-  }
+  for_each_face_edge(mesh.face_starts, [&](auto, std::uint32_t at, std::uint32_t next) {
+    const std::uint32_t one = mesh.face_corners[at], other = mesh.face_corners[next];
+    if (place[one] == place[other]) sets.join(one, other);
+  });
 }
 
 } // namespace
@@ -87,7 +80,7 @@ void keep_faces(Mesh& mesh, std::span<const std::uint8_t> keeps,
                 std::vector<std::uint32_t>& of_corner) {
   std::vector<std::uint8_t> corners;
   for (std::size_t face = 0; face < mesh.face_count(); ++face)
-    corners.insert(corners.end(), mesh.face_starts[face + 1] - mesh.face_starts[face], keeps[face]);
+    corners.insert(corners.end(), mesh.corners_of(face).size(), keeps[face]);
   if (of_corner.size() == corners.size()) keep_values(of_corner, corners);
   keep_corners(mesh, corners);
 }
@@ -154,8 +147,8 @@ bool is_soup(const Mesh& mesh) {
   if (mesh.face_count() < 2) return false;
   std::vector<std::uint32_t> face_of(mesh.vertex_count(), no_index);
   for (std::uint32_t face = 0; face < mesh.face_count(); ++face)
-    for (std::uint32_t at = mesh.face_starts[face]; at < mesh.face_starts[face + 1]; ++at) {
-      std::uint32_t& of = face_of[mesh.face_corners[at]];
+    for (const std::uint32_t vertex : mesh.corners_of(face)) {
+      std::uint32_t& of = face_of[vertex];
       if (of != no_index && of != face) return false;
       of = face;
     }

@@ -2,6 +2,7 @@
 // A polygon mesh for deformation: vertices in a fixed order, and constant faces.
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -40,6 +41,11 @@ struct Mesh {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 
   std::size_t face_count() const noexcept { return face_starts.size() - 1; }
+  /// Returns the vertices at the face's corners.
+  std::span<const std::uint32_t> corners_of(std::size_t face) const noexcept {
+    return std::span(face_corners)
+        .subspan(face_starts[face], face_starts[face + 1] - face_starts[face]);
+  }
   std::size_t vertex_count() const noexcept { return static_cast<std::size_t>(vertices.cols()); }
 };
 
