@@ -6,6 +6,8 @@
 
 #include <nendo/base/text.hpp>
 
+#include "files/binary_numbers.hpp"
+
 namespace nendo::deform {
 namespace {
 
@@ -152,11 +154,8 @@ bool is_utf16_without_mark(std::string_view bytes) noexcept {
 
 /// The file of Autodesk's 3D Studio: its first chunk, 0x4D4D, is as long as the file.
 bool is_3ds(std::string_view bytes) noexcept {
-  if (bytes.size() < 16 || !bytes.starts_with("MM")) return false;
-  std::uint32_t length = 0;
-  for (std::size_t i = 4; i-- > 0;)
-    length = length << 8 | static_cast<unsigned char>(bytes[2 + i]);
-  return length == bytes.size();
+  return bytes.size() >= 16 && bytes.starts_with("MM") &&
+         number_from<std::uint32_t>(bytes.data() + 2) == bytes.size();
 }
 
 std::optional<std::string> text_format(std::string_view bytes) {

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 
 #include <nendo/base/text.hpp>
 
+#include "files/binary_numbers.hpp"
 #include "geometry/usable.hpp"
 
 namespace nendo::deform {
 
 using Json = GltfDocument::Json;
-using Bytes = GltfDocument::Bytes;
 
 namespace {
 
@@ -47,18 +46,6 @@ constexpr std::uint64_t max_buffer_bytes = std::uint64_t{4} << 30;
   throw GltfRefusal{std::move(what)};
 }
 
-Bytes bytes_of(std::string_view text) noexcept {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
-/// Least significant byte first.
-std::uint32_t integer_at(Bytes bytes, std::size_t at, std::size_t width) noexcept {
-  std::uint32_t number = 0;
-  for (std::size_t k = 0; k < width; ++k)
-    number |= std::uint32_t{bytes[at + k]} << (8 * k);
-  return number;
-}
-
 /// glTF's numbers of component types.
 enum class Component : std::uint32_t {
   int8 = 5120,
@@ -76,25 +63,25 @@ std::size_t size_of_component(std::uint64_t type) {
   refuse("an accessor has a componentType " + std::to_string(type) + ", which glTF does not know");
 }
 
-double decoded(Component type, Bytes bytes, std::size_t at, bool normalized) noexcept {
+double decoded(Component type, const char* bytes, bool normalized) noexcept {
   const auto scaled = [&](double value, double greatest) {
     return normalized ? std::max(value / greatest, -1.0) : value;
   };
   switch (type) {
   case Component::int8:
-    return scaled(static_cast<std::int8_t>(bytes[at]), 127.0);
+    return scaled(number_from<std::int8_t>(bytes), 127.0);
   case Component::uint8:
-    return scaled(bytes[at], 255.0);
+    return scaled(number_from<std::uint8_t>(bytes), 255.0);
   case Component::int16:
-    return scaled(static_cast<std::int16_t>(integer_at(bytes, at, 2)), 32767.0);
+    return scaled(number_from<std::int16_t>(bytes), 32767.0);
   case Component::uint16:
-    return scaled(integer_at(bytes, at, 2), 65535.0);
+    return scaled(number_from<std::uint16_t>(bytes), 65535.0);
   case Component::uint32:
-    return integer_at(bytes, at, 4);
+    return number_from<std::uint32_t>(bytes);
   case Component::float32:
     break;
   }
-  return static_cast<double>(std::bit_cast<float>(integer_at(bytes, at, 4)));
+  return static_cast<double>(number_from<float>(bytes));
 }
 
 std::size_t width_of(const std::string& type) {
@@ -113,7 +100,7 @@ struct Layout {
 };
 
 Layout layout_of(std::uint64_t component, std::size_t width, std::uint64_t offset,
-                 std::uint64_t stride, std::uint64_t count, Bytes view) {
+                 std::uint64_t stride, std::uint64_t count, std::string_view view) {
   const std::size_t element = width * size_of_component(component);
   if (stride == 0) stride = element;
   if (stride < element) refuse("a bufferView has a byteStride that is too small for its numbers");
@@ -234,22 +221,21 @@ GltfDocument::GltfDocument(std::string_view file, const ModelFolder* folder) : f
 }
 
 void GltfDocument::read_binary(std::string_view file) {
-  const Bytes bytes = bytes_of(file);
-  if (bytes.size() < header_bytes + chunk_header_bytes) refuse("the file is cut off");
-  if (const auto version = integer_at(bytes, 4, 4); version != 2)
-    refuse_version(std::to_string(version));
-  const std::size_t length = integer_at(bytes, 8, 4);
-  if (length > bytes.size() || length < header_bytes + chunk_header_bytes)
+  if (file.size() < header_bytes + chunk_header_bytes) refuse("the file is cut off");
+  const auto word_at = [&](std::size_t at) { return number_from<std::uint32_t>(file.data() + at); };
+  if (word_at(4) != 2) refuse_version(std::to_string(word_at(4)));
+  const std::size_t length = word_at(8);
+  if (length > file.size() || length < header_bytes + chunk_header_bytes)
     refuse("the file is cut off");
   std::size_t at = header_bytes;
   for (int chunk = 0; chunk < 2 && length - at >= chunk_header_bytes; ++chunk) {
-    const std::size_t size = integer_at(bytes, at, 4);
-    const std::uint32_t type = integer_at(bytes, at + 4, 4);
+    const std::size_t size = word_at(at);
+    const std::uint32_t type = word_at(at + 4);
     at += chunk_header_bytes;
     if (size > length - at) refuse("byte " + std::to_string(at) + ": the file is cut off");
     if (chunk == 0 && type != json_chunk) refuse("byte 16: the first chunk is not JSON");
     if (chunk == 0) read_json(file.substr(at, size));
-    if (chunk == 1 && type == binary_chunk) binary_ = bytes.subspan(at, size);
+    if (chunk == 1 && type == binary_chunk) binary_ = file.substr(at, size);
     at += size;
   }
 }
@@ -292,7 +278,7 @@ void GltfDocument::read_buffers() {
     const Json& buffer = item("buffers", at);
     const std::uint64_t length = gltf_count(buffer, "byteLength", 0);
     const std::string uri = gltf_text(buffer, "uri");
-    Bytes bytes = at == 0 && uri.empty() ? binary_ : Bytes();
+    std::string_view bytes = at == 0 && uri.empty() ? binary_ : std::string_view();
     if (is_data_uri(uri)) {
       auto data = data_of_uri(uri);
       if (!data) refuse("has a buffer with a damaged data URI");
@@ -300,7 +286,7 @@ void GltfDocument::read_buffers() {
     } else if (!uri.empty()) {
       own_[at] = file_named(uri, left).contents.value_or(std::string());
     }
-    if (!uri.empty()) bytes = bytes_of(own_[at]);
+    if (!uri.empty()) bytes = own_[at];
     left -= own_[at].size();
     if (bytes.size() < length && !uri.empty() && !is_data_uri(uri))
       refuse("needs the file '" + printable(uri.substr(0, 40)) + "' of " + std::to_string(length) +
@@ -309,20 +295,20 @@ void GltfDocument::read_buffers() {
       if (bytes.size() < length && gltf_extension(buffer, meshopt) != nullptr)
         refuse_meshopt(meshopt);
     if (bytes.size() < length) refuse("has fewer bytes than its buffers should have");
-    buffers_.push_back(bytes.first(length));
+    buffers_.push_back(bytes.substr(0, length));
   }
 }
 
-Bytes GltfDocument::view(std::uint64_t buffer_view) const {
+std::string_view GltfDocument::view(std::uint64_t buffer_view) const {
   const Json& view = item("bufferViews", buffer_view);
   const std::uint64_t buffer = gltf_count(view, "buffer", 0);
   item("buffers", buffer);
-  const Bytes bytes = buffers_[buffer];
+  const std::string_view bytes = buffers_[buffer];
   const std::uint64_t offset = gltf_count(view, "byteOffset", 0);
   const std::uint64_t length = gltf_count(view, "byteLength", 0);
   if (offset > bytes.size() || length > bytes.size() - offset)
     refuse("a bufferView reaches beyond the end of its buffer");
-  return bytes.subspan(offset, length);
+  return bytes.substr(offset, length);
 }
 
 GltfNumbers GltfDocument::numbers(std::uint64_t index) const {
@@ -338,7 +324,7 @@ GltfNumbers GltfDocument::numbers(std::uint64_t index) const {
   if (gltf_member(accessor, "bufferView") == nullptr) {
     // Zeros cost a file nothing, so they are bounded by what it has otherwise.
     std::uint64_t bytes = 0;
-    for (const Bytes buffer : buffers_)
+    for (const std::string_view buffer : buffers_)
       bytes += buffer.size();
     if (count > bytes) refuse("an accessor has more zeros than the file has bytes");
     numbers.values.resize(numbers.count * numbers.width, 0.0);
@@ -353,7 +339,7 @@ GltfNumbers GltfDocument::numbers(std::uint64_t index) const {
 
 void GltfDocument::fill(const Json& accessor, GltfNumbers& numbers) const {
   const std::uint64_t number = gltf_count(accessor, "bufferView", 0);
-  const Bytes bytes = view(number);
+  const std::string_view bytes = view(number);
   const Layout layout =
       layout_of(gltf_count(accessor, "componentType", 0), numbers.width,
                 gltf_count(accessor, "byteOffset", 0),
@@ -363,9 +349,9 @@ void GltfDocument::fill(const Json& accessor, GltfNumbers& numbers) const {
   numbers.values.reserve(numbers.count * numbers.width);
   for (std::size_t row = 0; row < numbers.count; ++row)
     for (std::size_t column = 0; column < numbers.width; ++column)
-      numbers.values.push_back(decoded(layout.component, bytes,
-                                       layout.offset + row * layout.stride + column * size,
-                                       is_normalized));
+      numbers.values.push_back(decoded(
+          layout.component, bytes.data() + layout.offset + row * layout.stride + column * size,
+          is_normalized));
 }
 
 void GltfDocument::fill_sparse(const Json& accessor, GltfNumbers& numbers) const {
@@ -376,7 +362,7 @@ void GltfDocument::fill_sparse(const Json& accessor, GltfNumbers& numbers) const
   if (indices == nullptr || values == nullptr || count == 0 || count > numbers.count)
     refuse("a sparse accessor is not whole");
   const auto part = [&](const Json& of, std::uint64_t component, std::size_t width) {
-    const Bytes bytes = view(gltf_count(of, "bufferView", 0));
+    const std::string_view bytes = view(gltf_count(of, "bufferView", 0));
     return std::pair(bytes,
                      layout_of(component, width, gltf_count(of, "byteOffset", 0), 0, count, bytes));
   };
@@ -385,16 +371,16 @@ void GltfDocument::fill_sparse(const Json& accessor, GltfNumbers& numbers) const
       part(*values, gltf_count(accessor, "componentType", 0), numbers.width);
   const std::size_t size = size_of_component(static_cast<std::uint64_t>(at_values.component));
   for (std::size_t k = 0; k < count; ++k) {
-    const double place =
-        decoded(at_places.component, places, at_places.offset + k * at_places.stride, false);
+    const double place = decoded(at_places.component,
+                                 places.data() + at_places.offset + k * at_places.stride, false);
     if (!(place >= 0.0 && place < static_cast<double>(numbers.count)) ||
         at_places.component == Component::float32)
       refuse("a sparse accessor names an element that is not there");
     const std::size_t row = static_cast<std::size_t>(place) * numbers.width;
     for (std::size_t column = 0; column < numbers.width; ++column)
       numbers.values[row + column] =
-          decoded(at_values.component, bytes,
-                  at_values.offset + k * at_values.stride + column * size, false);
+          decoded(at_values.component,
+                  bytes.data() + at_values.offset + k * at_values.stride + column * size, false);
   }
 }
 
@@ -405,8 +391,7 @@ FolderFile GltfDocument::image(const Json& image) const {
   if (is_data_uri(uri)) {
     file.contents = data_of_uri(uri);
   } else if (gltf_member(image, "bufferView") != nullptr) {
-    const Bytes bytes = view(gltf_count(image, "bufferView", 0));
-    file.contents.emplace(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    file.contents.emplace(view(gltf_count(image, "bufferView", 0)));
   }
   if (!file.contents || file.contents->empty()) {
     file.contents.reset();

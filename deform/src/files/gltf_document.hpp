@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,9 +35,6 @@ struct GltfNumbers {
 class GltfDocument {
 public:
   using Json = nlohmann::json;
-  /// A list of bytes that belongs to the document, or to the file that it was made from.
-  using Bytes = std::span<const std::uint8_t>;
-
   /// `file` must outlive the document. Other files that it names are read from `folder`; null:
   /// there are none. Throws GltfRefusal, and std::bad_alloc.
   GltfDocument(std::string_view file, const ModelFolder* folder);
@@ -52,8 +48,9 @@ public:
   /// Returns the numbers of an accessor, of floats or integers, with sparse ones in their places.
   /// All are finite. Throws GltfRefusal.
   GltfNumbers numbers(std::uint64_t accessor) const;
-  /// Returns the bytes of a buffer's part. Throws GltfRefusal.
-  Bytes view(std::uint64_t buffer_view) const;
+  /// Returns the bytes of a buffer's part, which belong to the document or to its file. Throws
+  /// GltfRefusal.
+  std::string_view view(std::uint64_t buffer_view) const;
   /// Returns the contents of an image, or why there are none. Throws GltfRefusal.
   FolderFile image(const Json& image) const;
 
@@ -67,9 +64,9 @@ private:
 
   const ModelFolder* folder_;
   Json root_;
-  Bytes binary_;                 ///< the chunk of a binary file
+  std::string_view binary_;      ///< the chunk of a binary file
   std::vector<std::string> own_; ///< contents of buffers that are not that chunk
-  std::vector<Bytes> buffers_;
+  std::vector<std::string_view> buffers_;
 };
 
 /// Returns a member of an object, or null.

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include <nendo/base/text.hpp>
 
+#include "files/binary_numbers.hpp"
 #include "files/colour_range.hpp"
 #include "files/mesh_formats.hpp"
 #include "files/number_text.hpp"
@@ -19,36 +19,26 @@
 namespace nendo::deform {
 namespace {
 
-template <class Number>
-Number from_bytes(const char* bytes, bool reversed) noexcept {
-  char ordered[sizeof(Number)];
-  for (std::size_t i = 0; i < sizeof(Number); ++i)
-    ordered[i] = bytes[reversed ? sizeof(Number) - 1 - i : i];
-  Number number;
-  std::memcpy(&number, ordered, sizeof number);
-  return number;
-}
-
-double decode(PlyType type, const char* bytes, bool reversed) noexcept {
+double decode(PlyType type, const char* bytes, std::endian order) noexcept {
   switch (type) {
   case PlyType::int8:
-    return from_bytes<std::int8_t>(bytes, reversed);
+    return number_from<std::int8_t>(bytes, order);
   case PlyType::uint8:
-    return from_bytes<std::uint8_t>(bytes, reversed);
+    return number_from<std::uint8_t>(bytes, order);
   case PlyType::int16:
-    return from_bytes<std::int16_t>(bytes, reversed);
+    return number_from<std::int16_t>(bytes, order);
   case PlyType::uint16:
-    return from_bytes<std::uint16_t>(bytes, reversed);
+    return number_from<std::uint16_t>(bytes, order);
   case PlyType::int32:
-    return from_bytes<std::int32_t>(bytes, reversed);
+    return number_from<std::int32_t>(bytes, order);
   case PlyType::uint32:
-    return from_bytes<std::uint32_t>(bytes, reversed);
+    return number_from<std::uint32_t>(bytes, order);
   case PlyType::float32:
-    return static_cast<double>(from_bytes<float>(bytes, reversed));
+    return static_cast<double>(number_from<float>(bytes, order));
   case PlyType::float64:
     break;
   }
-  return from_bytes<double>(bytes, reversed);
+  return number_from<double>(bytes, order);
 }
 
 /// The numbers of the body one by one. A double holds every PLY type exactly.
@@ -66,9 +56,9 @@ public:
       return to_number_of_any_program(word_);
     }
     if (bytes_.size() - at_ < size_of(type)) return std::nullopt;
-    const bool native =
-        (format_ == PlyFormat::little_endian) == (std::endian::native == std::endian::little);
-    const double value = decode(type, bytes_.data() + at_, !native);
+    const bool is_little = format_ == PlyFormat::little_endian;
+    const double value =
+        decode(type, bytes_.data() + at_, is_little ? std::endian::little : std::endian::big);
     at_ += size_of(type);
     return value;
   }

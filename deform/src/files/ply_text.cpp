@@ -1,27 +1,16 @@
 // The writer of PLY, binary little-endian.
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <limits>
 
 #include <nendo/deform/corner_colours.hpp>
 
+#include "files/binary_numbers.hpp"
 #include "files/colour_range.hpp"
 #include "files/mesh_formats.hpp"
 
 namespace nendo::deform {
 namespace {
-
-template <class Number>
-void append_little_endian(std::string& text, Number number) {
-  char bytes[sizeof number];
-  std::memcpy(bytes, &number, sizeof number);
-  if constexpr (std::endian::native == std::endian::big)
-    for (std::size_t i = 0; i < sizeof number / 2; ++i)
-      std::swap(bytes[i], bytes[sizeof number - 1 - i]);
-  text.append(bytes, sizeof number);
-}
 
 void append_colour(std::string& text, const Eigen::Vector4f& colour) {
   for (Eigen::Index channel = 0; channel < 4; ++channel) {

@@ -1,7 +1,6 @@
 // Reads STL, text and binary, and writes it.
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,6 +10,7 @@
 #include <nendo/base/text.hpp>
 #include <nendo/deform/triangles.hpp>
 
+#include "files/binary_numbers.hpp"
 #include "files/colour_range.hpp"
 #include "files/mesh_formats.hpp"
 #include "files/number_text.hpp"
@@ -24,13 +24,6 @@ namespace {
 constexpr std::size_t stl_header_bytes = 80;
 constexpr std::size_t facets_offset = stl_header_bytes + 4;
 constexpr std::size_t facet_bytes = 50;
-
-std::uint32_t little_endian(std::string_view text, std::size_t at, std::size_t bytes) noexcept {
-  std::uint32_t number = 0;
-  for (std::size_t i = bytes; i-- > 0;)
-    number = number << 8 | static_cast<unsigned char>(text[at + i]);
-  return number;
-}
 
 bool is_word(std::string_view field, std::string_view word) noexcept {
   return field.size() == word.size() && ends_in(field, word);
@@ -53,10 +46,13 @@ bool is_text_stl(std::string_view text) noexcept {
   return false;
 }
 
+std::uint32_t facet_count(std::string_view text) noexcept {
+  return number_from<std::uint32_t>(text.data() + stl_header_bytes);
+}
+
 bool has_size_of_binary(std::string_view text) noexcept {
   if (text.size() < facets_offset) return false;
-  const std::uint64_t count = little_endian(text, stl_header_bytes, 4);
-  return text.size() == facets_offset + facet_bytes * count;
+  return text.size() == facets_offset + facet_bytes * std::uint64_t{facet_count(text)};
 }
 
 bool looks_binary(std::string_view text) noexcept {
@@ -255,7 +251,7 @@ public:
       if (!kept) return kept.error();
       if (!*kept) continue;
       const std::size_t attribute = facets_offset + facet_bytes * (number + 1) - 2;
-      colours.add_facet(little_endian(text_, attribute, 2), look);
+      colours.add_facet(number_from<std::uint16_t>(text_.data() + attribute), look);
     }
     if (look.materials.empty()) look.face_materials.clear();
     faces_.note_left_out(notes);
@@ -269,7 +265,7 @@ private:
   Result<std::size_t> count_facets(ReadNotes& notes) const {
     if (text_.size() < facets_offset)
       return bad("is an STL that is cut off within its header; get the whole file");
-    const std::size_t promised = little_endian(text_, stl_header_bytes, 4);
+    const std::size_t promised = facet_count(text_);
     const std::size_t available = (text_.size() - facets_offset) / facet_bytes;
     const bool is_unknown = promised == 0 || promised == std::numeric_limits<std::uint32_t>::max();
     if (is_unknown && available > 0) {
@@ -293,8 +289,7 @@ private:
       SpacePoint place{};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t at = begin + 12 + 12 * corner + 4 * axis; // after the normal
-        const auto value = std::bit_cast<float>(little_endian(text_, at, 4));
-        place[axis] = static_cast<double>(value);
+        place[axis] = static_cast<double>(number_from<float>(text_.data() + at));
         if (!is_usable(place[axis]))
           return bad("byte " + std::to_string(at + 1) + ": a coordinate of triangle " +
                      std::to_string(number + 1) + " is not finite");
@@ -313,14 +308,9 @@ private:
   StlFaces faces_;
 };
 
-void append_little_endian_word(std::string& text, std::uint32_t number, int bytes) {
-  for (int byte = 0; byte < bytes; ++byte)
-    text += static_cast<char>(number >> (8 * byte) & 0xFFU);
-}
-
 void append_floats(std::string& text, const Eigen::Vector3d& numbers) {
   for (const double number : numbers)
-    append_little_endian_word(text, std::bit_cast<std::uint32_t>(static_cast<float>(number)), 4);
+    append_little_endian(text, static_cast<float>(number));
 }
 
 /// Of unit length; 0 if the triangle has no area.
@@ -359,7 +349,7 @@ Result<std::string> stl_text(const Mesh& mesh) {
     append_floats(text, unit_normal(corner(1) - corner(0), corner(2) - corner(0)));
     for (int which = 0; which < 3; ++which)
       append_floats(text, corner(which));
-    append_little_endian_word(text, 0, 2);
+    append_little_endian(text, std::uint16_t{0});
     ++count;
   });
   if (!std::isfinite(rounding_in_floats(mesh)))
@@ -367,7 +357,7 @@ Result<std::string> stl_text(const Mesh& mesh) {
   if (count > std::numeric_limits<std::uint32_t>::max())
     return Error{Errc::failed, "has more triangles than an STL can count"};
   std::string counted;
-  append_little_endian_word(counted, static_cast<std::uint32_t>(count), 4);
+  append_little_endian(counted, static_cast<std::uint32_t>(count));
   std::copy(counted.begin(), counted.end(), text.begin() + stl_header_bytes);
   return text;
 }
