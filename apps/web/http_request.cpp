@@ -2,27 +2,25 @@
 
 #include <algorithm>
 
+#include <nendo/base/endings.hpp>
+
 #include "web/endpoint.hpp"
 #include "web/web_socket.hpp"
 
 namespace nendo::web {
 namespace {
 
-char lower(char c) noexcept {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
 // Letters of ASCII alone.
 bool equal_ignoring_case(std::string_view a, std::string_view b) noexcept {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char x, char y) { return lower(x) == lower(y); });
+                    [](char x, char y) { return small_letter(x) == small_letter(y); });
 }
 
 // RFC 9110, section 5.6.2.
 bool is_token(std::string_view text) noexcept {
   constexpr std::string_view marks = "!#$%&'*+-.^_`|~";
   return !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
-    const char l = lower(c);
+    const char l = small_letter(c);
     return (l >= 'a' && l <= 'z') || (c >= '0' && c <= '9') ||
            marks.find(c) != std::string_view::npos;
   });

@@ -7,6 +7,7 @@
 #include <stop_token>
 #include <vector>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/driver/glove_options.hpp>
 #include <nendo/driver/reader_thread.hpp>
@@ -262,9 +263,7 @@ Result<std::unique_ptr<driver::Glove>> open_recording(const driver::GloveSpec& s
 }
 
 bool is_table(const std::string& name) {
-  std::string ending = std::filesystem::path(name).extension().string();
-  for (char& c : ending)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string ending = in_small_letters(std::filesystem::path(name).extension().string());
   return ending == ".csv" || ending == ".tsv" || ending == ".txt";
 }
 

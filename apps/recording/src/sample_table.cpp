@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/base/files.hpp>
 #include <nendo/base/table.hpp>
 #include <nendo/base/units.hpp>
@@ -46,10 +47,7 @@ bool is_exported_beside(std::string_view name) {
 }
 
 std::optional<Side> side_of(std::string_view cell) {
-  std::string word(cell);
-  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) {
-    return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  });
+  const std::string word = in_small_letters(std::string(cell));
   if (word == "left" || word == "l") return Side::left;
   if (word == "right" || word == "r") return Side::right;
   return std::nullopt;

@@ -38,23 +38,12 @@ float ColourRange::part_of(double value) const noexcept {
 std::string ColourRange::note() const {
   if (numbers_ == ColourNumbers::int8 || max_ <= 0.0) return {};
   const bool is_words = full() == full_of_words;
-  switch (numbers_) {
-  case ColourNumbers::floats:
-  case ColourNumbers::factors:
-    if (max_ <= 1.0) return {};
-    if (full() == 1.0) return "some colours are above 1; they are taken as 1";
-    return is_words ? "colours above 255 were found, so colours are read as 0 to 65535"
-                    : "colours above 1 were found, so colours are read as 0 to 255";
-  case ColourNumbers::int16:
-    if (!is_words) return "no colour is above 255, so the 16-bit colours are read as 0 to 255";
-    return {};
-  case ColourNumbers::int32:
-    if (is_words) return "colours above 255 were found, so colours are read as 0 to 65535";
-    return {};
-  case ColourNumbers::int8:
-    break;
-  }
-  return {};
+  if (numbers_ == ColourNumbers::int16)
+    return is_words ? "" : "no colour is above 255, so the 16-bit colours are read as 0 to 255";
+  if (is_words) return "colours above 255 were found, so colours are read as 0 to 65535";
+  if (numbers_ == ColourNumbers::int32 || max_ <= 1.0) return {};
+  return full() == 1.0 ? "some colours are above 1; they are taken as 1"
+                       : "colours above 1 were found, so colours are read as 0 to 255";
 }
 
 } // namespace nendo::deform

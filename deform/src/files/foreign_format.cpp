@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/base/text.hpp>
 
 #include "files/binary_numbers.hpp"
@@ -102,14 +103,8 @@ bool has_mark(std::string_view bytes, const Mark& mark) noexcept {
                     [](char wanted, char found) { return wanted == '?' || wanted == found; });
 }
 
-char small_letter(char c) noexcept {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
 bool begins_with_word(std::string_view text, std::string_view word) noexcept {
-  return text.size() >= word.size() &&
-         std::equal(word.begin(), word.end(), text.begin(),
-                    [](char wanted, char found) { return wanted == small_letter(found); });
+  return ends_in(text.substr(0, word.size()), word);
 }
 
 bool has(std::string_view text, std::string_view part) noexcept {

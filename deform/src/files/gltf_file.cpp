@@ -398,7 +398,7 @@ Result<Mesh> parse_gltf(std::string_view text, std::string_view name, const Mode
   try {
     return GltfReader(text, folder).read(options.weld, notes);
   } catch (const GltfRefusal& refusal) {
-    return Error{Errc::bad_input, std::string(name) + ": " + printable(refusal.what)};
+    return bad_file(name, printable(refusal.what));
   }
 }
 

@@ -52,10 +52,6 @@ void tidy_faces(Mesh& mesh, ReadNotes& notes) {
                     " a corner twice in a row, which is taken once");
 }
 
-Error bad_file(std::string_view name, const std::string& what) {
-  return {Errc::bad_input, std::string(name) + ": " + what};
-}
-
 bool is_ply(std::string_view text) noexcept {
   if (!text.starts_with("ply")) return false;
   const std::size_t end = text.find_first_not_of(" \t", 3);

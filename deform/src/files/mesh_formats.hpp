@@ -81,6 +81,10 @@ inline void set_texcoords(std::vector<double>& numbers, Mesh& mesh) {
   mesh.texcoords = columns_of<2>(numbers);
 }
 
+inline Error bad_file(std::string_view name, const std::string& what) {
+  return {Errc::bad_input, std::string(name) + ": " + what};
+}
+
 /// Returns the file's format and what to do with it, as words after the file's name; nothing if its
 /// first bytes are those of no other format.
 std::optional<std::string> foreign_format(std::string_view bytes);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 
@@ -20,7 +21,7 @@ std::string folded(std::string_view name) {
   std::string text;
   for (const char c : name) {
     if (c == ' ' && text.ends_with(' ')) continue;
-    text += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    text += small_letter(c);
   }
   return text;
 }

@@ -4,6 +4,7 @@
 #include <set>
 #include <system_error>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/deform/drawn_faces.hpp>
@@ -90,13 +91,6 @@ std::optional<float> part_of_one(std::string_view field) {
   return static_cast<float>(std::clamp(*number, 0.0, 1.0));
 }
 
-std::string in_small_letters(std::string_view text) {
-  std::string small(text);
-  for (char& c : small)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return small;
-}
-
 /// What a map_ statement says.
 struct MapStatement {
   std::string file;
@@ -179,7 +173,7 @@ void MtlReader::begin_material(std::string name) {
 }
 
 void MtlReader::statement(TextScanner& line) {
-  const std::string keyword = in_small_letters(line.field());
+  const std::string keyword = in_small_letters(std::string(line.field()));
   if (keyword == "newmtl") return begin_material(joined_fields(line));
   if (material_ == stated_.size()) return;
   Stated& stated = stated_[material_];

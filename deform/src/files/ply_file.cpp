@@ -76,7 +76,7 @@ public:
   }
   Error error_at(std::size_t place, const std::string& what) const {
     if (format_ == PlyFormat::ascii) return bad_line(name_, place, what);
-    return {Errc::bad_input, std::string(name_) + ": byte " + std::to_string(place) + ": " + what};
+    return bad_file(name_, "byte " + std::to_string(place) + ": " + what);
   }
   Error bad(const std::string& what) const { return error_at(place(), what); }
   Error no_number() const {
@@ -248,13 +248,12 @@ private:
       wanted += use != Use::skip && use < Use::red ? 1 : 0;
       uses.push_back(use);
     }
-    const std::string name(name_);
     if (element.name == "vertex" && wanted != 3)
-      return Error{Errc::bad_input, name + ": a PLY vertex needs one x, one y and one z"};
+      return bad_file(name_, "a PLY vertex needs one x, one y and one z");
     const bool is_list = element.name == "face" || is_strips;
     if (is_list && element.count > 0 && wanted != 1)
-      return Error{Errc::bad_input, name + ": a PLY " + (is_strips ? "tristrips" : "face") +
-                                        " needs one list vertex_indices"};
+      return bad_file(name_, std::string("a PLY ") + (is_strips ? "tristrips" : "face") +
+                                 " needs one list vertex_indices");
     return uses;
   }
   Result<void> read_element(const PlyElement& element) {

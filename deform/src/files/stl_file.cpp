@@ -103,8 +103,7 @@ public:
       if (const auto done = statement(word); !done) return done.error();
     if (in_loop_) return bad("the file is cut off within a facet");
     if (faces_.mesh.face_count() == 0)
-      return Error{Errc::bad_input,
-                   std::string(name_) + ": is an STL without a facet; export it once more"};
+      return bad_file(name_, "is an STL without a facet; export it once more");
     note_all(notes);
     Mesh mesh = std::move(faces_).take();
     if (!objects_.names.empty()) mesh.look.objects = std::move(objects_);
@@ -299,9 +298,7 @@ private:
     return faces_.end_face();
   }
 
-  Error bad(const std::string& what) const {
-    return {Errc::bad_input, std::string(name_) + ": " + what};
-  }
+  Error bad(const std::string& what) const { return bad_file(name_, what); }
 
   std::string_view text_;
   std::string_view name_;

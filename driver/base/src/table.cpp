@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/base/text.hpp>
 
 namespace nendo {
@@ -14,10 +15,6 @@ constexpr std::string_view line_ends = "\r\n";
 
 bool is_blank(char c) noexcept {
   return c == ' ' || c == '\t' || c == '\v' || c == '\f';
-}
-
-char lower(char c) noexcept {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
 std::string_view first_line(std::string_view text) noexcept {
@@ -58,7 +55,8 @@ std::optional<char> stated_separator(std::string_view line) noexcept {
   line = trimmed(line);
   if (line.size() > 1 && line.front() == '"' && line.back() == '"')
     line = line.substr(1, line.size() - 2);
-  if (line.size() != 5 || line.substr(1, 3) != "ep=" || lower(line[0]) != 's') return std::nullopt;
+  if (line.size() != 5 || line.substr(1, 3) != "ep=" || small_letter(line[0]) != 's')
+    return std::nullopt;
   const char c = line[4];
   return c == ',' || c == ';' ? std::optional(c) : std::nullopt;
 }
@@ -67,7 +65,7 @@ bool is_word_for_nothing(std::string_view cell) noexcept {
   constexpr std::array<std::string_view, 6> words{"", "nan", "na", "n/a", "null", "none"};
   return std::any_of(words.begin(), words.end(), [&](std::string_view word) {
     return std::equal(word.begin(), word.end(), cell.begin(), cell.end(),
-                      [](char a, char b) { return a == lower(b); });
+                      [](char a, char b) { return a == small_letter(b); });
   });
 }
 
@@ -109,7 +107,7 @@ std::string TableReader::plain(std::string_view name) {
       continue;
     }
     if (std::exchange(is_between, false)) result += '_';
-    result += lower(c);
+    result += small_letter(c);
   }
   return result;
 }

@@ -1,19 +1,25 @@
 #pragma once
-// File name extensions, compared without regard to case: .OBJ, .Stl.
+// Letters of ASCII without regard to case, as in file name extensions: .OBJ, .Stl.
 
 #include <algorithm>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace nendo {
 
+constexpr char small_letter(char c) noexcept {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+inline std::string in_small_letters(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), small_letter);
+  return text;
+}
+
 /// Returns whether `path` ends in `ending` (lower case, e.g. ".obj"), ignoring ASCII case.
 constexpr bool ends_in(std::string_view path, std::string_view ending) noexcept {
-  const auto same = [](char in_path, char in_ending) {
-    const char small =
-        in_path >= 'A' && in_path <= 'Z' ? static_cast<char>(in_path - 'A' + 'a') : in_path;
-    return small == in_ending;
-  };
+  const auto same = [](char in_path, char in_ending) { return small_letter(in_path) == in_ending; };
   return path.size() >= ending.size() &&
          std::equal(path.end() - static_cast<std::ptrdiff_t>(ending.size()), path.end(),
                     ending.begin(), same);
