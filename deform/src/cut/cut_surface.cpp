@@ -188,9 +188,7 @@ bool CutSurface::refine(double sag) {
   constexpr std::size_t most = 200'000;
   if (!blade_.bends()) return true;
   activate_near_bends();
-  std::vector<std::uint32_t> open(pieces_.size());
-  for (std::uint32_t piece = 0; piece < open.size(); ++piece)
-    open[piece] = piece;
+  std::vector<std::uint32_t> open = all_indices(pieces_.size());
   for (std::size_t at = 0; at < open.size(); ++at) {
     const Piece& piece = pieces_[open[at]];
     if (sag_of(piece) <= sag) continue;

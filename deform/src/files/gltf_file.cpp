@@ -331,9 +331,7 @@ private:
 
   std::vector<std::array<std::uint32_t, 3>> corners_of(const Json& primitive,
                                                        std::size_t count) const {
-    std::vector<std::uint32_t> order(count);
-    for (std::size_t at = 0; at < count; ++at)
-      order[at] = static_cast<std::uint32_t>(at);
+    std::vector<std::uint32_t> order = all_indices(count);
     if (gltf_member(primitive, "indices") != nullptr) {
       const GltfNumbers indices = document_.numbers(gltf_count(primitive, "indices", 0));
       order.clear();

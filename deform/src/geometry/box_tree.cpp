@@ -1,6 +1,5 @@
 #include "geometry/box_tree.hpp"
 
-#include <numeric>
 #include <utility>
 
 #include "geometry/octree_order.hpp"
@@ -9,12 +8,6 @@ namespace nendo::deform {
 namespace {
 
 constexpr std::uint32_t leaf_size = 8;
-
-std::vector<std::uint32_t> counted(std::size_t count) {
-  std::vector<std::uint32_t> all(count);
-  std::iota(all.begin(), all.end(), 0u);
-  return all;
-}
 
 } // namespace
 
@@ -26,7 +19,7 @@ SpaceBox box_around(std::span<const SpacePoint> places, const Corners& triangle)
 }
 
 BoxTree::BoxTree(std::span<const SpacePoint> places, std::span<const Corners> triangles)
-    : BoxTree(places, triangles, counted(triangles.size())) {}
+    : BoxTree(places, triangles, all_indices(triangles.size())) {}
 
 BoxTree::BoxTree(std::span<const SpacePoint> places, std::span<const Corners> triangles,
                  std::vector<std::uint32_t> chosen)

@@ -3,16 +3,15 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <vector>
+
+#include <nendo/deform/index.hpp>
 
 namespace nendo::deform {
 
 class UnionFind {
 public:
-  explicit UnionFind(std::size_t count) : root_(count) {
-    std::iota(root_.begin(), root_.end(), std::uint32_t{0});
-  }
+  explicit UnionFind(std::size_t count) : root_(all_indices(count)) {}
   /// Returns the least number of the set.
   std::uint32_t find(std::uint32_t number) noexcept {
     while (root_[number] != number) {

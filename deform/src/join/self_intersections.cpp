@@ -1,7 +1,8 @@
 #include "join/self_intersections.hpp"
 
 #include <algorithm>
-#include <numeric>
+
+#include <nendo/deform/index.hpp>
 
 #include "geometry/box_tree.hpp"
 #include "geometry/triangle_meeting.hpp"
@@ -75,9 +76,7 @@ std::vector<TrianglePair> self_intersections_of(std::span<const SpacePoint> plac
 
 std::vector<TrianglePair> self_intersections(std::span<const SpacePoint> places,
                                              std::span<const Corners> triangles, std::size_t most) {
-  std::vector<std::uint32_t> all(triangles.size());
-  std::iota(all.begin(), all.end(), 0u);
-  return self_intersections_of(places, triangles, all, most);
+  return self_intersections_of(places, triangles, all_indices(triangles.size()), most);
 }
 
 } // namespace nendo::deform

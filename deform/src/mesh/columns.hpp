@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <functional>
 #include <iterator>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -51,8 +50,7 @@ face_columns(const Appearance& look) noexcept {
 /// Returns of each of `count` entries the first one with the same key(entry). Allocates.
 template <class Key>
 std::vector<std::uint32_t> first_alike(std::size_t count, const Key& key) {
-  std::vector<std::uint32_t> order(count), first(count);
-  std::iota(order.begin(), order.end(), std::uint32_t{0});
+  std::vector<std::uint32_t> order = all_indices(count), first(count);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   for (std::size_t at = 0; at < count; ++at)

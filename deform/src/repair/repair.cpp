@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -127,9 +126,7 @@ public:
 private:
   /// Faces with fewer than three corners, and corners that repeat the previous one.
   void drop_thin_faces() {
-    std::vector<std::uint32_t> same(mesh_.vertex_count());
-    std::iota(same.begin(), same.end(), std::uint32_t{0});
-    const DroppedCorners dropped = renumber_corners(mesh_, same);
+    const DroppedCorners dropped = renumber_corners(mesh_, all_indices(mesh_.vertex_count()));
     result_.dropped += dropped.faces;
     result_.repeated = dropped.corners;
     place_of_ = mesh_.face_corners;
@@ -180,10 +177,8 @@ private:
   /// Corners that no edge holds together get vertices of their own. The first ones keep the vertex.
   void separate() {
     const auto corners = to_index(place_of_.size());
-    std::vector<std::uint32_t> each(corners);
-    std::iota(each.begin(), each.end(), std::uint32_t{0});
     UnionFind sets(corners);
-    stitch(mesh_, place_of_, each, sets);
+    stitch(mesh_, place_of_, all_indices(corners), sets);
     std::vector<std::uint32_t> owner(mesh_.vertex_count(), no_index);
     std::vector<std::uint32_t> vertex_of_set(corners, no_index), copied;
     const auto before = to_index(mesh_.vertex_count());

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <nendo/deform/repair.hpp>
 #include <nendo/deform/triangles.hpp>
@@ -99,8 +98,7 @@ struct ClosedParts {
 std::vector<std::uint8_t> inward_parts(ClosedParts& of) {
   std::vector<ClosedPart>& parts = of.parts;
   // Larger parts first: what a part lies in is larger than it.
-  std::vector<std::uint32_t> order(parts.size());
-  std::iota(order.begin(), order.end(), std::uint32_t{0});
+  std::vector<std::uint32_t> order = all_indices(parts.size());
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::abs(parts[a].volume) > std::abs(parts[b].volume);
   });
