@@ -5,32 +5,10 @@
 #include "cut/cut_assembly.hpp"
 #include "geometry/rows_by_key.hpp"
 #include "mesh/columns.hpp"
+#include "mesh/used_entries.hpp"
 
 namespace nendo::deform {
 namespace {
-
-/// Numbers what is used in the order of first use by `old`, and keeps the list of it.
-class Renumbered {
-public:
-  explicit Renumbered(std::size_t count) : new_(count, no_index) {}
-  std::uint32_t operator()(std::uint32_t old) {
-    if (new_[old] == no_index) {
-      new_[old] = to_index(used_.size());
-      used_.push_back(old);
-    }
-    return new_[old];
-  }
-  const std::vector<std::uint32_t>& used() const noexcept { return used_; }
-  /// Forgets what was used, for the next part.
-  void clear() noexcept {
-    for (const std::uint32_t old : used_)
-      new_[old] = no_index;
-    used_.clear();
-  }
-
-private:
-  std::vector<std::uint32_t> new_, used_;
-};
 
 template <class Columns>
 void take_columns(const Columns& from, const std::vector<std::uint32_t>& which, Columns& to) {
@@ -49,7 +27,7 @@ RowsByKey<std::uint32_t> by_part(std::size_t count, std::uint32_t parts, const P
   });
 }
 
-void copy_face(const Mesh& from, std::uint32_t face, Renumbered& vertices, Renumbered& texcoords,
+void copy_face(const Mesh& from, std::uint32_t face, FirstUses& vertices, FirstUses& texcoords,
                Mesh& to) {
   for (std::uint32_t at = from.face_starts[face]; at < from.face_starts[face + 1]; ++at) {
     to.face_corners.push_back(vertices(from.face_corners[at]));
@@ -68,8 +46,8 @@ std::vector<Mesh> separated(const Mesh& mesh, const std::vector<std::uint32_t>& 
   const auto faces = by_part(mesh.face_count(), count, [&](std::uint32_t face) {
     return part_of(mesh.face_corners[mesh.face_starts[face]]);
   });
-  Renumbered vertex(mesh.vertex_count());
-  Renumbered texcoord(static_cast<std::size_t>(mesh.texcoords.cols()));
+  FirstUses vertex(mesh.vertex_count());
+  FirstUses texcoord(static_cast<std::size_t>(mesh.texcoords.cols()));
   std::vector<Mesh> parts(count);
   for (std::uint32_t part = 0; part < count; ++part) {
     Mesh& own = parts[part];
@@ -79,13 +57,13 @@ std::vector<Mesh> separated(const Mesh& mesh, const std::vector<std::uint32_t>& 
       vertex(old);
     for (const std::uint32_t face : faces[part])
       copy_face(mesh, face, vertex, texcoord, own);
-    take_columns(mesh.vertices, vertex.used(), own.vertices);
+    take_columns(mesh.vertices, vertex.entries(), own.vertices);
     own.offset = mesh.offset;
-    take_columns(mesh.texcoords, texcoord.used(), own.texcoords);
+    take_columns(mesh.texcoords, texcoord.entries(), own.texcoords);
     if (mesh.look.texcoord_colours.cols() > 0)
-      take_columns(mesh.look.texcoord_colours, texcoord.used(), own.look.texcoord_colours);
+      take_columns(mesh.look.texcoord_colours, texcoord.entries(), own.look.texcoord_colours);
     if (mesh.look.vertex_colours.cols() > 0)
-      take_columns(mesh.look.vertex_colours, vertex.used(), own.look.vertex_colours);
+      take_columns(mesh.look.vertex_colours, vertex.entries(), own.look.vertex_colours);
     own.look.materials = mesh.look.materials;
     own.look.textures = mesh.look.textures;
     own.look.groups.names = mesh.look.groups.names;

@@ -16,6 +16,7 @@
 #include "files/number_text.hpp"
 #include "files/text_scanner.hpp"
 #include "geometry/usable.hpp"
+#include "mesh/used_entries.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -124,15 +125,11 @@ public:
     std::vector<const std::string*> by_number(numbers_.size());
     for (const auto& [name, number] : numbers_)
       by_number[number] = &name;
-    std::vector<std::uint32_t> renumbered(by_number.size(), no_index);
-    for (std::uint32_t& number : names_.of_face) {
-      if (number == no_index) continue;
-      if (renumbered[number] == no_index) {
-        renumbered[number] = to_index(names_.names.size());
-        names_.names.push_back(*by_number[number]);
-      }
-      number = renumbered[number];
-    }
+    FirstUses renumbered(by_number.size());
+    for (std::uint32_t& number : names_.of_face)
+      if (number != no_index) number = renumbered(number);
+    for (const std::uint32_t number : renumbered.entries())
+      names_.names.push_back(*by_number[number]);
     if (names_.names.empty()) names_.of_face.clear();
     return std::move(names_);
   }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "mesh/used_entries.hpp"
+
 namespace nendo::deform {
 namespace {
 
@@ -129,17 +131,14 @@ private:
     }
   }
   void number_points() {
-    const std::size_t all = first_count() + second_count() + overlay_.crossings.points.size();
-    std::vector<std::uint32_t> numbers(all, no_index);
+    UsedEntries numbers(first_count() + second_count() + overlay_.crossings.points.size());
     for (const Corners& corners : chosen_.surface.faces)
       for (const std::uint32_t at : corners)
-        numbers[at] = 0;
-    for (std::uint32_t at = 0; at < all; ++at) {
-      if (numbers[at] == no_index) continue;
-      numbers[at] = to_index(chosen_.origins.size());
+        numbers.use(at);
+    numbers.number([&](std::uint32_t at) {
       chosen_.origins.push_back(at);
       add_point(at);
-    }
+    });
     for (Corners& corners : chosen_.surface.faces)
       for (std::uint32_t& at : corners)
         at = numbers[at];

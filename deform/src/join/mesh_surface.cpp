@@ -6,6 +6,7 @@
 #include <nendo/deform/triangles.hpp>
 
 #include "mesh/columns.hpp"
+#include "mesh/used_entries.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -46,31 +47,6 @@ TriangleSurface surface_of(const Mesh& mesh, const LookCollector& looks, bool ha
   }
   return surface;
 }
-
-/// Numbers what is used again, in the old order.
-class UsedEntries {
-public:
-  explicit UsedEntries(std::size_t count) : numbers_(count, no_index) {}
-  void use(std::uint32_t entry) {
-    if (entry != no_index) numbers_[entry] = 0;
-  }
-  /// Calls keep(entry) for each that is used.
-  template <class Keep>
-  void number(const Keep& keep) {
-    std::uint32_t next = 0;
-    for (std::uint32_t entry = 0; entry < numbers_.size(); ++entry) {
-      if (numbers_[entry] == no_index) continue;
-      numbers_[entry] = next++;
-      keep(entry);
-    }
-  }
-  std::uint32_t operator[](std::uint32_t entry) const {
-    return entry == no_index ? no_index : numbers_[entry];
-  }
-
-private:
-  std::vector<std::uint32_t> numbers_;
-};
 
 void set_materials(const TriangleSurface& surface, const Appearance& look, Appearance& to) {
   UsedEntries materials(look.materials.size());

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/constrained_triangulation.hpp"
+#include "geometry/rows_by_key.hpp"
 #include "geometry/union_find.hpp"
 #include "join/crossings.hpp"
 #include "join/triangle_surface.hpp"
@@ -49,8 +50,7 @@ public:
       : part_(part), crossings_(crossings), on_edges_(number, crossings) {}
 
   /// Appends the pieces of the face. `segments` are the crossing segments in it.
-  bool cut(std::uint32_t face, std::span<const std::pair<std::uint32_t, std::uint32_t>> segments,
-           PartPieces& pieces) {
+  bool cut(std::uint32_t face, std::span<const std::uint32_t> segments, PartPieces& pieces) {
     look_at(face);
     const Corners& corners = part_.faces[face];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -61,11 +61,17 @@ public:
         rim_.push_back(base() + crossing);
     }
     numbers_ = rim_;
-    for (const auto& [face_again, at] : segments)
+    for (const std::uint32_t at : segments)
       for (const std::uint32_t end : crossings_.segments[at].ends)
         numbers_.push_back(base() + end);
-    std::sort(numbers_.begin() + static_cast<std::ptrdiff_t>(rim_.size()), numbers_.end());
-    remove_repeated();
+    // Crossings inside of the face are ends of several segments; those on its rim are in rim_.
+    const auto inner = numbers_.begin() + static_cast<std::ptrdiff_t>(rim_.size());
+    std::sort(inner, numbers_.end());
+    const auto is_on_rim = [&](std::uint32_t number) {
+      return std::find(rim_.begin(), rim_.end(), number) != rim_.end();
+    };
+    numbers_.erase(std::remove_if(inner, std::unique(inner, numbers_.end()), is_on_rim),
+                   numbers_.end());
     return triangulate(face, segments, pieces);
   }
 
@@ -90,23 +96,11 @@ private:
     y_ = (axis + 2) % 3;
     if (normal[axis] < 0.0) std::swap(x_, y_);
   }
-  /// Crossings inside of the face are ends of several segments; those on its rim are in rim_.
-  void remove_repeated() {
-    std::size_t kept = rim_.size();
-    for (std::size_t at = rim_.size(); at < numbers_.size(); ++at) {
-      const std::uint32_t number = numbers_[at];
-      const bool is_repeated = kept > rim_.size() && numbers_[kept - 1] == number;
-      if (!is_repeated && std::find(rim_.begin(), rim_.end(), number) == rim_.end())
-        numbers_[kept++] = number;
-    }
-    numbers_.resize(kept);
-  }
   std::uint32_t local(std::uint32_t number) const {
     return static_cast<std::uint32_t>(std::find(numbers_.begin(), numbers_.end(), number) -
                                       numbers_.begin());
   }
-  bool triangulate(std::uint32_t face,
-                   std::span<const std::pair<std::uint32_t, std::uint32_t>> segments,
+  bool triangulate(std::uint32_t face, std::span<const std::uint32_t> segments,
                    PartPieces& pieces) {
     PlanePoint low = flat(numbers_[0]);
     PlanePoint high = low;
@@ -122,7 +116,7 @@ private:
     const auto rim_size = to_index(rim_.size());
     for (std::uint32_t at = 0; at < rim_size; ++at)
       if (plane.constrain(at, (at + 1) % rim_size) != PlaneFault::none) return false;
-    for (const auto& [face_again, at] : segments) {
+    for (const std::uint32_t at : segments) {
       const auto& ends = crossings_.segments[at].ends;
       const std::uint32_t from = local(base() + ends[0]);
       const std::uint32_t to = local(base() + ends[1]);
@@ -149,16 +143,14 @@ private:
 bool cut_faces(const CrossedPart& part, std::uint32_t number, const Crossings& crossings,
                PartPieces& pieces) {
   pieces = {};
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> segments; // face, segment
-  segments.reserve(crossings.segments.size());
-  for (std::uint32_t at = 0; at < crossings.segments.size(); ++at)
-    segments.emplace_back(crossings.segments[at].faces[number], at);
-  std::sort(segments.begin(), segments.end());
-  auto next = segments.begin();
+  const auto segments = rows_by_key<std::uint32_t>(part.faces.size(), [&](const auto& visit) {
+    for (std::uint32_t at = 0; at < crossings.segments.size(); ++at)
+      visit(crossings.segments[at].faces[number], at);
+  });
+  std::vector<std::uint32_t> crossed;
   for (std::uint32_t face = 0; face < part.faces.size(); ++face) {
-    if (next != segments.end() && next->first == face) {
-      while (next != segments.end() && next->first == face)
-        ++next;
+    if (!segments[face].empty()) {
+      crossed.push_back(face);
       continue;
     }
     pieces.faces.push_back(part.faces[face]);
@@ -166,15 +158,8 @@ bool cut_faces(const CrossedPart& part, std::uint32_t number, const Crossings& c
   }
   pieces.whole = pieces.faces.size();
   FaceCutter cutter(part, number, crossings);
-  for (std::size_t at = 0; at < segments.size();) {
-    std::size_t end = at;
-    while (end < segments.size() && segments[end].first == segments[at].first)
-      ++end;
-    if (!cutter.cut(segments[at].first, std::span(segments).subspan(at, end - at), pieces))
-      return false;
-    at = end;
-  }
-  return true;
+  return std::all_of(crossed.begin(), crossed.end(),
+                     [&](std::uint32_t face) { return cutter.cut(face, segments[face], pieces); });
 }
 
 /// Displacements of the second surface: odd directions, one per attempt.

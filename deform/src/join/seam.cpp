@@ -9,6 +9,7 @@
 
 #include "join/live_surface.hpp"
 #include "join/refine.hpp"
+#include "mesh/used_entries.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -26,12 +27,11 @@ using Sparse = Eigen::SparseMatrix<double>;
 class Umbrellas {
 public:
   Umbrellas(const LiveSurface& surface, std::span<const std::uint32_t> free)
-      : numbers_(surface.point_count(), no_index) {
+      : number_(surface.point_count()) {
     for (const std::uint32_t point : free)
-      number(point);
-    const std::size_t free_count = points_.size();
-    for (std::size_t at = 0; at < free_count; ++at)
-      surface.visit_edges(points_[at], [&](std::uint32_t edge) { number(surface.to(edge)); });
+      number_(point);
+    for (const std::uint32_t point : free)
+      surface.visit_edges(point, [&](std::uint32_t edge) { number_(surface.to(edge)); });
     const std::size_t row_count = points_.size();
     for (std::size_t row = 0; row < row_count; ++row)
       add_row(surface, row);
@@ -59,19 +59,13 @@ private:
     surface.visit_edges(points_[row], [&](std::uint32_t edge) { sum += weight_of(edge); });
     entries_.emplace_back(static_cast<int>(row), static_cast<int>(row), 1.0);
     surface.visit_edges(points_[row], [&](std::uint32_t edge) {
-      entries_.emplace_back(static_cast<int>(row), static_cast<int>(number(surface.to(edge))),
+      entries_.emplace_back(static_cast<int>(row), static_cast<int>(number_(surface.to(edge))),
                             -weight_of(edge) / sum);
     });
   }
-  std::uint32_t number(std::uint32_t point) {
-    if (numbers_[point] == no_index) {
-      numbers_[point] = to_index(points_.size());
-      points_.push_back(point);
-    }
-    return numbers_[point];
-  }
-  std::vector<std::uint32_t> numbers_;
-  std::vector<std::uint32_t> points_; ///< the free ones, rows that stay, and their neighbours
+
+  FirstUses number_; ///< of the free points, of rows that stay, and of their neighbours
+  const std::vector<std::uint32_t>& points_ = number_.entries();
   std::vector<Eigen::Triplet<double>> entries_;
   Sparse rows_;
 };
