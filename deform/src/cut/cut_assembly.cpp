@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "geometry/rows_by_key.hpp"
 #include "geometry/union_find.hpp"
 #include "mesh/columns.hpp"
 
@@ -25,20 +26,19 @@ public:
   }
   /// Ends a face that is a part of this one.
   void end_part_of(std::size_t face) {
-    const Appearance& look = from_.look;
-    end(look.face_materials.empty() ? no_index : look.face_materials[face],
-        look.groups.of_face.empty() ? no_index : look.groups.of_face[face],
-        look.objects.of_face.empty() ? no_index : look.objects.of_face[face]);
+    end_face(from_, face, to_);
+    if (from_.look.face_materials.empty()) to_.look.face_materials.push_back(no_index);
   }
-  void end(std::uint32_t material, std::uint32_t group, std::uint32_t object) {
+  /// Ends a face of the cut.
+  void end(std::uint32_t material, std::uint32_t object) {
     to_.face_starts.push_back(to_index(to_.face_corners.size()));
     to_.look.face_materials.push_back(material);
-    if (!from_.look.groups.of_face.empty()) to_.look.groups.of_face.push_back(group);
+    if (!from_.look.groups.of_face.empty()) to_.look.groups.of_face.push_back(no_index);
     if (!from_.look.objects.of_face.empty()) to_.look.objects.of_face.push_back(object);
   }
   void copy(std::size_t face) {
     for (std::uint32_t at = from_.face_starts[face]; at < from_.face_starts[face + 1]; ++at)
-      corner(from_.face_corners[at], has_texcoords() ? from_.corner_texcoords[at] : 0);
+      append_corner(from_, at, to_);
     end_part_of(face);
   }
 
@@ -124,35 +124,29 @@ private:
   /// Writes faces in the order of the model's, each one's pieces in its place.
   void write_surface() {
     const std::vector<Piece>& pieces = surface_.pieces();
-    first_piece_.assign(cut_.mesh.face_count(), no_index);
-    next_piece_.assign(pieces.size(), no_index);
     crossed_of_piece_.assign(pieces.size(), no_index);
-    for (auto piece = to_index(pieces.size()); piece-- > 0;) {
-      std::uint32_t& first = first_piece_[pieces[piece].face];
-      next_piece_[piece] = first;
-      first = piece;
-    }
+    const auto of_face = rows_by_key<std::uint32_t>(cut_.mesh.face_count(), [&](const auto& visit) {
+      for (std::uint32_t piece = 0; piece < pieces.size(); ++piece)
+        visit(pieces[piece].face, piece);
+    });
     const auto& crossed = surface_.crossed();
     for (std::uint32_t at = 0; at < crossed.size(); ++at)
       if (is_cut(crossed[at])) crossed_of_piece_[crossed[at].piece] = at;
     for (std::size_t face = 0; face < cut_.mesh.face_count(); ++face) {
       if (surface_.is_active(face))
-        write_pieces(face);
+        write_pieces(face, of_face[face]);
       else
         faces_.copy(face);
     }
     result_.first_cut_face = result_.mesh.face_count();
   }
-  void write_pieces(std::size_t face) {
-    bool any_cut = false;
-    for (std::uint32_t piece = first_piece_[face]; piece != no_index; piece = next_piece_[piece])
-      any_cut = any_cut || crossed_of_piece_[piece] != no_index;
-    if (!any_cut && !surface_.is_split(face)) {
-      faces_.copy(face);
-      return;
-    }
-    for (std::uint32_t number = first_piece_[face]; number != no_index;
-         number = next_piece_[number]) {
+  void write_pieces(std::size_t face, std::span<const std::uint32_t> pieces) {
+    const auto is_piece_cut = [&](std::uint32_t piece) {
+      return crossed_of_piece_[piece] != no_index;
+    };
+    if (!surface_.is_split(face) && std::ranges::none_of(pieces, is_piece_cut))
+      return faces_.copy(face);
+    for (const std::uint32_t number : pieces) {
       if (crossed_of_piece_[number] != no_index) {
         write_crossed(surface_.crossed()[crossed_of_piece_[number]]);
         continue;
@@ -219,7 +213,7 @@ private:
           const std::uint32_t corner = triangle[turned ? 2 - k : k];
           faces_.corner(cap_vertex(corner, up), first_texcoord + corner);
         }
-        faces_.end(material, no_index, cap_object_);
+        faces_.end(material, cap_object_);
       }
   }
   /// The cut faces are white, so that their material shows.
@@ -273,10 +267,7 @@ private:
   FaceWriter faces_;
   std::uint32_t first_added_;
   std::uint32_t first_inner_ = 0;
-  std::vector<std::uint32_t>
-      first_piece_; ///< each face's first piece; next_piece_ has the piece after each
-  std::vector<std::uint32_t> next_piece_;
-  std::vector<std::uint32_t> crossed_of_piece_;
+  std::vector<std::uint32_t> crossed_of_piece_; ///< no_index: the piece is not cut
   std::uint32_t cap_object_ = no_index;
 };
 

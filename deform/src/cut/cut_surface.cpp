@@ -52,6 +52,12 @@ bool CutSurface::is_crossed(const Piece& piece) const noexcept {
   return is_up(piece.vertices[1]) != first || is_up(piece.vertices[2]) != first;
 }
 
+/// Returns which corner of a crossed piece is alone on its side.
+std::uint32_t CutSurface::lone_corner(const Piece& piece) const noexcept {
+  const auto& [a, b, c] = piece.vertices;
+  return is_up(b) == is_up(c) ? 0 : is_up(a) == is_up(c) ? 1 : 2;
+}
+
 /// A blade that bends may bulge through a face without parting its vertices.
 void CutSurface::activate_near_bends() {
   const std::size_t faces = mesh_.face_count();
@@ -103,10 +109,7 @@ double CutSurface::sag_of(const Piece& piece) const noexcept {
     look_at(between(between(corners[0], corners[1], 0.5), corners[2], 1.0 / 3.0), beyond);
     return worst;
   }
-  std::size_t lone = 0;
-  while ((heights[lone] > 0.0) == (heights[(lone + 1) % 3] > 0.0) ||
-         (heights[lone] > 0.0) == (heights[(lone + 2) % 3] > 0.0))
-    ++lone;
+  const std::size_t lone = lone_corner(piece);
   const auto chord_end = [&](std::size_t other) {
     return between(corners[lone], corners[other], heights[lone] / (heights[lone] - heights[other]));
   };
@@ -249,10 +252,7 @@ bool CutSurface::cross() {
   for (std::uint32_t number = 0; number < pieces_.size(); ++number) {
     const Piece& piece = pieces_[number];
     if (!is_crossed(piece)) continue;
-    std::uint32_t lone = 0;
-    while (is_up(piece.vertices[lone]) == is_up(piece.vertices[(lone + 1) % 3]) ||
-           is_up(piece.vertices[lone]) == is_up(piece.vertices[(lone + 2) % 3]))
-      ++lone;
+    const std::uint32_t lone = lone_corner(piece);
     const std::uint32_t corner = piece.vertices[lone];
     const std::uint32_t after = crossing(corner, piece.vertices[(lone + 1) % 3]);
     const std::uint32_t before = crossing(corner, piece.vertices[(lone + 2) % 3]);
@@ -264,20 +264,20 @@ bool CutSurface::cross() {
 /// On a closed two-manifold each crossing has one before it and one after it, so all form loops.
 /// Triangles are another surface than the faces where two diagonals have the same ends.
 bool CutSurface::link_loops() {
-  next_.assign(crossings_.size(), no_index);
+  std::vector<std::uint32_t> next(crossings_.size(), no_index);
   loop_of_.assign(crossings_.size(), no_index);
   for (const CrossedPiece& crossed : crossed_) {
     const bool lone_is_up = is_up(pieces_[crossed.piece].vertices[crossed.lone]);
     const std::uint32_t from = lone_is_up ? crossed.after : crossed.before;
-    if (next_[from] != no_index) return false;
-    next_[from] = lone_is_up ? crossed.before : crossed.after;
+    if (next[from] != no_index) return false;
+    next[from] = lone_is_up ? crossed.before : crossed.after;
   }
-  if (std::find(next_.begin(), next_.end(), no_index) != next_.end()) return false;
+  if (std::find(next.begin(), next.end(), no_index) != next.end()) return false;
   for (std::uint32_t first = 0; first < crossings_.size(); ++first) {
     if (loop_of_[first] != no_index) continue;
     const auto number = to_index(loops_.size());
     loops_.emplace_back();
-    for (std::uint32_t at = first; loop_of_[at] == no_index; at = next_[at]) {
+    for (std::uint32_t at = first; loop_of_[at] == no_index; at = next[at]) {
       loop_of_[at] = number;
       loops_.back().push_back(at);
     }

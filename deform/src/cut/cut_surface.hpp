@@ -57,7 +57,6 @@ public:
   /// loops, because triangles of several faces touch along one line.
   bool cross();
 
-  bool bends() const noexcept { return blade_.bends(); }
   bool is_active(std::size_t face) const noexcept { return active_[face] != 0; }
   /// Returns whether refine() has split triangles of an active face.
   bool is_split(std::size_t face) const noexcept { return active_[face] == 2; }
@@ -71,8 +70,6 @@ public:
   const std::vector<CrossedPiece>& crossed() const noexcept { return crossed_; }
   const std::vector<EdgePoint>& crossings() const noexcept { return crossings_; }
   const std::vector<SpacePoint>& crossing_points() const noexcept { return crossing_points_; }
-  /// The crossing after each one, with the upper side's surface on the left.
-  const std::vector<std::uint32_t>& next() const noexcept { return next_; }
   /// Loops of crossings, and each crossing's loop.
   const std::vector<std::vector<std::uint32_t>>& loops() const noexcept { return loops_; }
   const std::vector<std::uint32_t>& loop_of() const noexcept { return loop_of_; }
@@ -85,6 +82,7 @@ public:
 
 private:
   bool is_crossed(const Piece& piece) const noexcept;
+  std::uint32_t lone_corner(const Piece& piece) const noexcept;
   void activate(std::uint32_t face);
   void activate_near_bends();
   void index(std::uint32_t piece);
@@ -113,7 +111,7 @@ private:
   std::vector<CrossedPiece> crossed_;
   std::vector<EdgePoint> crossings_;
   std::vector<SpacePoint> crossing_points_;
-  std::vector<std::uint32_t> next_, loop_of_;
+  std::vector<std::uint32_t> loop_of_;
   std::vector<std::vector<std::uint32_t>> loops_;
   struct PointTexcoord {
     std::uint32_t from, to, index;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include <nendo/deform/refinement.hpp>
 #include <nendo/deform/triangles.hpp>
 
 #include "mesh/columns.hpp"
@@ -91,7 +92,7 @@ void append_means(const Middles& middles, Columns& points) {
   }
 }
 
-/// Appends the corners of the faces that a face becomes. `ends_face` is called after each.
+/// Appends the corners of the faces that a face becomes. `ends_face(face)` is called after each.
 template <class EndsFace>
 void append_faces(const Mesh& mesh, const std::vector<std::uint32_t>& corner_values,
                   const Middles& middles, std::vector<std::uint32_t>& corners,
@@ -104,43 +105,18 @@ void append_faces(const Mesh& mesh, const std::vector<std::uint32_t>& corner_val
     if (count < 3) {
       corners.insert(corners.end(), corner_values.begin() + begin,
                      corner_values.begin() + begin + count);
-      ends_face();
+      ends_face(face);
       continue;
     }
     for (std::uint32_t at = 0; at < count; ++at) {
       corners.insert(corners.end(), {corner_values[begin + at], after(at)});
       if (count > 3) corners.push_back(middles.of_face[face]);
       corners.push_back(before(at));
-      ends_face();
+      ends_face(face);
     }
     if (count > 3) continue;
     corners.insert(corners.end(), {after(0), after(1), after(2)});
-    ends_face();
-  }
-}
-
-/// Of each face that the faces become, the face that it was.
-std::vector<std::uint32_t> faces_before(const Mesh& mesh) {
-  std::vector<std::uint32_t> before;
-  before.reserve(mesh.face_corners.size());
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::size_t corners = mesh.corners_of(face).size();
-    const std::size_t pieces = corners < 3 ? 1 : corners == 3 ? 4 : corners;
-    before.insert(before.end(), pieces, static_cast<std::uint32_t>(face));
-  }
-  return before;
-}
-
-/// All but the colours of vertices. Faces look as those that they were part of.
-void inherit_look(const Mesh& mesh, Mesh& finer) {
-  finer.look = mesh.look;
-  const std::vector<std::uint32_t> before = faces_before(mesh);
-  for (auto* column : face_columns(finer.look)) {
-    if (column->empty()) continue;
-    const std::vector<std::uint32_t> of_face = std::exchange(*column, {});
-    column->reserve(before.size());
-    for (const std::uint32_t face : before)
-      column->push_back(of_face[face]);
+    ends_face(face);
   }
 }
 
@@ -173,9 +149,11 @@ Subdivision subdivided_faces(const Mesh& mesh) {
   finer.offset = mesh.offset;
   Middles middles(mesh, mesh.face_corners, to_index(mesh.vertex_count()));
   append_means(middles, finer.vertices);
+  finer.look = mesh.look;
+  for (auto* column : face_columns(finer.look))
+    column->clear();
   append_faces(mesh, mesh.face_corners, middles, finer.face_corners,
-               [&] { finer.face_starts.push_back(to_index(finer.face_corners.size())); });
-  inherit_look(mesh, finer);
+               [&](std::size_t face) { end_face(mesh, face, finer); });
   if (finer.look.vertex_colours.cols() > 0) append_means(middles, finer.look.vertex_colours);
   result.parent_starts = std::move(middles.parent_starts);
   result.parents = std::move(middles.parents);
@@ -185,7 +163,7 @@ Subdivision subdivided_faces(const Mesh& mesh) {
                            static_cast<std::uint32_t>(mesh.texcoords.cols()));
   append_means(of_texture, finer.texcoords);
   if (finer.look.texcoord_colours.cols() > 0) append_means(of_texture, finer.look.texcoord_colours);
-  append_faces(mesh, mesh.corner_texcoords, of_texture, finer.corner_texcoords, [] {});
+  append_faces(mesh, mesh.corner_texcoords, of_texture, finer.corner_texcoords, [](std::size_t) {});
   return result;
 }
 
@@ -203,9 +181,13 @@ BlockShape subdivided(const BlockShape& shape, const BlockLayout& before,
   const std::vector<std::uint32_t> places = before.places();
   const BlockShape unmoved = before.pack();
   const BlockShape finer = after.pack();
-  std::vector<VertexBlock> blocks(finer.data(), finer.data() + finer.block_count());
-  const auto shown = [&](std::uint32_t vertex) -> Eigen::Vector3f {
-    if (vertex < places.size()) return vertex_at(shape, places[vertex]);
+  Eigen::Matrix3Xf moved(3, static_cast<Eigen::Index>(after.vertex_count()));
+  for (std::size_t at = 0; at < after.vertex_count(); ++at) {
+    const std::uint32_t vertex = after.order()[at];
+    if (vertex < places.size()) {
+      moved.col(vertex) = vertex_at(shape, places[vertex]);
+      continue;
+    }
     const std::size_t middle = vertex - places.size();
     const std::uint32_t begin = subdivision.parent_starts[middle];
     const std::uint32_t end = subdivision.parent_starts[middle + 1];
@@ -214,19 +196,9 @@ BlockShape subdivided(const BlockShape& shape, const BlockLayout& before,
       const std::uint32_t place = places[subdivision.parents[of]];
       sum += vertex_at(shape, place) - vertex_at(unmoved, place);
     }
-    return sum / static_cast<float>(end - begin);
-  };
-  for (std::size_t at = 0; at < blocks.size() * block_size; ++at) {
-    const std::uint32_t vertex = after.order()[std::min(at, after.order().size() - 1)];
-    const Eigen::Vector3f value = shown(vertex);
-    const bool is_old = vertex < places.size();
-    VertexBlock& block = blocks[at / block_size];
-    const std::size_t lane = at % block_size;
-    block.x[lane] = is_old ? value[0] : block.x[lane] + value[0];
-    block.y[lane] = is_old ? value[1] : block.y[lane] + value[1];
-    block.z[lane] = is_old ? value[2] : block.z[lane] + value[2];
+    moved.col(vertex) = vertex_at(finer, at) + sum / static_cast<float>(end - begin);
   }
-  return BlockShape(std::move(blocks));
+  return shape_in_blocks(moved, after);
 }
 
 } // namespace nendo::deform

@@ -5,6 +5,7 @@
 
 #include <nendo/deform/closed_manifold.hpp>
 
+#include "field/block_evaluator.hpp"
 #include "join/live_surface.hpp"
 #include "join/mesh_surface.hpp"
 #include "join/refine.hpp"
@@ -276,10 +277,7 @@ BlockShape shape_in_blocks(const Eigen::Matrix3Xf& shape, const BlockLayout& lay
   std::vector<VertexBlock> blocks(layout.block_count());
   for (std::size_t at = 0; at < blocks.size() * block_size; ++at) {
     const auto place = shape.col(static_cast<Eigen::Index>(order[std::min(at, order.size() - 1)]));
-    VertexBlock& block = blocks[at / block_size];
-    block.x[at % block_size] = place[0];
-    block.y[at % block_size] = place[1];
-    block.z[at % block_size] = place[2];
+    set_vertex(blocks[at / block_size], at % block_size, place);
   }
   return BlockShape(std::move(blocks));
 }
