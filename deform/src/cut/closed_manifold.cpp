@@ -91,10 +91,6 @@ void check_fans(std::span<const std::uint32_t> starts, const HalfEdges& edges, F
   }
 }
 
-std::string place_of(const Mesh& mesh, std::uint32_t vertex) {
-  return place_text(mesh.vertices.col(vertex), mesh.offset);
-}
-
 } // namespace
 
 ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
@@ -155,9 +151,10 @@ ManifoldCheck check_closed_manifold(const Mesh& mesh) {
 }
 
 std::string describe(const ManifoldCheck& check, const Mesh& mesh) {
-  const auto vertex = [&] { return place_of(mesh, check.from); };
+  const auto vertex = [&] { return place_text(mesh, check.from); };
   const auto edge = [&] {
-    return "the edge between " + place_of(mesh, check.from) + " and " + place_of(mesh, check.to);
+    return "the edge between " + place_text(mesh, check.from) + " and " +
+           place_text(mesh, check.to);
   };
   const auto face = [&] { return "face " + std::to_string(check.face + 1); };
   std::string words;

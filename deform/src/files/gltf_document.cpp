@@ -91,24 +91,28 @@ std::size_t width_of(const std::string& type) {
   refuse("an accessor is of a type that no model's numbers have");
 }
 
-/// Where the elements of an accessor, or of a part of a sparse one, lie in their view.
-struct Layout {
-  Component component = Component::float32;
-  std::size_t width = 1;
-  std::size_t offset = 0;
-  std::size_t stride = 0;
+/// The elements of an accessor, or of a part of a sparse one, in their view.
+struct Elements {
+  Component component;
+  const char* first;
+  std::size_t stride, size; ///< of a row, of a number
+
+  double number(std::size_t row, std::size_t column, bool normalized = false) const {
+    return decoded(component, first + row * stride + column * size, normalized);
+  }
 };
 
-Layout layout_of(std::uint64_t component, std::size_t width, std::uint64_t offset,
-                 std::uint64_t stride, std::uint64_t count, std::string_view view) {
-  const std::size_t element = width * size_of_component(component);
+Elements elements_in(std::string_view view, std::uint64_t component, std::size_t width,
+                     std::uint64_t offset, std::uint64_t stride, std::uint64_t count) {
+  const std::size_t size = size_of_component(component);
+  const std::size_t element = width * size;
   if (stride == 0) stride = element;
   if (stride < element) refuse("a bufferView has a byteStride that is too small for its numbers");
   // No product may overflow: the count is compared with the capacity of the view.
   const bool fits = offset <= view.size() && view.size() - offset >= element &&
                     count - 1 <= (view.size() - offset - element) / stride;
   if (!fits) refuse("an accessor reaches beyond the end of its bufferView");
-  return {static_cast<Component>(component), width, offset, stride};
+  return {static_cast<Component>(component), view.data() + offset, stride, size};
 }
 
 } // namespace
@@ -340,18 +344,15 @@ GltfNumbers GltfDocument::numbers(std::uint64_t index) const {
 void GltfDocument::fill(const Json& accessor, GltfNumbers& numbers) const {
   const std::uint64_t number = gltf_count(accessor, "bufferView", 0);
   const std::string_view bytes = view(number);
-  const Layout layout =
-      layout_of(gltf_count(accessor, "componentType", 0), numbers.width,
-                gltf_count(accessor, "byteOffset", 0),
-                gltf_count(item("bufferViews", number), "byteStride", 0), numbers.count, bytes);
-  const std::size_t size = size_of_component(static_cast<std::uint64_t>(layout.component));
+  const Elements elements =
+      elements_in(bytes, gltf_count(accessor, "componentType", 0), numbers.width,
+                  gltf_count(accessor, "byteOffset", 0),
+                  gltf_count(item("bufferViews", number), "byteStride", 0), numbers.count);
   const bool is_normalized = gltf_flag(accessor, "normalized");
   numbers.values.reserve(numbers.count * numbers.width);
   for (std::size_t row = 0; row < numbers.count; ++row)
     for (std::size_t column = 0; column < numbers.width; ++column)
-      numbers.values.push_back(decoded(
-          layout.component, bytes.data() + layout.offset + row * layout.stride + column * size,
-          is_normalized));
+      numbers.values.push_back(elements.number(row, column, is_normalized));
 }
 
 void GltfDocument::fill_sparse(const Json& accessor, GltfNumbers& numbers) const {
@@ -363,24 +364,18 @@ void GltfDocument::fill_sparse(const Json& accessor, GltfNumbers& numbers) const
     refuse("a sparse accessor is not whole");
   const auto part = [&](const Json& of, std::uint64_t component, std::size_t width) {
     const std::string_view bytes = view(gltf_count(of, "bufferView", 0));
-    return std::pair(bytes,
-                     layout_of(component, width, gltf_count(of, "byteOffset", 0), 0, count, bytes));
+    return elements_in(bytes, component, width, gltf_count(of, "byteOffset", 0), 0, count);
   };
-  const auto [places, at_places] = part(*indices, gltf_count(*indices, "componentType", 0), 1);
-  const auto [bytes, at_values] =
-      part(*values, gltf_count(accessor, "componentType", 0), numbers.width);
-  const std::size_t size = size_of_component(static_cast<std::uint64_t>(at_values.component));
+  const Elements places = part(*indices, gltf_count(*indices, "componentType", 0), 1);
+  const Elements elements = part(*values, gltf_count(accessor, "componentType", 0), numbers.width);
   for (std::size_t k = 0; k < count; ++k) {
-    const double place = decoded(at_places.component,
-                                 places.data() + at_places.offset + k * at_places.stride, false);
+    const double place = places.number(k, 0);
     if (!(place >= 0.0 && place < static_cast<double>(numbers.count)) ||
-        at_places.component == Component::float32)
+        places.component == Component::float32)
       refuse("a sparse accessor names an element that is not there");
     const std::size_t row = static_cast<std::size_t>(place) * numbers.width;
     for (std::size_t column = 0; column < numbers.width; ++column)
-      numbers.values[row + column] =
-          decoded(at_values.component,
-                  bytes.data() + at_values.offset + k * at_values.stride + column * size, false);
+      numbers.values[row + column] = elements.number(k, column);
   }
 }
 

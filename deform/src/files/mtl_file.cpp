@@ -129,10 +129,7 @@ std::string mtl_text(const Appearance& look) {
     text += "\nnewmtl " + names[at] + "\n";
     if (material.colour) {
       text += "Kd";
-      for (const float channel : material.colour->head<3>()) {
-        text += ' ';
-        append_number(text, channel);
-      }
+      append_numbers(text, material.colour->head<3>());
       text += '\n';
     }
     if (material.colour || !material.drawn) {

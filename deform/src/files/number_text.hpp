@@ -46,6 +46,15 @@ void append_number(std::string& text, Number number) {
   text.append(digits.data(), result.ptr);
 }
 
+/// Appends each number after a blank.
+template <class Numbers>
+void append_numbers(std::string& text, const Numbers& numbers) {
+  for (const auto number : numbers) {
+    text += ' ';
+    append_number(text, number);
+  }
+}
+
 /// As to_number(). An exponent may also begin with D, as Fortran's programs write it: 1.5D+02.
 inline std::optional<double> to_number_of_any_program(std::string_view field) noexcept {
   const auto number = to_number(field);

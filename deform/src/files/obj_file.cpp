@@ -74,9 +74,8 @@ public:
     else if (keyword == "curv" || keyword == "curv2" || keyword == "surf")
       ++curves_;
     else if (std::find(std::begin(harmless), std::end(harmless), keyword) == std::end(harmless)) {
-      if (unknown_++ > 0) return;
-      first_unknown_ = in_quotes(keyword);
-      first_unknown_line_ = line;
+      if (unknown_.count == 0) first_unknown_ = in_quotes(keyword);
+      unknown_.add(line);
     }
   }
   void weight(double w) noexcept { weights_ += w != 1.0 ? 1 : 0; }
@@ -95,16 +94,15 @@ public:
     if (weights_ > 0)
       notes.push_back("the fourth number of " + count_words(weights_, "vertex", "vertices") +
                       " is left out, because w weights curves and not polygons");
-    if (unknown_ > 0)
-      notes.push_back(count_words(unknown_, "line", "lines") + " of an unknown kind " +
-                      (unknown_ == 1 ? "is" : "are") + " left out (" +
-                      (unknown_ == 1 ? "" : "first ") + first_unknown_ + " in line " +
-                      std::to_string(first_unknown_line_) + ")");
+    if (unknown_.count > 0)
+      notes.push_back(count_words(unknown_.count, "line of an unknown kind is left out (",
+                                  "lines of an unknown kind are left out (first ") +
+                      first_unknown_ + " in line " + std::to_string(unknown_.first) + ")");
   }
 
 private:
   std::size_t lines_ = 0, points_ = 0, curves_ = 0, weights_ = 0;
-  std::size_t unknown_ = 0, first_unknown_line_ = 0;
+  Tally unknown_; ///< by lines
   std::string first_unknown_;
 };
 
@@ -314,21 +312,13 @@ private:
   std::vector<std::string> libraries_;
 };
 
-template <class Column>
-void append_column(std::string& text, const Column& column) {
-  for (const auto number : column) {
-    text += ' ';
-    append_number(text, number);
-  }
-}
-
 void append_vertices(std::string& text, const Mesh& mesh) {
   const Eigen::Matrix4Xf colours = mean_vertex_colours(mesh);
   for (Eigen::Index vertex = 0; vertex < mesh.vertices.cols(); ++vertex) {
     text += 'v';
-    append_column(text, mesh.vertices.col(vertex));
+    append_numbers(text, mesh.vertices.col(vertex));
     if (vertex < colours.cols())
-      append_column(text, colours.col(vertex).head<3>().unaryExpr(&encoded_of).eval());
+      append_numbers(text, colours.col(vertex).head<3>().unaryExpr(&encoded_of).eval());
     text += '\n';
   }
 }
@@ -396,7 +386,7 @@ std::string obj_text(const Mesh& mesh, std::string_view library) {
   const Eigen::Index texcoords = has_texture_places(mesh) ? mesh.texcoords.cols() : 0;
   for (Eigen::Index texcoord = 0; texcoord < texcoords; ++texcoord) {
     text += "vt";
-    append_column(text, mesh.texcoords.col(texcoord));
+    append_numbers(text, mesh.texcoords.col(texcoord));
     text += '\n';
   }
   append_face_lines(text, mesh);

@@ -128,7 +128,7 @@ private:
       if (in_loop_) return bad("a loop begins within a loop");
       in_loop_ = true;
     } else if (!is_word(word, "facet") && !is_word(word, "outer") && !is_word(word, "endfacet")) {
-      if (unknown_++ == 0) first_unknown_ = words_.line();
+      unknown_.add(words_.line());
       joined_fields(words_);
     }
     return {};
@@ -166,10 +166,10 @@ private:
   void note_all(ReadNotes& notes) const {
     faces_.note_left_out(notes);
     if (in_solid_) notes.push_back("ends without endsolid; it may be cut off");
-    if (unknown_ > 0)
-      notes.push_back(count_words(unknown_, "line", "lines") + " that no STL has " +
-                      (unknown_ == 1 ? "is" : "are") + " left out (the first is line " +
-                      std::to_string(first_unknown_) + ")");
+    if (unknown_.count > 0)
+      notes.push_back(
+          count_words(unknown_.count, "line that no STL has is", "lines that no STL has are") +
+          " left out (the first is line " + std::to_string(unknown_.first) + ")");
   }
 
   Error bad(const std::string& what) const { return bad_line(name_, words_.line(), what); }
@@ -177,7 +177,8 @@ private:
   TextScanner words_;
   std::string_view name_;
   bool in_loop_ = false, in_solid_ = false;
-  std::size_t solids_ = 0, unknown_ = 0, first_unknown_ = 0;
+  std::size_t solids_ = 0;
+  Tally unknown_; ///< by lines
   FaceNames objects_;
   std::uint32_t object_ = no_index;
   StlFaces faces_;

@@ -25,6 +25,14 @@ public:
     other = find(other);
     root_[std::max(one, other)] = std::min(one, other);
   }
+  /// Returns of each member the number of its set, in the order of their least members.
+  std::vector<std::uint32_t> numbers() {
+    std::vector<std::uint32_t> numbers;
+    std::uint32_t count = 0;
+    for (std::uint32_t at = 0; at < root_.size(); ++at)
+      numbers.push_back(find(at) == at ? count++ : numbers[find(at)]);
+    return numbers;
+  }
 
 private:
   std::vector<std::uint32_t> root_;

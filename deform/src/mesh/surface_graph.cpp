@@ -12,6 +12,8 @@
 
 #include <nendo/deform/triangles.hpp>
 
+#include "geometry/union_find.hpp"
+
 namespace nendo::deform {
 
 using Eigen::Vector3d;
@@ -233,25 +235,11 @@ std::vector<std::uint32_t> SurfaceGraph::about(const SurfacePosition& place) con
 }
 
 std::vector<std::uint32_t> SurfaceGraph::parts() const {
-  std::vector<std::uint32_t> part(vertex_count(), no_index);
-  std::vector<std::uint32_t> due;
-  std::uint32_t count = 0;
-  for (std::uint32_t first = 0; first < part.size(); ++first) {
-    if (part[first] != no_index) continue;
-    part[first] = count;
-    due.push_back(first);
-    while (!due.empty()) {
-      const std::uint32_t vertex = due.back();
-      due.pop_back();
-      for (std::size_t at = starts_[vertex]; at < starts_[vertex + 1]; ++at) {
-        if (part[ways_[at].to] != no_index) continue;
-        part[ways_[at].to] = count;
-        due.push_back(ways_[at].to);
-      }
-    }
-    ++count;
-  }
-  return part;
+  UnionFind sets(vertex_count());
+  for (std::uint32_t vertex = 0; vertex < vertex_count(); ++vertex)
+    for (std::size_t at = starts_[vertex]; at < starts_[vertex + 1]; ++at)
+      sets.join(vertex, ways_[at].to);
+  return sets.numbers();
 }
 
 } // namespace nendo::deform

@@ -127,7 +127,8 @@ private:
         edge = before;
       }
       if (edge != first)
-        return Error{Errc::bad_input, "cannot be repaired: holes touch at " + where(edge)};
+        return Error{Errc::bad_input, "cannot be repaired: holes touch at " +
+                                          place_text(mesh_, mesh_.face_corners[edge])};
       rims.push_back(std::move(rim));
     }
     return rims;
@@ -247,9 +248,6 @@ private:
   }
   SpacePoint point(std::uint32_t corner) const noexcept {
     return space_point(mesh_.vertices, mesh_.face_corners[corner]);
-  }
-  std::string where(std::uint32_t corner) const {
-    return place_text(mesh_.vertices.col(mesh_.face_corners[corner]), mesh_.offset);
   }
   std::vector<SpacePoint> points_of(const Rim& rim) const {
     std::vector<SpacePoint> points;

@@ -167,8 +167,8 @@ private:
       leave_out(alike.one_sided_faces,
                 {alike.one_sided->first,
                  "has one side only, as a Möbius strip has, so it has no inside",
-                 "cut it open at the edge between " + where(alike.one_sided->first) + " and " +
-                     where(alike.one_sided->second) + " where it was made"});
+                 "cut it open at the edge between " + place_text(mesh_, alike.one_sided->first) +
+                     " and " + place_text(mesh_, alike.one_sided->second) + " where it was made"});
       drop_left_out_faces();
       alike = turn_alike(mesh_, place_of_);
     }
@@ -296,7 +296,8 @@ private:
     auto known = std::find_if(result_.left_out.begin(), result_.left_out.end(),
                               [&](const LeftOut& left) { return left.why == how.why; });
     if (known == result_.left_out.end())
-      known = result_.left_out.insert(known, {0, 0, where(how.vertex), how.why, how.remedy});
+      known = result_.left_out.insert(known,
+                                      {0, 0, place_text(mesh_, how.vertex), how.why, how.remedy});
     ++known->parts;
     known->faces += faces.size();
   }
@@ -317,9 +318,6 @@ private:
       if (sides.size() != 2) open[sides[0].low] = open[sides[0].high] = 1;
     });
     return open;
-  }
-  std::string where(std::uint32_t vertex) const {
-    return place_text(mesh_.vertices.col(vertex), mesh_.offset);
   }
 
   Repair result_;

@@ -163,9 +163,8 @@ bool ThinSurface::fill(const std::vector<std::uint32_t>& rim,
     find(edge_between(rim[(at + 1) % rim.size()], rim[at]) / 3);
   for (std::size_t at = 0; at < found.size(); ++at) {
     if (found.size() > max_faces) return false;
-    const std::uint32_t first = 3 * found[at];
-    for (std::uint32_t edge = first; edge < first + 3; ++edge)
-      find(other_face(edge));
+    for (const std::uint32_t face : faces_beside(found[at]))
+      find(face);
   }
   return true;
 }
@@ -178,10 +177,10 @@ int ThinSurface::count_patches(const std::set<std::uint32_t>& faces) const {
     std::vector<std::uint32_t> to_see{*unseen.begin()};
     unseen.erase(unseen.begin());
     while (!to_see.empty()) {
-      const std::uint32_t first = 3 * to_see.back();
+      const Triple beside = faces_beside(to_see.back());
       to_see.pop_back();
-      for (std::uint32_t edge = first; edge < first + 3; ++edge)
-        if (unseen.erase(other_face(edge)) > 0) to_see.push_back(other_face(edge));
+      for (const std::uint32_t face : beside)
+        if (unseen.erase(face) > 0) to_see.push_back(face);
     }
   }
   return patches;

@@ -62,6 +62,9 @@ private:
     SpacePoint middle;                ///< the middle of their points beyond it
   };
   std::uint32_t other_face(std::uint32_t edge) const noexcept { return twin(edge) / 3; }
+  Triple faces_beside(std::uint32_t face) const noexcept {
+    return {other_face(3 * face), other_face(3 * face + 1), other_face(3 * face + 2)};
+  }
   bool find_sides(const Triple& loop, SideOfLoop& left, SideOfLoop& right) const;
   bool is_crumb(const Triple& loop, const SideOfLoop& side, const SideOfLoop& other) const;
   std::set<std::uint32_t> faces_around(const std::vector<std::uint32_t>& points) const;

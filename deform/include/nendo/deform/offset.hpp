@@ -21,5 +21,9 @@ NENDO_API void count_from(const Eigen::Vector3d& offset, Mesh& mesh) noexcept;
 
 /// Returns a position of a mesh with this offset as text in file coordinates: "(0, 1, 2.5)".
 NENDO_API std::string place_text(const Eigen::Vector3d& place, const Eigen::Vector3d& offset);
+/// The same of a vertex.
+inline std::string place_text(const Mesh& mesh, std::uint32_t vertex) {
+  return place_text(mesh.vertices.col(vertex), mesh.offset);
+}
 
 } // namespace nendo::deform
