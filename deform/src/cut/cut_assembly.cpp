@@ -67,17 +67,13 @@ public:
 private:
   void number_vertices() {
     std::uint32_t vertex = surface_.vertex_count();
-    result_.added.assign(surface_.added().size(), {});
-    std::transform(
-        surface_.added().begin(), surface_.added().end(), result_.added.begin(),
-        [](const EdgePoint& point) { return CutVertex{point.from, point.to, point.part}; });
+    result_.added = surface_.added();
     result_.crossing_vertices.assign(surface_.crossings().size(), no_index);
     for (std::size_t at = 0; at < surface_.crossings().size(); ++at) {
       if (cut_.keeps[surface_.loop_of()[at]] == 0) continue;
       result_.crossing_vertices[at] = vertex;
       vertex += 2;
-      const EdgePoint& point = surface_.crossings()[at];
-      result_.added.insert(result_.added.end(), 2, {point.from, point.to, point.part});
+      result_.added.insert(result_.added.end(), 2, surface_.crossings()[at]);
     }
     first_inner_ = vertex;
     result_.added.insert(result_.added.end(), 2 * cut_.cap.inner.size(), {no_index, no_index, 0.0});
@@ -169,7 +165,7 @@ private:
     const auto made = [&](std::uint32_t crossing, std::size_t other, bool up) {
       std::uint32_t texcoord = 0;
       if (faces_.has_texcoords()) {
-        const EdgePoint& point = surface_.crossings()[crossing];
+        const CutVertex& point = surface_.crossings()[crossing];
         const bool forward = point.from == piece.vertices[lone];
         // Vertices' numbers are of 32 bits, so these keys are not those of vertices.
         const std::uint64_t key = std::uint64_t{1} << 32 | crossing;

@@ -13,6 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include <nendo/deform/cut.hpp>
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/triangles.hpp>
 
@@ -27,12 +28,6 @@ struct Piece {
   std::array<std::uint32_t, 3> vertices;
   std::array<std::uint32_t, 3> texcoords; ///< unused if the model has none
   std::uint32_t face;
-};
-
-/// A point a part of the way between two vertices.
-struct EdgePoint {
-  std::uint32_t from, to;
-  double part;
 };
 
 /// A piece that the blade crosses. Its lone corner lies on one side, the two others on the other.
@@ -66,9 +61,9 @@ public:
   std::uint32_t vertex_count() const noexcept { return to_index(sides_.size()); }
   const std::vector<Piece>& pieces() const noexcept { return pieces_; }
   /// The vertices that refine() added, after those of the mesh.
-  const std::vector<EdgePoint>& added() const noexcept { return added_; }
+  const std::vector<CutVertex>& added() const noexcept { return added_; }
   const std::vector<CrossedPiece>& crossed() const noexcept { return crossed_; }
-  const std::vector<EdgePoint>& crossings() const noexcept { return crossings_; }
+  const std::vector<CutVertex>& crossings() const noexcept { return crossings_; }
   const std::vector<SpacePoint>& crossing_points() const noexcept { return crossing_points_; }
   /// Loops of crossings, and each crossing's loop.
   const std::vector<std::vector<std::uint32_t>>& loops() const noexcept { return loops_; }
@@ -103,13 +98,13 @@ private:
   double blade_offset_;
   std::vector<double> sides_;
   std::vector<SpacePoint> added_points_;
-  std::vector<EdgePoint> added_;
+  std::vector<CutVertex> added_;
   std::vector<std::uint8_t> active_; ///< per face; 2: its triangles were split
   std::vector<Piece> pieces_;
   std::unordered_map<std::uint64_t, std::uint32_t> piece_of_edge_;
   std::unordered_map<std::uint64_t, std::uint32_t> crossing_of_edge_;
   std::vector<CrossedPiece> crossed_;
-  std::vector<EdgePoint> crossings_;
+  std::vector<CutVertex> crossings_;
   std::vector<SpacePoint> crossing_points_;
   std::vector<std::uint32_t> loop_of_;
   std::vector<std::vector<std::uint32_t>> loops_;

@@ -10,14 +10,6 @@
 namespace nendo::deform {
 namespace {
 
-template <class Columns>
-void take_columns(const Columns& from, const std::vector<std::uint32_t>& which, Columns& to) {
-  to.resize(from.rows(), static_cast<Eigen::Index>(which.size()));
-  Eigen::Index column = 0;
-  for (const std::uint32_t old : which)
-    to.col(column++) = from.col(static_cast<Eigen::Index>(old));
-}
-
 /// Vertices or faces of all parts, part after part.
 template <class PartOf>
 RowsByKey<std::uint32_t> by_part(std::size_t count, std::uint32_t parts, const PartOf& part_of) {
@@ -57,13 +49,11 @@ std::vector<Mesh> separated(const Mesh& mesh, const std::vector<std::uint32_t>& 
       vertex(old);
     for (const std::uint32_t face : faces[part])
       copy_face(mesh, face, vertex, texcoord, own);
-    take_columns(mesh.vertices, vertex.entries(), own.vertices);
+    own.vertices = columns_at(mesh.vertices, vertex.entries());
     own.offset = mesh.offset;
-    take_columns(mesh.texcoords, texcoord.entries(), own.texcoords);
-    if (mesh.look.texcoord_colours.cols() > 0)
-      take_columns(mesh.look.texcoord_colours, texcoord.entries(), own.look.texcoord_colours);
-    if (mesh.look.vertex_colours.cols() > 0)
-      take_columns(mesh.look.vertex_colours, vertex.entries(), own.look.vertex_colours);
+    own.texcoords = columns_at(mesh.texcoords, texcoord.entries());
+    own.look.texcoord_colours = columns_at(mesh.look.texcoord_colours, texcoord.entries());
+    own.look.vertex_colours = columns_at(mesh.look.vertex_colours, vertex.entries());
     own.look.materials = mesh.look.materials;
     own.look.textures = mesh.look.textures;
     own.look.groups.names = mesh.look.groups.names;

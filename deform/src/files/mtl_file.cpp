@@ -47,16 +47,11 @@ Result<void> write_texture(const fs::path& obj, Texture& texture) {
   std::replace(name.begin(), name.end(), '\\', '_');
   if (name.empty() || name == "." || name == "..") name = "texture";
   auto there = contents_of(folder / name);
-  if (there && *there != *texture.contents) {
-    name = line_name(obj.stem().string() + "-" + name);
+  const fs::path own(line_name(obj.stem().string() + "-" + name));
+  for (int next = 1; there && *there != *texture.contents; ++next) {
+    const std::string number = next > 1 ? "-" + std::to_string(next) : std::string();
+    name = line_name(own.stem().string() + number + own.extension().string());
     there = contents_of(folder / name);
-  }
-  for (int next = 2; there && *there != *texture.contents; ++next) {
-    const fs::path plain(name);
-    const auto other =
-        line_name(plain.stem().string() + "-" + std::to_string(next) + plain.extension().string());
-    there = contents_of(folder / other);
-    if (!there || *there == *texture.contents) name = other;
   }
   texture.file = name;
   if (there) return {};

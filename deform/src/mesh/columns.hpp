@@ -94,6 +94,19 @@ std::vector<std::uint8_t> vertices_of_faces(const Mesh& mesh);
 /// Keeps the vertices for which `keeps` is not 0. No face may have another one.
 void keep_vertices(Mesh& mesh, std::span<const std::uint8_t> keeps);
 
+/// Returns the columns with these numbers, or none if there are none at all.
+template <class Columns>
+Columns columns_at(const Columns& columns, const std::vector<std::uint32_t>& numbers) {
+  if (columns.cols() == 0) return columns;
+  return columns(Eigen::all, numbers);
+}
+
+template <class Columns>
+void append_columns(const Columns& more, Columns& to) {
+  to.conservativeResize(Eigen::NoChange, to.cols() + more.cols());
+  to.rightCols(more.cols()) = more;
+}
+
 /// Keeps the values for which `keeps` is not 0. A column without values stays empty.
 template <class Values>
 void keep_values(Values& values, std::span<const std::uint8_t> keeps) {

@@ -9,6 +9,7 @@
 #include <nendo/deform/vertex_areas.hpp>
 
 #include "mesh/columns.hpp"
+#include "mesh/used_entries.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -24,15 +25,6 @@ void add_finite(const Eigen::Vector3d& point, Box& box) noexcept {
   box.highest = box.highest.cwiseMax(point);
 }
 
-template <class Columns>
-void keep_columns(Columns& columns, std::span<const std::uint8_t> keeps) {
-  if (columns.cols() == 0) return;
-  Eigen::Index kept = 0;
-  for (std::size_t at = 0; at < keeps.size(); ++at)
-    if (keeps[at] != 0) columns.col(kept++) = columns.col(static_cast<Eigen::Index>(at)).eval();
-  columns.conservativeResize(columns.rows(), kept);
-}
-
 } // namespace
 
 std::vector<std::uint8_t> vertices_of_faces(const Mesh& mesh) {
@@ -43,16 +35,15 @@ std::vector<std::uint8_t> vertices_of_faces(const Mesh& mesh) {
 }
 
 void keep_vertices(Mesh& mesh, std::span<const std::uint8_t> keeps) {
-  std::vector<std::uint32_t> number(keeps.size(), no_index);
-  std::uint32_t kept = 0;
-  for (std::size_t at = 0; at < keeps.size(); ++at)
-    if (keeps[at] != 0) number[at] = kept++;
-  if (kept == keeps.size()) return;
+  FirstUses kept(keeps.size());
+  for (std::uint32_t at = 0; at < keeps.size(); ++at)
+    if (keeps[at] != 0) kept(at);
+  if (kept.entries().size() == keeps.size()) return;
   for (std::uint32_t& corner : mesh.face_corners)
-    corner = number[corner];
-  keep_columns(mesh.vertices, keeps);
+    corner = kept(corner);
+  mesh.vertices = columns_at(mesh.vertices, kept.entries());
   keep_values(mesh.detail, keeps);
-  keep_columns(mesh.look.vertex_colours, keeps);
+  mesh.look.vertex_colours = columns_at(mesh.look.vertex_colours, kept.entries());
 }
 
 Box finite_box_of(const Points& points) noexcept {

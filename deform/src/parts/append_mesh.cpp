@@ -8,13 +8,6 @@
 namespace nendo::deform {
 namespace {
 
-template <class Columns>
-void append_columns(const Columns& more, Columns& to) {
-  const Eigen::Index before = to.cols();
-  to.conservativeResize(to.rows(), before + more.cols());
-  to.rightCols(more.cols()) = more;
-}
-
 void append_numbers(std::span<const std::uint32_t> more, std::uint32_t first,
                     std::vector<std::uint32_t>& to) {
   for (const std::uint32_t number : more)

@@ -88,8 +88,7 @@ std::vector<Eigen::Vector3d> ways_of(std::span<const Mesh> models) {
 Result<Mesh> side_by_side(std::span<const Mesh> models) {
   Mesh all;
   if (!models.empty()) all.offset = models.front().offset;
-  Appearance look;
-  LookCollector looks(look);
+  LookCollector looks(all.look);
   const Shared shared = shared_by(models);
   const std::vector<Eigen::Vector3d> ways = ways_of(models);
   for (std::size_t at = 0; at < models.size(); ++at) {
@@ -98,10 +97,6 @@ Result<Mesh> side_by_side(std::span<const Mesh> models) {
     if (!ways[at].isZero(0.0)) model.vertices.colwise() += ways[at];
     append_mesh(model, all);
   }
-  all.look.materials = std::move(look.materials);
-  all.look.textures = std::move(look.textures);
-  all.look.groups.names = std::move(look.groups.names);
-  all.look.objects.names = std::move(look.objects.names);
   return all;
 }
 

@@ -70,8 +70,7 @@ using Rim = std::vector<std::uint32_t>;
 /// What was done to one part of the mesh.
 struct PartHoles {
   std::size_t count = 0, crossing = 0;
-  std::uint32_t vertex = no_index; ///< a vertex of a part that stays open
-  std::string why, remedy;
+  UnfilledPart open{no_index, {}, {}}; ///< its vertex is no_index if the part does not stay open
 };
 
 SpacePoint area_of_rim(const std::vector<SpacePoint>& points) {
@@ -89,7 +88,7 @@ public:
     const auto found = rims();
     if (!found) return found.error();
     if (found->empty()) return FilledHoles{};
-    number_all_parts();
+    parts_.resize(number_parts(mesh_, part_of_));
     find_sheets(*found);
     std::vector<std::uint8_t> at_rim(mesh_.vertex_count(), 0);
     for (const Rim& rim : *found)
@@ -133,7 +132,6 @@ private:
     }
     return rims;
   }
-  void number_all_parts() { parts_.resize(number_parts(mesh_, part_of_)); }
   /// A lid that is as large as the surface itself closes a sheet, not a body.
   void find_sheets(const std::vector<Rim>& rims) {
     constexpr double max_lid_share = 0.9;
@@ -146,14 +144,14 @@ private:
       lids[part_of_[mesh_.face_corners[rim[0]]]] += length_of(area_of_rim(points_of(rim)));
     for (const Rim& rim : rims) {
       const std::uint32_t part = part_of_[mesh_.face_corners[rim[0]]];
-      if (lids[part] > max_lid_share * surface[part] && parts_[part].vertex == no_index)
+      if (lids[part] > max_lid_share * surface[part] && parts_[part].open.vertex == no_index)
         stays_open(rim[0], "is a sheet without an inside, and to close it would only double it",
                    "give it a thickness where it was made");
     }
   }
   void fill(const Rim& rim) {
     PartHoles& part = part_at(rim[0]);
-    if (part.vertex != no_index) return;
+    if (part.open.vertex != no_index) return;
     const auto is_sound = [&](const std::vector<Corners>& lid) {
       return !lid.empty() && !has_known_edges(rim, lid);
     };
@@ -178,7 +176,7 @@ private:
     for (const PartHoles& part : parts_) {
       all.count += part.count;
       all.crossing += part.crossing;
-      if (part.vertex != no_index) all.unfilled.push_back({part.vertex, part.why, part.remedy});
+      if (part.open.vertex != no_index) all.unfilled.push_back(part.open);
     }
     return all;
   }
@@ -257,7 +255,7 @@ private:
   }
   PartHoles& part_at(std::uint32_t corner) { return parts_[part_of_[mesh_.face_corners[corner]]]; }
   void stays_open(std::uint32_t corner, std::string why, std::string remedy) {
-    part_at(corner) = {0, 0, mesh_.face_corners[corner], std::move(why), std::move(remedy)};
+    part_at(corner) = {0, 0, {mesh_.face_corners[corner], std::move(why), std::move(remedy)}};
   }
   bool has_edge(std::uint32_t one, std::uint32_t other) const {
     return edges_.contains(std::minmax(mesh_.face_corners[one], mesh_.face_corners[other]));

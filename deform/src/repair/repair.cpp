@@ -198,15 +198,8 @@ private:
     result_.separated = copied.size();
     if (copied.empty()) return;
     mesh_.detail.clear();
-    const auto append_copies = [&](auto& columns) {
-      if (columns.cols() == 0) return;
-      Eigen::Index at = before;
-      columns.conservativeResize(columns.rows(), at + static_cast<Eigen::Index>(copied.size()));
-      for (const std::uint32_t from : copied)
-        columns.col(at++) = columns.col(from).eval();
-    };
-    append_copies(mesh_.vertices);
-    append_copies(mesh_.look.vertex_colours);
+    append_columns(columns_at(mesh_.vertices, copied), mesh_.vertices);
+    append_columns(columns_at(mesh_.look.vertex_colours, copied), mesh_.look.vertex_colours);
   }
   /// Vertices that became one with another one, or whose faces were left out, also go, but are not
   /// counted again.
