@@ -11,8 +11,8 @@
 #include <utility>
 
 #include <nendo/deform/corner_colours.hpp>
+#include <nendo/deform/mesh.hpp>
 #include <nendo/deform/triangles.hpp>
-#include <nendo/deform/vertex_areas.hpp>
 
 #include "render/paint.hpp"
 

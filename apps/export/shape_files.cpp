@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <nendo/deform/mesh_file.hpp>
-#include <nendo/deform/up_axis.hpp>
 
 #include "export/chosen_frames.hpp"
 

@@ -16,7 +16,7 @@
 #include <nendo/base/text.hpp>
 #include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/cut.hpp>
-#include <nendo/deform/face_box.hpp>
+#include <nendo/deform/mesh.hpp>
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/repair.hpp>
 

@@ -10,7 +10,6 @@
 #include <nendo/base/endings.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/deform/mesh_file.hpp>
-#include <nendo/deform/up_axis.hpp>
 #include <nendo/version.hpp>
 
 #include "cli/cli.hpp"

@@ -5,7 +5,6 @@
 #include <span>
 #include <string>
 
-#include <nendo/deform/face_box.hpp>
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/supports.hpp>
 #include <nendo/puppet/puppet.hpp>

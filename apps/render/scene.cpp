@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include <nendo/deform/face_box.hpp>
+#include <nendo/deform/mesh.hpp>
 
 namespace nendo::render {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <nendo/deform/face_box.hpp>
+#include <nendo/deform/mesh.hpp>
 
 #include "cli/cli.hpp"
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include <nendo/base/text.hpp>
-#include <nendo/deform/face_box.hpp>
+#include <nendo/deform/edit_part.hpp>
+#include <nendo/deform/mesh.hpp>
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/read_notes.hpp>
-#include <nendo/deform/side_by_side.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
 #include "cli/cli.hpp"

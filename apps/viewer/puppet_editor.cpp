@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include <nendo/deform/face_box.hpp>
+#include <nendo/deform/mesh.hpp>
 
 namespace nendo::viewer {
 

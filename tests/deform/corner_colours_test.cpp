@@ -9,11 +9,11 @@
 
 #include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/cut.hpp>
+#include <nendo/deform/edit_part.hpp>
 #include <nendo/deform/join.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/refinement.hpp>
 #include <nendo/deform/repair.hpp>
-#include <nendo/deform/side_by_side.hpp>
 #include <nendo/deform/subdivision.hpp>
 
 #include "repair/weld.hpp"

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 #include <nendo/deform/closed_manifold.hpp>
-#include <nendo/deform/face_box.hpp>
+#include <nendo/deform/mesh.hpp>
 #include <nendo/deform/mesh_file.hpp>
 
 namespace odd_models_test {

@@ -10,7 +10,6 @@
 #include <nendo/deform/join.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/refinement.hpp>
-#include <nendo/deform/side_by_side.hpp>
 #include <nendo/deform/subdivision.hpp>
 #include <nendo/deform/topology.hpp>
 

@@ -1,6 +1,6 @@
 // Several models as one.
 
-#include <nendo/deform/side_by_side.hpp>
+#include <nendo/deform/edit_part.hpp>
 
 #include <array>
 #include <limits>

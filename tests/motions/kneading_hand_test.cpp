@@ -9,7 +9,7 @@
 #include <doctest/doctest.h>
 
 #include <nendo/deform/cut.hpp>
-#include <nendo/deform/side_by_side.hpp>
+#include <nendo/deform/edit_part.hpp>
 #include <nendo/hand/hand_body.hpp>
 #include <nendo/hand/joint_limits.hpp>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include <nendo/deform/face_box.hpp>
+#include <nendo/deform/mesh.hpp>
 #include <nendo/flow/clay_hands.hpp>
 #include <nendo/flow/sculptor.hpp>
 #include <nendo/hand/joint_angles.hpp>

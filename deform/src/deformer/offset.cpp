@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include <nendo/deform/face_box.hpp>
+#include <nendo/deform/mesh.hpp>
 
 namespace nendo::deform {
 namespace {

@@ -7,10 +7,8 @@
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/deform/corner_colours.hpp>
-#include <nendo/deform/face_box.hpp>
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/offset.hpp>
-#include <nendo/deform/up_axis.hpp>
 
 #include "files/gltf_document.hpp"
 #include "files/mesh_formats.hpp"

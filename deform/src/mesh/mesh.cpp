@@ -5,9 +5,6 @@
 
 #include <Eigen/Geometry>
 
-#include <nendo/deform/face_box.hpp>
-#include <nendo/deform/vertex_areas.hpp>
-
 #include "mesh/columns.hpp"
 #include "mesh/used_entries.hpp"
 

@@ -1,4 +1,4 @@
-#include <nendo/deform/side_by_side.hpp>
+#include <nendo/deform/edit_part.hpp>
 
 #include <algorithm>
 

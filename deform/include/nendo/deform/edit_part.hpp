@@ -1,7 +1,8 @@
 #pragma once
-// Copies and removes parts of a model.
+// Copies and removes parts of a model, and merges several models into one.
 
 #include <cstdint>
+#include <span>
 
 #include <nendo/base/result.hpp>
 #include <nendo/deform/mesh.hpp>
@@ -17,5 +18,13 @@ NENDO_API Result<Mesh> copied_part(const Mesh& mesh, std::uint32_t part);
 /// Returns the mesh without one of its parts. Other parts keep their order and bits. Allocates.
 /// Error: bad_input (no such part, or it is the only one).
 NENDO_API Result<Mesh> removed_part(const Mesh& mesh, std::uint32_t part);
+
+/// Merges the meshes into one, in their order. The first keeps its position, indices and bits. Each
+/// further one is placed to the right of the previous one, at a distance of a tenth of the max
+/// width, and aligned with the first at the bottom and the front. Equal entries of two models, such
+/// as materials, are merged; a different material of the same name is renamed. If some have colours
+/// or texture coordinates, the others get white, and (0, 0). Allocates. Error, without a name:
+/// bad_input (the result is too large).
+NENDO_API Result<Mesh> side_by_side(std::span<const Mesh> models);
 
 } // namespace nendo::deform

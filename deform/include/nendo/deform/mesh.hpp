@@ -2,6 +2,7 @@
 // A polygon mesh for deformation: vertices in a fixed order, and constant faces.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -61,6 +62,19 @@ struct Box {
 /// Returns the axis-aligned bounding box of the points that are finite.
 NENDO_API Box finite_box_of(const Points& points) noexcept;
 
+/// Returns the axis-aligned bounding box of the finite vertices of faces, or of all finite vertices
+/// if there is no face. Models are measured by their faces only, because files may have stray
+/// vertices far from them, for example vertices of ignored lines.
+NENDO_API Box box_of_faces(const Mesh& mesh) noexcept;
+
+/// Returns the vertices without a face. Empty if there is no face, because the mesh is then a point
+/// cloud.
+NENDO_API std::vector<std::uint32_t> stray_vertices(const Mesh& mesh);
+
+/// Returns the faces and their vertices, without appearance and texture coordinates; nullopt if
+/// there is no stray vertex.
+NENDO_API std::optional<Mesh> without_stray_vertices(const Mesh& mesh);
+
 /// Returns the length of the diagonal of the axis-aligned bounding box, in model units; 0 if there
 /// are no points.
 NENDO_API double diagonal_of(const Points& points) noexcept;
@@ -68,6 +82,12 @@ NENDO_API double diagonal_of(const Points& points) noexcept;
 /// Returns a warning if a mesh has no faces, or all its vertices are at one position, though it can
 /// be deformed. The text is to be appended to the mesh's name; empty if there is no warning.
 NENDO_API std::string_view warning_about(const Mesh& mesh) noexcept;
+
+/// Returns for each vertex the sum of twice the area vectors of its faces, 3 by #vertices, in
+/// squares of `unit`, a length in model units. `places` are the vertices, 3 by #vertices, and
+/// `mesh` has the faces. With a unit near the model's size, squares are finite for any model.
+/// Allocates.
+NENDO_API Points vertex_areas(const Mesh& mesh, const Points& places, double unit);
 
 /// Returns the unit normals of the vertices, 3 by #vertices: area-weighted means of the face
 /// normals. A vertex without a face of positive area has a zero normal.

@@ -19,6 +19,17 @@ namespace nendo::deform {
 /// The up axis of a file. Nendo's up axis is y.
 enum class UpAxis { y, z };
 
+/// Rotates z-up points to y-up, in place; exact, as its inverse.
+inline void lay_from_z_up(Points& points) {
+  points.row(1).swap(points.row(2));
+  points.row(2).array() = 0.0 - points.row(2).array(); // no -0
+}
+/// Rotates y-up points to z-up, in place.
+inline void lay_z_up(Points& points) {
+  points.row(2).array() = 0.0 - points.row(2).array(); // no -0
+  points.row(1).swap(points.row(2));
+}
+
 /// The file name extensions that write_mesh() supports.
 inline constexpr std::array<std::string_view, 3> mesh_endings{".obj", ".ply", ".stl"};
 /// The same as text for --help.
