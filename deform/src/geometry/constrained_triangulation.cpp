@@ -129,50 +129,41 @@ PlaneFault ConstrainedTriangulation::add(const PlanePoint& point) {
   return PlaneFault::none;
 }
 
-/// Makes three triangles about the point, and puts the edges beyond which it is on the stack.
-void ConstrainedTriangulation::split_triangle(std::uint32_t triangle, std::uint32_t point) {
-  const std::array<std::uint32_t, 3> corners{corners_[triangle], corners_[triangle + 1],
-                                             corners_[triangle + 2]};
-  const std::array<std::uint32_t, 3> twins{twins_[triangle], twins_[triangle + 1],
-                                           twins_[triangle + 2]};
-  const std::array<bool, 3> fixed{fixed_[triangle] != 0, fixed_[triangle + 1] != 0,
-                                  fixed_[triangle + 2] != 0};
-  const auto more = to_index(corners_.size());
-  const std::array<std::uint32_t, 3> made{triangle, more, more + 3};
-  corners_.resize(more + 6);
-  twins_.resize(more + 6);
-  fixed_.resize(more + 6);
-  for (std::size_t k = 0; k < 3; ++k) {
-    set(made[k], point, made[(k + 2) % 3] + 2, false);
-    set(made[k] + 1, corners[k], twins[k], fixed[k]);
-    set(made[k] + 2, corners[(k + 1) % 3], made[(k + 1) % 3], false);
-    stack_.push_back(made[k] + 1);
-  }
-}
-
-/// Makes four triangles about a point on an edge between two triangles.
-void ConstrainedTriangulation::split_edge(std::uint32_t edge, std::uint32_t point) {
-  const std::uint32_t twin = twins_[edge];
-  const std::array around{next(edge), last(edge), next(twin), last(twin)};
-  std::array<std::uint32_t, 4> corners{};
-  std::array<std::uint32_t, 4> twins{};
-  std::array<bool, 4> fixed{};
-  for (std::size_t k = 0; k < 4; ++k) {
+/// Makes a triangle of the point and of each edge around it, and puts these edges on the stack. The
+/// triangles, each by its first edge, are those around the point before and two more.
+template <std::size_t count>
+void ConstrainedTriangulation::surround(std::uint32_t point,
+                                        const std::array<std::uint32_t, count>& around,
+                                        const std::array<std::uint32_t, count>& made) {
+  std::array<std::uint32_t, count> corners{}, twins{};
+  std::array<bool, count> fixed{};
+  for (std::size_t k = 0; k < count; ++k) {
     corners[k] = corners_[around[k]];
     twins[k] = twins_[around[k]];
     fixed[k] = fixed_[around[k]] != 0;
   }
-  const auto more = to_index(corners_.size());
-  const std::array<std::uint32_t, 4> made{edge - edge % 3, more, twin - twin % 3, more + 3};
-  corners_.resize(more + 6);
-  twins_.resize(more + 6);
-  fixed_.resize(more + 6);
-  for (std::size_t k = 0; k < 4; ++k) {
-    set(made[k], point, made[(k + 3) % 4] + 2, false);
+  corners_.resize(corners_.size() + 6);
+  twins_.resize(corners_.size());
+  fixed_.resize(corners_.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t next = (k + 1) % count;
+    set(made[k], point, made[(k + count - 1) % count] + 2, false);
     set(made[k] + 1, corners[k], twins[k], fixed[k]);
-    set(made[k] + 2, corners[(k + 1) % 4], made[(k + 1) % 4], false);
+    set(made[k] + 2, corners[next], made[next], false);
     stack_.push_back(made[k] + 1);
   }
+}
+
+void ConstrainedTriangulation::split_triangle(std::uint32_t triangle, std::uint32_t point) {
+  const auto more = to_index(corners_.size());
+  surround<3>(point, {triangle, triangle + 1, triangle + 2}, {triangle, more, more + 3});
+}
+
+void ConstrainedTriangulation::split_edge(std::uint32_t edge, std::uint32_t point) {
+  const auto more = to_index(corners_.size());
+  const std::uint32_t twin = twins_[edge];
+  surround<4>(point, {next(edge), last(edge), next(twin), last(twin)},
+              {edge - edge % 3, more, twin - twin % 3, more + 3});
 }
 
 /// Flips the edges on the stack, and those beyond them, as far as Delaunay asks for it. The corner

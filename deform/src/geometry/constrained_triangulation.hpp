@@ -70,6 +70,9 @@ private:
   void flip(std::uint32_t edge) noexcept;
   struct Place;
   Place locate(const PlanePoint& point) const noexcept;
+  template <std::size_t count>
+  void surround(std::uint32_t point, const std::array<std::uint32_t, count>& around,
+                const std::array<std::uint32_t, count>& made);
   void split_triangle(std::uint32_t triangle, std::uint32_t point);
   void split_edge(std::uint32_t edge, std::uint32_t point);
   void legalise();

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "geometry/space.hpp"
+
 namespace nendo::deform {
 namespace {
 
@@ -136,32 +138,17 @@ int exact_orient_2d(const PlanePoint& a, const PlanePoint& b, const PlanePoint& 
       .sign();
 }
 
-int exact_in_circle(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c,
-                    const PlanePoint& d) noexcept {
-  const std::array<const PlanePoint*, 3> corners{&a, &b, &c};
-  std::array<std::array<Expansion<2>, 2>, 3> from;
+/// Of three points, seen from another one, whose rows are x, y and third(point, both).
+template <class Point, class Third>
+int exact_sign(const std::array<const Point*, 3>& points, const Point& from,
+               const Third& third) noexcept {
+  std::array<std::array<Expansion<2>, 2>, 3> rows;
   for (std::size_t k = 0; k < 3; ++k)
-    from[k] = {difference((*corners[k])[0], d[0]), difference((*corners[k])[1], d[1])};
+    rows[k] = {difference((*points[k])[0], from[0]), difference((*points[k])[1], from[1])};
   const auto term = [&](std::size_t k) {
-    const auto& next = from[(k + 1) % 3];
-    const auto& last = from[(k + 2) % 3];
-    return times(plus(times(from[k][0], from[k][0]), times(from[k][1], from[k][1])),
-                 minor_of(next[0], next[1], last[0], last[1]));
-  };
-  return plus(plus(term(0), term(1)), term(2)).sign();
-}
-
-int exact_orient_3d(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c,
-                    const SpacePoint& d) noexcept {
-  const std::array<const SpacePoint*, 3> corners{&a, &b, &c};
-  std::array<std::array<Expansion<2>, 3>, 3> from;
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      from[k][axis] = difference((*corners[k])[axis], d[axis]);
-  const auto term = [&](std::size_t k) {
-    const auto& next = from[(k + 1) % 3];
-    const auto& last = from[(k + 2) % 3];
-    return times(minor_of(next[0], next[1], last[0], last[1]), from[k][2]);
+    const auto& next = rows[(k + 1) % 3];
+    const auto& last = rows[(k + 2) % 3];
+    return times(minor_of(next[0], next[1], last[0], last[1]), third(*points[k], rows[k]));
   };
   return plus(plus(term(0), term(1)), term(2)).sign();
 }
@@ -178,6 +165,20 @@ int exact_turn_about(const SpacePoint& a, const SpacePoint& b, const SpacePoint&
   return plus(plus(term(0), term(1)), term(2)).sign();
 }
 
+/// Returns the sign of the determinant with these rows: exact() if rounding could change it, which
+/// is by at most `bound` of the sum of its terms' sizes.
+template <class Exact>
+int sign_of(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c, double bound,
+            const Exact& exact) noexcept {
+  const double value = a[2] * (b[0] * c[1] - c[0] * b[1]) + b[2] * (c[0] * a[1] - a[0] * c[1]) +
+                       c[2] * (a[0] * b[1] - b[0] * a[1]);
+  const double size = std::abs(a[2]) * (std::abs(b[0] * c[1]) + std::abs(c[0] * b[1])) +
+                      std::abs(b[2]) * (std::abs(c[0] * a[1]) + std::abs(a[0] * c[1])) +
+                      std::abs(c[2]) * (std::abs(a[0] * b[1]) + std::abs(b[0] * a[1]));
+  if (std::abs(value) > bound * size) return value > 0.0 ? 1 : -1;
+  return exact();
+}
+
 } // namespace
 
 int orient_2d(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) noexcept {
@@ -191,47 +192,31 @@ int orient_2d(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) noe
 
 int in_circle(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c,
               const PlanePoint& d) noexcept {
-  const double ax = a[0] - d[0], ay = a[1] - d[1];
-  const double bx = b[0] - d[0], by = b[1] - d[1];
-  const double cx = c[0] - d[0], cy = c[1] - d[1];
-  const double a_lift = ax * ax + ay * ay;
-  const double b_lift = bx * bx + by * by;
-  const double c_lift = cx * cx + cy * cy;
-  const double value =
-      a_lift * (bx * cy - cx * by) + b_lift * (cx * ay - ax * cy) + c_lift * (ax * by - bx * ay);
-  const double size = a_lift * (std::abs(bx * cy) + std::abs(cx * by)) +
-                      b_lift * (std::abs(cx * ay) + std::abs(ax * cy)) +
-                      c_lift * (std::abs(ax * by) + std::abs(bx * ay));
-  if (std::abs(value) > in_circle_bound * size) return value > 0.0 ? 1 : -1;
-  return exact_in_circle(a, b, c, d);
+  const auto lifted = [&](const PlanePoint& point) {
+    const double x = point[0] - d[0], y = point[1] - d[1];
+    return SpacePoint{x, y, x * x + y * y};
+  };
+  return sign_of(lifted(a), lifted(b), lifted(c), in_circle_bound, [&] {
+    return exact_sign<PlanePoint>({&a, &b, &c}, d, [](const PlanePoint&, const auto& row) {
+      return plus(times(row[0], row[0]), times(row[1], row[1]));
+    });
+  });
 }
 
 int orient_3d(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c,
               const SpacePoint& d) noexcept {
-  const double ax = a[0] - d[0], ay = a[1] - d[1], az = a[2] - d[2];
-  const double bx = b[0] - d[0], by = b[1] - d[1], bz = b[2] - d[2];
-  const double cx = c[0] - d[0], cy = c[1] - d[1], cz = c[2] - d[2];
-  const double value =
-      az * (bx * cy - cx * by) + bz * (cx * ay - ax * cy) + cz * (ax * by - bx * ay);
-  const double size = std::abs(az) * (std::abs(bx * cy) + std::abs(cx * by)) +
-                      std::abs(bz) * (std::abs(cx * ay) + std::abs(ax * cy)) +
-                      std::abs(cz) * (std::abs(ax * by) + std::abs(bx * ay));
-  if (std::abs(value) > orient_3d_bound * size) return value > 0.0 ? 1 : -1;
-  return exact_orient_3d(a, b, c, d);
+  return sign_of(a - d, b - d, c - d, orient_3d_bound, [&] {
+    return exact_sign<SpacePoint>({&a, &b, &c}, d, [&](const SpacePoint& point, const auto&) {
+      return difference(point[2], d[2]);
+    });
+  });
 }
 
 int turn_about(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c,
                const SpacePoint& normal) noexcept {
-  const double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2];
-  const double cx = c[0] - a[0], cy = c[1] - a[1], cz = c[2] - a[2];
-  const double value = normal[0] * (by * cz - bz * cy) + normal[1] * (bz * cx - bx * cz) +
-                       normal[2] * (bx * cy - by * cx);
-  const double size = std::abs(normal[0]) * (std::abs(by * cz) + std::abs(bz * cy)) +
-                      std::abs(normal[1]) * (std::abs(bz * cx) + std::abs(bx * cz)) +
-                      std::abs(normal[2]) * (std::abs(bx * cy) + std::abs(by * cx));
   // The bound is that of orient_3d(), whose three factors are all rounded.
-  if (std::abs(value) > orient_3d_bound * size) return value > 0.0 ? 1 : -1;
-  return exact_turn_about(a, b, c, normal);
+  return sign_of(b - a, c - a, normal, orient_3d_bound,
+                 [&] { return exact_turn_about(a, b, c, normal); });
 }
 
 } // namespace nendo::deform

@@ -15,9 +15,7 @@ PointGrid::PointGrid(const Points& points, double cell_edge) {
   sorted_.reserve(static_cast<std::size_t>(points.cols()));
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     sorted_.push_back({cell_of(points.col(i)), static_cast<std::uint32_t>(i)});
-  std::sort(sorted_.begin(), sorted_.end(), [](const Entry& a, const Entry& b) {
-    return a.key != b.key ? a.key < b.key : a.point < b.point;
-  });
+  std::sort(sorted_.begin(), sorted_.end());
   index_cells();
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <vector>
 
@@ -54,6 +55,7 @@ private:
   struct Entry {
     std::uint64_t key;
     std::uint32_t point;
+    auto operator<=>(const Entry&) const = default;
   };
 
   static std::uint64_t key_of(const Cell& cell) noexcept {

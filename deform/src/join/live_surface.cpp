@@ -160,19 +160,15 @@ void LiveSurface::move_texture(std::uint32_t edge) {
 }
 
 bool LiveSurface::makes_fairer(std::uint32_t edge) const {
-  const std::uint32_t back = twin(edge);
-  const std::uint32_t a = from(edge);
-  const std::uint32_t b = from(back);
-  const std::uint32_t c = from(last(edge));
-  const std::uint32_t d = from(last(back));
+  const auto [a, b, c, d] = points_at(edge);
   const double one = triangle_fairness(point(a), point(b), point(c));
   const double other = triangle_fairness(point(b), point(a), point(d));
   const double then = std::min(triangle_fairness(point(d), point(c), point(a)),
                                triangle_fairness(point(c), point(d), point(b)));
   if (then <= min_gain * std::min(one, other)) return false;
-  const SpacePoint both = area_of(edge / 3) + area_of(back / 3);
+  const SpacePoint both = area_of(edge / 3) + area_of(twin(edge) / 3);
   if (std::min(one, other) > needle &&
-      cosine(area_of(edge / 3), area_of(back / 3)) < min_flat_cosine)
+      cosine(area_of(edge / 3), area_of(twin(edge) / 3)) < min_flat_cosine)
     return false;
   return cosine(area_vector(point(d), point(c), point(a)), both) >= min_flat_cosine &&
          cosine(area_vector(point(c), point(d), point(b)), both) >= min_flat_cosine;

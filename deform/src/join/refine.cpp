@@ -1,7 +1,7 @@
 #include "join/refine.hpp"
 
 #include <algorithm>
-#include <tuple>
+#include <compare>
 
 namespace nendo::deform {
 namespace {
@@ -10,6 +10,7 @@ namespace {
 struct RefineEdge {
   double order; ///< the least is taken first
   std::uint32_t from, to;
+  auto operator<=>(const RefineEdge&) const = default;
 };
 
 bool is_near(const RefineZone& zone, std::uint32_t point) {
@@ -62,11 +63,6 @@ public:
   }
 
 private:
-  static void sort(std::vector<RefineEdge>& edges) {
-    std::sort(edges.begin(), edges.end(), [](const RefineEdge& a, const RefineEdge& b) {
-      return std::tie(a.order, a.from, a.to) < std::tie(b.order, b.from, b.to);
-    });
-  }
   bool has_budget() const { return counts_.splits + counts_.collapses < limits_.budget; }
 
   void collect() {
@@ -74,8 +70,8 @@ private:
       if (length > limits_.longest) long_.push_back({-length, from, to});
       if (length < limits_.shortest) short_.push_back({length, from, to});
     });
-    sort(long_);
-    sort(short_);
+    std::sort(long_.begin(), long_.end());
+    std::sort(short_.begin(), short_.end());
   }
   void split_long() {
     for (const RefineEdge& wanted : long_) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <compare>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -19,6 +20,7 @@ namespace {
 struct Edge {
   std::uint64_t ends;
   std::uint32_t corner;
+  auto operator<=>(const Edge&) const = default;
 };
 
 /// The edges of all faces by their ends, with the values of `corner_values` as ends.
@@ -29,9 +31,7 @@ std::vector<Edge> sorted_edges(const Mesh& mesh, const std::vector<std::uint32_t
     const auto [low, high] = std::minmax(corner_values[at], corner_values[next]);
     if (mesh.corners_of(face).size() >= 3) edges.push_back({edge_key(low, high), at});
   });
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    return std::pair(a.ends, a.corner) < std::pair(b.ends, b.corner);
-  });
+  std::sort(edges.begin(), edges.end());
   return edges;
 }
 

@@ -5,7 +5,6 @@
 #include <functional>
 #include <limits>
 #include <queue>
-#include <tuple>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -85,6 +84,7 @@ void for_each_cut(const Mesh& mesh, Visit visit) {
 /// An edge of a triangle, about which the next one folds, with the corner opposite to it.
 struct Hinge {
   std::uint32_t low, high, opposite;
+  auto operator<=>(const Hinge&) const = default;
 };
 
 /// The length of the straight line between the corners opposite to an edge, when both triangles are
@@ -160,10 +160,7 @@ SurfaceGraph::SurfaceGraph(const Mesh& mesh) : vertices_(mesh.vertices) {
       edges.push_back({std::min(from, to), std::max(from, to), corners[(k + 2) % 3]});
     }
   });
-  std::sort(edges.begin(), edges.end(), [](const Hinge& one, const Hinge& other) {
-    return std::tie(one.low, one.high, one.opposite) <
-           std::tie(other.low, other.high, other.opposite);
-  });
+  std::sort(edges.begin(), edges.end());
   // Two quads meet with two triangles each. Those of one face give a way longer than its diagonal.
   constexpr std::size_t max_at_edge = 4;
   for (std::size_t at = 0; at < edges.size(); ++at)
@@ -175,10 +172,7 @@ SurfaceGraph::SurfaceGraph(const Mesh& mesh) : vertices_(mesh.vertices) {
                  vertices_.col(other.opposite)));
     }
   // A way from two faces is listed twice, which only costs its memory.
-  std::sort(all.begin(), all.end(), [](const auto& one, const auto& other) {
-    return std::tie(one.first, one.second.to, one.second.length) <
-           std::tie(other.first, other.second.to, other.second.length);
-  });
+  std::sort(all.begin(), all.end());
   starts_.assign(static_cast<std::size_t>(vertices_.cols()) + 1, 0);
   for (const auto& [from, way] : all) {
     ++starts_[from + 1];

@@ -154,11 +154,8 @@ bool SurfaceMesh::can_collapse(std::uint32_t edge) const {
 
 void SurfaceMesh::collapse(std::uint32_t edge) {
   const std::uint32_t back = twins_[edge];
-  const std::uint32_t a = from(edge);
-  const std::uint32_t b = to(edge);
-  const std::uint32_t c = from(last(edge));
-  const std::uint32_t d = from(last(back));
-  visit_edges_from(back, [&](std::uint32_t at) { faces_[at / 3][at % 3] = a; });
+  const auto [a, b, c, d] = points_at(edge);
+  visit_edges_from(back, [&, a = a](std::uint32_t at) { faces_[at / 3][at % 3] = a; });
   const std::uint32_t beyond_c = twins_[next(edge)]; // from c to b before
   const std::uint32_t beside_a = twins_[last(edge)]; // from a to c
   const std::uint32_t beyond_d = twins_[next(back)]; // from d to a
@@ -174,23 +171,18 @@ void SurfaceMesh::collapse(std::uint32_t edge) {
 }
 
 bool SurfaceMesh::can_flip(std::uint32_t edge) const {
-  const std::uint32_t back = twins_[edge];
-  const std::uint32_t c = from(last(edge));
-  const std::uint32_t d = from(last(back));
+  const auto [a, b, c, d] = points_at(edge);
   if (c == d) return false;
   std::size_t at_a = 0;
   std::size_t at_b = 0;
   visit_edges_from(edge, [&](std::uint32_t) { ++at_a; });
-  visit_edges_from(back, [&](std::uint32_t) { ++at_b; });
+  visit_edges_from(twins_[edge], [&](std::uint32_t) { ++at_b; });
   return at_a > 3 && at_b > 3 && edge_between(c, d) == no_index;
 }
 
 void SurfaceMesh::flip(std::uint32_t edge) {
   const std::uint32_t back = twins_[edge];
-  const std::uint32_t a = from(edge);
-  const std::uint32_t b = from(back);
-  const std::uint32_t c = from(last(edge));
-  const std::uint32_t d = from(last(back));
+  const auto [a, b, c, d] = points_at(edge);
   const std::array<std::uint32_t, 4> beyond{twins_[next(edge)], twins_[last(edge)],
                                             twins_[next(back)], twins_[last(back)]};
   const auto set = [&](std::uint32_t at, std::uint32_t point) {

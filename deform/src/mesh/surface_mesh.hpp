@@ -78,6 +78,11 @@ public:
   }
   std::uint32_t from(std::uint32_t edge) const noexcept { return faces_[edge / 3][edge % 3]; }
   std::uint32_t to(std::uint32_t edge) const noexcept { return from(next(edge)); }
+  /// Returns both ends of an edge, and the points opposite to it in its face and in its twin's.
+  std::array<std::uint32_t, 4> points_at(std::uint32_t edge) const noexcept {
+    const std::uint32_t back = twins_[edge];
+    return {from(edge), from(back), from(last(edge)), from(last(back))};
+  }
   /// no_index at the boundary
   std::uint32_t twin(std::uint32_t edge) const noexcept { return twins_[edge]; }
 

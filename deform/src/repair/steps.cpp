@@ -3,6 +3,7 @@
 #include "repair/steps.hpp"
 
 #include <algorithm>
+#include <compare>
 #include <map>
 
 #include "mesh/columns.hpp"
@@ -16,6 +17,7 @@ namespace {
 struct JunctionPoint {
   double along;
   std::uint32_t place;
+  auto operator<=>(const JunctionPoint&) const = default;
 };
 
 /// By the corner after which they come.
@@ -57,9 +59,7 @@ std::optional<Junctions> junctions_of(const Mesh& mesh, const std::vector<std::u
     }
   }
   for (auto& [corner, points] : found)
-    std::sort(points.begin(), points.end(), [](const JunctionPoint& a, const JunctionPoint& b) {
-      return std::pair(a.along, a.place) < std::pair(b.along, b.place);
-    });
+    std::sort(points.begin(), points.end());
   return found;
 }
 

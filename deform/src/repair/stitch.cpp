@@ -158,9 +158,7 @@ std::vector<PlacedEdge> placed_edges(const Mesh& mesh, std::span<const std::uint
         edges.push_back({std::min(from, to), std::max(from, to), at, next, face, from < to});
     }
   }
-  std::sort(edges.begin(), edges.end(), [](const PlacedEdge& a, const PlacedEdge& b) {
-    return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
-  });
+  std::sort(edges.begin(), edges.end());
   return edges;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Which vertices of faces are one, if faces that share an edge are joined there and nowhere else.
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,6 +24,8 @@ struct PlacedEdge {
   std::uint32_t corner, next; ///< corners of its face
   std::uint32_t face;
   bool forward; ///< the face goes from the lesser place to the greater one
+
+  auto operator<=>(const PlacedEdge&) const = default;
 
   std::uint32_t at_low() const noexcept { return forward ? corner : next; }
   std::uint32_t at_high() const noexcept { return forward ? next : corner; }

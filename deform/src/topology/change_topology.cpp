@@ -214,18 +214,15 @@ private:
                                         const std::set<std::uint32_t>& facing) const {
     std::vector<std::uint32_t> patch{first};
     std::set<std::uint32_t> seen{first};
-    for (std::size_t at = 0; at < patch.size() && patch.size() < max_of_patch; ++at)
-      for (const std::uint32_t neighbour : surface_.ring(patch[at]))
-        if (facing.contains(neighbour) && !touched_.contains(neighbour) &&
-            seen.insert(neighbour).second)
-          patch.push_back(neighbour);
-    for (std::size_t at = 0; at < patch.size() && patch.size() < max_of_patch; ++at)
-      for (const std::uint32_t neighbour : surface_.ring(patch[at]))
-        if (!seen.contains(neighbour) && !touched_.contains(neighbour) &&
-            is_within(neighbour, seen)) {
-          seen.insert(neighbour);
-          patch.push_back(neighbour);
-        }
+    const auto grow_by = [&](const auto& is_of_patch) {
+      for (std::size_t at = 0; at < patch.size() && patch.size() < max_of_patch; ++at)
+        for (const std::uint32_t neighbour : surface_.ring(patch[at]))
+          if (is_of_patch(neighbour) && !touched_.contains(neighbour) &&
+              seen.insert(neighbour).second)
+            patch.push_back(neighbour);
+    };
+    grow_by([&](std::uint32_t point) { return facing.contains(point); });
+    grow_by([&](std::uint32_t point) { return !seen.contains(point) && is_within(point, seen); });
     return patch;
   }
   /// Most of its neighbours are: islands in a patch belong to it.

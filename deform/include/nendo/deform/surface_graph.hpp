@@ -4,6 +4,7 @@
 // the mouth can open.
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -52,6 +53,7 @@ private:
   struct Way {
     std::uint32_t to;
     double length;
+    auto operator<=>(const Way&) const = default;
   };
   /// Returns the vertices that a straight line reaches: those of the position's face or edge, and
   /// their common neighbours. On an edge, these are on both sides, so that mirrored positions have
