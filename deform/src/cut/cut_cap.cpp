@@ -34,25 +34,22 @@ class NearPlaces {
 public:
   NearPlaces(const PlaneBox& box, double cell) : box_(box) {
     constexpr double most = 2048.0;
-    const double span = std::max(box.high[0] - box.low[0], box.high[1] - box.low[1]);
-    cell_ = std::max(cell, span / most);
-    columns_ = static_cast<std::ptrdiff_t>((box.high[0] - box.low[0]) / cell_) + 1;
-    rows_ = static_cast<std::ptrdiff_t>((box.high[1] - box.low[1]) / cell_) + 1;
-    heads_.assign(static_cast<std::size_t>(columns_ * rows_), no_index);
+    const PlanePoint span{box.high[0] - box.low[0], box.high[1] - box.low[1]};
+    cell_ = std::max(cell, std::max(span[0], span[1]) / most);
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      counts_[axis] = static_cast<std::size_t>(span[axis] / cell_) + 1;
+    heads_.assign(counts_[0] * counts_[1], no_index);
   }
   void add(const PlanePoint& place) {
-    std::uint32_t& head =
-        heads_[static_cast<std::size_t>(row(place[1]) * columns_ + column(place[0]))];
+    std::uint32_t& head = heads_[cell_at(place[1], 1) * counts_[0] + cell_at(place[0], 0)];
     places_.push_back({place, head});
     head = to_index(places_.size() - 1);
   }
   bool has_nearer(const PlanePoint& to, double than) const noexcept {
-    const std::ptrdiff_t low_column = column(to[0] - than), high_column = column(to[0] + than);
-    const std::ptrdiff_t low_row = row(to[1] - than), high_row = row(to[1] + than);
-    for (std::ptrdiff_t y = low_row; y <= high_row; ++y)
-      for (std::ptrdiff_t x = low_column; x <= high_column; ++x)
-        for (std::uint32_t at = heads_[static_cast<std::size_t>(y * columns_ + x)]; at != no_index;
-             at = places_[at].next)
+    const std::size_t last_x = cell_at(to[0] + than, 0), last_y = cell_at(to[1] + than, 1);
+    for (std::size_t y = cell_at(to[1] - than, 1); y <= last_y; ++y)
+      for (std::size_t x = cell_at(to[0] - than, 0); x <= last_x; ++x)
+        for (std::uint32_t at = heads_[y * counts_[0] + x]; at != no_index; at = places_[at].next)
           if (distance(places_[at].place, to) < than) return true;
     return false;
   }
@@ -62,18 +59,14 @@ private:
     PlanePoint place;
     std::uint32_t next;
   };
-  std::ptrdiff_t column(double x) const noexcept {
-    return std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>((x - box_.low[0]) / cell_), 0,
-                                      columns_ - 1);
-  }
-  std::ptrdiff_t row(double y) const noexcept {
-    return std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>((y - box_.low[1]) / cell_), 0,
-                                      rows_ - 1);
+  std::size_t cell_at(double coordinate, std::size_t axis) const noexcept {
+    const double cells = std::max((coordinate - box_.low[axis]) / cell_, 0.0);
+    return std::min(static_cast<std::size_t>(cells), counts_[axis] - 1);
   }
 
   PlaneBox box_;
   double cell_;
-  std::ptrdiff_t columns_, rows_;
+  std::array<std::size_t, 2> counts_{}; ///< of cells along each axis
   std::vector<std::uint32_t> heads_;
   std::vector<Linked> places_;
 };

@@ -46,42 +46,21 @@ constexpr std::uint64_t max_buffer_bytes = std::uint64_t{4} << 30;
   throw GltfRefusal{std::move(what)};
 }
 
-/// glTF's numbers of component types.
-enum class Component : std::uint32_t {
-  int8 = 5120,
-  uint8 = 5121,
-  int16 = 5122,
-  uint16 = 5123,
-  uint32 = 5125,
-  float32 = 5126
-};
-
-std::size_t size_of_component(std::uint64_t type) {
-  constexpr std::array<std::size_t, 7> sizes{1, 1, 2, 2, 0, 4, 4}; // of 5120 to 5126
-  if (type >= 5120 && type - 5120 < sizes.size() && sizes[type - 5120] > 0)
-    return sizes[type - 5120];
-  refuse("an accessor has a componentType " + std::to_string(type) + ", which glTF does not know");
+NumberType type_of_component(std::uint64_t component) {
+  // In the order of NumberType; 0: glTF does not have that type.
+  constexpr std::array<std::uint64_t, 7> components{5120, 5121, 5122, 5123, 0, 5125, 5126};
+  const auto* const found = std::find(components.begin(), components.end(), component);
+  if (component == 0 || found == components.end())
+    refuse("an accessor has a componentType " + std::to_string(component) +
+           ", which glTF does not know");
+  return static_cast<NumberType>(found - components.begin());
 }
 
-double decoded(Component type, const char* bytes, bool normalized) noexcept {
-  const auto scaled = [&](double value, double greatest) {
-    return normalized ? std::max(value / greatest, -1.0) : value;
-  };
-  switch (type) {
-  case Component::int8:
-    return scaled(number_from<std::int8_t>(bytes), 127.0);
-  case Component::uint8:
-    return scaled(number_from<std::uint8_t>(bytes), 255.0);
-  case Component::int16:
-    return scaled(number_from<std::int16_t>(bytes), 32767.0);
-  case Component::uint16:
-    return scaled(number_from<std::uint16_t>(bytes), 65535.0);
-  case Component::uint32:
-    return number_from<std::uint32_t>(bytes);
-  case Component::float32:
-    break;
-  }
-  return static_cast<double>(number_from<float>(bytes));
+double decoded(NumberType type, const char* bytes, bool normalized) noexcept {
+  constexpr std::array<double, 4> greatest{127.0, 255.0, 32767.0, 65535.0};
+  const auto at = static_cast<std::size_t>(type);
+  const double value = number_from(type, bytes);
+  return normalized && at < greatest.size() ? std::max(value / greatest[at], -1.0) : value;
 }
 
 std::size_t width_of(const std::string& type) {
@@ -93,26 +72,26 @@ std::size_t width_of(const std::string& type) {
 
 /// The elements of an accessor, or of a part of a sparse one, in their view.
 struct Elements {
-  Component component;
+  NumberType type;
   const char* first;
-  std::size_t stride, size; ///< of a row, of a number
+  std::size_t stride; ///< of a row
 
   double number(std::size_t row, std::size_t column, bool normalized = false) const {
-    return decoded(component, first + row * stride + column * size, normalized);
+    return decoded(type, first + row * stride + column * size_of(type), normalized);
   }
 };
 
 Elements elements_in(std::string_view view, std::uint64_t component, std::size_t width,
                      std::uint64_t offset, std::uint64_t stride, std::uint64_t count) {
-  const std::size_t size = size_of_component(component);
-  const std::size_t element = width * size;
+  const NumberType type = type_of_component(component);
+  const std::size_t element = width * size_of(type);
   if (stride == 0) stride = element;
   if (stride < element) refuse("a bufferView has a byteStride that is too small for its numbers");
   // No product may overflow: the count is compared with the capacity of the view.
   const bool fits = offset <= view.size() && view.size() - offset >= element &&
                     count - 1 <= (view.size() - offset - element) / stride;
   if (!fits) refuse("an accessor reaches beyond the end of its bufferView");
-  return {static_cast<Component>(component), view.data() + offset, stride, size};
+  return {type, view.data() + offset, stride};
 }
 
 } // namespace
@@ -371,7 +350,7 @@ void GltfDocument::fill_sparse(const Json& accessor, GltfNumbers& numbers) const
   for (std::size_t k = 0; k < count; ++k) {
     const double place = places.number(k, 0);
     if (!(place >= 0.0 && place < static_cast<double>(numbers.count)) ||
-        places.component == Component::float32)
+        places.type == NumberType::float32)
       refuse("a sparse accessor names an element that is not there");
     const std::size_t row = static_cast<std::size_t>(place) * numbers.width;
     for (std::size_t column = 0; column < numbers.width; ++column)

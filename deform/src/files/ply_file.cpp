@@ -19,28 +19,6 @@
 namespace nendo::deform {
 namespace {
 
-double decode(PlyType type, const char* bytes, std::endian order) noexcept {
-  switch (type) {
-  case PlyType::int8:
-    return number_from<std::int8_t>(bytes, order);
-  case PlyType::uint8:
-    return number_from<std::uint8_t>(bytes, order);
-  case PlyType::int16:
-    return number_from<std::int16_t>(bytes, order);
-  case PlyType::uint16:
-    return number_from<std::uint16_t>(bytes, order);
-  case PlyType::int32:
-    return number_from<std::int32_t>(bytes, order);
-  case PlyType::uint32:
-    return number_from<std::uint32_t>(bytes, order);
-  case PlyType::float32:
-    return static_cast<double>(number_from<float>(bytes, order));
-  case PlyType::float64:
-    break;
-  }
-  return number_from<double>(bytes, order);
-}
-
 /// The numbers of the body one by one. A double holds every PLY type exactly.
 class PlyBody {
 public:
@@ -50,7 +28,7 @@ public:
         words_(bytes_, TextScanner::Dialect::plain) {}
 
   /// Nothing if there is no such number; then error() says why.
-  std::optional<double> number(PlyType type) {
+  std::optional<double> number(NumberType type) {
     if (format_ == PlyFormat::ascii) {
       word_ = words_.field_on_any_line();
       return to_number_of_any_program(word_);
@@ -58,7 +36,7 @@ public:
     if (bytes_.size() - at_ < size_of(type)) return std::nullopt;
     const bool is_little = format_ == PlyFormat::little_endian;
     const double value =
-        decode(type, bytes_.data() + at_, is_little ? std::endian::little : std::endian::big);
+        number_from(type, bytes_.data() + at_, is_little ? std::endian::little : std::endian::big);
     at_ += size_of(type);
     return value;
   }
@@ -197,8 +175,8 @@ Use use_in_face(const PlyProperty& property, bool is_strips) noexcept {
   return !is_strips && name == "texcoord" ? Use::texcoords : Use::skip;
 }
 
-ColourNumbers colour_numbers_of(PlyType type) noexcept {
-  if (type >= PlyType::float32) return ColourNumbers::floats;
+ColourNumbers colour_numbers_of(NumberType type) noexcept {
+  if (type >= NumberType::float32) return ColourNumbers::floats;
   if (size_of(type) == 4) return ColourNumbers::int32;
   return size_of(type) == 2 ? ColourNumbers::int16 : ColourNumbers::int8;
 }
@@ -317,7 +295,7 @@ private:
     return {};
   }
   /// Nothing where a strip ends: at a negative number, which unsigned types show as their greatest.
-  Result<std::optional<std::uint32_t>> read_index(PlyType type, Use use) {
+  Result<std::optional<std::uint32_t>> read_index(NumberType type, Use use) {
     constexpr std::uint32_t greatest = std::numeric_limits<std::uint32_t>::max();
     const auto value = body_.number(type);
     if (!value) return body_.no_number();

@@ -1,5 +1,6 @@
 #include "files/ply_header.hpp"
 
+#include <array>
 #include <limits>
 
 #include <nendo/base/text.hpp>
@@ -9,22 +10,20 @@
 namespace nendo::deform {
 namespace {
 
-struct TypeName {
-  std::string_view name;
-  PlyType type;
-};
-constexpr TypeName type_names[] = {
-    {"char", PlyType::int8},       {"int8", PlyType::int8},       {"uchar", PlyType::uint8},
-    {"uint8", PlyType::uint8},     {"short", PlyType::int16},     {"int16", PlyType::int16},
-    {"ushort", PlyType::uint16},   {"uint16", PlyType::uint16},   {"int", PlyType::int32},
-    {"int32", PlyType::int32},     {"uint", PlyType::uint32},     {"uint32", PlyType::uint32},
-    {"float", PlyType::float32},   {"float32", PlyType::float32}, {"double", PlyType::float64},
-    {"float64", PlyType::float64},
-};
+/// Both names of each type, in the order of NumberType.
+constexpr std::array<std::array<std::string_view, 2>, 8> type_names{{{"char", "int8"},
+                                                                     {"uchar", "uint8"},
+                                                                     {"short", "int16"},
+                                                                     {"ushort", "uint16"},
+                                                                     {"int", "int32"},
+                                                                     {"uint", "uint32"},
+                                                                     {"float", "float32"},
+                                                                     {"double", "float64"}}};
 
-std::optional<PlyType> type_named(std::string_view name) noexcept {
-  for (const auto& known : type_names)
-    if (known.name == name) return known.type;
+std::optional<NumberType> type_named(std::string_view name) noexcept {
+  for (std::size_t type = 0; type < type_names.size(); ++type)
+    if (name == type_names[type][0] || name == type_names[type][1])
+      return static_cast<NumberType>(type);
   return std::nullopt;
 }
 

@@ -10,20 +10,17 @@
 
 #include <nendo/base/result.hpp>
 
+#include "files/binary_numbers.hpp"
+
 namespace nendo::deform {
 
 enum class PlyFormat { ascii, little_endian, big_endian };
-enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
-
-constexpr std::size_t size_of(PlyType type) noexcept {
-  constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-  return sizes[static_cast<std::size_t>(type)];
-}
 
 struct PlyProperty {
   std::string_view name;
-  PlyType type = PlyType::float32;     ///< the type of the value, or of a list's items
-  std::optional<PlyType> count_type{}; ///< the type of a list's length; nothing for a single value
+  NumberType type = NumberType::float32; ///< the type of the value, or of a list's items
+  std::optional<NumberType>
+      count_type{}; ///< the type of a list's length; nothing for a single value
 };
 
 struct PlyElement {

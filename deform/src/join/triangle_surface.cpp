@@ -1,5 +1,7 @@
 #include "join/triangle_surface.hpp"
 
+#include "mesh/used_entries.hpp"
+
 namespace nendo::deform {
 
 void TriangleSurface::copy_points(std::span<const std::uint32_t> which) {
@@ -14,12 +16,12 @@ void TriangleSurface::copy_points(std::span<const std::uint32_t> which) {
 }
 
 void TriangleSurface::renumber_columns(const Renumbering& numbers) {
-  renumber(points, numbers.points);
-  renumber(colours, numbers.points);
-  renumber(rest, numbers.points);
-  renumber(detail, numbers.points);
-  renumber(looks, numbers.faces);
-  renumber(face_texture, numbers.faces);
+  keep_values(points, numbers.points, no_index);
+  keep_values(colours, numbers.points, no_index);
+  keep_values(rest, numbers.points, no_index);
+  keep_values(detail, numbers.points, no_index);
+  keep_values(looks, numbers.faces, no_index);
+  keep_values(face_texture, numbers.faces, no_index);
 }
 
 double volume_of(std::span<const SpacePoint> points, std::span<const Corners> faces) {

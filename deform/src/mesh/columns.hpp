@@ -107,16 +107,6 @@ void append_columns(const Columns& more, Columns& to) {
   to.rightCols(more.cols()) = more;
 }
 
-/// Keeps the values for which `keeps` is not 0. A column without values stays empty.
-template <class Values>
-void keep_values(Values& values, std::span<const std::uint8_t> keeps) {
-  if (values.empty()) return;
-  std::size_t kept = 0;
-  for (std::size_t at = 0; at < keeps.size(); ++at)
-    if (keeps[at] != 0) values[kept++] = values[at];
-  values.resize(kept);
-}
-
 inline void append_corner(const Mesh& from, std::uint32_t corner, Mesh& to) {
   to.face_corners.push_back(from.face_corners[corner]);
   if (!from.corner_texcoords.empty()) to.corner_texcoords.push_back(from.corner_texcoords[corner]);

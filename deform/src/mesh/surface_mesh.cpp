@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "mesh/columns.hpp"
+#include "mesh/used_entries.hpp"
 
 namespace nendo::deform {
 namespace {
@@ -231,7 +232,7 @@ std::vector<Corners> SurfaceMesh::take(Renumbering& numbers) {
       corner = numbers.points[corner];
   }
   std::vector<Corners> faces = std::move(faces_);
-  renumber(faces, numbers.faces);
+  keep_values(faces, numbers.faces, no_index);
   *this = {};
   return faces;
 }

@@ -46,16 +46,6 @@ struct Renumbering {
   std::vector<std::uint32_t> points, faces;
 };
 
-/// Leaves out of a column what has no new number. A column without entries stays empty.
-template <class Entry>
-void renumber(std::vector<Entry>& column, std::span<const std::uint32_t> numbers) {
-  if (column.empty()) return;
-  std::size_t kept = 0;
-  for (std::size_t at = 0; at < numbers.size(); ++at)
-    if (numbers[at] != no_index) column[kept++] = column[at];
-  column.resize(kept);
-}
-
 /// Triangles that know their neighbours while they are split, flipped, collapsed, removed and
 /// added: the structure of each editor of a surface (refinement, joining, changes of topology).
 ///

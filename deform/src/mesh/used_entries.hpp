@@ -1,5 +1,5 @@
 #pragma once
-// Numbers the entries of a list that are used, so that the others can be left out.
+// Numbers the entries of a list that are used, and leaves out the others.
 
 #include <cstdint>
 #include <vector>
@@ -7,6 +7,16 @@
 #include <nendo/deform/index.hpp>
 
 namespace nendo::deform {
+
+/// Keeps the values whose mark is not `dropped`. A column without values stays empty.
+template <class Values, class Marks>
+void keep_values(Values& values, const Marks& marks, typename Marks::value_type dropped = 0) {
+  if (values.empty()) return;
+  std::size_t kept = 0;
+  for (std::size_t at = 0; at < marks.size(); ++at)
+    if (marks[at] != dropped) values[kept++] = values[at];
+  values.resize(kept);
+}
 
 /// Numbers entries that are used, in the order of their first use.
 class FirstUses {

@@ -7,6 +7,7 @@
 #include <nendo/deform/corner_colours.hpp>
 
 #include "mesh/columns.hpp"
+#include "mesh/used_entries.hpp"
 #include "repair/stitch.hpp"
 
 namespace nendo::deform {
