@@ -35,9 +35,8 @@ std::vector<Mesh> separated(const Mesh& mesh, const std::vector<std::uint32_t>& 
                             std::uint32_t count) {
   const auto part_of = [&](std::uint32_t vertex) { return part_of_vertex[vertex]; };
   const auto vertices = by_part(mesh.vertex_count(), count, part_of);
-  const auto faces = by_part(mesh.face_count(), count, [&](std::uint32_t face) {
-    return part_of(mesh.face_corners[mesh.face_starts[face]]);
-  });
+  const auto faces = by_part(mesh.face_count(), count,
+                             [&](std::uint32_t face) { return part_of(mesh.corners_of(face)[0]); });
   FirstUses vertex(mesh.vertex_count());
   FirstUses texcoord(static_cast<std::size_t>(mesh.texcoords.cols()));
   std::vector<Mesh> parts(count);

@@ -1,5 +1,6 @@
 #include "files/ply_header.hpp"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -61,15 +62,11 @@ private:
     const std::string_view version = scanner_.field();
     if (version != "1.0")
       return bad("PLY version " + in_quotes(version) + " is not known, only 1.0");
-    if (format == "ascii") {
-      header_.format = PlyFormat::ascii;
-    } else if (format == "binary_little_endian") {
-      header_.format = PlyFormat::little_endian;
-    } else if (format == "binary_big_endian") {
-      header_.format = PlyFormat::big_endian;
-    } else {
-      return bad("PLY format " + in_quotes(format) + " is not known");
-    }
+    constexpr std::array<std::string_view, 3> known{"ascii", "binary_little_endian",
+                                                    "binary_big_endian"};
+    const auto* const found = std::find(known.begin(), known.end(), format);
+    if (found == known.end()) return bad("PLY format " + in_quotes(format) + " is not known");
+    header_.format = static_cast<PlyFormat>(found - known.begin());
     has_format_ = true;
     return {};
   }

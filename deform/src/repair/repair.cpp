@@ -273,7 +273,7 @@ private:
     std::vector<std::uint32_t> part_of;
     std::vector<std::vector<std::uint32_t>> faces_of(number_parts(mesh_, part_of));
     for (std::uint32_t face = 0; face < mesh_.face_count(); ++face)
-      faces_of[part_of[mesh_.face_corners[mesh_.face_starts[face]]]].push_back(face);
+      faces_of[part_of[mesh_.corners_of(face)[0]]].push_back(face);
     for (const UnfilledPart& part : parts)
       leave_out(faces_of[part_of[part.vertex]], part);
     drop_left_out_faces();

@@ -125,8 +125,7 @@ std::vector<std::size_t> inward_faces(const Mesh& mesh) {
   const std::vector<std::uint8_t> turns = inward_parts(closed);
   std::vector<std::size_t> inwards;
   for (std::size_t face = 0; face < mesh.face_count(); ++face)
-    if (turns[closed.part_of[mesh.face_corners[mesh.face_starts[face]]]] != 0)
-      inwards.push_back(face);
+    if (turns[closed.part_of[mesh.corners_of(face)[0]]] != 0) inwards.push_back(face);
   return inwards;
 }
 
