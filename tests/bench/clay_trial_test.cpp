@@ -21,7 +21,7 @@ TEST_SUITE("clay_trial") {
     CHECK(trial.constraints > 50.0); // the hands are in contact indeed
     CHECK(trial.penetration_p99_mm < 0.05 * trial.mean_edge_mm);
     CHECK(trial.inside_p99_mm < 0.1 * trial.mean_edge_mm);
-    CHECK(trial.worst_behind_mm == 0.0);
+    CHECK(trial.max_remaining_path_mm == 0.0);
     CHECK(trial.worst_volume < 1.5e-3);
     CHECK(std::abs(trial.last_volume) < 1e-4);
     CHECK(trial.max_held == 0); // flat hands hold nothing

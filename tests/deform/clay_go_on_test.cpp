@@ -147,7 +147,7 @@ TEST_SUITE("clay_go_on") {
     two.begin(parts);
     two.continue_from(before->clay, true);
     CHECK(two.press_to(parts).held == 0);
-    CHECK(two.report().behind_mm == 0.0);
+    CHECK(two.report().remaining_path_mm == 0.0);
   }
 }
 

@@ -64,7 +64,7 @@ struct Ball {
       worst.passes = std::max(worst.passes, report.passes);
       worst.sub_steps = std::max(worst.sub_steps, report.sub_steps);
       worst.distances = std::max(worst.distances, report.distances);
-      worst.behind_mm = std::max(worst.behind_mm, report.behind_mm);
+      worst.remaining_path_mm = std::max(worst.remaining_path_mm, report.remaining_path_mm);
       worst.volume_change = std::max(worst.volume_change, std::abs(report.volume_change));
       worst.held = std::max(worst.held, report.held);
       worst.carried_mm += report.carried_mm;
@@ -247,7 +247,7 @@ TEST_SUITE("clay") {
     clay.begin(parts);
     for (int tick = 0; tick < 3; ++tick) { // 1 m/s at 90 Hz
       parts = moved(parts, Vector3d(0, 0, -11.1));
-      CHECK(clay.press_to(parts).behind_mm == 0.0);
+      CHECK(clay.press_to(parts).remaining_path_mm == 0.0);
     }
     Points now;
     shape.layout().unpack(clay.shape(), now);
@@ -269,16 +269,16 @@ TEST_SUITE("clay") {
     ball.clay.begin(parts);
     const ClayReport jump = ball.go(parts, {0, 0, -14}, 1);
     CHECK(jump.sub_steps == 1);
-    CHECK(jump.behind_mm > 10.0);
+    CHECK(jump.remaining_path_mm > 10.0);
     CHECK(jump.penetration_mm <= 0.021);
-    double behind = jump.behind_mm;
-    for (int call = 0; call < 20 && behind > 0.0; ++call) {
+    double remaining_mm = jump.remaining_path_mm;
+    for (int call = 0; call < 20 && remaining_mm > 0.0; ++call) {
       const ClayReport& report = ball.clay.press_to(parts);
-      CHECK(report.behind_mm < behind);
+      CHECK(report.remaining_path_mm < remaining_mm);
       CHECK(report.penetration_mm <= 0.021);
-      behind = report.behind_mm;
+      remaining_mm = report.remaining_path_mm;
     }
-    CHECK(behind == 0.0);
+    CHECK(remaining_mm == 0.0);
     CHECK(ball.depth(parts) < 1e-3);
     CHECK(nendo::test::count_self_intersections(ball.now()) == 0);
   }
@@ -289,7 +289,7 @@ TEST_SUITE("clay") {
     ball.clay.begin(parts);
     const ClayReport far = ball.go(parts, {0, 500, 0}, 1);
     CHECK(far.sub_steps == 0);
-    CHECK(far.behind_mm == 0.0);
+    CHECK(far.remaining_path_mm == 0.0);
     CHECK(ball.now().vertices == ball.mesh.vertices);
   }
 

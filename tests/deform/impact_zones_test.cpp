@@ -193,7 +193,7 @@ TEST_SUITE("impact_zones") {
       const ClayReport report = ball.clay.press_to(parts);
       if (report.passes == 0 || report.is_moved) return;
       ++taken_back;
-      CHECK(report.behind_mm > 0.0);
+      CHECK(report.remaining_path_mm > 0.0);
       CHECK(clay.volume() == volume);
       CHECK(report.carried_mm == 0.0);
       for (std::size_t block = 0; block < before.block_count(); ++block)

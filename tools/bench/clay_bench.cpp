@@ -59,7 +59,7 @@ void print_json(const Row& row, const ClayTrial& trial) {
                    {"inside_p99_mm", trial.inside_p99_mm},
                    {"worst_volume", trial.worst_volume},
                    {"last_volume", trial.last_volume},
-                   {"worst_behind_mm", trial.worst_behind_mm}});
+                   {"worst_behind_mm", trial.max_remaining_path_mm}});
 }
 
 void print_text(const Row& row, const ClayTrial& trial) {
@@ -69,7 +69,7 @@ void print_text(const Row& row, const ClayTrial& trial) {
              trial.distances / 1e3, trial.mean_us / 1e3, trial.p99_us / 1e3,
              trial.penetration_p99_mm / trial.mean_edge_mm,
              trial.inside_p99_mm / trial.mean_edge_mm, 100.0 * trial.worst_volume,
-             100.0 * trial.last_volume, trial.worst_behind_mm);
+             100.0 * trial.last_volume, trial.max_remaining_path_mm);
   std::fflush(stdout);
 }
 

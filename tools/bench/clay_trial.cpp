@@ -74,7 +74,7 @@ ClayTrial run_scene(const ClayTrialOptions& options, Mesh mesh, ClayScene& scene
   const double whole = clay_volume(mesh);
   std::vector<double> left_mm, inside_mm;
   const auto see = [&](const deform::ClayReport& report, const auto& parts) {
-    trial.worst_behind_mm = std::max(trial.worst_behind_mm, report.behind_mm);
+    trial.max_remaining_path_mm = std::max(trial.max_remaining_path_mm, report.remaining_path_mm);
     trial.max_held = std::max(trial.max_held, report.held);
     if (report.passes == 0) return;
     ++trial.ticks;

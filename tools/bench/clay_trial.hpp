@@ -22,7 +22,7 @@ struct ClayTrial {
   double inside_p99_mm = 0.0;      ///< after it, in triangles' middles and edges' middles
   double worst_volume = 0.0;       ///< relative, of all ticks
   double last_volume = 0.0;
-  double worst_behind_mm = 0.0;
+  double max_remaining_path_mm = 0.0;
   std::size_t max_held = 0;
   deform::Mesh shape; ///< at the end
 };

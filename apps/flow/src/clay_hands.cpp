@@ -189,7 +189,7 @@ deform::FieldStatus ClayHands::follow(const deform::Points&, bool ends) {
   for (int call = 0; call < max_calls; ++call) {
     const deform::ClayReport& report = clay_.press_to(parts());
     is_moved_ = is_moved_ || report.is_moved;
-    if (!ends || !is_solved(report.status) || report.behind_mm <= 0.0) break;
+    if (!ends || !is_solved(report.status) || report.remaining_path_mm <= 0.0) break;
   }
   return clay_.report().status;
 }
@@ -204,7 +204,6 @@ ClayState ClayHands::state() const noexcept {
   return {.is_clay = true,
           .touching = static_cast<std::uint32_t>(clay_.contacts().size()),
           .penetration_mm = presses_ ? report.penetration_mm : 0.0,
-          .behind_mm = presses_ ? report.behind_mm : 0.0,
           .volume = std::abs(clay_.volume()),
           .first_volume = clay_.volume() != 0.0 ? model_->volume : 0.0};
 }

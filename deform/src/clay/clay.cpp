@@ -364,7 +364,7 @@ void ClayDeformer::Work::put_off(double way, double volume, ClayReport& report) 
   is_settling_ = false;
   volume_now_ = volume;
   report.volume_change = volume / whole_volume_ - 1.0;
-  report.behind_mm = way / mm_;
+  report.remaining_path_mm = way / mm_;
   report.carried_mm = report.turned_rad = 0.0;
   report.is_moved = false;
 }

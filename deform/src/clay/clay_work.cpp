@@ -236,7 +236,7 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
     report.is_moved = report.passes > 0 || report.carried_mm > 0.0 || left > 0.0;
     if (options_.grips) look_for_grips(report);
   }
-  report.behind_mm = (1.0 - gone) * way / mm_;
+  report.remaining_path_mm = (1.0 - gone) * way / mm_;
   masked_.end(shape);
   if (finish(shape, report)) {
     from_ = gone < 1.0 ? is_ : target_;

@@ -58,13 +58,13 @@ struct ClayReport {
   std::size_t distances = 0; ///< computed distances from a vertex to a part
   /// Max penetration depth of a vertex after the passes, before it was projected out of the body.
   double penetration_mm = 0.0;
-  double behind_mm = 0.0;     ///< path length that waits for the next call
-  std::size_t held = 0;       ///< number of points that bodies grip
-  std::size_t kept_apart = 0; ///< vertices moved together to prevent collisions of their faces
-  double carried_mm = 0.0;    ///< path length of the model's centre in rigid motion
-  double turned_rad = 0.0;    ///< sum of the rotation angles in rigid motion
-  bool is_moved = false;      ///< the shape has changed
-  double volume_change = 0.0; ///< relative to the volume at the grab; 0 if no volume is kept
+  double remaining_path_mm = 0.0; ///< path length that waits for the next call
+  std::size_t held = 0;           ///< number of points that bodies grip
+  std::size_t kept_apart = 0;     ///< vertices moved together to prevent collisions of their faces
+  double carried_mm = 0.0;        ///< path length of the model's centre in rigid motion
+  double turned_rad = 0.0;        ///< sum of the rotation angles in rigid motion
+  bool is_moved = false;          ///< the shape has changed
+  double volume_change = 0.0;     ///< relative to the volume at the grab; 0 if no volume is kept
 };
 
 class NENDO_API ClayDeformer {

@@ -78,7 +78,6 @@ struct ClayState {
   bool is_clay = false;        ///< the mode is clay; otherwise all other members are 0
   std::uint32_t touching = 0;  ///< the number of contacts of hands with the surface
   double penetration_mm = 0.0; ///< the depth of the surface in a hand before its correction
-  double behind_mm = 0.0;      ///< the rest of a hand's path, for the next tick
   double volume = 0.0;         ///< in cubic model units; 0 if the surface is not closed
   double first_volume = 0.0;   ///< the model's volume before the hands
 
