@@ -151,7 +151,7 @@ Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vect
   if (!chain.report().reached)
     return bad("--injective needs more than " + std::to_string(max_links) +
                " links; make the displacements shorter");
-  print_report(chain, std::min(probe.least(), chain.report().min_determinant));
+  print_report(chain, std::min(probe.min_determinant(), chain.report().min_determinant));
   return status;
 }
 

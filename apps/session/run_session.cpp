@@ -177,7 +177,7 @@ public:
       if (const auto ended = observer->end(); !ended) return ended.error();
     const flow::SculptorOptions& sculptor = placed_.loop->changes().sculptor_options();
     RunOutcome outcome{placed_.loop->stats(),  elapsed_s_,
-                       model_.vertices.cols(), deform::largest_radius(sculptor.deformer.supports),
+                       model_.vertices.cols(), deform::max_radius(sculptor.deformer.supports),
                        options_.out,           std::move(grants_),
                        recorder_.outcomes()};
     outcome.sculptor = sculptor;

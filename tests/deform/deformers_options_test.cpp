@@ -168,7 +168,7 @@ TEST_SUITE("deformers") {
         everywhere.advance(field);
     }
     deformer.layout().unpack(deformer.shape(), stroke.shape);
-    stroke.found = everywhere.least();
+    stroke.found = everywhere.min_determinant();
     return stroke;
   }
 

@@ -196,12 +196,12 @@ TEST_SUITE("jacobian") {
       least = std::min(least, jacobian.determinant());
     }
     DeterminantProbe probe;
-    CHECK(probe.least() == 1.0);
+    CHECK(probe.min_determinant() == 1.0);
     probe.start(places);
-    CHECK(probe.least() == 1.0);
+    CHECK(probe.min_determinant() == 1.0);
     probe.advance(first);
     probe.advance(second);
-    CHECK(probe.least() == doctest::Approx(least).epsilon(1e-3));
+    CHECK(probe.min_determinant() == doctest::Approx(least).epsilon(1e-3));
   }
 
   TEST_CASE("probes of every kernel and instruction set go with the field and know its Jacobian") {
@@ -223,7 +223,7 @@ TEST_SUITE("jacobian") {
           probe.start(places);
           probe.advance(field);
           probe.advance(field);
-          CHECK(probe.least() == doctest::Approx(least).epsilon(1e-9));
+          CHECK(probe.min_determinant() == doctest::Approx(least).epsilon(1e-9));
         }
         use_simd("");
       }
@@ -243,7 +243,7 @@ TEST_SUITE("jacobian") {
         probe.reserve(DeterminantProbe::ring_size);
         probe.start_round(field.centres, field.radii, kernel);
         probe.advance(field);
-        CHECK((probe.least() > 0.0) == (part < 1.0));
+        CHECK((probe.min_determinant() > 0.0) == (part < 1.0));
         CHECK((lipschitz_bound(field) < 1.0) == (part < 1.0));
       }
     }

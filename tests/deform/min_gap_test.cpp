@@ -19,8 +19,8 @@ TEST_SUITE("least gap") {
   constexpr double fraction = 0.05;
   constexpr double radius = 10.0;
 
-  static LeastGap begun(const Points& starts) {
-    LeastGap gaps(fraction);
+  static MinGap begun(const Points& starts) {
+    MinGap gaps(fraction);
     gaps.reserve(starts.cols());
     gaps.begin(starts, VectorXd::Constant(starts.cols(), radius));
     return gaps;
@@ -33,7 +33,7 @@ TEST_SUITE("least gap") {
   }
 
   /// Where the walls that the way puts up let it end.
-  static Points end_of(LeastGap & gaps, const Points& from, const Points& to) {
+  static Points end_of(MinGap & gaps, const Points& from, const Points& to) {
     Points allowed = to;
     const double part = gaps.free_part(from, to);
     if (part < 1.0) CHECK(gaps.hold(from, to, part));
@@ -43,7 +43,7 @@ TEST_SUITE("least gap") {
 
   TEST_CASE("points that run into each other stop at the gap, each displaced by the same amount") {
     const Points from = pair({-2, 0, 0}, {2, 0, 0});
-    LeastGap gaps = begun(from);
+    MinGap gaps = begun(from);
     const Points to = pair({3, 0, 0}, {-1, 0, 0});
     CHECK(gaps.free_part(from, to) == doctest::Approx((4.0 - fraction * radius) / 8.0));
     const Points end = end_of(gaps, from, to);
@@ -55,7 +55,7 @@ TEST_SUITE("least gap") {
 
   TEST_CASE("a held pair keeps its sliding along the wall") {
     const Points from = pair({-2, 0, 0}, {2, 0, 0});
-    LeastGap gaps = begun(from);
+    MinGap gaps = begun(from);
     end_of(gaps, from, pair({3, 0, 0}, {-1, 0, 0}));
     Points allowed;
     gaps.project(pair({3, 7, 1}, {-1, -5, 2}), allowed);
@@ -66,7 +66,7 @@ TEST_SUITE("least gap") {
   TEST_CASE("ways that stay apart are free") {
     std::mt19937 random(51);
     const Points from = random_points(random, 10, 50.0);
-    LeastGap gaps = begun(from);
+    MinGap gaps = begun(from);
     for (const Points& to :
          {from, Points(2.0 * from), Points(from.colwise() + Vector3d(9, 9, 9))}) {
       CHECK(gaps.free_part(from, to) == 1.0);
@@ -81,7 +81,7 @@ TEST_SUITE("least gap") {
     for (int round = 0; round < 300; ++round) {
       const Points from = random_points(random, 5, 2.0);
       const Points to = random_points(random, 5, 2.0);
-      const LeastGap gaps = begun(from);
+      const MinGap gaps = begun(from);
       const double free = gaps.free_part(from, to);
       if (free < 1.0) ++met;
       for (double part = 0.0; part < free; part += 0.01) {
@@ -102,7 +102,7 @@ TEST_SUITE("least gap") {
     std::mt19937 random(53);
     for (int round = 0; round < 20; ++round) {
       const Points from = random_points(random, 8, 2.0);
-      LeastGap gaps = begun(from);
+      MinGap gaps = begun(from);
       for (int turn = 0; turn < 6; ++turn) {
         const Points to = random_points(random, 8, 2.0);
         gaps.hold(from, to, 1.0);
@@ -131,7 +131,7 @@ TEST_SUITE("least gap") {
     bool free = false;
     bool held = false;
     for (double miss = 1.1; miss > 0.8; miss -= step) {
-      LeastGap gaps = begun(from);
+      MinGap gaps = begun(from);
       const Points to = pair({3, 0, 0}, {-3, 1.3 * miss, 0});
       const Points end = end_of(gaps, from, to);
       (gaps.walls().empty() ? free : held) = true;
@@ -146,7 +146,7 @@ TEST_SUITE("least gap") {
 
   TEST_CASE("a pair is released when it is wanted apart, and not before") {
     const Points from = pair({-2, 0, 0}, {2, 0, 0});
-    LeastGap gaps = begun(from);
+    MinGap gaps = begun(from);
     end_of(gaps, from, pair({3, 0, 0}, {-1, 0, 0}));
     gaps.release(pair({0.2, 0, 0}, {0.3, 0, 0}));
     CHECK(gaps.walls().size() == 1);
@@ -158,7 +158,7 @@ TEST_SUITE("least gap") {
       "points that begin nearer than the gap have half their distance, and if together, none") {
     for (const double distance : {0.1, 0.0}) {
       const Points from = pair({0, 0, 0}, {distance, 0, 0});
-      LeastGap gaps = begun(from);
+      MinGap gaps = begun(from);
       const Points end = end_of(gaps, from, pair({1, 0, 0}, {-1, 0, 0}));
       if (distance == 0.0)
         CHECK(end == pair({1, 0, 0}, {-1, 0, 0}));
@@ -171,7 +171,7 @@ TEST_SUITE("least gap") {
     for (const double size : {1e99, 1e-160}) {
       const Points from = pair({-size, 0, 0}, {size, 0, 0});
       const Points to = -from;
-      LeastGap gaps = begun(from);
+      MinGap gaps = begun(from);
       const double part = gaps.free_part(from, to);
       CHECK((part >= 0.0 && part <= 1.0));
       gaps.hold(from, to, part);

@@ -87,7 +87,7 @@ Followed in_chains(const Stroke& stroke, const Points& shape) {
     followed.reached = chain.report().reached;
     followed.held = followed.held || chain.report().held_pairs > 0;
   }
-  followed.min_determinant = probe.least();
+  followed.min_determinant = probe.min_determinant();
   return followed;
 }
 

@@ -16,7 +16,7 @@ InjectiveChain::InjectiveChain(Eigen::Index points, Supports supports, CsrbfOpti
     : supports_(std::move(supports)), csrbf_(csrbf), options_(options),
       solvers_{CsrbfSolver(csrbf), CsrbfSolver(csrbf)}, starts_(Points::Zero(3, points)),
       radii_(min_radii(supports_, points)), places_(starts_), wanted_(starts_), allowed_(starts_),
-      step_(starts_), tips_(starts_), gaps_(std::make_unique<LeastGap>(options.min_gap)),
+      step_(starts_), tips_(starts_), gaps_(std::make_unique<MinGap>(options.min_gap)),
       field_(zero_field(supports_, points, csrbf.kernel)), piece_(field_) {
   assert(options.max_bound > 0.0 && options.max_bound < 1.0);
   for (CsrbfSolver& solver : solvers_)
@@ -164,7 +164,7 @@ void InjectiveChain::extend(double part, bool first) noexcept {
 bool InjectiveChain::end(FieldStatus status) noexcept {
   ended_ = true;
   report_.status = std::max(report_.status, status);
-  if (grabbed_) report_.min_determinant = probe_.least();
+  if (grabbed_) report_.min_determinant = probe_.min_determinant();
   for (const HeldPair& wall : gaps_->walls())
     report_.held_pairs += wall.push > 0.0 ? 1 : 0;
   return false;

@@ -23,7 +23,7 @@ Eigen::Vector3d wall_normal(const Eigen::Vector3d& apart, const Eigen::Vector3d&
 
 } // namespace
 
-void LeastGap::reserve(Eigen::Index points) {
+void MinGap::reserve(Eigen::Index points) {
   starts_.resize(3, points);
   radii_.resize(points);
   // Thousands of points, in a batch, have too many pairs for that.
@@ -31,13 +31,13 @@ void LeastGap::reserve(Eigen::Index points) {
   walls_.reserve(static_cast<std::size_t>(most * (most - 1) / 2));
 }
 
-void LeastGap::begin(const Points& starts, const Eigen::VectorXd& radii) {
+void MinGap::begin(const Points& starts, const Eigen::VectorXd& radii) {
   starts_ = starts;
   radii_ = radii;
   walls_.clear();
 }
 
-void LeastGap::release(const Points& wanted) noexcept {
+void MinGap::release(const Points& wanted) noexcept {
   std::erase_if(walls_, [&](const HeldPair& wall) {
     return wall.normal.dot(wanted.col(wall.first) - wanted.col(wall.second)) >= wall.gap;
   });
@@ -45,7 +45,7 @@ void LeastGap::release(const Points& wanted) noexcept {
 
 /// Hildreth's method: Gauss-Seidel on the pushes, none of which may pull. It converges to the
 /// projection; where it is stopped sooner, a pair may come a little nearer than its gap.
-void LeastGap::project(const Points& wanted, Points& allowed) noexcept {
+void MinGap::project(const Points& wanted, Points& allowed) noexcept {
   constexpr int max_sweeps = 64;
   constexpr double tolerance = 1e-12; // of the gap
   allowed = wanted;
@@ -65,7 +65,7 @@ void LeastGap::project(const Points& wanted, Points& allowed) noexcept {
   }
 }
 
-double LeastGap::free_part(const Points& from, const Points& to) const noexcept {
+double MinGap::free_part(const Points& from, const Points& to) const noexcept {
   double part = 1.0;
   for (Eigen::Index second = 1; second < from.cols(); ++second)
     for (Eigen::Index first = 0; first < second; ++first)
@@ -73,7 +73,7 @@ double LeastGap::free_part(const Points& from, const Points& to) const noexcept 
   return part;
 }
 
-bool LeastGap::hold(const Points& from, const Points& to, double part) {
+bool MinGap::hold(const Points& from, const Points& to, double part) {
   constexpr double rounding = 1e-9;
   const std::size_t before = walls_.size();
   for (Eigen::Index second = 1; second < from.cols(); ++second)
@@ -91,13 +91,13 @@ bool LeastGap::hold(const Points& from, const Points& to, double part) {
   return walls_.size() > before;
 }
 
-bool LeastGap::has_wall(Eigen::Index first, Eigen::Index second) const noexcept {
+bool MinGap::has_wall(Eigen::Index first, Eigen::Index second) const noexcept {
   return std::any_of(walls_.begin(), walls_.end(), [&](const HeldPair& wall) {
     return wall.first == first && wall.second == second;
   });
 }
 
-double LeastGap::gap_of(Eigen::Index first, Eigen::Index second) const noexcept {
+double MinGap::gap_of(Eigen::Index first, Eigen::Index second) const noexcept {
   const double at_first = (starts_.col(first) - starts_.col(second)).norm();
   const double gap = std::min(fraction_ * std::min(radii_[first], radii_[second]), 0.5 * at_first);
   return gap > 2.0 * min_distance ? gap : 0.0;
@@ -105,8 +105,8 @@ double LeastGap::gap_of(Eigen::Index first, Eigen::Index second) const noexcept 
 
 /// When the pair comes to its gap, or never. Written with the nearest approach, so that no square
 /// of a square overflows.
-double LeastGap::contact(Eigen::Index first, Eigen::Index second, const Points& from,
-                         const Points& to) const noexcept {
+double MinGap::contact(Eigen::Index first, Eigen::Index second, const Points& from,
+                       const Points& to) const noexcept {
   const Eigen::Vector3d apart = from.col(first) - from.col(second);
   const Eigen::Vector3d motion = to.col(first) - to.col(second) - apart;
   const double approach = apart.dot(motion);

@@ -13,11 +13,11 @@ namespace nendo::deform {
 /// A wall depends continuously on the path that meets it: for a path that only touches it, the push
 /// grows from zero and falls to zero again. A wall exists until the wanted places are apart again
 /// along the normal.
-class LeastGap {
+class MinGap {
 public:
   /// `fraction` is the gap as a part of the smaller radius of the two. Points that start nearer
   /// have half their distance as the gap. Points that coincide are never held; they move together.
-  explicit LeastGap(double fraction) noexcept : fraction_(fraction) {}
+  explicit MinGap(double fraction) noexcept : fraction_(fraction) {}
 
   /// Allocates for this many points.
   void reserve(Eigen::Index points);

@@ -51,7 +51,7 @@ double min_radius(const Supports& supports) noexcept {
   return chosen_radius(supports, [](double a, double b) { return std::min(a, b); });
 }
 
-double largest_radius(const Supports& supports) noexcept {
+double max_radius(const Supports& supports) noexcept {
   return chosen_radius(supports, [](double a, double b) { return std::max(a, b); });
 }
 

@@ -14,9 +14,9 @@ namespace nendo::deform {
 class FieldSequence {
 public:
   FieldSequence() = default;
-  /// Allocates `most` fields of the size of `like`. The other functions do not allocate
+  /// Allocates `max_fields` fields of the size of `like`. The other functions do not allocate
   /// for fields of that size.
-  FieldSequence(std::size_t most, const CsrbfField& like) : fields_(most, like) {}
+  FieldSequence(std::size_t max_fields, const CsrbfField& like) : fields_(max_fields, like) {}
 
   void clear() noexcept { used_ = 0; }
   /// Appends a field. The sequence must have fewer than capacity() fields.

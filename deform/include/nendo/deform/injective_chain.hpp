@@ -2,7 +2,7 @@
 // Deforms without folding (the fourth item of the paper's outlook): the straight path of the start
 // points is cut into links. Each link is a field centred at the current points, and so short that x
 // -> x + s(x) is a homeomorphism; so is the chain of links. Where paths cross, no link would be
-// short enough, so these points are kept apart (LeastGap).
+// short enough, so these points are kept apart (MinGap).
 
 #include <array>
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace nendo::deform {
 
-class LeastGap;
+class MinGap;
 
 /// Two fingertips separated by a wall, because their paths cross.
 struct HeldPair {
@@ -100,7 +100,7 @@ private:
   Points step_;
   Points tips_; ///< ends of the current link
   double link_bound_ = 0.0;
-  std::unique_ptr<LeastGap> gaps_;
+  std::unique_ptr<MinGap> gaps_;
   DeterminantProbe probe_;
   CsrbfField field_;
   CsrbfField piece_; ///< field up to the next corner of the path

@@ -33,7 +33,7 @@ public:
   void advance(const CsrbfField& field) noexcept;
 
   /// Returns the min determinant of all points since the start; 1 if there are no points.
-  double least() const noexcept { return min_; }
+  double min_determinant() const noexcept { return min_; }
 
   static constexpr Eigen::Index ring_size = 7;
 

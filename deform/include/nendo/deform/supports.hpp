@@ -56,9 +56,9 @@ struct NENDO_API Supports {
 /// field moves everything in it. False if the box or the list is empty, or the box is one point.
 NENDO_API bool reach_all_of(const Box& box, const Points& starts, const Supports& supports);
 
-/// Returns the least and the largest radius of all functions.
+/// Return the min and the max radius of all functions.
 NENDO_API double min_radius(const Supports& supports) noexcept;
-NENDO_API double largest_radius(const Supports& supports) noexcept;
+NENDO_API double max_radius(const Supports& supports) noexcept;
 
 /// Returns one shared function with this radius in model units, > 0.
 inline Supports one_radius(double radius) {
