@@ -11,9 +11,9 @@ namespace nendo::deform {
 namespace {
 
 /// The ends are exact: no sum rounds what does not move, or what is free.
-void hold_axis(const std::array<float, block_size>& weights,
-               const std::array<float, block_size>& from,
-               std::array<float, block_size>& to) noexcept {
+void scale_axis(const std::array<float, block_size>& weights,
+                const std::array<float, block_size>& from,
+                std::array<float, block_size>& to) noexcept {
   for (std::size_t lane = 0; lane < block_size; ++lane) {
     const float weight = weights[lane];
     const float part = from[lane] + weight * (to[lane] - from[lane]);
@@ -21,13 +21,14 @@ void hold_axis(const std::array<float, block_size>& weights,
   }
 }
 
-} // namespace
-
-void hold_block(const VertexMask::Part& part, const VertexBlock& from, VertexBlock& to) noexcept {
-  hold_axis(part.weights, from.x, to.x);
-  hold_axis(part.weights, from.y, to.y);
-  hold_axis(part.weights, from.z, to.z);
+/// Scales the displacement of the block `to` from `from` by the weights of `part`.
+void scale_block(const VertexMask::Part& part, const VertexBlock& from, VertexBlock& to) noexcept {
+  scale_axis(part.weights, from.x, to.x);
+  scale_axis(part.weights, from.y, to.y);
+  scale_axis(part.weights, from.z, to.z);
 }
+
+} // namespace
 
 VertexMask::VertexMask(const BlockLayout& layout, const Eigen::VectorXd& weights)
     : numbers_(layout.block_count(), no_index) {
@@ -53,7 +54,7 @@ void VertexMask::apply(const BlockShape& from, BlockShape& to) const noexcept {
     if (part.is_still)
       to.follow(from, part.block);
     else if (to.stamp(part.block) != from.stamp(part.block))
-      hold_block(part, from[part.block], to.data()[part.block]);
+      scale_block(part, from[part.block], to.data()[part.block]);
   }
 }
 
@@ -76,7 +77,7 @@ void MaskedStep::end(BoundedShape& shape) const noexcept {
     const VertexMask::Part& part = mask_->parts()[at];
     if (shape.shape.stamp(part.block) == stamps_[at]) continue;
     VertexBlock& block = shape.shape.data()[part.block];
-    hold_block(part, kept_[at], block);
+    scale_block(part, kept_[at], block);
     if (part.is_still) shape.shape.set_stamp(part.block, stamps_[at]);
     shape.bounds[part.block] = bounds_of(block);
   }

@@ -40,8 +40,4 @@ private:
   std::vector<std::uint32_t> numbers_; ///< the number of each block's part, or no_index
 };
 
-/// Scales the displacement of the block `to` from `from` by the weights of `part`.
-NENDO_API void hold_block(const VertexMask::Part& part, const VertexBlock& from,
-                          VertexBlock& to) noexcept;
-
 } // namespace nendo::deform
