@@ -42,6 +42,9 @@ struct SavedBlock {
   std::uint32_t block;
 };
 
+/// Allocates `count` > 0 blocks and touches them all, so that their first use causes no page fault.
+std::unique_ptr<SavedBlock[]> make_saved_blocks(std::size_t count, SavedChain& chain);
+
 class ShapeHistory {
   friend class SculptedShape; // which has the functions for notes and fences
 
