@@ -127,4 +127,17 @@ private:
   FieldStatus status_ = FieldStatus::ok;
 };
 
+/// Moves all vertices, with bounds and stamps.
+template <class Move>
+void move_vertices(BoundedShape& shape, const Move& move) noexcept {
+  const std::uint64_t stamp = BlockShape::new_stamp();
+  for (std::size_t block = 0; block < shape.bounds.size(); ++block) {
+    VertexBlock& content = shape.shape.data()[block];
+    for (std::size_t lane = 0; lane < block_size; ++lane)
+      set_vertex(content, lane, move(vertex_in(content, lane)));
+    shape.shape.set_stamp(block, stamp);
+    shape.bounds[block] = fast_bounds_of(content);
+  }
+}
+
 } // namespace nendo::deform
