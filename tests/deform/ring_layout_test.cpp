@@ -1,4 +1,4 @@
-#include "clay/volume_keeper.hpp"
+#include "clay/ring_layout.hpp"
 
 #include <array>
 #include <cstdint>

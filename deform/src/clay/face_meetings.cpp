@@ -1,4 +1,4 @@
-#include "clay/impact_zones.hpp"
+#include "clay/face_meetings.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "geometry/triangle_meeting.hpp"
+#include "simd/contact_kernels.hpp"
 
 namespace nendo::deform {
 namespace {
