@@ -44,41 +44,32 @@ void ImpactZones::join_met(const BlockShape& shape) noexcept {
     for (const FaceMeetings::Triangle triangle : {one, other})
       for (const std::uint32_t corner : meetings_.corners(triangle)) {
         take_in(shape, corner);
-        const std::uint32_t head = zone_of(first);
-        zones_[zone_of(corner)] = head;
+        zones_.join(first, corner);
       }
   }
 }
 
 void ImpactZones::take_in(const BlockShape& shape, std::uint32_t place) noexcept {
   if (!members_.add(place)) return;
-  zones_[place] = place;
+  zones_.reset(place);
   wanted_[place] = vertex_at(shape, place);
-}
-
-std::uint32_t ImpactZones::zone_of(std::uint32_t place) noexcept {
-  while (zones_[place] != place) {
-    zones_[place] = zones_[zones_[place]];
-    place = zones_[place];
-  }
-  return place;
 }
 
 void ImpactZones::move(BlockShape& shape, const VertexMask* mask, bool stay) noexcept {
   for (const std::uint32_t place : members_.members())
     ways_[place].setZero();
   for (const std::uint32_t place : members_.members()) {
-    Eigen::Vector4f& way = ways_[zone_of(place)];
+    Eigen::Vector4f& way = ways_[zones_.find(place)];
     way.head<3>() += wanted_[place] - vertex_at(before_.shape, place);
     way[3] += 1.0F;
   }
   for (const std::uint32_t place : members_.members()) {
     const float* const weights = mask == nullptr ? nullptr : mask->of_block(place / block_size);
     if (stay || (weights != nullptr && weights[place % block_size] < 1.0F))
-      ways_[zone_of(place)].head<3>().setZero();
+      ways_[zones_.find(place)].head<3>().setZero();
   }
   for (const std::uint32_t place : members_.members()) {
-    const Eigen::Vector4f& way = ways_[zone_of(place)];
+    const Eigen::Vector4f& way = ways_[zones_.find(place)];
     const Eigen::Vector3f to = vertex_at(before_.shape, place) + way.head<3>() / way[3];
     set_vertex(shape.data()[place / block_size], place % block_size, to);
   }

@@ -12,6 +12,7 @@
 #include <nendo/deform/vertex_mask.hpp>
 
 #include "clay/face_meetings.hpp"
+#include "geometry/union_find.hpp"
 
 namespace nendo::deform {
 
@@ -31,7 +32,6 @@ public:
                                         const VertexMask* mask) noexcept;
 
 private:
-  std::uint32_t zone_of(std::uint32_t place) noexcept;
   void take_in(const BlockShape& shape, std::uint32_t place) noexcept;
   void join_met(const BlockShape& shape) noexcept;
   void move(BlockShape& shape, const VertexMask* mask, bool stay) noexcept;
@@ -40,9 +40,9 @@ private:
   std::size_t vertices_;
   FaceMeetings meetings_;
   BoundedShape before_;
-  std::vector<std::uint32_t> zones_; ///< another place of the same zone for each place, or itself
-  Marks members_;                    ///< places, of all zones
-  Marks moved_;                      ///< their blocks
+  UnionFind zones_;                     ///< sets of members
+  Marks members_;                       ///< places, of all zones
+  Marks moved_;                         ///< their blocks
   std::vector<Eigen::Vector3f> wanted_; ///< the wanted place of each member
   std::vector<Eigen::Vector4f> ways_;   ///< scratch: sums and counts, at one place of each zone
 };

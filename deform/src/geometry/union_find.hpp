@@ -12,6 +12,9 @@ namespace nendo::deform {
 class UnionFind {
 public:
   explicit UnionFind(std::size_t count) : root_(all_indices(count)) {}
+  /// Makes the number a set of its own. Other members of its set must be reset before they are
+  /// used.
+  void reset(std::uint32_t number) noexcept { root_[number] = number; }
   /// Returns the least number of the set.
   std::uint32_t find(std::uint32_t number) noexcept {
     while (root_[number] != number) {
