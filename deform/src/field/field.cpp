@@ -15,12 +15,8 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr std::array<std::pair<Wendland, std::string_view>, 4> wendland_names{{
-    {Wendland::c0, "wendland-c0"},
-    {Wendland::c2, "wendland-c2"},
-    {Wendland::c4, "wendland-c4"},
-    {Wendland::c6, "wendland-c6"},
-}};
+constexpr std::array<std::string_view, 4> wendland_names{"wendland-c0", "wendland-c2",
+                                                         "wendland-c4", "wendland-c6"};
 
 /// From here on, sorting costs less than asking every function about every point.
 constexpr Eigen::Index min_by_cells = 256;
@@ -95,15 +91,13 @@ void displace_by_cells(const CsrbfField& field, const Points& points, Points& ou
 } // namespace
 
 std::string_view name_of(Wendland kernel) noexcept {
-  for (const auto& [candidate, name] : wendland_names)
-    if (candidate == kernel) return name;
-  return {};
+  return wendland_names[static_cast<std::size_t>(kernel)];
 }
 
 std::optional<Wendland> wendland_named(std::string_view name) noexcept {
-  for (const auto& [kernel, candidate] : wendland_names)
-    if (candidate == name) return kernel;
-  return std::nullopt;
+  const auto found = std::find(wendland_names.begin(), wendland_names.end(), name);
+  if (found == wendland_names.end()) return std::nullopt;
+  return static_cast<Wendland>(found - wendland_names.begin());
 }
 
 Eigen::Vector3d CsrbfField::displacement_at(const Eigen::Vector3d& x) const noexcept {

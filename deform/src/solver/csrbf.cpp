@@ -18,11 +18,7 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr std::array<std::pair<Polynomial, std::string_view>, 3> polynomial_names{{
-    {Polynomial::none, "none"},
-    {Polynomial::constant, "constant"},
-    {Polynomial::linear, "linear"},
-}};
+constexpr std::array<std::string_view, 3> polynomial_names{"none", "constant", "linear"};
 
 /// Seconds since the last call; reads the clock only if `on`.
 class Laps {
@@ -44,15 +40,13 @@ private:
 } // namespace
 
 std::string_view name_of(Polynomial polynomial) noexcept {
-  for (const auto& [candidate, name] : polynomial_names)
-    if (candidate == polynomial) return name;
-  return {};
+  return polynomial_names[static_cast<std::size_t>(polynomial)];
 }
 
 std::optional<Polynomial> polynomial_named(std::string_view name) noexcept {
-  for (const auto& [polynomial, candidate] : polynomial_names)
-    if (candidate == name) return polynomial;
-  return std::nullopt;
+  const auto found = std::find(polynomial_names.begin(), polynomial_names.end(), name);
+  if (found == polynomial_names.end()) return std::nullopt;
+  return static_cast<Polynomial>(found - polynomial_names.begin());
 }
 
 std::string_view describe(FieldStatus status) noexcept {
