@@ -90,22 +90,6 @@ std::vector<std::uint32_t> block_order(const Points& points) {
   return order;
 }
 
-/// `column_of(vertex)` gives three floats.
-template <class ColumnOf>
-BlockShape filled(const std::vector<std::uint32_t>& order, std::size_t block_count,
-                  const ColumnOf& column_of) {
-  std::vector<VertexBlock> blocks(block_count);
-  for (std::size_t at = 0; at < block_count * block_size; ++at) {
-    const std::uint32_t vertex = order[std::min(at, order.size() - 1)];
-    const Eigen::Vector3f column = column_of(static_cast<Eigen::Index>(vertex));
-    VertexBlock& block = blocks[at / block_size];
-    block.x[at % block_size] = column[0];
-    block.y[at % block_size] = column[1];
-    block.z[at % block_size] = column[2];
-  }
-  return BlockShape(std::move(blocks));
-}
-
 } // namespace
 
 BlockBounds bounds_of(const VertexBlock& block) noexcept {
@@ -159,10 +143,15 @@ std::vector<std::uint32_t> BlockLayout::places() const {
 
 BlockShape BlockLayout::pack(const Points& places) const {
   assert(places.cols() == original_.cols());
-  return filled(order_, block_count(), [&](Eigen::Index vertex) -> Eigen::Vector3f {
-    const auto column = places.col(vertex);
-    return {packed(column[0], 0), packed(column[1], 1), packed(column[2], 2)};
-  });
+  std::vector<VertexBlock> blocks(block_count());
+  for (std::size_t at = 0; at < blocks.size() * block_size; ++at) {
+    const auto column = places.col(order_[std::min(at, order_.size() - 1)]);
+    VertexBlock& block = blocks[at / block_size];
+    block.x[at % block_size] = packed(column[0], 0);
+    block.y[at % block_size] = packed(column[1], 1);
+    block.z[at % block_size] = packed(column[2], 2);
+  }
+  return BlockShape(std::move(blocks));
 }
 
 void BlockLayout::unpack(const BlockShape& shape, Points& out) const {

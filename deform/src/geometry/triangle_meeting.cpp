@@ -76,18 +76,10 @@ bool fold_meets(const SpacePoint& a, const SpacePoint& b, const SpacePoint& one,
 
 /// The axis along which the triangle looks largest.
 std::size_t broad_axis(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept {
-  const SpacePoint u{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-  const SpacePoint v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+  const SpacePoint area = area_vector(a, b, c);
   std::size_t broad = 0;
-  double most = -1.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t k = (axis + 1) % 3, m = (axis + 2) % 3;
-    const double area = std::abs(u[k] * v[m] - u[m] * v[k]);
-    if (area > most) {
-      most = area;
-      broad = axis;
-    }
-  }
+  for (const std::size_t axis : {1U, 2U})
+    if (std::abs(area[axis]) > std::abs(area[broad])) broad = axis;
   return broad;
 }
 
