@@ -9,7 +9,6 @@
 
 #include "clay/clay_work.hpp"
 #include "history/sculpted_parts.hpp"
-#include "simd/contact_kernels.hpp"
 
 namespace nendo::deform {
 

@@ -431,7 +431,7 @@ void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
         set_vertex(content, lane, out.cast<float>());
       }
       shape.shape.set_stamp(block, stamp);
-      shape.bounds[block] = fast_bounds_of(content);
+      shape.bounds[block] = bounds_of(content);
     });
   shape.extent += 2.0 * most;
 }

@@ -136,7 +136,7 @@ void move_vertices(BoundedShape& shape, const Move& move) noexcept {
     for (std::size_t lane = 0; lane < block_size; ++lane)
       set_vertex(content, lane, move(vertex_in(content, lane)));
     shape.shape.set_stamp(block, stamp);
-    shape.bounds[block] = fast_bounds_of(content);
+    shape.bounds[block] = bounds_of(content);
   }
 }
 

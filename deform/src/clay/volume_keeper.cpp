@@ -181,7 +181,7 @@ void VolumeKeeper::finish_blocks(BoundedShape& shape) noexcept {
     VertexBlock& content = shape.shape.data()[block];
     repeat_last(content, end_of(block) - block * block_size);
     shape.shape.set_stamp(block, stamp);
-    shape.bounds[block] = fast_bounds_of(content);
+    shape.bounds[block] = bounds_of(content);
   }
 }
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "field/evaluator_parts.hpp"
-#include "simd/contact_kernels.hpp"
 
 namespace nendo::deform {
 
@@ -155,7 +154,7 @@ void CardinalWeights::update_rest_bounds(const Points& displacements,
                                          BoundedShape& rest) const noexcept {
   for (std::size_t at = 0; at < cache_.block_count; ++at) {
     const std::uint32_t block = blocks_[at].block;
-    rest.bounds[block] = fast_bounds_of(rest.shape[block]);
+    rest.bounds[block] = bounds_of(rest.shape[block]);
   }
   rest.extent += bound(displacements);
 }

@@ -92,13 +92,6 @@ std::vector<std::uint32_t> block_order(const Points& points) {
 
 } // namespace
 
-BlockBounds bounds_of(const VertexBlock& block) noexcept {
-  const auto [low_x, high_x] = std::minmax_element(block.x.begin(), block.x.end());
-  const auto [low_y, high_y] = std::minmax_element(block.y.begin(), block.y.end());
-  const auto [low_z, high_z] = std::minmax_element(block.z.begin(), block.z.end());
-  return {{*low_x, *low_y, *low_z, 0.0F, -*high_x, -*high_y, -*high_z, 0.0F}};
-}
-
 BlockShape::BlockShape(std::vector<VertexBlock> blocks)
     : blocks_(std::move(blocks)), stamps_(blocks_.size(), new_stamp()) {}
 

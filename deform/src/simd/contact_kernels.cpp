@@ -292,10 +292,6 @@ std::uint64_t overlapping_lanes(const BoxRows& rows, std::size_t first,
   return overlapping;
 }
 
-BlockBounds bounds_by_vectors(const VertexBlock& block) {
-  return vector_bounds(ContactTag(), block);
-}
-
 } // namespace nendo::deform::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -309,7 +305,6 @@ HWY_EXPORT(nearest_lane_of_cells);
 HWY_EXPORT(load_lanes);
 HWY_EXPORT(is_any_near);
 HWY_EXPORT(overlapping_lanes);
-HWY_EXPORT(bounds_by_vectors);
 
 void nearest_in_block(const VertexBlock& block, const PartArrays& arrays, const std::uint32_t* list,
                       std::size_t count, NearestLanes& nearest) noexcept {
@@ -344,10 +339,6 @@ bool is_crowded(const PlaceRows& rows, std::size_t count, const std::array<float
 std::uint64_t boxes_in_way(const BoxRows& rows, std::size_t first,
                            const std::array<float, 8>& sides) noexcept {
   return HWY_DYNAMIC_DISPATCH(overlapping_lanes)(rows, first, sides);
-}
-
-BlockBounds fast_bounds_of(const VertexBlock& block) noexcept {
-  return HWY_DYNAMIC_DISPATCH(bounds_by_vectors)(block);
 }
 
 } // namespace nendo::deform

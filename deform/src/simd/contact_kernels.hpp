@@ -114,7 +114,4 @@ using BoxRows = std::array<const float*, 5>;
 std::uint64_t boxes_in_way(const BoxRows& rows, std::size_t first,
                            const std::array<float, 8>& sides) noexcept;
 
-/// As bounds_of(), but faster.
-BlockBounds fast_bounds_of(const VertexBlock& block) noexcept;
-
 } // namespace nendo::deform

@@ -267,6 +267,10 @@ void displace_any(const FieldView& field, const BlockPass& pass) {
   }
 }
 
+BlockBounds measure_block(const VertexBlock& block) {
+  return vector_bounds(ListVectors(), block);
+}
+
 struct PairCount {
   std::size_t pairs = 0;
 
@@ -377,11 +381,16 @@ HWY_AFTER_NAMESPACE();
 namespace nendo::deform {
 
 HWY_EXPORT(displace_any);
+HWY_EXPORT(measure_block);
 HWY_EXPORT(count_listed);
 HWY_EXPORT(advance_any);
 
 void displace_pass(const FieldView& field, const BlockPass& pass) noexcept {
   HWY_DYNAMIC_DISPATCH(displace_any)(field, pass);
+}
+
+BlockBounds bounds_of(const VertexBlock& block) noexcept {
+  return HWY_DYNAMIC_DISPATCH(measure_block)(block);
 }
 
 std::size_t count_pairs(const FieldView& field, const BlockPass& pass) noexcept {
