@@ -170,21 +170,16 @@ public:
         if (functions_.row(vertex).isZero(0.0)) add_following(part, vertex);
   }
 
-  template <class Entry>
-  void take(std::vector<std::size_t>& starts, std::vector<Entry>& entries) const {
-    starts.assign(1, 0);
+  void write(SurfaceField& field) const {
+    field.starts_.assign(1, 0);
     for (const auto& block : blocks_) {
-      for (const auto& [column, values] : block) {
-        entries.emplace_back();
-        entries.back().values = values;
-        entries.back().column = column;
-      }
-      starts.push_back(entries.size());
+      field.entries_.insert(field.entries_.end(), block.begin(), block.end());
+      field.starts_.push_back(field.entries_.size());
     }
   }
 
 private:
-  using Column = std::pair<std::uint32_t, std::array<float, block_size>>;
+  using Entry = SurfaceField::Entry;
 
   double mask(std::uint32_t vertex) const {
     return setup_.mask.size() == 0 ? 1.0 : setup_.mask[vertex];
@@ -196,9 +191,9 @@ private:
     auto& block = blocks_[place / block_size];
     const auto number = static_cast<std::uint32_t>(column);
     auto found = std::find_if(block.begin(), block.end(),
-                              [&](const Column& known) { return known.first == number; });
-    if (found == block.end()) found = block.insert(block.end(), {number, {}});
-    found->second[place % block_size] = part;
+                              [&](const Entry& entry) { return entry.column == number; });
+    if (found == block.end()) found = block.insert(block.end(), Entry{{}, number});
+    found->values[place % block_size] = part;
   }
   void add_functions(std::uint32_t vertex, std::uint32_t as) {
     for (Index j = 0; j < functions_.cols(); ++j)
@@ -221,7 +216,7 @@ private:
   std::vector<std::uint32_t> places_;
   MatrixXd functions_;
   std::vector<std::uint32_t> reached_; ///< along the surface
-  std::vector<std::vector<Column>> blocks_;
+  std::vector<std::vector<Entry>> blocks_;
 };
 
 Result<std::shared_ptr<const SurfaceField>>
@@ -239,7 +234,7 @@ SurfaceField::make(const Mesh& mesh, const BlockLayout& layout, const SurfaceSet
                      "radii smaller"};
   }
   builder.fill();
-  builder.take(field->starts_, field->entries_);
+  builder.write(*field);
   for (const Entry& entry : field->entries_)
     field->columns_.push_back(entry.column);
   std::sort(field->columns_.begin(), field->columns_.end());
