@@ -85,8 +85,7 @@ bool Shaping::is_change_next(Request step) const noexcept {
 
 /// Returns the target of the next step, if it is a change.
 std::optional<Awaited> Shaping::target_of(Request step) const noexcept {
-  const StepNote* const note =
-      step == Request::undo ? model_->shape.to_undo() : model_->shape.to_redo();
+  const StepNote* const note = model_->shape.next_note(history_move(step));
   if (note == nullptr || !is_change(NotedStep::of(*note).step.kind)) return std::nullopt;
   return NotedStep::of(*note).other;
 }
@@ -110,13 +109,13 @@ bool Shaping::take_change(Request step, const Points& tips, LoopStats& stats) no
 void Shaping::step_over_change(Request step, ModelVersion& version,
                                const Awaited& before) noexcept {
   deform::SculptedShape& shape = version.shape;
-  const bool undoes = step == Request::undo;
-  const StepNote* const next = undoes ? shape.to_undo() : shape.to_redo();
+  const HistoryMove move = history_move(step);
+  const StepNote* const next = shape.next_note(move);
   if (next == nullptr || !is_change(NotedStep::of(*next).step.kind)) return; // memory had ended
   NotedStep noted = NotedStep::of(*next);
   noted.other = before;
-  undoes ? shape.note_to_undo(noted.note()) : shape.note_to_redo(noted.note());
-  undoes ? shape.undo_mark() : shape.redo_mark();
+  shape.set_next_note(move, noted.note());
+  shape.pass_mark(move);
 }
 
 /// Takes a step to that version. A step between two versions is in the histories of both.
@@ -131,14 +130,14 @@ void Shaping::step_to(Request step, ModelVersion& next, const Awaited& before) n
 /// instead if that was a change of settings.
 void Shaping::record_settings(const LoopSettings& before, bool is_step) noexcept {
   deform::SculptedShape& shape = model_->shape;
-  const StepNote* const last = is_step ? nullptr : shape.to_undo();
+  const StepNote* const last = is_step ? nullptr : shape.next_note(HistoryMove::undo);
   NotedStep noted{step_now(StepKind::settings), {before, model_->number, puppet_}};
   const bool goes_on =
       last != nullptr && is_setting(NotedStep::of(*last).step.kind) && shape.redo_steps() == 0;
   if (goes_on) noted.other = NotedStep::of(*last).other;
   noted.step.kind = kind_of_change(noted.other.settings, settings_);
   if (goes_on)
-    shape.note_to_undo(noted.note());
+    shape.set_next_note(HistoryMove::undo, noted.note());
   else
     shape.mark(noted.note());
 }
@@ -214,7 +213,7 @@ void Shaping::list_undoable(StepList& list) const noexcept {
   std::size_t at = StepList::max_undoable;
   for (const ModelVersion* version = model_; version != nullptr;
        version = previous_version(*version)) {
-    const std::size_t count = version->shape.copy_undoable(notes);
+    const std::size_t count = version->shape.copy_notes(HistoryMove::undo, notes);
     for (std::size_t note = version == model_ ? 0 : 1; note < count && at > 0; ++note)
       list.steps[--at] = NotedStep::of(notes[note]).step;
   }
@@ -227,7 +226,7 @@ void Shaping::list_undone(StepList& list) const noexcept {
   std::array<deform::StepNote, StepList::max_undone> notes;
   const std::size_t max_count = list.undoable + StepList::max_undone;
   for (const ModelVersion* version = model_; version != nullptr; version = version->after) {
-    const std::size_t count = version->shape.copy_undone(notes);
+    const std::size_t count = version->shape.copy_notes(HistoryMove::redo, notes);
     for (std::size_t note = version == model_ ? 0 : 1; note < count && list.count < max_count;
          ++note)
       list.steps[list.count++] = NotedStep::of(notes[note]).step;

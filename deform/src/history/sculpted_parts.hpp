@@ -78,13 +78,14 @@ public:
   std::size_t steps() const noexcept { return steps_ - fence_; } ///< that undo() may undo
 
 private:
+  /// Returns the head of the next step to undo, or to redo; null if there is none.
+  SavedBlock* next_head(HistoryMove move) const noexcept;
   std::size_t count_changed(const BlockShape& now) const noexcept;
   bool take_more(std::size_t blocks) noexcept;
   bool free_blocks(std::size_t blocks) noexcept;
   SavedBlock& take() noexcept;
   void begin_step(const StepNote& note) noexcept;
   void save(std::size_t block) noexcept;
-  SavedBlock* next_head() const noexcept;
   void exchange(SavedBlock& saved, BoundedShape& shape) noexcept;
   void add_free(const SavedChain& chain) noexcept;
   void forget_undone() noexcept;

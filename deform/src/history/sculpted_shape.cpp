@@ -124,8 +124,9 @@ void ShapeHistory::save(std::size_t block) noexcept {
   saved.block = static_cast<std::uint32_t>(block);
 }
 
-/// Of the first step that is undone.
-SavedBlock* ShapeHistory::next_head() const noexcept {
+SavedBlock* ShapeHistory::next_head(HistoryMove move) const noexcept {
+  if (move == HistoryMove::undo) return steps() > 0 ? head_ : nullptr;
+  if (undone_ == 0) return nullptr;
   return head_ != nullptr ? head_->of_step.after : first_head_;
 }
 
@@ -237,50 +238,32 @@ void SculptedShape::mark(const StepNote& note) noexcept {
   parts_->history.mark(note);
 }
 
-void SculptedShape::undo_mark() noexcept {
+void SculptedShape::pass_mark(HistoryMove move) noexcept {
   parts_->revert();
-  parts_->history.undo(parts_->now);
+  if (move == HistoryMove::undo)
+    parts_->history.undo(parts_->now);
+  else
+    parts_->history.redo(parts_->now);
 }
 
-void SculptedShape::redo_mark() noexcept {
-  parts_->go(HistoryMove::redo);
+const StepNote* SculptedShape::next_note(HistoryMove move) const noexcept {
+  const SavedBlock* const head = parts_->history.next_head(move);
+  return head != nullptr ? &head->of_step.note : nullptr;
 }
 
-const StepNote* SculptedShape::to_undo() const noexcept {
-  const ShapeHistory& history = parts_->history;
-  return history.steps() > 0 ? &history.head_->of_step.note : nullptr;
-}
-
-const StepNote* SculptedShape::to_redo() const noexcept {
-  const ShapeHistory& history = parts_->history;
-  return history.undone_ > 0 ? &history.next_head()->of_step.note : nullptr;
-}
-
-void SculptedShape::note_to_undo(const StepNote& note) noexcept {
-  parts_->history.head_->of_step.note = note;
+void SculptedShape::set_next_note(HistoryMove move, const StepNote& note) noexcept {
+  parts_->history.next_head(move)->of_step.note = note;
   ++parts_->history.version_;
 }
 
-void SculptedShape::note_to_redo(const StepNote& note) noexcept {
-  parts_->history.next_head()->of_step.note = note;
-  ++parts_->history.version_;
-}
-
-std::size_t SculptedShape::copy_undoable(std::span<StepNote> notes) const noexcept {
-  const ShapeHistory& history = parts_->history;
-  const std::size_t count = std::min(notes.size(), history.steps());
-  const SavedBlock* head = history.head_;
-  for (std::size_t at = 0; at < count; ++at, head = head->of_step.before)
-    notes[at] = head->of_step.note;
-  return count;
-}
-
-std::size_t SculptedShape::copy_undone(std::span<StepNote> notes) const noexcept {
-  const ShapeHistory& history = parts_->history;
-  const std::size_t count = std::min(notes.size(), history.undone_);
-  const SavedBlock* head = history.next_head();
-  for (std::size_t at = 0; at < count; ++at, head = head->of_step.after)
-    notes[at] = head->of_step.note;
+std::size_t SculptedShape::copy_notes(HistoryMove move, std::span<StepNote> notes) const noexcept {
+  const bool undoes = move == HistoryMove::undo;
+  const std::size_t count = std::min(notes.size(), undoes ? undo_steps() : redo_steps());
+  const SavedBlock* head = parts_->history.next_head(move);
+  for (StepNote& note : notes.first(count)) {
+    note = head->of_step.note;
+    head = undoes ? head->of_step.before : head->of_step.after;
+  }
   return count;
 }
 

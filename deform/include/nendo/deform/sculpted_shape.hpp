@@ -70,20 +70,18 @@ public:
   void set_notes(const StepNote& note, const StepNote& of_reset) noexcept;
   /// Adds a step that does not change the shape, for another undoable change in the same history.
   void mark(const StepNote& note) noexcept;
+  // The next functions look at the steps that can be undone, or at those that can be redone.
+
   /// Undoes, or redoes, the next step, which mark() must have added. Changes since the previous
   /// step are discarded; call the deformer's release() first. Wait-free.
-  void undo_mark() noexcept;
-  void redo_mark() noexcept;
-  /// Returns the note of the next step to undo, or to redo; null if there is none.
-  const StepNote* to_undo() const noexcept;
-  const StepNote* to_redo() const noexcept;
+  void pass_mark(HistoryMove move) noexcept;
+  /// Returns the note of the next step; null if there is none.
+  const StepNote* next_note(HistoryMove move) const noexcept;
   /// Changes that note. There must be such a step.
-  void note_to_undo(const StepNote& note) noexcept;
-  void note_to_redo(const StepNote& note) noexcept;
-  /// Copies the notes of the next steps to undo, or to redo, in this order, at most notes.size().
-  /// Returns the number of copied notes.
-  std::size_t copy_undoable(std::span<StepNote> notes) const noexcept;
-  std::size_t copy_undone(std::span<StepNote> notes) const noexcept;
+  void set_next_note(HistoryMove move, const StepNote& note) noexcept;
+  /// Copies the notes of the next steps, the next one first, at most notes.size(). Returns the
+  /// number of copied notes.
+  std::size_t copy_notes(HistoryMove move, std::span<StepNote> notes) const noexcept;
   /// Returns a number that changes whenever these notes change.
   std::uint64_t history_version() const noexcept;
   /// Limits undo to the current shape, and removes the steps that can be redone. A recording that
