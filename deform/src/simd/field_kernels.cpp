@@ -255,16 +255,8 @@ void displace_any(const FieldView& field, const BlockPass& pass) {
       displace_keeping_volume(field, field.entries, pass);
     return;
   }
-  switch (field.kernel) {
-  case Wendland::c0:
-    return displace_with<Wendland::c0>(field, pass);
-  case Wendland::c2:
-    return displace_with<Wendland::c2>(field, pass);
-  case Wendland::c4:
-    return displace_with<Wendland::c4>(field, pass);
-  case Wendland::c6:
-    return displace_with<Wendland::c6>(field, pass);
-  }
+  with_kernel(field.kernel,
+              [&](auto kernel) HWY_ATTR { displace_with<kernel.value>(field, pass); });
 }
 
 BlockBounds measure_block(const VertexBlock& block) {
@@ -361,17 +353,8 @@ double advance(const CsrbfField& field, const ProbeArrays& probes) {
 }
 
 double advance_any(const CsrbfField& field, const ProbeArrays& probes) {
-  switch (field.kernel) {
-  case Wendland::c0:
-    return advance<Wendland::c0>(field, probes);
-  case Wendland::c2:
-    return advance<Wendland::c2>(field, probes);
-  case Wendland::c4:
-    return advance<Wendland::c4>(field, probes);
-  case Wendland::c6:
-    break;
-  }
-  return advance<Wendland::c6>(field, probes);
+  return with_kernel(field.kernel,
+                     [&](auto kernel) HWY_ATTR { return advance<kernel.value>(field, probes); });
 }
 
 } // namespace nendo::deform::HWY_NAMESPACE

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
@@ -120,6 +121,22 @@ HWY_INLINE V dot_product(const Vectors3<V>& a, const Vectors3<V>& b) {
 template <class V>
 HWY_INLINE V spread_of(const Vectors3<V>& a, const Vectors3<V>& b) {
   return hn::MulAdd(hn::Abs(a.x), b.x, hn::MulAdd(hn::Abs(a.y), b.y, hn::Mul(hn::Abs(a.z), b.z)));
+}
+
+/// Returns call(k) with k.value the kernel, as a constant.
+template <class Call>
+HWY_INLINE auto with_kernel(Wendland kernel, const Call& call) {
+  switch (kernel) {
+  case Wendland::c0:
+    return call(std::integral_constant<Wendland, Wendland::c0>());
+  case Wendland::c2:
+    return call(std::integral_constant<Wendland, Wendland::c2>());
+  case Wendland::c4:
+    return call(std::integral_constant<Wendland, Wendland::c4>());
+  case Wendland::c6:
+    break;
+  }
+  return call(std::integral_constant<Wendland, Wendland::c6>());
 }
 
 /// Returns psi / kernel_factor for o = 1 - t, which is not negative.

@@ -33,20 +33,6 @@ HWY_INLINE void kernel_at(const FieldEntry<double>& entry, const VertexBlock& bl
   }
 }
 
-HWY_INLINE void kernel_of(Wendland kernel, const FieldEntry<double>& entry,
-                          const VertexBlock& block, double* values) {
-  switch (kernel) {
-  case Wendland::c0:
-    return kernel_at<Wendland::c0>(entry, block, values);
-  case Wendland::c2:
-    return kernel_at<Wendland::c2>(entry, block, values);
-  case Wendland::c4:
-    return kernel_at<Wendland::c4>(entry, block, values);
-  case Wendland::c6:
-    return kernel_at<Wendland::c6>(entry, block, values);
-  }
-}
-
 /// Start point j's weights in a block, stored at `weights`; gives the largest.
 HWY_INLINE double weights_of(const WeightSource& source, std::size_t j, const std::uint32_t* list,
                              std::size_t count, const VertexBlock& block, float* weights) {
@@ -111,9 +97,11 @@ struct WeightBuild {
   HWY_INLINE void on_block(std::size_t block, const std::uint32_t* list, std::size_t size) {
     pass.reached[block] = 0;
     if (!done || (size == 0 && source.polynomial == nullptr)) return;
-    for (std::size_t at = 0; at < size; ++at)
-      kernel_of(field.kernel, field.precise_entries[list[at]], pass.from[block],
-                source.kernel_scratch + at * block_size);
+    with_kernel(field.kernel, [&](auto kernel) HWY_ATTR {
+      for (std::size_t at = 0; at < size; ++at)
+        kernel_at<kernel.value>(field.precise_entries[list[at]], pass.from[block],
+                                source.kernel_scratch + at * block_size);
+    });
     WeightedBlock& made = cache.blocks[cache.block_count];
     made = {static_cast<std::uint32_t>(block), 0, 0, cache.used_entries, cache.used_bytes};
     done = weigh(list, size, pass.from[block], made);
