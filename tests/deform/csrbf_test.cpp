@@ -260,23 +260,6 @@ TEST_SUITE("csrbf") {
         }
   }
 
-  TEST_CASE("after reserving, already the first build of one radius allocates nothing") {
-    std::mt19937 random(15);
-    CsrbfSolver solver({.polynomial = Polynomial::linear});
-    solver.reserve(10);
-    const Points starts = random_points(random, 10, 5.0);
-    const VectorXd radii = VectorXd::Constant(10, 6.0);
-    nendo::test::RestraintCounts counts;
-    FieldStatus status{};
-    {
-      const nendo::test::Restraint restraint;
-      status = solver.build(starts, radii);
-      counts = restraint.counts();
-    }
-    CHECK(status == FieldStatus::ok);
-    CHECK(counts.allocations == 0);
-  }
-
   TEST_CASE("polynomials and statuses have names") {
     for (const Polynomial polynomial : polynomials)
       CHECK(polynomial_named(name_of(polynomial)) == polynomial);

@@ -73,7 +73,6 @@ public:
 
   SolverChoices choices;
 
-  void reserve(Eigen::Index points);
   /// Builds for `supports`. The start points and the supports must be usable.
   FieldStatus build(const Points& starts);
   FieldStatus solve(const Points& displacements, CsrbfField& field);
@@ -122,24 +121,6 @@ private:
   bool usable_ = false;
   Rows right_side_, solution_, correction_, own_coefficients_;
 };
-
-void CsrbfSolver::State::reserve(Eigen::Index points) {
-  const auto count = static_cast<std::size_t>(points);
-  starts_.resize(3, points);
-  ordered_starts_.resize(3, points);
-  order_.reserve(count);
-  for (Supports* each : {&supports, &ordered_supports_}) {
-    each->shared.reserve(1);
-    each->own.reserve(count);
-  }
-  for (Rows* rows : {&right_side_, &solution_, &correction_})
-    rows->resize(rows_of(points), 4);
-  if (has_polynomial()) polynomial_.reserve(points);
-  if (points > lean_size) return;
-  usable_ = false;
-  if (!systems_[0]) systems_[0] = make_lean_system();
-  systems_[0]->reserve(rows_of(points));
-}
 
 /// Step 1: the start points along an octree, if there are many.
 void CsrbfSolver::State::put_in_order(const Points& starts) {
@@ -359,10 +340,6 @@ CsrbfSolver::CsrbfSolver(CsrbfOptions options) : state_(std::make_unique<State>(
 CsrbfSolver::~CsrbfSolver() = default;
 CsrbfSolver::CsrbfSolver(CsrbfSolver&&) noexcept = default;
 CsrbfSolver& CsrbfSolver::operator=(CsrbfSolver&&) noexcept = default;
-
-void CsrbfSolver::reserve(Eigen::Index points) {
-  state_->reserve(points);
-}
 
 FieldStatus CsrbfSolver::build(const Points& starts, const Supports& supports) {
   assert(!supports.shared.empty());

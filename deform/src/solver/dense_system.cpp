@@ -130,14 +130,11 @@ bool assemble_volume(const CsrbfOptions& options, const Points& starts, const Su
 /// Systems that store all of M's lower triangle.
 class FullSystem : public KernelSystem {
 public:
-  void reserve(Eigen::Index rows) override {
-    lower_.resize(rows, rows);
-    diagonal_.resize(rows);
-  }
-
   Assembled assemble(const CsrbfOptions& options, const Points& starts, const Supports& supports,
                      const OwnFunctions& own) override {
-    reserve(options.keeps_volume() ? 3 * starts.cols() : starts.cols());
+    const Eigen::Index rows = options.keeps_volume() ? 3 * starts.cols() : starts.cols();
+    lower_.resize(rows, rows);
+    diagonal_.resize(rows);
     const bool merged = options.keeps_volume()
                             ? assemble_volume(options, starts, supports, lower_)
                             : assemble_dense(options, starts, supports, own, lower_, diagonal_);
@@ -156,18 +153,15 @@ protected:
 
 class LeanSystem final : public FullSystem {
 public:
-  void reserve(Eigen::Index rows) override {
-    FullSystem::reserve(rows);
-    n_ = rows;
-    if (n_ <= stride_) return;
-    stride_ = n_ + n_ % 2; // columns begin at whole SSE registers
-    factor_.resize(static_cast<std::size_t>(stride_ * stride_));
-    inverse_pivots_.resize(static_cast<std::size_t>(stride_));
-  }
-
   /// M = L D L^T, Cholesky's without roots, which ten points would wait for one after the other.
   /// Right-looking: each finished column is taken from those after it, which are contiguous.
   bool factorise(double ridge) override {
+    n_ = lower_.rows();
+    if (n_ > stride_) {
+      stride_ = n_ + n_ % 2; // columns begin at whole SSE registers
+      factor_.resize(static_cast<std::size_t>(stride_ * stride_));
+      inverse_pivots_.resize(static_cast<std::size_t>(stride_));
+    }
     for (Eigen::Index j = 0; j < n_; ++j) {
       for (Eigen::Index i = j; i < n_; ++i)
         factor_[index(i, j)] = lower_(i, j);

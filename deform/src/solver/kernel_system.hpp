@@ -55,8 +55,6 @@ public:
   enum class Assembled { ok, merged, too_dense };
 
   virtual ~KernelSystem() = default;
-  /// Allocates for this many rows, in systems whose assemble() must not allocate.
-  virtual void reserve(Eigen::Index) {}
   /// Assembles M. The start points are in the order of elimination, unless factorise() reorders
   /// them.
   virtual Assembled assemble(const CsrbfOptions& options, const Points& starts,

@@ -9,14 +9,9 @@
 
 namespace nendo::deform {
 
-void PolynomialPart::reserve(Eigen::Index points) {
-  basis_.resize(points, 4);
-  solved_basis_.resize(points, 4);
-}
-
 void PolynomialPart::assemble(const Points& starts, Polynomial polynomial) {
   const Eigen::Index n = starts.cols();
-  reserve(n);
+  basis_.resize(n, 4);
   const Eigen::Vector3d middle =
       n > 0 ? Eigen::Vector3d(starts.rowwise().mean()) : Eigen::Vector3d::Zero();
   double spread = 1.0 / largest_number;

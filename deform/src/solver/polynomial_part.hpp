@@ -10,8 +10,6 @@ namespace nendo::deform {
 
 class PolynomialPart {
 public:
-  /// Allocates for this many points.
-  void reserve(Eigen::Index points);
   /// Chooses a basis that is orthonormal on the start points. Terms that they do not determine,
   /// such as that along the normal of coplanar points, become zero columns of Q with a 1 in U, so
   /// that their weight is 0.

@@ -13,7 +13,6 @@ CsrbfField zero_field(const Supports& supports, Eigen::Index points, Wendland ke
 }
 
 void reserve_solver(CsrbfSolver& solver, const Supports& supports, Eigen::Index points) {
-  solver.reserve(points);
   if (points > CsrbfSolver::lean_size) return;
   Points apart(3, points); // anything that can be solved will do
   for (Eigen::Index i = 0; i < points; ++i)

@@ -91,8 +91,6 @@ public:
   CsrbfSolver(CsrbfSolver&&) noexcept;
   CsrbfSolver& operator=(CsrbfSolver&&) noexcept;
 
-  /// Allocates for this number of points with one radius each, so that the first build() does not.
-  void reserve(Eigen::Index points);
   /// Orders the start points (3 by n), assembles M (supports.hpp) and factorises it by Cholesky,
   /// and then the Schur complement of the polynomial part. Point indices in `supports` must be less
   /// than n.
