@@ -126,39 +126,26 @@ bool BlockEvaluator::fits_measured(BoundedShape& shape) const noexcept {
 }
 
 bool BlockEvaluator::displace(BoundedShape& shape) noexcept {
-  const bool has_places = std::exchange(parts_->has_places, false);
+  const bool is_halfway = parts_->is_halfway;
+  // The second field of a midpoint step is evaluated where the first one has led.
+  const bool is_second = std::exchange(parts_->has_places, false) && !is_halfway;
   if (!fits_measured(shape)) return false;
-  if (parts_->is_halfway) {
-    look(shape);
-    return true;
-  }
-  shape.extent += parts_->field.bound(shape.extent);
+  BoundedShape& to = is_halfway ? *parts_->places : shape;
   const std::uint64_t stamp = BlockShape::new_stamp();
-  BlockPass pass = pass_over(has_places ? *parts_->places : shape, shape.shape.data(), *parts_);
-  if (has_places) pass.base = shape.shape.data();
-  pass.new_bounds = shape.bounds.data();
-  run(pass, *parts_, [&](std::size_t block, bool reached) {
-    if (reached) shape.shape.set_stamp(block, stamp);
-  });
-  return true;
-}
-
-/// Of a field that is halfway.
-void BlockEvaluator::look(const BoundedShape& shape) noexcept {
-  BoundedShape& places = *parts_->places;
-  const std::uint64_t stamp = BlockShape::new_stamp();
-  BlockPass pass = pass_over(shape, places.shape.data(), *parts_);
-  pass.new_bounds = places.bounds.data();
+  BlockPass pass = pass_over(is_second ? *parts_->places : shape, to.shape.data(), *parts_);
+  if (is_second) pass.base = shape.shape.data();
+  pass.new_bounds = to.bounds.data();
   run(pass, *parts_, [&](std::size_t block, bool reached) {
     if (reached) {
-      places.shape.set_stamp(block, stamp);
-    } else {
-      places.shape.follow(shape.shape, block);
-      places.bounds[block] = shape.bounds[block];
+      to.shape.set_stamp(block, stamp);
+    } else if (is_halfway) {
+      to.shape.follow(shape.shape, block);
+      to.bounds[block] = shape.bounds[block];
     }
   });
-  places.extent = shape.extent + parts_->field.bound(shape.extent);
-  parts_->has_places = true;
+  to.extent = shape.extent + parts_->field.bound(shape.extent);
+  parts_->has_places = is_halfway;
+  return true;
 }
 
 std::size_t BlockEvaluator::count_pairs(const BoundedShape& shape) noexcept {

@@ -67,7 +67,6 @@ public:
 private:
   bool fits(const BoundedShape& shape) const noexcept;
   bool fits_measured(BoundedShape& shape) const noexcept;
-  void look(const BoundedShape& shape) noexcept;
 
   std::unique_ptr<Parts> parts_;
 };
