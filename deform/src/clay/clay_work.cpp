@@ -47,14 +47,6 @@ ContactPart between(const ContactPart& a, const ContactPart& b, double share) no
   return part;
 }
 
-Vector3d normal_at(const Vector3d& place, const NearestLanes& nearest, std::size_t lane) noexcept {
-  const Vector3d centre =
-      Eigen::Vector3f(nearest.x[lane], nearest.y[lane], nearest.z[lane]).cast<double>();
-  const Vector3d way = place - centre;
-  const double length = way.norm();
-  return length > 0.0 ? Vector3d(way / length) : Vector3d::UnitZ();
-}
-
 int max_centres(std::size_t bodies, const ClayOptions& options) noexcept {
   return std::max(options.max_constraints, static_cast<int>(bodies * Grip::max_held));
 }
@@ -427,7 +419,9 @@ void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
         const double depth = -static_cast<double>(nearest.distance[lane]);
         if (!(depth > 0.0)) continue;
         const Vector3d at = vertex_in(content, lane).cast<double>();
-        const Vector3d out = at + std::min(depth, most) * normal_at(at, nearest, lane);
+        const Vector3d normal =
+            normal_from({nearest.x[lane], nearest.y[lane], nearest.z[lane]}, at);
+        const Vector3d out = at + std::min(depth, most) * normal;
         set_vertex(content, lane, out.cast<float>());
       }
       shape.shape.set_stamp(block, stamp);

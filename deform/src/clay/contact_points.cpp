@@ -30,6 +30,12 @@ bool is_deeper(const NearVertex& a, const NearVertex& b) noexcept {
 
 } // namespace
 
+Eigen::Vector3d normal_from(const Eigen::Vector3f& centre, const Eigen::Vector3d& place) noexcept {
+  const Eigen::Vector3d way = place - centre.cast<double>();
+  const double length = way.norm();
+  return length > 0.0 ? Eigen::Vector3d(way / length) : Eigen::Vector3d::UnitZ();
+}
+
 ContactPoints::ContactPoints(std::size_t most) : slots_(std::bit_ceil(slots_per_point * most)) {
   vertices_.reserve(cells_per_point * most);
   chosen_.reserve(most);
@@ -88,10 +94,7 @@ std::span<const ContactPoint> ContactPoints::choose(double apart) noexcept {
   for (const NearVertex& vertex : vertices_) {
     if (chosen_.size() == chosen_.capacity()) break;
     const Eigen::Vector3d at = vertex.at.cast<double>();
-    const Eigen::Vector3d way = at - vertex.centre.cast<double>();
-    const double length = way.norm();
-    const Eigen::Vector3d normal =
-        length > 0.0 ? Eigen::Vector3d(way / length) : Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d normal = normal_from(vertex.centre, at);
     if (!add_place(vertex.at, normal.cast<float>(), static_cast<float>(apart * apart))) continue;
     chosen_.push_back(
         {vertex.place, vertex.body, vertex.part, static_cast<double>(vertex.depth), at, normal});

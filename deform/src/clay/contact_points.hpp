@@ -35,6 +35,9 @@ struct NearVertex {
   Eigen::Vector3f centre = Eigen::Vector3f::Zero(); ///< centre of the part's nearest ball
 };
 
+/// Returns the normal of a part at a place, away from the centre of its nearest ball.
+Eigen::Vector3d normal_from(const Eigen::Vector3f& centre, const Eigen::Vector3d& place) noexcept;
+
 /// Nothing depends on an order of memory or of a hash, so that a replay chooses the same.
 class ContactPoints {
 public:
