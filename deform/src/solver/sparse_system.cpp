@@ -22,13 +22,9 @@ struct SparseLower {
   std::vector<int> begins{0}; ///< #columns + 1
   std::vector<int> rows;
   std::vector<double> values;
+  bool has_ties = false;
 
   Eigen::Index size() const noexcept { return static_cast<Eigen::Index>(begins.size()) - 1; }
-};
-
-struct SparseAssembly {
-  SparseLower lower;
-  bool merged = false;
 };
 
 /// Builds one column after the other in a dense one, of which it knows what is in use.
@@ -49,14 +45,13 @@ public:
         functions_of_[own_.values(e)[at].point].push_back({e, at});
   }
 
-  void append(Eigen::Index j, SparseAssembly& out) {
+  void append(Eigen::Index j, SparseLower& lower) {
     used_.clear();
     add_own(static_cast<std::size_t>(j));
     const Eigen::Vector3d centre = starts_.col(j);
     grid_.visit_near(centre, centre, reach_, [&](std::uint32_t i) {
-      if (static_cast<Eigen::Index>(i) > j) add_shared(static_cast<Eigen::Index>(i), j, out);
+      if (static_cast<Eigen::Index>(i) > j) add_shared(static_cast<Eigen::Index>(i), j, lower);
     });
-    SparseLower& lower = out.lower;
     lower.rows.push_back(static_cast<int>(j));
     lower.values.push_back(0.0); // finish_diagonal()
     for (const std::uint32_t i : used_) {
@@ -95,7 +90,7 @@ private:
     }
   }
 
-  void add_shared(Eigen::Index i, Eigen::Index j, SparseAssembly& out) {
+  void add_shared(Eigen::Index i, Eigen::Index j, SparseLower& lower) {
     const double squared = (starts_.col(i) - starts_.col(j)).squaredNorm();
     if (squared > squared_reach_) return; // most of those in the cells around
     const double distance = std::sqrt(squared);
@@ -107,7 +102,7 @@ private:
       ties_diagonal_[i] += tie;
       ties_diagonal_[j] += tie;
       value -= tie;
-      out.merged = true;
+      lower.has_ties = true;
     }
     value += kernel_.at(distance);
   }
@@ -128,20 +123,20 @@ private:
 };
 
 /// Returns nothing if there would be more than `max_entries`.
-std::optional<SparseAssembly> assemble_sparse(const CsrbfOptions& options, const Points& starts,
-                                              const Supports& supports, const OwnFunctions& own,
-                                              std::size_t max_entries) {
+std::optional<SparseLower> assemble_sparse(const CsrbfOptions& options, const Points& starts,
+                                           const Supports& supports, const OwnFunctions& own,
+                                           std::size_t max_entries) {
   // Even where own functions meet in the same entries, this many products take seconds.
   constexpr double max_products = 1e9;
   if (own.pairs() > max_products) return std::nullopt;
   Columns columns(options, starts, supports, own);
-  SparseAssembly assembly;
+  SparseLower lower;
   for (Eigen::Index j = 0; j < starts.cols(); ++j) {
-    columns.append(j, assembly);
-    if (assembly.lower.rows.size() > max_entries) return std::nullopt;
+    columns.append(j, lower);
+    if (lower.rows.size() > max_entries) return std::nullopt;
   }
-  columns.finish_diagonal(assembly.lower);
-  return assembly;
+  columns.finish_diagonal(lower);
+  return lower;
 }
 
 /// Beyond an eighth of all pairs, dense is as fast: it does five times as many operations per
@@ -176,10 +171,10 @@ public:
     const auto n = static_cast<std::size_t>(starts.cols());
     std::size_t most = max_matrix_entries;
     if (!must_) most = std::min(most, n * (n + 1) / 2 / min_sparsity);
-    auto assembly = assemble_sparse(options, starts, supports, own, most);
-    if (!assembly) return Assembled::too_dense;
-    lower_ = std::move(assembly->lower);
-    return assembly->merged ? Assembled::merged : Assembled::ok;
+    auto lower = assemble_sparse(options, starts, supports, own, most);
+    if (!lower) return Assembled::too_dense;
+    lower_ = std::move(*lower);
+    return lower_.has_ties ? Assembled::merged : Assembled::ok;
   }
 
   bool analyse(PointOrder order) override {
