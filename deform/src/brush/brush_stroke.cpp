@@ -232,17 +232,13 @@ bool BrushStroke::go(const Points& from, const Points& to, BoundedShape& shape) 
   if (strength_ == 0.0) return changed;
   for (const OfPoint& one : points_) {
     const Way way = way_of(one.point, from, to);
-    if (one.image < 0) {
-      changed = go(one, way, nullptr, shape) || changed;
-      continue;
-    }
-    const Way image = way_of(one.image, from, to);
-    changed = go(one, way, &image, shape) || changed;
+    const Way image = one.image < 0 ? way : way_of(one.image, from, to);
+    changed = go(one, way, image, shape) || changed;
   }
   return changed;
 }
 
-bool BrushStroke::go(const OfPoint& one, const Way& way, const Way* image,
+bool BrushStroke::go(const OfPoint& one, const Way& way, const Way& image,
                      BoundedShape& shape) noexcept {
   const double length = (way.to - way.from).norm();
   const double longest = longest_dab * one.radius;
@@ -258,7 +254,7 @@ bool BrushStroke::go(const OfPoint& one, const Way& way, const Way* image,
     const bool finds = dabs_.find(dab_on(way, 1.0), shape);
     // A mirrored twist turns the other way.
     const double turns = one.brush == Brush::twist ? -1.0 : 1.0;
-    const bool image_finds = image != nullptr && images_->find(dab_on(*image, turns), shape);
+    const bool image_finds = one.image >= 0 && images_->find(dab_on(image, turns), shape);
     changed = (finds && dabs_.write(shape)) || changed;
     changed = (image_finds && images_->write(shape)) || changed;
   }

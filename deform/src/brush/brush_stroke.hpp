@@ -91,12 +91,11 @@ private:
     Brush brush = Brush::push;
     double radius = 1.0; ///< in the layout's units
   };
-  /// A way from one place to another, and that of its image.
   struct Way {
     Eigen::Vector3d from, to;
   };
   Way way_of(Eigen::Index point, const Points& from, const Points& to) const;
-  bool go(const OfPoint& one, const Way& way, const Way* image, BoundedShape& shape) noexcept;
+  bool go(const OfPoint& one, const Way& way, const Way& image, BoundedShape& shape) noexcept;
 
   const BlockLayout& layout_;
   std::vector<OfPoint> points_;
