@@ -29,7 +29,8 @@ int main(int argc, char** argv) {
   const auto vectors = deform::read_control_vectors(argv[2]);
   if (!vectors) return fail(vectors.error());
 
-  deform::Type1Deformer deformer(mesh->vertices, vectors->starts.cols(), radius, {});
+  deform::Type1Deformer deformer(mesh->vertices, vectors->starts.cols(),
+                                 {deform::one_radius(radius)});
   deform::FieldStatus status = deformer.grab(vectors->starts);
   deform::BlockShape shape; // vertices in blocks, as vector instructions want them
   if (is_solved(status)) status = deformer.apply(vectors->starts + vectors->displacements, shape);

@@ -84,7 +84,7 @@ TEST_SUITE("deformers") {
   }
 
   TEST_CASE("Type-1 in links does not fold where one field does, with weights and without") {
-    Type1Deformer folding(plane().vertices, 10, radius, {.merge_fraction = 0.05});
+    Type1Deformer folding(plane().vertices, 10, {one_radius(radius), {.merge_fraction = 0.05}});
     BlockShape shape;
     REQUIRE(is_solved(folding.grab(start_points())));
     folding.apply(far_ends(), shape);
@@ -105,7 +105,7 @@ TEST_SUITE("deformers") {
   }
 
   TEST_CASE("Type-1 in links depends on the ends alone, and a short way is the plain field") {
-    Type1Deformer plain(plane().vertices, 10, radius, {.merge_fraction = 0.05});
+    Type1Deformer plain(plane().vertices, 10, {one_radius(radius), {.merge_fraction = 0.05}});
     Type1Deformer deformer(plane().vertices, 10, injective());
     BlockShape expected, shape;
     REQUIRE(is_solved(plain.grab(start_points())));

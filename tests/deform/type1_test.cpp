@@ -61,7 +61,8 @@ TEST_SUITE("type1") {
   TEST_CASE("fingers that have not moved leave the rest shape bit for bit") {
     for (const auto polynomial : {Polynomial::none, Polynomial::constant, Polynomial::linear})
       for (const std::size_t memory : weight_memories) {
-        Type1Deformer deformer(rest, 10, 6.0, {.polynomial = polynomial}, {.weight_bytes = memory});
+        Type1Deformer deformer(
+            rest, 10, {one_radius(6.0), {.polynomial = polynomial}, {.weight_bytes = memory}});
         Points out;
         REQUIRE(deformer.grab(start_points()) == FieldStatus::ok);
         REQUIRE(apply(deformer, end_points(1.0), out) == FieldStatus::ok);
@@ -72,7 +73,7 @@ TEST_SUITE("type1") {
   }
 
   TEST_CASE("a vertex at a start point goes to the end point, by whatever way") {
-    Type1Deformer deformer(rest, 10, 6.0, {});
+    Type1Deformer deformer(rest, 10, {one_radius(6.0)});
     Points straight;
     Points winding;
     REQUIRE(deformer.grab(start_points()) == FieldStatus::ok);
@@ -84,7 +85,7 @@ TEST_SUITE("type1") {
   }
 
   TEST_CASE("a commit makes the deformed shape the rest shape and the ends the starts") {
-    Type1Deformer deformer(rest, 10, 6.0, {});
+    Type1Deformer deformer(rest, 10, {one_radius(6.0)});
     Points before;
     Points after;
     REQUIRE(deformer.grab(start_points()) == FieldStatus::ok);
@@ -98,14 +99,14 @@ TEST_SUITE("type1") {
   }
 
   TEST_CASE("before the first grab the rest shape is given, and said so") {
-    Type1Deformer deformer(rest, 10, 6.0, {});
+    Type1Deformer deformer(rest, 10, {one_radius(6.0)});
     Points out;
     CHECK(apply(deformer, end_points(1.0), out) == FieldStatus::singular);
     CHECK(out == rest);
   }
 
   TEST_CASE("a bad grab leaves the good one, bad ends the last good shape") {
-    Type1Deformer deformer(rest, 10, 6.0, {});
+    Type1Deformer deformer(rest, 10, {one_radius(6.0)});
     Points good;
     Points out;
     REQUIRE(deformer.grab(start_points()) == FieldStatus::ok);
@@ -126,7 +127,7 @@ TEST_SUITE("type1") {
   TEST_CASE("a grab with two fingers in one place works and says so") {
     Points pinched = start_points();
     pinched.col(3) = pinched.col(8);
-    Type1Deformer deformer(rest, 10, 6.0, {});
+    Type1Deformer deformer(rest, 10, {one_radius(6.0)});
     Points out;
     CHECK(deformer.grab(pinched) == FieldStatus::merged);
     CHECK(apply(deformer, end_points(1.0), out) == FieldStatus::merged);
@@ -152,7 +153,7 @@ TEST_SUITE("type1") {
             REQUIRE(use_simd(name));
             CAPTURE(name);
             CAPTURE(radius);
-            Type1Deformer deformer(mesh, 10, radius, {}, {.weight_bytes = memory});
+            Type1Deformer deformer(mesh, 10, {one_radius(radius), {}, {.weight_bytes = memory}});
             REQUIRE(is_solved(deformer.grab(starts)));
             CHECK((deformer.weight_bytes() > 0) == (memory > 0));
             Points out;
@@ -170,8 +171,8 @@ TEST_SUITE("type1") {
       for (const std::size_t memory : weight_memories) {
         CAPTURE(cells);
         CAPTURE(memory);
-        Type1Deformer one(mesh, 10, 20.0, {}, {.weight_bytes = memory});
-        Type1Deformer two(mesh, 10, 20.0, {}, {.threads = 2, .weight_bytes = memory});
+        Type1Deformer one(mesh, 10, {one_radius(20.0), {}, {.weight_bytes = memory}});
+        Type1Deformer two(mesh, 10, {one_radius(20.0), {}, {.threads = 2, .weight_bytes = memory}});
         REQUIRE(is_solved(one.grab(starts)));
         REQUIRE(is_solved(two.grab(starts)));
         std::mt19937 random(24);
@@ -196,7 +197,7 @@ TEST_SUITE("type1") {
     for (const auto kernel : {Wendland::c0, Wendland::c2, Wendland::c4, Wendland::c6})
       for (const auto polynomial : {Polynomial::none, Polynomial::linear}) {
         const CsrbfOptions options{.kernel = kernel, .polynomial = polynomial};
-        Type1Deformer deformer(rest, 10, 3.0, options);
+        Type1Deformer deformer(rest, 10, {one_radius(3.0), options});
         REQUIRE(is_solved(deformer.grab(starts)));
         REQUIRE(deformer.weight_bytes() > 0);
         Points out;
@@ -230,7 +231,7 @@ TEST_SUITE("type1") {
         REQUIRE(use_simd(name));
         CAPTURE(name);
         CAPTURE(radius);
-        Type1Deformer deformer(mesh, 10, radius, {});
+        Type1Deformer deformer(mesh, 10, {one_radius(radius)});
         REQUIRE(is_solved(deformer.grab(starts)));
         REQUIRE(deformer.weight_bytes() > 0);
         for (Eigen::Index start = 0; start < 10; ++start) {
@@ -250,7 +251,7 @@ TEST_SUITE("type1") {
   TEST_CASE("weights keep to their memory, and what no support reaches has none") {
     const Points mesh = nendo::reference::table1_plane(64);
     const auto bytes = [&](double radius, std::size_t memory) {
-      Type1Deformer deformer(mesh, 10, radius, {}, {.weight_bytes = memory});
+      Type1Deformer deformer(mesh, 10, {one_radius(radius), {}, {.weight_bytes = memory}});
       deformer.grab(nendo::reference::table1_starts());
       return deformer.weight_bytes();
     };
@@ -271,7 +272,7 @@ TEST_SUITE("type1") {
     there << 40, 40, 1;
     const Points up = Eigen::Vector3d(0, 0, 3);
     for (const std::size_t memory : weight_memories) {
-      Type1Deformer deformer(mesh, 1, 8.0, {}, {.weight_bytes = memory});
+      Type1Deformer deformer(mesh, 1, {one_radius(8.0), {}, {.weight_bytes = memory}});
       BlockShape picture;
       const auto is_whole = [&] {
         BlockShape fresh;

@@ -46,7 +46,7 @@ TEST_SUITE("type2") {
   /// A straight stroke in so many pieces.
   static Points stroked(const Points& ends, int pieces) {
     const double length = (ends - start_points()).colwise().norm().maxCoeff();
-    Type2Deformer deformer(clay, 10, 6.0, length / pieces * (1.0 + 1e-9), {});
+    Type2Deformer deformer(clay, 10, length / pieces * (1.0 + 1e-9), {one_radius(6.0)});
     deformer.begin(start_points());
     int applied = 0;
     for (int part = 1; part <= 16; ++part)
@@ -59,7 +59,7 @@ TEST_SUITE("type2") {
   }
 
   TEST_CASE("a stroke of no length leaves the shape alone") {
-    Type2Deformer deformer(clay, 10, 6.0, 0.1, {});
+    Type2Deformer deformer(clay, 10, 0.1, {one_radius(6.0)});
     deformer.begin(start_points());
     CHECK(deformer.stroke_to(start_points()).pieces == 0);
     CHECK(deformer.end_at(start_points()).pieces == 0);
@@ -67,7 +67,7 @@ TEST_SUITE("type2") {
   }
 
   TEST_CASE("a vertex under a fingertip is carried along any curve to its end") {
-    Type2Deformer deformer(clay, 10, 6.0, 0.1, {});
+    Type2Deformer deformer(clay, 10, 0.1, {one_radius(6.0)});
     deformer.begin(start_points());
     for (int sample = 1; sample <= 100; ++sample) {
       const double turn = 0.1 * sample;
@@ -81,7 +81,7 @@ TEST_SUITE("type2") {
   }
 
   TEST_CASE("the fastest fingertip sets the cuts, what is left waits") {
-    Type2Deformer deformer(clay, 10, 6.0, 1.0, {});
+    Type2Deformer deformer(clay, 10, 1.0, {one_radius(6.0)});
     deformer.begin(start_points());
     Points tips = start_points();
     tips(0, 0) += 2.5;
@@ -117,7 +117,7 @@ TEST_SUITE("type2") {
     // The two differ by what the step adds in second order: a tenth of the step, a hundredth of the
     // difference.
     const auto gap_to_type1 = [&](double scale) {
-      Type1Deformer type1(clay, 10, 6.0, {});
+      Type1Deformer type1(clay, 10, {one_radius(6.0)});
       BlockShape shape;
       Points once;
       type1.grab(start_points());
@@ -130,7 +130,7 @@ TEST_SUITE("type2") {
   }
 
   TEST_CASE("a jump is cut into a bounded number of pieces and arrives") {
-    Type2Deformer deformer(clay, 10, 6.0, 1e-6, {});
+    Type2Deformer deformer(clay, 10, 1e-6, {one_radius(6.0)});
     deformer.begin(start_points());
     CHECK(deformer.stroke_to(shifted({3, 0, 0})).pieces == FingertipCurve::max_pieces);
     CHECK((shape_of(deformer).col(100) - shifted({3, 0, 0}).col(0)).norm() < float_gap);
@@ -140,7 +140,7 @@ TEST_SUITE("type2") {
   }
 
   TEST_CASE("fingertips that are not finite are refused, and the stroke continues after them") {
-    Type2Deformer deformer(clay, 10, 6.0, 0.1, {});
+    Type2Deformer deformer(clay, 10, 0.1, {one_radius(6.0)});
     Points spoilt = start_points();
     spoilt(2, 2) = std::nan("");
     deformer.begin(spoilt);
@@ -158,7 +158,7 @@ TEST_SUITE("type2") {
   }
 
   TEST_CASE("two fingertips may cross on their way") {
-    Type2Deformer deformer(clay, 2, 4.0, 0.01, {.merge_fraction = 0.05});
+    Type2Deformer deformer(clay, 2, 0.01, {one_radius(4.0), {.merge_fraction = 0.05}});
     Points tips(3, 2);
     tips << -1, 1, 0, 0, 5, 5;
     deformer.begin(tips);
@@ -177,7 +177,7 @@ TEST_SUITE("type2") {
 
   TEST_CASE("coarse samples of a circle shape the model like fine ones, better than chords do") {
     const auto shaped = [](int samples, bool chords) {
-      Type2Deformer deformer(clay, 10, 6.0, 0.05, {});
+      Type2Deformer deformer(clay, 10, 0.05, {one_radius(6.0)});
       const auto at = [](double turn) {
         return shifted({1.5 * std::sin(turn), 1.5 - 1.5 * std::cos(turn), 0.0});
       };
@@ -195,7 +195,7 @@ TEST_SUITE("type2") {
   }
 
   TEST_CASE("where one hand rests, out of the other's reach, nothing is touched") {
-    Type2Deformer deformer(clay, 4, 1.5, 0.05, {});
+    Type2Deformer deformer(clay, 4, 0.05, {one_radius(1.5)});
     Points tips(3, 4);
     tips << 5, 4.9, -5, -4.9, 0, 1, 0, 1, 0, 0, 0, 0;
     deformer.begin(tips);
@@ -252,7 +252,7 @@ TEST_SUITE("type2") {
   }
 
   TEST_CASE("a stroke does not allocate") {
-    Type2Deformer deformer(clay, 10, 6.0, 0.1, {.polynomial = Polynomial::linear});
+    Type2Deformer deformer(clay, 10, 0.1, {one_radius(6.0), {.polynomial = Polynomial::linear}});
     const Points starts = start_points();
     const Points ends = shifted({0.35, 0, 0});
     StrokeResult result;

@@ -18,7 +18,8 @@ using namespace nendo::deform;
 /// What is measured side by side, the hands holding the mesh.
 struct Deformers {
   Deformers(const Points& mesh, const Points& starts, double radius)
-      : type1(mesh, 10, radius, {}), evaluated1(mesh, 10, radius, {}, {.weight_bytes = 0}),
+      : type1(mesh, 10, {one_radius(radius)}),
+        evaluated1(mesh, 10, {one_radius(radius), {}, {.weight_bytes = 0}}),
         type2(mesh, starts, radius) {
     type1.grab(starts);
     evaluated1.grab(starts);
@@ -49,7 +50,7 @@ void measure_two_threads(const Points& mesh, double radius, int repetitions, Cel
   Best best1;
   Best best2;
   {
-    Type1Deformer type1(mesh, 10, radius, {}, {.threads = 2});
+    Type1Deformer type1(mesh, 10, {one_radius(radius), {}, {.threads = 2}});
     type1.grab(starts);
     BlockShape out;
     for (int n = 0; n < repetitions; ++n)
@@ -105,7 +106,7 @@ double ns_an_influence(int repetitions) {
   const Points mesh = reference::table1_plane(16);
   const Points starts = reference::spread_starts();
   const auto ends = random_ends(starts);
-  Type1Deformer deformer(mesh, 10, 200.0, {}, {.weight_bytes = 0});
+  Type1Deformer deformer(mesh, 10, {one_radius(200.0), {}, {.weight_bytes = 0}});
   const BlockLayout& layout = deformer.layout();
   BoundedShape rest(layout.pack());
   BlockShape out = rest.shape;
@@ -184,8 +185,9 @@ double ns_of_volume(const Points& mesh, const Points& starts, double radius, dou
 
 double us_of_type1(const Points& mesh, const Points& starts, const Points& way, double radius,
                    double keep_volume, std::size_t weight_bytes, int repetitions) {
-  Type1Deformer deformer(mesh, starts.cols(), radius, {.keep_volume = keep_volume},
-                         {.weight_bytes = weight_bytes});
+  Type1Deformer deformer(
+      mesh, starts.cols(),
+      {one_radius(radius), {.keep_volume = keep_volume}, {.weight_bytes = weight_bytes}});
   BlockShape out = deformer.rest();
   deformer.grab(starts);
   Best best;
@@ -201,7 +203,8 @@ double us_of_type2(const Points& mesh, const Points& starts, const Points& way, 
                    double keep_volume, int repetitions) {
   const double longest = std::sqrt(way.colwise().squaredNorm().maxCoeff());
   const double piece = radius / 20.0;
-  Type2Deformer deformer(mesh, starts.cols(), radius, piece, {.keep_volume = keep_volume});
+  Type2Deformer deformer(mesh, starts.cols(), piece,
+                         {one_radius(radius), {.keep_volume = keep_volume}});
   deformer.begin(starts);
   Best best;
   std::size_t step = 0;

@@ -43,7 +43,7 @@ GrowthTimes measure_growth(int cells, int repetitions) {
   times.influences = reference::count_evaluations(mesh, starts, radius);
   {
     const std::size_t before = resident_bytes();
-    Type1Deformer type1(mesh, 10, radius, {}, {.weight_bytes = 0});
+    Type1Deformer type1(mesh, 10, {one_radius(radius), {}, {.weight_bytes = 0}});
     BlockShape out;
     type1.grab(starts);
     type1.apply(ends[0], out);
@@ -55,7 +55,7 @@ GrowthTimes measure_growth(int cells, int repetitions) {
   }
   {
     const std::size_t before = resident_bytes();
-    Type2Deformer type2(mesh, 10, radius, one_piece, {});
+    Type2Deformer type2(mesh, 10, one_piece, {one_radius(radius)});
     type2.begin(starts);
     type2.end_at(ends[0]);
     times.type2_bytes = resident_bytes() - before;

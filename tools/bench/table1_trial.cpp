@@ -22,7 +22,7 @@ public:
   void measure_alone(double seconds, Table1Cell& cell) {
     PlainDeformer plain1(plane_, starts_, radius_);
     PlainDeformer plain2(plane_, starts_, radius_);
-    Type1Deformer type1(plane_, starts_.cols(), radius_, {});
+    Type1Deformer type1(plane_, starts_.cols(), {one_radius(radius_)});
     Strokes type2(plane_, starts_, radius_);
     type1.grab(starts_);
     BlockShape out;
@@ -41,7 +41,7 @@ public:
 
   /// The second thread spins as long as its deformer lives, so that nothing else is measured then.
   double type1_by_two(double seconds) {
-    Type1Deformer type1(plane_, starts_.cols(), radius_, {}, {.threads = 2});
+    Type1Deformer type1(plane_, starts_.cols(), {one_radius(radius_), {}, {.threads = 2}});
     type1.grab(starts_);
     BlockShape out;
     Best best;

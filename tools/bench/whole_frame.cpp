@@ -29,7 +29,7 @@ render::Camera camera_of(const Points& plane) {
 struct WholeFrame::Parts {
   Parts(const Mesh& plane, const Points& starting, double radius)
       : mesh(plane), starts(starting), ends(random_ends(starting)),
-        type1(plane.vertices, starting.cols(), radius, with_polynomial),
+        type1(plane.vertices, starting.cols(), {one_radius(radius), with_polynomial}),
         type2(plane.vertices, starting, radius, 1, with_polynomial), renderer(frame_size),
         camera(camera_of(plane.vertices)) {
     type1.grab(starts);

@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/field_sequence.hpp>
@@ -33,11 +32,6 @@ public:
   /// Works on a shape that other deformers may use before or after it. Call release() or grab()
   /// before another one uses it. `shape` must outlive the deformer.
   Type1Deformer(SculptedShape& shape, Eigen::Index control_points, const DeformerOptions& options);
-  /// Uses one radius > 0 for all start points, in model units.
-  Type1Deformer(Points rest, Eigen::Index control_points, double radius, CsrbfOptions csrbf,
-                const EvaluationOptions& evaluation = {})
-      : Type1Deformer(std::move(rest), control_points,
-                      {one_radius(radius), csrbf, evaluation, {}}) {}
   ~Type1Deformer();
   Type1Deformer(Type1Deformer&&) noexcept;
   Type1Deformer& operator=(Type1Deformer&&) noexcept;

@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include <nendo/deform/deformer_options.hpp>
@@ -48,11 +47,6 @@ public:
   /// masks. All points pull, and each call deforms all the way to the tips, without pieces or
   /// links.
   Type2Deformer(SculptedShape& shape, std::shared_ptr<const SurfaceField> field);
-  /// Uses one radius > 0 for all fingertips, in model units.
-  Type2Deformer(Points shape, Eigen::Index control_points, double radius, double piece_length,
-                CsrbfOptions csrbf, const EvaluationOptions& evaluation = {})
-      : Type2Deformer(std::move(shape), control_points, piece_length,
-                      {one_radius(radius), csrbf, evaluation, {}}) {}
   ~Type2Deformer();
   Type2Deformer(Type2Deformer&&) noexcept;
   Type2Deformer& operator=(Type2Deformer&&) noexcept;
