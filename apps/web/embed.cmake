@@ -19,6 +19,6 @@ string(REGEX REPLACE "(.........................................................
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," numbers "${hex}")
 file(WRITE ${OUT} "#include <string_view>\n\nnamespace nendo::web {\nnamespace {\n\n"
   "const unsigned char bytes[] = {\n${numbers}};\n\n} // namespace\n\n"
-  "std::string_view page() noexcept; // connection.cpp\n"
+  "std::string_view page() noexcept; // server_input.cpp\n"
   "std::string_view page() noexcept {\n  return {reinterpret_cast<const char*>(bytes), sizeof bytes};\n}\n\n"
   "} // namespace nendo::web\n")
