@@ -77,12 +77,4 @@ bool is_tga(std::string_view contents) noexcept;
 Result<Image> decode_bmp(std::string_view contents);
 Result<Image> decode_tga(std::string_view contents);
 
-/// Writes words in a plain upright stroke font. `height` is the height of capitals above the
-/// baseline in pixels, and (x, y) is where the baseline begins. A character that the font does not
-/// have appears as a box.
-void write_words(Image& image, double x, double y, double height, std::string_view words,
-                 Pixel colour);
-/// Returns the width of the words in pixels.
-double width_of_words(std::string_view words, double height) noexcept;
-
 } // namespace nendo::render

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <span>
 
+#include "render/lettering.hpp"
 #include "render/lights.hpp"
 #include "render/parallel.hpp"
 #include "render/raster.hpp"

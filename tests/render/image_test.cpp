@@ -5,6 +5,7 @@
 #include <nendo/base/files.hpp>
 
 #include "render/image.hpp"
+#include "render/lettering.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace image_test {
