@@ -14,7 +14,7 @@
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/triangles.hpp>
 
-#include "render/paint.hpp"
+#include "render/texture_image.hpp"
 
 namespace nendo::exporting {
 namespace {

@@ -16,7 +16,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/model_files.hpp"
-#include "render/paint.hpp"
+#include "render/texture_image.hpp"
 
 namespace nendo::takes {
 namespace {

@@ -8,7 +8,7 @@
 #include <nendo/deform/drawn_faces.hpp>
 #include <nendo/deform/triangles.hpp>
 
-#include "render/paint.hpp"
+#include "render/texture_image.hpp"
 #include "web/wire.hpp"
 
 namespace nendo::web {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "render/paint.hpp"
+#include "render/texture_image.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "render/paint.hpp"
+#include "render/texture_image.hpp"
 
 #include <array>
 #include <cmath>

@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "render/paint.hpp"
+#include "render/texture_image.hpp"
 
 namespace nendo::render {
 namespace {
