@@ -2,25 +2,18 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <new>
 #include <utility>
 #include <variant>
 
-#include <nendo/base/files.hpp>
-#include <nendo/deform/mesh_file.hpp>
 #include <nendo/flow/sculptor.hpp>
 #include <nendo/flow/setting.hpp>
 #include <nendo/puppet/puppet_edit.hpp>
 
-#include "cli/cli.hpp"
-#include "cli/output_place.hpp"
 #include "commands/commands.hpp"
 
 namespace nendo::session {
 namespace {
-
-constexpr std::chrono::milliseconds min_between_saves(250);
 
 Result<puppet::Puppet> edited(const flow::SetMask& mask, const puppet::Rig& rig) {
   const std::array stroke{Eigen::Vector3d(mask.at[0], mask.at[1], mask.at[2])};
@@ -77,81 +70,6 @@ std::optional<std::string> LoopCommands::dropped() {
   for (; reported_ < dropped_.size(); ++reported_)
     names += (names.empty() ? "" : ", ") + std::string(dropped_[reported_]);
   return "The loop is not responding; dropped: " + names + ".";
-}
-
-Result<void> write_shape(const std::string& out, const deform::Mesh& shape, deform::UpAxis up) {
-  const auto written = deform::write_mesh(out, shape, {}, up);
-  if (written) {
-    for (const std::string& lost : deform::lost_in_file(out, shape))
-      cli::note(out + ": " + lost);
-    return {};
-  }
-  const std::filesystem::path wanted(out);
-  std::error_code ignored, no_folder;
-  auto folder = std::filesystem::temp_directory_path(no_folder);
-  if (no_folder) folder = "/tmp"; // TMPDIR may name a place that is not there
-  const auto elsewhere = folder / wanted.filename();
-  if (std::filesystem::exists(elsewhere, ignored) || !deform::write_mesh(elsewhere, shape, {}, up))
-    return written.error();
-  return Error{Errc::failed,
-               written.error().message + "; the shape is in " + elsewhere.string() + " instead"};
-}
-
-RunSaving::RunSaving(const RunOptions& options, RunRecorder& recorder)
-    : out_(options.out), up_(options.reading.up.value_or(deform::UpAxis::y)), model_(options.mesh),
-      out_puppet_(options.out_puppet), recorder_(recorder) {}
-
-void RunSaving::add(const flow::Command& command) noexcept {
-  shape_ = shape_ || std::holds_alternative<flow::SaveShape>(command);
-  puppet_ = puppet_ || std::holds_alternative<flow::SavePuppet>(command);
-  recording_ = recording_ || std::holds_alternative<flow::SaveRecording>(command);
-}
-
-std::string RunSaving::save(flow::DeformLoop& loop) {
-  std::string report = std::exchange(shape_, false) ? save_shape(loop) : "";
-  if (std::exchange(recording_, false)) report += (report.empty() ? "" : "; ") + save_recording();
-  if (std::exchange(puppet_, false)) report += (report.empty() ? "" : "; ") + save_puppet(loop);
-  next_ = HostClock::now() + min_between_saves;
-  return report;
-}
-
-std::string RunSaving::save_recording() {
-  if (!recorder_.keeps_last_minute()) return commands::nothing_kept;
-  recorder_.save_last_minute();
-  return "what was just done is being kept";
-}
-
-/// Only the file that was opened, or that was saved before, is written over.
-std::string RunSaving::save_puppet(const flow::DeformLoop& loop) {
-  const auto& rig = loop.changes().puppet(loop.changes().newest_puppet());
-  if (!rig || out_puppet_.file.empty()) return "there is no puppet or mask to save";
-  std::error_code ignored;
-  if (!out_puppet_.may_be_replaced && std::filesystem::exists(out_puppet_.file, ignored)) {
-    int number = 1;
-    out_puppet_.file = cli::next_free_name(out_puppet_.file, number);
-  }
-  puppet::Puppet puppet = rig->puppet();
-  const auto name = cli::name_beside(model_, out_puppet_.file);
-  if (!name) return name.error().message;
-  if (puppet.model != *name) {
-    puppet.model = *name;
-    puppet.text = puppet::text_of(puppet);
-  }
-  puppet::count_from(-loop.changes().model(0)->mesh.offset, puppet);
-  const auto written = replace_file(out_puppet_.file, puppet.text);
-  if (!written) return written.error().message;
-  out_puppet_.may_be_replaced = true;
-  return (puppet.is_played() ? "the puppet is saved as " : "the mask is saved as ") +
-         out_puppet_.file;
-}
-
-std::string RunSaving::save_shape(flow::DeformLoop& loop) {
-  const std::string file = cli::next_free_name(out_, saved_);
-  const flow::Frame& frame = loop.frames().front();
-  deform::Mesh shape = loop.changes().model(frame.model)->mesh;
-  loop.changes().layout(frame.model).unpack(frame.shape, shape.vertices);
-  const auto written = deform::write_mesh(file, shape, {}, up_);
-  return written ? "saved as " + file : written.error().message;
 }
 
 void RunCommands::follow_frame(const flow::Frame& frame) {
