@@ -225,11 +225,11 @@ void Sculptor::drop(bool is_step) noexcept {
       [&](auto& hands) { hands.release(is_step); });
 }
 
-FieldStatus Sculptor::go(HistoryMove move, const Points& tips) noexcept {
+FieldStatus Sculptor::apply_history(HistoryMove move, const Points& tips) noexcept {
   return counted(std::visit([&](auto& deformer) { return deformer.go(move, tips); }, deformer_));
 }
 
-FieldStatus Sculptor::take_back(const Points& tips) noexcept {
+FieldStatus Sculptor::undo_uncommitted(const Points& tips) noexcept {
   return counted(each(
       deformer_, [&](auto& type1) { return type1.take_back(tips); },
       [&](Type2Deformer& type2) { return type2.go(HistoryMove::undo, tips); },

@@ -85,7 +85,8 @@ FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats,
 
 void Shaping::regrab(const Points& tips) noexcept {
   if (sculptor_->mode() == Mode::type1) {
-    const FieldStatus status = is_pulled() ? sculptor_->take_back(tips) : sculptor_->grab(tips);
+    const FieldStatus status =
+        is_pulled() ? sculptor_->undo_uncommitted(tips) : sculptor_->grab(tips);
     shaped_ = shaped_ && !is_solved(status);
     return;
   }

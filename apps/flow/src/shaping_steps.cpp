@@ -64,8 +64,8 @@ bool Shaping::take_step(Request step, const Points& tips, LoopStats& stats) noex
   if (step == Request::redo && model_->shape.redo_steps() == 0) return true;
   if (is_change_next(step)) return take_change(step, tips, stats);
   const FieldStatus status = step == Request::undo && is_pulled()
-                                 ? sculptor_->take_back(tips)
-                                 : sculptor_->go(history_move(step), tips);
+                                 ? sculptor_->undo_uncommitted(tips)
+                                 : sculptor_->apply_history(history_move(step), tips);
   if (!is_solved(status)) return false;
   ++shape_jumps_;
   count(step, stats);

@@ -128,10 +128,10 @@ public:
   void drop(bool is_step) noexcept;
   /// Moves the shape through its history, and grabs it at `tips`. If the equations have no
   /// solution, nothing changes. Does not allocate.
-  deform::FieldStatus go(deform::HistoryMove move, const deform::Points& tips) noexcept;
+  deform::FieldStatus apply_history(deform::HistoryMove move, const deform::Points& tips) noexcept;
   /// Undoes the shaping since the last commit, or of this stroke, as its own step
-  /// (Type1Deformer::take_back; in other modes an undo). Otherwise like go().
-  deform::FieldStatus take_back(const deform::Points& tips) noexcept;
+  /// (Type1Deformer::take_back; in other modes an undo). Otherwise like apply_history().
+  deform::FieldStatus undo_uncommitted(const deform::Points& tips) noexcept;
 
   /// Returns the number of successful grabs.
   std::uint64_t holds() const noexcept { return holds_; }
