@@ -104,11 +104,11 @@ const Row& row_of(EditCommand command) noexcept {
                        [&](const Row& row) { return row.edit && row.edit->command == command; });
 }
 
-Answer press(const Row& row, const Situation& now, flow::PendingSettings& wanted) {
+Answer press(const Row& row, const Situation& now, flow::PendingSettings& pending) {
   Answer answer{std::nullopt, row.refusal_in(now)};
   if (row.choose != nullptr) {
-    row.choose(wanted, now.frame);
-    answer.command = wanted.ask();
+    row.choose(pending, now.frame);
+    answer.command = pending.ask();
   } else if (row.make != nullptr) {
     answer.command = row.make(row.is_on_in(now));
     if (answer.refusal != nullptr && !std::holds_alternative<flow::Request>(*answer.command))

@@ -52,7 +52,7 @@ struct Row {
   bool repeats = false; ///< the key repeats while it is held down in the window
   /// Makes the command. `on`: is_on(), which the command then turns off.
   flow::Command (*make)(bool on) = nullptr;
-  void (*choose)(flow::PendingSettings& wanted, const flow::Frame& frame) = nullptr;
+  void (*choose)(flow::PendingSettings& pending, const flow::Frame& frame) = nullptr;
   std::optional<Edit> edit{};
   bool (*is_on)(const Situation& now) = nullptr;
   /// Returns why the command is not possible now, as a sentence; null: it is possible.
@@ -97,9 +97,9 @@ struct Answer {
   /// a command, because the loop may be some ticks ahead of the frame.
   const char* refusal = nullptr;
 };
-/// Returns the command of a row that is_for_run(). `wanted` is the caller's, after follow() with
+/// Returns the command of a row that is_for_run(). `pending` is the caller's, after follow() with
 /// the frame. Does not allocate.
-Answer press(const Row& row, const Situation& now, flow::PendingSettings& wanted);
+Answer press(const Row& row, const Situation& now, flow::PendingSettings& pending);
 
 // Refusals, for code that gets these commands without the table.
 inline constexpr const char* no_layers = "The gloves play whole hands here, and no layer; --layer "

@@ -123,8 +123,8 @@ bool plays(const Situation& now) {
   return !now.frame.let_go[flow::Placement::index_of(side)];
 }
 template <void (flow::PendingSettings::*change)() noexcept>
-void choose(flow::PendingSettings& wanted, const flow::Frame&) {
-  (wanted.*change)();
+void choose(flow::PendingSettings& pending, const flow::Frame&) {
+  (pending.*change)();
 }
 
 inline bool draws(const Situation& now) {
@@ -180,8 +180,8 @@ inline flow::Command toggle_symmetry(bool on) {
 inline bool is_symmetric(const Situation& now) {
   return now.frame.symmetric;
 }
-inline void choose_next_mode(flow::PendingSettings& wanted, const flow::Frame& frame) {
-  wanted.next_mode(frame.function_count > 0);
+inline void choose_next_mode(flow::PendingSettings& pending, const flow::Frame& frame) {
+  pending.next_mode(frame.function_count > 0);
 }
 
 /// Makes a row that the run executes.
@@ -200,7 +200,8 @@ consteval Row run_row(std::string_view name, const std::array<std::string_view, 
 /// Makes a row that changes the settings of a run.
 consteval Row setting_row(std::string_view name, const std::array<std::string_view, 3>& keys,
                           std::string_view help,
-                          void (*choose)(flow::PendingSettings& wanted, const flow::Frame& frame)) {
+                          void (*choose)(flow::PendingSettings& pending,
+                                         const flow::Frame& frame)) {
   return {.name = name, .keys = keys, .help = help, .choose = choose};
 }
 /// Makes a row that the window or the page executes itself.

@@ -50,15 +50,15 @@ public:
     server_->set_puppet(status.frame.puppet, status.puppet.get());
     server_->set_clay(status.frame);
     update_weights();
-    wanted_.follow(status.frame.settings);
+    pending_.follow(status.frame.settings);
     while (auto asked = server_->next_command()) {
       if (const auto* const row = std::get_if<const commands::Row*>(&*asked)) {
-        const commands::Answer answer = commands::press(**row, status.situation(), wanted_);
+        const commands::Answer answer = commands::press(**row, status.situation(), pending_);
         if (answer.command) asks.emplace_back(*answer.command);
         if (answer.refusal != nullptr) server_->report(answer.refusal);
       } else if (const auto* const settings = std::get_if<web::NamedSettings>(&*asked)) {
-        settings->apply_to(wanted_.now);
-        if (const auto change = wanted_.ask()) asks.emplace_back(*change);
+        settings->apply_to(pending_.now);
+        if (const auto change = pending_.ask()) asks.emplace_back(*change);
       } else {
         asks.emplace_back(std::get<flow::Command>(*asked));
       }
@@ -97,7 +97,7 @@ private:
 
   std::unique_ptr<web::Server> server_;
   VersionTarget<web::FrameStream> streams_;
-  flow::PendingSettings wanted_;      ///< the settings of all clients
+  flow::PendingSettings pending_;     ///< the settings of all clients
   std::uint64_t weights_ = 0;         ///< deform::SurfaceField::number() of the last weights
   web::Pictures pictures_;            ///< the textures of all versions of the model
   std::vector<std::byte> next_model_; ///< the message of the last prepared version

@@ -106,12 +106,12 @@ public:
     if (row == nullptr) return;
     if (!row->is_for_run())
       return report("keys:" + commands::key_list(commands::in_terminal, "\n  ", "  "));
-    wanted_.follow(status.frame.settings);
-    const commands::Answer answer = commands::press(*row, status.situation(), wanted_);
+    pending_.follow(status.frame.settings);
+    const commands::Answer answer = commands::press(*row, status.situation(), pending_);
     if (answer.command) asks.emplace_back(*answer.command);
     if (answer.refusal != nullptr) report(answer.refusal);
     if (row->choose != nullptr && answer.command)
-      report(flow::in_words(wanted_.now, status.frame.units_per_metre));
+      report(flow::in_words(pending_.now, status.frame.units_per_metre));
   }
   /// Writes to standard error, also without keys.
   void report(const std::string& message) override {
@@ -122,7 +122,7 @@ public:
 private:
   cli::Keys keys_;
   milliseconds timeout_;
-  flow::PendingSettings wanted_;
+  flow::PendingSettings pending_;
 };
 
 std::size_t max_undo_bytes(const RunOptions& options) noexcept {

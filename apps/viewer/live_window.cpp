@@ -80,8 +80,8 @@ Result<std::unique_ptr<LiveWindow>> LiveWindow::open(const std::string& title, r
 void LiveWindow::begin(const deform::BlockLayout& layout, const render::SceneBuilder& builder,
                        const flow::LoopSettings& settings) {
   set_model(layout, builder);
-  panel_->wanted.follow(settings);
-  panel_->one_radius = panel_->wanted.has_one_radius();
+  panel_->pending.follow(settings);
+  panel_->one_radius = panel_->pending.has_one_radius();
   scene_frame_.radius_m = settings.radius_m;
   holds_ = {};
 }
@@ -126,7 +126,7 @@ const std::string& LiveWindow::message() const noexcept {
 }
 
 const flow::LoopSettings& LiveWindow::settings() const noexcept {
-  return panel_->wanted.now;
+  return panel_->pending.now;
 }
 
 // That of the loop, or that of the editor.

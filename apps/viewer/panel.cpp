@@ -134,9 +134,9 @@ void LiveWindow::Panel::parts(SceneWindow& window) {
 }
 
 void LiveWindow::Panel::follow_settings(const flow::LoopSettings& current) {
-  if (!wanted.follow(current)) return;
-  if (!wanted.has_one_radius()) one_radius = false;
-  if (!wanted.has_one_brush()) one_brush = false;
+  if (!pending.follow(current)) return;
+  if (!pending.has_one_radius()) one_radius = false;
+  if (!pending.has_one_brush()) one_brush = false;
 }
 
 /// One for all fingers, or one for each. A choice also chooses type 2, which has them.
@@ -163,7 +163,7 @@ void LiveWindow::Panel::brushes(flow::LoopSettings& chosen) {
 }
 
 void LiveWindow::Panel::settings() {
-  flow::LoopSettings& chosen = wanted.now;
+  flow::LoopSettings& chosen = pending.now;
   int mode = static_cast<int>(chosen.mode);
   const float half = ImGui::GetContentRegionAvail().x * 0.64F;
   ImGui::RadioButton("type 1: pull", &mode, 0);
@@ -326,12 +326,12 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
   ImGui::End();
   if (!commands.empty()) panel_->note.clear();
   panel_->keys(now, *window_, *editor_, commands);
-  if (const auto change = panel_->wanted.ask()) commands.push_back(*change);
+  if (const auto change = panel_->pending.ask()) commands.push_back(*change);
 }
 
 void LiveWindow::Panel::ask(const commands::Row& row, const commands::Situation& now,
                             Commands& commands) {
-  const commands::Answer answer = commands::press(row, now, wanted);
+  const commands::Answer answer = commands::press(row, now, pending);
   if (answer.command) commands.push_back(*answer.command);
   note = answer.refusal != nullptr ? answer.refusal : "";
 }

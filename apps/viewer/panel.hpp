@@ -35,7 +35,7 @@ struct LiveWindow::Panel {
   static constexpr float gap_px = 10.0F; ///< the gap to the window's edges
   static constexpr float width_px = 250.0F;
 
-  flow::PendingSettings wanted;
+  flow::PendingSettings pending;
   Strip late_ms, gap_ms, pictures_ms;
   bool keys_shown = false;
   bool one_radius = true;

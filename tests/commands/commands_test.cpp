@@ -46,9 +46,9 @@ struct State {
 };
 
 commands::Answer press(const Row& row, const State& state) {
-  flow::PendingSettings wanted;
-  wanted.follow(state.frame.settings);
-  return commands::press(row, state.now(), wanted);
+  flow::PendingSettings pending;
+  pending.follow(state.frame.settings);
+  return commands::press(row, state.now(), pending);
 }
 
 /// What a user types in the terminal: one character, or nothing if that cannot be.
@@ -206,10 +206,10 @@ TEST_SUITE("commands") {
     frame.settings.filter.min_cutoff_hz = 3.5;
     const commands::RunFacts facts;
     for (const auto kind : {hand::FilterKind::one_euro, hand::FilterKind::off}) {
-      flow::PendingSettings wanted;
-      wanted.follow(frame.settings);
+      flow::PendingSettings pending;
+      pending.follow(frame.settings);
       const auto answer =
-          commands::press(*commands::with_key("F", commands::in_terminal), {frame, facts}, wanted);
+          commands::press(*commands::with_key("F", commands::in_terminal), {frame, facts}, pending);
       REQUIRE(answer.command);
       const auto* const change = std::get_if<flow::ChangeSettings>(&*answer.command);
       REQUIRE(change != nullptr);
