@@ -8,7 +8,7 @@
 #include <nendo/deform/surface_deformer.hpp>
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/hand/held_points.hpp>
-#include <nendo/puppet/puppet.hpp>
+#include <nendo/puppet/rig.hpp>
 
 namespace nendo::flow {
 

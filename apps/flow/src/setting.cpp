@@ -11,6 +11,7 @@
 
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/flow/loop_settings.hpp>
+#include <nendo/puppet/rig.hpp>
 
 namespace nendo::flow {
 namespace {

@@ -16,7 +16,10 @@
 #include <nendo/deform/type1.hpp>
 #include <nendo/deform/type2.hpp>
 #include <nendo/flow/clay_hands.hpp>
-#include <nendo/puppet/rig.hpp>
+
+namespace nendo::puppet {
+class Rig;
+} // namespace nendo::puppet
 
 namespace nendo::flow {
 

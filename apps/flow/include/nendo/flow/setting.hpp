@@ -15,7 +15,11 @@
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/step.hpp>
 #include <nendo/hand/joint_filter.hpp>
-#include <nendo/puppet/rig.hpp>
+
+namespace nendo::puppet {
+struct Puppet;
+class Rig;
+} // namespace nendo::puppet
 
 namespace nendo::flow {
 
