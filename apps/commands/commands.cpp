@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "commands/run_rows.hpp"
+#include "commands/rows.hpp"
 
 namespace nendo::commands {
 namespace {

@@ -13,18 +13,25 @@ consteval std::array<std::string_view, 3> keys(std::string_view first, std::stri
   return {first, second, third};
 }
 
-/// Makes a row of the timeline editor.
-consteval Row edit_row(std::string_view name, const std::array<std::string_view, 3>& keys,
-                       std::string_view help, const Edit& edit, Buttons group = Buttons::none,
-                       std::string_view button = {}, std::string_view button_on = {}) {
+/// Makes a row that may have a button.
+consteval Row button_row(std::string_view name, const std::array<std::string_view, 3>& keys,
+                         std::string_view help, Buttons group, std::string_view button,
+                         std::string_view button_on) {
   return {.name = name,
           .keys = keys,
           .help = help,
           .button = button,
           .button_on = button_on,
-          .group = group,
-          .places = in_timeline,
-          .edit = edit};
+          .group = group};
+}
+/// Makes a row of the timeline editor.
+consteval Row edit_row(std::string_view name, const std::array<std::string_view, 3>& keys,
+                       std::string_view help, const Edit& edit, Buttons group = Buttons::none,
+                       std::string_view button = {}, std::string_view button_on = {}) {
+  Row row = button_row(name, keys, help, group, button, button_on);
+  row.places = in_timeline;
+  row.edit = edit;
+  return row;
 }
 consteval Row repeating(Row row) {
   row.repeats = true;
@@ -189,13 +196,9 @@ consteval Row run_row(std::string_view name, const std::array<std::string_view, 
                       std::string_view help, flow::Command (*make)(bool on),
                       Buttons group = Buttons::none, std::string_view button = {},
                       std::string_view button_on = {}) {
-  return {.name = name,
-          .keys = keys,
-          .help = help,
-          .button = button,
-          .button_on = button_on,
-          .group = group,
-          .make = make};
+  Row row = button_row(name, keys, help, group, button, button_on);
+  row.make = make;
+  return row;
 }
 /// Makes a row that changes the settings of a run.
 consteval Row setting_row(std::string_view name, const std::array<std::string_view, 3>& keys,
