@@ -5,7 +5,6 @@
 // about 2 seconds.
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 

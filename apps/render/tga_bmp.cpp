@@ -3,11 +3,8 @@
 
 #include "render/image.hpp"
 
-#include <cstdint>
 #include <cstdlib>
 #include <memory>
-#include <string>
-#include <vector>
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC

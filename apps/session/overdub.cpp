@@ -7,7 +7,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <nendo/flow/sculptor.hpp>
-#include <nendo/recording/loop_replay.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/quantities.hpp"

@@ -1,9 +1,7 @@
 #include "session/run_commands.hpp"
 
 #include <algorithm>
-#include <array>
 #include <new>
-#include <utility>
 #include <variant>
 
 #include <nendo/flow/sculptor.hpp>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <utility>
 
 #include <nendo/deform/topology.hpp>
 #include <nendo/deform/triangles.hpp>

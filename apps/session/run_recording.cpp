@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <nendo/deform/simd.hpp>
-#include <nendo/driver/record_counts.hpp>
 #include <nendo/version.hpp>
 
 #include "cli/cli.hpp"

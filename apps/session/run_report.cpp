@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iostream>
 #include <numeric>
-#include <string>
 #include <string_view>
 #include <utility>
 

@@ -1,6 +1,5 @@
 #include "web/client_commands.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>

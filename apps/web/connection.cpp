@@ -1,7 +1,6 @@
 #include "web/connection.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <utility>
 

@@ -2,7 +2,6 @@
 // An HTTP server. It sends one page to browsers, and the frames of a running loop over WebSockets
 // to clients with the token (PROTOCOL.md). One thread owns all sockets, which are non-blocking.
 
-#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>

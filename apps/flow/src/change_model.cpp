@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <nendo/flow/finger_supports.hpp>
-#include <nendo/flow/sculptor.hpp>
 
 namespace nendo::flow {
 

@@ -1,7 +1,6 @@
 #include <nendo/flow/clay_hands.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>

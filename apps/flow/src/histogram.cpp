@@ -1,6 +1,5 @@
 #include <nendo/flow/histogram.hpp>
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/edit_part.hpp>

@@ -1,13 +1,10 @@
 #include <nendo/flow/pacer.hpp>
 
-#include <algorithm>
-#include <array>
 #include <cassert>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <ctime>
-#include <limits>
 #include <utility>
 
 #include <nendo/base/atomics.hpp>

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <numeric>
-#include <string>
 #include <type_traits>
 
-#include <nendo/deform/surface_deformer.hpp>
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/hand/held_points.hpp>
 #include <nendo/puppet/rig.hpp>

@@ -1,16 +1,10 @@
 #include <nendo/flow/setting.hpp>
 
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <numeric>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include <nendo/flow/finger_supports.hpp>
-#include <nendo/flow/loop_settings.hpp>
 #include <nendo/puppet/rig.hpp>
 
 namespace nendo::flow {

@@ -1,6 +1,5 @@
 #include <nendo/flow/shaping_core.hpp>
 
-#include <algorithm>
 #include <utility>
 
 #include <nendo/flow/command.hpp>

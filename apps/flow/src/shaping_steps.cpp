@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include <nendo/deform/sculpted_shape.hpp>
-#include <nendo/flow/frame.hpp>
 
 namespace nendo::flow {
 

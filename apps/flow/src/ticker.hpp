@@ -2,7 +2,6 @@
 // The side of a DeformLoop that belongs to the thread of run(): inputs, core, statistics, frames.
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 

@@ -2,8 +2,6 @@
 // Computes a frame from hand poses, commands and prepared changes. It has no clock, thread or ring,
 // so that loops, replays and timelines make the same shapes.
 
-#include <array>
-#include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
