@@ -104,16 +104,6 @@ Result<PlacedLoop> make_loop(PlacedSetup setup, const deform::Mesh& model,
   return PlacedLoop{*std::move(loop), std::move(setup)};
 }
 
-/// The radii of the hand that joins are those of the hand that was there alone.
-void add_hand(deform::Supports& supports) {
-  constexpr Eigen::Index tips = 5;
-  const auto own = supports.own;
-  for (deform::OwnSupport support : own) {
-    support.point += tips;
-    supports.own.push_back(support);
-  }
-}
-
 /// Makes the loop of the take, whose hands keep their places.
 Result<PlacedLoop> place_over(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                               const deform::Mesh& model) {
@@ -134,7 +124,8 @@ Result<PlacedLoop> place_over(const RunOptions& options, const std::vector<glove
   if (!flow::is_played(rig) && flow::count_hands(setup.inputs) > flow::count_hands(take.hands)) {
     deform::Supports& supports = setup.options.sculptor.deformer.supports;
     if (flow::mirror_of(rig)) supports = flow::of_one_side(std::move(supports), 5);
-    add_hand(supports);
+    // The radii of the hand that joins are those of the hand that was there alone.
+    supports = flow::of_both_sides(std::move(supports), 5);
     if (flow::mirror_of(rig)) supports = flow::of_both_sides(std::move(supports), 10);
   }
   const deform::BlockShape first(take.loop->rest);
