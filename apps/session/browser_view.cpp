@@ -76,9 +76,7 @@ private:
                                       "; run it without --web, or reduce the model"};
   }
   std::shared_ptr<web::FrameStream> stream_for(const deform::BlockLayout& layout) const {
-    const FrameCapacity most = frame_capacity(*placed_);
-    return std::make_shared<web::FrameStream>(
-        layout, web::FrameStream::Capacity{most.fields, most.functions, most.vectors});
+    return std::make_shared<web::FrameStream>(layout, frame_capacity(*placed_));
   }
   std::vector<std::byte> message_for(const deform::BlockLayout& layout,
                                      const deform::Mesh& mesh) const {

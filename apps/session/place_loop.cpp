@@ -174,7 +174,7 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
   return make_loop(std::move(setup), model, nullptr);
 }
 
-FrameCapacity frame_capacity(const PlacedLoop& placed) {
+flow::FrameCapacity frame_capacity(const PlacedLoop& placed) {
   const auto& rig = placed.setup.options.rig;
   const bool is_played = flow::is_played(rig.get());
   const auto hands = static_cast<Eigen::Index>(flow::count_hands(placed.setup.inputs));

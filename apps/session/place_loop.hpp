@@ -1,7 +1,6 @@
 #pragma once
 // Places the hands at the model, and makes the loop.
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -42,13 +41,8 @@ struct LoopStart {
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                               const deform::Mesh& model);
 
-/// The max contents of a loop's frame, with any settings.
-struct FrameCapacity {
-  std::size_t fields = 0;
-  std::size_t functions = 0; ///< functions per field
-  std::size_t vectors = 0;   ///< vectors of deform::SurfaceMove
-};
-FrameCapacity frame_capacity(const PlacedLoop& placed);
+/// Returns the max contents of the frames of that loop.
+flow::FrameCapacity frame_capacity(const PlacedLoop& placed);
 
 /// Parses --radius. Returns the supports of both hands' fingertips, in model units; nothing if the
 /// text is empty. Error: usage.

@@ -13,7 +13,7 @@ namespace {
 publish::LoopOutline outline_of(const PlacedLoop& placed, const deform::Mesh& model,
                                 const deform::BlockLayout& layout) {
   const auto& options = placed.setup.options;
-  const FrameCapacity most = frame_capacity(placed);
+  const flow::FrameCapacity most = frame_capacity(placed);
   return {&model,
           &layout,
           options.sculptor.mode,

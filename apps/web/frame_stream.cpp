@@ -39,7 +39,7 @@ bool is_type1(const flow::Frame& frame) noexcept {
 
 } // namespace
 
-FrameStream::FrameStream(const deform::BlockLayout& layout, const Capacity& capacity)
+FrameStream::FrameStream(const deform::BlockLayout& layout, const flow::FrameCapacity& capacity)
     : origin_(layout.origin()), unit_(layout.unit()), vertices_(layout.vertex_count()),
       max_drift_(std::pow(max_drift * layout.diagonal() / layout.unit(), 2)), rest_(layout.pack()),
       record_((sizeof(RecordHead) + sizeof(UpdateHead) + 2 * hand_bytes + step_head_bytes +

@@ -35,15 +35,8 @@ struct Record {
 
 class FrameStream final : public flow::FrameSink {
 public:
-  /// The max contents of a frame, with any settings.
-  struct Capacity {
-    std::size_t fields = 0;
-    std::size_t functions = 0; ///< max per field
-    std::size_t vectors = 0;   ///< max of deform::SurfaceMove
-  };
-
   /// layout: of a loop that has not begun yet. Allocates all memory for show().
-  FrameStream(const deform::BlockLayout& layout, const Capacity& capacity);
+  FrameStream(const deform::BlockLayout& layout, const flow::FrameCapacity& capacity);
 
   /// Writes a record if the stream is active. Copies the shape's changed blocks if it was
   /// requested, after a commit and after an undo. Loop's thread; wait-free.

@@ -35,10 +35,10 @@ struct StreamedLoop {
     const deform::BlockLayout layout(test.model.vertices);
     constexpr std::size_t max_fields = 64;
     stream = std::make_shared<web::FrameStream>(
-        layout, web::FrameStream::Capacity{max_fields,
-                                           static_cast<std::size_t>(std::max<Eigen::Index>(
-                                               20, 2 * supports.functions(points))),
-                                           static_cast<std::size_t>(2 * points)});
+        layout, flow::FrameCapacity{max_fields,
+                                    static_cast<std::size_t>(
+                                        std::max<Eigen::Index>(20, 2 * supports.functions(points))),
+                                    static_cast<std::size_t>(2 * points)});
     test.options.sinks = {stream.get()};
     make_loop();
     model = web::model_message(test.loop->changes().layout(), test.model, test.inputs,

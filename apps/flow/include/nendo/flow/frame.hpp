@@ -120,6 +120,13 @@ struct Frame {
 
 using FrameExchange = TripleBuffer<Frame>;
 
+/// The max contents of a loop's frames, with any settings.
+struct FrameCapacity {
+  std::size_t fields = 0;
+  std::size_t functions = 0; ///< functions per field
+  std::size_t vectors = 0;   ///< vectors of deform::SurfaceMove
+};
+
 /// Receives every frame of a loop. A single reader that needs only the newest frame uses
 /// DeformLoop::frames() instead.
 class NENDO_API FrameSink {
