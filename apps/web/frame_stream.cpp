@@ -182,6 +182,9 @@ std::optional<FrameStream::Shape> FrameStream::take_shape() {
 
 namespace {
 
+/// The missed records of a glove that does not report them.
+constexpr std::uint32_t unknown_count = 0xFFFFFFFF;
+
 bool has_fields(const Record& record) noexcept {
   std::uint16_t count = 0;
   std::memcpy(&count, record.step.data() + 2, sizeof count);
@@ -244,7 +247,8 @@ std::optional<std::vector<std::byte>> Feed::update(std::span<const Record> recor
     const auto& [counts, uncalibrated] = counters.gloves[slot];
     head.bad_records[slot] = static_cast<std::uint32_t>(counts.bad);
     head.delivered[slot] = static_cast<std::uint32_t>(counts.delivered);
-    head.missed_records[slot] = static_cast<std::uint32_t>(counts.missed);
+    head.missed_records[slot] =
+        counts.counts_missed ? static_cast<std::uint32_t>(counts.missed) : unknown_count;
     head.refused[slot] = static_cast<std::uint32_t>(counts.refused);
     if (uncalibrated) head.state = static_cast<std::uint8_t>(head.state | 2U << slot);
   }

@@ -143,16 +143,9 @@ void Server::set_clay(const flow::Frame& frame) {
   set_fact(clay_fact, clay_message(frame));
 }
 
-void Server::set_gloves(const GloveStates& gloves) noexcept {
-  for (std::size_t slot = 0; slot < gloves.size(); ++slot) {
-    Work::SharedGloveState& shared = work_->gloves[slot];
-    const auto& [counts, uncalibrated] = gloves[slot];
-    shared.delivered = counts.delivered;
-    shared.missed = counts.counts_missed ? counts.missed : Work::unknown_count;
-    shared.refused = counts.refused;
-    shared.bad = counts.bad;
-    shared.uncalibrated = uncalibrated;
-  }
+void Server::set_gloves(const GloveStates& gloves) {
+  const std::scoped_lock lock(work_->inbox.mutex);
+  work_->inbox.gloves = gloves;
 }
 
 ServerCounters Server::counters() const noexcept {
@@ -324,14 +317,11 @@ void Server::Work::send_frames(HostTime now) {
     bytes = shared_message(std::move(shape->message));
   }
   feed_counters_.lost = presented_.stream->lost();
-  if (!records_.empty() && records_.back().weights != 0) {
+  {
     const std::scoped_lock lock(inbox.mutex);
-    inbox.weights_in_use = records_.back().weights;
-  }
-  for (std::size_t slot = 0; slot < gloves.size(); ++slot) {
-    const SharedGloveState& shared = gloves[slot];
-    feed_counters_.gloves[slot] = {{shared.delivered, shared.missed, shared.refused, shared.bad},
-                                   shared.uncalibrated};
+    feed_counters_.gloves = inbox.gloves;
+    if (!records_.empty() && records_.back().weights != 0)
+      inbox.weights_in_use = records_.back().weights;
   }
   bool shape_wanted = false;
   for (Connection& client : connections_) {

@@ -99,8 +99,8 @@ public:
   void set_puppet(std::uint32_t number, const puppet::Rig* rig);
   /// Sets the state of clay. Notifies clients at most 30 times per second.
   void set_clay(const flow::Frame& frame);
-  /// Sets the state of each glove. Wait-free.
-  void set_gloves(const GloveStates& gloves) noexcept;
+  /// Sets the state of each glove.
+  void set_gloves(const GloveStates& gloves);
   /// Returns the counters. Each number is atomic; together they are not a consistent snapshot.
   /// Wait-free.
   ServerCounters counters() const noexcept;

@@ -34,14 +34,6 @@ public:
   // The server's thread writes or shares the following members.
   /// Enough for commands of 16 clients in half a second. Further commands are dropped.
   SpscRing<ClientCommand> commands{1024};
-  /// `missed` of a glove that does not report it: all bits set, also in the 32 that are sent.
-  static constexpr std::uint64_t unknown_count = ~std::uint64_t{0};
-  /// Each number is atomic; together they are not a consistent snapshot.
-  struct SharedGloveState {
-    std::atomic<std::uint64_t> delivered{0}, missed{0}, refused{0}, bad{0};
-    std::atomic<bool> uncalibrated{false};
-  };
-  std::array<SharedGloveState, 2> gloves; ///< index: flow::Placement::index_of(side)
   struct Counts {
     std::atomic<std::uint64_t> clients{0}, accepted{0}, refused{0}, dropped{0}, updates{0},
         update_bytes{0}, shapes{0}, shape_bytes{0}, weights{0}, skipped{0};
@@ -67,7 +59,8 @@ public:
     std::uint16_t loops = 0;
     std::string report;   ///< the newest report; empty: already sent
     HostTime next_clay{}; ///< the earliest time of the next clay message
-    Facts facts;          ///< messages; null until they are set
+    GloveStates gloves;
+    Facts facts;                                      ///< messages; null until they are set
     std::array<std::uint64_t, fact_count> versions{}; ///< the last versions of versioned facts
     std::vector<Weights> weights;                     ///< oldest first
     std::uint64_t weights_in_use = 0;
