@@ -245,13 +245,9 @@ std::uint64_t triangles_of(const deform::Mesh& mesh) noexcept {
 
 std::vector<float> floats_of(const deform::BlockShape& shape, const deform::BlockLayout& layout) {
   std::vector<float> floats(3 * layout.vertex_count());
-  for (std::size_t at = 0; at < layout.vertex_count(); ++at) {
-    const auto& block = shape[at / deform::block_size];
-    float* const to = &floats[3 * std::size_t{layout.order()[at]}];
-    to[0] = block.x[at % deform::block_size];
-    to[1] = block.y[at % deform::block_size];
-    to[2] = block.z[at % deform::block_size];
-  }
+  for (std::size_t at = 0; at < layout.vertex_count(); ++at)
+    Eigen::Vector3f::Map(&floats[3 * std::size_t{layout.order()[at]}]) =
+        deform::vertex_at(shape, at);
   return floats;
 }
 

@@ -169,13 +169,8 @@ std::optional<FrameStream::Shape> FrameStream::take_shape() {
   head.number = shape_copy_number_;
   WireWriter out(shape.message);
   out.put(head);
-  for (std::size_t at = 0; at < vertices_; ++at) {
-    const deform::VertexBlock& block = shape_copy_[at / deform::block_size];
-    const std::size_t lane = at % deform::block_size;
-    out.put(block.x[lane]);
-    out.put(block.y[lane]);
-    out.put(block.z[lane]);
-  }
+  for (std::size_t at = 0; at < vertices_; ++at)
+    out.put(deform::vertex_at(shape_copy_, at));
   request_.store(ShapeRequest::none, std::memory_order_release);
   return shape;
 }

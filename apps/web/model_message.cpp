@@ -171,11 +171,8 @@ std::vector<std::byte> model_message(const deform::BlockLayout& layout, const de
     write_bones(hand->skeleton(opposite(hand->first.side)), out);
   }
   const deform::BlockShape shape = layout.pack();
-  for (std::size_t at = 0; at < layout.vertex_count(); ++at) {
-    const deform::VertexBlock& block = shape[at / deform::block_size];
-    for (const auto* axis : {&block.x, &block.y, &block.z})
-      out.put((*axis)[at % deform::block_size]);
-  }
+  for (std::size_t at = 0; at < layout.vertex_count(); ++at)
+    out.put(deform::vertex_at(shape, at));
   const auto put_all = [&out](const auto& values) {
     for (const auto& value : values)
       out.put(value);
