@@ -15,7 +15,6 @@
 #include <unistd.h>
 
 #include <nendo/deform/triangles.hpp>
-#include <nendo_publish.h>
 
 namespace nendo::publish {
 
@@ -276,29 +275,36 @@ std::uint64_t state_words(std::uint32_t state) noexcept {
 
 } // namespace
 
-SegmentPlan plan_segment(const LoopOutline& outline) noexcept {
+nendo_publish_header plan_segment(const LoopOutline& outline) noexcept {
   const auto whole_lines = [](std::uint64_t bytes) { return (bytes + 63) / 64 * 64; };
-  SegmentPlan plan;
-  plan.vertices = outline.layout->vertex_count();
-  plan.triangles = triangles_of(*outline.model);
+  const std::uint64_t vertices = outline.layout->vertex_count();
+  const std::uint64_t triangles = triangles_of(*outline.model);
+  nendo_publish_header plan{};
+  std::memcpy(plan.magic, NENDO_PUBLISH_MAGIC, sizeof plan.magic);
+  plan.byte_order = NENDO_PUBLISH_BYTE_ORDER;
+  plan.major = NENDO_PUBLISH_MAJOR;
+  plan.minor = NENDO_PUBLISH_MINOR;
+  plan.vertices = static_cast<std::uint32_t>(vertices);
+  plan.triangles = static_cast<std::uint32_t>(triangles);
   plan.record_stride = whole_lines(8 * max_record_words(outline));
   const auto records_per_second =
       static_cast<std::uint64_t>(std::clamp(outline.rate_hz, 4.0, 1024.0));
-  plan.record_slots =
-      std::clamp(max_record_bytes / plan.record_stride, std::uint64_t{4}, records_per_second);
-  plan.shape_stride = whole_lines(8 * shape_slot_words(plan.vertices));
+  plan.record_slots = static_cast<std::uint32_t>(
+      std::clamp(max_record_bytes / plan.record_stride, std::uint64_t{4}, records_per_second));
+  plan.shape_stride = whole_lines(8 * shape_slot_words(vertices));
   plan.shape_slots = 4;
   plan.setup_offset = sizeof(nendo_publish_header);
   plan.triangles_offset = plan.setup_offset + sizeof(nendo_publish_setup);
-  plan.rest_offset = whole_lines(plan.triangles_offset + 12 * plan.triangles);
-  plan.records_offset = whole_lines(plan.rest_offset + 12 * plan.vertices);
+  plan.rest_offset = whole_lines(plan.triangles_offset + 12 * triangles);
+  plan.records_offset = whole_lines(plan.rest_offset + 12 * vertices);
   plan.shapes_offset = plan.records_offset + plan.record_slots * plan.record_stride;
   plan.segment_bytes = plan.shapes_offset + plan.shape_slots * plan.shape_stride;
   return plan;
 }
 
 Result<void> SegmentPublisher::begin(const LoopOutline& outline) {
-  if (!memory_ || plan_segment(outline) != plan_) {
+  const nendo_publish_header plan = plan_segment(outline);
+  if (!memory_ || std::memcmp(&plan, &plan_, sizeof plan) != 0) {
     if (auto laid = lay_out(outline); !laid) return laid;
     return announce();
   }
@@ -339,24 +345,8 @@ void SegmentPublisher::describe(const LoopOutline& outline) {
 }
 
 void SegmentPublisher::write_header() noexcept {
-  nendo_publish_header header{};
-  std::memcpy(header.magic, NENDO_PUBLISH_MAGIC, sizeof header.magic);
-  header.byte_order = NENDO_PUBLISH_BYTE_ORDER;
-  header.major = NENDO_PUBLISH_MAJOR;
-  header.minor = NENDO_PUBLISH_MINOR;
-  header.segment_bytes = plan_.segment_bytes;
+  nendo_publish_header header = plan_;
   header.writer_pid = static_cast<std::uint32_t>(::getpid());
-  header.vertices = static_cast<std::uint32_t>(plan_.vertices);
-  header.triangles = static_cast<std::uint32_t>(plan_.triangles);
-  header.record_slots = static_cast<std::uint32_t>(plan_.record_slots);
-  header.shape_slots = static_cast<std::uint32_t>(plan_.shape_slots);
-  header.setup_offset = plan_.setup_offset;
-  header.triangles_offset = plan_.triangles_offset;
-  header.rest_offset = plan_.rest_offset;
-  header.records_offset = plan_.records_offset;
-  header.record_stride = plan_.record_stride;
-  header.shapes_offset = plan_.shapes_offset;
-  header.shape_stride = plan_.shape_stride;
   header.created_monotonic_ns = now_ns(CLOCK_MONOTONIC);
   header.created_realtime_ns = now_ns(CLOCK_REALTIME);
   std::array<std::uint64_t, sizeof header / 8> words{};

@@ -12,6 +12,7 @@
 #include <nendo/base/unique_fd.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/flow/frame.hpp>
+#include <nendo_publish.h>
 
 #include "publish/frame_record.hpp"
 
@@ -90,19 +91,10 @@ private:
   std::uint64_t changes_ = 0;
 };
 
-/// Sizes and offsets in bytes, with the names of nendo_publish_header.
-struct SegmentPlan {
-  std::uint64_t vertices = 0, triangles = 0;
-  std::uint64_t record_slots = 0, record_stride = 0;
-  std::uint64_t shape_slots = 0, shape_stride = 0;
-  std::uint64_t setup_offset = 0, triangles_offset = 0, rest_offset = 0;
-  std::uint64_t records_offset = 0, shapes_offset = 0, segment_bytes = 0;
-
-  friend bool operator==(const SegmentPlan&, const SegmentPlan&) = default;
-};
-/// Returns the plan for such a loop. It has space for the records of one second, but at least 4, at
-/// most 1024 and, above 4, at most 16 MiB. It has space for four shapes.
-SegmentPlan plan_segment(const LoopOutline& outline) noexcept;
+/// Returns the header of the segment of such a loop, without the writer and the times. It has space
+/// for the records of one second, but at least 4, at most 1024 and, above 4, at most 16 MiB. It has
+/// space for four shapes.
+nendo_publish_header plan_segment(const LoopOutline& outline) noexcept;
 
 struct SegmentCounts {
   std::uint64_t records = 0;       ///< frames shown
@@ -143,7 +135,7 @@ private:
   std::string name_;
   std::optional<unsigned> group_;
   std::optional<SharedMemory> memory_;
-  SegmentPlan plan_;
+  nendo_publish_header plan_{};
   RecordRing records_;
   ShapeRing shapes_;
   FrameRecord record_;
