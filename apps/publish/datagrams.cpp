@@ -6,8 +6,6 @@
 #include <cstring>
 #include <system_error>
 
-#include <nendo_publish.h>
-
 namespace nendo::publish {
 namespace {
 
@@ -118,50 +116,36 @@ void DatagramPublisher::send_record() noexcept {
   head.number = record.number;
   head.tick = record.tick;
   head.woke_ns = record.woke_ns;
-  std::memcpy(datagram_.data(), &head, sizeof head);
-  for (unsigned side = 0; side < 2; ++side)
-    if ((record.hands[side].flags & NENDO_PUBLISH_PRESENT) != 0) send_hand(side);
-  send_update();
-}
-
-void DatagramPublisher::send_hand(unsigned side) noexcept {
-  auto head = nendo_publish_datagram{};
-  std::memcpy(&head, datagram_.data(), sizeof head);
   head.kind = 1;
-  head.side = static_cast<std::uint8_t>(side);
-  head.part = 0;
   head.parts = 1;
-  head.offset = 0;
-  std::memcpy(datagram_.data(), &head, sizeof head);
-  const auto* const bytes = reinterpret_cast<const std::byte*>(words_.data());
-  std::memcpy(datagram_.data() + head_bytes,
-              bytes + offsetof(nendo_publish_record, hands) + side * sizeof(nendo_publish_hand),
-              sizeof(nendo_publish_hand));
-  send(sizeof(nendo_publish_hand));
+  for (std::uint8_t side = 0; side < 2; ++side) {
+    const nendo_publish_hand& hand = record.hands[side];
+    if ((hand.flags & NENDO_PUBLISH_PRESENT) == 0) continue;
+    head.side = side;
+    send(head, reinterpret_cast<const std::byte*>(&hand), sizeof hand);
+  }
+  send_update(record, head);
 }
 
-void DatagramPublisher::send_update() noexcept {
+void DatagramPublisher::send_update(const nendo_publish_record& record,
+                                    nendo_publish_datagram head) noexcept {
   const auto* const bytes = reinterpret_cast<const std::byte*>(words_.data());
-  std::uint64_t fields_bytes = 0;
-  std::memcpy(&fields_bytes, bytes + offsetof(nendo_publish_record, fields_bytes), 8);
-  const auto* const fields = bytes + sizeof(nendo_publish_record);
+  const auto* const fields = bytes + sizeof record;
   update_.assign(bytes + update_begin, bytes + update_end); // within what was reserved
-  update_.insert(update_.end(), fields, fields + fields_bytes);
-  auto head = nendo_publish_datagram{};
-  std::memcpy(&head, datagram_.data(), sizeof head);
+  update_.insert(update_.end(), fields, fields + record.fields_bytes);
   head.kind = 2;
   head.side = 0;
   head.parts = static_cast<std::uint16_t>((update_.size() + max_payload - 1) / max_payload);
   for (head.part = 0; head.part < head.parts; ++head.part) {
     head.offset = static_cast<std::uint32_t>(head.part * max_payload);
-    const std::size_t length = std::min(max_payload, update_.size() - head.offset);
-    std::memcpy(datagram_.data(), &head, sizeof head);
-    std::memcpy(datagram_.data() + head_bytes, update_.data() + head.offset, length);
-    send(length);
+    send(head, update_.data() + head.offset, std::min(max_payload, update_.size() - head.offset));
   }
 }
 
-void DatagramPublisher::send(std::size_t payload_bytes) noexcept {
+void DatagramPublisher::send(const nendo_publish_datagram& head, const std::byte* payload,
+                             std::size_t payload_bytes) noexcept {
+  std::memcpy(datagram_.data(), &head, sizeof head);
+  std::memcpy(datagram_.data() + head_bytes, payload, payload_bytes);
   const ssize_t sent = ::sendto(socket_.get(), datagram_.data(), head_bytes + payload_bytes,
                                 MSG_DONTWAIT, &target_.address.any, target_.length);
   if (sent < 0) {

@@ -12,6 +12,7 @@
 
 #include <nendo/base/unique_fd.hpp>
 #include <nendo/flow/frame.hpp>
+#include <nendo_publish.h>
 
 #include "publish/frame_record.hpp"
 #include "publish/target.hpp"
@@ -51,9 +52,9 @@ private:
   void send_until_over() noexcept;
   void send_new() noexcept;
   void send_record() noexcept;
-  void send_hand(unsigned side) noexcept;
-  void send_update() noexcept;
-  void send(std::size_t payload_bytes) noexcept;
+  void send_update(const nendo_publish_record& record, nendo_publish_datagram head) noexcept;
+  void send(const nendo_publish_datagram& head, const std::byte* payload,
+            std::size_t payload_bytes) noexcept;
 
   std::string name_;
   DatagramTarget target_;
