@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <cstring>
-#include <system_error>
 
 namespace nendo::publish {
 namespace {
@@ -25,21 +23,17 @@ static_assert(sizeof(nendo_publish_hand) <= max_payload);
 } // namespace
 
 Result<void> DatagramPublisher::open() {
-  const auto failure = [&](const std::string& what, const std::string& remedy) {
-    const int number = errno;
-    return Error{number == EACCES || number == EPERM ? Errc::no_permission : Errc::failed,
-                 "--publish " + name_ + ": " + what + ": " +
-                     std::generic_category().message(number) + "; " + remedy};
-  };
+  const std::string place = "--publish " + name_;
   const int family = target_.address.any.sa_family;
   UniqueFd socket(::socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   // A socket that is connected would get errors of ports without a listener, and count losses
   // there.
   const UniqueFd probe(::socket(family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (!socket.is_open() || !probe.is_open())
-    return failure("no socket", "a service needs RestrictAddressFamilies=AF_INET AF_INET6");
+    return system_error(place, "no socket",
+                        "a service needs RestrictAddressFamilies=AF_INET AF_INET6");
   if (::connect(probe.get(), &target_.address.any, target_.length) != 0)
-    return failure("no way to that address", "see ip route");
+    return system_error(place, "no way to that address", "see ip route");
   socket_ = std::move(socket);
   return {};
 }

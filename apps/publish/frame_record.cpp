@@ -32,11 +32,9 @@ void describe_hand(const flow::HandFrame& hand, nendo_publish_hand& out) noexcep
 }
 
 // The numbers in a record are those of the enumerations, which must not change.
-constexpr std::uint32_t published_number(deform::FieldStatus status) noexcept {
-  return static_cast<std::uint32_t>(status);
-}
-constexpr std::uint32_t published_number(deform::Wendland kernel) noexcept {
-  return static_cast<std::uint32_t>(kernel);
+template <class Choice>
+constexpr std::uint32_t published_number(Choice choice) noexcept {
+  return static_cast<std::uint32_t>(choice);
 }
 static_assert(published_number(deform::FieldStatus::ok) == 0 &&
               published_number(deform::FieldStatus::merged) == 1 &&

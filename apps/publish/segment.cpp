@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstring>
 #include <ctime>
-#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
@@ -16,18 +15,13 @@
 
 #include <nendo/deform/triangles.hpp>
 
+#include "publish/target.hpp"
+
 namespace nendo::publish {
 
 namespace {
 
 constexpr const char* another_name = "choose another name: shm:NAME";
-
-Error system_error(const std::string& path, const std::string& what, const std::string& remedy) {
-  const int number = errno;
-  const bool forbidden = number == EACCES || number == EPERM;
-  return {forbidden ? Errc::no_permission : Errc::failed,
-          path + ": " + what + ": " + std::generic_category().message(number) + "; " + remedy};
-}
 
 struct flock whole_file(short type) noexcept {
   struct flock lock{};

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <system_error>
 
 #include <grp.h>
 #include <netdb.h>
@@ -97,6 +99,13 @@ Result<Target> parse_target(std::string_view text) {
     return parse_segment(text, text.substr(text[3] == ':' ? 4 : 3));
   if (text.starts_with(datagrams)) return parse_datagrams(text, text.substr(datagrams.size()));
   return wrong(text, "use shm:NAME, udp:PORT or udp:ADDRESS:PORT");
+}
+
+Error system_error(const std::string& place, const std::string& what, const std::string& remedy) {
+  const int number = errno;
+  const bool forbidden = number == EACCES || number == EPERM;
+  return {forbidden ? Errc::no_permission : Errc::failed,
+          place + ": " + what + ": " + std::generic_category().message(number) + "; " + remedy};
 }
 
 bool is_same_place(const Target& one, const Target& other) noexcept {

@@ -36,6 +36,9 @@ using Target = std::variant<SegmentTarget, DatagramTarget>;
 /// looks up only the group. Error: usage, in a message without the name of the option.
 Result<Target> parse_target(std::string_view text);
 
+/// Returns the error of the last system call for that place: "PLACE: WHAT: why; REMEDY".
+Error system_error(const std::string& place, const std::string& what, const std::string& remedy);
+
 /// Returns whether both are the same segment, or the same address and port.
 bool is_same_place(const Target& one, const Target& other) noexcept;
 
