@@ -165,20 +165,19 @@ void DepthMap::cast_triangle(std::span<const Vector3f> places,
   const std::array<GridCorner, 3> on{grid[corners[0]], grid[corners[1]], grid[corners[2]]};
   std::array<float, 3> depth{};
   bool has_depth = false; // most triangles need none
-  each_covered(
-      on, sample_box(on, side_, {0, side_}), [&](int x, int y, const std::array<double, 3>& b) {
-        if (!has_depth)
-          for (std::size_t k = 0; k < 3; ++k) {
-            const Vector3f& place = places[corners[k]];
-            depth[k] = toward_.of(place.x(), place.y(), place.z());
-          }
-        has_depth = true;
-        float& nearest = nearest_[static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) +
-                                  static_cast<std::size_t>(x)];
-        nearest = std::max(nearest, static_cast<float>(b[0]) * depth[0] +
-                                        static_cast<float>(b[1]) * depth[1] +
-                                        static_cast<float>(b[2]) * depth[2]);
-      });
+  each_covered(on, sample_box(on, side_, {0, side_}),
+               [&](int x, int y, const std::array<double, 3>& b) {
+                 if (!has_depth)
+                   for (std::size_t k = 0; k < 3; ++k) {
+                     const Vector3f& place = places[corners[k]];
+                     depth[k] = toward_.of(place.x(), place.y(), place.z());
+                   }
+                 has_depth = true;
+                 float& nearest = nearest_[index_in_grid(x, y, side_)];
+                 nearest = std::max(nearest, static_cast<float>(b[0]) * depth[0] +
+                                                 static_cast<float>(b[1]) * depth[1] +
+                                                 static_cast<float>(b[2]) * depth[2]);
+               });
 }
 
 void DepthMap::find_lit(const PlaceBlock& places, float slack_m, LitBlock& lit) const noexcept {
@@ -214,10 +213,7 @@ float DepthMap::lit_part(const Vector3f& place, float slack_m, int reach) const 
   for (int dy = -reach; dy <= reach; dy += 2)
     for (int dx = -reach; dx <= reach; dx += 2) {
       ++all;
-      const float nearest =
-          nearest_[static_cast<std::size_t>(y + dy) * static_cast<std::size_t>(side_) +
-                   static_cast<std::size_t>(x + dx)];
-      if (nearest <= depth) ++lit;
+      if (nearest_[index_in_grid(x + dx, y + dy, side_)] <= depth) ++lit;
     }
   return static_cast<float>(lit) / static_cast<float>(all);
 }

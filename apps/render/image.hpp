@@ -28,6 +28,12 @@ struct Size {
 /// else.
 std::optional<Size> size_named(std::string_view text) noexcept;
 
+/// Returns the index of a place in a grid that is stored row by row.
+constexpr std::size_t index_in_grid(int x, int y, int width) noexcept {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+         static_cast<std::size_t>(x);
+}
+
 class Image {
 public:
   explicit Image(Size size, Pixel colour = {255, 255, 255});
@@ -35,8 +41,8 @@ public:
   Image(Size size, std::vector<Pixel> pixels) : size_(size), pixels_(std::move(pixels)) {}
 
   Size size() const noexcept { return size_; }
-  Pixel& at(int x, int y) noexcept { return pixels_[index(x, y)]; }
-  const Pixel& at(int x, int y) const noexcept { return pixels_[index(x, y)]; }
+  Pixel& at(int x, int y) noexcept { return pixels_[index_in_grid(x, y, size_.width)]; }
+  const Pixel& at(int x, int y) const noexcept { return pixels_[index_in_grid(x, y, size_.width)]; }
   /// Returns the pixels row by row from the top.
   const std::vector<Pixel>& pixels() const noexcept { return pixels_; }
   /// Copies `other` to the place with its top left corner at (x, y). Parts outside of this image
@@ -46,10 +52,6 @@ public:
   friend bool operator==(const Image&, const Image&) = default;
 
 private:
-  std::size_t index(int x, int y) const noexcept {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
-           static_cast<std::size_t>(x);
-  }
   Size size_;
   std::vector<Pixel> pixels_;
 };

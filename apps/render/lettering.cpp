@@ -119,8 +119,7 @@ struct Ink {
         std::min(top + height - 1, static_cast<int>(std::ceil(std::max(a.y, b.y) + radius + 1)));
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) {
-        double& ink = amount[static_cast<std::size_t>(y - top) * static_cast<std::size_t>(width) +
-                             static_cast<std::size_t>(x - left)];
+        double& ink = amount[index_in_grid(x - left, y - top, width)];
         const double away = distance({x + 0.5, y + 0.5}, a, b);
         ink = std::max(ink, std::clamp(radius + 0.5 - away, 0.0, 1.0));
       }
@@ -164,9 +163,7 @@ void write_words(Image& image, double x, double y, double height, std::string_vi
   }
   for (int row = top; row < bottom; ++row)
     for (int column = left; column < right; ++column) {
-      const double there =
-          ink.amount[static_cast<std::size_t>(row - top) * static_cast<std::size_t>(ink.width) +
-                     static_cast<std::size_t>(column - left)];
+      const double there = ink.amount[index_in_grid(column - left, row - top, ink.width)];
       Pixel& pixel = image.at(column, row);
       for (std::size_t channel = 0; channel < 3; ++channel)
         pixel[channel] = static_cast<std::uint8_t>(

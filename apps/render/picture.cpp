@@ -144,9 +144,7 @@ void cover(const Seen& seen, std::uint32_t number, const BandedGrid& grid, int b
     const SampleBox box = sample_box(on, grid.width, rows);
     each_covered(on, box, [&](int x, int y, const std::array<double, 3>& b) {
       const double depth = b[0] * inverse[0] + b[1] * inverse[1] + b[2] * inverse[2];
-      Hit& hit =
-          hits[static_cast<std::size_t>(y - rows.first) * static_cast<std::size_t>(grid.width) +
-               static_cast<std::size_t>(x)];
+      Hit& hit = hits[index_in_grid(x, y - rows.first, grid.width)];
       if (static_cast<float>(depth) <= hit.inverse_depth) return;
       hit = {static_cast<float>(depth), number, at, {}};
       for (std::size_t k = 0; k < 3; ++k)
@@ -276,9 +274,7 @@ void draw_band(const View3d& view, int band, Image& image) {
       for (int dy = 0; dy < samples_across; ++dy)
         for (int dx = 0; dx < samples_across; ++dx) {
           const int row = samples_across * (y - pixel_rows.first) + dy;
-          sum += colours[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-                         static_cast<std::size_t>(samples_across * x + dx)]
-                     .cwiseMin(1.2F);
+          sum += colours[index_in_grid(samples_across * x + dx, row, width)].cwiseMin(1.2F);
         }
       image.at(x, y) = encoded(share * sum);
     }
@@ -308,9 +304,7 @@ Image silhouette(const Scene& scene, const Camera& camera, Size size) {
   Image image(size, {0, 0, 0});
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x)
-      if (hits[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) +
-               static_cast<std::size_t>(x)]
-              .inverse_depth > 0.0F)
+      if (hits[index_in_grid(x, y, size.width)].inverse_depth > 0.0F)
         image.at(x, y) = {255, 255, 255};
   return image;
 }

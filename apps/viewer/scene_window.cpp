@@ -103,9 +103,7 @@ render::Image read_pixels(render::Size size) {
   render::Image image(size);
   for (int y = 0; y < size.height; ++y) // OpenGL begins at the bottom
     for (int x = 0; x < size.width; ++x)
-      image.at(x, y) = rows[static_cast<std::size_t>(size.height - 1 - y) *
-                                static_cast<std::size_t>(size.width) +
-                            static_cast<std::size_t>(x)];
+      image.at(x, y) = rows[render::index_in_grid(x, size.height - 1 - y, size.width)];
   return image;
 }
 
