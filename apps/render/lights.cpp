@@ -102,21 +102,16 @@ public:
       : along_(along), numbers_(static_cast<std::size_t>(along) * static_cast<std::size_t>(along) *
                                     static_cast<std::size_t>(along),
                                 no_cube) {
-    Vector3f highest = -lowest_;
     for (const Vector3f& place : places)
-      if (is_near(place)) {
-        lowest_ = lowest_.cwiseMin(place);
-        highest = highest.cwiseMax(place);
-      }
-    side_m_ = (highest - lowest_).maxCoeff() / static_cast<float>(along);
+      if (is_near(place)) box_.extend(place);
+    side_m_ = box_.sizes().maxCoeff() / static_cast<float>(along);
   }
 
   /// Returns the number of the cube that a place is in.
   std::uint32_t number_of(const Vector3f& place) {
     if (!is_near(place) || !(side_m_ > 0.0F)) return no_cube;
     std::size_t at = 0;
-    for (const float from_lowest :
-         {place.x() - lowest_.x(), place.y() - lowest_.y(), place.z() - lowest_.z()})
+    for (const float from_lowest : Vector3f(place - box_.min()))
       at = at * static_cast<std::size_t>(along_) +
            static_cast<std::size_t>(std::min(along_ - 1, static_cast<int>(from_lowest / side_m_)));
     if (numbers_[at] == no_cube) numbers_[at] = count_++;
@@ -131,7 +126,7 @@ private:
   }
 
   int along_;
-  Vector3f lowest_ = Vector3f::Constant(far_place_m);
+  Eigen::AlignedBox3f box_; ///< has all near places
   float side_m_ = 0.0F;
   std::vector<std::uint32_t> numbers_;
   std::uint32_t count_ = 0;
