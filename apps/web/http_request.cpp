@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <nendo/base/endings.hpp>
+#include <nendo/base/text.hpp>
 
 #include "web/endpoint.hpp"
 #include "web/web_socket.hpp"
@@ -62,9 +62,8 @@ int parse_first_line(std::string_view line, HttpRequest& request) {
       !target.starts_with('/'))
     return 400;
   if (version != "HTTP/1.1") return version.starts_with("HTTP/") ? 505 : 400;
-  const auto mark = target.find('?');
-  request.path = target.substr(0, mark);
-  if (mark != std::string_view::npos) request.query = target.substr(mark + 1);
+  request.query = target;
+  request.path = cut(request.query, '?');
   return 200;
 }
 
@@ -125,25 +124,18 @@ std::optional<std::string_view> HttpRequest::header(std::string_view name) const
 bool HttpRequest::lists(std::string_view name, std::string_view word) const noexcept {
   for (const auto& [key, value] : headers) {
     if (!equal_ignoring_case(key, name)) continue;
-    for (std::string_view rest = value;;) {
-      const auto comma = rest.find(',');
-      if (equal_ignoring_case(trimmed(rest.substr(0, comma)), word)) return true;
-      if (comma == std::string_view::npos) break;
-      rest.remove_prefix(comma + 1);
-    }
+    for (std::string_view rest = value; !rest.empty();)
+      if (equal_ignoring_case(trimmed(cut(rest, ',')), word)) return true;
   }
   return false;
 }
 
 std::optional<std::string_view> HttpRequest::parameter(std::string_view name) const noexcept {
-  for (std::string_view rest = query;;) {
-    const auto end = rest.find('&');
-    const auto part = rest.substr(0, end);
-    if (part.starts_with(name) && part.substr(name.size()).starts_with('='))
-      return part.substr(name.size() + 1);
-    if (end == std::string_view::npos) return std::nullopt;
-    rest.remove_prefix(end + 1);
+  for (std::string_view rest = query; !rest.empty();) {
+    std::string_view value = cut(rest, '&');
+    if (value.find('=') != std::string_view::npos && cut(value, '=') == name) return value;
   }
+  return std::nullopt;
 }
 
 HttpHead parse_head(std::string_view bytes) {
