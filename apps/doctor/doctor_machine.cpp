@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include <nendo/base/advised_command.hpp>
+#include <nendo/base/number_in.hpp>
 #include <nendo/flow/realtime.hpp>
 
 namespace nendo::doctor {
@@ -37,11 +38,7 @@ std::optional<std::uint64_t> limit_in(const std::string& line, std::string_view 
   std::istringstream words(line.substr(name.size()));
   std::string soft;
   words >> soft;
-  if (soft == "unlimited") return unlimited;
-  std::uint64_t value = 0;
-  const char* const end = soft.data() + soft.size();
-  const auto [stopped, error] = std::from_chars(soft.data(), end, value);
-  return error == std::errc{} && stopped == end ? std::optional(value) : std::nullopt;
+  return soft == "unlimited" ? unlimited : number_in<std::uint64_t>(soft);
 }
 
 void read_limits(const fs::path& root, MachineFacts& facts) {

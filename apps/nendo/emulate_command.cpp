@@ -1,6 +1,5 @@
 // nendo emulate: emulates a data glove's electronics on a pseudo-terminal, with chosen faults.
 
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -12,6 +11,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
 
+#include <nendo/base/number_in.hpp>
 #include <nendo/driver/simulated_glove.hpp>
 #include <nendo/emulator/emulator.hpp>
 #include <nendo/emulator/served_emulator.hpp>
@@ -61,11 +61,8 @@ std::string variants_explained() {
 // Returns the mask, or nothing if the text is no mask of 1 to 24 bits.
 std::optional<std::uint32_t> parse_mask(std::string_view text) {
   if (text.starts_with("0x")) text.remove_prefix(2);
-  std::uint32_t mask = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), mask, 16);
-  const bool whole = error == std::errc{} && end == text.data() + text.size();
-  if (!whole || mask == 0 || mask > 0xFFFFFF) return std::nullopt;
-  return mask;
+  const auto mask = number_in<std::uint32_t>(text, 16);
+  return mask && *mask != 0 && *mask <= 0xFFFFFF ? mask : std::nullopt;
 }
 
 /// With --motion poses, makes the hand that plays the poses of nendo calibrate.

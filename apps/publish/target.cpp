@@ -3,25 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <system_error>
 
 #include <grp.h>
 #include <netdb.h>
 
+#include <nendo/base/number_in.hpp>
+
 namespace nendo::publish {
 namespace {
 
 Error wrong(std::string_view text, const std::string& what) {
   return {Errc::usage, std::string(text) + ": " + what};
-}
-
-std::optional<unsigned> number_of(std::string_view digits, unsigned most) {
-  unsigned number = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  const bool whole = error == std::errc() && end == digits.data() + digits.size();
-  return whole && number <= most ? std::optional(number) : std::nullopt;
 }
 
 bool is_name(std::string_view name) noexcept {
@@ -33,7 +27,8 @@ bool is_name(std::string_view name) noexcept {
 }
 
 std::optional<unsigned> group_of(const std::string& name) {
-  if (const auto number = number_of(name, 0xFFFFFFFEU)) return number;
+  if (const auto number = number_in<unsigned>(name); number && *number != 0xFFFFFFFFU)
+    return number;
   group entry{};
   group* found = nullptr;
   std::array<char, 16384> buffer{};
@@ -63,7 +58,7 @@ Result<Target> parse_datagrams(std::string_view text, std::string_view rest) {
   const std::string_view port = colon == std::string_view::npos ? rest : rest.substr(colon + 1);
   std::string host =
       colon == std::string_view::npos ? "127.0.0.1" : std::string(rest.substr(0, colon));
-  const auto number = number_of(port, 65535);
+  const auto number = number_in<std::uint16_t>(port);
   if (!number || *number == 0)
     return wrong(text, "use udp:PORT, udp:ADDRESS:PORT or udp:[ADDRESS]:PORT, with a port of 1 to "
                        "65535");

@@ -2,13 +2,14 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
+
+#include <nendo/base/number_in.hpp>
 
 namespace nendo::web {
 namespace {
@@ -32,13 +33,6 @@ std::optional<Split> split(std::string_view authority) {
   if (rest.empty()) return Split{host, std::nullopt, true};
   if (rest.front() != ':') return std::nullopt;
   return Split{host, rest.substr(1), true};
-}
-
-std::optional<std::uint16_t> port_of(std::string_view text) {
-  std::uint16_t port = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return port;
 }
 
 bool is_address(std::string_view host, bool bracketed) {
@@ -90,13 +84,13 @@ Result<Endpoint> parse_endpoint(std::string_view text) {
                                      "8080, 192.168.1.5:8080 or [::1]:8080"};
   if (text.find('\0') != std::string_view::npos) return wrong;
   Endpoint endpoint;
-  if (const auto port = port_of(text)) {
+  if (const auto port = number_in<std::uint16_t>(text)) {
     endpoint.port = *port;
     return endpoint;
   }
   const auto parts = split(text);
   if (!parts || !parts->port || !is_address(parts->host, parts->bracketed)) return wrong;
-  const auto port = port_of(*parts->port);
+  const auto port = number_in<std::uint16_t>(*parts->port);
   if (!port) return wrong;
   endpoint.address = parts->host;
   endpoint.port = *port;
@@ -106,7 +100,7 @@ Result<Endpoint> parse_endpoint(std::string_view text) {
 bool is_address_or_localhost(std::string_view authority) {
   const auto parts = split(authority);
   if (!parts || authority.find('\0') != std::string_view::npos) return false;
-  if (parts->port && !port_of(*parts->port)) return false;
+  if (parts->port && !number_in<std::uint16_t>(*parts->port)) return false;
   if (!parts->bracketed && parts->host == "localhost") return true;
   return is_address(parts->host, parts->bracketed);
 }

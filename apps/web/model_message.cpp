@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
+#include <nendo/base/number_in.hpp>
 #include <nendo/deform/drawn_faces.hpp>
 #include <nendo/deform/triangles.hpp>
 
@@ -30,11 +30,7 @@ Pictures pictures_of(const deform::Mesh& mesh) {
 
 std::optional<std::size_t> picture_number(std::string_view text) noexcept {
   constexpr std::size_t max_digits = 6;
-  std::size_t number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc{} || rest != end || text.size() > max_digits) return std::nullopt;
-  return number;
+  return text.size() > max_digits ? std::nullopt : number_in<std::size_t>(text);
 }
 
 namespace {

@@ -2,12 +2,12 @@
 
 #include <cassert>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <ctime>
 #include <utility>
 
 #include <nendo/base/atomics.hpp>
+#include <nendo/base/number_in.hpp>
 
 namespace nendo::flow {
 
@@ -115,14 +115,10 @@ Result<void> parse_policy(std::string_view text, PaceOptions& options) {
   if (name == policy_names.end()) return unknown;
   const auto policy = static_cast<OverrunPolicy>(name - policy_names.begin());
   if (colon != std::string_view::npos) {
-    const std::string_view digits = text.substr(colon + 1);
-    unsigned most = 0;
-    const char* const end = digits.data() + digits.size();
-    const auto [stopped, error] = std::from_chars(digits.data(), end, most);
-    if (policy != OverrunPolicy::catch_up || error != std::errc{} || stopped != end || most < 1 ||
-        most > max_burst)
+    const auto most = number_in<unsigned>(text.substr(colon + 1));
+    if (policy != OverrunPolicy::catch_up || !most || *most < 1 || *most > max_burst)
       return unknown;
-    options.max_catch_up = most;
+    options.max_catch_up = *most;
   }
   options.policy = policy;
   return {};

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -17,6 +16,8 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
+
+#include <nendo/base/number_in.hpp>
 
 namespace nendo::flow {
 namespace {
@@ -48,12 +49,6 @@ Grant pinned(const std::vector<unsigned>& cpus) {
   const int error = ::pthread_setaffinity_np(::pthread_self(), sizeof set, &set);
   return judged("affinity", "CPU " + names, error,
                 "name CPUs that this process may use: `taskset -p $$` shows them");
-}
-
-bool read_number(std::string_view text, unsigned& number) noexcept {
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc{} && stopped == end;
 }
 
 // Where locked memory has a limit, every allocation beyond it would fail from then on: worse than a
@@ -90,13 +85,11 @@ Result<std::vector<unsigned>> parse_cpus(const std::string& text, const std::str
     const std::size_t comma = rest.find(',');
     const std::string_view item = rest.substr(0, comma);
     const std::size_t dash = item.find('-');
-    unsigned first = 0;
-    unsigned last = 0;
-    if (!read_number(item.substr(0, dash), first)) return bad;
-    last = first;
-    if (dash != std::string_view::npos && !read_number(item.substr(dash + 1), last)) return bad;
-    if (last < first || last >= count) return bad;
-    for (unsigned cpu = first; cpu <= last; ++cpu)
+    const auto first = number_in<unsigned>(item.substr(0, dash));
+    const auto last =
+        dash == std::string_view::npos ? first : number_in<unsigned>(item.substr(dash + 1));
+    if (!first || !last || *last < *first || *last >= count) return bad;
+    for (unsigned cpu = *first; cpu <= *last; ++cpu)
       cpus.push_back(cpu);
     if (comma == std::string_view::npos) break;
     rest.remove_prefix(comma + 1);

@@ -7,11 +7,11 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <nendo/base/number_in.hpp>
 #include <nendo/driver/glove_options.hpp>
 
 #include "cyberglove/cyberglove_parser.hpp"
 #include "cyberglove/cyberglove_protocol.hpp"
-#include "spec/number_in.hpp"
 
 namespace nendo::driver::cyberglove {
 namespace {

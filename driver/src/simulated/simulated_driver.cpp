@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include <nendo/base/number_in.hpp>
 #include <nendo/driver/reader_thread.hpp>
 #include <nendo/driver/simulated_glove.hpp>
 
 #include "drivers.hpp"
 #include "simulated/hand_motion.hpp"
 #include "simulated/typical_wearer.hpp"
-#include "spec/number_in.hpp"
 
 namespace nendo::driver {
 namespace {

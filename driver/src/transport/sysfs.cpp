@@ -4,9 +4,8 @@
 #include <fstream>
 #include <system_error>
 
+#include <nendo/base/number_in.hpp>
 #include <nendo/base/text.hpp>
-
-#include "spec/number_in.hpp"
 
 namespace nendo::driver {
 

@@ -2,7 +2,8 @@
 
 #include <string_view>
 
-#include "spec/number_in.hpp"
+#include <nendo/base/number_in.hpp>
+
 #include "transport/sysfs.hpp"
 
 namespace nendo::driver {

@@ -4,12 +4,12 @@
 #include <string>
 #include <utility>
 
+#include <nendo/base/number_in.hpp>
 #include <nendo/udev/device_table.hpp>
 
 #include "drivers.hpp"
 #include "fivedt_usb/fivedt_usb_parser.hpp"
 #include "p5/p5_parser.hpp"
-#include "spec/number_in.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/usb_transport.hpp"
 #include "usb/usb_glove.hpp"

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
+#include <nendo/base/number_in.hpp>
 #include <nendo/emulator/emulator.hpp>
 
 namespace nendo::emulator {
@@ -63,10 +63,8 @@ constexpr std::array<Row, fault_kinds> rows{{
 }};
 
 std::optional<double> number(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return {};
-  return value;
+  const auto value = number_in<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 std::optional<double> rate(std::string_view text) {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace nendo::driver {
+namespace nendo {
 
 /// Returns the number that is all of the text, without a plus sign or blanks. `form` is as in
 /// std::from_chars(). "nan" and "inf" are numbers: compare with bounds.
@@ -19,4 +19,4 @@ std::optional<Number> number_in(std::string_view text, Form... form) noexcept {
   return number;
 }
 
-} // namespace nendo::driver
+} // namespace nendo
