@@ -42,15 +42,17 @@ constexpr bool goes_through_history(Request request) noexcept {
 NENDO_API std::string_view name_of(Request request) noexcept;
 NENDO_API std::optional<Request> request_named(std::string_view name) noexcept;
 
+/// The base of commands without data.
+struct NoData {
+  friend bool operator==(const NoData&, const NoData&) = default;
+};
 /// Changes the loop's settings from its next tick on (ChangeBroker::change_settings()).
 struct ChangeSettings {
   LoopSettings settings;
   friend bool operator==(const ChangeSettings&, const ChangeSettings&) = default;
 };
 /// Subdivides the model (deform::subdivide()), and the loop continues with the result.
-struct Subdivide {
-  friend bool operator==(const Subdivide&, const Subdivide&) = default;
-};
+struct Subdivide : NoData {};
 /// Adapts the model's triangles to the current shape (deform::Refiner).
 struct Refine {
   /// No edge is split above this number.
@@ -58,30 +60,20 @@ struct Refine {
   friend bool operator==(const Refine&, const Refine&) = default;
 };
 /// Separates, opens or fuses places thinner than the edges (deform::change_topology()).
-struct ChangeTopology {
-  friend bool operator==(const ChangeTopology&, const ChangeTopology&) = default;
-};
+struct ChangeTopology : NoData {};
 /// Begins or ends a recording to a file.
 struct SetRecording {
   bool on = false;
   friend bool operator==(const SetRecording&, const SetRecording&) = default;
 };
 /// Writes the current shape to a new file.
-struct SaveShape {
-  friend bool operator==(const SaveShape&, const SaveShape&) = default;
-};
+struct SaveShape : NoData {};
 /// Writes the played puppet to its file.
-struct SavePuppet {
-  friend bool operator==(const SavePuppet&, const SavePuppet&) = default;
-};
+struct SavePuppet : NoData {};
 /// Writes the most recent input to a file, if the run keeps it in memory.
-struct SaveRecording {
-  friend bool operator==(const SaveRecording&, const SaveRecording&) = default;
-};
+struct SaveRecording : NoData {};
 /// Marks this time in the recording. The shape does not depend on it.
-struct Mark {
-  friend bool operator==(const Mark&, const Mark&) = default;
-};
+struct Mark : NoData {};
 /// Makes a hand, or one of its fingers, release its functions of a puppet, or grab them again
 /// (puppet::RigPlayer::set_clutch()).
 struct SetClutch {
@@ -127,9 +119,7 @@ struct SetLayer {
   friend bool operator==(const SetLayer&, const SetLayer&) = default;
 };
 /// Fades the layers of live gloves in, or out if they are in: punch in and out.
-struct Punch {
-  friend bool operator==(const Punch&, const Punch&) = default;
-};
+struct Punch : NoData {};
 /// The cutting tool.
 enum class Blade : std::uint8_t {
   wire,  ///< between the index fingertips; with one hand, between thumb and index finger
@@ -155,15 +145,11 @@ struct EditPart {
   friend bool operator==(const EditPart&, const EditPart&) = default;
 };
 /// Ends the run, which then writes its shape.
-struct EndRun {
-  friend bool operator==(const EndRun&, const EndRun&) = default;
-};
+struct EndRun : NoData {};
 
 /// The hands stop shaping at the end of a tick, while a new model is made of the shape. After the
 /// ChangeModel that follows, they continue where they stopped.
-struct HoldStill {
-  friend bool operator==(const HoldStill&, const HoldStill&) = default;
-};
+struct HoldStill : NoData {};
 /// The origin of a model. Recordings keep the numbers.
 enum class ModelSource : std::uint8_t {
   kept,       ///< a stored version, for an undo or a redo
