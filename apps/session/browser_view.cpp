@@ -46,9 +46,7 @@ public:
     server_->set_gloves(gloves);
     server_->set_settings(status.frame.settings);
     server_->set_commands(status.situation());
-    server_->set_steps(status.frame.steps);
-    server_->set_puppet(status.frame.puppet, status.puppet.get());
-    server_->set_clay(status.frame);
+    server_->follow(status.frame, status.puppet.get());
     update_weights();
     pending_.follow(status.frame.settings);
     while (auto asked = server_->next_command()) {

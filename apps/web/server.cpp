@@ -122,16 +122,10 @@ void Server::set_commands(const commands::Situation& now) {
   set_fact(commands_fact, text_message(MessageType::commands, command_states(now)));
 }
 
-void Server::set_puppet(std::uint32_t number, const puppet::Rig* rig) {
-  set_fact(puppet_fact, number, [&] { return message_of(number, rig); });
-}
-
-void Server::set_steps(const flow::StepList& steps) {
-  set_fact(history_fact, steps.version, [&] { return message_of(steps); });
-}
-
-void Server::set_clay(const flow::Frame& frame) {
+void Server::follow(const flow::Frame& frame, const puppet::Rig* rig) {
   constexpr std::chrono::milliseconds period(33);
+  set_fact(history_fact, frame.steps.version, [&] { return message_of(frame.steps); });
+  set_fact(puppet_fact, frame.puppet, [&] { return message_of(frame.puppet, rig); });
   Work::Inbox& inbox = work_->inbox;
   {
     const std::scoped_lock lock(inbox.mutex);

@@ -94,11 +94,9 @@ public:
   void set_settings(const flow::LoopSettings& settings);
   /// Sets which commands of the table are on, and the refusals of others.
   void set_commands(const commands::Situation& now);
-  void set_steps(const flow::StepList& steps);
-  /// Sets the played puppet, with the loop's number for it; null: none.
-  void set_puppet(std::uint32_t number, const puppet::Rig* rig);
-  /// Sets the state of clay. Notifies clients at most 30 times per second.
-  void set_clay(const flow::Frame& frame);
+  /// Sets the frame's steps, the state of its clay, and its puppet; null: none. Notifies clients of
+  /// clay at most 30 times per second.
+  void follow(const flow::Frame& frame, const puppet::Rig* rig);
   /// Sets the state of each glove.
   void set_gloves(const GloveStates& gloves);
   /// Returns the counters. Each number is atomic; together they are not a consistent snapshot.
