@@ -9,12 +9,6 @@ namespace nendo::render {
 
 using Eigen::Vector3f;
 
-void Surface::clear() noexcept {
-  places.clear();
-  normals.clear();
-  corners.clear();
-}
-
 void compute_normals(std::span<const Vector3f> places, std::span<const std::uint32_t> corners,
                      std::vector<Vector3f>& normals) {
   normals.assign(places.size(), Vector3f::Zero());

@@ -32,7 +32,6 @@ struct Surface {
   Material material;
   std::shared_ptr<const Paint> paint{}; ///< colours in place of the material's
 
-  void clear() noexcept;
   bool is_empty() const noexcept { return corners.empty(); }
   bool operator==(const Surface&) const = default;
 };

@@ -86,7 +86,6 @@ public:
   const Sculptor& sculptor() const noexcept { return *sculptor_; }
   bool is_still() const noexcept { return is_still_; }
   const ModelVersion& model() const noexcept { return *model_; } ///< in effect
-  std::uint32_t puppet() const noexcept { return puppet_; }      ///< in effect
   const deform::BlockLayout& layout() const noexcept { return model_->layout(); }
 
   /// Stops the hands from shaping. Call it after shape() with `completes`, in the same tick. Their
