@@ -4,6 +4,7 @@
 #include "render/image.hpp"
 
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 
 #define STB_IMAGE_IMPLEMENTATION
@@ -48,13 +49,10 @@ Result<Image> decode_by_stb(std::string_view contents) {
                             wanted),
       &std::free);
   if (!decoded) return not_shown("is damaged or of a rare kind; save it as PNG");
-  Image image(size);
-  const stbi_uc* byte = decoded.get();
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x)
-      for (std::uint8_t& channel : image.at(x, y))
-        channel = *byte++;
-  return image;
+  std::vector<Pixel> pixels(static_cast<std::size_t>(size.width) *
+                            static_cast<std::size_t>(size.height));
+  std::memcpy(pixels.data(), decoded.get(), pixels.size() * sizeof(Pixel));
+  return Image(size, std::move(pixels));
 }
 
 constexpr std::size_t max_bytes = std::size_t{1} << 30; // stb counts in int
