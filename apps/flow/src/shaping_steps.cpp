@@ -143,12 +143,10 @@ void Shaping::record_settings(const LoopSettings& before, bool is_step) noexcept
 
 /// Returns the kind of the step that makes such a model.
 static StepKind kind_of(ModelSource source) noexcept {
-  if (source == ModelSource::refined) return StepKind::refine;
-  if (source == ModelSource::cut) return StepKind::cut;
-  if (source == ModelSource::copied) return StepKind::copy;
-  if (source == ModelSource::removed) return StepKind::remove;
-  if (source == ModelSource::topology) return StepKind::topology;
-  return source == ModelSource::joined ? StepKind::join : StepKind::subdivide;
+  constexpr std::array kinds{StepKind::subdivide, StepKind::subdivide, StepKind::refine,
+                             StepKind::cut,       StepKind::join,      StepKind::copy,
+                             StepKind::remove,    StepKind::topology};
+  return kinds[static_cast<std::size_t>(source)];
 }
 
 /// Adds the step to that new version, in both histories.
