@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "publish/datagrams.hpp"
-#include "publish/segment.hpp"
 #include "publish/target.hpp"
 
 namespace nendo::session {
@@ -54,7 +52,7 @@ public:
   PublishedTo end() override {
     if (segments_.now()) end(*segments_.now());
     segments_.begin(nullptr);
-    return done_;
+    return {text_, done_};
   }
 
 private:
@@ -64,11 +62,9 @@ private:
   void end(publish::SegmentPublisher& segment) {
     segment.end();
     const auto counts = segment.counts();
-    done_.target = text_;
     done_.records += counts.records;
     done_.shape_changes += counts.shape_changes;
     done_.bytes = counts.bytes;
-    done_.is_segment = true;
     done_.is_locked = counts.is_locked;
   }
 
@@ -76,7 +72,7 @@ private:
   publish::SegmentTarget target_;
   const PlacedLoop* placed_ = nullptr;
   VersionTarget<publish::SegmentPublisher> segments_;
-  PublishedTo done_;
+  publish::SegmentCounts done_; ///< the counts of all segments
 };
 
 class DatagramSink final : public PublishingSink {
@@ -91,13 +87,7 @@ public:
   void show(const flow::Frame& frame) noexcept override { datagrams_.show(frame); }
   PublishedTo end() override {
     datagrams_.end();
-    const auto counts = datagrams_.counts();
-    return {.target = text_,
-            .records = counts.records,
-            .bytes = counts.bytes,
-            .datagrams = counts.datagrams,
-            .lost_records = counts.lost,
-            .refused_datagrams = counts.refused};
+    return {text_, datagrams_.counts()};
   }
 
 private:

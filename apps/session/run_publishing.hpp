@@ -3,9 +3,12 @@
 
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "cli/command.hpp"
+#include "publish/datagrams.hpp"
+#include "publish/segment.hpp"
 #include "session/sink.hpp"
 
 namespace nendo::session {
@@ -13,14 +16,7 @@ namespace nendo::session {
 /// The result of one --publish.
 struct PublishedTo {
   std::string target; ///< the option's value
-  std::uint64_t records = 0;
-  std::uint64_t shape_changes = 0; ///< changes of the shape; only in a segment
-  std::uint64_t bytes = 0;         ///< the size of the segment, or of all sent data
-  bool is_segment = false;
-  bool is_locked = false; ///< the segment is locked in memory
-  std::uint64_t datagrams = 0;
-  std::uint64_t lost_records = 0;      ///< overwritten before they were sent
-  std::uint64_t refused_datagrams = 0; ///< refused by the system
+  std::variant<publish::SegmentCounts, publish::DatagramCounts> counts{};
 };
 
 /// Publishes to one target.

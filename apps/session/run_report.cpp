@@ -222,12 +222,15 @@ void print_recordings(const std::vector<RecordingOutcome>& recordings) {
 
 void print_published(const RunOutcome& outcome) {
   for (const auto& to : outcome.published) {
-    const std::string counts =
-        to.is_segment ? fmt::format("{} bytes{}", cli::thousands(to.bytes),
-                                    to.is_locked ? "" : ", not locked in memory (see --mlockall)")
-                      : fmt::format("{} datagrams, {} refused, {} ticks lost", to.datagrams,
-                                    to.refused_datagrams, to.lost_records);
-    print_row("published", fmt::format("{}, {} ticks, {}", to.target, to.records, counts));
+    if (const auto* segment = std::get_if<publish::SegmentCounts>(&to.counts))
+      print_row("published",
+                fmt::format("{}, {} ticks, {} bytes{}", to.target, segment->records,
+                            thousands(segment->bytes),
+                            segment->is_locked ? "" : ", not locked in memory (see --mlockall)"));
+    if (const auto* sent = std::get_if<publish::DatagramCounts>(&to.counts))
+      print_row("published",
+                fmt::format("{}, {} ticks, {} datagrams, {} refused, {} ticks lost", to.target,
+                            sent->records, sent->datagrams, sent->refused, sent->lost));
   }
 }
 

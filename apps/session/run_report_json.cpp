@@ -104,16 +104,19 @@ ordered_json recordings_json(const std::vector<RecordingOutcome>& recordings) {
 ordered_json published_json(const RunOutcome& outcome) {
   auto list = ordered_json::array();
   for (const auto& to : outcome.published) {
-    ordered_json line{{"target", to.target}, {"records", to.records}, {"bytes", to.bytes}};
-    if (to.is_segment) {
-      line["shape_changes"] = to.shape_changes;
-      line["locked"] = to.is_locked;
-    } else {
-      line["datagrams"] = to.datagrams;
-      line["lost_records"] = to.lost_records;
-      line["refused_datagrams"] = to.refused_datagrams;
-    }
-    list.push_back(std::move(line));
+    if (const auto* segment = std::get_if<publish::SegmentCounts>(&to.counts))
+      list.push_back({{"target", to.target},
+                      {"records", segment->records},
+                      {"bytes", segment->bytes},
+                      {"shape_changes", segment->shape_changes},
+                      {"locked", segment->is_locked}});
+    if (const auto* sent = std::get_if<publish::DatagramCounts>(&to.counts))
+      list.push_back({{"target", to.target},
+                      {"records", sent->records},
+                      {"bytes", sent->bytes},
+                      {"datagrams", sent->datagrams},
+                      {"lost_records", sent->lost},
+                      {"refused_datagrams", sent->refused}});
   }
   return list;
 }
