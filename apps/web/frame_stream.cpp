@@ -12,12 +12,7 @@ namespace nendo::web {
 struct FrameStream::RecordHead {
   std::uint32_t bytes = 0; ///< with this head
   std::uint32_t head_bytes = 0;
-  std::uint64_t number = 0;
-  double drift = 0.0;
-  std::uint64_t weights = 0;
-  std::uint8_t jumped = 0;
-  std::uint8_t bakes = 0;
-  std::uint8_t spare[6]{};
+  RecordFacts facts{};
 };
 
 namespace {
@@ -98,8 +93,9 @@ double FrameStream::drift_of(const flow::Frame& frame) const noexcept {
 void FrameStream::push(const flow::Frame& frame, bool jumped, bool committed) noexcept {
   const bool bakes = !is_type1(frame) || committed;
   RecordHead head;
+  head.facts = {number_, jumped, bakes, bakes ? drift_of(frame) : 0.0, frame.surface.field};
   UpdateHead update = head_of(frame);
-  update.number = head.number = number_;
+  update.number = number_;
   WireWriter out(record_);
   out.put(head);
   out.put(update);
@@ -108,10 +104,6 @@ void FrameStream::push(const flow::Frame& frame, bool jumped, bool committed) no
   head.head_bytes = static_cast<std::uint32_t>(out.used() - sizeof head);
   write_step(bakes ? StepKind::bake : StepKind::draw, frame, origin_, unit_, out);
   head.bytes = static_cast<std::uint32_t>(out.used());
-  head.jumped = jumped ? 1 : 0;
-  head.drift = bakes ? drift_of(frame) : 0.0;
-  head.weights = frame.surface.field;
-  head.bakes = bakes ? 1 : 0;
   std::memcpy(record_.data(), &head, sizeof head);
   const std::size_t chunks = (out.used() + sizeof(Chunk) - 1) / sizeof(Chunk);
   if (ring_.claim(chunks) < chunks) {
@@ -134,19 +126,15 @@ void FrameStream::take(std::vector<Record>& records) {
       wanted = head.bytes;
     }
     if (incoming_.size() < wanted) return;
-    Record record;
-    record.number = head.number;
-    record.discontinuous = head.jumped != 0 || head.number != taken_ + 1;
-    record.drift = head.drift;
-    record.weights = head.weights;
-    record.bakes = head.bakes != 0;
+    Record record{head.facts, {}, {}};
+    record.discontinuous = record.discontinuous || record.number != taken_ + 1;
     const auto body = std::span(incoming_).subspan(sizeof head, wanted - sizeof head);
     const auto record_head = body.first(head.head_bytes);
     const auto step = body.subspan(head.head_bytes);
     record.head.assign(record_head.begin(), record_head.end());
     record.step.assign(step.begin(), step.end());
     records.push_back(std::move(record));
-    taken_ = head.number;
+    taken_ = head.facts.number;
     incoming_.clear();
     wanted = 0;
   });

@@ -18,8 +18,8 @@
 
 namespace nendo::web {
 
-/// One frame, encoded for clients.
-struct Record {
+/// What a feed must know of a frame.
+struct RecordFacts {
   std::uint64_t number = 0; ///< the frame's number, counted from 1
   /// The step does not continue the previous record: clients need a new shape.
   bool discontinuous = false;
@@ -29,6 +29,10 @@ struct Record {
   double drift = 0.0;
   /// deform::SurfaceField::number() of the step's weights; 0: none.
   std::uint64_t weights = 0;
+};
+
+/// One frame, encoded for clients.
+struct Record : RecordFacts {
   std::vector<std::byte> head; ///< head and hands of an update message, with `steps` 0
   std::vector<std::byte> step; ///< one step of an update message
 };
