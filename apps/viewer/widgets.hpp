@@ -17,17 +17,15 @@ inline constexpr bool imgui_queues_events = IMGUI_VERSION_NUM >= 18700;
 
 #if IMGUI_VERSION_NUM < 18700
 
+inline constexpr int no_imgui_key = -1;
+
 inline int imgui_key(int key) {
-  return key > 0 && key < IM_ARRAYSIZE(ImGui::GetIO().KeysDown) ? key : -1;
+  return key > 0 && key < IM_ARRAYSIZE(ImGui::GetIO().KeysDown) ? key : no_imgui_key;
 }
 
 inline void put_key(int key, bool down) {
-  if (const int known = imgui_key(key); known >= 0) ImGui::GetIO().KeysDown[known] = down;
-}
-
-inline bool is_key_down(int key) {
-  const int known = imgui_key(key);
-  return known >= 0 && ImGui::GetIO().KeysDown[known];
+  if (const int known = imgui_key(key); known != no_imgui_key)
+    ImGui::GetIO().KeysDown[known] = down;
 }
 
 inline void put_modifiers(bool control, bool shift) {
@@ -49,7 +47,9 @@ inline void put_wheel(float turns) {
 
 #else
 
-/// Returns ImGuiKey_None for keys that no window uses.
+inline constexpr ImGuiKey no_imgui_key = ImGuiKey_None;
+
+/// Returns no_imgui_key for keys that no window uses.
 inline ImGuiKey imgui_key(int key) {
   if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z)
     return static_cast<ImGuiKey>(ImGuiKey_A + (key - GLFW_KEY_A));
@@ -80,17 +80,12 @@ inline ImGuiKey imgui_key(int key) {
                               std::pair{GLFW_KEY_RIGHT_BRACKET, ImGuiKey_RightBracket}};
   for (const auto& [number, known] : others)
     if (number == key) return known;
-  return ImGuiKey_None;
+  return no_imgui_key;
 }
 
 inline void put_key(int key, bool down) {
-  if (const ImGuiKey known = imgui_key(key); known != ImGuiKey_None)
+  if (const ImGuiKey known = imgui_key(key); known != no_imgui_key)
     ImGui::GetIO().AddKeyEvent(known, down);
-}
-
-inline bool is_key_down(int key) {
-  const ImGuiKey known = imgui_key(key);
-  return known != ImGuiKey_None && ImGui::IsKeyDown(known);
 }
 
 inline void put_modifiers(bool control, bool shift) {
@@ -112,16 +107,16 @@ inline void put_wheel(float turns) {
 
 #endif
 
+inline bool is_key_down(int key) {
+  const auto known = imgui_key(key);
+  return known != no_imgui_key && ImGui::IsKeyDown(known);
+}
+
 /// Returns whether the key, by GLFW's number, was just pressed. With `repeats`, a key that is held
 /// down repeats.
 inline bool pressed(int key, bool repeats = false) {
   const auto known = imgui_key(key);
-#if IMGUI_VERSION_NUM < 18700
-  if (known < 0) return false;
-#else
-  if (known == ImGuiKey_None) return false;
-#endif
-  return ImGui::IsKeyPressed(known, repeats);
+  return known != no_imgui_key && ImGui::IsKeyPressed(known, repeats);
 }
 
 /// Returns whether keys are for the window: no text field, dialog or list is active.
