@@ -1,6 +1,7 @@
 #pragma once
 // The commands of a run, from keys, from the window's mouse and buttons, or from a browser. A
-// command is a trivially copyable value, so that rings pass it without allocation.
+// command is a trivially copyable value, so that rings pass it without allocation. Also the
+// settings that a client shows and requests.
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
 // The result of a tick: both hands, the field, and the deformed vertices. It is published through a
-// lock-free exchange of the latest value.
+// lock-free exchange of the latest value, and to sinks that receive every frame.
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 #pragma once
 // An input of the loop: a glove's ring, its wearer's calibration, and the filter of its samples. It
-// turns samples into joint angles: calibration, sensor gate, filter, pinches.
+// turns samples into joint angles: calibration, sensor gate, filter, pinches. An input can be a
+// layer, which replaces some angles of another one.
 
 #include <array>
 #include <chrono>

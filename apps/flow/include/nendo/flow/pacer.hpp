@@ -1,6 +1,6 @@
 #pragma once
 // Paces a loop's ticks: the grid of deadlines, the wait between ticks, and the handling of
-// overruns.
+// overruns. Also the record of a tick's times.
 
 #include <algorithm>
 #include <array>

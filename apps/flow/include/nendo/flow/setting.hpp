@@ -1,6 +1,6 @@
 #pragma once
 // The description of each setting: names, range, help. Options, timelines, reports and widgets use
-// it through for_each_setting().
+// it through for_each_setting(). Also checks which settings can be combined.
 
 #include <algorithm>
 #include <array>
